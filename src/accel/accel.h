@@ -1,0 +1,39 @@
+// What every accelerator offers. Closest hit means smallest t, then smallest triangle id, whatever the structure or SIMD
+// width; the answers of all accelerators are the same bits. `brute` is the oracle the others are tested against.
+#pragma once
+#include <cstddef>
+
+#include "accel/ray.h"
+#include "base/arena.h"
+#include "base/status.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// The geometry an accelerator answers about, and its own data, which lies in an arena or in a baked file.
+struct Accel {
+  Array<const Vec3> positions;
+  Array<const Triangle> triangles;
+  Box bounds = empty_box();
+  Array<const std::uint8_t> data;  // the structure itself
+};
+
+struct AccelInfo {
+  const char* name;
+  // Bytes build() keeps in its arena, and bytes of scratch that it releases again.
+  std::size_t (*need)(std::uint32_t triangle_count);
+  std::size_t (*scratch_need)(std::uint32_t triangle_count);
+  // Builds over the triangles of `accel` (positions and triangles are set). Keeps data in `keep`, uses and releases
+  // `scratch`. Never fails: sizes are planned.
+  void (*build)(Accel* accel, Arena* keep, Arena* scratch);
+  // Adapts writable data to moved positions, topology unchanged. Null: rebuild instead.
+  void (*refit)(Accel* accel, Array<std::uint8_t> data);
+  // Adopts baked data after checking every index in it.
+  Status (*adopt)(Accel* accel, Array<const std::uint8_t> data);
+  // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none.
+  void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
+  // Whether anything is hit in (0, ray.t_max).
+  bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+};
+
+}  // namespace pocketray

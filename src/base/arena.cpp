@@ -1,0 +1,41 @@
+#include "base/arena.h"
+
+#include "base/check.h"
+
+namespace pocketray {
+
+Arena make_arena(const char* name, void* block, std::size_t capacity) {
+  std::uintptr_t start = reinterpret_cast<std::uintptr_t>(block);
+  std::size_t skip = (kArenaAlignment - start % kArenaAlignment) % kArenaAlignment;
+  CHECK_LE(skip, capacity);
+  Arena arena;
+  arena.name = name;
+  arena.base = static_cast<std::uint8_t*>(block) + skip;
+  arena.capacity = capacity - skip;
+  return arena;
+}
+
+std::size_t arena_free(const Arena& arena) { return arena.capacity - arena.used; }
+
+void* arena_try_allocate(Arena* arena, std::size_t bytes) {
+  if (bytes > arena->capacity) return nullptr;  // before rounding, which could wrap
+  std::size_t need = arena_need(bytes);
+  if (need > arena_free(*arena)) return nullptr;
+  void* result = arena->base + arena->used;
+  arena->used += need;
+  if (arena->used > arena->used_max) arena->used_max = arena->used;
+  return result;
+}
+
+void* arena_allocate(Arena* arena, std::size_t bytes) {
+  void* result = arena_try_allocate(arena, bytes);
+  if (!result) CHECK_LE(arena_need(bytes), arena_free(*arena));
+  return result;
+}
+
+void arena_release(Arena* arena, std::size_t mark) {
+  CHECK_LE(mark, arena->used);
+  arena->used = mark;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,54 @@
+// Arena: a named part of the one memory block. Grows by a pointer, is released by mark, never calls the system.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "base/array.h"
+
+namespace pocketray {
+
+constexpr std::size_t kArenaAlignment = 64;  // a cache line; every allocation starts on one
+
+// What an allocation of `bytes` takes from an arena.
+constexpr std::size_t arena_need(std::size_t bytes) { return (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment; }
+template <class T>
+constexpr std::size_t arena_need(std::size_t count) {
+  return arena_need(count * sizeof(T));
+}
+
+struct Arena {
+  const char* name = "";
+  std::uint8_t* base = nullptr;
+  std::size_t capacity = 0;  // bytes
+  std::size_t used = 0;
+  std::size_t used_max = 0;
+};
+
+// Takes `capacity` bytes from the front of `block`; base is aligned upward, so the arena may lose up to 63 bytes.
+Arena make_arena(const char* name, void* block, std::size_t capacity);
+
+// Bytes that are still free.
+std::size_t arena_free(const Arena& arena);
+
+// Aborts when the arena is full: sizes are planned, so that is a programmer error. Memory is not cleared.
+void* arena_allocate(Arena* arena, std::size_t bytes);
+// The same, but returns null when the arena is full: for callers that turn it into a Status.
+void* arena_try_allocate(Arena* arena, std::size_t bytes);
+
+inline std::size_t arena_mark(const Arena& arena) { return arena.used; }
+void arena_release(Arena* arena, std::size_t mark);
+
+template <class T>
+Array<T> arena_array(Arena* arena, std::size_t count) {
+  static_assert(std::is_trivially_destructible<T>::value, "arenas run no destructors");
+  return {static_cast<T*>(arena_allocate(arena, count * sizeof(T))), static_cast<std::uint32_t>(count)};
+}
+template <class T>
+Array<T> arena_array_zeroed(Arena* arena, std::size_t count) {
+  Array<T> array = arena_array<T>(arena, count);
+  __builtin_memset(static_cast<void*>(array.data), 0, array.bytes());
+  return array;
+}
+
+}  // namespace pocketray

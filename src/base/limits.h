@@ -1,0 +1,29 @@
+// Every capacity of the renderer. What exceeds one is refused when a scene is read or a frame is planned, never later.
+#pragma once
+#include <cstdint>
+
+namespace pocketray {
+
+constexpr std::uint32_t kImageSideMax = 8192;          // pixels; spans keep their columns in 16 bits
+constexpr std::uint32_t kTriangleCountMax = 1u << 26;  // leaves room for tag bits in 32-bit child references
+constexpr std::uint32_t kVertexCountMax = 3u << 26;
+constexpr std::uint32_t kMaterialCountMax = 1u << 16;
+constexpr std::uint32_t kTextureCountMax = 4096;
+constexpr std::uint32_t kTextureSideMax = 16384;
+constexpr std::uint32_t kLightCountMax = 4096;       // lights of a scene
+constexpr std::uint32_t kPointLightCountMax = 4096;  // after area lights have become points
+constexpr std::uint32_t kPointsPerAreaLightMax = 256;
+constexpr std::uint32_t kCameraCountMax = 256;
+constexpr std::uint32_t kNodeCountMax = 1u << 16;
+constexpr std::uint32_t kSampleCountMax = 16;  // per pixel
+constexpr std::uint32_t kRayDepthMax = 16;     // reflections and refractions along one path
+constexpr std::uint32_t kMediumDepthMax = 8;   // transparent bodies nested in one another
+constexpr std::uint32_t kTransparentLayerMax = 64;  // alpha or glass surfaces that one ray may pass in a straight line
+constexpr std::uint32_t kThreadCountMax = 64;
+constexpr std::uint32_t kBvhDepthMax = 64;  // bounds the traversal stack
+constexpr float kCoordinateMax = 1e18f;     // its square is finite; HARDCASES row 8
+
+static_assert(kImageSideMax <= 1u << 16, "span columns are 16 bit");
+static_assert(kVertexCountMax >= 3 * kTriangleCountMax, "a triangle soup must fit");
+
+}  // namespace pocketray

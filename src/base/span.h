@@ -1,0 +1,11 @@
+// Span: the unit of work. A run of pixels on one scanline; a frame is a list of spans.
+#pragma once
+#include <cstdint>
+
+namespace pocketray {
+
+struct Span {
+  std::uint16_t row, column_begin, column_end;  // pixels; end is exclusive
+};
+
+}  // namespace pocketray

@@ -1,0 +1,34 @@
+// Effects: what a renderer can be asked to simulate, one bit each.
+#pragma once
+#include <cstdint>
+
+namespace pocketray {
+
+enum class Effect : std::uint8_t {
+  shadow,
+  specular,
+  mirror,
+  refraction,
+  absorption,
+  alpha_mask,
+  alpha_blend,
+  emission,
+  texture,
+  vertex_color,
+  smooth_normal,
+  ambient,
+  point_light,
+  spot_light,
+  directional_light,
+  area_light,
+  supersampling,
+  animation,
+};
+constexpr int kEffectCount = 18;
+
+using EffectMask = std::uint32_t;
+constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }
+constexpr bool has(EffectMask mask, Effect effect) { return (mask & bit(effect)) != 0; }
+constexpr EffectMask kAllEffects = (1u << kEffectCount) - 1;
+
+}  // namespace pocketray

@@ -1,0 +1,34 @@
+// One row per effect: its name on the command line and what in a scene calls for it.
+#pragma once
+#include "effect/effect.h"
+
+namespace pocketray {
+
+struct EffectRow {
+  Effect effect;
+  const char* name;
+  const char* called_for_by;
+};
+
+constexpr EffectRow kEffectList[kEffectCount] = {
+    {Effect::shadow, "shadow", "a light and a surface that reflects it"},
+    {Effect::specular, "specular", "a material with a glossy lobe"},
+    {Effect::mirror, "mirror", "a material with mirror reflectance"},
+    {Effect::refraction, "refraction", "a material that transmits light"},
+    {Effect::absorption, "absorption", "a transparent body that absorbs"},
+    {Effect::alpha_mask, "alpha-mask", "a material with cut-out holes"},
+    {Effect::alpha_blend, "alpha-blend", "a material that lets the background through"},
+    {Effect::emission, "emission", "a material that emits"},
+    {Effect::texture, "texture", "a material with a texture"},
+    {Effect::vertex_color, "vertex-color", "a mesh with colours at its vertices"},
+    {Effect::smooth_normal, "smooth-normal", "a mesh with normals at its vertices"},
+    {Effect::ambient, "ambient", "a constant indirect light"},
+    {Effect::point_light, "point-light", "a point light"},
+    {Effect::spot_light, "spot-light", "a spot light"},
+    {Effect::directional_light, "directional-light", "a directional light"},
+    {Effect::area_light, "area-light", "an emissive surface"},
+    {Effect::supersampling, "supersampling", "more than one sample per pixel"},
+    {Effect::animation, "animation", "moving geometry, lights or cameras"},
+};
+
+}  // namespace pocketray

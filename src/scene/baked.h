@@ -1,0 +1,31 @@
+// The .pray file: one little-endian block that is used as it lies. A header (magic, version, byte count, CRC-32 of the rest),
+// a table of sections (kind, element size, offset, count), then the arrays of Scene, each aligned to 64 bytes.
+// Bytes of a file are hostile until baked_open() has checked them.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "base/status.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+constexpr std::uint32_t kBakedVersion = 1;
+
+// Bytes of the file that baked_write() makes of the scene.
+std::size_t baked_size(const Scene& scene);
+// Writes the scene into `bytes`, baked_size() of them.
+void baked_write(const Scene& scene, std::uint8_t* bytes);
+
+// Makes `scene` a view of the file in `bytes` (aligned to 64). Checks magic, version, length, checksum, and then every
+// count, offset, index and float, so that the scene may be trusted afterwards. Allocates nothing, copies nothing.
+Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene);
+
+// The checks of baked_open() on a scene from anywhere: indices in range, floats finite and below kCoordinateMax, nodes
+// after their parents, key times increasing. Says which element is wrong.
+Status validate_scene(const Scene& scene);
+
+// Order-independent identity of the content: CRC-32 over all arrays. For caches and tests.
+std::uint32_t scene_hash(const Scene& scene);
+
+}  // namespace pocketray

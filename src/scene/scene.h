@@ -1,0 +1,185 @@
+// The scene: plain arrays of structs, fields used together lying together [Aranha07] sec. 3.1.
+// A Scene owns nothing: its arrays lie in a mapped .pray file or in the scene arena. Everything in it has been checked:
+// indices are in range, floats are finite, nodes come after their parents.
+// Units: distances in scene units, angles in radians, colours linear with sRGB primaries, +Y up, right-handed.
+#pragma once
+#include <cstdint>
+
+#include "base/array.h"
+#include "base/box.h"
+#include "base/transform.h"
+#include "base/vec3.h"
+
+namespace pocketray {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFFu;  // "no such index"
+
+struct Triangle {
+  std::uint32_t vertex[3];  // counter-clockwise seen from the front
+  std::uint32_t material;
+};
+
+// A linear colour as it is stored per vertex: 16 bits a channel, 65535 = 1.
+struct Rgba16 {
+  std::uint16_t r, g, b, a;
+};
+
+enum class Wrap : std::uint8_t { repeat, mirror, clamp };
+
+struct Texture {
+  std::uint32_t texel_begin;    // first texel in Scene::texels; rows from the top
+  std::uint16_t width, height;  // texels, ≥ 1
+  Wrap wrap_u, wrap_v;
+  std::uint8_t nearest;  // 1: nearest texel, 0: bilinear
+  std::uint8_t reserved = 0;
+};
+
+// A use of a texture by a material: uv' = m · (u, v, 1) (KHR_texture_transform).
+struct TextureUse {
+  std::uint32_t texture = kNone;
+  float m[2][3] = {{1, 0, 0}, {0, 1, 0}};
+};
+
+enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+
+// What a surface does with light. Any lobe may be absent (zero); an absent lobe costs nothing.
+struct Material {
+  Vec3 diffuse = {0.8f, 0.8f, 0.8f};  // Lambertian albedo; × texture × vertex colour
+  Vec3 specular = {0, 0, 0};          // albedo of the glossy lobe at its peak direction, see brdf/
+  float exponent = 0;                 // of the Phong lobe, ≥ 0
+  Vec3 mirror = {0, 0, 0};            // reflectance of the perfect mirror
+  Vec3 transmission = {0, 0, 0};      // of the dielectric; zero: opaque. Reflects by Fresnel, transmits the rest × this
+  float ior = 1.5f;                   // index of refraction, ≥ 1
+  Vec3 absorption = {0, 0, 0};        // per scene unit inside the body (Beer–Lambert)
+  Vec3 emission = {0, 0, 0};          // radiance; × emission texture
+  float opacity = 1;                  // alpha; × texture alpha × vertex alpha
+  float alpha_cutoff = 0.5f;          // alpha mode mask: less than this is a hole
+  TextureUse diffuse_texture, emission_texture;
+  std::uint32_t brdf = 0;  // index into brdf_list(): the glossy lobe
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  std::uint8_t double_sided = 1;
+  std::uint8_t unlit = 0;  // shows its diffuse colour as it is (KHR_materials_unlit)
+  std::uint8_t thin = 0;   // transmits without bending and encloses nothing (glTF without KHR_materials_volume)
+};
+
+enum class LightKind : std::uint32_t { point, spot, directional };
+
+// Lights that are no surface. Emissive materials are the area lights; they are found by the plan.
+struct Light {
+  LightKind kind = LightKind::point;
+  Vec3 position = {0, 0, 0};    // point, spot
+  Vec3 direction = {0, -1, 0};  // unit, the way the light travels; spot, directional
+  Vec3 intensity = {1, 1, 1};   // point, spot: radiant intensity; directional: irradiance on a surface that faces it
+  float range = 0;              // beyond this it gives nothing (KHR_lights_punctual); 0: no limit
+  float cos_inner = 1, cos_outer = 0;  // spot: full within inner, none beyond outer
+  std::uint32_t node = kNone;          // moves with this node: position and direction are then in its space
+};
+
+enum class Projection : std::uint32_t { perspective, orthographic };
+
+struct Camera {
+  Vec3 eye = {0, 0, 0}, target = {0, 0, -1}, up = {0, 1, 0};
+  float vertical_fov = 0.8f;       // radians, perspective
+  float vertical_extent = 1;       // scene units from bottom to top, orthographic
+  Projection projection = Projection::perspective;
+  std::uint32_t node = kNone;  // moves with this node: eye, target and up are then in its space
+};
+
+// ---- animation -------------------------------------------------------------------------------------------------------
+
+struct Node {
+  std::uint32_t parent = kNone;  // index lower than the node's own
+  Vec3 translation = {0, 0, 0};
+  Quaternion rotation;
+  Vec3 scale = {1, 1, 1};
+  std::uint32_t weight_begin = 0, weight_count = 0;  // morph weights in Scene::weights
+};
+
+enum class ChannelPath : std::uint8_t { translation, rotation, scale, weights };
+enum class Interpolation : std::uint8_t { step, linear, cubic };  // cubic: in-tangent, value, out-tangent for each key
+
+struct Channel {
+  std::uint32_t node;
+  std::uint32_t key_begin, key_count;  // in Scene::key_times, seconds, strictly increasing
+  std::uint32_t value_begin;           // in Scene::key_values; 3, 4 or weight_count floats a key, × 3 if cubic
+  ChannelPath path;
+  Interpolation interpolation;
+  std::uint16_t reserved = 0;
+};
+
+struct Animation {
+  std::uint32_t channel_begin, channel_count;
+  float duration;  // seconds; time wraps here
+};
+
+struct Joint {
+  std::uint32_t node;
+  Transform inverse_bind;
+};
+
+struct Skin {
+  std::uint32_t joint_begin, joint_count;
+};
+
+// Four joints of a skin and their weights, which sum to 1.
+struct SkinWeight {
+  std::uint16_t joint[4];
+  float weight[4];
+};
+
+// A run of vertices that moves. Its rest pose is in object space; its pose at time 0 is what Scene::positions holds.
+struct MovingMesh {
+  std::uint32_t vertex_begin, vertex_count;  // in Scene::positions (and normals)
+  std::uint32_t rest_begin;                  // in Scene::rest_positions (and rest_normals)
+  std::uint32_t node;                        // ignored where there is a skin
+  std::uint32_t skin = kNone;
+  std::uint32_t skin_weight_begin = 0;                // in Scene::skin_weights, vertex_count of them
+  std::uint32_t morph_begin = 0, morph_count = 0;     // first delta in Scene::morph_positions; targets lie one after another
+  Transform instance;                                 // between the node and the mesh (instancing)
+};
+
+// ---- the whole -------------------------------------------------------------------------------------------------------
+
+struct SceneInfo {
+  char name[64] = {0};
+  Vec3 background = {0, 0, 0};  // radiance where nothing is hit
+  Vec3 ambient = {0, 0, 0};     // indirect light taken as constant: radiance from everywhere
+  float exposure = 1;           // displayed = exposure × radiance
+  std::uint32_t frame_count = 1;
+  float frames_per_second = 30;
+  std::uint32_t default_lights = 0;  // 1: the scene had no light and got the stated ones
+  std::uint32_t default_camera = 0;  // 1: framed by its bounds
+  float auto_exposure = 0;           // 1: exposure is to be measured before the first frame
+};
+
+struct BvhNode;      // accel/bvh.h
+struct BvhLeaf;      // accel/bvh.h
+
+struct Scene {
+  SceneInfo info;
+  Array<const Vec3> positions;    // world space, at time 0
+  Array<const Vec3> normals;      // unit, one per vertex, or empty; the zero vector asks for the geometric normal
+  Array<const Vec2> uvs;          // one per vertex, or empty
+  Array<const Rgba16> colors;     // one per vertex, or empty
+  Array<const Triangle> triangles;
+  Array<const Material> materials;
+  Array<const Texture> textures;
+  Array<const std::uint32_t> texels;  // bytes R, G, B, A in memory; RGB in sRGB
+  Array<const Light> lights;
+  Array<const Camera> cameras;
+  Array<const Node> nodes;
+  Array<const Animation> animations;
+  Array<const Channel> channels;
+  Array<const float> key_times, key_values, weights;
+  Array<const Skin> skins;
+  Array<const Joint> joints;
+  Array<const MovingMesh> moving_meshes;
+  Array<const Vec3> rest_positions, rest_normals;
+  Array<const SkinWeight> skin_weights;
+  Array<const Vec3> morph_positions, morph_normals;
+  Array<const std::uint8_t> accel;  // baked accelerator, as accel/ lays it out; may be empty
+};
+
+inline bool is_animated(const Scene& scene) { return scene.animations.count > 0 && scene.moving_meshes.count + scene.nodes.count > 0; }
+
+}  // namespace pocketray
