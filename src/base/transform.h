@@ -1,5 +1,7 @@
 // Affine transforms as three rows of four: p' = A p + t.
 #pragma once
+#include <limits>
+
 #include "base/vec3.h"
 
 namespace pocketray {
@@ -42,18 +44,35 @@ inline Transform compose(const Vec3& translation, const Quaternion& q, const Vec
 }
 // Determinant of the linear part, in double: products of three floats do not overflow there.
 inline double determinant(const Transform& t) {
-  Vec3d a = {t.m[0][0], t.m[0][1], t.m[0][2]}, b = {t.m[1][0], t.m[1][1], t.m[1][2]}, c = {t.m[2][0], t.m[2][1], t.m[2][2]};
+  Vec3d a = {t.m[0][0], t.m[0][1], t.m[0][2]}, b = {t.m[1][0], t.m[1][1], t.m[1][2]},
+        c = {t.m[2][0], t.m[2][1], t.m[2][2]};
   return dot(a, cross(b, c));
 }
-// A normal under t: the cofactor matrix times n. It needs no division, so singular transforms do no harm, and it carries
-// the sign of the determinant: mirrored geometry keeps n·t = 0 and, with its winding flipped, its orientation.
-inline Vec3 transform_normal(const Transform& t, const Vec3& n) {
-  Vec3d a = {t.m[0][0], t.m[0][1], t.m[0][2]}, b = {t.m[1][0], t.m[1][1], t.m[1][2]}, c = {t.m[2][0], t.m[2][1], t.m[2][2]};
+// What a transform does to normals: its cofactor matrix. It needs no division, so singular transforms do no harm, and
+// it carries the sign of the determinant: mirrored geometry keeps n·t = 0 and, with its winding flipped, its
+// orientation.
+struct NormalTransform {
+  Vec3d row[3];
+};
+inline NormalTransform normal_transform(const Transform& t) {
+  Vec3d a = {t.m[0][0], t.m[0][1], t.m[0][2]}, b = {t.m[1][0], t.m[1][1], t.m[1][2]},
+        c = {t.m[2][0], t.m[2][1], t.m[2][2]};
+  Vec3d bc = cross(b, c);
+  double sign = dot(a, bc) < 0 ? -1.0 : 1.0;
+  return {{bc * sign, cross(c, a) * sign, cross(a, b) * sign}};
+}
+// Unit; the zero vector where n is zero or is flattened to nothing.
+inline Vec3 transform_normal(const NormalTransform& t, const Vec3& n) {
   Vec3d m = {n.x, n.y, n.z};
-  Vec3d r = {dot(cross(b, c), m), dot(cross(c, a), m), dot(cross(a, b), m)};
-  double s = determinant(t) < 0 ? -1.0 : 1.0;
-  Vec3d u = normalize(r) * s;
+  Vec3d u = normalize(Vec3d{dot(t.row[0], m), dot(t.row[1], m), dot(t.row[2], m)});
   return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
+}
+inline Vec3 transform_normal(const Transform& t, const Vec3& n) { return transform_normal(normal_transform(t), n); }
+
+// Whether the linear part can be inverted within float range: HARDCASES row 27 refuses what is not.
+inline bool is_invertible(const Transform& t) {
+  double d = std::fabs(determinant(t));
+  return d >= std::numeric_limits<float>::min() && d <= std::numeric_limits<float>::max();
 }
 
 }  // namespace pocketray

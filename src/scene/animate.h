@@ -1,24 +1,31 @@
-// Poses an animated scene at a time: node transforms, skins, morph targets [glTF 2.0, secs. 3.7.3, 3.11].
+// Poses an animated scene at a time: node transforms, skins, morph targets [glTF 2.0, secs. 3.7.3, 3.11, appendix C].
 #pragma once
 #include "base/arena.h"
 #include "scene/scene.h"
 
 namespace pocketray {
 
-// What moves, at one time. The arrays start as the scene's own (time 0) and are writable copies where something moves.
+// What moves, at one time. All arrays are empty for a static scene; otherwise they are writable and as long as the
+// scene's.
 struct Pose {
-  Array<Vec3> positions;  // empty when no vertex moves: use Scene::positions
-  Array<Vec3> normals;
-  Array<Transform> nodes;  // node → world
-  Array<Light> lights;     // in world space
-  Array<Camera> cameras;   // in world space
+  Array<Vec3> positions;    // world space; empty when no vertex moves: use Scene::positions
+  Array<Vec3> normals;      // world space; empty when no vertex moves or the scene has none
+  Array<Transform> nodes;   // node → world
+  Array<Light> lights;      // world space; their node is kNone
+  Array<Camera> cameras;    // world space; their node is kNone
+  Array<Node> local_nodes;  // nodes as the animation sets them, before their parents
+  Array<float> weights;     // morph weights as the animation sets them
+  Array<Transform> joints;  // rest pose → world, one per Scene::joints
 };
 
-// Bytes make_pose() takes from its arena. 0 for a scene that is not animated.
+// Bytes make_pose() takes from its arena, exactly. 0 for a scene that is not animated.
 std::size_t pose_need(const Scene& scene);
-// Allocates; call once. For a static scene all arrays stay empty.
+// Allocates and poses animation 0 at time 0; call once. For a static scene all arrays stay empty.
 Pose make_pose(const Scene& scene, Arena* arena);
-// Evaluates animation `animation_index` at `seconds` (wraps at its duration) into `pose`. Allocates nothing.
+// Evaluates animation `animation_index` at `seconds` (wraps at its duration, so the duration itself shows time 0) into
+// `pose`, whatever it held before. Before a channel's first key and after its last one, that key holds. Allocates
+// nothing. Coordinates that would leave ±kCoordinateMax stay there, so a pose is always finite. Does nothing for a
+// static scene.
 void pose_at(const Scene& scene, std::uint32_t animation_index, double seconds, Pose* pose);
 
 }  // namespace pocketray

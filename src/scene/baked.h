@@ -1,5 +1,5 @@
-// The .pray file: one little-endian block that is used as it lies. A header (magic, version, byte count, CRC-32 of the rest),
-// a table of sections (kind, element size, offset, count), then the arrays of Scene, each aligned to 64 bytes.
+// The .pray file: one little-endian block that is used as it lies. A header (magic, version, byte count, CRC-32 of the
+// rest), a table of sections (kind, element size, offset, count), then the arrays of Scene, each aligned to 64 bytes.
 // Bytes of a file are hostile until baked_open() has checked them.
 #pragma once
 #include <cstddef>
@@ -25,7 +25,8 @@ Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scen
 // after their parents, key times increasing. Says which element is wrong.
 Status validate_scene(const Scene& scene);
 
-// Order-independent identity of the content: CRC-32 over all arrays. For caches and tests.
+// Identity of the content, wherever its arrays lie: the CRC-32s of all arrays, combined so that their order is of no
+// account. For caches and tests.
 std::uint32_t scene_hash(const Scene& scene);
 
 }  // namespace pocketray

@@ -46,10 +46,10 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 struct Material {
   Vec3 diffuse = {0.8f, 0.8f, 0.8f};  // Lambertian albedo; × texture × vertex colour
   Vec3 specular = {0, 0, 0};          // albedo of the glossy lobe at its peak direction, see brdf/
-  float exponent = 0;                 // of the Phong lobe, ≥ 0
+  float exponent = 0;                 // of the Phong lobe, 0 to kPhongExponentMax
   Vec3 mirror = {0, 0, 0};            // reflectance of the perfect mirror
   Vec3 transmission = {0, 0, 0};      // of the dielectric; zero: opaque. Reflects by Fresnel, transmits the rest × this
-  float ior = 1.5f;                   // index of refraction, ≥ 1
+  float ior = 1.5f;                   // index of refraction, 1 to kIorMax
   Vec3 absorption = {0, 0, 0};        // per scene unit inside the body (Beer–Lambert)
   Vec3 emission = {0, 0, 0};          // radiance; × emission texture
   float opacity = 1;                  // alpha; × texture alpha × vertex alpha
@@ -127,7 +127,8 @@ struct SkinWeight {
   float weight[4];
 };
 
-// A run of vertices that moves. Its rest pose is in object space; its pose at time 0 is what Scene::positions holds.
+// A run of vertices that moves; runs ascend and do not overlap. Its rest pose is in object space; its pose at time 0 is
+// what Scene::positions holds.
 struct MovingMesh {
   std::uint32_t vertex_begin, vertex_count;  // in Scene::positions (and normals)
   std::uint32_t rest_begin;                  // in Scene::rest_positions (and rest_normals)
@@ -135,7 +136,7 @@ struct MovingMesh {
   std::uint32_t skin = kNone;
   std::uint32_t skin_weight_begin = 0;                // in Scene::skin_weights, vertex_count of them
   std::uint32_t morph_begin = 0, morph_count = 0;     // first delta in Scene::morph_positions; targets lie one after another
-  Transform instance;                                 // between the node and the mesh (instancing)
+  Transform instance;  // between the node and the mesh (instancing); ignored where there is a skin
 };
 
 // ---- the whole -------------------------------------------------------------------------------------------------------

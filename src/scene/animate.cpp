@@ -1,0 +1,176 @@
+#include "scene/animate.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "base/check.h"
+#include "base/fmath.h"
+#include "base/limits.h"
+#include "scene/channel.h"
+
+namespace pocketray {
+namespace {
+
+float hold(float x) {
+  if (std::fabs(x) <= kCoordinateMax) return x;
+  return x > 0 ? kCoordinateMax : x < 0 ? -kCoordinateMax : 0.0f;
+}
+Vec3 hold(const Vec3& p) { return {hold(p.x), hold(p.y), hold(p.z)}; }
+
+bool moves_vertices(const Scene& scene) { return is_animated(scene) && scene.moving_meshes.count > 0; }
+std::uint32_t posed_normal_count(const Scene& scene) { return moves_vertices(scene) ? scene.normals.count : 0; }
+std::uint32_t posed_position_count(const Scene& scene) { return moves_vertices(scene) ? scene.positions.count : 0; }
+
+template <class T>
+void copy(Array<const T> from, Array<T> to) {
+  if (to.count) std::memcpy(static_cast<void*>(to.data), from.data, to.bytes());
+}
+
+void apply_channels(const Scene& scene, const Animation& animation, double time, Pose* pose) {
+  copy(scene.nodes, pose->local_nodes);
+  copy(scene.weights, pose->weights);
+  for (std::uint32_t c = 0; c < animation.channel_count; ++c) {
+    const Channel& channel = scene.channels[animation.channel_begin + c];
+    Node* node = &pose->local_nodes[channel.node];
+    switch (channel.path) {
+      case ChannelPath::translation:
+        channel_value(scene, channel, time, 3, &node->translation.x);
+        break;
+      case ChannelPath::rotation:
+        node->rotation = channel_rotation(scene, channel, time);
+        break;
+      case ChannelPath::scale:
+        channel_value(scene, channel, time, 3, &node->scale.x);
+        break;
+      case ChannelPath::weights:
+        channel_value(scene, channel, time, node->weight_count, &pose->weights[node->weight_begin]);
+        break;
+    }
+  }
+}
+
+void place_nodes(const Scene& scene, Pose* pose) {
+  for (std::uint32_t n = 0; n < scene.nodes.count; ++n) {
+    const Node& node = pose->local_nodes[n];
+    Transform local = compose(node.translation, node.rotation, node.scale);
+    pose->nodes[n] = node.parent == kNone ? local : pose->nodes[node.parent] * local;
+  }
+  for (std::uint32_t j = 0; j < scene.joints.count; ++j)
+    pose->joints[j] = pose->nodes[scene.joints[j].node] * scene.joints[j].inverse_bind;
+}
+
+// base + Σ weight · delta over the morph targets of vertex `v` [glTF 2.0, sec. 3.7.2.2].
+Vec3 morphed(const MovingMesh& mesh, const float* weights, Array<const Vec3> deltas, std::uint32_t v, Vec3 base) {
+  for (std::uint32_t target = 0; target < mesh.morph_count; ++target) {
+    if (weights[target] == 0) continue;
+    base += deltas[mesh.morph_begin + std::size_t(target) * mesh.vertex_count + v] * weights[target];
+  }
+  return base;
+}
+
+// Σ weight · joint matrix [glTF 2.0, sec. 3.7.3.3].
+Transform blended(const Transform* joints, const SkinWeight& skin_weight) {
+  Transform sum = {{{0}}};
+  for (int k = 0; k < 4; ++k) {
+    float weight = skin_weight.weight[k];
+    if (weight == 0) continue;
+    const Transform& joint = joints[skin_weight.joint[k]];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) sum.m[i][j] += weight * joint.m[i][j];
+  }
+  return sum;
+}
+
+void place_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
+  bool with_normals = pose->normals.count > 0;
+  bool skinned = mesh.skin != kNone;
+  const float* weights = mesh.morph_count ? pose->weights.data + pose->local_nodes[mesh.node].weight_begin : nullptr;
+  const Transform* joints = skinned ? pose->joints.data + scene.skins[mesh.skin].joint_begin : nullptr;
+  Transform placed;
+  if (!skinned) placed = pose->nodes[mesh.node] * mesh.instance;
+  NormalTransform placed_normal = normal_transform(placed);
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    if (skinned) {
+      placed = blended(joints, scene.skin_weights[mesh.skin_weight_begin + v]);
+      if (with_normals) placed_normal = normal_transform(placed);
+    }
+    Vec3 rest = morphed(mesh, weights, scene.morph_positions, v, scene.rest_positions[mesh.rest_begin + v]);
+    pose->positions[mesh.vertex_begin + v] = hold(transform_point(placed, rest));
+    if (!with_normals) continue;
+    Vec3 normal = scene.rest_normals[mesh.rest_begin + v];
+    if (scene.morph_normals.count) normal = morphed(mesh, weights, scene.morph_normals, v, normal);
+    pose->normals[mesh.vertex_begin + v] = transform_normal(placed_normal, normal);
+  }
+}
+
+void place_lights_and_cameras(const Scene& scene, Pose* pose) {
+  for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
+    Light light = scene.lights[i];
+    if (light.node != kNone) {
+      const Transform& world = pose->nodes[light.node];
+      light.position = hold(transform_point(world, light.position));
+      Vec3 direction = normalize(transform_vector(world, light.direction));
+      if (!is_zero(direction)) light.direction = direction;
+      light.node = kNone;
+    }
+    pose->lights[i] = light;
+  }
+  for (std::uint32_t i = 0; i < scene.cameras.count; ++i) {
+    Camera camera = scene.cameras[i];
+    if (camera.node != kNone) {
+      const Transform& world = pose->nodes[camera.node];
+      camera.eye = hold(transform_point(world, camera.eye));
+      camera.target = hold(transform_point(world, camera.target));
+      camera.up = hold(transform_vector(world, camera.up));
+      camera.node = kNone;
+    }
+    pose->cameras[i] = camera;
+  }
+}
+
+double wrapped(double seconds, double duration) {
+  if (!(duration > 0) || !std::isfinite(seconds)) return 0;
+  double time = std::fmod(seconds, duration);  // exact
+  if (time < 0) time += duration;
+  return time < duration ? time : 0;  // a tiny negative time rounds up to the duration
+}
+
+}  // namespace
+
+std::size_t pose_need(const Scene& scene) {
+  if (!is_animated(scene)) return 0;
+  return arena_need<Vec3>(posed_position_count(scene)) + arena_need<Vec3>(posed_normal_count(scene)) +
+         arena_need<Transform>(scene.nodes.count) + arena_need<Light>(scene.lights.count) +
+         arena_need<Camera>(scene.cameras.count) + arena_need<Node>(scene.nodes.count) +
+         arena_need<float>(scene.weights.count) + arena_need<Transform>(scene.joints.count);
+}
+
+Pose make_pose(const Scene& scene, Arena* arena) {
+  Pose pose;
+  if (!is_animated(scene)) return pose;
+  pose.positions = arena_array<Vec3>(arena, posed_position_count(scene));
+  pose.normals = arena_array<Vec3>(arena, posed_normal_count(scene));
+  pose.nodes = arena_array<Transform>(arena, scene.nodes.count);
+  pose.lights = arena_array<Light>(arena, scene.lights.count);
+  pose.cameras = arena_array<Camera>(arena, scene.cameras.count);
+  pose.local_nodes = arena_array<Node>(arena, scene.nodes.count);
+  pose.weights = arena_array<float>(arena, scene.weights.count);
+  pose.joints = arena_array<Transform>(arena, scene.joints.count);
+  copy(scene.positions, pose.positions);
+  copy(scene.normals, pose.normals);
+  pose_at(scene, 0, 0, &pose);
+  return pose;
+}
+
+void pose_at(const Scene& scene, std::uint32_t animation_index, double seconds, Pose* pose) {
+  if (!is_animated(scene)) return;
+  CHECK_LT(animation_index, scene.animations.count);
+  CHECK_EQ(pose->nodes.count, scene.nodes.count);
+  const Animation& animation = scene.animations[animation_index];
+  apply_channels(scene, animation, wrapped(seconds, animation.duration), pose);
+  place_nodes(scene, pose);
+  for (const MovingMesh& mesh : scene.moving_meshes) place_mesh(scene, mesh, pose);
+  place_lights_and_cameras(scene, pose);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,221 @@
+#include "scene/baked.h"
+
+#include <zlib.h>
+
+#include <cstring>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+              "files are used as they lie: a big-endian CPU would have to swap");
+
+// The elements of a file are these structs as they lie. None may have padding: their sizes are the sums of their
+// members', on every ABI, and writing them is copying them.
+static_assert(sizeof(SceneInfo) == 64 + 6 * 4 + 6 * 4, "no padding");
+static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && sizeof(Triangle) == 16, "no padding");
+static_assert(sizeof(Texture) == 4 + 2 * 2 + 4, "no padding");
+static_assert(sizeof(TextureUse) == 28 && sizeof(Material) == 6 * 12 + 4 * 4 + 2 * 28 + 4 + 4, "no padding");
+static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 12 + 4 * 4, "no padding");
+static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "no padding");
+static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
+static_assert(sizeof(SkinWeight) == 8 + 16 && sizeof(MovingMesh) == 8 * 4 + 48, "no padding");
+
+constexpr std::uint64_t kSectionAlignment = 64;
+constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'R', 'A', 'Y', '\r', '\n', 0x1A};  // as PNG: text-mode copies damage it
+
+struct FileHeader {
+  std::uint8_t magic[8];
+  std::uint32_t version;
+  std::uint32_t checksum;  // CRC-32 of everything after this field
+  std::uint64_t byte_count;
+  std::uint32_t section_count;
+  std::uint32_t reserved[9];  // zero
+};
+static_assert(sizeof(FileHeader) == 64, "no padding");
+constexpr std::size_t kChecksumBegin = 16;
+
+struct Section {
+  std::uint32_t kind, element_bytes;
+  std::uint64_t offset;  // from the start of the file
+  std::uint32_t count, reserved;
+};
+static_assert(sizeof(Section) == 24, "no padding");
+
+// Calls visit(name, array) for every array of the scene. A section's kind is its place here, and so is its place in the
+// file: append new ones and raise kBakedVersion.
+template <class SceneType, class Visit>
+void for_each_array(SceneType& scene, Visit visit) {
+  visit("positions", scene.positions);
+  visit("normals", scene.normals);
+  visit("uvs", scene.uvs);
+  visit("colors", scene.colors);
+  visit("triangles", scene.triangles);
+  visit("materials", scene.materials);
+  visit("textures", scene.textures);
+  visit("texels", scene.texels);
+  visit("lights", scene.lights);
+  visit("cameras", scene.cameras);
+  visit("nodes", scene.nodes);
+  visit("animations", scene.animations);
+  visit("channels", scene.channels);
+  visit("key_times", scene.key_times);
+  visit("key_values", scene.key_values);
+  visit("weights", scene.weights);
+  visit("skins", scene.skins);
+  visit("joints", scene.joints);
+  visit("moving_meshes", scene.moving_meshes);
+  visit("rest_positions", scene.rest_positions);
+  visit("rest_normals", scene.rest_normals);
+  visit("skin_weights", scene.skin_weights);
+  visit("morph_positions", scene.morph_positions);
+  visit("morph_normals", scene.morph_normals);
+  visit("accel", scene.accel);
+}
+constexpr std::uint32_t kArrayCount = 25;
+constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
+
+constexpr std::uint64_t aligned(std::uint64_t offset) {
+  return (offset + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
+}
+constexpr std::uint64_t kFirstOffset = aligned(sizeof(FileHeader) + kSectionCount * sizeof(Section));
+
+// zlib counts in uInt, which may be narrower than size_t.
+std::uint32_t crc(std::uint32_t start, const void* bytes, std::size_t byte_count) {
+  constexpr std::size_t step_max = std::size_t(1) << 30;
+  const Bytef* at = static_cast<const Bytef*>(bytes);
+  uLong value = start;
+  while (byte_count) {
+    std::size_t step = byte_count < step_max ? byte_count : step_max;
+    value = crc32(value, at, static_cast<uInt>(step));
+    at += step, byte_count -= step;
+  }
+  return static_cast<std::uint32_t>(value);
+}
+
+std::uint32_t file_checksum(const std::uint8_t* bytes, std::size_t byte_count) {
+  return crc(0, bytes + kChecksumBegin, byte_count - kChecksumBegin);
+}
+
+// Where every section lies follows from the counts alone: sections come in order of their kinds, each at the next
+// multiple of 64. A table that says anything else is refused, which rules out overlaps, gaps, duplicates and stray
+// kinds at once.
+Status check_section(const Section& section, std::uint32_t kind, const char* name, std::uint32_t element_bytes,
+                     std::uint64_t byte_count, std::uint64_t* next_offset) {
+  if (section.kind != kind) return failure("section %u is of kind %u, not %s: bake it again", kind, section.kind, name);
+  if (section.element_bytes != element_bytes || section.reserved != 0)
+    return failure("%s has elements of %u bytes, not %u: bake it again", name, section.element_bytes, element_bytes);
+  if (section.offset != *next_offset)
+    return failure("%s lies at byte %llu, not %llu: bake it again", name,
+                   static_cast<unsigned long long>(section.offset), static_cast<unsigned long long>(*next_offset));
+  std::uint64_t section_bytes = std::uint64_t(section.count) * element_bytes;  // below 2^32 · 152
+  if (section.offset > byte_count || section_bytes > byte_count - section.offset)
+    return failure("%s reaches beyond the end of the file: bake it again", name);
+  *next_offset = aligned(section.offset + section_bytes);
+  return success();
+}
+
+Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeader* header) {
+  if (reinterpret_cast<std::uintptr_t>(bytes) % kSectionAlignment != 0)
+    return failure("must be read to a multiple of 64 bytes in memory");
+  if (byte_count < sizeof kMagic || std::memcmp(bytes, kMagic, sizeof kMagic) != 0)
+    return failure("not a .pray file: make one with pocketray bake");
+  if (byte_count < sizeof(FileHeader)) return failure("cut short after %zu bytes: copy or bake it again", byte_count);
+  std::memcpy(header, bytes, sizeof *header);
+  if (header->version != kBakedVersion)
+    return failure("made by version %u, this program reads version %u: bake it again", header->version, kBakedVersion);
+  if (header->byte_count != byte_count)
+    return failure("%zu bytes long, it should be %llu: copy or bake it again", byte_count,
+                   static_cast<unsigned long long>(header->byte_count));
+  if (file_checksum(bytes, byte_count) != header->checksum)
+    return failure("damaged, its checksum does not match: copy or bake it again");
+  if (header->section_count != kSectionCount)
+    return failure("%u sections, not %u: bake it again", header->section_count, kSectionCount);
+  for (std::uint32_t word : header->reserved)
+    if (word != 0) return failure("reserved bytes of the header are in use: bake it again");
+  if (byte_count < kFirstOffset) return failure("too short for its table of sections: bake it again");
+  return success();
+}
+
+Section section_at(const std::uint8_t* bytes, std::uint32_t kind) {
+  Section section;
+  std::memcpy(&section, bytes + sizeof(FileHeader) + kind * sizeof(Section), sizeof section);
+  return section;
+}
+
+}  // namespace
+
+std::size_t baked_size(const Scene& scene) {
+  std::uint64_t size = aligned(kFirstOffset + sizeof(SceneInfo));
+  for_each_array(scene, [&](const char*, const auto& array) { size = aligned(size + array.bytes()); });
+  CHECK_LE(size, SIZE_MAX);
+  return static_cast<std::size_t>(size);
+}
+
+void baked_write(const Scene& scene, std::uint8_t* bytes) {
+  std::size_t size = baked_size(scene);
+  std::memset(bytes, 0, size);
+  std::uint64_t offset = kFirstOffset;
+  std::uint32_t kind = 0;
+  auto write = [&](const void* data, std::uint32_t element_bytes, std::uint32_t count) {
+    Section section = {kind, element_bytes, offset, count, 0};
+    std::memcpy(bytes + sizeof(FileHeader) + kind * sizeof(Section), &section, sizeof section);
+    std::size_t section_bytes = std::size_t(element_bytes) * count;
+    if (section_bytes) std::memcpy(bytes + offset, data, section_bytes);
+    offset = aligned(offset + section_bytes);
+    ++kind;
+  };
+  write(&scene.info, sizeof scene.info, 1);
+  for_each_array(scene, [&](const char*, const auto& array) { write(array.data, sizeof array[0], array.count); });
+  CHECK_EQ(kind, kSectionCount);
+  CHECK_EQ(offset, size);
+  FileHeader header = {};
+  std::memcpy(header.magic, kMagic, sizeof kMagic);
+  header.version = kBakedVersion;
+  header.byte_count = size;
+  header.section_count = kSectionCount;
+  std::memcpy(bytes, &header, sizeof header);
+  header.checksum = file_checksum(bytes, size);
+  std::memcpy(bytes, &header, sizeof header);
+}
+
+Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene) {
+  FileHeader header;
+  RETURN_IF_ERROR(check_header(bytes, byte_count, &header));
+  Scene opened;
+  std::uint64_t offset = kFirstOffset;
+  Section info = section_at(bytes, 0);
+  RETURN_IF_ERROR(check_section(info, 0, "info", sizeof(SceneInfo), byte_count, &offset));
+  if (info.count != 1) return failure("%u info sections, not 1: bake it again", info.count);
+  std::memcpy(&opened.info, bytes + info.offset, sizeof opened.info);
+  Status status;
+  std::uint32_t kind = 1;
+  for_each_array(opened, [&](const char* name, auto& array) {
+    if (!status.ok) return;
+    Section section = section_at(bytes, kind);
+    status = check_section(section, kind, name, sizeof array[0], byte_count, &offset);
+    if (!status.ok) return;
+    array.data = reinterpret_cast<decltype(array.data)>(bytes + section.offset);
+    array.count = section.count;
+    ++kind;
+  });
+  if (!status.ok) return status;
+  if (offset != byte_count) return failure("bytes after the last section: bake it again");
+  status = validate_scene(opened);
+  if (!status.ok) return failure("%.400s; bake it again", status.message);
+  *scene = opened;
+  return success();
+}
+
+std::uint32_t scene_hash(const Scene& scene) {
+  std::uint32_t kind = 0, hash = crc(0, &scene.info, sizeof scene.info);
+  for_each_array(scene, [&](const char*, const auto& array) {
+    const std::uint32_t prefix[2] = {++kind, array.count};
+    hash ^= crc(crc(0, prefix, sizeof prefix), array.data, array.bytes());
+  });
+  return hash;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,12 @@
+// The value of an animation channel at a time [glTF 2.0, appendix C].
+#pragma once
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// Writes the channel's value at `time` (seconds), `width` floats, to `value`: translations, scales, morph weights.
+void channel_value(const Scene& scene, const Channel& channel, double time, std::uint32_t width, float* value);
+// The same for rotations, along the shorter arc; unit. The identity where the keys have no direction.
+Quaternion channel_rotation(const Scene& scene, const Channel& channel, double time);
+
+}  // namespace pocketray

@@ -1,0 +1,198 @@
+// What stands still: geometry, materials, textures, lights, cameras.
+#include <cstring>
+
+#include "base/fmath.h"
+#include "scene/baked.h"
+#include "scene/validate_checks.h"
+
+namespace pocketray {
+namespace {
+
+constexpr float kFloatMax = std::numeric_limits<float>::max();
+
+Status check_count(const char* array, std::uint32_t count, std::uint32_t limit) {
+  if (count <= limit) return success();
+  return failure("%u %s, at most %u fit: simplify the model", count, array, limit);
+}
+
+Status check_per_vertex(const char* array, std::uint32_t count, const Scene& scene) {
+  if (count == 0 || count == scene.positions.count) return success();
+  return failure("%u %s for %u vertices: there must be one for each or none", count, array, scene.positions.count);
+}
+
+Status validate_counts(const Scene& scene) {
+  RETURN_IF_ERROR(check_count("vertices", scene.positions.count, kVertexCountMax));
+  RETURN_IF_ERROR(check_count("triangles", scene.triangles.count, kTriangleCountMax));
+  RETURN_IF_ERROR(check_count("materials", scene.materials.count, kMaterialCountMax));
+  RETURN_IF_ERROR(check_count("textures", scene.textures.count, kTextureCountMax));
+  RETURN_IF_ERROR(check_count("lights", scene.lights.count, kLightCountMax));
+  RETURN_IF_ERROR(check_count("cameras", scene.cameras.count, kCameraCountMax));
+  RETURN_IF_ERROR(check_count("nodes", scene.nodes.count, kNodeCountMax));
+  RETURN_IF_ERROR(check_per_vertex("normals", scene.normals.count, scene));
+  RETURN_IF_ERROR(check_per_vertex("uvs", scene.uvs.count, scene));
+  return check_per_vertex("colors", scene.colors.count, scene);
+}
+
+Status validate_info(const SceneInfo& info) {
+  if (!std::memchr(info.name, 0, sizeof info.name)) return failure("the scene's name does not end");
+  if (info.frame_count < 1) return failure("info.frame_count is 0, it must be at least 1");
+  if (info.default_lights > 1 || info.default_camera > 1)
+    return failure("info.default_lights and _camera must be 0 or 1");
+  constexpr float least = std::numeric_limits<float>::min();
+  const FieldRange fields[] = {
+      {"background.x", info.background.x, 0, kFloatMax}, {"background.y", info.background.y, 0, kFloatMax},
+      {"background.z", info.background.z, 0, kFloatMax}, {"ambient.x", info.ambient.x, 0, kFloatMax},
+      {"ambient.y", info.ambient.y, 0, kFloatMax},       {"ambient.z", info.ambient.z, 0, kFloatMax},
+      {"exposure", info.exposure, least, kFloatMax},     {"frames_per_second", info.frames_per_second, 1e-3f, 1e6f},
+      {"auto_exposure", info.auto_exposure, 0, 1},
+  };
+  return check_fields("info", 0, fields);
+}
+
+Status check_texture_use(const char* field, std::uint32_t index, const TextureUse& use, const Scene& scene) {
+  for (const auto& row : use.m)
+    for (float x : row)
+      if (!is_coordinate(x)) return failure("materials[%u].%s has a transform that is not finite", index, field);
+  if (use.texture == kNone) return success();
+  if (use.texture >= scene.textures.count)
+    return failure("materials[%u].%s is texture %u of %u", index, field, use.texture, scene.textures.count);
+  if (scene.uvs.empty()) return failure("materials[%u].%s needs uvs, the scene has none", index, field);
+  return success();
+}
+
+Status validate_material(const Scene& scene, std::uint32_t index) {
+  const Material& m = scene.materials[index];
+  const FieldRange fields[] = {
+      {"diffuse.x", m.diffuse.x, 0, 1},
+      {"diffuse.y", m.diffuse.y, 0, 1},
+      {"diffuse.z", m.diffuse.z, 0, 1},
+      {"specular.x", m.specular.x, 0, 1},
+      {"specular.y", m.specular.y, 0, 1},
+      {"specular.z", m.specular.z, 0, 1},
+      {"exponent", m.exponent, 0, kPhongExponentMax},
+      {"mirror.x", m.mirror.x, 0, 1},
+      {"mirror.y", m.mirror.y, 0, 1},
+      {"mirror.z", m.mirror.z, 0, 1},
+      {"transmission.x", m.transmission.x, 0, 1},
+      {"transmission.y", m.transmission.y, 0, 1},
+      {"transmission.z", m.transmission.z, 0, 1},
+      {"ior", m.ior, 1, kIorMax},
+      {"absorption.x", m.absorption.x, 0, kFloatMax},
+      {"absorption.y", m.absorption.y, 0, kFloatMax},
+      {"absorption.z", m.absorption.z, 0, kFloatMax},
+      {"emission.x", m.emission.x, 0, kFloatMax},
+      {"emission.y", m.emission.y, 0, kFloatMax},
+      {"emission.z", m.emission.z, 0, kFloatMax},
+      {"opacity", m.opacity, 0, 1},
+      {"alpha_cutoff", m.alpha_cutoff, 0, kFloatMax},
+  };
+  RETURN_IF_ERROR(check_fields("materials", index, fields));
+  RETURN_IF_ERROR(check_texture_use("diffuse_texture", index, m.diffuse_texture, scene));
+  RETURN_IF_ERROR(check_texture_use("emission_texture", index, m.emission_texture, scene));
+  if (m.brdf >= kBrdfCountMax)
+    return failure("materials[%u].brdf is %u, at most %u exist", index, m.brdf, kBrdfCountMax);
+  if (m.alpha_mode > AlphaMode::blend) return failure("materials[%u] has an unknown alpha mode", index);
+  if (m.double_sided > 1 || m.unlit > 1 || m.thin > 1)
+    return failure("materials[%u]: double_sided, unlit and thin must be 0 or 1", index);
+  return success();
+}
+
+Status validate_texture(const Scene& scene, std::uint32_t index) {
+  const Texture& t = scene.textures[index];
+  if (t.width < 1 || t.height < 1 || t.width > kTextureSideMax || t.height > kTextureSideMax)
+    return failure("textures[%u] is %u by %u texels, its sides must lie in 1 to %u", index, t.width, t.height,
+                   kTextureSideMax);
+  if (!is_range(t.texel_begin, std::uint64_t(t.width) * t.height, scene.texels.count))
+    return failure("textures[%u] reaches beyond the %u texels there are", index, scene.texels.count);
+  if (t.wrap_u > Wrap::clamp || t.wrap_v > Wrap::clamp || t.nearest > 1)
+    return failure("textures[%u] has an unknown wrap mode or filter", index);
+  return success();
+}
+
+Status validate_light(const Scene& scene, std::uint32_t index) {
+  const Light& light = scene.lights[index];
+  if (light.kind > LightKind::directional) return failure("lights[%u] is of an unknown kind", index);
+  if (!is_coordinate(light.position)) return failure("lights[%u].position is not finite or too far away", index);
+  if (!is_unit(light.direction)) return failure("lights[%u].direction is not of length 1", index);
+  if (!is_index_or_none(light.node, scene.nodes.count))
+    return failure("lights[%u] follows node %u of %u", index, light.node, scene.nodes.count);
+  if (light.node != kNone && scene.animations.empty())
+    return failure("lights[%u] follows a node, but nothing is animated: place it in world space", index);
+  const FieldRange fields[] = {
+      {"intensity.x", light.intensity.x, 0, kFloatMax},
+      {"intensity.y", light.intensity.y, 0, kFloatMax},
+      {"intensity.z", light.intensity.z, 0, kFloatMax},
+      {"range", light.range, 0, kFloatMax},
+      {"cos_inner", light.cos_inner, -1, 1},
+      {"cos_outer", light.cos_outer, -1, light.cos_inner},
+  };
+  return check_fields("lights", index, fields);
+}
+
+Status validate_camera(const Scene& scene, std::uint32_t index) {
+  const Camera& camera = scene.cameras[index];
+  if (!is_coordinate(camera.eye) || !is_coordinate(camera.target) || !is_coordinate(camera.up))
+    return failure("cameras[%u] has a vector that is not finite or too long", index);
+  if (camera.eye == camera.target) return failure("cameras[%u] looks at the point where it stands", index);
+  if (is_zero(camera.up)) return failure("cameras[%u].up is zero", index);
+  if (camera.projection > Projection::orthographic) return failure("cameras[%u] has an unknown projection", index);
+  if (!is_index_or_none(camera.node, scene.nodes.count))
+    return failure("cameras[%u] follows node %u of %u", index, camera.node, scene.nodes.count);
+  if (camera.node != kNone && scene.animations.empty())
+    return failure("cameras[%u] follows a node, but nothing is animated: place it in world space", index);
+  constexpr float least = std::numeric_limits<float>::min();
+  const FieldRange fields[] = {
+      {"vertical_fov", camera.vertical_fov, 1e-6f, 3.1415925f},  // just below π
+      {"vertical_extent", camera.vertical_extent, least, kCoordinateMax},
+  };
+  return check_fields("cameras", index, fields);
+}
+
+}  // namespace
+
+Status check_normals(const char* array, Array<const Vec3> normals) {
+  for (std::uint32_t i = 0; i < normals.count; ++i)
+    if (!is_unit(normals[i]) && !is_zero(normals[i]))
+      return failure("%s[%u] is neither of length 1 nor zero", array, i);
+  return success();
+}
+
+Status validate_geometry(const Scene& scene) {
+  RETURN_IF_ERROR(check_coordinates("positions", scene.positions));
+  RETURN_IF_ERROR(check_normals("normals", scene.normals));
+  RETURN_IF_ERROR(check_coordinates("uvs", scene.uvs));
+  std::uint32_t vertex_count = scene.positions.count, material_count = scene.materials.count;
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
+    const Triangle& t = scene.triangles[i];
+    for (std::uint32_t vertex : t.vertex)
+      if (vertex >= vertex_count) return failure("triangles[%u] has vertex %u of %u", i, vertex, vertex_count);
+    if (t.material >= material_count)
+      return failure("triangles[%u] has material %u of %u", i, t.material, material_count);
+  }
+  return success();
+}
+
+Status validate_materials(const Scene& scene) {
+  for (std::uint32_t i = 0; i < scene.materials.count; ++i) RETURN_IF_ERROR(validate_material(scene, i));
+  for (std::uint32_t i = 0; i < scene.textures.count; ++i) RETURN_IF_ERROR(validate_texture(scene, i));
+  return success();
+}
+
+Status validate_lights_and_cameras(const Scene& scene) {
+  for (std::uint32_t i = 0; i < scene.lights.count; ++i) RETURN_IF_ERROR(validate_light(scene, i));
+  for (std::uint32_t i = 0; i < scene.cameras.count; ++i) RETURN_IF_ERROR(validate_camera(scene, i));
+  return success();
+}
+
+Status validate_scene(const Scene& scene) {
+  RETURN_IF_ERROR(validate_info(scene.info));
+  RETURN_IF_ERROR(validate_counts(scene));
+  RETURN_IF_ERROR(validate_geometry(scene));
+  RETURN_IF_ERROR(validate_materials(scene));
+  RETURN_IF_ERROR(validate_lights_and_cameras(scene));
+  RETURN_IF_ERROR(validate_nodes(scene));
+  RETURN_IF_ERROR(validate_animations(scene));
+  return validate_moving_meshes(scene);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,74 @@
+// The checks that validate_*.cpp share. Bounds are tested on the bits of a float, which is quick on a CPU without FPU.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "base/limits.h"
+#include "base/status.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// |x| ≤ limit; false for NaN and infinities.
+inline bool magnitude_at_most(float x, float limit) {
+  std::uint32_t bits, limit_bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  std::memcpy(&limit_bits, &limit, sizeof limit_bits);
+  return (bits & 0x7FFFFFFFu) <= limit_bits;
+}
+inline bool is_coordinate(float x) { return magnitude_at_most(x, kCoordinateMax); }
+inline bool is_coordinate(const Vec2& p) { return is_coordinate(p.x) && is_coordinate(p.y); }
+inline bool is_coordinate(const Vec3& p) { return is_coordinate(p.x) && is_coordinate(p.y) && is_coordinate(p.z); }
+inline bool is_coordinate(const Transform& t) {
+  for (const auto& row : t.m)
+    for (float x : row)
+      if (!is_coordinate(x)) return false;
+  return true;
+}
+
+// Unit to one part in a hundred: what normals and directions must be. Written so that NaN fails.
+inline bool is_unit(const Vec3& n) {
+  if (!is_coordinate(n)) return false;
+  float square = dot(n, n);
+  return square >= 0.98f && square <= 1.02f;
+}
+
+// Whether [begin, begin + count) lies in [0, total).
+inline bool is_range(std::uint64_t begin, std::uint64_t count, std::uint64_t total) {
+  return begin <= total && count <= total - begin;  // count may be a product: its factors are below 2^32
+}
+inline bool is_index_or_none(std::uint32_t index, std::uint32_t count) { return index == kNone || index < count; }
+
+// A number and the interval it must lie in.
+struct FieldRange {
+  const char* field;
+  float value, low, high;
+};
+template <int count>
+Status check_fields(const char* array, std::uint32_t index, const FieldRange (&fields)[count]) {
+  for (const FieldRange& f : fields)
+    if (!(f.value >= f.low && f.value <= f.high))
+      return failure("%s[%u].%s is %g, it must lie in %g to %g", array, index, f.field, static_cast<double>(f.value),
+                     static_cast<double>(f.low), static_cast<double>(f.high));
+  return success();
+}
+
+template <class T>
+Status check_coordinates(const char* array, Array<const T> values) {
+  for (std::uint32_t i = 0; i < values.count; ++i)
+    if (!is_coordinate(values[i]))
+      return failure("%s[%u] is not a number or beyond %g: scale the model down", array, i,
+                     static_cast<double>(kCoordinateMax));
+  return success();
+}
+Status check_normals(const char* array, Array<const Vec3> normals);
+
+Status validate_geometry(const Scene& scene);
+Status validate_materials(const Scene& scene);
+Status validate_lights_and_cameras(const Scene& scene);
+Status validate_nodes(const Scene& scene);
+Status validate_animations(const Scene& scene);
+Status validate_moving_meshes(const Scene& scene);
+
+}  // namespace pocketray

@@ -1,0 +1,94 @@
+#include "scene/full_scene.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace pocketray;
+
+namespace {
+
+template <class T>
+Array<const T> view(const std::vector<T>& v) {
+  return {v.data(), static_cast<std::uint32_t>(v.size())};
+}
+Vec3 point(Rng* rng) { return {next_float(rng) * 8 - 4, next_float(rng) * 8 - 4, next_float(rng) * 8 - 4}; }
+Vec3 color(Rng* rng) { return {next_float(rng), next_float(rng), next_float(rng)}; }
+Vec3 unit(Rng* rng) { return normalize(point(rng) + Vec3{9, 0, 0}); }
+
+void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* f) {
+  for (std::uint32_t i = 0; i < vertex_count; ++i) {
+    f->positions.push_back(point(rng));
+    f->normals.push_back(i % 5 ? unit(rng) : Vec3{0, 0, 0});
+    f->uvs.push_back({next_float(rng), next_float(rng)});
+    auto channel = [&] { return static_cast<std::uint16_t>(next_u32(rng)); };
+    f->colors.push_back({channel(), channel(), channel(), channel()});
+  }
+  for (std::uint32_t i = 0; i < triangle_count; ++i)
+    f->triangles.push_back(
+        {{next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, next_u32(rng) % vertex_count}, i % 2});
+  Material plain, rich;
+  rich.specular = color(rng), rich.mirror = color(rng), rich.transmission = color(rng),
+  rich.absorption = color(rng) * 9.0f;
+  rich.emission = color(rng) * 100.0f, rich.exponent = 30, rich.opacity = 0.5f, rich.brdf = 1, rich.thin = 1,
+  rich.unlit = 1;
+  rich.double_sided = 0, rich.alpha_mode = AlphaMode::blend;
+  rich.diffuse_texture.texture = 0, rich.emission_texture.texture = 1;
+  f->materials = {plain, rich};
+  f->textures = {{0, 3, 2, Wrap::repeat, Wrap::clamp, 1}, {6, 1, 4, Wrap::mirror, Wrap::repeat, 0}};
+  for (int i = 0; i < 10; ++i) f->texels.push_back(next_u32(rng));
+}
+
+void make_motion(Rng* rng, std::uint32_t vertex_count, FullScene* f) {
+  Node root, arm, face;
+  arm.parent = 0, arm.translation = point(rng), arm.rotation = {0, 0, 0.6f, 0.8f};
+  face.parent = 1, face.scale = {1, 2, 3}, face.weight_begin = 0, face.weight_count = 2;
+  f->nodes = {root, arm, face};
+  f->weights = {0.25f, 0.5f};
+  f->key_times = {0, 0.5f, 2};
+  for (int i = 0; i < 3 * 3 * 4; ++i) f->key_values.push_back(next_float(rng) + 0.1f);
+  f->channels = {{0, 0, 3, 0, ChannelPath::translation, Interpolation::cubic},
+                 {1, 0, 3, 5, ChannelPath::rotation, Interpolation::linear},
+                 {2, 1, 2, 9, ChannelPath::weights, Interpolation::step},
+                 {2, 0, 2, 2, ChannelPath::scale, Interpolation::linear}};
+  f->animations = {{0, 3, 2}, {3, 1, 0.5f}};
+  f->joints = {{0, Transform()}, {1, Transform()}};
+  f->joints[1].inverse_bind.m[0][3] = -1;
+  f->skins = {{0, 2}};
+  MovingMesh skinned = {vertex_count - 8, 4, 0, 2, 0, 0, 0, 2, Transform()};
+  MovingMesh instance = {vertex_count - 4, 4, 2, 1, kNone, 0, 0, 0, Transform()};
+  instance.instance.m[0][0] = -2, instance.instance.m[1][3] = 7;
+  f->moving_meshes = {skinned, instance};
+  for (int i = 0; i < 6; ++i) f->rest_positions.push_back(point(rng)), f->rest_normals.push_back(unit(rng));
+  for (int i = 0; i < 4; ++i) f->skin_weights.push_back({{0, 1, 0, 0}, {0.25f, 0.75f, 0, 0}});
+  for (int i = 0; i < 8; ++i) f->morph_positions.push_back(point(rng)), f->morph_normals.push_back(color(rng));
+}
+
+}  // namespace
+
+void FullScene::bind() {
+  scene.positions = view(positions), scene.normals = view(normals), scene.uvs = view(uvs), scene.colors = view(colors);
+  scene.triangles = view(triangles), scene.materials = view(materials), scene.textures = view(textures);
+  scene.texels = view(texels), scene.lights = view(lights), scene.cameras = view(cameras), scene.nodes = view(nodes);
+  scene.animations = view(animations), scene.channels = view(channels), scene.key_times = view(key_times);
+  scene.key_values = view(key_values), scene.weights = view(weights), scene.skins = view(skins);
+  scene.joints = view(joints), scene.moving_meshes = view(moving_meshes), scene.rest_positions = view(rest_positions);
+  scene.rest_normals = view(rest_normals), scene.skin_weights = view(skin_weights);
+  scene.morph_positions = view(morph_positions), scene.morph_normals = view(morph_normals), scene.accel = view(accel);
+}
+
+void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {
+  Rng rng = make_rng(seed);
+  std::strcpy(full->scene.info.name, "everything");
+  full->scene.info.background = color(&rng), full->scene.info.ambient = color(&rng), full->scene.info.frame_count = 60;
+  make_surface(&rng, vertex_count, triangle_count, full);
+  make_motion(&rng, vertex_count, full);
+  Light lamp, spot, sun;
+  lamp.node = 1, lamp.range = 5, spot.kind = LightKind::spot, spot.cos_inner = 0.9f, spot.cos_outer = 0.7f;
+  sun.kind = LightKind::directional, sun.direction = unit(&rng);
+  full->lights = {lamp, spot, sun};
+  Camera still, flying;
+  flying.node = 1, flying.projection = Projection::orthographic;
+  full->cameras = {still, flying};
+  for (int i = 0; i < 37; ++i) full->accel.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
+  full->bind();
+}

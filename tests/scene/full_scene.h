@@ -1,0 +1,36 @@
+// A small valid scene that uses every array and every kind of element, its numbers drawn from a seed.
+#pragma once
+#include <vector>
+
+#include "base/rng.h"
+#include "scene/scene.h"
+
+struct FullScene {
+  pocketray::Scene scene;
+  std::vector<pocketray::Vec3> positions, normals, rest_positions, rest_normals, morph_positions, morph_normals;
+  std::vector<pocketray::Vec2> uvs;
+  std::vector<pocketray::Rgba16> colors;
+  std::vector<pocketray::Triangle> triangles;
+  std::vector<pocketray::Material> materials;
+  std::vector<pocketray::Texture> textures;
+  std::vector<std::uint32_t> texels;
+  std::vector<pocketray::Light> lights;
+  std::vector<pocketray::Camera> cameras;
+  std::vector<pocketray::Node> nodes;
+  std::vector<pocketray::Animation> animations;
+  std::vector<pocketray::Channel> channels;
+  std::vector<float> key_times, key_values, weights;
+  std::vector<pocketray::Skin> skins;
+  std::vector<pocketray::Joint> joints;
+  std::vector<pocketray::MovingMesh> moving_meshes;
+  std::vector<pocketray::SkinWeight> skin_weights;
+  std::vector<std::uint8_t> accel;
+
+  FullScene() = default;
+  FullScene(const FullScene&) = delete;  // `scene` points into the vectors
+  // Points `scene` at the vectors; call after changing their sizes.
+  void bind();
+};
+
+// `vertex_count` ≥ 12 vertices, the last eight of which move: four by skin and morph, four as an instance.
+void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full);
