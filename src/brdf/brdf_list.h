@@ -1,0 +1,12 @@
+// One line per glossy lobe. Their order is part of the .pray format: append only.
+#pragma once
+#include "brdf/brdf.h"
+
+namespace pocketray {
+
+extern const BrdfInfo kPhongBrdf;
+
+inline const BrdfInfo* const kBrdfList[] = {&kPhongBrdf};
+constexpr std::uint32_t kBrdfCount = sizeof kBrdfList / sizeof kBrdfList[0];
+
+}  // namespace pocketray

@@ -1,0 +1,162 @@
+#include "plan/plan_effects.h"
+
+#include <cstring>
+
+#include "base/limits.h"
+#include "effect/effect_list.h"
+
+namespace pocketray {
+namespace {
+
+// How many of the materials that triangles use have a property.
+struct Census {
+  std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0, emissive = 0,
+                textured = 0, scattering = 0;
+  std::uint32_t lights[3] = {0, 0, 0};
+};
+
+Census take_census(const Scene& scene) {
+  Census c;
+  std::uint32_t used[kMaterialCountMax / 32] = {};
+  for (const Triangle& t : scene.triangles) used[t.material / 32] |= 1u << t.material % 32;
+  for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
+    if (!(used[i / 32] >> i % 32 & 1)) continue;
+    const Material& m = scene.materials[i];
+    bool transmits = !is_zero(m.transmission);
+    ++c.materials;
+    c.specular += !is_zero(m.specular) && !m.unlit;
+    c.mirror += !is_zero(m.mirror) && !m.unlit;
+    c.transmitting += transmits && !m.unlit;
+    c.absorbing += transmits && !m.thin && !is_zero(m.absorption) && !m.unlit;
+    c.masked += m.alpha_mode == AlphaMode::mask;
+    c.blended += m.alpha_mode == AlphaMode::blend;
+    c.emissive += !is_zero(m.emission);
+    c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
+    c.scattering += !m.unlit && (!is_zero(m.diffuse) || !is_zero(m.specular));
+  }
+  for (const Light& light : scene.lights) ++c.lights[static_cast<int>(light.kind)];
+  return c;
+}
+
+struct PlanWriter {
+  EffectPlan* plan;
+  std::uint32_t material_count;
+
+  void set(Effect effect, bool on, const char* format, ...) __attribute__((format(printf, 4, 5))) {
+    EffectDecision& d = plan->decisions[static_cast<int>(effect)];
+    d.on = on;
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(d.reason, sizeof d.reason, format, arguments);
+    va_end(arguments);
+  }
+  void set_by_materials(Effect effect, std::uint32_t count, const char* verb) {
+    if (count)
+      set(effect, true, "%u of %u materials %s", count, material_count, verb);
+    else
+      set(effect, false, "none of %u materials would %s", material_count, verb);
+  }
+  void set_by_count(Effect effect, std::uint32_t count, const char* what) {
+    if (count)
+      set(effect, true, "%u %s%s", count, what, count == 1 ? "" : "s");
+    else
+      set(effect, false, "no %s", what);
+  }
+};
+
+}  // namespace
+
+EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
+  Census c = take_census(scene);
+  EffectPlan plan;
+  PlanWriter w = {&plan, c.materials};
+  w.set_by_materials(Effect::specular, c.specular, "shine");
+  w.set_by_materials(Effect::mirror, c.mirror, "mirror");
+  w.set_by_materials(Effect::refraction, c.transmitting, "transmit");
+  w.set_by_materials(Effect::absorption, c.absorbing, "absorb inside");
+  w.set_by_materials(Effect::alpha_mask, c.masked, "have cut-out holes");
+  w.set_by_materials(Effect::alpha_blend, c.blended, "blend with what is behind");
+  w.set_by_materials(Effect::emission, c.emissive, "emit");
+  w.set_by_materials(Effect::texture, c.textured, "have a texture");
+  w.set_by_materials(Effect::area_light, c.emissive, "emit onto others");
+  w.set_by_count(Effect::point_light, c.lights[static_cast<int>(LightKind::point)], "point light");
+  w.set_by_count(Effect::spot_light, c.lights[static_cast<int>(LightKind::spot)], "spot light");
+  w.set_by_count(Effect::directional_light, c.lights[static_cast<int>(LightKind::directional)], "directional light");
+  bool lit = scene.lights.count > 0 || c.emissive > 0;
+  if (lit && c.scattering)
+    w.set(Effect::shadow, true, "lights, and %u of %u materials scatter", c.scattering, c.materials);
+  else
+    w.set(Effect::shadow, false, lit ? "no material scatters light" : "no light");
+  bool colored = scene.colors.count > 0, smooth = scene.normals.count > 0 && settings.normals == NormalMode::as_scene;
+  w.set(Effect::vertex_color, colored, colored ? "vertices have colours" : "no vertex has a colour");
+  w.set(Effect::smooth_normal, smooth, smooth ? "vertices have normals" : scene.normals.count ? "flat normals were asked for" : "no vertex has a normal");
+  bool ambient = !is_zero(scene.info.ambient);
+  w.set(Effect::ambient, ambient, ambient ? "the scene has a constant indirect light" : "no constant indirect light");
+  w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
+        settings.samples_per_pixel == 1 ? "" : "s");
+  bool animated = is_animated(scene);
+  w.set(Effect::animation, animated, animated ? "%u animation%s" : "nothing moves", scene.animations.count, scene.animations.count == 1 ? "" : "s");
+
+  for (int i = 0; i < kEffectCount; ++i) {
+    Effect effect = static_cast<Effect>(i);
+    EffectDecision& d = plan.decisions[i];
+    bool on = (d.on || has(settings.forced_on, effect)) && !has(settings.forced_off, effect);
+    if (on != d.on) {
+      char reason[sizeof d.reason];
+      std::snprintf(reason, sizeof reason, "%s (%.60s)", on ? "asked for" : "switched off", d.reason);
+      std::memcpy(d.reason, reason, sizeof reason);
+      d.on = on;
+    }
+    if (on) plan.mask |= bit(effect);
+  }
+  return plan;
+}
+
+Status parse_effects(const char* text, Settings* settings) {
+  settings->forced_on = settings->forced_off = 0;
+  bool automatic = false, named = false;
+  for (const char* at = text;;) {
+    const char* end = std::strchr(at, ',');
+    std::size_t count = end ? static_cast<std::size_t>(end - at) : std::strlen(at);
+    bool minus = count > 0 && *at == '-';
+    const char* name = at + minus;
+    std::size_t name_count = count - minus;
+    auto is = [&](const char* word) { return std::strlen(word) == name_count && std::memcmp(word, name, name_count) == 0; };
+    EffectMask mask = 0;
+    if (is("auto") && !minus) {
+      automatic = true;
+    } else if (is("all") && !minus) {
+      mask = kAllEffects;
+    } else {
+      for (const EffectRow& row : kEffectList)
+        if (is(row.name)) mask = bit(row.effect);
+      if (!mask)
+        return failure("--effects: there is no effect '%.*s'; `pocketray plan SCENE` lists them", static_cast<int>(name_count), name);
+    }
+    if (minus) {
+      settings->forced_off |= mask;
+    } else {
+      settings->forced_on |= mask;
+      named |= mask != 0;
+    }
+    if (!end) break;
+    at = end + 1;
+  }
+  if (named && !automatic) settings->forced_off |= kAllEffects & ~settings->forced_on;
+  return success();
+}
+
+Status validate_settings(const Settings& s) {
+  auto range = [](const char* option, std::uint32_t value, std::uint32_t low, std::uint32_t high) {
+    if (value < low || value > high) return failure("%s is %u: it must lie in %u … %u", option, value, low, high);
+    return success();
+  };
+  RETURN_IF_ERROR(range("the image width", s.width, 1, kImageSideMax));
+  RETURN_IF_ERROR(range("the image height", s.height, 1, kImageSideMax));
+  RETURN_IF_ERROR(range("--samples", s.samples_per_pixel, 1, kSampleCountMax));
+  RETURN_IF_ERROR(range("--depth", s.ray_depth, 0, kRayDepthMax));
+  RETURN_IF_ERROR(range("--area-lights", s.points_per_area_light, 1, kPointsPerAreaLightMax));
+  return range("--threads", s.threads, 1, kThreadCountMax);
+}
+
+}  // namespace pocketray

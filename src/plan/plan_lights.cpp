@@ -1,0 +1,243 @@
+#include "plan/plan_lights.h"
+
+#include "base/check.h"
+#include "base/fmath.h"
+#include "brdf/brdf_list.h"
+#include "shade/lights.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
+
+// A piece of an area light: a triangle, or two that make a parallelogram.
+struct Emitter {
+  std::uint32_t triangle;
+  bool parallelogram;
+  double area;
+};
+
+double triangle_area(const FrameData& frame, std::uint32_t triangle) {
+  const Triangle& t = frame.scene->triangles[triangle];
+  Vec3 e1 = frame.positions[t.vertex[1]] - frame.positions[t.vertex[0]];
+  Vec3 e2 = frame.positions[t.vertex[2]] - frame.positions[t.vertex[0]];
+  return 0.5 * static_cast<double>(length(cross(e1, e2)));
+}
+
+// The emitter that starts at a triangle: (a, b, c) followed by (a, c, d) with b − a = c − d is a parallelogram.
+Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
+  const Scene& scene = *frame.scene;
+  Emitter e = {triangle, false, triangle_area(frame, triangle)};
+  if (triangle + 1 >= scene.triangles.count) return e;
+  const Triangle &t = scene.triangles[triangle], &next = scene.triangles[triangle + 1];
+  const Vec3 &a = frame.positions[t.vertex[0]], &b = frame.positions[t.vertex[1]], &c = frame.positions[t.vertex[2]];
+  const Vec3& d = frame.positions[next.vertex[2]];
+  Vec3 skew = (b - a) - (c - d);
+  if (next.material == t.material && frame.positions[next.vertex[0]] == a && frame.positions[next.vertex[1]] == c &&
+      length(skew) <= length(b - a) * 1e-3f) {
+    e.parallelogram = true;
+    e.area += triangle_area(frame, triangle + 1);
+  }
+  return e;
+}
+
+// Visits the emitters of one material in order.
+template <class Visit>
+void each_emitter(const FrameData& frame, std::uint32_t material, Visit visit) {
+  const Scene& scene = *frame.scene;
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
+    if (scene.triangles[i].material != material) continue;
+    Emitter e = emitter_at(frame, i);
+    if (e.area > 0) visit(e);
+    if (e.parallelogram) ++i;
+  }
+}
+
+// Point j of m in the unit square: a grid where m is a square number, Hammersley's points otherwise.
+void square_point(std::uint32_t j, std::uint32_t m, float* x, float* y) {
+  std::uint32_t side = 1;
+  while (side * side < m) ++side;
+  if (side * side == m) {
+    *x = (static_cast<float>(j % side) + 0.5f) / static_cast<float>(side);
+    *y = (static_cast<float>(j / side) + 0.5f) / static_cast<float>(side);
+    return;
+  }
+  float mirrored = 0, weight = 0.5f;
+  for (std::uint32_t bits = j; bits; bits >>= 1, weight *= 0.5f)
+    if (bits & 1) mirrored += weight;
+  *x = (static_cast<float>(j) + 0.5f) / static_cast<float>(m);
+  *y = mirrored + weight * 0.5f;
+}
+
+// Barycentrics of the triangle, or of one half of the parallelogram, for a point of the unit square.
+void place_on_emitter(const Emitter& e, float x, float y, std::uint32_t* triangle, float* u, float* v) {
+  *triangle = e.triangle;
+  if (!e.parallelogram) {  // [Turk 1990, "Generating random points in triangles", method 1]
+    float root = std::sqrt(x);
+    *u = root * (1 - y);
+    *v = root * y;
+  } else if (x >= y) {  // a + x(b − a) + y(d − a), with c = b + d − a
+    *u = x - y;
+    *v = y;
+  } else {
+    *triangle = e.triangle + 1;
+    *u = x;
+    *v = y - x;
+  }
+}
+
+LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, float v, double area) {
+  const Scene& scene = *frame.scene;
+  const Triangle& t = scene.triangles[triangle];
+  const Material& m = scene.materials[t.material];
+  const Vec3 &a = frame.positions[t.vertex[0]], &b = frame.positions[t.vertex[1]], &c = frame.positions[t.vertex[2]];
+  LightPoint p = {};
+  p.position = a * (1 - u - v) + b * u + c * v;
+  p.direction = normalize(cross(b - a, c - a));
+  Vec3 emission = m.emission;
+  if (m.emission_texture.texture != kNone && scene.uvs.count)
+    emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
+  p.intensity = emission * static_cast<float>(area);
+  p.material = t.material;
+  p.two_sided = m.double_sided;
+  return p;
+}
+
+// The points that stand for one emissive material, each for an equal share of its area.
+std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, LightPoint* points) {
+  std::uint32_t n = frame.settings.points_per_area_light;
+  double total = 0;
+  each_emitter(frame, material, [&](const Emitter& e) { total += e.area; });
+  if (!(total > 0)) return 0;
+  double before = 0;
+  std::uint32_t placed = 0;
+  each_emitter(frame, material, [&](const Emitter& e) {
+    before += e.area;
+    // Shares whose middle (i + ½)/n of the area lies before the end of this emitter.
+    double end = std::floor(before / total * n + 0.5);
+    std::uint32_t last = end < n ? static_cast<std::uint32_t>(end) : n;
+    std::uint32_t first = placed, here = last > first ? last - first : 0;
+    for (std::uint32_t j = 0; j < here; ++j) {
+      float x, y, u, v;
+      std::uint32_t triangle;
+      square_point(j, here, &x, &y);
+      place_on_emitter(e, x, y, &triangle, &u, &v);
+      points[placed++] = point_on(frame, triangle, u, v, total / n);
+    }
+  });
+  return placed;
+}
+
+bool is_emissive(const Scene& scene, std::uint32_t material) { return !is_zero(scene.materials[material].emission); }
+
+LightPoint to_point(const Light& light) {
+  LightPoint p = {};
+  p.position = light.position;
+  p.direction = light.direction;
+  p.intensity = light.intensity;
+  p.range = light.range;
+  p.cos_inner = light.cos_inner;
+  p.cos_outer = light.cos_outer;
+  p.material = kNone;
+  return p;
+}
+
+// Least squared distance from a point to a box.
+float box_distance_square(const Box& box, const Vec3& p) {
+  Vec3 d = max(max(box.low - p, p - box.high), Vec3{0, 0, 0});
+  return dot(d, d);
+}
+
+// The greatest irradiance a light gives on any triangle but its own.
+float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind) {
+  float intensity = max_component(light.intensity), most = 0;
+  if (kind == Effect::directional_light) return intensity;
+  for (const Triangle& t : frame.scene->triangles) {
+    if (t.material == light.material) continue;
+    Box box = empty_box();
+    float height = 0;  // above the emitter's plane: cos ≤ height / distance
+    for (std::uint32_t v : t.vertex) {
+      const Vec3& p = frame.positions[v];
+      box = merge(box, p);
+      float h = dot(p - light.position, light.direction);
+      if (light.two_sided) h = std::fabs(h);
+      if (h > height) height = h;
+    }
+    float square = box_distance_square(box, light.position), scale = 1;
+    if (kind == Effect::area_light) {
+      if (!(height > 0)) continue;
+      float distance = std::sqrt(square);
+      if (height < distance) scale = height / distance;
+    }
+    if (light.range > 0 && square > light.range * light.range) continue;
+    float irradiance = intensity * scale / square;
+    if (!(irradiance <= most)) most = irradiance;
+  }
+  return most;
+}
+
+}  // namespace
+
+Status light_point_count(const Scene& scene, const Settings& settings, std::uint32_t* count) {
+  std::uint64_t n = scene.lights.count;
+  for (std::uint32_t i = 0; i < scene.materials.count; ++i)
+    if (is_emissive(scene, i)) n += settings.points_per_area_light;
+  if (n > kPointLightCountMax)
+    return failure("the scene's lights make %llu points, more than %u: lower --area-lights", static_cast<unsigned long long>(n), kPointLightCountMax);
+  *count = static_cast<std::uint32_t>(n);
+  return success();
+}
+
+void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame) {
+  const Scene& scene = *frame->scene;
+  std::uint32_t count = 0;
+  frame->light_run_count = 0;
+  for (Effect kind : kKinds) {
+    if (!has(frame->mask, kind)) continue;
+    std::uint32_t begin = count;
+    if (kind == Effect::area_light) {
+      for (std::uint32_t m = 0; m < scene.materials.count; ++m)
+        if (is_emissive(scene, m)) count += place_area_light(*frame, m, points.data + count);
+    } else {
+      LightKind wanted = kind == Effect::point_light ? LightKind::point : kind == Effect::spot_light ? LightKind::spot : LightKind::directional;
+      for (const Light& light : lights)
+        if (light.kind == wanted) points[count++] = to_point(light);
+    }
+    CHECK_LE(count, points.count);
+    if (count > begin) frame->light_runs[frame->light_run_count++] = {begin, count, find_light_sampler(kind)};
+  }
+  frame->lights = {points.data, count};
+}
+
+float radiance_bound(const FrameData& frame) {
+  const Scene& scene = *frame.scene;
+  float glow = 0, reflectance = 0, scattering = 0;
+  for (const Material& m : scene.materials) {
+    float own = max_component(m.emission) + (m.unlit ? max_component(m.diffuse) : max_component(m.diffuse * scene.info.ambient));
+    if (own > glow) glow = own;
+    float passes = max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));
+    if (passes > reflectance) reflectance = passes;
+    float f = max_component(m.diffuse) / kPiF;
+    if (!is_zero(m.specular)) f += max_component(kBrdfList[m.brdf]->peak(m));
+    if (f > scattering) scattering = f;
+  }
+  float irradiance = 0;
+  for (int r = 0; r < frame.light_run_count; ++r) {
+    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
+      const LightPoint& light = frame.lights[i];
+      Effect kind = light.material != kNone ? Effect::area_light : frame.light_runs[r].sample == find_light_sampler(Effect::directional_light)
+                                                                       ? Effect::directional_light
+                                                                       : Effect::point_light;
+      irradiance += irradiance_bound(frame, light, kind);
+    }
+  }
+  float leaves = glow + scattering * irradiance, background = max_component(scene.info.background), bound = background;
+  for (std::uint32_t depth = 0; depth <= frame.settings.ray_depth; ++depth) {
+    float next = leaves + (reflectance > 0 ? reflectance * bound : 0);  // the bound may be infinite
+    bound = next > background ? next : background;
+  }
+  return bound * 1.0001f;  // for the rounding of the sums
+}
+
+}  // namespace pocketray

@@ -1,0 +1,87 @@
+#include "plan/plan_memory.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/check.h"
+#include "base/span.h"
+#include "scene/animate.h"
+#include "shade/frame_data.h"
+
+namespace pocketray {
+namespace {
+
+void add_part(MemoryPlan* plan, const char* name, ArenaKind arena, std::size_t bytes) {
+  if (bytes == 0) return;  // an absent effect has no part
+  CHECK_LT(plan->part_count, kMemoryPartMax);
+  plan->parts[plan->part_count++] = {name, arena, bytes};
+  plan->arena_bytes[static_cast<int>(arena)] += bytes;
+  plan->total_bytes += bytes;
+}
+
+double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
+
+}  // namespace
+
+Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
+                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes, MemoryPlan* plan) {
+  *plan = MemoryPlan();
+  plan->limit_bytes = settings.memory_bytes;
+  plan->mapped_bytes = plan->total_bytes = storage.mapped_bytes;
+  add_part(plan, "scene", ArenaKind::scene, storage.arena_bytes);
+
+  bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
+  std::uint32_t triangles = scene.triangles.count;
+  std::size_t keep = 0, scratch = 0;
+  if (scene.accel.empty()) {
+    keep = accel.need(triangles);
+    scratch = accel.scratch_need(triangles);
+  } else if (moves) {
+    keep = arena_need(scene.accel.bytes());  // refit needs a copy that can be written
+  }
+  add_part(plan, "accelerator", ArenaKind::persistent, keep);
+  add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
+  add_part(plan, "lights", ArenaKind::persistent, light_point_count ? arena_need<LightPoint>(light_point_count) : 0);
+  add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
+  add_part(plan, "spans", ArenaKind::persistent, arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
+  std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
+  add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
+  // The build's scratch is free again when the first frame is shown: the two share the frame arena.
+  add_part(plan, scratch > output_bytes ? "build scratch, then output" : "output", ArenaKind::frame, std::max(scratch, output_bytes));
+  for (std::size_t& bytes : plan->arena_bytes)
+    if (bytes) bytes += kArenaAlignment, plan->total_bytes += kArenaAlignment;  // to align its start
+
+  if (plan->total_bytes <= plan->limit_bytes) return success();
+  const MemoryPart* largest = &plan->parts[0];
+  for (int i = 1; i < plan->part_count; ++i)
+    if (plan->parts[i].bytes > largest->bytes) largest = &plan->parts[i];
+  std::size_t fits = (plan->total_bytes + (1 << 20) - 1) >> 20;
+  return failure("the scene needs %.1f MiB of memory and --memory allows %.1f MiB; the largest part is %s with %.1f MiB%s. --memory %zuM would fit",
+                 megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
+                 scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
+}
+
+std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size) {
+  std::size_t length = 0;
+  auto add = [&](const char* format, auto... values) {
+    int n = std::snprintf(text + length, size - length, format, values...);
+    if (n > 0) length = std::min(length + static_cast<std::size_t>(n), size - 1);
+  };
+  CHECK_GT(size, 0u);
+  text[0] = 0;
+  auto line = [&](const char* name, const char* where, std::size_t bytes) {
+    char bar[33];
+    std::size_t filled = plan.total_bytes ? bytes * 32 / plan.total_bytes : 0;
+    for (std::size_t i = 0; i < 32; ++i) bar[i] = i < filled ? '#' : '.';
+    bar[32] = 0;
+    add("  %-11s %-27s %10.3f MiB  %s\n", where, name, megabytes(bytes), bar);
+  };
+  if (plan.mapped_bytes) line("scene file", "mapped", plan.mapped_bytes);
+  for (int arena = 0; arena < 3; ++arena)
+    for (int i = 0; i < plan.part_count; ++i)
+      if (plan.parts[i].arena == static_cast<ArenaKind>(arena)) line(plan.parts[i].name, kArenaNames[arena], plan.parts[i].bytes);
+  add("  %-11s %-27s %10.3f MiB  of %.1f MiB allowed\n", "total", "", megabytes(plan.total_bytes), megabytes(plan.limit_bytes));
+  return length;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,47 @@
+// Sums every part's need() into the map of the one memory block.
+#pragma once
+#include <cstddef>
+
+#include "accel/accel.h"
+#include "base/status.h"
+#include "effect/effect_plan.h"
+#include "effect/settings.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+enum class ArenaKind : int { scene, persistent, frame };
+constexpr const char* kArenaNames[3] = {"scene", "persistent", "frame"};
+
+struct MemoryPart {
+  const char* name;
+  ArenaKind arena;
+  std::size_t bytes;
+};
+
+constexpr int kMemoryPartMax = 16;
+
+struct MemoryPlan {
+  MemoryPart parts[kMemoryPartMax];
+  int part_count = 0;
+  std::size_t mapped_bytes = 0;  // of a scene file used as it lies; counts against the limit
+  std::size_t arena_bytes[3] = {0, 0, 0};
+  std::size_t total_bytes = 0, limit_bytes = 0;
+};
+
+// What holds the scene before planning.
+struct SceneStorage {
+  std::size_t arena_bytes = 0;   // already taken from the scene arena
+  std::size_t mapped_bytes = 0;  // mapped from a file
+};
+
+// Plans the block. `output_bytes` is what the caller needs to show or write a frame (packed pixels, PNG encoder).
+// Fails with the figures and a setting that would fit when the total exceeds settings.memory_bytes; the plan is filled
+// in either case.
+Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
+                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes, MemoryPlan* plan);
+
+// Draws the map as text, one line a part, into `text` (of `size` bytes, always terminated). Returns its length.
+std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size);
+
+}  // namespace pocketray

@@ -1,0 +1,39 @@
+#include "shade/camera.h"
+
+#include "base/fmath.h"
+
+namespace pocketray {
+
+Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t height, CameraRays* rays) {
+  if (!is_finite(camera.eye) || !is_finite(camera.target) || !is_finite(camera.up))
+    return failure("the camera has a coordinate that is not a finite number");
+  Vec3 forward = normalize(camera.target - camera.eye);
+  if (is_zero(forward)) return failure("the camera's eye and target are the same point: move one of them");
+  Vec3 right = normalize(cross(forward, normalize(camera.up)));
+  if (is_zero(right)) {  // looking along up: any right will do (HARDCASES row 28)
+    Vec3 up;
+    make_basis(forward, &right, &up);
+  }
+  Vec3 up = cross(right, forward);
+  float half_height;
+  rays->orthographic = camera.projection == Projection::orthographic;
+  if (rays->orthographic) {
+    if (!(camera.vertical_extent > 0) || !(camera.vertical_extent < kCoordinateMax))
+      return failure("the orthographic camera's height is %g: it must be above 0 and finite", static_cast<double>(camera.vertical_extent));
+    half_height = camera.vertical_extent * 0.5f;
+  } else {
+    double fov = camera.vertical_fov;
+    if (!(fov >= radians(0.001)) || !(fov <= radians(179.0)))
+      return failure("the vertical field of view is %g degrees: it must lie in 0.001 … 179", fov * (180 / kPi));
+    half_height = static_cast<float>(det_sin(fov / 2) / det_cos(fov / 2));
+  }
+  rays->eye = camera.eye;
+  rays->forward = forward;
+  rays->up = up * half_height;
+  rays->right = right * (half_height * (static_cast<float>(width) / static_cast<float>(height)));
+  rays->width = static_cast<float>(width);
+  rays->height = static_cast<float>(height);
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,131 @@
+// Direct light at a surface: lights × shadow rays.
+#pragma once
+#include "base/fmath.h"
+#include "brdf/brdf_list.h"
+#include "effect/effect_probe.h"
+#include "shade/dielectric.h"
+#include "shade/filters.h"
+#include "shade/media.h"
+#include "shade/surface.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+
+// Whether a contribution of at most `bound` may be left out: the sum of what is left out of a sample stays below half the
+// narrowest displayed level, so no pixel moves by more than one.
+inline bool leave_out(Tracer* tracer, float bound) {
+  if (!(bound <= tracer->budget)) return false;
+  tracer->budget -= bound;
+  ++tracer->rays_left_out;
+  return true;
+}
+
+// What transparent surfaces between the point and the light let through, unbent, in order along the ray: products of floats
+// do not commute in the last bit, and every accelerator must give the same.
+template <EffectMask mask>
+Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) {
+  const FrameData& frame = *tracer->frame;
+  HitFilter filter = {frame.accept_clear, &context};
+  Vec3 result = {1, 1, 1};
+  Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and at exits
+  Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not left
+  float unit = length(ray.direction), passed = 0;
+  for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
+    Hit hit;
+    ++tracer->rays[static_cast<int>(RayKind::shadow)];
+    frame.accel_info->closest(frame.accel, ray, &filter, &hit, &tracer->stats);
+    if (hit.triangle == kNoTriangle) {
+      if constexpr (has(mask, Effect::absorption)) {
+        float end = (passed + ray.t_max) * unit;
+        Vec3 inside = absorbed_end - absorbed_begin;
+        if (!is_zero(open)) inside += max(open, Vec3{0, 0, 0}) * end;
+        result *= transmittance(inside, 1.0f);
+      }
+      return result;
+    }
+    Surface s;
+    frame.surface(frame, ray, hit, &s);
+    const Material& m = *s.material;
+    if (!is_zero(m.transmission)) {
+      effect_entered<Effect::refraction>();
+      float cos_t, cos_i = std::fabs(dot(s.normal, ray.direction)) / unit;
+      float eta = s.front || m.thin ? 1 / m.ior : m.ior;
+      float pass = 1 - fresnel(cos_i, eta, &cos_t);
+      result *= s.front || m.thin ? m.transmission * pass : Vec3{pass, pass, pass};
+      if constexpr (has(mask, Effect::absorption)) {
+        if (!m.thin && !is_zero(m.absorption)) {
+          effect_entered<Effect::absorption>();
+          float distance = (passed + hit.t) * unit;
+          (s.front ? absorbed_begin : absorbed_end) += m.absorption * distance;
+          open = s.front ? open + m.absorption : open - m.absorption;
+        }
+      }
+    }
+    if constexpr (has(mask, Effect::alpha_blend)) {
+      if (m.alpha_mode == AlphaMode::blend) {
+        effect_entered<Effect::alpha_blend>();
+        float alpha = hit_alpha(*frame.scene, m, hit.triangle, hit.u, hit.v, frame.settings.texture_filter);
+        result = result * (1 - alpha);
+      }
+    }
+    if (!(max_component(result) > 0)) return {0, 0, 0};
+    passed += hit.t;
+    ray.origin = safe_origin(s, -1);
+    ray.t_max -= hit.t;
+    if (!(ray.t_max > 0)) return result;
+  }
+  return {0, 0, 0};
+}
+
+// The share of a light that arrives: zero or one, or between where something transparent is in the way.
+template <EffectMask mask>
+Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t emitter) {
+  effect_entered<Effect::shadow>();
+  const FrameData& frame = *tracer->frame;
+  ShadowContext context = {&frame, emitter};
+  HitFilter opaque = {frame.accept_opaque, &context};
+  bool filtered = frame.filter_every_shadow || emitter != kNone;
+  ++tracer->rays[static_cast<int>(RayKind::shadow)];
+  if (frame.accel_info->occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats)) return {0, 0, 0};
+  if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend))
+    return clear_transmittance<mask>(tracer, ray, context);
+  return {1, 1, 1};
+}
+
+// Radiance towards the viewer by light that arrives straight from the lights. `weight` is what the path so far lets through.
+template <EffectMask mask>
+Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const Vec3& weight) {
+  const FrameData& frame = *tracer->frame;
+  const Material& m = *s.material;
+  Vec3 diffuse = s.diffuse * (1 / kPiF);
+  Vec3 sum = {0, 0, 0};
+  for (int r = 0; r < frame.light_run_count; ++r) {
+    const LightRun& run = frame.light_runs[r];
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const LightPoint& light = frame.lights[i];
+      LightSample sample;
+      if (light.material != kNone && &frame.scene->materials[light.material] == s.material) continue;
+      if (!run.sample(light, s.point, &sample)) continue;
+      float cosine = dot(s.normal, sample.direction);
+      if (!(cosine > 0) || !(dot(s.geometric, sample.direction) > 0)) continue;
+      Vec3 f = diffuse;
+      if constexpr (has(mask, Effect::specular)) {
+        if (!is_zero(m.specular)) {
+          effect_entered<Effect::specular>();
+          f += kBrdfList[m.brdf]->value(m, s.normal, to_viewer, sample.direction);
+        }
+      }
+      Vec3 light_out = f * sample.irradiance * cosine;
+      float bound = max_component(light_out * weight);
+      if (!(bound > 0)) continue;
+      if constexpr (has(mask, Effect::shadow)) {
+        if (leave_out(tracer, bound)) continue;
+        light_out *= shadow<mask>(tracer, {safe_origin(s, 1), sample.to_light, sample.t_max}, light.material);
+      }
+      sum += light_out;
+    }
+  }
+  return sum;
+}
+
+}  // namespace pocketray

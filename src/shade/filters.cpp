@@ -1,0 +1,56 @@
+#include "shade/filters.h"
+
+#include "effect/effect_probe.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+// Whether the point lies in a hole of a cut-out surface.
+bool is_hole(const FrameData& frame, const Material& m, std::uint32_t triangle, float u, float v) {
+  effect_entered<Effect::alpha_mask>();
+  return hit_alpha(*frame.scene, m, triangle, u, v, frame.settings.texture_filter) < m.alpha_cutoff;
+}
+
+bool lets_light_through(const Material& m) { return !is_zero(m.transmission) || m.alpha_mode == AlphaMode::blend; }
+
+const Material& material_of(const FrameData& frame, std::uint32_t triangle) {
+  return frame.scene->materials[frame.scene->triangles[triangle].material];
+}
+
+template <bool masked>
+bool is_visible(const FrameData& frame, std::uint32_t triangle, float u, float v) {
+  const Material& m = material_of(frame, triangle);
+  return !(masked && m.alpha_mode == AlphaMode::mask && is_hole(frame, m, triangle, u, v));
+}
+bool accept_visible(const void* context, std::uint32_t triangle, float u, float v) {
+  return is_visible<true>(*static_cast<const FrameData*>(context), triangle, u, v);
+}
+template <bool masked, bool clear>
+bool accept_opaque(const void* context, std::uint32_t triangle, float u, float v) {
+  const auto& shadow = *static_cast<const ShadowContext*>(context);
+  const FrameData& frame = *shadow.frame;
+  if (frame.scene->triangles[triangle].material == shadow.emitter) return false;
+  return !(clear && lets_light_through(material_of(frame, triangle))) && is_visible<masked>(frame, triangle, u, v);
+}
+template <bool masked>
+bool accept_clear(const void* context, std::uint32_t triangle, float u, float v) {
+  const auto& shadow = *static_cast<const ShadowContext*>(context);
+  const FrameData& frame = *shadow.frame;
+  if (frame.scene->triangles[triangle].material == shadow.emitter) return false;
+  return lets_light_through(material_of(frame, triangle)) && is_visible<masked>(frame, triangle, u, v);
+}
+
+}  // namespace
+
+void make_filters(FrameData* frame) {
+  bool masked = has(frame->mask, Effect::alpha_mask);
+  bool clear = has(frame->mask, Effect::refraction) || has(frame->mask, Effect::alpha_blend);
+  frame->visible_filter = {masked ? accept_visible : nullptr, frame};
+  frame->accept_opaque = masked ? (clear ? accept_opaque<true, true> : accept_opaque<true, false>)
+                                : (clear ? accept_opaque<false, true> : accept_opaque<false, false>);
+  frame->accept_clear = !clear ? nullptr : masked ? accept_clear<true> : accept_clear<false>;
+  frame->filter_every_shadow = masked || clear;
+}
+
+}  // namespace pocketray

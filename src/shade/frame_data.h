@@ -1,0 +1,92 @@
+// Everything trace_spans reads while a frame is traced. Filled by plan/ and app/, constant while threads run.
+#pragma once
+#include "accel/accel.h"
+#include "base/limits.h"
+#include "effect/effect.h"
+#include "effect/settings.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// A light as it is used: points, spots, directions, and the points that stand for area lights.
+struct LightPoint {
+  Vec3 position;
+  Vec3 direction;   // spot, directional: the way light travels; area: normal of the emitter
+  Vec3 intensity;   // radiant intensity along `direction` (area) or everywhere (point, spot); directional: irradiance
+  float range;      // 0: no limit
+  float cos_inner, cos_outer;
+  std::uint32_t material;    // of the emitter: it casts no shadow of itself and does not light itself; kNone otherwise
+  std::uint32_t two_sided;   // area: emits to both sides
+};
+
+struct LightSample {
+  Vec3 to_light;    // from the point; a shadow ray runs along it, 0 < t < t_max
+  Vec3 direction;   // the same, unit
+  Vec3 irradiance;  // on a surface that faces the light
+  float t_max;
+};
+// False where the light gives nothing.
+using LightSampler = bool (*)(const LightPoint& light, const Vec3& point, LightSample* sample);
+
+struct LightRun {
+  std::uint32_t begin, end;
+  LightSampler sample;
+};
+
+// Rays of a camera: origin(s) and a plane of directions; see camera.h.
+struct CameraRays {
+  Vec3 eye, forward, right, up;  // right and up span half the image at distance 1 (perspective) or in scene units
+  float width, height;           // pixels
+  bool orthographic;
+};
+
+// Bodies the ray is inside of, innermost last, as material indices.
+struct MediumStack {
+  std::uint32_t material[kMediumDepthMax];
+  std::uint32_t depth = 0;
+};
+
+struct FrameData;
+struct Surface;
+struct Tracer;
+
+// The instantiated parts of the kernel, chosen once per frame for the plan.
+using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
+using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const MediumStack& media);
+
+struct FrameData {
+  const Scene* scene = nullptr;
+  Array<const Vec3> positions, normals;  // posed
+  const AccelInfo* accel_info = nullptr;
+  Accel accel;
+  CameraRays camera;
+  MediumStack eye_media;  // bodies the camera is inside of
+  Array<const LightPoint> lights;
+  LightRun light_runs[4];
+  int light_run_count = 0;
+  Settings settings;
+  EffectMask mask = 0;
+  SurfaceFunction surface = nullptr;
+  RadianceFunction radiance = nullptr;
+  HitFilter visible_filter;                                   // accept is null where nothing is cut out; see filters.h
+  decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
+  bool filter_every_shadow = false;                           // false: only area lights' shadow rays need the filter
+  float radiance_bound = 0;                                   // no ray brings more
+  float left_out_max = 0;                                     // what may be left out of one sample, in radiance
+};
+
+enum class RayKind : int { primary, shadow, mirror, refraction, blend };
+constexpr int kRayKindCount = 5;
+constexpr const char* kRayKindNames[kRayKindCount] = {"primary", "shadow", "mirror", "refraction", "blend"};
+
+// One thread's state; counters add up.
+struct Tracer {
+  const FrameData* frame = nullptr;
+  std::uint64_t rays[kRayKindCount] = {};
+  std::uint64_t rays_left_out = 0;
+  TraceStats stats;
+  float budget = 0;        // radiance that may still be left out of the current sample
+  float left_out_max = 0;  // largest sum left out of one sample so far
+};
+
+}  // namespace pocketray

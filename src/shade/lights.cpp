@@ -1,0 +1,81 @@
+#include "shade/lights.h"
+
+#include <limits>
+
+#include "base/check.h"
+#include "effect/effect_probe.h"
+
+namespace pocketray {
+namespace {
+
+// Direction and inverse square of a light at a position. False where the point is the light or the light is out of range.
+bool reach(const LightPoint& light, const Vec3& point, LightSample* s, float* inverse_square) {
+  s->to_light = light.position - point;
+  float square = dot(s->to_light, s->to_light);
+  if (!(square > 0)) return false;
+  float distance = std::sqrt(square);
+  s->direction = s->to_light / distance;
+  s->t_max = 1;
+  *inverse_square = 1 / square;
+  if (light.range > 0) {
+    // The smooth end that KHR_lights_punctual recommends: max(min(1 − (d/range)⁴, 1), 0) / d².
+    float q = square / (light.range * light.range);
+    float window = 1 - q * q;
+    if (!(window > 0)) return false;
+    *inverse_square *= window;
+  }
+  return true;
+}
+
+bool sample_point_light(const LightPoint& light, const Vec3& point, LightSample* s) {
+  effect_entered<Effect::point_light>();
+  float inverse_square;
+  if (!reach(light, point, s, &inverse_square)) return false;
+  s->irradiance = light.intensity * inverse_square;
+  return true;
+}
+
+bool sample_spot_light(const LightPoint& light, const Vec3& point, LightSample* s) {
+  effect_entered<Effect::spot_light>();
+  float inverse_square;
+  if (!reach(light, point, s, &inverse_square)) return false;
+  float cos_angle = -dot(s->direction, light.direction);
+  if (cos_angle <= light.cos_outer) return false;
+  // KHR_lights_punctual, "Inner and Outer Cone Angles": linear in the cosine, then squared.
+  float f = cos_angle >= light.cos_inner ? 1 : (cos_angle - light.cos_outer) / (light.cos_inner - light.cos_outer);
+  s->irradiance = light.intensity * (inverse_square * (f * f));
+  return true;
+}
+
+bool sample_directional_light(const LightPoint& light, const Vec3&, LightSample* s) {
+  effect_entered<Effect::directional_light>();
+  s->to_light = s->direction = -light.direction;
+  s->t_max = std::numeric_limits<float>::infinity();
+  s->irradiance = light.intensity;
+  return true;
+}
+
+// One of the points an area light is taken as [Aranha07] sec. 3.1: a Lambertian emitter of a share of its area.
+bool sample_area_light(const LightPoint& light, const Vec3& point, LightSample* s) {
+  effect_entered<Effect::area_light>();
+  float inverse_square;
+  if (!reach(light, point, s, &inverse_square)) return false;
+  float cos_light = -dot(s->direction, light.direction);
+  if (light.two_sided) cos_light = std::fabs(cos_light);
+  if (!(cos_light > 0)) return false;
+  s->irradiance = light.intensity * (cos_light * inverse_square);
+  return true;
+}
+
+}  // namespace
+
+LightSampler find_light_sampler(Effect kind) {
+  switch (kind) {
+    case Effect::point_light: return sample_point_light;
+    case Effect::spot_light: return sample_spot_light;
+    case Effect::directional_light: return sample_directional_light;
+    default: CHECK(kind == Effect::area_light); return sample_area_light;
+  }
+}
+
+}  // namespace pocketray

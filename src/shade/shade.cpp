@@ -1,0 +1,167 @@
+// From a ray to radiance: recursive ray tracing after [Whitted 1980], [Aranha07] sec. 3.1, instantiated for the effects that
+// the plan has; an absent one is not a branch, it is not there.
+#include "shade/shade.h"
+
+#include <utility>
+
+#include "shade/direct.h"
+
+namespace pocketray {
+namespace {
+
+struct Path {
+  Vec3 weight;          // what the path so far lets through: bounds what a ray can still add to the sample
+  std::uint32_t depth;  // reflections and refractions so far
+  MediumStack media;
+};
+
+template <EffectMask mask>
+Vec3 radiance(Tracer* tracer, Ray ray, Path path);
+
+// Radiance along a spawned ray, or nothing where it could not matter or the path is long enough.
+template <EffectMask mask>
+Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path& path, const Vec3& weight) {
+  const FrameData& frame = *tracer->frame;
+  if (path.depth >= frame.settings.ray_depth) return {0, 0, 0};
+  Path next = path;
+  next.weight = path.weight * weight;
+  next.depth = path.depth + 1;
+  float most = max_component(next.weight);
+  if (!(most > 0) || leave_out(tracer, most * frame.radiance_bound)) return {0, 0, 0};
+  ++tracer->rays[static_cast<int>(kind)];
+  return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
+}
+
+// The perfect mirror. Where the shading normal would send the ray under the surface, the geometric one is used.
+template <EffectMask mask>
+Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, const Path& path, const Vec3& weight) {
+  Vec3 direction = reflect(ray.direction, s.normal);
+  if (!(dot(direction, s.geometric) > 0)) direction = reflect(ray.direction, s.geometric);
+  return spawn<mask>(tracer, kind, s, normalize(direction), 1, path, weight);
+}
+
+// A dielectric boundary: reflects by Fresnel, transmits the rest, bent by Snell.
+template <EffectMask mask>
+Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, std::uint32_t material, const Path& path) {
+  effect_entered<Effect::refraction>();
+  const Scene& scene = *tracer->frame->scene;
+  const Material& m = *s.material;
+  Path beyond = path;
+  float eta;
+  if (m.thin) {
+    eta = 1 / m.ior;
+  } else {
+    float from = medium_ior(scene, path.media);
+    s.front ? enter_medium(&beyond.media, material) : exit_medium(&beyond.media, material);
+    eta = from / medium_ior(scene, beyond.media);
+  }
+  Vec3 n = -dot(ray.direction, s.normal) > 0 ? s.normal : s.geometric;
+  float cos_i = -dot(ray.direction, n), cos_t;
+  float reflected = fresnel(cos_i, eta, &cos_t);
+  if (m.thin && reflected < 1) reflected = 2 * reflected / (1 + reflected);  // both faces of the sheet, all orders
+  Vec3 sum = {0, 0, 0};
+  if (reflected > 0) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, {reflected, reflected, reflected});
+  if (reflected < 1) {
+    Vec3 tint = s.front || m.thin ? m.transmission : Vec3{1, 1, 1};
+    Vec3 direction = m.thin ? ray.direction : normalize(refract(ray.direction, n, eta, cos_i, cos_t));
+    if (!(dot(direction, s.geometric) < 0)) direction = ray.direction;  // a shading normal far off the surface
+    sum += spawn<mask>(tracer, RayKind::refraction, s, direction, -1, beyond, tint * (1 - reflected));
+  }
+  return sum;
+}
+
+// What leaves the surface against the ray.
+template <EffectMask mask>
+Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, std::uint32_t material, const Path& path) {
+  const Material& m = *s.material;
+  Vec3 sum = s.glow;
+  if (m.unlit) return sum;
+  bool scatters = !is_zero(s.diffuse);
+  if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
+  if (scatters) sum += direct_light<mask>(tracer, s, -ray.direction, path.weight);
+  if constexpr (has(mask, Effect::mirror)) {
+    if (!is_zero(m.mirror)) {
+      effect_entered<Effect::mirror>();
+      sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, m.mirror);
+    }
+  }
+  if constexpr (has(mask, Effect::refraction)) {
+    if (!is_zero(m.transmission)) sum += dielectric<mask>(tracer, ray, s, material, path);
+  }
+  return sum;
+}
+
+template <EffectMask mask>
+Vec3 radiance(Tracer* tracer, Ray ray, Path path) {
+  const FrameData& frame = *tracer->frame;
+  const Scene& scene = *frame.scene;
+  const HitFilter* filter = frame.visible_filter.accept ? &frame.visible_filter : nullptr;
+  Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // through the surfaces that blend
+  for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
+    Hit hit;
+    frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
+    if (hit.triangle == kNoTriangle) return sum + carried * scene.info.background;
+    Surface s;
+    frame.surface(frame, ray, hit, &s);
+    if constexpr (has(mask, Effect::absorption)) {
+      if (path.media.depth) {
+        effect_entered<Effect::absorption>();
+        Vec3 passed = transmittance(scene.materials[path.media.material[path.media.depth - 1]].absorption, hit.t);
+        carried *= passed;
+        path.weight *= passed;
+      }
+    }
+    std::uint32_t material = scene.triangles[hit.triangle].material;
+    if constexpr (has(mask, Effect::alpha_blend)) {
+      if (s.material->alpha_mode == AlphaMode::blend) {
+        effect_entered<Effect::alpha_blend>();
+        float alpha = hit_alpha(scene, *s.material, hit.triangle, hit.u, hit.v, frame.settings.texture_filter);
+        Path covered = path;
+        covered.weight = path.weight * alpha;
+        if (alpha > 0) sum += carried * alpha * shade<mask>(tracer, ray, s, material, covered);
+        carried = carried * (1 - alpha);
+        path.weight = path.weight * (1 - alpha);
+        float most = max_component(path.weight);
+        if (!(most > 0) || leave_out(tracer, most * frame.radiance_bound)) return sum;
+        ++tracer->rays[static_cast<int>(RayKind::blend)];
+        ray.origin = safe_origin(s, -1);
+        continue;
+      }
+    }
+    return sum + carried * shade<mask>(tracer, ray, s, material, path);
+  }
+  return sum;
+}
+
+template <EffectMask mask>
+Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const MediumStack& media) {
+  return radiance<mask>(tracer, ray, {{1, 1, 1}, 0, media});
+}
+
+// The effects this part is instantiated for, and the instantiation of each of their combinations.
+constexpr Effect kParts[] = {Effect::shadow, Effect::specular, Effect::mirror, Effect::refraction, Effect::absorption, Effect::alpha_blend};
+constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
+
+constexpr EffectMask mask_of(std::size_t index) {
+  EffectMask mask = 0;
+  for (std::size_t i = 0; i < kPartCount; ++i)
+    if (index >> i & 1) mask |= bit(kParts[i]);
+  if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);  // nothing to be inside of
+  return mask;
+}
+template <std::size_t... index>
+RadianceFunction pick(std::size_t wanted, std::index_sequence<index...>) {
+  static constexpr RadianceFunction table[] = {primary_radiance<mask_of(index)>...};
+  return table[wanted];
+}
+
+}  // namespace
+
+RadianceFunction find_radiance_function(EffectMask mask) {
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < kPartCount; ++i)
+    if (has(mask, kParts[i])) index |= std::size_t(1) << i;
+  return pick(index, std::make_index_sequence<std::size_t(1) << kPartCount>());
+}
+
+}  // namespace pocketray

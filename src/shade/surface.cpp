@@ -1,0 +1,101 @@
+#include "shade/surface.h"
+
+#include <utility>
+
+#include "effect/effect_probe.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+// Turns the interpolated normal to the geometric normal's side; falls back to it where there is none.
+Vec3 smooth_normal(const FrameData& frame, const Triangle& t, float w, float u, float v, const Vec3& geometric) {
+  Vec3 n = normalize(frame.normals[t.vertex[0]] * w + frame.normals[t.vertex[1]] * u + frame.normals[t.vertex[2]] * v);
+  if (is_zero(n)) return geometric;
+  return dot(n, geometric) < 0 ? -n : n;
+}
+
+Vec3 vertex_color(const Scene& scene, const Triangle& t, float w, float u, float v) {
+  auto at = [&](int i) {
+    const Rgba16& c = scene.colors[t.vertex[i]];
+    return Vec3{static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b)} * (1.0f / 65535.0f);
+  };
+  return at(0) * w + at(1) * u + at(2) * v;
+}
+
+template <EffectMask mask>
+void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
+  const Scene& scene = *frame.scene;
+  const Triangle& t = scene.triangles[hit.triangle];
+  const Material& m = scene.materials[t.material];
+  const Vec3 &a = frame.positions[t.vertex[0]], &b = frame.positions[t.vertex[1]], &c = frame.positions[t.vertex[2]];
+  float u = hit.u, v = hit.v, w = 1 - u - v;
+  s->material = &m;
+  s->point = a * w + b * u + c * v;
+  Vec3 outward = normalize(cross(b - a, c - a));
+  s->front = dot(outward, ray.direction) <= 0;
+  s->geometric = s->front ? outward : -outward;
+  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v), s->geometric);
+  s->normal = s->geometric;
+  if constexpr (has(mask, Effect::smooth_normal)) {
+    effect_entered<Effect::smooth_normal>();
+    if (frame.normals.count) s->normal = smooth_normal(frame, t, w, u, v, s->geometric);
+  }
+  s->diffuse = m.diffuse;
+  if constexpr (has(mask, Effect::texture)) {
+    if (m.diffuse_texture.texture != kNone) {
+      effect_entered<Effect::texture>();
+      s->diffuse *=
+          sample_texture(scene, m.diffuse_texture, hit_uv(scene, hit.triangle, u, v), frame.settings.texture_filter).rgb;
+    }
+  }
+  if constexpr (has(mask, Effect::vertex_color)) {
+    if (scene.colors.count) {
+      effect_entered<Effect::vertex_color>();
+      s->diffuse *= vertex_color(scene, t, w, u, v);
+    }
+  }
+  s->glow = m.unlit ? s->diffuse : Vec3{0, 0, 0};
+  if constexpr (has(mask, Effect::ambient)) {
+    effect_entered<Effect::ambient>();
+    if (!m.unlit) s->glow += s->diffuse * scene.info.ambient;
+  }
+  if constexpr (has(mask, Effect::emission)) {
+    if (!is_zero(m.emission) && (s->front || m.double_sided)) {
+      effect_entered<Effect::emission>();
+      Vec3 emission = m.emission;
+      if constexpr (has(mask, Effect::texture)) {
+        if (m.emission_texture.texture != kNone)
+          emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, hit.triangle, u, v), frame.settings.texture_filter).rgb;
+      }
+      s->glow += emission;
+    }
+  }
+}
+
+// The effects this part is instantiated for, and the instantiation of each of their combinations.
+constexpr Effect kParts[] = {Effect::smooth_normal, Effect::texture, Effect::vertex_color, Effect::ambient, Effect::emission};
+constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
+
+constexpr EffectMask mask_of(std::size_t index) {
+  EffectMask mask = 0;
+  for (std::size_t i = 0; i < kPartCount; ++i)
+    if (index >> i & 1) mask |= bit(kParts[i]);
+  return mask;
+}
+template <std::size_t... index>
+SurfaceFunction pick(std::size_t wanted, std::index_sequence<index...>) {
+  static constexpr SurfaceFunction table[] = {evaluate_surface<mask_of(index)>...};
+  return table[wanted];
+}
+
+}  // namespace
+
+SurfaceFunction find_surface_function(EffectMask mask) {
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < kPartCount; ++i)
+    if (has(mask, kParts[i])) index |= std::size_t(1) << i;
+  return pick(index, std::make_index_sequence<std::size_t(1) << kPartCount>());
+}
+
+}  // namespace pocketray

@@ -1,0 +1,45 @@
+// From a hit to what shading needs to know of the surface there.
+#pragma once
+#include <cmath>
+#include <limits>
+
+#include "shade/frame_data.h"
+
+namespace pocketray {
+
+struct Surface {
+  Vec3 point;
+  Vec3 offset;             // from the point to a safe origin on the side the ray came from
+  Vec3 geometric, normal;  // unit, both on the side the ray came from
+  Vec3 diffuse;            // albedo
+  Vec3 glow;               // radiance that leaves without any light: emission, ambient
+  bool front;  // the ray met the front (counter-clockwise) side
+  const Material* material;
+};
+
+// Picks the instantiation for the plan's mask.
+SurfaceFunction find_surface_function(EffectMask mask);
+
+// A ray origin beside a computed point that no rounding error puts on the wrong side. Each coordinate of the point errs by
+// at most γ₈·Σ|bᵢ vᵢ| [PBR3 sec. 3.9.4]; moving by that error, projected on the normal, leaves the slab of uncertainty.
+// Scale-free: everything is relative to the coordinates.
+inline Vec3 origin_offset(const Vec3& point_magnitude, const Vec3& geometric) {
+  constexpr float u = std::numeric_limits<float>::epsilon() * 0.5f;
+  constexpr float gamma = 8 * u / (1 - 8 * u);
+  // Twice: once for the point, once for the rounding of the moved origin and of the next triangle's vertices.
+  float distance = dot(abs(geometric), point_magnitude) * (2 * gamma);
+  return geometric * distance;
+}
+inline float away_from(float value, float step) {
+  float moved = value + step;
+  if (step > 0) return std::nextafterf(moved, std::numeric_limits<float>::infinity());
+  if (step < 0) return std::nextafterf(moved, -std::numeric_limits<float>::infinity());
+  return moved;
+}
+// The point moved to its safe origin on one side (+1: where the ray came from, -1: beyond).
+inline Vec3 safe_origin(const Surface& s, float side) {
+  return {away_from(s.point.x, s.offset.x * side), away_from(s.point.y, s.offset.y * side),
+          away_from(s.point.z, s.offset.z * side)};
+}
+
+}  // namespace pocketray

@@ -1,0 +1,28 @@
+// Texture look-ups. Texels are sRGB bytes; a look-up returns linear colour and alpha.
+#pragma once
+#include "scene/scene.h"
+
+namespace pocketray {
+
+struct Rgba {
+  Vec3 rgb;
+  float alpha;
+};
+
+enum class TextureFilter : std::uint8_t;
+
+// The colour of `use` at uv. Coordinates wrap as the texture's sampler says; row 0 is at v = 0.
+Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
+
+// uv of a hit, interpolated from its triangle.
+inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v) {
+  const Triangle& t = scene.triangles[triangle];
+  Vec2 a = scene.uvs[t.vertex[0]], b = scene.uvs[t.vertex[1]], c = scene.uvs[t.vertex[2]];
+  float w = 1 - u - v;
+  return {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
+}
+
+// Alpha of a material at a hit: opacity × texture alpha × vertex alpha.
+float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v, TextureFilter filter);
+
+}  // namespace pocketray
