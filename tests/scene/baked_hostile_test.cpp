@@ -1,0 +1,178 @@
+// Files that lie: every truncation, every flipped bit, and crafted tables. The answer is an error, or a scene that is
+// valid.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+
+#include "base/limits.h"
+#include "scene/animate.h"
+#include "scene/baked.h"
+#include "scene/baked_file.h"
+#include "scene/full_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+BakedFile small_file() {
+  FullScene full;
+  make_full_scene(11, 12, 4, &full);
+  return bake(full.scene);
+}
+
+// The message of opening the file, or "" where it opens.
+std::string open_error(const BakedFile& file) {
+  Scene scene;
+  return baked_open(file.data(), file.size(), &scene).message;
+}
+bool mentions(const std::string& message, const char* what) {
+  CAPTURE(message);
+  return message.find(what) != std::string::npos;
+}
+
+std::size_t section_at(std::uint32_t kind) { return kTableAt + kind * kSectionBytes; }
+
+// Poses the scene at a few times: under a sanitizer this shows that an accepted file holds no index out of range.
+void use(const Scene& scene) {
+  static std::uint8_t block[1 << 16];
+  if (pose_need(scene) > sizeof block - 63) return;
+  Arena arena = make_arena("pose", block, sizeof block);
+  Pose pose = make_pose(scene, &arena);
+  for (std::uint32_t a = 0; is_animated(scene) && a < scene.animations.count; ++a)
+    for (double seconds : {0.3, 1.7}) pose_at(scene, a, seconds, &pose);
+}
+
+}  // namespace
+
+// Goal: a file cut short anywhere is refused. Method: every length, in a block of exactly that length, so that a
+// sanitizer sees any read beyond it; then again with a header that states the shorter length and a right checksum.
+TEST_CASE("baked_open_rejects_every_truncation") {
+  BakedFile whole = small_file();
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    BakedFile cut(length);
+    std::memcpy(cut.data(), whole.data(), length);
+    Scene scene;
+    if (baked_open(cut.data(), length, &scene).ok) FAIL_CHECK("opened at length ", length);
+    if (length < kTableAt) continue;
+    put_u64(cut, kByteCountAt, length);
+    fix_checksum(cut);
+    if (baked_open(cut.data(), length, &scene).ok) FAIL_CHECK("opened with a fixed header at length ", length);
+  }
+}
+
+// Goal: damage is noticed. Method: every single bit of a file flipped.
+TEST_CASE("baked_open_rejects_every_flipped_bit") {
+  BakedFile file = small_file();
+  for (std::size_t i = 0; i < file.size() * 8; ++i) {
+    file.data()[i / 8] ^= static_cast<std::uint8_t>(1 << i % 8);
+    Scene scene;
+    if (baked_open(file.data(), file.size(), &scene).ok) FAIL_CHECK("opened with flipped bit ", i);
+    file.data()[i / 8] ^= static_cast<std::uint8_t>(1 << i % 8);
+  }
+}
+
+// Goal: a file made with intent is refused or fully valid. Method: every bit flipped and every byte set to 0xFF, with a
+// right checksum; what opens passes validate_scene() and can be posed. The share that is refused shows that the checks
+// bite.
+TEST_CASE("baked_open_rejects_or_validates_every_change_with_a_right_checksum") {
+  BakedFile file = small_file();
+  std::size_t rejected = 0, tried = 0;
+  auto try_byte = [&](std::size_t at, std::uint8_t value) {
+    std::uint8_t kept = file.data()[at];
+    file.data()[at] = value;
+    fix_checksum(file);
+    Scene scene;
+    bool opened = baked_open(file.data(), file.size(), &scene).ok;
+    if (opened) {
+      if (!validate_scene(scene).ok) FAIL_CHECK("opened an invalid scene, byte ", at);
+      use(scene);
+    }
+    rejected += !opened, ++tried;
+    file.data()[at] = kept;
+  };
+  for (std::size_t at = 0; at < file.size(); ++at) {
+    if (at >= kChecksumAt && at < kByteCountAt) continue;  // fix_checksum() would undo it
+    for (int b = 0; b < 8; ++b) try_byte(at, static_cast<std::uint8_t>(file.data()[at] ^ 1 << b));
+    try_byte(at, 0xFF);
+  }
+  MESSAGE(rejected, " of ", tried, " changes with a right checksum refused, ", file.size(), " bytes");
+  CHECK(rejected > tried / 5);
+}
+
+// Goal: the table of sections is checked word by word. Method: each field of each section set to values that harm.
+TEST_CASE("baked_open_rejects_crafted_section_tables") {
+  BakedFile file = small_file();
+  BakedFile original = small_file();
+  for (std::uint32_t kind = 0; kind < 26; ++kind) {
+    auto refused = [&](const char* what) {
+      fix_checksum(file);
+      if (open_error(file).empty()) FAIL_CHECK("opened: ", what, " in section ", kind);
+      std::memcpy(file.data(), original.data(), file.size());
+    };
+    std::uint64_t offset;
+    std::uint32_t count;
+    std::memcpy(&offset, file.data() + section_at(kind) + 8, 8);
+    std::memcpy(&count, file.data() + section_at(kind) + 16, 4);
+    for (std::uint64_t bad :
+         {std::uint64_t(0), offset - 64, offset + 4, offset + 64, ~std::uint64_t(0), ~std::uint64_t(63),
+          std::uint64_t(file.size()), std::uint64_t(1) << 32 | offset, std::uint64_t(1) << 63})
+      put_u64(file, section_at(kind) + 8, bad), refused("offset");
+    for (std::uint32_t bad : {count + 64, 0x10000000u, 0x20000000u, 0x40000000u, 0x80000000u, 0xFFFFFFFFu})
+      put_u32(file, section_at(kind) + 16, bad), refused("count");
+    for (std::uint32_t bad : {0u, 3u, 1024u, 0xFFFFFFFFu})
+      put_u32(file, section_at(kind) + 4, bad), refused("element size");
+    for (std::uint32_t bad : {kind + 1, kind - 1, 26u, 0xFFFFFFFFu})
+      put_u32(file, section_at(kind), bad), refused("kind");
+    put_u32(file, section_at(kind) + 20, 1), refused("reserved word");
+  }
+}
+
+// Goal: two sections in one place, or one kind twice, are refused. Method: a copy of a neighbour's row of the table.
+TEST_CASE("baked_open_rejects_overlapping_and_duplicate_sections") {
+  BakedFile file = small_file();
+  BakedFile original = small_file();
+  for (std::uint32_t kind = 1; kind < 26; ++kind) {
+    std::memcpy(file.data() + section_at(kind), file.data() + section_at(kind - 1), kSectionBytes);
+    fix_checksum(file);
+    CHECK(!open_error(file).empty());
+    put_u32(file, section_at(kind), kind);  // the right kind, but over its neighbour
+    fix_checksum(file);
+    CHECK(!open_error(file).empty());
+    std::memcpy(file.data(), original.data(), file.size());
+  }
+}
+
+// Goal: messages say what is wrong and how to mend it.
+TEST_CASE("baked_open_says_what_is_wrong") {
+  BakedFile file = small_file();
+  Scene scene;
+  CHECK(mentions(baked_open(file.data(), 0, &scene).message, "not a .pray file"));
+  CHECK(mentions(baked_open(file.data(), 40, &scene).message, "cut short after 40 bytes"));
+  CHECK(mentions(baked_open(file.data(), file.size() - 64, &scene).message, "it should be"));
+  CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "multiple of 64"));
+  put_u32(file, kVersionAt, 2);
+  CHECK(open_error(file) == "made by version 2, this program reads version 1: bake it again");
+  put_u32(file, kVersionAt, kBakedVersion);
+  file.data()[file.size() - 1] ^= 1;
+  CHECK(mentions(open_error(file), "checksum"));
+  fix_checksum(file);
+  CHECK(open_error(file) == "");
+  put_u32(file, kSectionCountAt, 27);
+  fix_checksum(file);
+  CHECK(mentions(open_error(file), "27 sections"));
+  file.data()[1] = 'p';
+  CHECK(mentions(open_error(file), "not a .pray file"));
+}
+
+// Goal: a refused file leaves the caller's scene alone.
+TEST_CASE("baked_open_leaves_the_scene_alone_on_error") {
+  BakedFile file = small_file();
+  std::memset(file.data() + kTableAt + 26 * kSectionBytes, 0xFF, 512);
+  fix_checksum(file);
+  Scene scene;
+  scene.info.frame_count = 77;
+  CHECK(!baked_open(file.data(), file.size(), &scene).ok);
+  CHECK(scene.info.frame_count == 77);
+  CHECK(scene.positions.empty());
+}

@@ -1,0 +1,246 @@
+// Every rule of validate_scene(): a scene that breaks it is refused, and the message names the element.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "base/limits.h"
+#include "scene/baked.h"
+#include "scene/full_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+// Changes a valid scene and expects a refusal that mentions `what`.
+void refuses(const char* what, const std::function<void(FullScene*)>& change) {
+  FullScene full;
+  make_full_scene(21, 14, 6, &full);
+  Status status = validate_scene(full.scene);
+  REQUIRE_MESSAGE(status.ok, status.message);
+  change(&full);
+  full.bind();
+  status = validate_scene(full.scene);
+  std::string message = status.message;
+  CAPTURE(what);
+  CAPTURE(message);
+  CHECK(!status.ok);
+  CHECK(message.find(what) != std::string::npos);
+  CHECK(message.find('\n') == std::string::npos);
+}
+
+// Expects that the change keeps the scene valid.
+void accepts(const std::function<void(FullScene*)>& change) {
+  FullScene full;
+  make_full_scene(21, 14, 6, &full);
+  change(&full);
+  full.bind();
+  Status status = validate_scene(full.scene);
+  CHECK_MESSAGE(status.ok, status.message);
+}
+
+template <class E>
+E unknown(int value) {
+  return static_cast<E>(value);
+}
+
+}  // namespace
+
+// Goal: HARDCASES row 8: what is not a coordinate, or no index, never gets in. Method: each in each array.
+TEST_CASE("hard_08_vertices_and_indices_out_of_range_are_refused") {
+  for (float bad : {kNan, -kNan, kInf, -kInf, 1.0001e18f, -2e18f, 3e38f}) {
+    refuses("positions[13]", [=](FullScene* f) { f->positions[13].z = bad; });
+    refuses("normals[4]", [=](FullScene* f) { f->normals[4].y = bad; });
+    refuses("uvs[2]", [=](FullScene* f) { f->uvs[2].x = bad; });
+    refuses("rest_positions[5]", [=](FullScene* f) { f->rest_positions[5].x = bad; });
+    refuses("rest_normals[0]", [=](FullScene* f) { f->rest_normals[0].x = bad; });
+    refuses("morph_positions[7]", [=](FullScene* f) { f->morph_positions[7].x = bad; });
+    refuses("morph_normals[7]", [=](FullScene* f) { f->morph_normals[7].z = bad; });
+    refuses("key_values[3]", [=](FullScene* f) { f->key_values[3] = bad; });
+    refuses("key_times[1]", [=](FullScene* f) { f->key_times[1] = bad; });
+    refuses("weights[1]", [=](FullScene* f) { f->weights[1] = bad; });
+    refuses("joints[1]", [=](FullScene* f) { f->joints[1].inverse_bind.m[2][3] = bad; });
+    refuses("moving_meshes[1]", [=](FullScene* f) { f->moving_meshes[1].instance.m[2][3] = bad; });
+    refuses("nodes[1]", [=](FullScene* f) { f->nodes[1].translation.y = bad; });
+    refuses("nodes[2]", [=](FullScene* f) { f->nodes[2].scale.y = bad; });
+    refuses("nodes[0]", [=](FullScene* f) { f->nodes[0].rotation.w = bad; });
+  }
+  accepts([](FullScene* f) { f->positions[0] = {1e18f, -1e18f, 1e-45f}; });
+  for (int corner = 0; corner < 3; ++corner)
+    refuses("triangles[5]", [=](FullScene* f) { f->triangles[5].vertex[corner] = 14; });
+  refuses("triangles[0]", [](FullScene* f) { f->triangles[0].vertex[1] = kNone; });
+  refuses("triangles[2]", [](FullScene* f) { f->triangles[2].material = 2; });
+}
+
+// Goal: HARDCASES row 27: transforms that flatten or burst are refused, naming the node. Method: determinants 0, below
+// the smallest normal float, infinite; tiny and huge ones inside the range are fine.
+TEST_CASE("hard_27_singular_nodes_are_refused_by_name") {
+  refuses("nodes[2]", [](FullScene* f) { f->nodes[2].scale = {1, 0, 1}; });
+  refuses("nodes[2]", [](FullScene* f) { f->nodes[2].scale = {1e-19f, 1e-19f, 1}; });
+  refuses("nodes[1]", [](FullScene* f) { f->nodes[1].scale = {1e17f, 1e17f, 1e17f}; });
+  refuses("moving_meshes[1]", [](FullScene* f) { f->moving_meshes[1].instance.m[0][0] = 0; });
+  accepts([](FullScene* f) { f->nodes[2].scale = {1e-12f, -1e-12f, 1e-12f}; });
+  accepts([](FullScene* f) { f->nodes[2].scale = {1e12f, 1e12f, -1e12f}; });
+}
+
+// Goal: arrays fit each other and the limits.
+TEST_CASE("validate_scene_refuses_counts_that_do_not_fit") {
+  refuses("13 normals for 14 vertices", [](FullScene* f) { f->normals.pop_back(); });
+  refuses("13 uvs for 14 vertices", [](FullScene* f) { f->uvs.pop_back(); });
+  refuses("15 colors for 14 vertices", [](FullScene* f) { f->colors.push_back({0, 0, 0, 0}); });
+  refuses("cameras", [](FullScene* f) { f->cameras.resize(kCameraCountMax + 1); });
+  refuses("lights", [](FullScene* f) { f->lights.resize(kLightCountMax + 1); });
+  refuses("nodes", [](FullScene* f) { f->nodes.resize(kNodeCountMax + 1); });
+  refuses("textures", [](FullScene* f) { f->textures.resize(kTextureCountMax + 1); });
+  refuses("materials", [](FullScene* f) { f->materials.resize(kMaterialCountMax + 1); });
+  refuses("rest_normals", [](FullScene* f) { f->rest_normals.pop_back(); });
+  refuses("rest_normals", [](FullScene* f) { f->rest_normals.clear(); });
+  refuses("rest_normals", [](FullScene* f) { f->normals.clear(); });
+  refuses("morph_normals", [](FullScene* f) { f->morph_normals.pop_back(); });
+  accepts(
+      [](FullScene* f) { f->normals.clear(), f->rest_normals.clear(), f->morph_normals.clear(), f->colors.clear(); });
+}
+
+// Goal: the scene's own numbers.
+TEST_CASE("validate_scene_refuses_bad_info") {
+  refuses("name", [](FullScene* f) {
+    for (char& c : f->scene.info.name) c = 'x';
+  });
+  refuses("frame_count", [](FullScene* f) { f->scene.info.frame_count = 0; });
+  refuses("default_lights", [](FullScene* f) { f->scene.info.default_lights = 2; });
+  refuses("default", [](FullScene* f) { f->scene.info.default_camera = 2; });
+  for (float bad : {kNan, kInf, -1.0f}) {
+    refuses("background.y", [=](FullScene* f) { f->scene.info.background.y = bad; });
+    refuses("ambient.x", [=](FullScene* f) { f->scene.info.ambient.x = bad; });
+    refuses("exposure", [=](FullScene* f) { f->scene.info.exposure = bad; });
+    refuses("frames_per_second", [=](FullScene* f) { f->scene.info.frames_per_second = bad; });
+    refuses("auto_exposure", [=](FullScene* f) { f->scene.info.auto_exposure = bad; });
+  }
+  refuses("exposure", [](FullScene* f) { f->scene.info.exposure = 0; });
+}
+
+// Goal: materials that would gain energy, or that point nowhere, are refused. HARDCASES row 31: exponents up to 10^6.
+TEST_CASE("validate_scene_refuses_bad_materials") {
+  for (float bad : {kNan, kInf, -0.001f, 1.001f}) {
+    refuses("materials[1].diffuse.x", [=](FullScene* f) { f->materials[1].diffuse.x = bad; });
+    refuses("materials[0].specular.y", [=](FullScene* f) { f->materials[0].specular.y = bad; });
+    refuses("materials[1].mirror.z", [=](FullScene* f) { f->materials[1].mirror.z = bad; });
+    refuses("materials[1].transmission.x", [=](FullScene* f) { f->materials[1].transmission.x = bad; });
+    refuses("materials[1].opacity", [=](FullScene* f) { f->materials[1].opacity = bad; });
+  }
+  for (float bad : {kNan, kInf, -1.0f}) {
+    refuses("materials[1].emission.x", [=](FullScene* f) { f->materials[1].emission.x = bad; });
+    refuses("materials[1].absorption.y", [=](FullScene* f) { f->materials[1].absorption.y = bad; });
+    refuses("materials[1].alpha_cutoff", [=](FullScene* f) { f->materials[1].alpha_cutoff = bad; });
+    refuses("materials[1].exponent", [=](FullScene* f) { f->materials[1].exponent = bad; });
+    refuses("materials[1].ior", [=](FullScene* f) { f->materials[1].ior = bad; });
+  }
+  refuses("materials[1].exponent", [](FullScene* f) { f->materials[1].exponent = 1.01e6f; });
+  refuses("materials[1].ior", [](FullScene* f) { f->materials[1].ior = 0.99f; });
+  refuses("materials[1].brdf", [](FullScene* f) { f->materials[1].brdf = kBrdfCountMax; });
+  refuses("alpha mode", [](FullScene* f) { f->materials[0].alpha_mode = unknown<AlphaMode>(3); });
+  refuses("0 or 1", [](FullScene* f) { f->materials[0].double_sided = 2; });
+  refuses("0 or 1", [](FullScene* f) { f->materials[0].unlit = 255; });
+  refuses("0 or 1", [](FullScene* f) { f->materials[0].thin = 2; });
+  refuses("materials[1].diffuse_texture", [](FullScene* f) { f->materials[1].diffuse_texture.texture = 2; });
+  refuses("materials[0].emission_texture", [](FullScene* f) { f->materials[0].emission_texture.texture = 2; });
+  refuses("materials[0].diffuse_texture", [](FullScene* f) { f->materials[0].diffuse_texture.m[1][2] = kNan; });
+  refuses("needs uvs", [](FullScene* f) { f->uvs.clear(); });
+  accepts([](FullScene* f) {
+    f->materials[1].exponent = 1e6f, f->materials[1].ior = 1, f->materials[1].diffuse = {1, 1, 0};
+  });
+}
+
+// Goal: no texel outside the array is ever fetched.
+TEST_CASE("validate_scene_refuses_bad_textures") {
+  refuses("textures[0]", [](FullScene* f) { f->textures[0].width = 0; });
+  refuses("textures[1]", [](FullScene* f) { f->textures[1].height = 0; });
+  refuses("textures[1]", [](FullScene* f) { f->textures[1].height = 5; });
+  refuses("textures[1]", [](FullScene* f) { f->textures[1].texel_begin = 7; });
+  refuses("textures[0]", [](FullScene* f) { f->textures[0].texel_begin = kNone; });
+  refuses("textures[0]", [](FullScene* f) { f->textures[0].width = kTextureSideMax + 1; });
+  refuses("textures[0]", [](FullScene* f) { f->textures[0].wrap_u = unknown<Wrap>(3); });
+  refuses("textures[0]", [](FullScene* f) { f->textures[0].wrap_v = unknown<Wrap>(255); });
+  refuses("textures[0]", [](FullScene* f) { f->textures[0].nearest = 2; });
+}
+
+// Goal: lights and cameras that would give NaN are refused. HARDCASES row 28.
+TEST_CASE("hard_28_degenerate_lights_and_cameras_are_refused") {
+  refuses("lights[2]", [](FullScene* f) { f->lights[2].kind = unknown<LightKind>(3); });
+  refuses("lights[0]", [](FullScene* f) { f->lights[0].node = 3; });
+  refuses("lights[1].position", [](FullScene* f) { f->lights[1].position.x = kInf; });
+  refuses("lights[1].direction", [](FullScene* f) { f->lights[1].direction = {0, 0, 0}; });
+  refuses("lights[1].direction", [](FullScene* f) { f->lights[1].direction = {0, 1.2f, 0}; });
+  refuses("lights[1].cos_outer", [](FullScene* f) { f->lights[1].cos_outer = 0.95f; });
+  refuses("lights[1].cos_inner", [](FullScene* f) { f->lights[1].cos_inner = 1.5f; });
+  for (float bad : {kNan, kInf, -1.0f}) {
+    refuses("lights[0].intensity.z", [=](FullScene* f) { f->lights[0].intensity.z = bad; });
+    refuses("lights[0].range", [=](FullScene* f) { f->lights[0].range = bad; });
+    refuses("cameras[0].vertical_fov", [=](FullScene* f) { f->cameras[0].vertical_fov = bad; });
+    refuses("cameras[1].vertical_extent", [=](FullScene* f) { f->cameras[1].vertical_extent = bad; });
+  }
+  refuses("cameras[0].vertical_fov", [](FullScene* f) { f->cameras[0].vertical_fov = 3.15f; });
+  refuses("cameras[0].vertical_fov", [](FullScene* f) { f->cameras[0].vertical_fov = 0; });
+  refuses("cameras[1].vertical_extent", [](FullScene* f) { f->cameras[1].vertical_extent = 0; });
+  refuses("cameras[0]", [](FullScene* f) { f->cameras[0].target = f->cameras[0].eye; });
+  refuses("cameras[0].up", [](FullScene* f) { f->cameras[0].up = {0, 0, 0}; });
+  refuses("cameras[0]", [](FullScene* f) { f->cameras[0].eye.x = kNan; });
+  refuses("cameras[1]", [](FullScene* f) { f->cameras[1].projection = unknown<Projection>(2); });
+  refuses("cameras[1]", [](FullScene* f) { f->cameras[1].node = 3; });
+  refuses("nothing is animated", [](FullScene* f) { f->animations.clear(), f->cameras[1].node = kNone; });
+  refuses("nothing is animated", [](FullScene* f) { f->animations.clear(), f->lights[0].node = kNone; });
+}
+
+// Goal: a pose never reads outside an array and always ends.
+TEST_CASE("validate_scene_refuses_bad_nodes_and_channels") {
+  refuses("nodes[0]", [](FullScene* f) { f->nodes[0].parent = 0; });
+  refuses("nodes[1]", [](FullScene* f) { f->nodes[1].parent = 2; });
+  refuses("nodes[1]", [](FullScene* f) { f->nodes[1].rotation = {0, 0, 0, 0}; });
+  refuses("nodes[2]", [](FullScene* f) { f->nodes[2].weight_count = 3; });
+  refuses("nodes[2]", [](FullScene* f) { f->nodes[2].weight_begin = kNone; });
+  refuses("morph weights, at most", [](FullScene* f) {
+    f->nodes[2].weight_count = kMorphTargetCountMax + 1, f->weights.resize(kMorphTargetCountMax + 1);
+  });
+  refuses("channels[1]", [](FullScene* f) { f->channels[1].node = 3; });
+  refuses("channels[0]", [](FullScene* f) { f->channels[0].path = unknown<ChannelPath>(4); });
+  refuses("channels[0]", [](FullScene* f) { f->channels[0].interpolation = unknown<Interpolation>(3); });
+  refuses("channels[2]", [](FullScene* f) { f->channels[2].key_count = 0; });
+  refuses("channels[2]", [](FullScene* f) { f->channels[2].key_begin = 2; });
+  refuses("animation keys", [](FullScene* f) { f->channels[2].key_count = kNone; });
+  refuses("channels[0]", [](FullScene* f) { f->channels[0].value_begin = 10; });
+  refuses("channels[3]", [](FullScene* f) { f->channels[3].value_begin = kNone - 1; });
+  refuses("channels[2]", [](FullScene* f) { f->channels[2].node = 0; });  // has no weights
+  refuses("channels[0]", [](FullScene* f) { f->key_times[2] = f->key_times[1]; });
+  refuses("channels[0]", [](FullScene* f) { f->key_times[0] = -1; });
+  refuses("animations[1]", [](FullScene* f) { f->animations[1].channel_count = 2; });
+  refuses("animations[1]", [](FullScene* f) { f->animations[1].channel_begin = kNone; });
+  for (float bad : {kNan, kInf, -1.0f})
+    refuses("animations[0]", [=](FullScene* f) { f->animations[0].duration = bad; });
+}
+
+TEST_CASE("validate_scene_refuses_bad_skins_and_moving_meshes") {
+  refuses("joints[0]", [](FullScene* f) { f->joints[0].node = 3; });
+  refuses("skins[0]", [](FullScene* f) { f->skins[0].joint_count = 3; });
+  refuses("skins[0]", [](FullScene* f) { f->skins[0].joint_count = 0; });
+  refuses("skins[0]", [](FullScene* f) { f->skins[0].joint_begin = kNone; });
+  refuses("skin_weights[3]", [](FullScene* f) { f->skin_weights[3].joint[3] = 2; });
+  refuses("skin_weights[1]", [](FullScene* f) { f->skin_weights[1].weight[0] = 0.5f; });
+  refuses("skin_weights[1]", [](FullScene* f) { f->skin_weights[1].weight[2] = kNan; });
+  refuses("skin_weights[1]", [](FullScene* f) { f->skin_weights[1] = {{0, 1, 0, 0}, {-1, 2, 0, 0}}; });
+  refuses("moving_meshes[1]", [](FullScene* f) { f->moving_meshes[1].vertex_begin = 9; });
+  refuses("moving_meshes[1]", [](FullScene* f) { f->moving_meshes[1].vertex_count = 5; });
+  refuses("moving_meshes[1]", [](FullScene* f) { f->moving_meshes[1].vertex_count = kNone; });
+  refuses("moving_meshes[1]", [](FullScene* f) { f->moving_meshes[1].rest_begin = 3; });
+  refuses("moving_meshes[1]", [](FullScene* f) { f->moving_meshes[1].node = kNone; });
+  refuses("moving_meshes[0]", [](FullScene* f) { f->moving_meshes[0].node = kNone; });  // its morph needs weights
+  refuses("moving_meshes[0]", [](FullScene* f) { f->moving_meshes[0].skin = 1; });
+  refuses("moving_meshes[0]", [](FullScene* f) { f->moving_meshes[0].skin_weight_begin = 1; });
+  refuses("moving_meshes[0]", [](FullScene* f) { f->moving_meshes[0].morph_begin = 1; });
+  refuses("moving_meshes[0]", [](FullScene* f) { f->moving_meshes[0].morph_count = 3; });
+  refuses("moving_meshes[1]", [](FullScene* f) { f->moving_meshes[1].morph_count = 1; });
+  accepts([](FullScene* f) { f->moving_meshes[0].morph_count = 0, f->moving_meshes[0].node = kNone; });
+}
