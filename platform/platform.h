@@ -1,0 +1,95 @@
+// The platform contract: a screen, buttons and a clock, as one struct of functions per backend. Standard types only.
+// Only app/ and tests/ include it, and nothing under platform/ includes anything of src/. PORTING.md tells how to write
+// one.
+//
+// All functions are called from one thread. After open() a backend takes no memory and never waits without a bound.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace platform {
+
+enum class Button : std::uint8_t { up, down, left, right, a, b, x, y, l, r, start, select, hud, screenshot, reload };
+constexpr int kPadButtonCount = 12;  // up … select: what a handheld has
+constexpr int kButtonCount = 15;     // with the keys of a desktop keyboard
+
+const char* button_name(Button button);
+
+enum class EventType : std::uint8_t { button_down, button_up, file_drop, quit };
+
+struct Event {
+  EventType type = EventType::quit;
+  Button button = Button::up;  // of button_down and button_up; a button held down is reported once
+  const char* path = nullptr;  // of file_drop; valid until the next poll()
+  std::uint64_t time_ns = 0;   // by the backend's own clock, now_ns()
+};
+
+// Where a colour channel lies in a pixel: `length` bits from bit `offset` upward of the pixel read as one integer.
+struct Channel {
+  int offset = 0, length = 0;
+};
+
+// The screen as the hardware has it, before any rotation. Pixels are 16 or 32 bits in the CPU's byte order, or 24 bits
+// with the lowest byte first. Bits of no channel but alpha are written as zero, those of alpha as one.
+struct ScreenFormat {
+  int width = 0, height = 0;  // pixels to draw into
+  int bits_per_pixel = 0;
+  Channel red, green, blue, alpha;
+};
+
+// Where the next frame is drawn.
+struct Page {
+  void* pixels = nullptr;  // row 0, column 0
+  int line_bytes = 0;      // from a row to the next, at least width × bytes per pixel
+  int age = 0;             // it holds the frame shown this many frames ago; 0: unknown, draw every row
+};
+
+struct ScreenOptions {
+  int width = 320,
+      height = 240;        // picture wanted, before rotation; a smaller screen gives less, a larger one centres it
+  int rotation = 0;        // 0, 90, 180, 270: degrees clockwise by which the caller turns the picture on the screen
+  int scale = 0;           // of a window: screen pixels per pixel; 0: as large as fits comfortably
+  const char* title = "";  // of a window
+  const char* device = nullptr;         // of a framebuffer; null: the usual one
+  const std::uint16_t* keys = nullptr;  // of evdev: kPadButtonCount key codes, up … select; null: a keyboard's
+  void* memory = nullptr;        // back page, the caller's, kept until close(): at least page_bytes_max(width, height)
+  std::size_t memory_bytes = 0;  //   bytes, aligned to 4
+};
+
+// What a back page can take at most.
+constexpr std::size_t page_bytes_max(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
+}
+
+struct Error {
+  char text[256] = {0};  // what is wrong and how to mend it
+};
+
+struct Backend {
+  const char* name;
+  // Whether open() has a chance here. Changes nothing.
+  bool (*usable)();
+  // Opens screen and buttons. False: `error` says why, and everything is as it was before.
+  bool (*open)(const ScreenOptions& options, ScreenFormat* format, Error* error);
+  // The page to draw the next frame into; valid until end_frame().
+  Page (*begin_frame)();
+  // Shows it. Rows [row_begin, row_end) may differ from the frame shown before; the rest is taken to be as it was.
+  void (*end_frame)(int row_begin, int row_end);
+  // Takes the next event, oldest first; false when there is none. Never waits.
+  bool (*poll)(Event* event);
+  std::uint64_t (*now_ns)();  // never runs backwards; its zero is arbitrary
+  void (*sleep_ns)(std::uint64_t duration);
+  // Gives screen and buttons back as they were. Nothing happens when not open.
+  void (*close)();
+};
+
+// All backends of this build, in order of preference; null, which works everywhere, is last.
+extern const Backend* const kBackends[];
+extern const int kBackendCount;
+
+// The backend of that name, or null.
+const Backend* platform_find(const char* name);
+// The first usable one: a window where a display is present, else the framebuffer, else null.
+const Backend* platform_default();
+
+}  // namespace platform

@@ -1,0 +1,74 @@
+// Radiance → screen pixels in one pass: exposure, sRGB, quantisation, dither, rotation and pixel order fused.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "base/vec3.h"
+#include "present/tonemap.h"
+
+namespace pocketray {
+
+// `length` bits, at most 10, from bit `offset` upward of a pixel read as one integer; length 0: the channel is absent.
+struct PixelChannel {
+  int offset = 0, length = 0;
+};
+// 16 or 32 bits per pixel in the CPU's byte order, or 24 with the lowest byte first. Alpha is written as ones.
+struct PixelFormat {
+  int bits_per_pixel = 0;
+  PixelChannel red, green, blue, alpha;
+};
+constexpr PixelFormat kRgb565 = {16, {11, 5}, {5, 6}, {0, 5}, {}};
+constexpr PixelFormat kBgr565 = {16, {0, 5}, {5, 6}, {11, 5}, {}};
+constexpr PixelFormat kXrgb8888 = {32, {16, 8}, {8, 8}, {0, 8}, {}};
+constexpr PixelFormat kXbgr8888 = {32, {0, 8}, {8, 8}, {16, 8}, {}};
+constexpr PixelFormat kRgb888 = {24, {0, 8}, {8, 8}, {16, 8}, {}};  // bytes R, G, B: as PNG and PPM have them
+constexpr PixelFormat kBgr888 = {24, {16, 8}, {8, 8}, {0, 8}, {}};
+
+// Whether pack_rows() can write it: 16, 24 or 32 bits, channels within the pixel and without overlap.
+bool pixel_format_valid(const PixelFormat& format);
+
+// How the picture is turned on the screen, clockwise. A quarter turn puts a picture of width × height on height × width
+// pixels.
+enum class Rotation : std::uint8_t { none, quarter, half, three_quarters };
+
+// From 0, 90, 180 or 270 degrees; false for anything else.
+bool rotation_from_degrees(int degrees, Rotation* rotation);
+
+// Where pixel (column, row) of the picture lies on the screen, counted in screen pixels and rows.
+struct ScreenPosition {
+  int x, y;
+};
+inline ScreenPosition screen_position(int column, int row, int width, int height, Rotation rotation) {
+  switch (rotation) {
+    case Rotation::quarter:
+      return {height - 1 - row, column};
+    case Rotation::half:
+      return {width - 1 - column, height - 1 - row};
+    case Rotation::three_quarters:
+      return {row, width - 1 - column};
+    case Rotation::none:
+      break;
+  }
+  return {column, row};
+}
+
+// One pixel of 8-bit levels; quantised to the nearest value the format has. 565 to levels and back is the identity.
+std::uint32_t pack_levels(const PixelFormat& format, int red, int green, int blue);
+// The 8-bit levels that a pixel shows, each rounded to nearest.
+void unpack_levels(const PixelFormat& format, std::uint32_t pixel, int levels[3]);
+std::uint32_t read_pixel(const PixelFormat& format, const void* pixel);
+void write_pixel(const PixelFormat& format, void* pixel, std::uint32_t value);
+
+// Rows [row_begin, row_end) of the picture. `radiance` is the whole picture, width × height, row 0 on top; `pixels` is
+// the screen's top left, `line_bytes` (a multiple of 2 or 4 for 16 or 32 bits) from one screen row to the next.
+// Displayed is exposure × radiance. `dither`: ordered, 8 × 8, fixed to the screen; its mean over a tile is within 1/64
+// step of the display value. Returns what could not be shown. Rows may be packed by several threads at once.
+ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
+                     const PixelFormat& format, Rotation rotation, bool dither, void* pixels, int line_bytes);
+
+// The same into a picture of bytes R, G, B without padding: what PNG and PPM take.
+inline ToneCounts pack_rgb8(const Vec3* radiance, int width, int height, float exposure, std::uint8_t* rgb) {
+  return pack_rows(radiance, width, height, 0, height, exposure, kRgb888, Rotation::none, false, rgb, 3 * width);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,64 @@
+// Linear light → display values, fast enough for a CPU without FPU: floats are compared as integers, and the sRGB curve
+// is a table of the exponent and the upper seven mantissa bits. Between 2⁻¹³ and 1 an octave's 128 buckets are so
+// narrow that at most one threshold of an 8-bit level falls into each.
+#pragma once
+#include <cstdint>
+#include <cstring>
+
+#include "base/color.h"
+
+namespace pocketray {
+
+// Radiance that no display can show; counted per channel, after exposure.
+struct ToneCounts {
+  std::uint64_t nan = 0;       // shown as 0
+  std::uint64_t infinite = 0;  // +Inf, shown as 1; -Inf is negative
+  std::uint64_t negative = 0;  // shown as 0; -0 is not negative
+};
+inline ToneCounts& operator+=(ToneCounts& a, const ToneCounts& b) {
+  a.nan += b.nan, a.infinite += b.infinite, a.negative += b.negative;
+  return a;
+}
+
+constexpr int kToneOctaves = 13;
+constexpr std::uint32_t kToneBucketCount = kToneOctaves * 128;
+constexpr std::uint32_t kToneBitsMin = (127u - kToneOctaves)
+                                       << 23;  // 2⁻¹³ as a float's bits; below it every level is 0
+constexpr std::uint32_t kToneBitsOne = 127u << 23;
+
+struct ToneTables {
+  std::uint8_t level[kToneBucketCount];      // 8-bit level at the lower edge of a bucket
+  std::uint32_t threshold[257];              // least float, as bits, of a level; [256]: never reached
+  std::uint16_t fine[kToneBucketCount + 1];  // 16-bit display value at the lower edge of a bucket
+};
+extern const ToneTables kToneTables;
+
+inline std::uint32_t float_bits(float value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+// What [0, 1) does not hold: 0 or 1 as the display shows it, and the count. Out of line: it is rare.
+bool tone_saturates(std::uint32_t bits, ToneCounts* counts);
+
+// 8-bit sRGB level; equal to srgb_level() for every float.
+inline std::uint8_t tone_level(float linear, ToneCounts* counts) {
+  std::uint32_t bits = float_bits(linear);
+  if (bits >= kToneBitsOne) return tone_saturates(bits, counts) ? 255 : 0;
+  if (bits < kToneBitsMin) return 0;
+  std::uint32_t level = kToneTables.level[(bits - kToneBitsMin) >> 16];
+  return static_cast<std::uint8_t>(level + (bits >= kToneTables.threshold[level + 1]));
+}
+
+// 16-bit sRGB display value, 65535 for white: |error| ≤ 1, for dithering.
+inline std::uint32_t tone_fine(float linear, ToneCounts* counts) {
+  std::uint32_t bits = float_bits(linear);
+  if (bits >= kToneBitsOne) return tone_saturates(bits, counts) ? 65535 : 0;
+  if (bits < kToneBitsMin) return static_cast<std::uint32_t>(linear * (12.92f * 65535) + 0.5f);
+  std::uint32_t bucket = (bits - kToneBitsMin) >> 16;
+  std::uint32_t low = kToneTables.fine[bucket], high = kToneTables.fine[bucket + 1];
+  return low + (((high - low) * (bits & 0xffff) + 0x8000) >> 16);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,205 @@
+#include "present/pack.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+using namespace pocketray;
+
+namespace {
+
+constexpr Rotation kRotations[] = {Rotation::none, Rotation::quarter, Rotation::half, Rotation::three_quarters};
+constexpr PixelFormat kRgb555 = {16, {10, 5}, {5, 5}, {0, 5}, {15, 1}};
+constexpr PixelFormat kBgrx8888 = {32, {8, 8}, {16, 8}, {24, 8}, {}};
+constexpr PixelFormat kArgb8888 = {32, {16, 8}, {8, 8}, {0, 8}, {24, 8}};
+constexpr PixelFormat kXrgb2101010 = {32, {20, 10}, {10, 10}, {0, 10}, {}};
+constexpr PixelFormat kFormats[] = {kRgb565, kBgr565,   kRgb555,   kXrgb8888,    kXbgr8888,
+                                    kRgb888, kBgrx8888, kArgb8888, kXrgb2101010, kBgr888};
+
+float float_of(std::uint32_t bits) {
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+// The display value 0 … 1 by the standard's formula and the C library.
+double encode_exactly(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+}  // namespace
+
+// Goal: the fast tone curve is the plain one. Method: every float around each threshold and each bucket's edges, and a
+// stride through all floats.
+TEST_CASE("hard_64_tone_level_equals_the_search_for_every_kind_of_float") {
+  ToneCounts counts;
+  int wrong = 0;
+  auto compare = [&](std::uint32_t bits) {
+    wrong += tone_level(float_of(bits), &counts) != srgb_level(float_of(bits));
+  };
+  for (int level = 1; level < 256; ++level)
+    for (int step = -3; step <= 3; ++step)
+      compare(float_bits(kSrgb.threshold[level]) + static_cast<std::uint32_t>(step));
+  for (std::uint32_t edge = 100u << 23; edge <= 130u << 23; edge += 1u << 16)
+    for (int step = -1; step <= 1; ++step) compare(edge + static_cast<std::uint32_t>(step));
+  for (std::uint64_t bits = 0; bits < 1ull << 32; bits += 4099) compare(static_cast<std::uint32_t>(bits));
+  CHECK(wrong == 0);
+  CHECK(tone_level(0.5f, &counts) == 188);
+  CHECK(tone_level(0.18f, &counts) == 118);
+}
+
+// Goal: what no display can show is shown as the header says and counted once per channel. Method: one picture of each.
+TEST_CASE("hard_64_pack_counts_nan_infinite_and_negative_radiance") {
+  float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  Vec3 radiance[4] = {{nan, -nan, 0.5f}, {infinity, -infinity, -1}, {-0.0f, 1, 1e30f}, {-1e-40f, 0, 0.18f}};
+  const std::uint8_t expected[12] = {0, 0, 188, 255, 0, 0, 0, 255, 255, 0, 0, 118};
+  for (bool dither : {false, true}) {
+    std::uint8_t rgb[12];
+    ToneCounts counts = pack_rows(radiance, 4, 1, 0, 1, 1, kRgb888, Rotation::none, dither, rgb, sizeof rgb);
+    CHECK(counts.nan == 2);
+    CHECK(counts.infinite == 1);
+    CHECK(counts.negative == 3);
+    for (int i = 0; i < 12; ++i) CHECK(std::abs(rgb[i] - expected[i]) <= (dither ? 1 : 0));
+  }
+  std::uint8_t rgb[12];
+  Vec3 one[1] = {{infinity, 2, 0.25f}};
+  CHECK(pack_rows(one, 1, 1, 0, 1, 0, kRgb888, Rotation::none, false, rgb, 3).nan == 1);  // 0 · Inf
+  CHECK(pack_rows(one, 1, 1, 0, 1, 2, kRgb888, Rotation::none, false, rgb, 3).infinite == 1);
+  CHECK(rgb[2] == 188);  // exposure counts: 2 · 0.25
+}
+
+// Goal: the 16-bit curve is good enough for any dither. Method: against the formula in double precision.
+TEST_CASE("tone_fine_is_within_one_of_65535") {
+  double error_max = 0;
+  ToneCounts counts;
+  for (std::uint32_t bits = 90u << 23; bits < 128u << 23; bits += 997) {
+    double exact = encode_exactly(float_of(bits)) * 65535;
+    if (exact > 65535) exact = 65535;
+    double error = std::fabs(tone_fine(float_of(bits), &counts) - exact);
+    if (error > error_max) error_max = error;
+  }
+  MESSAGE("largest error of tone_fine: " << error_max << " of 65535");
+  CHECK(error_max <= 1);
+}
+
+// Goal: RGB565 is idempotent and as near as five and six bits allow. Method: all 65,536 pixels, all 256 levels.
+TEST_CASE("hard_65_rgb565_is_idempotent_and_near") {
+  for (const PixelFormat& format : {kRgb565, kBgr565}) {
+    int changed = 0;
+    for (std::uint32_t pixel = 0; pixel < 65536; ++pixel) {
+      int levels[3];
+      unpack_levels(format, pixel, levels);
+      changed += pack_levels(format, levels[0], levels[1], levels[2]) != pixel;
+    }
+    CHECK(changed == 0);
+    for (int level = 0; level < 256; ++level) {
+      int levels[3];
+      unpack_levels(format, pack_levels(format, level, level, level), levels);
+      CHECK(std::abs(levels[0] - level) <= 4);
+      CHECK(std::abs(levels[1] - level) <= 2);
+      CHECK(std::abs(levels[2] - level) <= 4);
+    }
+  }
+}
+
+// Goal: the mean of a dithered tile is the display value to 1/64 step. Method: tiles of one colour over the whole
+// range, with every rotation (the pattern is fixed to the screen, a tile is a tile whichever way it is turned).
+TEST_CASE("hard_65_dither_mean_is_within_a_64th_of_a_step") {
+  std::vector<Vec3> radiance(64);
+  std::uint16_t pixels[64];
+  double error_max = 0;
+  for (int i = 0; i <= 4000; ++i) {
+    float linear = static_cast<float>(i) / 4000;
+    for (Vec3& c : radiance) c = {linear, linear, linear};
+    pack_rows(radiance.data(), 8, 8, 0, 8, 1, kRgb565, kRotations[i % 4], true, pixels, 16);
+    double sums[3] = {};
+    for (std::uint16_t pixel : pixels) sums[0] += pixel >> 11, sums[1] += pixel >> 5 & 63, sums[2] += pixel & 31;
+    for (int channel = 0; channel < 3; ++channel) {
+      double error = std::fabs(sums[channel] / 64 - encode_exactly(linear) * (channel == 1 ? 63 : 31));
+      if (error > error_max) error_max = error;
+    }
+  }
+  MESSAGE("largest error of a tile's mean: " << error_max << " steps");
+  CHECK(error_max <= 1.0 / 64);
+}
+
+// Goal: dithering does not touch what the screen can show exactly at the ends. Method: black and white.
+TEST_CASE("pack_dither_leaves_black_and_white_alone") {
+  std::vector<Vec3> radiance(128, Vec3{0, 0, 0});
+  for (int i = 64; i < 128; ++i) radiance[static_cast<std::size_t>(i)] = {1, 1, 1};
+  std::uint16_t pixels[128];
+  pack_rows(radiance.data(), 8, 16, 0, 16, 1, kRgb565, Rotation::none, true, pixels, 16);
+  for (int i = 0; i < 128; ++i) CHECK(pixels[i] == (i < 64 ? 0 : 0xffff));
+}
+
+// Goal: every format, rotation and odd stride puts each pixel where and as it belongs, and writes nothing else. Method:
+// a picture of random levels, packed in three pieces; read back pixel by pixel at screen_position(); guard bytes
+// between the rows.
+TEST_CASE("pack_places_every_pixel_in_every_format_rotation_and_stride") {
+  constexpr int kWidth = 13, kHeight = 7;
+  std::uint32_t seed = 1;
+  std::vector<Vec3> radiance(kWidth * kHeight);
+  std::vector<std::uint8_t> levels(radiance.size() * 3);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    seed = seed * 1664525 + 1013904223;
+    levels[i] = static_cast<std::uint8_t>(seed >> 24);
+    radiance[i / 3][static_cast<int>(i % 3)] = srgb_to_linear(levels[i]);
+  }
+  for (const PixelFormat& format : kFormats) {
+    for (Rotation rotation : kRotations) {
+      bool turned = rotation == Rotation::quarter || rotation == Rotation::three_quarters;
+      int screen_width = turned ? kHeight : kWidth, screen_height = turned ? kWidth : kHeight;
+      int bytes = format.bits_per_pixel / 8, line_bytes = screen_width * bytes + 4 * bytes;
+      std::vector<std::uint32_t> memory(static_cast<std::size_t>(line_bytes * screen_height) / 4 + 1, 0xa5a5a5a5);
+      std::uint8_t* pixels = reinterpret_cast<std::uint8_t*>(memory.data());
+      for (int row : {0, 2, 5}) {
+        int row_end = row == 0 ? 2 : row == 2 ? 5 : kHeight;
+        pack_rows(radiance.data(), kWidth, kHeight, row, row_end, 1, format, rotation, false, pixels, line_bytes);
+      }
+      int wrong = 0;
+      for (int row = 0; row < kHeight; ++row) {
+        for (int column = 0; column < kWidth; ++column) {
+          ScreenPosition at = screen_position(column, row, kWidth, kHeight, rotation);
+          const std::uint8_t* level = &levels[static_cast<std::size_t>(row * kWidth + column) * 3];
+          wrong += read_pixel(format, pixels + at.y * line_bytes + at.x * bytes) !=
+                   pack_levels(format, level[0], level[1], level[2]);
+        }
+      }
+      CHECK(wrong == 0);
+      for (int y = 0; y < screen_height; ++y)
+        for (int i = screen_width * bytes; i < line_bytes; ++i) wrong += pixels[y * line_bytes + i] != 0xa5;
+      CHECK(wrong == 0);
+    }
+  }
+}
+
+// Goal: rotation means what the header says. Method: the corners of a 3 × 2 picture, by hand.
+TEST_CASE("pack_rotation_turns_clockwise") {
+  // Turned clockwise by a quarter, the top left corner comes to the top right.
+  CHECK(screen_position(0, 0, 3, 2, Rotation::quarter).x == 1);
+  CHECK(screen_position(0, 0, 3, 2, Rotation::quarter).y == 0);
+  CHECK(screen_position(2, 0, 3, 2, Rotation::quarter).y == 2);
+  CHECK(screen_position(0, 0, 3, 2, Rotation::half).x == 2);
+  CHECK(screen_position(0, 0, 3, 2, Rotation::half).y == 1);
+  CHECK(screen_position(0, 0, 3, 2, Rotation::three_quarters).x == 0);
+  CHECK(screen_position(0, 0, 3, 2, Rotation::three_quarters).y == 2);
+  Rotation rotation;
+  CHECK(rotation_from_degrees(270, &rotation));
+  CHECK(rotation == Rotation::three_quarters);
+  CHECK_FALSE(rotation_from_degrees(45, &rotation));
+  CHECK_FALSE(rotation_from_degrees(-90, &rotation));
+}
+
+// Goal: formats that a driver may report and we cannot write are refused. Method: one of each kind.
+TEST_CASE("pixel_format_valid_refuses_what_cannot_be_packed") {
+  for (const PixelFormat& format : kFormats) CHECK(pixel_format_valid(format));
+  CHECK_FALSE(pixel_format_valid({8, {0, 3}, {3, 3}, {6, 2}, {}}));
+  CHECK_FALSE(pixel_format_valid({16, {11, 5}, {5, 6}, {0, 0}, {}}));  // no blue
+  CHECK_FALSE(pixel_format_valid({16, {11, 5}, {5, 6}, {1, 5}, {}}));  // overlap
+  CHECK_FALSE(pixel_format_valid({16, {12, 5}, {5, 6}, {0, 5}, {}}));  // outside the pixel
+  CHECK_FALSE(pixel_format_valid({32, {16, 8}, {8, 8}, {-1, 8}, {}}));
+  CHECK_FALSE(pixel_format_valid({32, {20, 12}, {8, 12}, {0, 8}, {}}));  // more bits than we have
+}
