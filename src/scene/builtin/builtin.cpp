@@ -1,0 +1,31 @@
+#include "scene/builtin/builtin.h"
+
+#include <cstring>
+
+#include "scene/builtin/builtin_scenes.h"
+
+namespace pocketray {
+namespace {
+
+constexpr BuiltinScene kScenes[] = {
+    {"cornell", "the measured Cornell box with a statue and a mirror sphere; 45,109 triangles", cornell_need,
+     build_cornell},
+    {"cube", "a closed cube lit by an area light in its ceiling; 18 triangles", cube_need, build_cube},
+    {"furnace", "a closed enclosure that emits uniformly, so that radiance is Le/(1-rho) everywhere", furnace_need,
+     build_furnace},
+};
+
+}  // namespace
+
+const BuiltinScene* builtin_list(int* count) {
+  *count = static_cast<int>(sizeof kScenes / sizeof *kScenes);
+  return kScenes;
+}
+
+const BuiltinScene* find_builtin(const char* name) {
+  for (const BuiltinScene& scene : kScenes)
+    if (std::strcmp(scene.name, name) == 0) return &scene;
+  return nullptr;
+}
+
+}  // namespace pocketray

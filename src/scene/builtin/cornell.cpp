@@ -1,0 +1,94 @@
+// The Cornell box as measured by the Program of Computer Graphics, Cornell University ("The Cornell Box", data of
+// 1998): geometry in millimetres as published, the walls not quite square. Red is left, green right, for the camera
+// looks along +z with x growing to the left. In place of the two blocks stand a statue and a mirror sphere, after
+// [Aranha07] figs. 2, 3.
+#include "scene/builtin/builtin_scenes.h"
+#include "scene/builtin/figure.h"
+#include "scene/builtin/mesh_writer.h"
+#include "scene/builtin/scene_parts.h"
+
+namespace pocketray {
+namespace {
+
+constexpr MeshSize kRoomSize = {17, 19};
+constexpr std::uint32_t kSphereColumns = 64, kSphereRows = 36;
+constexpr FigureDetail kFigure = {113, 164, 31, 34, 23};
+constexpr MeshSize kSize = kRoomSize + box_size() + sphere_size(kSphereColumns, kSphereRows) + figure_size(kFigure);
+static_assert(kSize.triangles == 45109, "[Aranha07] sec. 4");
+
+enum MaterialIndex : std::uint32_t { kWhite, kRed, kGreen, kLamp, kMarble, kMirror, kMaterialCount };
+
+void add_room(MeshWriter* mesh) {
+  constexpr Vec3 kFloor[4] = {{552.8f, 0, 0}, {0, 0, 0}, {0, 0, 559.2f}, {549.6f, 0, 559.2f}};
+  constexpr Vec3 kCeiling[4] = {{556, 548.8f, 0}, {0, 548.8f, 0}, {0, 548.8f, 559.2f}, {556, 548.8f, 559.2f}};
+  constexpr Vec3 kLight[4] = {{343, 548.8f, 227}, {213, 548.8f, 227}, {213, 548.8f, 332}, {343, 548.8f, 332}};
+  std::uint32_t floor = mesh->vertex_count;
+  for (const Vec3& corner : kFloor) add_vertex(mesh, corner, {0, 0, 0});
+  std::uint32_t ceiling = mesh->vertex_count;
+  for (const Vec3& corner : kCeiling) add_vertex(mesh, corner, {0, 0, 0});
+  std::uint32_t light = mesh->vertex_count;
+  for (const Vec3& corner : kLight) add_vertex(mesh, corner, {0, 0, 0});
+  // The open front edge of the floor is halved, which makes the number of triangles the paper's.
+  std::uint32_t middle = add_vertex(mesh, {276.4f, 0, 0}, {0, 0, 0});
+
+  mesh->material = kWhite;
+  add_triangle(mesh, middle, floor + 1, floor + 2);
+  add_triangle(mesh, middle, floor + 2, floor + 3);
+  add_triangle(mesh, middle, floor + 3, floor);
+  for (std::uint32_t i = 0; i < 4; ++i) {  // the ceiling leaves a hole that the light fills
+    std::uint32_t j = (i + 1) % 4;
+    add_triangle(mesh, ceiling + i, light + j, ceiling + j);
+    add_triangle(mesh, ceiling + i, light + i, light + j);
+  }
+  add_triangle(mesh, floor + 2, ceiling + 3, floor + 3);
+  add_triangle(mesh, floor + 2, ceiling + 2, ceiling + 3);
+  mesh->material = kGreen;
+  add_triangle(mesh, floor + 1, ceiling + 2, floor + 2);
+  add_triangle(mesh, floor + 1, ceiling + 1, ceiling + 2);
+  mesh->material = kRed;
+  add_triangle(mesh, floor + 3, ceiling, floor);
+  add_triangle(mesh, floor + 3, ceiling + 3, ceiling);
+  mesh->material = kLamp;
+  add_quad(mesh, kLight[0], kLight[3], kLight[2], kLight[1]);
+}
+
+Transform turned(float radians_about_y, const Vec3& to) {
+  double half = 0.5 * static_cast<double>(radians_about_y);
+  return compose(to, {0, static_cast<float>(det_sin(half)), 0, static_cast<float>(det_cos(half))}, {1, 1, 1});
+}
+
+}  // namespace
+
+std::size_t cornell_need() { return mesh_need(kSize) + parts_need(kMaterialCount, 0, 1); }
+
+void build_cornell(Arena* arena, Scene* scene) {
+  name_scene(scene, "cornell");
+  MeshWriter mesh = make_mesh(arena, kSize);
+  add_room(&mesh);
+  const float turn = 3.45f;  // towards the camera and the light
+  const Vec3 place = {365, 0, 330};
+  mesh.material = kWhite;
+  add_box(&mesh, {-70, 0, -70}, {70, 60, 70}, turned(turn, place));
+  mesh.material = kMarble;
+  add_figure(&mesh, kFigure, place + Vec3{0, 60, 0}, 46, turn);
+  mesh.material = kMirror;
+  add_sphere(&mesh, {158, 88, 190}, {88, 88, 88}, kSphereColumns, kSphereRows);
+  finish_mesh(mesh, scene);
+
+  // The measured spectra seen through linear sRGB; the light is the published one, white-balanced half-way as the
+  // photograph is.
+  Array<Material> materials = default_array<Material>(arena, kMaterialCount);
+  materials[kWhite] = matte({.725f, .71f, .68f});
+  materials[kRed] = matte({.63f, .065f, .05f});
+  materials[kGreen] = matte({.14f, .45f, .091f});
+  materials[kLamp] = emitter({18.4f, 14.4f, 8.6f}, {.78f, .78f, .78f});
+  materials[kMarble] = glossy({.74f, .72f, .68f}, {.06f, .06f, .06f}, 24);
+  materials[kMirror] = matte({0, 0, 0});
+  materials[kMirror].mirror = {.9f, .9f, .9f};
+  scene->materials = materials;
+  scene->info.ambient = {.075f, .058f, .036f};
+  scene->info.exposure = 2.7f;
+  set_camera(arena, scene, {278, 273, -800}, {278, 273, 0}, 39.3);
+}
+
+}  // namespace pocketray
