@@ -1,5 +1,5 @@
-// What every accelerator offers. Closest hit means smallest t, then smallest triangle id, whatever the structure or SIMD
-// width; the answers of all accelerators are the same bits. `brute` is the oracle the others are tested against.
+// What every accelerator offers. Closest hit means smallest t, then smallest triangle id, whatever the structure or
+// SIMD width; the answers of all accelerators are the same bits. `brute` is the oracle the others are tested against.
 #pragma once
 #include <cstddef>
 
@@ -20,7 +20,8 @@ struct Accel {
 
 struct AccelInfo {
   const char* name;
-  // Bytes build() keeps in its arena, and bytes of scratch that it releases again.
+  // Upper bounds of the bytes build() keeps in its arena, and of the scratch that it releases again. build() gives back
+  // at once what it does not use of the former, but has to have it while it runs.
   std::size_t (*need)(std::uint32_t triangle_count);
   std::size_t (*scratch_need)(std::uint32_t triangle_count);
   // Builds over the triangles of `accel` (positions and triangles are set). Keeps data in `keep`, uses and releases
@@ -28,12 +29,16 @@ struct AccelInfo {
   void (*build)(Accel* accel, Arena* keep, Arena* scratch);
   // Adapts writable data to moved positions, topology unchanged. Null: rebuild instead.
   void (*refit)(Accel* accel, Array<std::uint8_t> data);
-  // Adopts baked data after checking every index in it.
+  // Adopts baked data, aligned to 64, after checking every index, bound and vertex in it against the geometry.
   Status (*adopt)(Accel* accel, Array<const std::uint8_t> data);
-  // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none.
+  // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none. `filter` and
+  // `stats` may be null.
   void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
   // Whether anything is hit in (0, ray.t_max).
   bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+  // No triangle is nearer to the point than this: their least distance, less its rounding error. Infinity without
+  // triangles, 0 for a point that is not finite.
+  float (*nearest_distance)(const Accel& accel, const Vec3& point);
 };
 
 }  // namespace pocketray

@@ -1,0 +1,92 @@
+// The oracle: every triangle, every time. What the other accelerators answer has to be the same bits.
+#include <limits>
+
+#include "accel/accel_list.h"
+#include "accel/point_distance.h"
+#include "accel/triangle.h"
+
+namespace pocketray {
+namespace {
+
+std::size_t brute_need(std::uint32_t) { return 0; }
+std::size_t brute_scratch_need(std::uint32_t) { return 0; }
+
+void update_bounds(Accel* accel) {
+  accel->bounds = empty_box();
+  for (const Triangle& triangle : accel->triangles) {
+    if (!has_valid_vertices(accel->positions, triangle)) continue;
+    for (std::uint32_t vertex : triangle.vertex) accel->bounds = merge(accel->bounds, accel->positions[vertex]);
+  }
+}
+
+void brute_build(Accel* accel, Arena*, Arena*) {
+  accel->data = {};
+  update_bounds(accel);
+}
+void brute_refit(Accel* accel, Array<std::uint8_t>) { update_bounds(accel); }
+
+Status brute_adopt(Accel* accel, Array<const std::uint8_t> data) {
+  if (!data.empty()) return failure("baked data of %u bytes where brute force keeps none", data.count);
+  brute_build(accel, nullptr, nullptr);
+  return success();
+}
+
+// Calls visit(triangle index, crossing) for each crossing in (0, t_max) that the filter lets pass; stops when it
+// returns false.
+template <class Visit>
+void for_each_hit(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats, Visit visit) {
+  ShearedRay sheared;
+  if (!make_sheared_ray(ray, &sheared)) return;
+  for (std::uint32_t i = 0; i < accel.triangles.count; ++i) {
+    const Triangle& triangle = accel.triangles[i];
+    if (!is_hittable(accel.positions, triangle)) continue;
+    if (stats) ++stats->triangles;
+    Hit hit;
+    if (!intersect_triangle(sheared, accel.positions[triangle.vertex[0]], accel.positions[triangle.vertex[1]],
+                            accel.positions[triangle.vertex[2]], &hit))
+      continue;
+    if (!(hit.t > 0 && hit.t < ray.t_max)) continue;
+    if (filter && filter->accept && !filter->accept(filter->context, i, hit.u, hit.v)) continue;
+    if (!visit(i, hit)) return;
+  }
+}
+
+void brute_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
+  hit->triangle = kNoTriangle;
+  for_each_hit(accel, ray, filter, stats, [&](std::uint32_t triangle, const Hit& found) {
+    if (hit->triangle == kNoTriangle || found.t < hit->t) {
+      *hit = found;
+      hit->triangle = triangle;
+    }
+    return true;
+  });
+}
+
+bool brute_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
+  bool any = false;
+  for_each_hit(accel, ray, filter, stats, [&](std::uint32_t, const Hit&) {
+    any = true;
+    return false;
+  });
+  return any;
+}
+
+float brute_nearest_distance(const Accel& accel, const Vec3& point) {
+  if (!is_finite(point)) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Triangle& triangle : accel.triangles) {
+    if (!is_hittable(accel.positions, triangle)) continue;
+    double d = squared_distance(to_double(point), to_double(accel.positions[triangle.vertex[0]]),
+                                to_double(accel.positions[triangle.vertex[1]]),
+                                to_double(accel.positions[triangle.vertex[2]]));
+    if (d < least) least = d;
+  }
+  return distance_bound(least);
+}
+
+}  // namespace
+
+const AccelInfo kBruteAccel = {"brute",     brute_need,    brute_scratch_need, brute_build,           brute_refit,
+                               brute_adopt, brute_closest, brute_occluded,     brute_nearest_distance};
+
+}  // namespace pocketray

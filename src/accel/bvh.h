@@ -1,0 +1,85 @@
+// The bounding volume hierarchy: nodes of four children whose bounds lie side by side in the node, leaves of four
+// gathered triangles. Its data is one block without pointers, little-endian, used from a file as it lies:
+//
+//   BvhHeader | BvhNode[node_count] | TriangleBlock[leaf_count]
+//
+// Numbering: node 0 is the root. Nodes are met in depth-first order, last child first; the children that a node has
+// among the nodes take the next free numbers, and so do those among the leaves. So siblings lie together, parents come
+// before their children, and one walk can prove that the bytes are a tree.
+#pragma once
+#include "accel/accel.h"
+#include "accel/triangle.h"
+
+namespace pocketray {
+
+// A child reference: an index of a node, or bit 31, the number of triangles less one (bits 29–30) and an index of a
+// leaf.
+constexpr std::uint32_t kLeafBit = 1u << 31;
+constexpr std::uint32_t kLeafIndexMask = (1u << 29) - 1;
+constexpr std::uint32_t kNoChild = 0xFFFFFFFFu;  // empty lane; its bounds are those of empty_box(), which no ray enters
+constexpr std::uint32_t kBvhLeafSize = 4;
+static_assert(kTriangleCountMax < kLeafIndexMask, "kNoChild is no leaf");
+
+constexpr std::uint32_t leaf_reference(std::uint32_t index, std::uint32_t triangle_count) {
+  return kLeafBit | (triangle_count - 1) << 29 | index;
+}
+constexpr std::uint32_t leaf_triangle_count(std::uint32_t reference) { return ((reference >> 29) & 3) + 1; }
+
+struct alignas(64) BvhHeader {
+  std::uint32_t magic, triangle_count, node_count, leaf_count;
+};
+constexpr std::uint32_t kBvhMagic = 0x34485642;  // "BVH4"
+
+struct alignas(64) BvhNode {
+  float bounds[6][4];         // low x, y, z, then high x, y, z, of the four children
+  std::uint32_t child[4];     // children in use come first
+  std::uint32_t reserved[4];  // 0
+};
+static_assert(sizeof(BvhNode) == 128, "two cache lines");
+
+// The parts of the data.
+template <class Byte, class Header, class Node, class Block>
+struct BvhParts {
+  Header* header;
+  Node* nodes;
+  Block* leaves;
+  explicit BvhParts(Byte* data)
+      : header(reinterpret_cast<Header*>(data)),
+        nodes(reinterpret_cast<Node*>(data + sizeof(BvhHeader))),
+        leaves(reinterpret_cast<Block*>(data + sizeof(BvhHeader) + sizeof(BvhNode) * std::size_t(header->node_count))) {
+  }
+};
+using BvhView = BvhParts<const std::uint8_t, const BvhHeader, const BvhNode, const TriangleBlock>;
+using BvhWritableView = BvhParts<std::uint8_t, BvhHeader, BvhNode, TriangleBlock>;
+
+constexpr std::size_t bvh_bytes(std::size_t node_count, std::size_t leaf_count) {
+  return sizeof(BvhHeader) + sizeof(BvhNode) * node_count + sizeof(TriangleBlock) * leaf_count;
+}
+
+inline Box child_box(const BvhNode& node, int lane) {
+  return {{node.bounds[0][lane], node.bounds[1][lane], node.bounds[2][lane]},
+          {node.bounds[3][lane], node.bounds[4][lane], node.bounds[5][lane]}};
+}
+inline void set_child_box(BvhNode* node, int lane, const Box& box) {
+  for (int axis = 0; axis < 3; ++axis)
+    node->bounds[axis][lane] = box.low[axis], node->bounds[3 + axis][lane] = box.high[axis];
+}
+inline Box node_box(const BvhNode& node) {
+  return merge(merge(child_box(node, 0), child_box(node, 1)), merge(child_box(node, 2), child_box(node, 3)));
+}
+
+// Fills a leaf with copies of the vertices of triangles[0..count) and returns its bounds. Lanes without a triangle and
+// triangles that cannot be hit become points, which no ray hits.
+Box gather_leaf(Array<const Vec3> positions, Array<const Triangle> triangles, const std::uint32_t* ids,
+                std::uint32_t count, TriangleBlock* block);
+
+std::size_t bvh_need(std::uint32_t triangle_count);
+std::size_t bvh_scratch_need(std::uint32_t triangle_count);
+void bvh_build(Accel* accel, Arena* keep, Arena* scratch);
+void bvh_refit(Accel* accel, Array<std::uint8_t> data);
+Status bvh_adopt(Accel* accel, Array<const std::uint8_t> data);
+void bvh_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
+bool bvh_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+float bvh_nearest_distance(const Accel& accel, const Vec3& point);
+
+}  // namespace pocketray

@@ -1,0 +1,144 @@
+// The one triangle test of all accelerators: watertight, two-sided, without any epsilon, the same bits on every CPU.
+//
+// Whether a ray hits follows [Woop, Benthin, Wald 2013, JCGT 2(1)] secs. 3.1–3.3: vertices are translated to the origin
+// of the ray and sheared so that it runs along one axis, in float, each vertex by itself; then the signs of the three
+// edge functions decide. A rounded product never passes an exact one, so the sign of a float edge function that is not
+// zero is the exact sign; where it is zero, double holds the products exactly. Triangles that share an edge see
+// opposite signs: no ray slips between them. An edge belongs to both its triangles.
+//
+// Where a ray hits is computed apart from that (our deviation), in double from the original vertices: t, u and v are
+// then within an ulp even for tiny or distant triangles. Where rounding lets those weights disagree with the decision,
+// within a few ulp of an edge, the weights of the sheared vertices are taken, which agree by construction.
+#pragma once
+#include "accel/ray.h"
+#include "base/array.h"
+#include "base/limits.h"
+#include "base/simd.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// A ray made ready for the test. kz is the dominant axis of the direction.
+struct ShearedRay {
+  Vec3 origin, direction;
+  int kx, ky, kz;
+  float shear_x, shear_y;  // eq. (2) of the paper, without S_z: t is computed apart
+};
+
+// Origins farther out than this hit nothing: within it no product of the test overflows.
+constexpr float kOriginMax = 4 * kCoordinateMax;
+
+// False where the ray cannot hit anything: origin not finite or beyond kOriginMax, direction zero or not finite.
+inline bool make_sheared_ray(const Ray& ray, ShearedRay* result) {
+  Vec3 o = abs(ray.origin), d = abs(ray.direction);
+  if (!(o.x <= kOriginMax && o.y <= kOriginMax && o.z <= kOriginMax)) return false;
+  if (!is_finite(ray.direction) || is_zero(ray.direction)) return false;
+  int kz = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);
+  int kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
+  float dz = ray.direction[kz];
+  *result = {ray.origin, ray.direction, kx, ky, kz, ray.direction[kx] / dz, ray.direction[ky] / dz};
+  return true;
+}
+
+// Edge functions of a triangle; also the weights of its vertices before division by their sum.
+template <class T>
+struct EdgeValues {
+  T a, b, c;
+};
+template <class T>
+inline EdgeValues<T> edge_values(T ax, T ay, T bx, T by, T cx, T cy) {
+  return {cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
+}
+template <class T>
+inline bool signs_differ(const EdgeValues<T>& e) {
+  return (e.a < 0 || e.b < 0 || e.c < 0) && (e.a > 0 || e.b > 0 || e.c > 0);
+}
+template <class T>
+inline bool all_zero(const EdgeValues<T>& e) {
+  return e.a == 0 && e.b == 0 && e.c == 0;
+}
+
+// Weights of the vertices at the crossing, in double from the vertices as they are. Both coordinates carry a factor
+// direction[kz], which is squared in the weights and so changes neither their signs nor their ratios.
+inline EdgeValues<double> exact_weights(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+  double ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
+  double dx = ray.direction[ray.kx], dy = ray.direction[ray.ky], dz = ray.direction[ray.kz];
+  double az = a[ray.kz] - oz, bz = b[ray.kz] - oz, cz = c[ray.kz] - oz;
+  return edge_values<double>((a[ray.kx] - ox) * dz - az * dx, (a[ray.ky] - oy) * dz - az * dy,  //
+                             (b[ray.kx] - ox) * dz - bz * dx, (b[ray.ky] - oy) * dz - bz * dy,  //
+                             (c[ray.kx] - ox) * dz - cz * dx, (c[ray.ky] - oy) * dz - cz * dy);
+}
+
+// Where the ray crosses the triangle a, b, c, if it does: t may have any sign or be infinite, the caller bounds it.
+// hit->triangle is left alone, all of hit where there is no crossing.
+inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Hit* hit) {
+  float ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
+  float az = a[ray.kz] - oz, bz = b[ray.kz] - oz, cz = c[ray.kz] - oz;
+  float ax = (a[ray.kx] - ox) - ray.shear_x * az, ay = (a[ray.ky] - oy) - ray.shear_y * az;
+  float bx = (b[ray.kx] - ox) - ray.shear_x * bz, by = (b[ray.ky] - oy) - ray.shear_y * bz;
+  float cx = (c[ray.kx] - ox) - ray.shear_x * cz, cy = (c[ray.ky] - oy) - ray.shear_y * cz;
+  EdgeValues<float> e = edge_values(ax, ay, bx, by, cx, cy);
+  if (signs_differ(e)) return false;
+  if (e.a == 0 || e.b == 0 || e.c == 0) {
+    EdgeValues<double> sheared = edge_values<double>(ax, ay, bx, by, cx, cy);
+    if (signs_differ(sheared) || all_zero(sheared)) return false;
+  }
+  EdgeValues<double> w = exact_weights(ray, a, b, c);
+  if (signs_differ(w) || all_zero(w)) w = edge_values<double>(ax, ay, bx, by, cx, cy);
+  double sum = w.a + w.b + w.c, z = ray.origin[ray.kz];
+  double t = (w.a * (a[ray.kz] - z) + w.b * (b[ray.kz] - z) + w.c * (c[ray.kz] - z)) / (sum * ray.direction[ray.kz]);
+  hit->t = static_cast<float>(t);
+  hit->u = static_cast<float>(w.b / sum);
+  hit->v = static_cast<float>(w.c / sum);
+  return true;
+}
+
+// Four triangles for the wide filter: vertex, axis, lane.
+struct alignas(16) TriangleBlock {
+  float vertex[3][3][4];
+  std::uint32_t triangle[4];
+};
+static_assert(sizeof(TriangleBlock) == 160, "nine rows of floats and one of ids");
+
+inline Vec3 block_vertex(const TriangleBlock& block, int vertex, int lane) {
+  return {block.vertex[vertex][0][lane], block.vertex[vertex][1][lane], block.vertex[vertex][2][lane]};
+}
+
+// Lanes whose float edge functions do not exclude a hit; intersect_triangle() decides about those. The arithmetic is
+// that of intersect_triangle(), so no hit is lost.
+inline unsigned filter_triangles(const ShearedRay& ray, const TriangleBlock& block) {
+  Float4 ox = splat(ray.origin[ray.kx]), oy = splat(ray.origin[ray.ky]), oz = splat(ray.origin[ray.kz]);
+  Float4 sx = splat(ray.shear_x), sy = splat(ray.shear_y);
+  Float4 x[3], y[3];
+  for (int i = 0; i < 3; ++i) {
+    Float4 z = load(block.vertex[i][ray.kz]) - oz;
+    x[i] = (load(block.vertex[i][ray.kx]) - ox) - sx * z;
+    y[i] = (load(block.vertex[i][ray.ky]) - oy) - sy * z;
+  }
+  Float4 a = x[2] * y[1] - y[2] * x[1];
+  Float4 b = x[0] * y[2] - y[0] * x[2];
+  Float4 c = x[1] * y[0] - y[1] * x[0];
+  Float4 zero = splat(0);
+  return less_equal(zero, min(min(a, b), c)) | less_equal(max(max(a, b), c), zero);
+}
+
+// Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not on one line.
+// All accelerators leave the others out.
+inline bool has_valid_vertices(Array<const Vec3> positions, const Triangle& triangle) {
+  for (std::uint32_t vertex : triangle.vertex) {
+    if (vertex >= positions.count) return false;
+    Vec3 p = abs(positions[vertex]);
+    if (!(p.x <= kCoordinateMax && p.y <= kCoordinateMax && p.z <= kCoordinateMax)) return false;
+  }
+  return true;
+}
+inline Vec3d to_double(const Vec3& p) { return {p.x, p.y, p.z}; }
+inline bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return is_zero(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
+}
+inline bool is_hittable(Array<const Vec3> positions, const Triangle& triangle) {
+  return has_valid_vertices(positions, triangle) &&
+         !is_degenerate(positions[triangle.vertex[0]], positions[triangle.vertex[1]], positions[triangle.vertex[2]]);
+}
+
+}  // namespace pocketray
