@@ -1,0 +1,41 @@
+// Files without the heap: mapping one for reading, replacing one as a whole. Standard types only.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace platform {
+
+struct FileError {
+  char text[256] = {0};  // what is wrong and how to mend it, without the path
+};
+
+struct MappedFile {
+  const std::uint8_t* bytes = nullptr;  // aligned to a page; null: not mapped
+  std::size_t byte_count = 0;
+};
+
+// Maps a whole regular file read-only. An empty file is an error.
+bool map_file(const char* path, MappedFile* file, FileError* error);
+void unmap_file(MappedFile* file);
+
+// Changes whenever the file's content was replaced; 0 where there is no such file.
+std::uint64_t file_stamp(const char* path);
+
+// Writes a file so that readers see the old content or the whole new one: into PATH.part first, renamed at the end.
+// A standard stream ("-") is written directly.
+struct FileWriter {
+  int descriptor = -1;
+  bool failed = false;
+  char path[1024] = {0};
+};
+bool open_writer(const char* path, FileWriter* writer, FileError* error);
+// After a failure the rest is ignored; close_writer() reports it.
+void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count);
+bool close_writer(FileWriter* writer, FileError* error);
+// Gives up: what was written is removed, an older file of that name stays.
+void discard_writer(FileWriter* writer);
+
+// Whether a person watches standard error.
+bool stderr_is_terminal();
+
+}  // namespace platform

@@ -1,0 +1,128 @@
+#include "platform/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace platform {
+namespace {
+
+bool fail(FileError* error, const char* what, int number) {
+  snprintf(error->text, sizeof error->text, "%s: %s", what, strerror(number));
+  return false;
+}
+
+bool part_path(const FileWriter& writer, char* part, size_t size) {
+  return snprintf(part, size, "%s.part", writer.path) < static_cast<int>(size);
+}
+
+}  // namespace
+
+bool map_file(const char* path, MappedFile* file, FileError* error) {
+  int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return fail(error, "cannot be opened", errno);
+  struct stat info;
+  bool ok = fstat(descriptor, &info) == 0;
+  if (!ok) {
+    fail(error, "cannot be examined", errno);
+  } else if (!S_ISREG(info.st_mode)) {
+    ok = false;
+    snprintf(error->text, sizeof error->text, "is not a regular file: name a scene file");
+  } else if (info.st_size <= 0) {
+    ok = false;
+    snprintf(error->text, sizeof error->text, "is empty: make it again");
+  } else {
+    void* bytes = mmap(nullptr, static_cast<size_t>(info.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
+    ok = bytes != MAP_FAILED;
+    if (ok) {
+      file->bytes = static_cast<const std::uint8_t*>(bytes);
+      file->byte_count = static_cast<size_t>(info.st_size);
+    } else {
+      fail(error, "cannot be mapped into memory", errno);
+    }
+  }
+  close(descriptor);
+  return ok;
+}
+
+void unmap_file(MappedFile* file) {
+  if (file->bytes) munmap(const_cast<std::uint8_t*>(file->bytes), file->byte_count);
+  *file = MappedFile();
+}
+
+std::uint64_t file_stamp(const char* path) {
+  struct stat info;
+  if (stat(path, &info) != 0) return 0;
+  std::uint64_t time = static_cast<std::uint64_t>(info.st_mtim.tv_sec) * 1000000000u + static_cast<std::uint64_t>(info.st_mtim.tv_nsec);
+  return (time * 31 + static_cast<std::uint64_t>(info.st_size)) | 1;
+}
+
+bool open_writer(const char* path, FileWriter* writer, FileError* error) {
+  *writer = FileWriter();
+  if (strcmp(path, "-") == 0) {
+    writer->descriptor = STDOUT_FILENO;
+    return true;
+  }
+  char part[sizeof writer->path + 8];
+  if (strlen(path) >= sizeof writer->path) {
+    snprintf(error->text, sizeof error->text, "the path is longer than %zu bytes: use a shorter one", sizeof writer->path - 1);
+    return false;
+  }
+  strcpy(writer->path, path);
+  part_path(*writer, part, sizeof part);
+  writer->descriptor = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
+}
+
+void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) {
+  const char* at = static_cast<const char*>(bytes);
+  while (byte_count > 0 && !writer->failed) {
+    ssize_t n = write(writer->descriptor, at, byte_count);
+    if (n > 0) {
+      at += n;
+      byte_count -= static_cast<size_t>(n);
+    } else if (n == 0 || errno != EINTR) {
+      writer->failed = true;
+    }
+  }
+}
+
+bool close_writer(FileWriter* writer, FileError* error) {
+  if (writer->descriptor == STDOUT_FILENO && !writer->path[0]) {
+    if (writer->failed) snprintf(error->text, sizeof error->text, "standard output was closed before all was written");
+    return !writer->failed;
+  }
+  char part[sizeof writer->path + 8];
+  part_path(*writer, part, sizeof part);
+  bool ok = !writer->failed;
+  if (close(writer->descriptor) != 0) ok = false;
+  if (!ok) {
+    unlink(part);
+    snprintf(error->text, sizeof error->text, "could not be written to the end: is the disk full?");
+    return false;
+  }
+  if (rename(part, writer->path) != 0) {
+    int number = errno;
+    unlink(part);
+    return fail(error, "cannot be replaced", number);
+  }
+  writer->descriptor = -1;
+  return true;
+}
+
+void discard_writer(FileWriter* writer) {
+  if (!writer->path[0] || writer->descriptor < 0) return;
+  char part[sizeof writer->path + 8];
+  part_path(*writer, part, sizeof part);
+  close(writer->descriptor);
+  unlink(part);
+  writer->descriptor = -1;
+}
+
+bool stderr_is_terminal() { return isatty(STDERR_FILENO) != 0; }
+
+}  // namespace platform

@@ -1,0 +1,115 @@
+// pocketray bake: any format → one .pray file that a device maps as it is, accelerator included.
+#include <vector>
+
+#include "accel/accel_list.h"
+#include "app/commands.h"
+#include "app/report.h"
+#include "app/source.h"
+#include "platform/file.h"
+#include "scene/baked.h"
+#include "scene/builtin/builtin.h"
+#ifdef POCKETRAY_HAVE_IMPORT
+#include "import/import.h"
+#endif
+
+namespace pocketray {
+namespace {
+
+struct BakeOptions {
+  std::string input, output, json;
+  std::uint32_t texture_side_max = 512;
+  float crease_angle = 40;
+};
+
+// Builds the accelerator on the heap: baking is desktop work.
+std::vector<std::uint64_t> build_accel(Scene* scene) {
+  const AccelInfo& info = *kAccelList[0];
+  std::size_t keep_bytes = info.need(scene->triangles.count) + kArenaAlignment, scratch_bytes = info.scratch_need(scene->triangles.count) + kArenaAlignment;
+  std::vector<std::uint64_t> memory((keep_bytes + scratch_bytes) / 8 + 2);
+  auto* bytes = reinterpret_cast<std::uint8_t*>(memory.data());
+  Arena keep = make_arena("accelerator", bytes, keep_bytes), scratch = make_arena("scratch", bytes + keep_bytes, scratch_bytes);
+  Accel accel;
+  accel.positions = scene->positions;
+  accel.triangles = scene->triangles;
+  info.build(&accel, &keep, &scratch);
+  scene->accel = accel.data;
+  return memory;
+}
+
+Status write_scene(const std::string& path, const Scene& scene, std::size_t* byte_count) {
+  std::vector<std::uint8_t> bytes(baked_size(scene));
+  baked_write(scene, bytes.data());
+  *byte_count = bytes.size();
+  platform::FileWriter writer;
+  platform::FileError error;
+  if (!platform::open_writer(path.c_str(), &writer, &error)) return failure("%s %s", path.c_str(), error.text);
+  platform::write_bytes(&writer, bytes.data(), bytes.size());
+  if (!platform::close_writer(&writer, &error)) return failure("%s %s", path.c_str(), error.text);
+  return success();
+}
+
+Status bake(const BakeOptions& o) {
+  Scene scene;
+  std::vector<std::uint8_t> memory;
+  std::string warning;
+  std::uint64_t start = clock_ns();
+#ifdef POCKETRAY_HAVE_IMPORT
+  ImportedScene imported;
+#endif
+  if (const BuiltinScene* builtin = find_builtin(o.input.c_str())) {
+    memory.resize(builtin->need() + kArenaAlignment);
+    Arena arena = make_arena("scene", memory.data(), memory.size());
+    builtin->build(&arena, &scene);
+  } else {
+#ifdef POCKETRAY_HAVE_IMPORT
+    ImportOptions import_options;
+    import_options.texture_side_max = o.texture_side_max;
+    import_options.crease_angle = o.crease_angle;
+    RETURN_IF_ERROR(import_scene(o.input, import_options, &imported));
+    scene = imported.scene;
+    warning = imported.warning;
+#else
+    return failure("%s cannot be read: this program was built without the importers; bake on a desktop", o.input.c_str());
+#endif
+  }
+  double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  start = clock_ns();
+  std::vector<std::uint64_t> accel_memory = build_accel(&scene);
+  double build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  std::size_t byte_count = 0;
+  RETURN_IF_ERROR(write_scene(o.output, scene, &byte_count));
+  if (!warning.empty()) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
+  if (o.json != "-" && o.output != "-")
+    std::printf("%s: %s triangles, %u materials, %u textures, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n", o.output.c_str(),
+                grouped(scene.triangles.count).c_str(), scene.materials.count, scene.textures.count, static_cast<double>(byte_count) / (1 << 20),
+                static_cast<double>(scene.accel.bytes()) / (1 << 20), read_ms, build_ms);
+  if (o.json.empty()) return success();
+  return write_json(o.json, {{"output", o.output},
+                             {"triangles", scene.triangles.count},
+                             {"materials", scene.materials.count},
+                             {"textures", scene.textures.count},
+                             {"bytes", byte_count},
+                             {"accel_bytes", scene.accel.bytes()},
+                             {"read_ms", read_ms},
+                             {"build_ms", build_ms},
+                             {"warning", warning}});
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App* program, int* exit_status) {
+  auto options = std::make_shared<BakeOptions>();
+  CLI::App* command = program->add_subcommand("bake", "turn a model into one .pray file that a device maps as it is");
+  command->add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene")->required();
+  command->add_option("-o,--output", options->output, "the .pray file")->required();
+  command->add_option("--texture-max", options->texture_side_max, "halve textures until no side is longer, in texels")
+      ->capture_default_str()
+      ->check(CLI::Range(1u, kTextureSideMax));
+  command->add_option("--crease-angle", options->crease_angle, "degrees: models that come without normals are smooth below it (glTF: flat)")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0f, 180.0f));
+  command->add_option("--json", options->json, "also write figures as JSON to FILE, or - for standard output");
+  command->callback([=] { *exit_status = report(bake(*options)); });
+}
+
+}  // namespace pocketray

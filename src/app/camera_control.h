@@ -1,0 +1,31 @@
+// Orbit and fly cameras, moved by a handheld's buttons. Pure: no clock, no platform.
+#pragma once
+#include "base/box.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// What is held down.
+struct CameraInput {
+  float right = 0, up = 0;    // −1 … 1: turn
+  float forward = 0;          // −1 … 1: closer or farther (orbit), ahead or back (fly)
+  float sideways = 0, rise = 0;  // −1 … 1: fly alone
+};
+
+enum class CameraMode { orbit, fly };
+
+struct CameraControl {
+  CameraMode mode = CameraMode::orbit;
+  Camera home;      // as the scene has it
+  Camera camera;    // now
+  float size = 1;   // of the scene: what speeds are measured by
+};
+
+CameraControl make_camera_control(const Camera& camera, const Box& bounds);
+// Moves for `seconds`; true if anything changed. Orbit: around the target, 90° a second, the pole kept on top. Fly: turns on
+// the spot, moves half the scene's size a second.
+bool move_camera(CameraControl* control, const CameraInput& input, float seconds);
+// Back to the scene's own view.
+void reset_camera(CameraControl* control);
+
+}  // namespace pocketray

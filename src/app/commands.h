@@ -1,0 +1,16 @@
+// One command each: adds itself to the program and, when chosen, leaves its exit status.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace pocketray {
+
+// Exit statuses (DESIGN: "Commands").
+constexpr int kExitDone = 0, kExitInput = 1, kExitUsage = 2, kExitInterrupted = 3;
+
+void add_render_command(CLI::App* program, int* exit_status);
+void add_view_command(CLI::App* program, int* exit_status);
+void add_bake_command(CLI::App* program, int* exit_status);
+void add_plan_command(CLI::App* program, int* exit_status);
+void add_bench_command(CLI::App* program, int* exit_status);
+
+}  // namespace pocketray

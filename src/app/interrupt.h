@@ -1,0 +1,12 @@
+// Ctrl-C: sets a flag; what was finished is kept.
+#pragma once
+#include <atomic>
+
+namespace pocketray {
+
+extern std::atomic<bool> interrupted;
+
+// Catches SIGINT and SIGTERM from now on; a second one ends the program at once.
+void catch_interrupts();
+
+}  // namespace pocketray

@@ -1,0 +1,32 @@
+// pocketray: the program. The only place that exits.
+#include "app/commands.h"
+#include "app/interrupt.h"
+
+int main(int argument_count, char** arguments) {
+  using namespace pocketray;
+  int exit_status = kExitDone;
+  CLI::App program{
+      "pocketray ray-traces scenes for handheld screens in a block of memory fixed at start.\n"
+      "Try:  pocketray render cornell -o cornell.png\n"
+      "      pocketray view statue\n"};
+  program.name("pocketray");
+  program.set_version_flag("--version", POCKETRAY_VERSION);
+  program.require_subcommand(1);
+  program.footer("Exit status: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 3 interrupted.");
+  add_render_command(&program, &exit_status);
+  add_view_command(&program, &exit_status);
+  add_bake_command(&program, &exit_status);
+  add_plan_command(&program, &exit_status);
+  add_bench_command(&program, &exit_status);
+  catch_interrupts();
+  try {
+    program.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    int status = program.exit(error);
+    return status == 0 ? kExitDone : kExitUsage;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "pocketray: %s\n", error.what());
+    return kExitInput;
+  }
+  return exit_status;
+}

@@ -1,0 +1,41 @@
+// Options that several commands share, and how they become a Renderer.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "app/source.h"
+
+namespace pocketray {
+
+struct CommonOptions {
+  std::string scene;
+  std::string size = "320x240", memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene", json, device;
+  std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
+  bool no_cut_off = false;
+};
+
+// Adds them to a command, each with its help.
+void add_scene_options(CLI::App* command, CommonOptions* options);
+
+// A scene opened for rendering; keeps what must stay alive.
+struct OpenScene {
+  Renderer renderer;
+  SceneSource source;
+  ~OpenScene();
+};
+
+// Reads the options, loads the scene and plans it. `output_bytes` as plan_memory() takes it, given the settings.
+Status open_scene(const CommonOptions& options, std::size_t (*output_bytes)(const Settings&), OpenScene* opened);
+// Builds it and starts the threads: ready for render_frame().
+Status start_scene(OpenScene* opened, const CommonOptions& options);
+
+// "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
+Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
+Status parse_bytes(const std::string& text, std::size_t* bytes);
+Status parse_camera(const std::string& text, Camera* camera);
+
+// Prints the warning of a scene and what it was given, one line each, on stderr.
+void print_notes(const OpenScene& opened);
+
+}  // namespace pocketray

@@ -1,0 +1,141 @@
+#include "app/renderer.h"
+
+#include "accel/accel_list.h"
+#include "app/frame.h"
+#include "base/check.h"
+#include "base/color.h"
+#include "base/fmath.h"
+#include "plan/plan_effects.h"
+#include "plan/plan_lights.h"
+#include "plan/plan_scene.h"
+#include "shade/camera.h"
+
+namespace pocketray {
+namespace {
+
+void add_what_is_missing(Renderer* r) {
+  Scene& scene = r->scene;
+  float aspect = static_cast<float>(r->settings.width) / static_cast<float>(r->settings.height);
+  if (scene.cameras.empty()) {
+    scene.info.default_camera = 1;
+    r->camera = framing_camera(scene_bounds(scene), aspect);
+  } else {
+    r->camera = scene.cameras[r->camera_index < scene.cameras.count ? r->camera_index : 0];
+  }
+  if (!has_light(scene)) {
+    scene.info.default_lights = 1;
+    scene.info.ambient = default_ambient();
+    default_lights(r->camera, r->default_lights);
+    scene.lights = {r->default_lights, kDefaultLightCount};
+  }
+}
+
+bool moves(const Renderer& r) { return has(r.effects.mask, Effect::animation) && is_animated(r.scene); }
+
+Arena take_front(Arena* rest, const char* name, std::size_t bytes) {
+  Arena arena = make_arena(name, rest->base + rest->used, bytes);
+  rest->used += bytes;
+  return arena;
+}
+
+Status adopt_or_build(Renderer* r) {
+  r->accel.positions = r->scene.positions;
+  r->accel.triangles = r->scene.triangles;
+  r->accel.bounds = scene_bounds(r->scene);
+  if (r->scene.accel.empty()) {
+    r->accel_info->build(&r->accel, &r->persistent_arena, &r->frame_arena);
+    r->accel_data = {const_cast<std::uint8_t*>(r->accel.data.data), r->accel.data.count};  // lies in our arena
+    return success();
+  }
+  if (!moves(*r)) return r->accel_info->adopt(&r->accel, r->scene.accel);
+  r->accel_data = arena_array<std::uint8_t>(&r->persistent_arena, r->scene.accel.count);
+  __builtin_memcpy(r->accel_data.data, r->scene.accel.data, r->scene.accel.count);
+  return r->accel_info->adopt(&r->accel, r->accel_data);
+}
+
+}  // namespace
+
+void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* r) {
+  r->settings = settings;
+  r->settings.memory_bytes = block_bytes;
+  r->accel_info = kAccelList[0];
+  r->scene_arena = make_arena("scene", block, block_bytes);
+}
+
+Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t output_bytes) {
+  RETURN_IF_ERROR(validate_settings(r->settings));
+  if (r->camera_index > 0 && r->camera_index >= r->scene.cameras.count)
+    return failure("there is no camera %u: the scene has %u", r->camera_index, r->scene.cameras.count);
+  add_what_is_missing(r);
+  r->effects = plan_effects(r->scene, r->settings);
+  std::uint32_t point_count;
+  RETURN_IF_ERROR(light_point_count(r->scene, r->settings, &point_count));
+  r->light_points.count = point_count;
+  return plan_memory(r->scene, r->settings, r->effects, *r->accel_info, storage, point_count, output_bytes, &r->memory);
+}
+
+Status build_renderer(Renderer* r) {
+  // The scene arena so far reached over the whole block; from here on each arena has just what was planned for it.
+  Arena rest = r->scene_arena;
+  rest.used = arena_need(rest.used);
+  r->scene_arena.capacity = r->scene_arena.used;
+  r->persistent_arena = take_front(&rest, "persistent", r->memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+  r->frame_arena = take_front(&rest, "frame", r->memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+  CHECK_LE(rest.used, rest.capacity);
+
+  std::uint64_t start = clock_ns();
+  RETURN_IF_ERROR(adopt_or_build(r));
+  r->timings.build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+
+  if (moves(*r)) r->pose = make_pose(r->scene, &r->persistent_arena);
+  if (r->light_points.count) r->light_points = arena_array<LightPoint>(&r->persistent_arena, r->light_points.count);
+  r->tracers = arena_array<Tracer>(&r->persistent_arena, r->settings.threads);
+  r->spans = arena_array<Span>(&r->persistent_arena, r->settings.height);
+  r->row_ns = arena_array_zeroed<std::uint64_t>(&r->persistent_arena, r->settings.height);
+  r->image = arena_array_zeroed<Vec3>(&r->persistent_arena, static_cast<std::size_t>(r->settings.width) * r->settings.height);
+  for (std::uint32_t row = 0; row < r->settings.height; ++row)
+    r->spans[row] = {static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(r->settings.width)};
+  r->exposure = r->scene.info.exposure;
+  RETURN_IF_ERROR(prepare_frame(r, 0));
+  if (r->scene.info.auto_exposure != 0) r->exposure = measure_exposure(r);
+  return success();
+}
+
+Status set_camera(Renderer* r, const Camera& camera) {
+  CameraRays rays;
+  RETURN_IF_ERROR(make_camera_rays(camera, r->settings.width, r->settings.height, &rays));
+  r->camera = camera;
+  r->camera_overridden = true;
+  return success();
+}
+
+Tracer total_counts(const Renderer& r) {
+  Tracer total;
+  for (const Tracer& t : r.tracers) {
+    for (int kind = 0; kind < kRayKindCount; ++kind) total.rays[kind] += t.rays[kind];
+    total.rays_left_out += t.rays_left_out;
+    total.stats.nodes += t.stats.nodes;
+    total.stats.triangles += t.stats.triangles;
+    if (t.left_out_max > total.left_out_max) total.left_out_max = t.left_out_max;
+  }
+  return total;
+}
+
+float measure_exposure(Renderer* r) {
+  constexpr float kGrey = 0.18f;
+  constexpr std::uint32_t kStep = 10;
+  Tracer tracer = make_tracer(r->frame);
+  double log_sum = 0;
+  std::uint32_t lit = 0;
+  for (std::uint32_t row = kStep / 2; row < r->settings.height; row += kStep) {
+    for (std::uint32_t column = kStep / 2; column < r->settings.width; column += kStep) {
+      Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column), static_cast<std::uint16_t>(column + 1)};
+      trace_spans(&tracer, &one, 1, Aov::none, r->image.data);
+      float bright = luminance(r->image[static_cast<std::size_t>(row) * r->settings.width + column]);
+      if (bright > 0 && std::isfinite(bright)) log_sum += det_log(bright), ++lit;
+    }
+  }
+  return lit ? static_cast<float>(kGrey / det_exp(log_sum / lit)) : 1.0f;
+}
+
+}  // namespace pocketray

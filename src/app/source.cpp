@@ -1,0 +1,72 @@
+#include "app/source.h"
+
+#include <cstdlib>
+#include <cstring>
+
+#include "scene/baked.h"
+#include "scene/builtin/builtin.h"
+#ifdef POCKETRAY_HAVE_IMPORT
+#include "import/import.h"
+#endif
+
+namespace pocketray {
+namespace {
+
+Status too_large(const std::string& name, std::size_t need, std::size_t limit) {
+  return failure("%s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %zuM would be a start", name.c_str(),
+                 static_cast<double>(need) / (1 << 20), static_cast<double>(limit) / (1 << 20), (need * 5 / 4 >> 20) + 4);
+}
+
+Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneStorage* storage) {
+  if (builtin.need() > arena_free(r->scene_arena)) return too_large(builtin.name, builtin.need(), r->settings.memory_bytes);
+  builtin.build(&r->scene_arena, &r->scene);
+  storage->arena_bytes = r->scene_arena.used;
+  return success();
+}
+
+Status load_baked(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  platform::FileError error;
+  if (!platform::map_file(name.c_str(), &source->mapped, &error)) return failure("%s %s", name.c_str(), error.text);
+  storage->mapped_bytes = source->mapped.byte_count;
+  if (storage->mapped_bytes > r->settings.memory_bytes) return too_large(name, storage->mapped_bytes, r->settings.memory_bytes);
+  Status status = baked_open(source->mapped.bytes, source->mapped.byte_count, &r->scene);
+  return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
+}
+
+#ifdef POCKETRAY_HAVE_IMPORT
+Status load_imported(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  ImportedScene imported;
+  RETURN_IF_ERROR(import_scene(name, ImportOptions(), &imported));
+  source->warning = imported.warning;
+  // From the heap into the block, in the form a device would map.
+  std::size_t size = baked_size(imported.scene);
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, size));
+  if (!bytes) return too_large(name, size, r->settings.memory_bytes);
+  baked_write(imported.scene, bytes);
+  storage->arena_bytes = r->scene_arena.used;
+  Status status = baked_open(bytes, size, &r->scene);
+  return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
+}
+#endif
+
+bool ends_with(const std::string& text, const char* end) {
+  std::size_t n = std::strlen(end);
+  return text.size() >= n && text.compare(text.size() - n, n, end) == 0;
+}
+
+}  // namespace
+
+void* take_block(std::size_t bytes) { return std::malloc(bytes); }
+
+Status load_scene(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  *storage = SceneStorage();
+  if (const BuiltinScene* builtin = find_builtin(name.c_str())) return load_builtin(*builtin, r, storage);
+  if (ends_with(name, ".pray")) return load_baked(name, r, source, storage);
+#ifdef POCKETRAY_HAVE_IMPORT
+  return load_imported(name, r, source, storage);
+#else
+  return failure("%s is neither a built-in scene nor a .pray file: bake it on a desktop with `pocketray bake`", name.c_str());
+#endif
+}
+
+}  // namespace pocketray

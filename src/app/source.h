@@ -1,0 +1,21 @@
+// Where a scene comes from: a built-in name, a .pray file used as it lies, or any format that import/ reads.
+#pragma once
+#include <string>
+
+#include "app/renderer.h"
+#include "platform/file.h"
+
+namespace pocketray {
+
+struct SceneSource {
+  platform::MappedFile mapped;  // of a .pray file
+  std::string warning;          // one line, empty if there is nothing to say
+};
+
+// The one block, taken at start. Kept until the program ends.
+void* take_block(std::size_t bytes);
+
+// Puts the scene called `name` into renderer->scene; its arrays lie in the scene arena or in the mapped file.
+Status load_scene(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage);
+
+}  // namespace pocketray

@@ -1,0 +1,96 @@
+#include "app/workers.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace pocketray {
+
+struct Workers {
+  std::vector<std::thread> threads;
+  std::mutex mutex;
+  std::condition_variable begin, end;
+  TraceJob job = {};
+  std::atomic<std::uint32_t> next_span{0}, done_count{0};
+  std::uint64_t generation = 0;
+  std::uint32_t busy = 0;
+  bool quit = false;
+};
+
+std::uint64_t clock_ns() {
+  return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1));
+}
+
+namespace {
+
+void take_spans(const TraceJob& job, std::uint32_t thread, std::atomic<std::uint32_t>* next_span, std::atomic<std::uint32_t>* done_count) {
+  for (;;) {
+    if (job.stop && job.stop->load(std::memory_order_relaxed)) return;
+    std::uint32_t i = next_span->fetch_add(1);
+    if (i >= job.span_count) return;
+    std::uint64_t start = job.span_ns ? clock_ns() : 0;
+    trace_spans(&job.tracers[thread], &job.spans[i], 1, job.aov, job.image);
+    if (job.span_ns) job.span_ns[i] = clock_ns() - start;
+    done_count->fetch_add(1);
+  }
+}
+
+void run_worker(Workers* w, std::uint32_t thread) {
+  std::uint64_t seen = 0;
+  for (;;) {
+    std::unique_lock<std::mutex> lock(w->mutex);
+    w->begin.wait(lock, [&] { return w->quit || w->generation != seen; });
+    if (w->quit) return;
+    seen = w->generation;
+    TraceJob job = w->job;
+    lock.unlock();
+    take_spans(job, thread, &w->next_span, &w->done_count);
+    lock.lock();
+    if (--w->busy == 0) w->end.notify_one();
+  }
+}
+
+}  // namespace
+
+Workers* start_workers(std::uint32_t thread_count) {
+  if (thread_count <= 1) return nullptr;
+  Workers* w = new Workers;
+  for (std::uint32_t thread = 1; thread < thread_count; ++thread) w->threads.emplace_back(run_worker, w, thread);
+  return w;
+}
+
+void stop_workers(Workers* workers) {
+  if (!workers) return;
+  {
+    std::lock_guard<std::mutex> lock(workers->mutex);
+    workers->quit = true;
+  }
+  workers->begin.notify_all();
+  for (std::thread& thread : workers->threads) thread.join();
+  delete workers;
+}
+
+std::uint32_t trace_with(Workers* w, const TraceJob& job) {
+  std::atomic<std::uint32_t> next_span{0}, done_count{0};
+  if (!w) {
+    take_spans(job, 0, &next_span, &done_count);
+    return done_count;
+  }
+  {
+    std::lock_guard<std::mutex> lock(w->mutex);
+    w->job = job;
+    w->next_span = 0;
+    w->done_count = 0;
+    w->busy = static_cast<std::uint32_t>(w->threads.size());
+    ++w->generation;
+  }
+  w->begin.notify_all();
+  take_spans(job, 0, &w->next_span, &w->done_count);
+  std::unique_lock<std::mutex> lock(w->mutex);
+  w->end.wait(lock, [&] { return w->busy == 0; });
+  return w->done_count;
+}
+
+}  // namespace pocketray

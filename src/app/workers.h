@@ -1,0 +1,31 @@
+// Threads that take spans. Started before the seal; the picture does not depend on how many there are.
+#pragma once
+#include <atomic>
+#include <cstdint>
+
+#include "shade/trace_spans.h"
+
+namespace pocketray {
+
+struct Workers;
+
+// Starts thread_count − 1 threads beside the caller's.
+Workers* start_workers(std::uint32_t thread_count);
+void stop_workers(Workers* workers);
+
+struct TraceJob {
+  const Span* spans;
+  std::uint32_t span_count;
+  Aov aov;
+  Vec3* image;
+  Tracer* tracers;         // one per thread
+  std::uint64_t* span_ns;  // what each span cost; null: not measured
+  const std::atomic<bool>* stop = nullptr;  // set: leave the remaining spans
+};
+
+// Traces all spans and returns how many were done. `workers` may be null: the caller's thread does it alone.
+std::uint32_t trace_with(Workers* workers, const TraceJob& job);
+
+std::uint64_t clock_ns();  // steady
+
+}  // namespace pocketray
