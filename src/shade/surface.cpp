@@ -35,7 +35,8 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   Vec3 outward = normalize(cross(b - a, c - a));
   s->front = dot(outward, ray.direction) <= 0;
   s->geometric = s->front ? outward : -outward;
-  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v), s->geometric);
+  Vec3 corner_max = max(max(abs(a), abs(b)), abs(c));
+  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v), max_component(corner_max), s->geometric);
   s->normal = s->geometric;
   if constexpr (has(mask, Effect::smooth_normal)) {
     effect_entered<Effect::smooth_normal>();

@@ -21,13 +21,15 @@ struct Surface {
 SurfaceFunction find_surface_function(EffectMask mask);
 
 // A ray origin beside a computed point that no rounding error puts on the wrong side. Each coordinate of the point errs by
-// at most γ₈·Σ|bᵢ vᵢ| [PBR3 sec. 3.9.4]; moving by that error, projected on the normal, leaves the slab of uncertainty.
+// at most γ₈·Σ|bᵢ vᵢ| [PBR3 sec. 3.9.4]; moving by that error, projected on the normal, leaves the slab of uncertainty. It
+// vanishes on a plane through a zero coordinate; there the next intersection's own rounding decides, which is of double
+// precision relative to the largest coordinate of the triangle: a second term far above 2⁻⁵³ and far below the first.
 // Scale-free: everything is relative to the coordinates.
-inline Vec3 origin_offset(const Vec3& point_magnitude, const Vec3& geometric) {
+inline Vec3 origin_offset(const Vec3& point_magnitude, float coordinate_max, const Vec3& geometric) {
   constexpr float u = std::numeric_limits<float>::epsilon() * 0.5f;
   constexpr float gamma = 8 * u / (1 - 8 * u);
-  // Twice: once for the point, once for the rounding of the moved origin and of the next triangle's vertices.
-  float distance = dot(abs(geometric), point_magnitude) * (2 * gamma);
+  // Twice: once for the point, once for the rounding of the moved origin.
+  float distance = dot(abs(geometric), point_magnitude) * (2 * gamma) + coordinate_max * 0x1p-44f;
   return geometric * distance;
 }
 inline float away_from(float value, float step) {
