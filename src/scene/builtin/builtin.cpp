@@ -10,7 +10,8 @@ namespace {
 constexpr BuiltinScene kScenes[] = {
     {"cornell", "the measured Cornell box with a statue and a mirror sphere; 45,109 triangles", cornell_need,
      build_cornell},
-    {"cube", "a closed cube lit by an area light in its ceiling; 18 triangles", cube_need, build_cube},
+    {"statue", "the statue in its niche, between columns; 67,244 triangles", statue_need, build_statue},
+    {"cube", "a closed cube lit by an area light in its ceiling; 20 triangles", cube_need, build_cube},
     {"furnace", "a closed enclosure that emits uniformly, so that radiance is Le/(1-rho) everywhere", furnace_need,
      build_furnace},
 };

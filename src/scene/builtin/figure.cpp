@@ -11,9 +11,10 @@ namespace {
 struct RayFan {
   float at, height, elevation;
 };
+// Where the centre of the rays jumps, two entries stand at all but the same place.
 constexpr RayFan kBodyFan[] = {
-    {0.f, .02f, 0},   {.44f, 4.0f, 0},   {.50f, 4.5f, 0},    {.60f, 5.6f, 0},   {.67f, 5.9f, 35},  {.70f, 5.9f, 62},
-    {.74f, 6.3f, 60}, {.77f, 6.75f, 40}, {.80f, 7.15f, -45}, {.84f, 7.1f, -20}, {.945f, 7.2f, 10}, {1.f, 7.2f, 86},
+    {0.f, .02f, 0},     {.44f, 4.0f, 0},  {.48f, 4.45f, 0},    {.56f, 5.55f, 0},  {.60f, 5.85f, 8}, {.66f, 5.9f, 62},
+    {.6601f, 6.36f, 0}, {.69f, 6.63f, 0}, {.6901f, 7.1f, -63}, {.71f, 7.1f, -55}, {.91f, 7.1f, 25}, {1.f, 7.1f, 87},
 };
 constexpr RayFan kArmFan[] = {{0.f, .0f, -60}, {.15f, .0f, 0}, {.85f, .97f, 0}, {.9f, .9f, 30}, {1.f, .9f, 86}};
 

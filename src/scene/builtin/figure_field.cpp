@@ -17,8 +17,8 @@ constexpr Blob kTorso[] = {
     {Blob::ellipsoid, {0, 5.70f, -.02f}, {.60f, .80f, .40f}, 0, 0, 0},            // ribs
     {Blob::ellipsoid, {0, 6.00f, -.04f}, {.66f, .36f, .33f}, 0, 0, .15f},         // chest
     {Blob::cone, {-.66f, 6.15f, -.08f}, {.66f, 6.15f, -.08f}, .17f, .17f, .15f},  // collar bones
-    {Blob::cone, {0, 6.62f, -.11f}, {-.62f, 6.2f, -.1f}, .19f, .13f, .12f},       // trapezius
-    {Blob::cone, {0, 6.62f, -.11f}, {.62f, 6.2f, -.1f}, .19f, .13f, .12f},
+    {Blob::cone, {0, 6.46f, -.12f}, {-.64f, 6.19f, -.1f}, .15f, .13f, .14f},      // trapezius
+    {Blob::cone, {0, 6.46f, -.12f}, {.64f, 6.19f, -.1f}, .15f, .13f, .14f},
     {Blob::ellipsoid, {-.76f, 6.06f, -.05f}, {.2f, .26f, .21f}, 0, 0, .12f},  // deltoids
     {Blob::ellipsoid, {.76f, 6.06f, -.05f}, {.2f, .26f, .21f}, 0, 0, .12f},
     {Blob::ellipsoid, {-.29f, 5.58f, .29f}, {.24f, .24f, .22f}, 0, 0, .09f},  // breasts
@@ -28,7 +28,7 @@ constexpr Blob kTorso[] = {
     {Blob::ellipsoid, {0, 4.12f, -.03f}, {.72f, .52f, .45f}, 0, 0, .25f},    // pelvis
     {Blob::ellipsoid, {-.3f, 3.95f, -.27f}, {.34f, .38f, .3f}, 0, 0, .15f},  // buttocks
     {Blob::ellipsoid, {.3f, 3.95f, -.27f}, {.34f, .38f, .3f}, 0, 0, .15f},
-    {Blob::cone, {0, 6.3f, -.08f}, {0, 6.95f, -.03f}, .225f, .2f, .1f},  // neck
+    {Blob::cone, {0, 6.3f, -.09f}, {0, 6.95f, -.03f}, .215f, .195f, .14f},  // neck
 };
 constexpr Blob kHead[] = {
     {Blob::ellipsoid, {0, 7.26f, -.06f}, {.325f, .36f, .39f}, 0, 0, .08f},  // cranium
@@ -48,10 +48,10 @@ constexpr Blob kHead[] = {
     {Blob::ellipsoid, {0, 6.85f, .335f}, {.07f, .024f, .05f}, 0, 0, .02f},
 };
 constexpr Blob kHair[] = {
-    {Blob::ellipsoid, {0, 7.31f, -.11f}, {.36f, .35f, .41f}, 0, 0, .03f},
-    {Blob::ellipsoid, {-.25f, 7.08f, -.02f}, {.11f, .2f, .2f}, 0, 0, .06f},
-    {Blob::ellipsoid, {.25f, 7.08f, -.02f}, {.11f, .2f, .2f}, 0, 0, .06f},
-    {Blob::ellipsoid, {0, 7.06f, -.5f}, {.19f, .18f, .17f}, 0, 0, .05f},
+    {Blob::ellipsoid, {0, 7.30f, -.10f}, {.385f, .385f, .43f}, 0, 0, .03f},
+    {Blob::ellipsoid, {-.27f, 7.10f, .0f}, {.12f, .22f, .22f}, 0, 0, .06f},
+    {Blob::ellipsoid, {.27f, 7.10f, .0f}, {.12f, .22f, .22f}, 0, 0, .06f},
+    {Blob::ellipsoid, {0, 7.10f, -.56f}, {.2f, .19f, .17f}, 0, 0, .05f},
 };
 constexpr Blob kLegs[] = {
     {Blob::cone, {-.33f, 3.85f, -.02f}, {-.27f, .1f, -.05f}, .44f, .3f, .2f},  // carries the weight
@@ -122,8 +122,8 @@ float fold(float x) {
   return std::sqrt(s * s + .02f) - .62f;
 }
 
-// Upper border of the robe: lower in front, higher over the figure's left hip.
-float robe_edge(float azimuth) { return 4.12f + .16f * sine(azimuth) - .12f * sine(azimuth + 1.57f); }
+// Upper border of the robe: low in front, high behind and over the figure's left hip.
+float robe_edge(float azimuth) { return 4.03f + .22f * sine(azimuth) - .16f * sine(azimuth + 1.57f); }
 
 float robe_relief(float azimuth, float y) {
   float edge = robe_edge(azimuth);
@@ -131,28 +131,30 @@ float robe_relief(float azimuth, float y) {
   float knee = square(.5f + .5f * sine(azimuth - .55f + 1.57f));  // 1 over the free leg
   knee *= knee;
   // Pleats that fall to the ground, quiet over the free leg.
-  float fall = smooth_step(3.7f, .6f, y);
+  float fall = smooth_step(3.9f, .5f, y);
   float wander = .35f * sine(2.1f * y + 3 * azimuth) + .8f * sine(2 * azimuth + .7f);
   float pleats = fold(7 * azimuth + wander) + .45f * fold(17 * azimuth + 1.7f * wander + .5f * y);
-  float relief = .13f * fall * (1 - .8f * knee * smooth_step(.7f, 1.6f, y)) * pleats;
+  float relief = .16f * fall * (1 - .85f * knee * smooth_step(.6f, 1.5f, y)) * pleats;
   // Folds drawn from the raised knee to the hip of the standing leg.
-  float drawn = smooth_step(1.5f, 2.4f, y) * smooth_step(edge, edge - .5f, y) * square(front);
-  relief += .085f * drawn * fold(3.6f * y + 2.3f * azimuth + .5f * sine(3 * azimuth));
-  // The rolled border.
-  float roll = 1 - square((y - edge + .12f) / .2f);
-  if (roll > 0) relief += .14f * roll * std::sqrt(roll) * (1 + .5f * fold(9 * y + 4 * azimuth));
-  return relief + .03f * smooth_step(edge + .05f, edge - .1f, y);
+  float drawn = smooth_step(1.3f, 2.2f, y) * smooth_step(edge, edge - .5f, y) * square(front);
+  relief += .10f * drawn * fold(3.6f * y + 2.3f * azimuth + .5f * sine(3 * azimuth));
+  // The rolled border, twisted like a rope.
+  float roll = 1 - square((y - edge + .16f) / .26f);
+  if (roll > 0) relief += .075f * roll * (1 + .7f * fold(8 * y + 5 * azimuth));
+  return relief + .03f * smooth_step(edge + .08f, edge - .1f, y);
 }
 
-float hair_relief(float azimuth, float y) {
-  float side = .5f - .5f * sine(azimuth + 1.57f);  // 0 in front, 1 behind
-  return .022f * fold(13 * y + 9 * side) * smooth_step(6.8f, 6.95f, y);
+// Waves combed from the parting to the nape.
+float hair_relief(const Vec3& p, float y) {
+  float back = p.z * .8f;
+  float parting = std::fabs(p.x) < .12f && p.z > -.3f ? .03f * square(1 - std::fabs(p.x) / .12f) : 0;
+  return .06f * fold(11 * (y - back) + 2 * std::fabs(p.x)) * smooth_step(6.8f, 6.95f, y) - parting;
 }
 
 // Elliptical skirt under the folds, from the hips to the ground.
 float skirt_distance(const Vec3& p) {
   float t = clamp01((4.2f - p.y) / 4.2f);
-  float ax = .68f + .05f * t + .14f * t * t, az = .44f + .04f * t + .2f * t * t;
+  float ax = .71f - .1f * t + .3f * t * t, az = .46f - .04f * t + .33f * t * t;
   float k = std::sqrt(square(p.x / ax) + square((p.z - .04f) / az));
   return (k - 1) * az;
 }
@@ -164,9 +166,9 @@ float body_distance(const Vec3& p, float azimuth) {
   if (p.y > 3.2f) distance = unite(kTorso, p, distance);
   if (p.y > 6.4f) {
     distance = unite(kHead, p, distance);
-    float hair = unite(kHair, p, 1e3f) - hair_relief(azimuth, p.y);
+    float hair = unite(kHair, p, 1e3f) - hair_relief(p, p.y);
     // The hair line: no hair over the face.
-    float face = ellipsoid_distance(p, {0, 7.02f, .3f}, {.26f, .42f, .2f});
+    float face = ellipsoid_distance(p, {0, 6.98f, .34f}, {.235f, .43f, .3f});
     if (-face > hair) hair = -face;
     distance = smooth_min(distance, hair, .02f);
   }
