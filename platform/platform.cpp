@@ -3,10 +3,22 @@
 #include <cstring>
 
 #include "platform/null/null.h"
+#if defined(POCKETRAY_HAVE_SDL2)
+#include "platform/sdl2/sdl2.h"
+#endif
+#if defined(__linux__)
+#include "platform/linux/linux.h"
+#endif
 
 namespace platform {
 
 const Backend* const kBackends[] = {
+#if defined(POCKETRAY_HAVE_SDL2)
+    &kSdl2Backend,
+#endif
+#if defined(__linux__)
+    &kLinuxBackend,
+#endif
     &kNullBackend,
 };
 const int kBackendCount = sizeof kBackends / sizeof kBackends[0];

@@ -1,0 +1,41 @@
+// The system's own calls, and its clock: CLOCK_MONOTONIC, which no one sets back.
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "platform/linux/driver.h"
+
+namespace platform {
+namespace {
+
+int system_open(const char* path, int flags) { return ::open(path, flags | O_CLOEXEC); }
+int system_ioctl(int file, unsigned long request, void* argument) { return ::ioctl(file, request, argument); }
+
+void* system_map(int file, std::size_t bytes) {
+  void* address = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  return address == MAP_FAILED ? nullptr : address;
+}
+
+int system_poll(pollfd* files, int count) { return ::poll(files, static_cast<nfds_t>(count), 0); }
+
+std::uint64_t system_now_ns() {
+  timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
+}
+
+void system_sleep_ns(std::uint64_t duration) {
+  timespec left = {static_cast<time_t>(duration / 1'000'000'000), static_cast<long>(duration % 1'000'000'000)};
+  while (nanosleep(&left, &left) != 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace
+
+const Driver kSystemDriver = {system_open, ::close,     system_ioctl,  system_map,     ::munmap,
+                              ::read,      system_poll, system_now_ns, system_sleep_ns};
+
+}  // namespace platform

@@ -1,0 +1,128 @@
+#include "platform/linux/console.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/kd.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+namespace platform {
+namespace {
+
+// Polite ones ask the program to end; a handler of its own may see to that. The others end it.
+constexpr int kSignals[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGSEGV, SIGBUS,
+                            SIGFPE, SIGILL, SIGABRT, SIGSYS,  SIGTRAP};
+constexpr int kSignalCount = sizeof kSignals / sizeof kSignals[0];
+constexpr int kPoliteCount = 4;
+
+// Read by the signal handler: written before `armed` is set, and not again until it is cleared.
+struct Console {
+  const Driver* driver = nullptr;
+  int file = -1;
+  int mode = KD_TEXT, keyboard = K_UNICODE;  // as they were
+  struct sigaction previous[kSignalCount];
+  bool caught[kSignalCount] = {};
+  bool exit_registered = false;
+};
+Console console;
+volatile sig_atomic_t armed = 0;
+volatile sig_atomic_t quit_requested = 0;
+alignas(16) unsigned char signal_stack[16384];  // a stack that ran over cannot run the handler
+
+void* number(int value) { return reinterpret_cast<void*>(static_cast<std::intptr_t>(value)); }
+
+void on_signal(int signal, siginfo_t* info, void* context) {
+  int saved_errno = errno;
+  int index = 0;
+  while (index < kSignalCount - 1 && kSignals[index] != signal) ++index;
+  const struct sigaction& previous = console.previous[index];
+  bool has_handler =
+      (previous.sa_flags & SA_SIGINFO) || (previous.sa_handler != SIG_DFL && previous.sa_handler != SIG_IGN);
+  if (index < kPoliteCount && has_handler) {
+    quit_requested = 1;
+    if (previous.sa_flags & SA_SIGINFO)
+      previous.sa_sigaction(signal, info, context);
+    else
+      previous.sa_handler(signal);
+  } else {
+    console_restore();
+    sigaction(signal, &previous, nullptr);
+    raise(signal);  // blocked until this handler returns; then the program ends as it would have without us
+  }
+  errno = saved_errno;
+}
+
+void catch_signals() {
+  stack_t stack = {};
+  stack.ss_sp = signal_stack;
+  stack.ss_size = sizeof signal_stack;
+  stack_t stack_before;
+  if (sigaltstack(nullptr, &stack_before) == 0 && (stack_before.ss_flags & SS_DISABLE)) sigaltstack(&stack, nullptr);
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_sigaction = on_signal;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  sigemptyset(&action.sa_mask);
+  for (int i = 0; i < kSignalCount; ++i) {
+    console.caught[i] = false;
+    if (sigaction(kSignals[i], nullptr, &console.previous[i]) != 0) continue;
+    if (console.previous[i].sa_handler == SIG_IGN) continue;  // nohup and the like mean it
+    console.caught[i] = sigaction(kSignals[i], &action, nullptr) == 0;
+  }
+}
+
+// The virtual terminal in front: our own if that is one, else the one that is shown.
+int open_terminal(const Driver& driver) {
+  const char* const paths[] = {"/dev/tty", "/dev/tty0"};
+  for (const char* path : paths) {
+    int file = driver.open(path, O_RDWR | O_NOCTTY);
+    int mode;
+    if (file >= 0 && driver.ioctl(file, KDGETMODE, &mode) == 0) return file;
+    if (file >= 0) driver.close(file);
+  }
+  return -1;
+}
+
+}  // namespace
+
+bool console_open(const Driver& driver) {
+  console_close();
+  quit_requested = 0;
+  int file = open_terminal(driver);
+  if (file < 0) return false;
+  console.driver = &driver;
+  console.file = file;
+  if (driver.ioctl(file, KDGETMODE, &console.mode) != 0) console.mode = KD_TEXT;
+  // A program that crashed without restoring leaves these behind; giving them back would keep the console dead.
+  if (console.mode == KD_GRAPHICS) console.mode = KD_TEXT;
+  if (driver.ioctl(file, KDGKBMODE, &console.keyboard) != 0 || console.keyboard == K_OFF) console.keyboard = K_UNICODE;
+  if (!console.exit_registered) console.exit_registered = atexit(console_restore) == 0;
+  catch_signals();
+  armed = 1;
+  bool graphics = driver.ioctl(file, KDSETMODE, number(KD_GRAPHICS)) == 0;
+  bool keyboard = driver.ioctl(file, KDSKBMODE, number(K_OFF)) == 0;
+  if (graphics && keyboard) return true;
+  console_close();
+  return false;
+}
+
+void console_restore() {
+  if (!armed) return;
+  armed = 0;
+  console.driver->ioctl(console.file, KDSKBMODE, number(console.keyboard));
+  console.driver->ioctl(console.file, KDSETMODE, number(console.mode));
+}
+
+bool console_quit_requested() { return quit_requested != 0; }
+
+void console_close() {
+  if (console.file < 0) return;
+  console_restore();
+  for (int i = 0; i < kSignalCount; ++i)
+    if (console.caught[i]) sigaction(kSignals[i], &console.previous[i], nullptr);
+  console.driver->close(console.file);
+  console.file = -1;
+}
+
+}  // namespace platform

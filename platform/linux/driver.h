@@ -1,0 +1,28 @@
+// Every system call of the Linux backend, as a table: the real ones, or a recorded driver in tests. Return values and
+// errno are those of the calls they are named after.
+#pragma once
+#include <poll.h>
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace platform {
+
+struct Driver {
+  int (*open)(const char* path, int flags);
+  int (*close)(int file);
+  // Requests that take a number instead of a pointer get it cast to one. Also called from a signal handler and another
+  // thread.
+  int (*ioctl)(int file, unsigned long request, void* argument);
+  void* (*map)(int file, std::size_t bytes);  // shared, to read and write; null on failure
+  int (*unmap)(void* address, std::size_t bytes);
+  ssize_t (*read)(int file, void* bytes, std::size_t count);
+  int (*poll)(pollfd* files, int count);  // does not wait
+  std::uint64_t (*now_ns)();
+  void (*sleep_ns)(std::uint64_t duration);
+};
+
+extern const Driver kSystemDriver;
+
+}  // namespace platform

@@ -1,0 +1,10 @@
+// The emulator: a window scaled by whole numbers, keyboard and game controllers as the handheld's buttons. Works with
+// SDL's dummy video driver too.
+#pragma once
+#include "platform/platform.h"
+
+namespace platform {
+
+extern const Backend kSdl2Backend;
+
+}  // namespace platform
