@@ -1,0 +1,82 @@
+# A thin front over CMake: sets up what is missing, configures, builds, runs. `make help` lists the targets.
+#   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
+#   PREFIX=   where `make install` goes
+#   TESTS=    only the test programs that match this regular expression
+DEVICE ?=
+PREFIX ?= /usr/local
+TESTS ?= .
+SCENE ?= cornell
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+
+CLASS :=
+ifneq ($(DEVICE),)
+  CLASS := $(shell toolchains/device.sh $(DEVICE))
+  ifeq ($(CLASS),)
+    $(error DEVICE=$(DEVICE): see above)
+  endif
+endif
+BUILD := build$(CLASS:%=-%)
+POCKETRAY := $(BUILD)/pocketray
+
+.PHONY: all run test bench format tidy clean install help setup configure
+all: configure
+	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
+ifneq ($(CLASS),)
+	@echo "$(POCKETRAY): $$(stat -c %s $(POCKETRAY)) bytes, static, for $(DEVICE)"
+endif
+
+setup:
+	@toolchains/setup.sh desktop $(CLASS)
+
+# Options that are no part of a target: the generator and the compiler cache where there is one, the toolchain of the device.
+configure: setup
+	@mkdir -p $(BUILD) && sysroot=$(if $(CLASS),$$(toolchains/sysroot.sh $(CLASS))) && \
+	cmake -S . -B $(BUILD) -DCMAKE_INSTALL_PREFIX=$(PREFIX) \
+	  $$([ -f $(BUILD)/CMakeCache.txt ] || ! command -v ninja >/dev/null || echo -G Ninja) \
+	  $$(! command -v ccache >/dev/null || echo -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) \
+	  $(if $(CLASS),-DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/toolchains/$(CLASS).cmake -DPOCKETRAY_SYSROOT=$$sysroot) \
+	  >$(BUILD)/configure.log || { cat $(BUILD)/configure.log; exit 1; }
+
+run: configure
+	cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	$(POCKETRAY) plan $(SCENE)
+	$(POCKETRAY) render $(SCENE) -o $(BUILD)/$(SCENE).png
+	$(POCKETRAY) bench $(SCENE)
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
+	  echo $(POCKETRAY) view $(SCENE); $(POCKETRAY) view $(SCENE); \
+	else \
+	  echo "no display here; the picture is $(BUILD)/$(SCENE).png"; \
+	fi
+
+test: configure
+	cmake --build $(BUILD) -j$(JOBS)
+	cd $(BUILD) && ctest --output-on-failure -j$(JOBS) -R '$(TESTS)'
+
+bench: configure
+	cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	$(POCKETRAY) bench $(SCENE) --json -
+
+install: configure
+	cmake --build $(BUILD) -j$(JOBS)
+	cmake --build $(BUILD) --target install
+
+format:
+	@toolchains/setup.sh format
+	git ls-files '*.cpp' '*.h' | xargs clang-format -i
+
+tidy: configure
+	@toolchains/setup.sh tidy
+	cmake --build $(BUILD) -j$(JOBS) --target tidy
+
+clean:
+	rm -rf build build-*
+
+help:
+	@echo "make              build for this machine into build/"
+	@echo "make run          build, then render, plan and time SCENE=$(SCENE); open the emulator where there is a display"
+	@echo "make test         build and run all tests (TESTS=regex: those that match)"
+	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
+	@echo "make format       clang-format on all sources;  make tidy: clang-tidy"
+	@echo "make install      into PREFIX=$(PREFIX) (and DESTDIR)"
+	@echo "make clean        remove build/ and build-*/"
+	@echo "DEVICE=x          with any of these: build for a device or CPU class, run under qemu-user"

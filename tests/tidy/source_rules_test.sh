@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# source_rules_test.sh ROOT : ROOT keeps the rules of check_sources.sh, and the checker finds what breaks them.
+# Method: every rule is broken once in a small tree of its own; the report must name the planted file and the rule. Look-alikes
+# that are allowed must pass.
+set -eu
+root=$1
+check=$(cd "$(dirname "$0")" && pwd)/check_sources.sh
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+failures=0
+
+plant() {  # FILE LINES... : a tree with this file alone
+  rm -rf "${tree:?}"/*
+  mkdir -p "$tree/src" "$tree/platform" "$tree/tests" "$tree/$(dirname "$1")"
+  printf '%s\n' "${@:2}" >"$tree/$1"
+}
+must_fail() {  # RULE FILE LINES...
+  plant "${@:2}"
+  local output
+  if output=$(bash "$check" "$tree") || ! grep -F "$2:" <<<"$output" | grep -qF "$1"; then
+    echo "not found: '$1' in $2: ${*:3}"
+    failures=$((failures + 1))
+  fi
+}
+must_pass() {  # FILE LINES...
+  plant "$@"
+  local output
+  if ! output=$(bash "$check" "$tree"); then
+    echo "wrongly refused in $1: $output"
+    failures=$((failures + 1))
+  fi
+}
+
+must_fail "(rank 2) must not include shade/shade.h (rank 4)" src/accel/a.cpp '#include "shade/shade.h"'
+must_fail "(rank 2) must not include brdf/brdf.h (rank 2)" src/accel/a.h '#include "brdf/brdf.h"'
+must_fail "(rank 1) must not include effect/effect.h" src/scene/deep/a.h '#  include "effect/effect.h"'
+must_fail "has no rank" src/misc/a.h '#pragma once'
+must_fail "folders alone" src/a.cpp '#include <cstdio>'
+must_fail "platform/ includes nothing of src/" platform/linux/fb.cpp '#include "base/status.h"'
+must_fail "only app/ and tests/ include" src/present/a.cpp '#include "platform/platform.h"'
+must_fail "only app/ and tests/ include" src/plan/a.cpp '#include "platform/linux/framebuffer.h"'
+must_fail "by its path" src/app/a.cpp '#include "../base/vec3.h"'
+must_fail "operating system" src/base/a.cpp '#ifdef __linux__' '#endif'
+must_fail "operating system" src/app/a.cpp '#if defined(FOO) && defined(_WIN32)' '#endif'
+must_fail "exceptions" src/base/a.cpp 'void f() { throw 1; }'
+must_fail "exceptions" platform/null/a.cpp 'void f() { try { g(); } catch (...) {} }'
+must_fail "heap in the core" src/base/a.cpp 'int* p = new int;'
+must_fail "heap in the core" src/accel/a.cpp '/* x */ void* p = malloc(4);'
+must_fail "heap in the core" platform/sdl2/a.cpp 'std::free(p);'
+must_fail "heap container" src/shade/a.cpp 'std::vector<int> rows;'
+must_fail "header of the heap" src/plan/a.cpp '#include <string>'
+must_fail "libm function" src/shade/a.cpp 'float x = std::pow(a, b);'
+must_fail "libm function" src/base/a.cpp 'x = sinf (y);'
+must_fail "libm function" src/brdf/a.cpp 'x = 2*::acos(y);'
+must_fail "libm function" src/brdf/a.cpp 'x = std::fma(a, b, c);'
+must_fail "longer than" src/base/a.cpp $(seq 451)
+must_fail "longer than" tests/base/a_test.cpp $(seq 451)
+
+must_pass src/shade/a.cpp '#include "accel/accel.h"' '#include "shade/b.h"' '#include <cmath>'
+must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'auto p = new std::vector<int>; throw std::pow(1, 2);'
+must_pass tests/app/a.cpp '#include "platform/platform.h"' '#include "app/frame.h"' 'std::string s;'
+must_pass src/plan/a.cpp '#include "platform/devices/miyoo_mini.h"'
+must_pass platform/linux/a.cpp '#include "platform/platform.h"' '#ifdef __linux__' '#endif'
+must_pass src/base/a.cpp 'x = det_pow(a, b); // pow(a, b), a new one' 'const char* s = "malloc(new)";' 'a.exp(b); std::sqrt(2);' \
+  '/* throw' 'malloc(4) */ A(const A&) = delete;' $(seq 400)
+
+bash "$check" "$root" || failures=$((failures + 1))
+[ "$failures" = 0 ] || { echo "$failures failures"; exit 1; }

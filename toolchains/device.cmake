@@ -1,0 +1,22 @@
+# What all device builds share: Debian's cross compiler, libraries from POCKETRAY_SYSROOT alone (sysroot.sh makes it), one
+# static binary without what nothing calls.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_C_COMPILER ${POCKETRAY_TRIPLE}-gcc)
+set(CMAKE_CXX_COMPILER ${POCKETRAY_TRIPLE}-g++)
+set(CMAKE_C_FLAGS_INIT "${POCKETRAY_CPU_FLAGS} -ffunction-sections -fdata-sections")
+set(CMAKE_CXX_FLAGS_INIT "${POCKETRAY_CPU_FLAGS} -ffunction-sections -fdata-sections")
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--gc-sections")
+
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES POCKETRAY_SYSROOT)
+if(NOT POCKETRAY_SYSROOT)
+  message(FATAL_ERROR "Set POCKETRAY_SYSROOT to what toolchains/sysroot.sh prints, or use make DEVICE=")
+endif()
+set(CMAKE_FIND_ROOT_PATH ${POCKETRAY_SYSROOT})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(ENV{PKG_CONFIG_LIBDIR} ${POCKETRAY_SYSROOT}/lib/pkgconfig)
+
+set(POCKETRAY_STATIC ON CACHE BOOL "one static binary")
+set(POCKETRAY_IMPORT OFF CACHE BOOL "read glTF, OBJ and other formats (desktop)")

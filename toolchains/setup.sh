@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# setup.sh GROUP... : installs what a build needs and this machine lacks. Silent when nothing is missing.
+# Groups: desktop clang format tidy armhf armel aarch64. Run by the Makefile and by .ci/run.
+set -eu
+
+# What each group needs. "command=package" counts as there when the command is; a plain name is a Debian package.
+required() {
+  case $1 in
+    desktop) echo c++=g++ cmake=cmake make=make pkg-config=pkg-config zlib1g-dev doctest-dev libcli11-dev nlohmann-json3-dev ;;
+    clang) echo clang++=clang ;;
+    format) echo clang-format=clang-format ;;
+    tidy) echo clang-tidy=clang-tidy ;;
+    armhf) echo arm-linux-gnueabihf-g++=g++-arm-linux-gnueabihf qemu-arm=qemu-user ;;
+    armel) echo arm-linux-gnueabi-g++=g++-arm-linux-gnueabi qemu-arm=qemu-user ;;
+    aarch64) echo aarch64-linux-gnu-g++=g++-aarch64-linux-gnu qemu-aarch64=qemu-user ;;
+    *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
+  esac
+}
+# What makes the desktop build better and may be absent: PNG, the emulator window, model formats, a faster build.
+optional() {
+  case $1 in
+    desktop) echo ninja=ninja-build libpng-dev libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
+  esac
+}
+
+# Names of the packages that are missing among "command=package" and "package" entries.
+missing_packages() {
+  local entry packages=()
+  for entry in "$@"; do
+    case $entry in
+      *=*) command -v "${entry%%=*}" >/dev/null || echo "${entry#*=}" ;;
+      *) packages+=("$entry") ;;
+    esac
+  done
+  [ ${#packages[@]} -gt 0 ] || return 0
+  local installed
+  installed=$(dpkg-query -W -f '${db:Status-Abbrev}|${Package}\n' "${packages[@]}" 2>/dev/null | sed -n 's/^ii *|//p' || true)
+  for entry in "${packages[@]}"; do
+    grep -qx "$entry" <<<"$installed" || echo "$entry"
+  done
+}
+
+needs=() extras=()
+for group in "$@"; do
+  read -ra words <<<"$(required "$group")"; needs+=("${words[@]}")
+  read -ra words <<<"$(optional "$group")"; extras+=(${words[@]+"${words[@]}"})
+done
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  # Another package manager: the commands can be checked, the libraries are for CMake to find and name.
+  absent=()
+  for entry in "${needs[@]}"; do
+    case $entry in *=*) command -v "${entry%%=*}" >/dev/null || absent+=("${entry%%=*}") ;; esac
+  done
+  [ ${#absent[@]} -gt 0 ] || exit 0
+  echo "pocketray: these commands are missing: ${absent[*]}" >&2
+  echo "Automatic set-up knows apt-get alone. Install them, and what else these Debian packages hold, with your package manager:" >&2
+  echo "  needed:    ${needs[*]#*=}" >&2
+  echo "  optional:  ${extras[*]#*=}" >&2
+  exit 1
+fi
+
+mapfile -t needed < <(missing_packages "${needs[@]}")
+mapfile -t wanted < <([ ${#extras[@]} -eq 0 ] || missing_packages "${extras[@]}")
+# Optional packages that this system does not have are looked for once, not at every build.
+stamp=build/.not-available
+if [ ${#wanted[@]} -gt 0 ] && [ -f $stamp ]; then
+  mapfile -t wanted < <(printf '%s\n' "${wanted[@]}" | grep -vxFf $stamp)
+fi
+[ ${#needed[@]} -gt 0 ] || [ ${#wanted[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+  if command -v sudo >/dev/null; then
+    as_root=(sudo)
+  elif [ ${#needed[@]} -eq 0 ]; then
+    exit 0
+  else
+    echo "pocketray: as root, please: apt-get install ${needed[*]} ${wanted[*]}" >&2
+    exit 1
+  fi
+fi
+export DEBIAN_FRONTEND=noninteractive
+echo "pocketray: installing what is missing: ${needed[*]} ${wanted[*]}"
+${as_root[@]+"${as_root[@]}"} apt-get -q update >/dev/null || echo "pocketray: apt-get update failed; trying with the lists there are" >&2
+
+available=()
+for package in ${wanted[@]+"${wanted[@]}"}; do
+  if apt-cache policy "$package" | grep -q 'Candidate: [^(]'; then
+    available+=("$package")
+  else
+    echo "pocketray: this system has no $package; building without it"
+    mkdir -p build && echo "$package" >>$stamp
+  fi
+done
+[ ${#needed[@]} -gt 0 ] || [ ${#available[@]} -gt 0 ] || exit 0
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! ${as_root[@]+"${as_root[@]}"} apt-get -q install -y --no-install-recommends \
+  ${needed[@]+"${needed[@]}"} ${available[@]+"${available[@]}"} >"$log" 2>&1 </dev/null; then
+  tail -n 15 "$log" >&2
+  echo "pocketray: apt-get could not install them; the lines above say why" >&2
+  exit 1
+fi
