@@ -27,7 +27,9 @@ constexpr std::uint32_t leaf_triangle_count(std::uint32_t reference) { return ((
 
 struct alignas(64) BvhHeader {
   std::uint32_t magic, triangle_count, node_count, leaf_count;
+  std::uint32_t reserved[12];  // 0
 };
+static_assert(sizeof(BvhHeader) == 64, "nodes start on a cache line");
 constexpr std::uint32_t kBvhMagic = 0x34485642;  // "BVH4"
 
 struct alignas(64) BvhNode {

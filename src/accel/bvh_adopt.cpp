@@ -71,8 +71,10 @@ Status bvh_adopt(Accel* accel, Array<const std::uint8_t> data) {
   if (data.bytes() < bvh_bytes(1, 0)) return failure("accelerator: cut off; bake the scene again");
   Walk walk = {BvhView(data.data), accel->positions, accel->triangles, 1, 0, 0};
   const BvhHeader& header = *walk.bvh.header;
-  if (header.magic != kBvhMagic || header.triangle_count != accel->triangles.count || header.node_count < 1 ||
-      header.node_count > kTriangleCountMax || header.leaf_count > kTriangleCountMax ||
+  std::uint32_t reserved = 0;
+  for (std::uint32_t word : header.reserved) reserved |= word;
+  if (header.magic != kBvhMagic || reserved != 0 || header.triangle_count != accel->triangles.count ||
+      header.node_count < 1 || header.node_count > kTriangleCountMax || header.leaf_count > kTriangleCountMax ||
       data.bytes() != bvh_bytes(header.node_count, header.leaf_count))
     return failure("accelerator: its header does not fit the scene; bake the scene again");
   Visit stack[3 * kBvhDepthMax + 4];

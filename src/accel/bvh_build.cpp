@@ -204,14 +204,16 @@ std::uint32_t levels_when_halved(std::uint32_t n) {
   return levels;
 }
 
-// The part to split next: the largest surface, or the most triangles when the depth runs out. −1 where all are leaves.
+// The part to split next: the one on which most work is spent, its surface times its triangles, or the one with the
+// most triangles when the depth runs out. −1 where all are leaves.
 int part_to_split(const Range* parts, int count, bool halve) {
   int best = -1;
   double best_weight = -1;
   for (int i = 0; i < count; ++i) {
     if (parts[i].count() <= kBvhLeafSize) continue;
-    double weight = halve ? parts[i].count() : half_area_exact(parts[i].box);
-    if (weight > best_weight) best = i, best_weight = weight;
+    double weight = halve ? parts[i].count() : half_area_exact(parts[i].box) * parts[i].count();
+    if (weight > best_weight || (weight == best_weight && parts[i].count() > parts[best].count()))
+      best = i, best_weight = weight;
   }
   return best;
 }
@@ -317,7 +319,7 @@ void bvh_build(Accel* accel, Arena* keep, Arena* scratch) {
   std::size_t bytes = bvh_bytes(builder.node_count, builder.leaf_count);
   CHECK_LE(bytes, 0xFFFFFFFFu);
   std::memmove(data + bvh_bytes(builder.node_count, 0), builder.leaves, sizeof(TriangleBlock) * builder.leaf_count);
-  *reinterpret_cast<BvhHeader*>(data) = {kBvhMagic, triangle_count, builder.node_count, builder.leaf_count};
+  *reinterpret_cast<BvhHeader*>(data) = {kBvhMagic, triangle_count, builder.node_count, builder.leaf_count, {0}};
   arena_release(keep, keep_mark);
   arena_allocate(keep, bytes);
   arena_release(scratch, scratch_mark);

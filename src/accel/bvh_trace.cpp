@@ -151,7 +151,7 @@ void search_bvh(const Accel& accel, Search<kFiltered>* search, TraceStats* stats
 template <bool kFiltered, bool kAny>
 Hit find_hit(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   Search<kFiltered> search;
-  search.best.triangle = kNoTriangle;
+  search.best = {0, 0, 0, kNoTriangle};
   if (!(ray.t_max > 0) || !make_sheared_ray(ray, &search.ray)) return search.best;
   search.filter = filter, search.t_max = ray.t_max;
   search_bvh<kFiltered, kAny>(accel, &search, stats);

@@ -1,19 +1,14 @@
-// Scenes and rays for the accelerator suites, and the accelerators built over them.
+// Accelerators over generated meshes.
 #pragma once
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "accel/accel_list.h"
-#include "base/rng.h"
+#include "accel/meshes.h"
 
 namespace pocketray {
-
-struct Mesh {
-  const char* name = "";
-  std::vector<Vec3> positions;
-  std::vector<Triangle> triangles;
-};
 
 // An accelerator over a mesh, with memory of its own of exactly the planned size.
 struct World {
@@ -52,17 +47,5 @@ inline bool same_hit(const Hit& a, const Hit& b) {
 }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-inline float between(Rng* rng, float low, float high) { return low + (high - low) * next_float(rng); }
-inline Vec3 random_vec3(Rng* rng, float size) {
-  return {between(rng, -size, size), between(rng, -size, size), between(rng, -size, size)};
-}
-
-// Meshes of every awkward kind: soup, lattice, coplanar, slivers, nested, huge, tiny, duplicates, one, none.
-std::vector<Mesh> generated_meshes();
-// A closed, jittered sphere of 20·4^level triangles about `center`.
-Mesh jittered_sphere(int level, float radius, const Vec3& center, float jitter, std::uint64_t seed);
-// A closed box of n×n×6 quads on integer coordinates.
-Mesh lattice_box(int n);
 
 }  // namespace pocketray

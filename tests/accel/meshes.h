@@ -1,23 +1,40 @@
-#include "accel/accel_world.h"
-
+// Generated meshes for the accelerator suites.
+#pragma once
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <map>
+#include <utility>
+#include <vector>
+
+#include "base/rng.h"
+#include "scene/scene.h"
 
 namespace pocketray {
-namespace {
 
-std::uint32_t add_vertex(Mesh* mesh, const Vec3& p) {
+struct Mesh {
+  const char* name = "";
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+};
+
+inline float between(Rng* rng, float low, float high) { return low + (high - low) * next_float(rng); }
+inline Vec3 random_vec3(Rng* rng, float size) {
+  float x = between(rng, -size, size), y = between(rng, -size, size);
+  return {x, y, between(rng, -size, size)};
+}
+
+inline std::uint32_t add_vertex(Mesh* mesh, const Vec3& p) {
   mesh->positions.push_back(p);
   return static_cast<std::uint32_t>(mesh->positions.size() - 1);
 }
-void add_triangle(Mesh* mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
+inline void add_triangle(Mesh* mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
   std::uint32_t first = add_vertex(mesh, a);
   add_vertex(mesh, b), add_vertex(mesh, c);
   mesh->triangles.push_back({{first, first + 1, first + 2}, 0});
 }
 
-Mesh soup(const char* name, int count, float spread, float size, std::uint64_t seed) {
+inline Mesh soup(const char* name, int count, float spread, float size, std::uint64_t seed) {
   Mesh mesh;
   mesh.name = name;
   Rng rng = make_rng(seed);
@@ -28,13 +45,13 @@ Mesh soup(const char* name, int count, float spread, float size, std::uint64_t s
   return mesh;
 }
 
-Mesh scaled(const char* name, Mesh mesh, float factor) {
+inline Mesh scaled(const char* name, Mesh mesh, float factor) {
   mesh.name = name;
   for (Vec3& p : mesh.positions) p = p * factor;
   return mesh;
 }
 
-Mesh coplanar() {
+inline Mesh coplanar() {
   Mesh mesh;
   mesh.name = "coplanar";
   Rng rng = make_rng(11);
@@ -46,7 +63,7 @@ Mesh coplanar() {
   return mesh;
 }
 
-Mesh slivers() {
+inline Mesh slivers() {
   Mesh mesh;
   mesh.name = "slivers";
   Rng rng = make_rng(12);
@@ -58,7 +75,7 @@ Mesh slivers() {
 }
 
 // Boxes nested 2^-i: what drives the depth of a tree.
-Mesh nested(const char* name, int count, float first) {
+inline Mesh nested(const char* name, int count, float first) {
   Mesh mesh;
   mesh.name = name;
   float s = first;
@@ -66,14 +83,14 @@ Mesh nested(const char* name, int count, float first) {
   return mesh;
 }
 
-Mesh duplicates(const char* name, int count) {
+inline Mesh duplicates(const char* name, int count) {
   Mesh mesh;
   mesh.name = name;
   for (int i = 0; i < count; ++i) add_triangle(&mesh, {-1, -1, 0}, {1, -1, 0.5f}, {0, 1, 0});
   return mesh;
 }
 
-Mesh degenerates() {
+inline Mesh degenerates() {
   Mesh mesh = soup("degenerates", 100, 1, 0.5f, 13);
   Rng rng = make_rng(14);
   for (int i = 0; i < 100; ++i) {
@@ -84,9 +101,8 @@ Mesh degenerates() {
   return mesh;
 }
 
-}  // namespace
-
-Mesh jittered_sphere(int level, float radius, const Vec3& center, float jitter, std::uint64_t seed) {
+// A closed, jittered sphere of 20·4^level triangles about `center`.
+inline Mesh jittered_sphere(int level, float radius, const Vec3& center, float jitter, std::uint64_t seed) {
   const float g = 1.6180339887f;
   std::vector<Vec3> points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                               {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
@@ -118,7 +134,8 @@ Mesh jittered_sphere(int level, float radius, const Vec3& center, float jitter, 
   return mesh;
 }
 
-Mesh lattice_box(int n) {
+// A closed box of 6·n·n squares on integer coordinates from 0 to n.
+inline Mesh lattice_box(int n) {
   Mesh mesh;
   mesh.name = "lattice";
   std::map<std::array<int, 3>, std::uint32_t> known;
@@ -140,7 +157,8 @@ Mesh lattice_box(int n) {
   return mesh;
 }
 
-std::vector<Mesh> generated_meshes() {
+// Meshes of every awkward kind.
+inline std::vector<Mesh> generated_meshes() {
   std::vector<Mesh> meshes;
   meshes.push_back(Mesh{"nothing", {}, {}});
   meshes.push_back(soup("one", 1, 0.1f, 1, 1));

@@ -1,0 +1,121 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "accel/accel_world.h"
+#include "accel/bvh.h"
+
+using namespace pocketray;
+
+namespace {
+
+// A copy of an accelerator's bytes, aligned, of exactly their size so that a sanitizer sees the end.
+struct Bytes {
+  explicit Bytes(std::uint32_t count) : block(new std::uint8_t[count + 64]), data{align(block.get()), count} {}
+  static std::uint8_t* align(std::uint8_t* p) { return p + (64 - reinterpret_cast<std::uintptr_t>(p) % 64) % 64; }
+  std::unique_ptr<std::uint8_t[]> block;
+  Array<std::uint8_t> data;
+};
+
+Bytes copy_of(const World& world, std::uint32_t count) {
+  Bytes bytes(count);
+  std::memcpy(bytes.data.data, world.accel.data.data, count);
+  return bytes;
+}
+
+// Whether the bytes are adopted; then they are `world`'s as long as they live.
+bool adopt(World* world, const Bytes& bytes) { return kBvhAccel.adopt(&world->accel, bytes.data).ok; }
+bool refuses(const World& world, const Bytes& bytes) {
+  Accel accel = world.accel;
+  return !kBvhAccel.adopt(&accel, bytes.data).ok;
+}
+
+// Traces rays through whatever was adopted: must end and stay in bounds.
+void trace_some(const World& world, int ray_count) {
+  Rng rng = make_rng(111);
+  TraceStats stats;
+  for (int i = 0; i < ray_count; ++i) closest(world, {random_vec3(&rng, 1), random_vec3(&rng, 1), kInfinity}, &stats);
+  CHECK(stats.nodes <= static_cast<std::uint64_t>(ray_count) * BvhView(world.accel.data.data).header->node_count);
+}
+
+}  // namespace
+
+// Goal: what was built is adopted and answers alike, bounds included. Method: all generated meshes.
+TEST_CASE("bvh_adopts_what_it_built") {
+  for (const Mesh& mesh : generated_meshes()) {
+    auto world = make_world(mesh, &kBvhAccel), fresh = make_world(mesh, &kBvhAccel);
+    Bytes bytes = copy_of(*world, world->accel.data.count);
+    fresh->accel.bounds = empty_box(), fresh->accel.data = {};
+    INFO(mesh.name);
+    REQUIRE(adopt(fresh.get(), bytes));
+    CHECK(fresh->accel.bounds.low == world->accel.bounds.low);
+    CHECK(fresh->accel.bounds.high == world->accel.bounds.high);
+    trace_some(*fresh, 20);
+  }
+}
+
+// Goal: no damaged byte does harm. Method: each byte of a small tree flipped in several ways; adopt() refuses, or the
+// rays traced through it end. (Signs of zeros may flip; nothing else is accepted.)
+TEST_CASE("bvh_refuses_every_flipped_byte_or_traces_it_safely") {
+  Mesh mesh = soup("", 60, 1, 0.5f, 112);
+  auto world = make_world(mesh, &kBvhAccel);
+  int accepted = 0;
+  for (std::uint32_t i = 0; i < world->accel.data.count; ++i)
+    for (std::uint8_t flip : {0x01, 0x80, 0xFF, 0x10}) {
+      Bytes bytes = copy_of(*world, world->accel.data.count);
+      bytes.data[i] ^= flip;
+      World damaged;
+      damaged.positions = world->positions, damaged.triangles = world->triangles, damaged.info = &kBvhAccel;
+      damaged.accel = world->accel;
+      if (!adopt(&damaged, bytes)) continue;
+      ++accepted;
+      trace_some(damaged, 100);
+    }
+  CHECK(accepted <= 8);
+}
+
+// Goal: no prefix, no byte too many. Method: every length.
+TEST_CASE("bvh_refuses_every_prefix_and_excess_bytes") {
+  auto world = make_world(soup("", 30, 1, 0.5f, 113), &kBvhAccel);
+  for (std::uint32_t count = 0; count < world->accel.data.count; ++count)
+    CHECK(refuses(*world, copy_of(*world, count)));
+  Bytes longer(world->accel.data.count + 64);
+  std::memcpy(longer.data.data, world->accel.data.data, world->accel.data.count);
+  CHECK(refuses(*world, longer));
+}
+
+// Goal: crafted trees that would never end or overrun the stack are refused. Method: a child that is its own parent, a
+// child shared by two lanes, a chain deeper than kBvhDepthMax of boxes that are otherwise right, a leaf of another
+// scene.
+TEST_CASE("bvh_refuses_cycles_shared_children_deep_chains_and_other_geometry") {
+  auto world = make_world(soup("", 200, 1, 0.5f, 114), &kBvhAccel);
+  auto with_child = [&](int lane, std::uint32_t child) {
+    Bytes bytes = copy_of(*world, world->accel.data.count);
+    BvhWritableView(bytes.data.data).nodes[0].child[lane] = child;
+    return !refuses(*world, bytes);
+  };
+  const BvhNode& root = BvhView(world->accel.data.data).nodes[0];
+  REQUIRE(!(root.child[0] & kLeafBit));
+  CHECK(with_child(0, root.child[0]));  // the harness itself damages nothing
+  CHECK_FALSE(with_child(0, 0));
+  CHECK_FALSE(with_child(1, root.child[0]));
+  CHECK_FALSE(with_child(0, kNoChild));
+  CHECK_FALSE(with_child(3, leaf_reference(0, 4)));
+
+  // One triangle at the end of a chain of single-child nodes.
+  auto single = make_world(soup("", 1, 0.1f, 1, 115), &kBvhAccel);
+  for (std::uint32_t depth : {kBvhDepthMax, kBvhDepthMax + 1}) {
+    Bytes bytes(static_cast<std::uint32_t>(bvh_bytes(depth, 1)));
+    *reinterpret_cast<BvhHeader*>(bytes.data.data) = {kBvhMagic, 1, depth, 1, {0}};
+    BvhWritableView chain(bytes.data.data);
+    for (std::uint32_t i = 0; i < depth; ++i) {
+      chain.nodes[i] = BvhView(single->accel.data.data).nodes[0];
+      if (i + 1 < depth) chain.nodes[i].child[0] = i + 1;
+    }
+    chain.leaves[0] = BvhView(single->accel.data.data).leaves[0];
+    CHECK(refuses(*single, bytes) == (depth > kBvhDepthMax));
+  }
+
+  auto other = make_world(soup("", 200, 1, 0.5f, 116), &kBvhAccel);
+  CHECK(refuses(*other, copy_of(*world, world->accel.data.count)));
+}

@@ -1,0 +1,223 @@
+// The tree around the triangle test: HARDCASES rows 8, 11, 12, 14, 15 and 19.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "accel/bvh.h"
+#include "accel/oracle.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// Longest path from the root, in nodes.
+std::uint32_t depth_of(const World& world) {
+  BvhView bvh(world.accel.data.data);
+  std::vector<std::uint32_t> depth(bvh.header->node_count, 1);
+  for (std::uint32_t i = 0; i < bvh.header->node_count; ++i)
+    for (std::uint32_t child : bvh.nodes[i].child)
+      if (!(child & kLeafBit)) depth[child] = depth[i] + 1;
+  return *std::max_element(depth.begin(), depth.end());
+}
+
+// Whether every child's box holds exactly what is under it, and each triangle lies in one leaf.
+bool is_sound(const World& world) {
+  Accel copy = world.accel;
+  return bvh_adopt(&copy, world.accel.data).ok;
+}
+
+bool contains_children(const BvhView& bvh) {
+  for (std::uint32_t i = 0; i < bvh.header->node_count; ++i)
+    for (int lane = 0; lane < 4; ++lane) {
+      std::uint32_t child = bvh.nodes[i].child[lane];
+      if (child == kNoChild) continue;
+      Box box = child_box(bvh.nodes[i], lane);
+      if (!(child & kLeafBit)) {
+        if (!contains(box, node_box(bvh.nodes[child]))) return false;
+        continue;
+      }
+      for (std::uint32_t k = 0; k < leaf_triangle_count(child); ++k)
+        for (int v = 0; v < 3; ++v) {
+          Vec3 p = block_vertex(bvh.leaves[child & kLeafIndexMask], v, static_cast<int>(k));
+          if (!contains(box, {p, p})) return false;
+        }
+    }
+  return true;
+}
+
+// Rays at and around the mesh: how many answers differ from brute force.
+int wrong_answers(const World& world, const Mesh& mesh, int ray_count, std::uint64_t seed) {
+  auto oracle = make_world(mesh, &kBruteAccel);
+  Rng rng = make_rng(seed);
+  int wrong = 0;
+  Vec3 size = extent(oracle->accel.bounds), low = oracle->accel.bounds.low;
+  for (int i = 0; i < ray_count; ++i) {
+    Vec3 f = {next_float(&rng), next_float(&rng), next_float(&rng)};
+    Vec3 origin = low + size * f + random_vec3(&rng, max_component(size)), target = origin + random_vec3(&rng, 1);
+    const Triangle& t = mesh.triangles[next_u32(&rng) % mesh.triangles.size()];
+    if (i % 4) target = mesh.positions[t.vertex[i % 3]] * 0.5f + mesh.positions[t.vertex[(i + 1) % 3]] * 0.5f;
+    Ray ray = {origin, target - origin, kInfinity};
+    wrong += !same_hit(closest(world, ray), closest(*oracle, ray));
+  }
+  return wrong;
+}
+
+}  // namespace
+
+// Goal: vertices that are NaN, infinite or beyond 1e18 and indices out of range exclude their triangle and no other;
+// denormal and huge ones count. Method: spoil a third of a mesh; 10^4 rays agree with the double oracle and brute
+// force.
+TEST_CASE("hard_08_spoilt_triangles_are_left_out_and_the_rest_agrees_with_brute_force") {
+  const float spoilt[] = {kNan, kInfinity, -kInfinity, 2e18f, -3e38f};
+  for (float scale : {1.0f, 1e-39f, 4e17f}) {
+    Mesh mesh = soup("", 150, 1, 0.7f, 41), good;
+    for (Vec3& p : mesh.positions) p = p * scale;
+    good = mesh;
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
+      good.triangles[i].vertex[2] = good.triangles[i].vertex[1] = good.triangles[i].vertex[0];
+      std::uint32_t vertex = mesh.triangles[i].vertex[i / 3 % 3];
+      if (i % 2) {
+        mesh.positions[vertex][static_cast<int>(i / 9 % 3)] = spoilt[i % 5];
+      } else {
+        mesh.triangles[i].vertex[1] = i % 4 ? 0xFFFFFFFFu : static_cast<std::uint32_t>(mesh.positions.size());
+      }
+    }
+    auto oracle = make_world(good, &kBruteAccel);
+    for (const AccelInfo* info : kAccelList) {
+      auto world = make_world(mesh, info);
+      CHECK(world->accel.bounds.high.x <= kCoordinateMax);
+      Rng rng = make_rng(401);
+      int wrong = 0, wrong_in_double = 0, decided = 0, hits = 0;
+      for (int i = 0; i < 10000; ++i) {
+        Ray ray = {random_vec3(&rng, 2 * scale), random_vec3(&rng, 1), kInfinity};
+        Hit hit = closest(*world, ray);
+        wrong += !same_hit(hit, closest(*oracle, ray));
+        hits += hit.triangle != kNoTriangle;
+        if (i % 20 == 0 && scale > 1e-30f) wrong_in_double += !oracle_agrees(*oracle, ray, hit, 4, &decided);
+      }
+      INFO(info->name << ", scale " << scale);
+      CHECK(wrong == 0);
+      CHECK(wrong_in_double == 0);
+      CHECK(hits > 1500);
+      if (scale > 1e-30f) CHECK(decided > 400);
+    }
+  }
+}
+
+// Goal: every combination of signs and zeros in the direction, -0 among them, is as brute force. Method: soup and
+// lattice, origins at vertices' coordinates so that slabs are met on their faces.
+TEST_CASE("hard_11_all_sign_and_zero_combinations_of_the_direction_are_as_brute_force") {
+  const float values[] = {-1, -0.0f, 0.0f, 1, -1e-30f, 1e-30f, 0.3f};
+  for (const Mesh& mesh : {lattice_box(6), soup("soup", 300, 4, 2, 42)}) {
+    auto world = make_world(mesh, &kBvhAccel), oracle = make_world(mesh, &kBruteAccel);
+    Rng rng = make_rng(402);
+    int wrong = 0, hits = 0;
+    for (float dx : values)
+      for (float dy : values)
+        for (float dz : values)
+          for (int i = 0; i < 20; ++i) {
+            Vec3 p = mesh.positions[next_u32(&rng) % mesh.positions.size()], origin = random_vec3(&rng, 6);
+            for (int axis = 0; axis < 3; ++axis)
+              if (next_u32(&rng) % 2) origin[axis] = p[axis];
+            Ray ray = {origin, {dx, dy, dz}, kInfinity};
+            Hit expected = closest(*oracle, ray);
+            wrong += !same_hit(expected, closest(*world, ray));
+            hits += expected.triangle != kNoTriangle;
+          }
+    INFO(mesh.name);
+    CHECK(wrong == 0);
+    CHECK(hits > 700);
+  }
+}
+
+// Goal: rays that lie in faces of boxes, where slabs give 0·∞, are as brute force. Method: a lattice, whose boxes have
+// their faces on whole numbers; origins on whole numbers, directions along axes and face diagonals, from inside and
+// out.
+TEST_CASE("hard_12_rays_lying_in_box_faces_are_as_brute_force") {
+  const int n = 5;
+  Mesh mesh = lattice_box(n);
+  auto world = make_world(mesh, &kBvhAccel), oracle = make_world(mesh, &kBruteAccel);
+  int wrong = 0, hits = 0;
+  for (int dx = -1; dx <= 1; ++dx)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dz = -1; dz <= 1; ++dz)
+        for (int i = 0; i < 8 * 8 * 8; ++i) {
+          Vec3 origin = {float(i % 8 - 1), float(i / 8 % 8 - 1), float(i / 64 - 1)};
+          Ray ray = {origin, {float(dx), float(dy), float(dz)}, kInfinity};
+          Hit expected = closest(*oracle, ray);
+          wrong += !same_hit(expected, closest(*world, ray));
+          hits += expected.triangle != kNoTriangle;
+        }
+  CHECK(wrong == 0);
+  CHECK(hits > 3000);
+}
+
+// Goal: triangles that no split can tell apart end the build within the planned depth and bytes (make_world() gives the
+// arenas exactly what need() says). Method: 10^4 identical triangles; 10^4 with the same centroid.
+TEST_CASE("hard_14_identical_triangles_and_equal_centroids_end_the_build_within_plan") {
+  Mesh concentric;
+  Rng rng = make_rng(403);
+  for (int i = 0; i < 10000; ++i) {
+    Vec3 p = random_vec3(&rng, 1);
+    add_triangle(&concentric, p, -p, {p.x, -p.y, 0});  // the box is that of p and -p
+  }
+  Mesh same = duplicates("identical", 10000);
+  for (const Mesh* mesh : {&same, &concentric}) {
+    auto world = make_world(*mesh, &kBvhAccel);
+    INFO(mesh->name << ", depth " << depth_of(*world));
+    CHECK(depth_of(*world) <= 8);
+    CHECK(world->keep.used <= kBvhAccel.need(10000));
+    CHECK(world->keep.used_max <= kBvhAccel.need(10000));
+    CHECK(world->scratch.used == 0);
+    CHECK(is_sound(*world));
+    CHECK(wrong_answers(*world, *mesh, 30, 404) == 0);
+  }
+  auto world = make_world(same, &kBvhAccel);
+  CHECK(closest(*world, {{0, 0, 5}, {0, 0, -1}, kInfinity}).triangle == 0);  // the smallest id of ten thousand equals
+}
+
+// Goal: boxes nested 2^-i, which drive a greedy tree into depth, end the build within plan. Method: all the powers of
+// two that float holds below 1e18, one triangle of each and many of each; ratios nearer one go deeper.
+TEST_CASE("hard_15_boxes_nested_by_powers_of_two_end_the_build_within_plan") {
+  for (int copies : {1, 4, 40})
+    for (float ratio : {0.5f, 0.7f}) {
+      Mesh mesh;
+      for (float s = 5e17f; s > 1e-36f; s *= ratio)
+        for (int i = 0; i < copies; ++i) add_triangle(&mesh, {s, 0, -s}, {0, s, s}, {-s, -s, 0});
+      auto world = make_world(mesh, &kBvhAccel);
+      INFO(copies << " copies, ratio " << ratio << ", depth " << depth_of(*world));
+      CHECK(depth_of(*world) <= kBvhDepthMax);
+      CHECK(world->keep.used_max <= kBvhAccel.need(static_cast<std::uint32_t>(mesh.triangles.size())));
+      CHECK(is_sound(*world));
+      CHECK(wrong_answers(*world, mesh, 100, 405) == 0);
+    }
+}
+
+// Goal: a refitted tree answers as one that is built anew, and parents hold their children. Method: move the vertices
+// of several meshes, a little and beyond recognition, through NaN and back; compare with brute force and a rebuilt
+// tree.
+TEST_CASE("hard_19_refit_after_motion_contains_children_and_hits_as_a_rebuild") {
+  for (Mesh mesh : {jittered_sphere(3, 1, {0, 0, 0}, 0.05f, 43), soup("soup", 500, 1, 0.2f, 44), degenerates()}) {
+    auto world = make_world(mesh, &kBvhAccel);
+    Rng rng = make_rng(406);
+    for (float motion : {0.0f, 1e-3f, 0.5f, 1e3f, 1e15f, 0.1f}) {
+      for (Vec3& p : mesh.positions) p = p + random_vec3(&rng, motion);
+      world->positions[0].x = kNan, world->positions.back().y = kInfinity;
+      Array<std::uint8_t> data = {world->keep.base, world->accel.data.count};
+      kBvhAccel.refit(&world->accel, data);
+      CHECK(is_finite(world->accel.bounds.low));
+      std::copy(mesh.positions.begin(), mesh.positions.end(), world->positions.begin());
+      kBvhAccel.refit(&world->accel, data);
+      auto rebuilt = make_world(mesh, &kBvhAccel);
+      INFO(mesh.name << ", motion " << motion);
+      CHECK(contains_children(BvhView(world->accel.data.data)));
+      CHECK(is_sound(*world));
+      CHECK(world->accel.bounds.low == rebuilt->accel.bounds.low);
+      CHECK(world->accel.bounds.high == rebuilt->accel.bounds.high);
+      CHECK(wrong_answers(*world, mesh, 400, 407) == 0);
+      CHECK(wrong_answers(*rebuilt, mesh, 100, 408) == 0);
+    }
+  }
+}
