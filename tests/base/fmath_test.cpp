@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr float kInfinityF = std::numeric_limits<float>::infinity();
-constexpr int kSampleCount = 200000;
+constexpr bool kLongDoubleIsLonger = sizeof(long double) > sizeof(double);  // not on 32-bit ARM, mostly emulated
+constexpr int kSampleCount = kLongDoubleIsLonger ? 200000 : 10000;
 
 // Greatest error of `ours` against the C library's long double function over random samples in [low, high]. Where long
 // double is double (32-bit ARM) the library's own error of up to an ulp is allowed for.
@@ -23,11 +24,10 @@ double greatest_error(double (*ours)(double), long double (*exact)(long double),
                       bool relative) {
   Rng rng = make_rng(7);
   double worst = 0;
-  bool extended = sizeof(long double) > sizeof(double);
   for (int i = 0; i < kSampleCount; ++i) {
     double x = low + (high - low) * next_double(&rng);
     long double truth = exact(x), error = std::fabs(ours(x) - truth);
-    if (!extended) error -= std::fabs(truth) * 0x1p-52L;
+    if (!kLongDoubleIsLonger) error -= std::fabs(truth) * 0x1p-52L;
     if (error > 0 && relative) error /= std::fabs(truth);
     if (error > worst || error != error) worst = static_cast<double>(error);
   }
@@ -137,7 +137,8 @@ TEST_CASE("fmath_pow_is_defined_at_the_edges") {
   CHECK(std::isnan(det_pow(2, nan)));
 }
 
-// Goal: the same bits on every CPU (HARDCASES row 63). Method: FNV-1a over results; the value was recorded on x86-64.
+// Goal: the same bits on every CPU (HARDCASES row 63). Method: FNV-1a over results; the value was recorded on x86-64,
+// armel and armhf agree.
 TEST_CASE("hard_63_fmath_gives_the_same_bits_everywhere") {
   Rng rng = make_rng(13);
   std::uint64_t hash = 14695981039346656037ull;
@@ -149,7 +150,8 @@ TEST_CASE("hard_63_fmath_gives_the_same_bits_everywhere") {
   for (int i = 0; i < 20000; ++i) {
     double x = next_double(&rng) * 20 - 10;
     add(det_sin(x)), add(det_cos(x * 1000)), add(det_acos(x / 10)), add(det_exp(x * 60)), add(det_log(std::fabs(x)));
-    add(det_pow(next_float(&rng), next_float(&rng) * 50));
+    float base = next_float(&rng), exponent = next_float(&rng) * 50;
+    add(det_pow(base, exponent));
   }
-  CHECK(hash == 8745523669599883851u);
+  CHECK(hash == 6964161225244906059u);
 }
