@@ -140,7 +140,7 @@ Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files
   Status status;
   seal_memory();
   std::size_t written = 0;
-  for (std::uint32_t frame = s.first; frame <= s.last && status.ok; ++frame, ++written) {
+  for (std::uint32_t frame = s.first; frame <= s.last; ++frame, ++written) {
     bool complete;
     float exposure = r->exposure;
     status = render_with_progress(r, job, frame, &progress, &complete);
@@ -151,6 +151,7 @@ Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files
     fit_for_levels(job.aov, paths[written], r);
     status = write_picture(paths[written].c_str(), job.picture, r);
     r->exposure = exposure;
+    if (!status.ok) break;
   }
   unseal_memory();
   end_progress(&progress);

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# The program as a user meets it: exit statuses, one-line errors, files. Usage: cli_test.sh PROGRAM [EMULATOR...]
+# PROGRAM is built with the sealed heap, so every command here also proves that nothing allocates after the seal.
+set -u
+program=$(realpath "$1")
+shift
+run=("$@" "$program")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+passed=0 failed=0
+has_png=$("${run[@]}" render cube --size 8x8 -o probe.png >/dev/null 2>&1 && echo 1 || echo 0)
+
+# expect NAME STATUS PATTERN COMMAND...: the exit status, and a pattern in what it prints.
+expect() {
+  local name=$1 status=$2 pattern=$3
+  shift 3
+  local out got
+  out=$("${run[@]}" "$@" 2>&1 </dev/null)
+  got=$?
+  if [ "$got" -ne "$status" ]; then
+    echo "FAILED $name: exit $got, expected $status: $out" && failed=$((failed + 1))
+  elif ! grep -qE -- "$pattern" <<<"$out"; then
+    echo "FAILED $name: '$pattern' is not in: $out" && failed=$((failed + 1))
+  elif [ "$status" -eq 1 ] && [ "$(grep -c '' <<<"$out")" -ne 1 ]; then
+    echo "FAILED $name: an error must be one line: $out" && failed=$((failed + 1))
+  else
+    passed=$((passed + 1))
+  fi
+}
+check() {
+  local name=$1
+  shift
+  if "$@"; then passed=$((passed + 1)); else echo "FAILED $name: $*" && failed=$((failed + 1)); fi
+}
+small=(--size 32x24 --threads 2)
+
+# Goal: help teaches and usage errors are told apart from bad input.
+expect help 0 'render +render a frame' --help
+expect help_of_command 0 '--area-lights' render --help
+expect version 0 '[0-9]+\.[0-9]+' --version
+expect no_command 2 'subcommand' 
+expect unknown_option 2 'nonsense' render cornell --nonsense
+expect unknown_scene 1 'no_such_scene' render no_such_scene -o a.ppm
+expect bad_size 1 '320x240' render cube --size 0y3 -o a.ppm
+expect bad_size_zero 1 'width' render cube --size 0x3 -o a.ppm
+expect bad_ending 1 '\.png' render cube "${small[@]}" -o a.jpeg
+expect bad_folder 1 'cannot be written' render cube "${small[@]}" -o no/such/folder/a.ppm
+expect bad_depth 1 'depth' render cube "${small[@]}" --depth 99 -o a.ppm
+expect bad_effect 1 'no effect' render cube "${small[@]}" --effects auto,-sparkle -o a.ppm
+expect bad_camera 1 'VFOV' render cube "${small[@]}" --camera "1 2" -o a.ppm
+expect camera_at_its_target 1 'same point' render cube "${small[@]}" --camera "1,1,1 1,1,1 0,1,0 40" -o a.ppm
+expect camera_index 1 'no camera 7' render cube "${small[@]}" --camera-index 7 -o a.ppm
+expect too_little_memory 1 'memory .*would' render statue --memory 1M -o a.ppm
+expect aov_name 1 'depth, normal' render cube "${small[@]}" --aov colour -o a.ppm
+expect frames_format 1 'first:last' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
+
+# Goal: every output exists and has its size. Method: PPM and PFM headers and byte counts, raw framebuffers.
+expect render_ppm 0 'ns per pixel' render cornell "${small[@]}" -o a.ppm
+check ppm_size test "$(stat -c %s a.ppm)" -eq $((13 + 32 * 24 * 3))
+expect render_pfm 0 'ns per pixel' render cornell "${small[@]}" -o a.pfm
+check pfm_size test "$(tail -c $((32 * 24 * 12)) a.pfm | wc -c)" -eq $((32 * 24 * 12))
+expect render_raw 0 'ns per pixel' render cornell "${small[@]}" --raw-format rgb565 --rotate 90 --dither -o a.raw
+check raw_size test "$(stat -c %s a.raw)" -eq $((32 * 24 * 2))
+for aov in depth normal triangle cost; do expect "aov_$aov" 0 'ns per pixel' render cornell "${small[@]}" --aov $aov -o "$aov.pfm"; done
+expect sequence 0 'a frame' render seesaw "${small[@]}" --frames 3:5 -o s.ppm
+for n in 3 4 5; do check "sequence_file_$n" test -s s-000$n.ppm; done
+check no_part_file_is_left test -z "$(ls ./*.part 2>/dev/null)"
+if [ "$has_png" = 1 ]; then
+  expect render_png 0 'ns per pixel' render cornell "${small[@]}" -o a.png
+  check png_magic test "$(head -c 8 a.png | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a
+else
+  expect png_is_refused 1 'libpng' render cornell "${small[@]}" -o a.png
+fi
+
+# Goal: the picture depends on nothing it should not depend on.
+"${run[@]}" render cornell --size 32x24 --threads 1 -o one.ppm >/dev/null
+"${run[@]}" render cornell --size 32x24 --threads 5 -o five.ppm >/dev/null
+check threads_give_one_picture cmp -s one.ppm five.ppm
+expect bake 0 'triangles' bake cornell -o c.pray
+expect render_baked 0 'ns per pixel' render c.pray --size 32x24 -o baked.ppm
+check baked_gives_the_same_picture cmp -s one.ppm baked.ppm
+"${run[@]}" render cornell --size 32x24 --effects all -o all.ppm >/dev/null
+check all_effects_give_the_same_picture cmp -s one.ppm all.ppm
+
+# Goal: a file that lies is refused in one line.
+head -c 5000 c.pray >cut.pray
+expect truncated_scene 1 'cut.pray' render cut.pray -o b.ppm
+: >empty.pray
+expect empty_scene 1 'empty' render empty.pray -o b.ppm
+mkdir folder.pray
+expect folder_as_scene 1 "regular file" render folder.pray -o b.ppm
+check nothing_was_written test ! -e b.ppm
+
+# Goal: reports.
+expect plan 0 'shadow +on' plan cornell
+expect plan_map 0 'persistent +accelerator' plan cornell
+expect plan_json 0 '"total_bytes"' plan cornell --json -
+expect bench 0 'per pixel' bench cube "${small[@]}" --frames 2
+expect bench_json 0 '"scanline_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --json -
+expect view_null 0 '' view seesaw "${small[@]}" --screen null --frames 3
+expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
