@@ -1,5 +1,5 @@
-// Reads glTF 2.0, OBJ/MTL and, where assimp is built in, what assimp reads, into a Scene. Desktop only: exceptions and the
-// heap live here, and no exception leaves.
+// Reads glTF 2.0, OBJ/MTL and, where assimp is built in, what assimp reads, into a Scene. Desktop only: exceptions and
+// the heap live here, and no exception leaves.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,8 +11,8 @@
 namespace pocketray {
 
 struct ImportOptions {
-  std::uint32_t texture_side_max = 512;   // larger textures are halved until they fit
-  float crease_angle = 40;                // degrees; meshes that come without normals are smoothed below it (glTF: flat)
+  std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
+  float crease_angle = 40;               // degrees; meshes that come without normals are smoothed below it (glTF: flat)
   std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses what would become larger than this
 };
 

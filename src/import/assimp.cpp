@@ -1,0 +1,197 @@
+#include "import/assimp.h"
+
+#ifdef POCKETRAY_HAVE_ASSIMP
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cstring>
+
+#include "import/assimp_parts.h"
+#include "import/import_error.h"
+#include "import/normals.h"
+
+namespace pocketray {
+namespace {
+
+// Formats that assimp reads well; glTF and OBJ have readers of their own here.
+const char* const kEndings[] = {"ply", "stl", "fbx", "dae", "3ds",  "off", "x",   "3mf", "blend",
+                                "lwo", "ac",  "ase", "b3d", "ms3d", "md2", "md3", "smd", "x3d"};
+
+// Files beside the scene file, and no others.
+class FilesBeside : public Assimp::DefaultIOSystem {
+ public:
+  explicit FilesBeside(const std::string& scene_path) : scene_path_(scene_path) {}
+  bool Exists(const char* path) const override { return allowed(path) && DefaultIOSystem::Exists(path); }
+  Assimp::IOStream* Open(const char* path, const char* mode) override {
+    return allowed(path) && std::strchr(mode, 'r') ? DefaultIOSystem::Open(path, mode) : nullptr;
+  }
+
+ private:
+  bool allowed(const std::string& path) const {
+    if (path == scene_path_) return true;
+    std::size_t slash = scene_path_.rfind('/');
+    std::string folder = slash == std::string::npos ? "" : scene_path_.substr(0, slash + 1);
+    if (path.compare(0, folder.size(), folder) != 0) return false;
+    try {
+      path_beside(scene_path_, path.substr(folder.size()));
+      return true;
+    } catch (const ImportError&) {
+      return false;
+    }
+  }
+  std::string scene_path_;
+};
+
+// Assimp takes the counts of a PLY header at their word; every element needs at least a byte of the file for each of
+// its properties.
+void check_ply_counts(const Bytes& bytes) {
+  std::string header(bytes.begin(),
+                     bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 65536)));
+  std::size_t end = header.find("end_header");
+  if (header.compare(0, 3, "ply") != 0 || end == std::string::npos) fail_import("this is no PLY file; export it again");
+  std::uint64_t count = 0, left = bytes.size() - end;
+  for (std::size_t at = 0; at < end;) {
+    std::size_t next = std::min(header.find('\n', at), end) + 1;
+    char name[64];
+    unsigned long long number = 0;
+    std::string line = header.substr(at, next - at);
+    if (std::sscanf(line.c_str(), "element %63s %20llu", name, &number) == 2) count = number;
+    bool property = line.compare(0, 9, "property ") == 0;
+    if (property && count > left)
+      fail_import("the PLY header promises %llu elements, more than the file holds; copy the file again",
+                  static_cast<unsigned long long>(count));
+    if (property) left -= count;
+    at = next;
+  }
+}
+
+struct AssimpReader {
+  const aiScene* scene;
+  SceneBuilder* builder;
+  std::vector<std::uint32_t> materials;  // assimp index → scene index
+  bool own_normals;                      // take the file's
+};
+
+MeshData convert(const AssimpReader& reader, const aiMesh& source) {
+  MeshData mesh;
+  std::size_t count = source.mNumVertices;
+  require_bytes(*reader.builder, count, 64, "the geometry");
+  require_bytes(*reader.builder, source.mNumFaces, 12, "the geometry");
+  if (source.mMaterialIndex >= reader.materials.size())
+    fail_import("a mesh uses a material that does not exist; export the file again");
+  mesh.material = reader.materials[source.mMaterialIndex];
+  const Material& material = reader.builder->out->materials[mesh.material];
+  bool textured = material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
+  for (std::size_t i = 0; i < count; ++i) {
+    const aiVector3D& p = source.mVertices[i];
+    mesh.positions.push_back({p.x, p.y, p.z});
+    if (source.HasNormals() && reader.own_normals) {
+      const aiVector3D& n = source.mNormals[i];
+      mesh.normals.push_back(normalize(Vec3{n.x, n.y, n.z}));
+    }
+    if (textured && source.HasTextureCoords(0)) {
+      const aiVector3D& t = source.mTextureCoords[0][i];
+      mesh.uvs.push_back(std::isfinite(t.x) && std::isfinite(t.y) ? Vec2{t.x, 1 - t.y} : Vec2{0, 0});
+    }
+    if (source.HasVertexColors(0)) mesh.colors.push_back(assimp_color(source.mColors[0][i]));
+  }
+  for (unsigned f = 0; f < source.mNumFaces; ++f) {
+    if (source.mFaces[f].mNumIndices != 3) continue;  // points and lines are sorted out by assimp's step below
+    for (unsigned k = 0; k < 3; ++k) mesh.indices.push_back(source.mFaces[f].mIndices[k]);
+  }
+  return mesh;
+}
+
+Transform transform_of(const aiMatrix4x4& m) {
+  Transform t;
+  for (unsigned row = 0; row < 3; ++row)
+    for (unsigned column = 0; column < 4; ++column) t.m[row][column] = m[row][column];
+  return t;
+}
+
+void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
+  struct Visit {
+    const aiNode* node;
+    Transform world;
+  };
+  std::vector<Visit> stack = {{reader->scene->mRootNode, transform_of(reader->scene->mRootNode->mTransformation)}};
+  while (!stack.empty()) {
+    Visit visit = stack.back();
+    stack.pop_back();
+    for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
+      unsigned mesh = visit.node->mMeshes[i];
+      if (mesh >= meshes->size()) fail_import("a node uses a mesh that does not exist; export the file again");
+      require_invertible(visit.world, std::string("node '") + visit.node->mName.C_Str() + "'");
+      append_mesh(reader->builder, (*meshes)[mesh], visit.world);
+    }
+    for (unsigned i = visit.node->mNumChildren; i-- > 0;)
+      stack.push_back(
+          {visit.node->mChildren[i], visit.world * transform_of(visit.node->mChildren[i]->mTransformation)});
+  }
+}
+
+}  // namespace
+
+bool assimp_reads(const std::string& ending) {
+  bool listed =
+      std::any_of(std::begin(kEndings), std::end(kEndings), [&](const char* known) { return ending == known; });
+  return listed && Assimp::Importer().IsExtensionSupported("." + ending);
+}
+
+std::string assimp_formats() {
+  std::string formats;
+  for (const char* ending : kEndings)
+    if (assimp_reads(ending)) formats += std::string(" ") + ending;
+  return formats;
+}
+
+void import_assimp(const std::string& path, const std::string& ending, const Bytes& bytes, SceneBuilder* builder) {
+  if (ending == "ply") check_ply_counts(bytes);
+  require_bytes(*builder, bytes.size(), 4, "the file");
+  Assimp::Importer importer;
+  importer.SetIOHandler(new FilesBeside(path));  // the importer owns it
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                                                     aiProcess_SortByPType | aiProcess_ValidateDataStructure);
+  if (!scene || !scene->mRootNode)
+    fail_import("%.300s (as assimp reports); export the file again", importer.GetErrorString());
+  if (scene->HasAnimations()) note_unused(builder, "animation (use glTF)");
+
+  AssimpReader reader = {scene, builder, {}, ending != "stl"};
+  bool bare = ending == "ply" || ending == "stl" || ending == "off";  // no materials; assimp makes up one that shines
+  for (unsigned i = 0; i < scene->mNumMaterials; ++i)
+    reader.materials.push_back(bare ? add_default_material(builder)
+                                    : add_assimp_material(builder, path, *scene, *scene->mMaterials[i]));
+  std::vector<MeshData> meshes;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+    const aiMesh& source = *scene->mMeshes[i];
+    MeshData mesh = convert(reader, source);
+    tidy_mesh(&mesh, std::string("mesh '") + source.mName.C_Str() + "'");
+    if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
+    meshes.push_back(std::move(mesh));
+  }
+  append_nodes(&reader, &meshes);
+  add_assimp_lights_and_cameras(builder, *scene);
+}
+
+}  // namespace pocketray
+
+#else
+
+#include "import/import_error.h"
+
+namespace pocketray {
+
+bool assimp_reads(const std::string&) { return false; }
+std::string assimp_formats() { return ""; }
+void import_assimp(const std::string&, const std::string&, const Bytes&, SceneBuilder*) {
+  fail_import("built without assimp");
+}
+
+}  // namespace pocketray
+
+#endif

@@ -1,0 +1,112 @@
+#include "import/files.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "import/import_error.h"
+
+namespace pocketray {
+
+bool file_exists(const std::string& path) {
+  struct stat info;
+  return stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
+}
+
+Bytes read_file(const std::string& path, std::uint64_t byte_count_max) {
+  struct stat info;
+  if (stat(path.c_str(), &info) != 0) fail_import("cannot read %s: %s", path.c_str(), std::strerror(errno));
+  if (!S_ISREG(info.st_mode)) fail_import("%s is no file", path.c_str());
+  if (static_cast<std::uint64_t>(info.st_size) > byte_count_max)
+    fail_import("%s has %lld bytes, more than the %llu a scene may take; use a smaller model", path.c_str(),
+                static_cast<long long>(info.st_size), static_cast<unsigned long long>(byte_count_max));
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) fail_import("cannot read %s: %s", path.c_str(), std::strerror(errno));
+  Bytes bytes(static_cast<std::size_t>(info.st_size));
+  std::size_t got = bytes.empty() ? 0 : std::fread(bytes.data(), 1, bytes.size(), file.get());
+  if (got != bytes.size()) fail_import("cannot read all of %s", path.c_str());
+  return bytes;
+}
+
+std::string path_beside(const std::string& scene_path, const std::string& name) {
+  std::string relative = name;
+  std::replace(relative.begin(), relative.end(), '\\', '/');
+  bool outside = relative.empty() || relative[0] == '/' || relative.find(':') != std::string::npos ||
+                 relative.find('\0') != std::string::npos;
+  for (std::size_t begin = 0; begin <= relative.size();) {
+    std::size_t end = std::min(relative.find('/', begin), relative.size());
+    outside |= relative.compare(begin, end - begin, "..") == 0;
+    begin = end + 1;
+  }
+  if (outside)
+    fail_import("the file names '%.200s'; put that file beside the scene and name it without a path", name.c_str());
+  std::size_t slash = scene_path.rfind('/');
+  return (slash == std::string::npos ? std::string() : scene_path.substr(0, slash + 1)) + relative;
+}
+
+static int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  char lower = static_cast<char>(c | 0x20);
+  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+static std::string percent_decoded(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0) {
+      result += static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
+      i += 2;
+    } else {
+      result += text[i];
+    }
+  }
+  return result;
+}
+
+static Bytes base64_decoded(const char* text, std::size_t size) {
+  Bytes result;
+  result.reserve(size / 4 * 3 + 3);
+  std::uint32_t bits = 0, bit_count = 0;
+  for (std::size_t i = 0; i < size && text[i] != '='; ++i) {
+    static const char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const char* digit = text[i] ? std::strchr(kDigits, text[i]) : nullptr;
+    if (!digit) fail_import("a data URI is not valid base64; export the file again");
+    bits = bits << 6 | static_cast<std::uint32_t>(digit - kDigits);
+    bit_count += 6;
+    if (bit_count >= 8) {
+      bit_count -= 8;
+      result.push_back(static_cast<std::uint8_t>(bits >> bit_count));
+    }
+  }
+  return result;
+}
+
+Bytes read_uri(const std::string& scene_path, const std::string& uri, std::uint64_t byte_count_max) {
+  if (uri.compare(0, 5, "data:") != 0) return read_file(path_beside(scene_path, percent_decoded(uri)), byte_count_max);
+  std::size_t comma = uri.find(',');
+  if (comma == std::string::npos || comma < 7 || uri.compare(comma - 7, 7, ";base64") != 0)
+    fail_import("a data URI is not base64; export the file again");
+  return base64_decoded(uri.data() + comma + 1, uri.size() - comma - 1);
+}
+
+std::string path_ending(const std::string& path) {
+  std::size_t dot = path.rfind('.'), slash = path.rfind('/');
+  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return "";
+  std::string ending = path.substr(dot + 1);
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+std::string path_stem(const std::string& path) {
+  std::size_t slash = path.rfind('/');
+  std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+  std::size_t dot = name.rfind('.');
+  return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,89 @@
+// glTF 2.0, inside: the parsed file and the steps that turn it into a scene, each in the file gltf_<step>.cpp.
+// tinygltf parses the structure; buffers and images are fetched here, so that file access stays beside the scene file
+// and sizes are known before memory is taken. Section numbers cite the Khronos specification of glTF 2.0.
+#pragma once
+#include <tiny_gltf.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "import/files.h"
+#include "import/image.h"
+#include "import/scene_builder.h"
+
+namespace pocketray {
+
+// What gltf_node.cpp finds out about a node of the default scene.
+struct GltfNode {
+  bool visited = false;
+  int parent = -1;
+  Transform local, world;  // at rest
+  bool moves = false;      // an animation moves it or a node above it
+  int mover = -1;          // the nearest node at or above it that an animation moves
+  bool exported = false;   // becomes a Node of the scene
+  std::uint32_t out_node = kNone;
+};
+
+struct GltfFile {
+  std::string path;
+  SceneBuilder* builder = nullptr;
+  tinygltf::Model model;
+  Bytes binary_chunk;  // of a .glb
+  bool has_binary_chunk = false;
+  std::vector<GltfNode> nodes;           // parallel to model.nodes
+  std::vector<int> order;                // nodes of the default scene, parents first
+  std::vector<std::uint32_t> materials;  // glTF index → scene index, made on first use
+  std::vector<int> material_uv_set;      // TEXCOORD set each material uses, -1: none; parallel to model.materials
+  std::uint32_t default_material = kNone;
+  std::map<int, Image> images;            // decoded, for reading channel means
+  std::map<int, std::uint32_t> textures;  // glTF texture → scene texture
+};
+
+// gltf.cpp: reads a .gltf or .glb into the builder.
+void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder);
+
+// gltf_parse.cpp: container, JSON, buffers; refuses required extensions that are not known.
+void gltf_parse(GltfFile* file, Bytes bytes);
+// Bytes of a buffer view, checked. Throws for a view that leaves its buffer.
+const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t* byte_count);
+
+// gltf_accessor.cpp: elements as floats (normalised integers expanded, sparse values applied), `components` each; fewer
+// components in the file are an error. `what` names the use in errors.
+std::vector<float> gltf_floats(GltfFile* file, int accessor, int components, const char* what);
+std::vector<std::uint32_t> gltf_uints(GltfFile* file, int accessor, int components, const char* what);
+std::size_t gltf_count(const GltfFile& file, int accessor, const char* what);
+int gltf_component_count(const GltfFile& file, int accessor);
+std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what);
+
+// gltf_texture.cpp
+const Image& gltf_image(GltfFile* file, int texture_index);
+// Scene texture and transform of a texture reference.
+TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info);
+// TEXCOORD set of the reference, after KHR_texture_transform.
+int gltf_uv_set(const tinygltf::TextureInfo& info);
+
+// gltf_material.cpp: scene material of a glTF material (-1: the default one).
+std::uint32_t gltf_material(GltfFile* file, int material);
+
+// gltf_mesh.cpp: the primitives of a mesh that make triangles.
+std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
+
+// gltf_node.cpp: visits the default scene; fills file->nodes and file->order.
+void gltf_visit_nodes(GltfFile* file);
+// Transforms EXT_mesh_gpu_instancing asks for; one identity without it.
+std::vector<Transform> gltf_instances(GltfFile* file, int node);
+// Translation, rotation and scale of a node without a matrix.
+Node gltf_node_trs(const GltfFile& file, int node);
+std::string gltf_node_name(const GltfFile& file, int node);
+
+// gltf_light.cpp
+void gltf_lights_and_cameras(GltfFile* file);
+
+// Numbers out of tinygltf's generic values, with defaults; an extension object or null.
+const tinygltf::Value* gltf_extension(const tinygltf::ExtensionMap& extensions, const char* name);
+double gltf_number(const tinygltf::Value& object, const char* key, double fallback);
+Vec3 gltf_color(const tinygltf::Value& object, const char* key, const Vec3& fallback);
+tinygltf::TextureInfo gltf_texture_info(const tinygltf::Value& object, const char* key);
+
+}  // namespace pocketray

@@ -1,0 +1,104 @@
+// KHR_lights_punctual and cameras (sec. 3.10).
+#include <algorithm>
+#include <cmath>
+
+#include "base/fmath.h"
+#include "base/limits.h"
+#include "import/gltf.h"
+#include "import/import_error.h"
+
+namespace pocketray {
+namespace {
+
+Vec3 column(const Transform& t, int c) { return {t.m[0][c], t.m[1][c], t.m[2][c]}; }
+
+// Node → the space of the node that moves it, or the world.
+Transform fixed_part(const GltfFile& file, int index, std::uint32_t* out_node) {
+  const GltfNode& node = file.nodes[static_cast<std::size_t>(index)];
+  *out_node = kNone;
+  if (node.mover < 0) return node.world;
+  *out_node = file.nodes[static_cast<std::size_t>(node.mover)].out_node;
+  Transform t;
+  for (int at = index; at != node.mover; at = file.nodes[static_cast<std::size_t>(at)].parent)
+    t = file.nodes[static_cast<std::size_t>(at)].local * t;
+  return t;
+}
+
+void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
+  SceneStorage& out = *file->builder->out;
+  if (out.lights.size() >= kLightCountMax) fail_import("more than %u lights; remove some", kLightCountMax);
+  Light light;
+  if (source.type == "point") {
+    light.kind = LightKind::point;
+  } else if (source.type == "spot") {
+    light.kind = LightKind::spot;
+  } else if (source.type == "directional") {
+    light.kind = LightKind::directional;
+  } else {
+    note_unused(file->builder, "lights of unknown kind");
+    return;
+  }
+  Transform t = fixed_part(*file, node_index, &light.node);
+  light.position = column(t, 3);
+  light.direction = normalize(-column(t, 2));  // along −z
+  if (is_zero(light.direction)) light.direction = {0, 0, -1};
+  double intensity = std::isfinite(source.intensity) ? std::min(std::max(source.intensity, 0.0), 1e18) : 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double color = source.color.size() >= 3 ? source.color[c] : 1;
+    light.intensity[static_cast<int>(c)] = static_cast<float>(intensity * (color > 0 ? std::min(color, 1e6) : 0));
+  }
+  light.range = source.range > 0 && source.range < 1e18 ? static_cast<float>(source.range) : 0;
+  if (light.kind == LightKind::spot) {
+    double outer = std::min(std::max(source.spot.outerConeAngle, 0.0), kPi / 2);
+    double inner = std::min(std::max(source.spot.innerConeAngle, 0.0), outer);
+    light.cos_outer = static_cast<float>(det_cos(outer));
+    light.cos_inner = static_cast<float>(det_cos(inner));
+  }
+  out.lights.push_back(light);
+  out.info.auto_exposure = 1;  // candela and lux: no display is bright enough for the numbers as they are
+}
+
+void add_camera(GltfFile* file, int camera_index, int node_index) {
+  SceneStorage& out = *file->builder->out;
+  if (camera_index < 0 || static_cast<std::size_t>(camera_index) >= file->model.cameras.size())
+    fail_import("camera %d does not exist; export the file again", camera_index);
+  if (out.cameras.size() >= kCameraCountMax) fail_import("more than %u cameras; remove some", kCameraCountMax);
+  const tinygltf::Camera& source = file->model.cameras[static_cast<std::size_t>(camera_index)];
+  Camera camera;
+  Transform t = fixed_part(*file, node_index, &camera.node);
+  camera.eye = column(t, 3);
+  Vec3 forward = normalize(-column(t, 2)), up = normalize(column(t, 1));
+  camera.target = camera.eye + forward;
+  camera.up = up;
+  double size = source.type == "orthographic" ? 2 * source.orthographic.ymag : source.perspective.yfov;
+  bool valid = size > 0 && size < (source.type == "orthographic" ? 1e18 : kPi) && !is_zero(forward) &&
+               camera.target != camera.eye && !is_zero(cross(forward, up));
+  if (!valid) {
+    note_unused(file->builder, "cameras without a valid view");
+    return;
+  }
+  if (source.type == "orthographic") {
+    camera.projection = Projection::orthographic;
+    camera.vertical_extent = static_cast<float>(size);
+  } else {
+    camera.vertical_fov = static_cast<float>(size);
+  }
+  out.cameras.push_back(camera);
+}
+
+}  // namespace
+
+void gltf_lights_and_cameras(GltfFile* file) {
+  for (int index : file->order) {
+    const tinygltf::Node& node = file->model.nodes[static_cast<std::size_t>(index)];
+    if (node.camera >= 0) add_camera(file, node.camera, index);
+    const tinygltf::Value* extension = gltf_extension(node.extensions, "KHR_lights_punctual");
+    if (!extension) continue;
+    double light = gltf_number(*extension, "light", -1);
+    if (!(light >= 0) || light >= static_cast<double>(file->model.lights.size()))
+      fail_import("%s: its light does not exist; export the file again", gltf_node_name(*file, index).c_str());
+    add_light(file, file->model.lights[static_cast<std::size_t>(light)], index);
+  }
+}
+
+}  // namespace pocketray

@@ -1,0 +1,173 @@
+// Metallic-roughness materials (sec. 3.9) and the KHR_materials extensions.
+//
+// The mapping, for base colour c, metallic m, roughness r, transmission t, index of refraction n:
+//   F0 = lerp(((n − 1)/(n + 1))², c, m)        reflectance at normal incidence (sec. B.2.2)
+//   k = max(0, 1 − r/0.3)²                     how much of F0 is a perfect mirror: all at r = 0, none from r = 0.3
+//   mirror = F0·k, specular = F0·(1 − k)       the glossy lobe is Phong's, of exponent
+//   exponent = 2/α² − 2, α = r²                the Blinn–Phong lobe as wide as GGX of that α [Walter et al. 2007,
+//   sec. 5.2] t' = t·(1 − m), transmission = c·t', diffuse = c·(1 − m)·(1 − t), mirror × (1 − t'): Fresnel gives glass
+//   its mirror absorption = −ln(attenuation colour)/attenuation distance (KHR_materials_volume)
+// A metallicRoughness or transmission texture multiplies its factor by the texture's mean.
+#include <algorithm>
+#include <cmath>
+
+#include "base/fmath.h"
+#include "base/limits.h"
+#include "import/gltf.h"
+#include "import/import_error.h"
+
+namespace pocketray {
+namespace {
+
+float unit(double value) { return value > 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0f; }
+
+Vec3 color3(const std::vector<double>& values, const Vec3& fallback) {
+  if (values.size() < 3) return fallback;
+  return {unit(values[0]), unit(values[1]), unit(values[2])};
+}
+
+// The mean of a data texture's channel; 1 without the texture.
+float texture_mean(GltfFile* file, int texture, int channel, const char* name) {
+  if (texture < 0) return 1;
+  note_remark(file->builder, std::string(name) + " textures count by their mean");
+  return channel_mean(gltf_image(file, texture), channel);
+}
+
+void read_volume(const tinygltf::ExtensionMap& extensions, Material* material) {
+  const tinygltf::Value* volume = gltf_extension(extensions, "KHR_materials_volume");
+  material->thin = !volume || !(gltf_number(*volume, "thicknessFactor", 0) > 0);
+  double distance = volume ? gltf_number(*volume, "attenuationDistance", 0) : 0;  // absent: infinite
+  if (material->thin || !(distance > 0)) return;
+  Vec3 color = gltf_color(*volume, "attenuationColor", {1, 1, 1});
+  for (int c = 0; c < 3; ++c) {
+    double kept = std::min(std::max(static_cast<double>(color[c]), 1e-6), 1.0);
+    material->absorption[c] = static_cast<float>(std::min(-det_log(kept) / distance, 1e18));
+  }
+}
+
+void read_surface(GltfFile* file, const tinygltf::Material& source, Material* material) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  Vec3 base = color3(pbr.baseColorFactor, {1, 1, 1});
+  int texture = pbr.metallicRoughnessTexture.index;
+  float metallic = unit(pbr.metallicFactor) * texture_mean(file, texture, 2, "metallic-roughness");
+  float roughness = unit(pbr.roughnessFactor) * texture_mean(file, texture, 1, "metallic-roughness");
+  if (const tinygltf::Value* ior = gltf_extension(source.extensions, "KHR_materials_ior"))
+    material->ior = static_cast<float>(std::min(std::max(gltf_number(*ior, "ior", 1.5), 1.0), 100.0));
+  float transmission = 0;
+  if (const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_transmission")) {
+    transmission = unit(gltf_number(*extension, "transmissionFactor", 0)) * (1 - metallic);
+    if (transmission > 0)
+      transmission *= texture_mean(file, gltf_texture_info(*extension, "transmissionTexture").index, 0, "transmission");
+  }
+  float root = (material->ior - 1) / (material->ior + 1), dielectric = root * root;
+  Vec3 f0 = Vec3{dielectric, dielectric, dielectric} * (1 - metallic) + base * metallic;
+  float k = std::max(0.0f, 1 - roughness / 0.3f), alpha = roughness * roughness;
+  k = k * k;
+  material->diffuse = base * ((1 - metallic) * (1 - transmission));
+  material->mirror = f0 * (k * (1 - transmission));
+  material->specular = f0 * (1 - k);
+  material->exponent = alpha * alpha > 2e-6f ? std::max(0.0f, 2 / (alpha * alpha) - 2) : 1e6f;
+  material->transmission = base * transmission;
+  if (transmission > 0) read_volume(source.extensions, material);
+}
+
+void read_emission(GltfFile* file, const tinygltf::Material& source, Material* material) {
+  double strength = 1;
+  if (const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_emissive_strength"))
+    strength = std::min(std::max(gltf_number(*extension, "emissiveStrength", 1), 0.0), 1e18);
+  material->emission = color3(source.emissiveFactor, {0, 0, 0}) * static_cast<float>(strength);
+  if (!is_zero(material->emission)) material->emission_texture = gltf_texture_use(file, source.emissiveTexture);
+}
+
+// The scene keeps one set of texture coordinates a vertex: the base colour's, else the emission's.
+int choose_uv_set(GltfFile* file, const tinygltf::Material& source, Material* material) {
+  int base = gltf_uv_set(source.pbrMetallicRoughness.baseColorTexture), emission = gltf_uv_set(source.emissiveTexture);
+  bool has_base = material->diffuse_texture.texture != kNone,
+       has_emission = material->emission_texture.texture != kNone;
+  if (has_base && has_emission && base != emission) {
+    note_remark(file->builder, "emission textures use the base colour's texture coordinates");
+    return base;
+  }
+  return has_base ? base : has_emission ? emission : -1;
+}
+
+Material convert(GltfFile* file, const tinygltf::Material& source) {
+  Material material;
+  read_surface(file, source, &material);
+  read_emission(file, source, &material);
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  material.diffuse_texture = gltf_texture_use(file, pbr.baseColorTexture);
+  material.opacity = pbr.baseColorFactor.size() > 3 ? unit(pbr.baseColorFactor[3]) : 1;
+  material.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::mask
+                        : source.alphaMode == "BLEND" ? AlphaMode::blend
+                                                      : AlphaMode::opaque;
+  material.alpha_cutoff = std::isfinite(source.alphaCutoff) && source.alphaCutoff > 0
+                              ? static_cast<float>(std::min(source.alphaCutoff, 2.0))
+                              : 0.0f;
+  material.double_sided = source.doubleSided;
+  material.unlit = gltf_extension(source.extensions, "KHR_materials_unlit") != nullptr;
+  if (material.unlit) {
+    Vec3 color = color3(pbr.baseColorFactor, {1, 1, 1});
+    TextureUse texture = material.diffuse_texture;
+    AlphaMode mode = material.alpha_mode;
+    float opacity = material.opacity, cutoff = material.alpha_cutoff;
+    std::uint8_t double_sided = material.double_sided;
+    material = Material();
+    material.diffuse = color, material.diffuse_texture = texture, material.alpha_mode = mode;
+    material.opacity = opacity, material.alpha_cutoff = cutoff, material.double_sided = double_sided,
+    material.unlit = 1;
+  }
+  if (source.normalTexture.index >= 0) note_unused(file->builder, "normal maps");
+  if (source.occlusionTexture.index >= 0) note_unused(file->builder, "occlusion maps");
+  if (const tinygltf::Value* volume = gltf_extension(source.extensions, "KHR_materials_volume"))
+    if (volume->Has("thicknessTexture")) note_unused(file->builder, "thickness maps");
+  return material;
+}
+
+}  // namespace
+
+std::uint32_t gltf_material(GltfFile* file, int index) {
+  SceneStorage& out = *file->builder->out;
+  std::uint32_t* known = index < 0 ? &file->default_material : &file->materials[static_cast<std::size_t>(index)];
+  if (*known != kNone) return *known;
+  static const tinygltf::Material kDefault;
+  const tinygltf::Material& source = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
+  if (out.materials.size() >= kMaterialCountMax) fail_import("more than %u materials; merge some", kMaterialCountMax);
+  Material material = convert(file, source);
+  if (index >= 0) file->material_uv_set[static_cast<std::size_t>(index)] = choose_uv_set(file, source, &material);
+  *known = static_cast<std::uint32_t>(out.materials.size());
+  out.materials.push_back(material);
+  return *known;
+}
+
+const tinygltf::Value* gltf_extension(const tinygltf::ExtensionMap& extensions, const char* name) {
+  auto it = extensions.find(name);
+  return it == extensions.end() || !it->second.IsObject() ? nullptr : &it->second;
+}
+
+double gltf_number(const tinygltf::Value& object, const char* key, double fallback) {
+  if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsNumber()) return fallback;
+  double value = object.Get(key).GetNumberAsDouble();
+  return std::isfinite(value) ? value : fallback;
+}
+
+Vec3 gltf_color(const tinygltf::Value& object, const char* key, const Vec3& fallback) {
+  if (!object.Has(key) || !object.Get(key).IsArray() || object.Get(key).ArrayLen() < 3) return fallback;
+  Vec3 color = fallback;
+  for (int c = 0; c < 3; ++c) {
+    const tinygltf::Value& value = object.Get(key).Get(c);
+    if (value.IsNumber()) color[c] = unit(value.GetNumberAsDouble());
+  }
+  return color;
+}
+
+tinygltf::TextureInfo gltf_texture_info(const tinygltf::Value& object, const char* key) {
+  tinygltf::TextureInfo info;
+  if (object.Has(key) && object.Get(key).IsObject()) {
+    double index = gltf_number(object.Get(key), "index", -1);
+    info.index = index >= 0 && index < 1e9 ? static_cast<int>(index) : -1;
+  }
+  return info;
+}
+
+}  // namespace pocketray

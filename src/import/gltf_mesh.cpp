@@ -1,0 +1,185 @@
+// Mesh primitives (secs. 3.7.2, 3.7.3).
+#include <cmath>
+
+#include "import/gltf.h"
+#include "import/import_error.h"
+
+namespace pocketray {
+namespace {
+
+constexpr int kMorphTargetMax = 4096;
+
+int attribute(const tinygltf::Primitive& primitive, const char* name) {
+  auto it = primitive.attributes.find(name);
+  return it == primitive.attributes.end() ? -1 : it->second;
+}
+
+std::uint16_t to_u16(float value) {
+  if (!(value > 0)) return 0;
+  return value >= 1 ? 65535 : static_cast<std::uint16_t>(value * 65535.0f + 0.5f);
+}
+
+// Corner numbers of the triangles that `mode` makes of `count` corners (sec. 3.7.2.1).
+std::vector<std::uint32_t> triangle_corners(int mode, std::size_t count) {
+  std::vector<std::uint32_t> corners;
+  std::uint32_t n = static_cast<std::uint32_t>(count);
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    corners.resize(n / 3 * 3);
+    for (std::uint32_t i = 0; i < corners.size(); ++i) corners[i] = i;
+  } else {
+    for (std::uint32_t i = 0; i + 2 < n; ++i) {
+      if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+        corners.insert(corners.end(), {i, i + 1 + i % 2, i + 2 - i % 2});
+      else
+        corners.insert(corners.end(), {i + 1, i + 2, 0});
+    }
+  }
+  return corners;
+}
+
+void require_count(std::size_t got, std::size_t wanted, const char* what) {
+  if (got != wanted) fail_import("%s: %zu elements for %zu vertices; export the file again", what, got, wanted);
+}
+
+void read_indices(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
+  std::vector<std::uint32_t> indices;
+  std::size_t count = mesh->positions.size();
+  if (primitive.indices >= 0) {
+    indices = gltf_uints(file, primitive.indices, 1, "mesh indices");
+    count = indices.size();
+  }
+  require_bytes(*file->builder, count, 3 * sizeof(std::uint32_t), "mesh indices");
+  mesh->indices = triangle_corners(primitive.mode, count);
+  if (primitive.indices >= 0)
+    for (std::uint32_t& corner : mesh->indices) corner = indices[corner];
+}
+
+void read_colors(GltfFile* file, int accessor, MeshData* mesh) {
+  int components = gltf_component_count(*file, accessor) == 4 ? 4 : 3;
+  std::vector<float> values = gltf_floats(file, accessor, components, "COLOR_0");
+  std::size_t n = static_cast<std::size_t>(components);
+  require_count(values.size() / n, mesh->positions.size(), "COLOR_0");
+  bool colored = false;
+  for (std::size_t i = 0; i < values.size(); i += n) {
+    const float* c = &values[i];
+    mesh->colors.push_back(
+        {to_u16(c[0]), to_u16(c[1]), to_u16(c[2]), components == 4 ? to_u16(c[3]) : std::uint16_t(65535)});
+    const Rgba16& last = mesh->colors.back();
+    colored |= last.r != 65535 || last.g != 65535 || last.b != 65535 || last.a != 65535;
+  }
+  if (!colored) mesh->colors.clear();
+}
+
+void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
+  int set = primitive.material >= 0 ? file->material_uv_set[static_cast<std::size_t>(primitive.material)] : -1;
+  if (set < 0) return;
+  int accessor = attribute(primitive, ("TEXCOORD_" + std::to_string(set)).c_str());
+  if (accessor < 0) {
+    note_remark(file->builder, "a textured mesh has no TEXCOORD_" + std::to_string(set));
+    return;
+  }
+  std::vector<float> values = gltf_floats(file, accessor, 2, "TEXCOORD");
+  require_count(values.size() / 2, mesh->positions.size(), "TEXCOORD");
+  mesh->uvs.resize(mesh->positions.size());
+  for (std::size_t i = 0; i < mesh->uvs.size(); ++i) {
+    bool finite = std::isfinite(values[2 * i]) && std::isfinite(values[2 * i + 1]);
+    mesh->uvs[i] = finite ? Vec2{values[2 * i], values[2 * i + 1]} : Vec2{0, 0};
+  }
+}
+
+void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
+  int joints = attribute(primitive, "JOINTS_0"), weights = attribute(primitive, "WEIGHTS_0");
+  if (joints < 0 || weights < 0) return;
+  if (attribute(primitive, "JOINTS_1") >= 0) note_unused(file->builder, "joints beyond four a vertex");
+  std::vector<std::uint32_t> joint = gltf_uints(file, joints, 4, "JOINTS_0");
+  std::vector<float> weight = gltf_floats(file, weights, 4, "WEIGHTS_0");
+  require_count(joint.size() / 4, mesh->positions.size(), "JOINTS_0");
+  require_count(weight.size() / 4, mesh->positions.size(), "WEIGHTS_0");
+  mesh->skin_weights.resize(mesh->positions.size());
+  for (std::size_t i = 0; i < mesh->skin_weights.size(); ++i) {
+    SkinWeight& s = mesh->skin_weights[i];
+    float sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      float w = weight[4 * i + k];
+      s.weight[k] = std::isfinite(w) && w > 0 ? w : 0;
+      if (s.weight[k] > 0 && joint[4 * i + k] > 65535)
+        fail_import("JOINTS_0: joint %u; export the file again", joint[4 * i + k]);
+      s.joint[k] = s.weight[k] > 0 ? static_cast<std::uint16_t>(joint[4 * i + k]) : std::uint16_t(0);
+      sum += s.weight[k];
+    }
+    // Weights that do not sum to one are scaled so that they do; a vertex without any follows its first joint.
+    if (!(sum > 0)) s.weight[0] = sum = 1;
+    for (float& w : s.weight) w = w / sum;
+  }
+}
+
+void read_morph_targets(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
+  if (primitive.targets.size() > kMorphTargetMax)
+    fail_import("more than %d morph targets; export fewer", kMorphTargetMax);
+  std::size_t count = mesh->positions.size();
+  require_bytes(*file->builder, primitive.targets.size(), count * 2 * sizeof(Vec3), "the morph targets");
+  mesh->morph_count = static_cast<std::uint32_t>(primitive.targets.size());
+  bool normals = false;
+  for (const auto& target : primitive.targets) normals |= target.count("NORMAL") > 0;
+  for (const auto& target : primitive.targets) {
+    for (auto* list : {&mesh->morph_positions, &mesh->morph_normals}) {
+      bool is_normal = list == &mesh->morph_normals;
+      if (is_normal && (!normals || mesh->normals.empty())) continue;
+      auto found = target.find(is_normal ? "NORMAL" : "POSITION");
+      std::vector<Vec3> deltas(count, Vec3{0, 0, 0});
+      if (found != target.end()) deltas = gltf_vec3s(file, found->second, "a morph target");
+      require_count(deltas.size(), count, "a morph target");
+      for (Vec3& d : deltas)
+        if (!is_coordinate(d)) fail_import("a morph target is not finite; export the file again");
+      list->insert(list->end(), deltas.begin(), deltas.end());
+    }
+  }
+}
+
+MeshData read_primitive(GltfFile* file, const tinygltf::Primitive& primitive, const std::string& name) {
+  MeshData mesh;
+  mesh.positions = gltf_vec3s(file, attribute(primitive, "POSITION"), "POSITION");
+  read_indices(file, primitive, &mesh);
+  int normals = attribute(primitive, "NORMAL"), colors = attribute(primitive, "COLOR_0");
+  if (normals >= 0) {
+    mesh.normals = gltf_vec3s(file, normals, "NORMAL");
+    require_count(mesh.normals.size(), mesh.positions.size(), "NORMAL");
+    for (Vec3& n : mesh.normals) n = normalize(n);
+  }
+  mesh.material = gltf_material(file, primitive.material);
+  read_uvs(file, primitive, &mesh);
+  if (colors >= 0) read_colors(file, colors, &mesh);
+  if (attribute(primitive, "COLOR_1") >= 0) note_unused(file->builder, "second vertex colours");
+  read_skin_weights(file, primitive, &mesh);
+  read_morph_targets(file, primitive, &mesh);
+  tidy_mesh(&mesh, name);
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<MeshData> gltf_mesh(GltfFile* file, int index) {
+  if (index < 0 || static_cast<std::size_t>(index) >= file->model.meshes.size())
+    fail_import("mesh %d does not exist; export the file again", index);
+  const tinygltf::Mesh& mesh = file->model.meshes[static_cast<std::size_t>(index)];
+  std::vector<MeshData> result;
+  for (const tinygltf::Primitive& primitive : mesh.primitives) {
+    int mode = primitive.mode;
+    if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
+      fail_import("mesh %d has a primitive of mode %d; export the file again", index, mode);
+    if (mode < TINYGLTF_MODE_TRIANGLES) {
+      note_unused(file->builder, mode == TINYGLTF_MODE_POINTS ? "points" : "lines");
+      continue;
+    }
+    if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) >= file->model.materials.size())
+      fail_import("material %d does not exist; export the file again", primitive.material);
+    if (attribute(primitive, "POSITION") < 0) {
+      note_unused(file->builder, "meshes without positions");
+      continue;
+    }
+    result.push_back(read_primitive(file, primitive, "mesh " + std::to_string(index)));
+  }
+  return result;
+}
+
+}  // namespace pocketray

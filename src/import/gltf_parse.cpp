@@ -1,0 +1,195 @@
+// Container, JSON and buffers of a glTF file (secs. 3.6.1, 4).
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "import/gltf.h"
+#include "import/import_error.h"
+
+namespace pocketray {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kJsonDepthMax = 64;  // tinygltf walks extras and extensions by recursion
+
+// Implemented here or by their nature harmless to leave out.
+const char* const kKnownExtensions[] = {
+    "KHR_texture_transform", "KHR_materials_transmission", "KHR_materials_ior",
+    "KHR_materials_volume",  "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",   "EXT_mesh_gpu_instancing",    "KHR_mesh_quantization",
+};
+bool is_known_extension(const std::string& name) {
+  return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),
+                     [&](const char* known) { return name == known; });
+}
+
+std::uint32_t little_endian_32(const std::uint8_t* p) {
+  return static_cast<std::uint32_t>(p[0]) | static_cast<std::uint32_t>(p[1]) << 8 |
+         static_cast<std::uint32_t>(p[2]) << 16 | static_cast<std::uint32_t>(p[3]) << 24;
+}
+
+// Splits a .glb into its JSON text and its binary chunk (sec. 4.4).
+std::string split_glb(GltfFile* file, const Bytes& bytes) {
+  constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+  if (bytes.size() < 20) fail_import("the .glb ends within its header; copy the file again");
+  std::uint32_t version = little_endian_32(&bytes[4]), total = little_endian_32(&bytes[8]);
+  if (version != 2) fail_import("the .glb has version %u, not 2; convert it to glTF 2.0", version);
+  if (total > bytes.size() || total < 20)
+    fail_import("the .glb says it has %u bytes, but has %zu; copy the file again", total, bytes.size());
+  std::string text;
+  for (std::size_t at = 12, index = 0; at < total; ++index) {
+    if (total - at < 8) fail_import("the .glb ends within a chunk header; copy the file again");
+    std::uint32_t size = little_endian_32(&bytes[at]), kind = little_endian_32(&bytes[at + 4]);
+    at += 8;
+    if (size > total - at)
+      fail_import("a chunk of the .glb has %u bytes, but only %zu are left; copy the file again", size, total - at);
+    if (index == 0 && kind != kJsonChunk) fail_import("the first chunk of the .glb is not JSON; export it again");
+    if (index == 0)
+      text.assign(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                  bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+    if (index == 1 && kind == kBinaryChunk) {
+      file->binary_chunk.assign(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                                bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+      file->has_binary_chunk = true;
+    }
+    at += size;
+  }
+  return text;
+}
+
+void check_depth(const std::string& text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kJsonDepthMax) fail_import("the JSON nests deeper than %d; export the file again", kJsonDepthMax);
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+}
+
+const Json* member(const Json& object, const char* key) {
+  if (!object.is_object()) return nullptr;
+  auto it = object.find(key);
+  return it == object.end() ? nullptr : &*it;
+}
+
+std::string string_member(const Json& object, const char* key) {
+  const Json* value = member(object, key);
+  return value && value->is_string() ? value->get<std::string>() : std::string();
+}
+
+void check_version_and_extensions(GltfFile* file, const Json& root) {
+  const Json* asset = member(root, "asset");
+  std::string version = asset ? string_member(*asset, "version") : "";
+  if (version.compare(0, 2, "2.") != 0)
+    fail_import("glTF version '%.20s' instead of 2.0; convert the file to glTF 2.0", version.c_str());
+  if (const Json* required = member(root, "extensionsRequired"))
+    for (const Json& name : *required)
+      if (name.is_string() && !is_known_extension(name.get<std::string>()))
+        fail_import("the file requires the glTF extension %.100s; export it without", name.get<std::string>().c_str());
+  if (const Json* used = member(root, "extensionsUsed"))
+    for (const Json& name : *used)
+      if (name.is_string() && !is_known_extension(name.get<std::string>()))
+        note_unused(file->builder, name.get<std::string>().substr(0, 100));
+}
+
+// Fetches the buffers; afterwards every buffer has at least the bytes it promises (sec. 3.6.1.1).
+void fetch_buffers(GltfFile* file, const Json& root) {
+  const Json* buffers = member(root, "buffers");
+  if (!buffers) return;
+  if (!buffers->is_array()) fail_import("\"buffers\" is no array; export the file again");
+  for (std::size_t i = 0; i < buffers->size(); ++i) {
+    const Json& entry = (*buffers)[i];
+    const Json* length = member(entry, "byteLength");
+    if (!length || !length->is_number_unsigned())
+      fail_import("buffer %zu has no valid byteLength; export the file again", i);
+    std::uint64_t promised = length->get<std::uint64_t>();
+    std::string uri = string_member(entry, "uri");
+    tinygltf::Buffer buffer;
+    if (!uri.empty()) {
+      buffer.data = read_uri(file->path, uri, file->builder->options.byte_count_max);
+    } else if (i == 0 && file->has_binary_chunk) {
+      buffer.data.swap(file->binary_chunk);
+    } else {
+      fail_import("buffer %zu has no data; export the file again", i);
+    }
+    if (buffer.data.size() < promised)
+      fail_import("buffer %zu has %zu bytes instead of %llu; copy the file again", i, buffer.data.size(),
+                  static_cast<unsigned long long>(promised));
+    charge_bytes(file->builder, buffer.data.size(), "the buffers");
+    file->model.buffers.push_back(std::move(buffer));
+  }
+}
+
+// Image references without their bytes, which are fetched when a material needs them.
+void list_images(GltfFile* file, const Json& root) {
+  const Json* images = member(root, "images");
+  if (!images || !images->is_array()) return;
+  for (const Json& entry : *images) {
+    tinygltf::Image image;
+    image.uri = string_member(entry, "uri");
+    const Json* view = member(entry, "bufferView");
+    if (view && view->is_number_integer()) {
+      std::int64_t index = view->get<std::int64_t>();
+      image.bufferView = index >= 0 && index < 1 << 30 ? static_cast<int>(index) : 1 << 30;
+    }
+    file->model.images.push_back(std::move(image));
+  }
+}
+
+}  // namespace
+
+const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t* byte_count) {
+  const auto& views = file.model.bufferViews;
+  if (view_index < 0 || static_cast<std::size_t>(view_index) >= views.size())
+    fail_import("buffer view %d does not exist; export the file again", view_index);
+  const tinygltf::BufferView& view = views[static_cast<std::size_t>(view_index)];
+  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= file.model.buffers.size())
+    fail_import("buffer view %d lies in buffer %d, which does not exist; export the file again", view_index,
+                view.buffer);
+  const auto& data = file.model.buffers[static_cast<std::size_t>(view.buffer)].data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
+    fail_import("buffer view %d reaches beyond its buffer; export the file again", view_index);
+  *byte_count = view.byteLength;
+  return data.data() + view.byteOffset;
+}
+
+void gltf_parse(GltfFile* file, Bytes bytes) {
+  bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+  std::string text = binary ? split_glb(file, bytes) : std::string(bytes.begin(), bytes.end());
+  Bytes().swap(bytes);
+  require_bytes(*file->builder, text.size(), 16, "the JSON");
+  check_depth(text);
+  Json root = Json::parse(text, nullptr, false);
+  if (root.is_discarded() || !root.is_object())
+    fail_import("this is no valid JSON object, so no glTF; export the file again");
+  check_version_and_extensions(file, root);
+  fetch_buffers(file, root);
+  list_images(file, root);
+
+  std::vector<tinygltf::Buffer> buffers;
+  std::vector<tinygltf::Image> images;
+  buffers.swap(file->model.buffers);
+  images.swap(file->model.images);
+  for (const char* key : {"buffers", "images", "extras"}) root.erase(key);
+  text = root.dump(-1, ' ', false, Json::error_handler_t::replace);
+  root = nullptr;
+  tinygltf::TinyGLTF parser;
+  std::string error, warning;
+  if (!parser.LoadASCIIFromString(&file->model, &error, &warning, text.c_str(), static_cast<unsigned>(text.size()), "",
+                                  tinygltf::REQUIRE_VERSION))
+    fail_import("%.300s (as tinygltf reports); export the file again", error.c_str());
+  file->model.buffers.swap(buffers);
+  file->model.images.swap(images);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,111 @@
+#include "import/image.h"
+
+#include <cstring>
+
+#include "base/color.h"
+#include "base/limits.h"
+#include "import/import_error.h"
+
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_TGA
+#define STBI_ONLY_BMP
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 16384
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#include <stb_image.h>
+
+namespace pocketray {
+
+static_assert(STBI_MAX_DIMENSIONS == kTextureSideMax, "one limit");
+
+Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name) {
+  int width = 0, height = 0, channels = 0, size = static_cast<int>(bytes.size());
+  if (bytes.size() > 1u << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
+    fail_import("%s is no PNG, JPEG, TGA or BMP image; convert it", name.c_str());
+  if (width < 1 || height < 1 || width > STBI_MAX_DIMENSIONS || height > STBI_MAX_DIMENSIONS)
+    fail_import("%s has %d × %d pixels, more than %d a side; scale it down", name.c_str(), width, height,
+                STBI_MAX_DIMENSIONS);
+  std::uint64_t texel_count = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  // Decoding holds the filtered and the final image at once.
+  if (texel_count > builder->options.byte_count_max / 12) fail_import("%s is too large; scale it down", name.c_str());
+  stbi_uc* pixels = stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4);
+  if (!pixels) fail_import("%s cannot be decoded (%s); export it again", name.c_str(), stbi_failure_reason());
+  Image image;
+  image.width = static_cast<std::uint32_t>(width), image.height = static_cast<std::uint32_t>(height);
+  try {
+    image.texels.resize(texel_count);
+  } catch (...) {
+    stbi_image_free(pixels);
+    throw;
+  }
+  std::memcpy(image.texels.data(), pixels, texel_count * 4);
+  stbi_image_free(pixels);
+  return image;
+}
+
+// Mean of up to 2 × 2 texels: colour in linear light weighted by alpha, so that what cannot be seen does not bleed in.
+static std::uint32_t mean_texel(const std::uint32_t* texels, int count) {
+  float sum[3] = {0, 0, 0}, plain[3] = {0, 0, 0}, alpha = 0;
+  for (int i = 0; i < count; ++i) {
+    std::uint8_t rgba[4];
+    std::memcpy(rgba, &texels[i], 4);
+    float a = static_cast<float>(rgba[3]);
+    for (int c = 0; c < 3; ++c) sum[c] += srgb_to_linear(rgba[c]) * a, plain[c] += srgb_to_linear(rgba[c]);
+    alpha += a;
+  }
+  std::uint8_t mean[4];
+  for (int c = 0; c < 3; ++c) mean[c] = srgb_level(alpha > 0 ? sum[c] / alpha : plain[c] / static_cast<float>(count));
+  mean[3] = static_cast<std::uint8_t>(alpha / static_cast<float>(count) + 0.5f);
+  std::uint32_t packed;
+  std::memcpy(&packed, mean, 4);
+  return packed;
+}
+
+static Image halved(const Image& image) {
+  Image half;
+  half.width = (image.width + 1) / 2, half.height = (image.height + 1) / 2;
+  half.texels.resize(static_cast<std::size_t>(half.width) * half.height);
+  for (std::uint32_t y = 0; y < half.height; ++y)
+    for (std::uint32_t x = 0; x < half.width; ++x) {
+      std::uint32_t box[4];
+      int count = 0;
+      for (std::uint32_t v = 2 * y; v < 2 * y + 2 && v < image.height; ++v)
+        for (std::uint32_t u = 2 * x; u < 2 * x + 2 && u < image.width; ++u)
+          box[count++] = image.texels[static_cast<std::size_t>(v) * image.width + u];
+      half.texels[static_cast<std::size_t>(y) * half.width + x] = mean_texel(box, count);
+    }
+  return half;
+}
+
+void shrink_image(Image* image, std::uint32_t side_max) {
+  if (side_max < 1) side_max = 1;
+  while (image->width > side_max || image->height > side_max) *image = halved(*image);
+}
+
+std::uint32_t add_texture(SceneBuilder* builder, Image image, Wrap wrap_u, Wrap wrap_v, bool nearest) {
+  SceneStorage& out = *builder->out;
+  shrink_image(&image, builder->options.texture_side_max);
+  if (out.textures.size() >= kTextureCountMax) fail_import("more than %u textures; merge some", kTextureCountMax);
+  charge_bytes(builder, image.texels.size() * 4, "the textures");
+  Texture texture = {};
+  texture.texel_begin = static_cast<std::uint32_t>(out.texels.size());
+  texture.width = static_cast<std::uint16_t>(image.width), texture.height = static_cast<std::uint16_t>(image.height);
+  texture.wrap_u = wrap_u, texture.wrap_v = wrap_v, texture.nearest = nearest ? 1 : 0;
+  out.texels.insert(out.texels.end(), image.texels.begin(), image.texels.end());
+  out.textures.push_back(texture);
+  return static_cast<std::uint32_t>(out.textures.size() - 1);
+}
+
+float channel_mean(const Image& image, int channel) {
+  double sum = 0;
+  for (std::uint32_t texel : image.texels) {
+    std::uint8_t rgba[4];
+    std::memcpy(rgba, &texel, 4);
+    sum += rgba[channel];
+  }
+  return image.texels.empty() ? 1.0f : static_cast<float>(sum / (255.0 * static_cast<double>(image.texels.size())));
+}
+
+}  // namespace pocketray

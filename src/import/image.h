@@ -1,0 +1,30 @@
+// Images: PNG, JPEG, TGA, BMP → texels, halved until they fit.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "import/files.h"
+#include "import/scene_builder.h"
+
+namespace pocketray {
+
+struct Image {
+  std::uint32_t width = 0, height = 0;  // texels
+  std::vector<std::uint32_t> texels;    // bytes R, G, B, A in memory; rows from the top
+};
+
+// Decodes; refuses by its header what would be too large. `name` is for the error line.
+Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name);
+
+// Box-halves width and height, in linear light, weighted by alpha, until neither exceeds `side_max`. Odd sides round
+// up.
+void shrink_image(Image* image, std::uint32_t side_max);
+
+// Appends the image (shrunk to options.texture_side_max) as a texture; its index.
+std::uint32_t add_texture(SceneBuilder* builder, Image image, Wrap wrap_u, Wrap wrap_v, bool nearest);
+
+// Mean of a channel (0 = R … 3 = A) as it is stored, 0–1.
+float channel_mean(const Image& image, int channel);
+
+}  // namespace pocketray

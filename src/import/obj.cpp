@@ -1,0 +1,176 @@
+#include "import/obj.h"
+
+#include <tiny_obj_loader.h>
+
+#include <istream>
+#include <sstream>
+#include <streambuf>
+
+#include "base/color.h"
+#include "import/import_error.h"
+#include "import/normals.h"
+#include "import/obj_material.h"
+
+namespace pocketray {
+namespace {
+
+struct MemoryBuffer : std::streambuf {
+  explicit MemoryBuffer(const Bytes& bytes) {
+    char* begin = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
+    setg(begin, begin, begin + bytes.size());
+  }
+};
+
+// Reads .mtl files beside the scene file; a missing one is a remark.
+class MaterialFiles : public tinyobj::MaterialReader {
+ public:
+  MaterialFiles(const std::string& scene_path, SceneBuilder* builder) : scene_path_(scene_path), builder_(builder) {}
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                  std::map<std::string, int>* by_name, std::string* warning, std::string* error) override {
+    try {
+      Bytes bytes = read_file(path_beside(scene_path_, name), builder_->options.byte_count_max / 16);
+      MemoryBuffer buffer(bytes);
+      std::istream stream(&buffer);
+      tinyobj::LoadMtl(by_name, materials, &stream, warning, error);
+      return true;
+    } catch (const ImportError& failure) {
+      note_remark(builder_, std::string("materials are missing: ") + failure.what());
+      return false;
+    }
+  }
+
+ private:
+  std::string scene_path_;
+  SceneBuilder* builder_;
+};
+
+std::uint16_t linear_16(float srgb) {
+  double c = srgb > 0 ? (srgb < 1 ? static_cast<double>(srgb) : 1.0) : 0.0;
+  return static_cast<std::uint16_t>(srgb_decode(c) * 65535.0 + 0.5);
+}
+
+// Finds or makes the vertex of a corner: OBJ numbers positions, normals and texture coordinates each by themselves.
+class CornerIndex {
+ public:
+  explicit CornerIndex(const tinyobj::attrib_t& attributes)
+      : attributes_(attributes), head_(attributes.vertices.size() / 3, kNone) {}
+
+  void begin_mesh() {
+    for (const tinyobj::index_t& corner : corners_) head_[static_cast<std::size_t>(corner.vertex_index)] = kNone;
+    corners_.clear();
+    next_.clear();
+  }
+
+  std::uint32_t vertex(const tinyobj::index_t& corner, bool normals, bool uvs, MeshData* mesh) {
+    std::size_t p = static_cast<std::size_t>(corner.vertex_index);
+    for (std::uint32_t at = head_[p]; at != kNone; at = next_[at])
+      if (corners_[at].normal_index == corner.normal_index && corners_[at].texcoord_index == corner.texcoord_index)
+        return at;
+    std::uint32_t made = static_cast<std::uint32_t>(corners_.size());
+    corners_.push_back(corner);
+    next_.push_back(head_[p]);
+    head_[p] = made;
+    const float* v = &attributes_.vertices[3 * p];
+    mesh->positions.push_back({v[0], v[1], v[2]});
+    if (normals) {
+      const float* n =
+          corner.normal_index >= 0 ? &attributes_.normals[3 * static_cast<std::size_t>(corner.normal_index)] : nullptr;
+      mesh->normals.push_back(n ? normalize(Vec3{n[0], n[1], n[2]}) : Vec3{0, 0, 0});
+    }
+    if (uvs) {
+      const float* t = corner.texcoord_index >= 0
+                           ? &attributes_.texcoords[2 * static_cast<std::size_t>(corner.texcoord_index)]
+                           : nullptr;
+      bool finite = t && std::isfinite(t[0]) && std::isfinite(t[1]);
+      mesh->uvs.push_back(finite ? Vec2{t[0], 1 - t[1]} : Vec2{0, 0});  // v runs upward in OBJ
+    }
+    if (!attributes_.colors.empty()) {
+      const float* c = &attributes_.colors[3 * p];
+      mesh->colors.push_back({linear_16(c[0]), linear_16(c[1]), linear_16(c[2]), 65535});
+    }
+    return made;
+  }
+
+ private:
+  const tinyobj::attrib_t& attributes_;
+  std::vector<std::uint32_t> head_, next_;  // chains of vertices that share a position
+  std::vector<tinyobj::index_t> corners_;
+};
+
+void check_corner(const tinyobj::index_t& corner, const tinyobj::attrib_t& attributes) {
+  auto beyond = [](int index, std::size_t count) { return index >= 0 && static_cast<std::size_t>(index) >= count; };
+  if (corner.vertex_index < 0 || beyond(corner.vertex_index, attributes.vertices.size() / 3))
+    fail_import("a face uses vertex %d of %zu; export the file again", corner.vertex_index + 1,
+                attributes.vertices.size() / 3);
+  if (beyond(corner.normal_index, attributes.normals.size() / 3))
+    fail_import("a face uses normal %d of %zu; export the file again", corner.normal_index + 1,
+                attributes.normals.size() / 3);
+  if (beyond(corner.texcoord_index, attributes.texcoords.size() / 2))
+    fail_import("a face uses texture coordinate %d of %zu; export the file again", corner.texcoord_index + 1,
+                attributes.texcoords.size() / 2);
+}
+
+bool is_textured(const Material& material) {
+  return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
+}
+
+MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attributes,
+                    const std::vector<Material>& materials, std::uint32_t default_material, CornerIndex* index) {
+  MeshData mesh;
+  index->begin_mesh();
+  bool normals = false, uvs = false;
+  std::size_t triangle_count = shape.mesh.indices.size() / 3;
+  for (std::size_t t = 0; t < triangle_count; ++t) {
+    if (t < shape.mesh.num_face_vertices.size() && shape.mesh.num_face_vertices[t] != 3)
+      fail_import("a face of '%.60s' cannot be made into triangles; triangulate the model", shape.name.c_str());
+    int id = t < shape.mesh.material_ids.size() ? shape.mesh.material_ids[t] : -1;
+    bool known = id >= 0 && static_cast<std::uint32_t>(id) < default_material;
+    mesh.triangle_materials.push_back(known ? static_cast<std::uint32_t>(id) : default_material);
+    uvs |= is_textured(materials[mesh.triangle_materials.back()]);
+  }
+  for (std::size_t c = 0; c < 3 * triangle_count; ++c) {
+    check_corner(shape.mesh.indices[c], attributes);
+    normals |= shape.mesh.indices[c].normal_index >= 0;
+  }
+  for (std::size_t c = 0; c < 3 * triangle_count; ++c) {
+    tinyobj::index_t corner = shape.mesh.indices[c];
+    if (!uvs) corner.texcoord_index = -1;
+    mesh.indices.push_back(index->vertex(corner, normals, uvs, &mesh));
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* builder) {
+  require_bytes(*builder, bytes.size(), 8, "the OBJ text");
+  tinyobj::attrib_t attributes;
+  std::vector<tinyobj::shape_t> shapes;
+  std::vector<tinyobj::material_t> materials;
+  std::string warning, error;
+  MemoryBuffer buffer(bytes);
+  std::istream stream(&buffer);
+  MaterialFiles material_files(path, builder);
+  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_files, true, false))
+    fail_import("%.300s (as tinyobjloader reports); export the file again",
+                error.empty() ? warning.c_str() : error.c_str());
+  for (const tinyobj::material_t& material : materials) add_obj_material(builder, path, material);
+  std::uint32_t default_material = static_cast<std::uint32_t>(builder->out->materials.size());
+  builder->out->materials.emplace_back();
+
+  CornerIndex index(attributes);
+  bool default_used = false;
+  for (const tinyobj::shape_t& shape : shapes) {
+    if (!shape.lines.indices.empty()) note_unused(builder, "lines");
+    if (!shape.points.indices.empty()) note_unused(builder, "points");
+    require_bytes(*builder, shape.mesh.indices.size(), 32, "the geometry");
+    MeshData mesh = shape_mesh(shape, attributes, builder->out->materials, default_material, &index);
+    for (std::uint32_t material : mesh.triangle_materials) default_used |= material == default_material;
+    if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
+    tidy_mesh(&mesh, "'" + shape.name.substr(0, 60) + "'");
+    append_mesh(builder, mesh, Transform());
+  }
+  if (!default_used && default_material > 0) builder->out->materials.pop_back();
+}
+
+}  // namespace pocketray

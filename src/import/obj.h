@@ -1,0 +1,11 @@
+// Wavefront OBJ and MTL.
+#pragma once
+#include "import/files.h"
+#include "import/scene_builder.h"
+
+namespace pocketray {
+
+// Reads an .obj into the builder; the .mtl files and images it names lie beside it.
+void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* builder);
+
+}  // namespace pocketray

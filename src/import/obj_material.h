@@ -1,0 +1,14 @@
+// MTL materials.
+#pragma once
+#include <tiny_obj_loader.h>
+
+#include <string>
+
+#include "import/scene_builder.h"
+
+namespace pocketray {
+
+// Appends the material; images it names lie beside the scene file, and a missing one is a remark. Its index.
+std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_path, const tinyobj::material_t& source);
+
+}  // namespace pocketray

@@ -1,0 +1,211 @@
+#include "import/scene_builder.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cstring>
+
+#include "base/check.h"
+#include "base/limits.h"
+#include "import/import_error.h"
+
+namespace pocketray {
+
+static void add_once(std::vector<std::string>* list, const std::string& text) {
+  if (std::find(list->begin(), list->end(), text) == list->end()) list->push_back(text);
+}
+void note_unused(SceneBuilder* builder, const std::string& what) { add_once(&builder->unused, what); }
+void note_remark(SceneBuilder* builder, const std::string& what) { add_once(&builder->remarks, what); }
+
+void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64_t element_bytes, const char* what) {
+  std::uint64_t max = builder.options.byte_count_max, left = max - std::min(builder.bytes_charged, max);
+  if (count > left / element_bytes)
+    fail_import("%s would take the scene beyond %llu MiB; use a smaller model", what,
+                static_cast<unsigned long long>(max >> 20));
+}
+void charge_bytes(SceneBuilder* builder, std::uint64_t bytes, const char* what) {
+  require_bytes(*builder, bytes, 1, what);
+  builder->bytes_charged += bytes;
+}
+
+bool is_coordinate(const Vec3& p) {
+  return std::fabs(p.x) <= kCoordinateMax && std::fabs(p.y) <= kCoordinateMax && std::fabs(p.z) <= kCoordinateMax;
+}
+
+void require_invertible(const Transform& t, const std::string& name) {
+  for (const auto& row : t.m)
+    for (float value : row)
+      if (!(std::fabs(value) <= kCoordinateMax))
+        fail_import("%.100s: its transform is not finite; export the file again", name.c_str());
+  double det = std::fabs(determinant(t));
+  if (!(det >= static_cast<double>(FLT_MIN)) || det > static_cast<double>(FLT_MAX))
+    fail_import("%.100s: its transform cannot be inverted (determinant %g); give it a scale other than 0", name.c_str(),
+                det);
+}
+
+// Keeps the elements `kept` of each run of `stride` elements.
+template <class T>
+static void gather(std::vector<T>* array, const std::vector<std::uint32_t>& kept, std::size_t stride) {
+  if (array->empty()) return;
+  std::vector<T> result;
+  result.reserve(array->size() / stride * kept.size());
+  for (std::size_t begin = 0; begin < array->size(); begin += stride)
+    for (std::uint32_t index : kept) result.push_back((*array)[begin + index]);
+  array->swap(result);
+}
+
+void tidy_mesh(MeshData* mesh, const std::string& name) {
+  std::size_t count = mesh->positions.size();
+  CHECK(mesh->normals.empty() || mesh->normals.size() == count);
+  CHECK(mesh->uvs.empty() || mesh->uvs.size() == count);
+  CHECK(mesh->colors.empty() || mesh->colors.size() == count);
+  CHECK(mesh->skin_weights.empty() || mesh->skin_weights.size() == count);
+  CHECK_EQ(mesh->morph_positions.size(), mesh->morph_count * count);
+  CHECK(mesh->morph_normals.empty() || mesh->morph_normals.size() == mesh->morph_count * count);
+  CHECK_EQ(mesh->indices.size() % 3, 0u);
+  CHECK(mesh->triangle_materials.empty() || mesh->triangle_materials.size() == mesh->indices.size() / 3);
+  std::vector<std::uint32_t> renumbered(count, kNone), kept;
+  for (std::uint32_t& index : mesh->indices) {
+    if (index >= count)
+      fail_import("%s: index %u, but there are only %zu vertices; export the file again", name.c_str(), index, count);
+    if (renumbered[index] == kNone) {
+      renumbered[index] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(index);
+    }
+  }
+  if (kept.size() == count) return;
+  std::sort(kept.begin(), kept.end());
+  for (std::size_t i = 0; i < kept.size(); ++i) renumbered[kept[i]] = static_cast<std::uint32_t>(i);
+  for (std::uint32_t& index : mesh->indices) index = renumbered[index];
+  gather(&mesh->morph_positions, kept, count);
+  gather(&mesh->morph_normals, kept, count);
+  gather(&mesh->positions, kept, count);
+  gather(&mesh->normals, kept, count);
+  gather(&mesh->uvs, kept, count);
+  gather(&mesh->colors, kept, count);
+  gather(&mesh->skin_weights, kept, count);
+}
+
+// Brings an array that not every mesh has up to `count` elements, unless nobody had it so far.
+template <class T>
+static void append_optional(std::vector<T>* all, const std::vector<T>& more, std::size_t begin, std::size_t count,
+                            T filler) {
+  if (all->empty() && more.empty()) return;
+  all->resize(begin, filler);
+  all->insert(all->end(), more.begin(), more.end());
+  all->resize(begin + count, filler);
+}
+
+static std::uint64_t vertex_bytes(const MeshData& mesh) {
+  return sizeof(Vec3) + (mesh.normals.empty() ? 0 : sizeof(Vec3)) + (mesh.uvs.empty() ? 0 : sizeof(Vec2)) +
+         (mesh.colors.empty() ? 0 : sizeof(Rgba16));
+}
+
+void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world) {
+  SceneStorage& out = *builder->out;
+  std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
+  if (count == 0) return;
+  charge_bytes(builder, count * vertex_bytes(mesh) + triangle_count * sizeof(Triangle), "the geometry");
+  if (begin + count > kVertexCountMax || out.triangles.size() + triangle_count > kTriangleCountMax)
+    fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
+
+  std::vector<bool> usable(count);
+  out.positions.reserve(begin + count > out.positions.capacity() ? std::max(begin + count, begin * 3 / 2) : 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    Vec3 p = transform_point(to_world, mesh.positions[i]);
+    usable[i] = is_coordinate(p);
+    out.positions.push_back(usable[i] ? p : Vec3{0, 0, 0});
+  }
+  std::vector<Vec3> normals(mesh.normals.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = transform_normal(to_world, mesh.normals[i]);
+  append_optional(&out.normals, normals, begin, count, Vec3{0, 0, 0});
+  append_optional(&out.uvs, mesh.uvs, begin, count, Vec2{0, 0});
+  append_optional(&out.colors, mesh.colors, begin, count, Rgba16{65535, 65535, 65535, 65535});
+
+  bool mirrored = determinant(to_world) < 0;
+  std::uint32_t base = static_cast<std::uint32_t>(begin);
+  for (std::size_t t = 0; t < triangle_count; ++t) {
+    const std::uint32_t* v = &mesh.indices[3 * t];
+    if (!usable[v[0]] || !usable[v[1]] || !usable[v[2]]) {
+      ++builder->excluded_triangles;
+      continue;
+    }
+    std::uint32_t material = mesh.triangle_materials.empty() ? mesh.material : mesh.triangle_materials[t];
+    out.triangles.push_back({{base + v[0], base + v[mirrored ? 2 : 1], base + v[mirrored ? 1 : 2]}, material});
+  }
+}
+
+void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world, MovingMesh moving) {
+  SceneStorage& out = *builder->out;
+  std::size_t count = mesh.positions.size();
+  if (count == 0) return;
+  for (const Vec3& p : mesh.positions)
+    if (!is_coordinate(p)) fail_import("a moving mesh has a vertex that is not finite or beyond 1e18; export it again");
+  charge_bytes(builder,
+               count * (2 * sizeof(Vec3) + sizeof(SkinWeight)) +
+                   (mesh.morph_positions.size() + mesh.morph_normals.size()) * sizeof(Vec3),
+               "the moving meshes");
+  moving.vertex_begin = static_cast<std::uint32_t>(out.positions.size());
+  moving.vertex_count = static_cast<std::uint32_t>(count);
+  moving.rest_begin = static_cast<std::uint32_t>(out.rest_positions.size());
+  append_mesh(builder, mesh, to_world);
+  append_optional(&out.rest_normals, mesh.normals, out.rest_positions.size(), count, Vec3{0, 0, 0});
+  out.rest_positions.insert(out.rest_positions.end(), mesh.positions.begin(), mesh.positions.end());
+  moving.skin_weight_begin = static_cast<std::uint32_t>(out.skin_weights.size());
+  out.skin_weights.insert(out.skin_weights.end(), mesh.skin_weights.begin(), mesh.skin_weights.end());
+  moving.morph_begin = static_cast<std::uint32_t>(out.morph_positions.size());
+  moving.morph_count = mesh.morph_count;
+  append_optional(&out.morph_normals, mesh.morph_normals, out.morph_positions.size(), mesh.morph_positions.size(),
+                  Vec3{0, 0, 0});
+  out.morph_positions.insert(out.morph_positions.end(), mesh.morph_positions.begin(), mesh.morph_positions.end());
+  out.moving_meshes.push_back(moving);
+}
+
+static std::string warning_line(const SceneBuilder& builder) {
+  std::string line;
+  for (const std::string& item : builder.unused) line += (line.empty() ? "not used: " : ", ") + item;
+  for (const std::string& item : builder.remarks) line += (line.empty() ? "" : "; ") + item;
+  if (builder.excluded_triangles > 0)
+    line += (line.empty() ? "" : "; ") + std::to_string(builder.excluded_triangles) +
+            " triangles left out: a vertex is not finite or beyond 1e18";
+  return line;
+}
+
+template <class T>
+static Array<const T> view(const std::vector<T>& v) {
+  return {v.empty() ? nullptr : v.data(), static_cast<std::uint32_t>(v.size())};
+}
+
+void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result) {
+  SceneStorage& out = *builder->out;
+  if (out.triangles.empty())
+    fail_import(builder->excluded_triangles ? "no triangle has finite vertices; export the file again"
+                                            : "no triangles to render; export meshes with faces");
+  if (out.materials.empty()) out.materials.emplace_back();
+  std::size_t count = out.positions.size();
+  if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
+  if (!out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
+  if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
+  if (!out.normals.empty() && !out.rest_positions.empty())
+    out.rest_normals.resize(out.rest_positions.size(), Vec3{0, 0, 0});
+  if (!out.morph_normals.empty()) out.morph_normals.resize(out.morph_positions.size(), Vec3{0, 0, 0});
+  std::snprintf(out.info.name, sizeof out.info.name, "%s", name.c_str());
+
+  Scene& scene = result->scene;
+  scene = Scene();
+  scene.info = out.info;
+  scene.positions = view(out.positions), scene.normals = view(out.normals);
+  scene.uvs = view(out.uvs), scene.colors = view(out.colors);
+  scene.triangles = view(out.triangles), scene.materials = view(out.materials);
+  scene.textures = view(out.textures), scene.texels = view(out.texels);
+  scene.lights = view(out.lights), scene.cameras = view(out.cameras);
+  scene.nodes = view(out.nodes), scene.animations = view(out.animations), scene.channels = view(out.channels);
+  scene.key_times = view(out.key_times), scene.key_values = view(out.key_values), scene.weights = view(out.weights);
+  scene.skins = view(out.skins), scene.joints = view(out.joints), scene.moving_meshes = view(out.moving_meshes);
+  scene.rest_positions = view(out.rest_positions), scene.rest_normals = view(out.rest_normals);
+  scene.skin_weights = view(out.skin_weights);
+  scene.morph_positions = view(out.morph_positions), scene.morph_normals = view(out.morph_normals);
+  result->storage = builder->out;
+  result->warning = warning_line(*builder);
+}
+
+}  // namespace pocketray

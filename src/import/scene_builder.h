@@ -1,0 +1,89 @@
+// Collects a scene on the heap while a file is read; what every format shares. Errors are thrown as ImportError.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "import/import.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// One mesh with one material, in object space.
+struct MeshData {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;  // unit, one per vertex, or empty: the geometric normal
+  std::vector<Vec2> uvs;      // one per vertex, or empty
+  std::vector<Rgba16> colors;
+  std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise from the front
+  std::uint32_t material = 0;
+  std::vector<std::uint32_t> triangle_materials;     // one per triangle instead of `material`, or empty
+  std::vector<SkinWeight> skin_weights;              // one per vertex, or empty
+  std::uint32_t morph_count = 0;                     // targets
+  std::vector<Vec3> morph_positions, morph_normals;  // morph_count × vertices; normals may be empty
+};
+
+// The arrays of Scene, owned.
+struct SceneStorage {
+  SceneInfo info;
+  std::vector<Vec3> positions, normals;
+  std::vector<Vec2> uvs;
+  std::vector<Rgba16> colors;
+  std::vector<Triangle> triangles;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<std::uint32_t> texels;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+  std::vector<Node> nodes;
+  std::vector<Animation> animations;
+  std::vector<Channel> channels;
+  std::vector<float> key_times, key_values, weights;
+  std::vector<Skin> skins;
+  std::vector<Joint> joints;
+  std::vector<MovingMesh> moving_meshes;
+  std::vector<Vec3> rest_positions, rest_normals;
+  std::vector<SkinWeight> skin_weights;
+  std::vector<Vec3> morph_positions, morph_normals;
+};
+
+struct SceneBuilder {
+  ImportOptions options;
+  std::shared_ptr<SceneStorage> out = std::make_shared<SceneStorage>();
+  std::uint64_t bytes_charged = 0;
+  std::uint64_t excluded_triangles = 0;
+  std::vector<std::string> unused;   // what the file has and this program does not use
+  std::vector<std::string> remarks;  // what was simplified or repaired
+};
+
+// Counts bytes about to be allocated for `what`; refuses what goes beyond options.byte_count_max.
+void charge_bytes(SceneBuilder* builder, std::uint64_t bytes, const char* what);
+// The same check for `count` elements held for a moment; counts nothing.
+void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64_t element_bytes, const char* what);
+// Adds to the warning line, once each.
+void note_unused(SceneBuilder* builder, const std::string& what);
+void note_remark(SceneBuilder* builder, const std::string& what);
+
+// Checks indices and array lengths, removes vertices that no triangle uses. `name` is for the error line.
+void tidy_mesh(MeshData* mesh, const std::string& name);
+
+// Appends the tidied mesh in world space. A mirroring transform flips the winding; triangles with a vertex that is not
+// finite or beyond kCoordinateMax are left out and counted.
+void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world);
+
+// Appends the tidied mesh as one that moves: world-space vertices by `to_world` (its transform at time 0), and the rest
+// pose. Fills what of `moving` belongs to the arrays; node, skin and instance are the caller's.
+void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world, MovingMesh moving);
+
+// Sets the views of `result` and its warning line. Refuses a scene without triangles.
+void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result);
+
+// Throws, naming `name`, unless the transform is finite and can be inverted: its determinant is a normal float
+// (HARDCASES row 27).
+void require_invertible(const Transform& t, const std::string& name);
+
+// Whether a vertex may be part of a triangle (HARDCASES row 8).
+bool is_coordinate(const Vec3& p);
+
+}  // namespace pocketray

@@ -1,0 +1,76 @@
+// Shared by the import tests: sample files, scene files written on the spot, and small questions to ask a scene.
+#pragma once
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <sys/stat.h>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "import/import.h"
+
+namespace pocketray {
+
+inline std::string shared_scene(const std::string& name) { return std::string(POCKETRAY_SHARED) + "/scenes/" + name; }
+
+// Whether the file is there; prints what is skipped otherwise.
+inline bool have(const std::string& path) {
+  struct stat info;
+  if (stat(path.c_str(), &info) == 0) return true;
+  std::printf("skipped: %s is absent\n", path.c_str());
+  return false;
+}
+
+inline ImportedScene load(const std::string& path, const ImportOptions& options = ImportOptions()) {
+  ImportedScene result;
+  Status status = import_scene(path, options, &result);
+  CHECK_MESSAGE(status.ok, std::string(status.message));
+  CHECK(result.warning.find('\n') == std::string::npos);
+  return result;
+}
+
+inline std::string load_error(const std::string& path, const ImportOptions& options = ImportOptions()) {
+  ImportedScene result;
+  Status status = import_scene(path, options, &result);
+  CHECK(!status.ok);
+  return status.message;
+}
+
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// A folder that goes when the test ends.
+struct TemporaryFolder {
+  std::string path;
+  TemporaryFolder() {
+    const char* base = std::getenv("TMPDIR");
+    std::string name = std::string(base ? base : "/tmp") + "/pocketray_import_XXXXXX";
+    char* made = mkdtemp(&name[0]);
+    REQUIRE(made != nullptr);
+    path = made;
+  }
+  ~TemporaryFolder() { CHECK(std::system(("rm -rf '" + path + "'").c_str()) == 0); }
+  std::string write(const std::string& name, const std::string& content) const {
+    std::ofstream(path + "/" + name, std::ios::binary) << content;
+    return path + "/" + name;
+  }
+};
+
+inline Box bounds(const Scene& scene) {
+  Box box = empty_box();
+  for (const Triangle& t : scene.triangles)
+    for (std::uint32_t v : t.vertex) box = merge(box, scene.positions[v]);
+  return box;
+}
+
+inline double surface_area(const Scene& scene) {
+  double area = 0;
+  for (const Triangle& t : scene.triangles) {
+    Vec3 a = scene.positions[t.vertex[0]], b = scene.positions[t.vertex[1]], c = scene.positions[t.vertex[2]];
+    area += 0.5 * static_cast<double>(length(cross(b - a, c - a)));
+  }
+  return area;
+}
+
+}  // namespace pocketray
