@@ -95,7 +95,7 @@ MeshData convert(const AssimpReader& reader, const aiMesh& source) {
     }
     if (textured && source.HasTextureCoords(0)) {
       const aiVector3D& t = source.mTextureCoords[0][i];
-      mesh.uvs.push_back(std::isfinite(t.x) && std::isfinite(t.y) ? Vec2{t.x, 1 - t.y} : Vec2{0, 0});
+      mesh.uvs.push_back(is_coordinate({t.x, t.y, 0}) ? Vec2{t.x, 1 - t.y} : Vec2{0, 0});
     }
     if (source.HasVertexColors(0)) mesh.colors.push_back(assimp_color(source.mColors[0][i]));
   }

@@ -56,8 +56,8 @@ TextureUse texture_of(SceneBuilder* builder, const std::string& scene_path, cons
   aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
   if (source.GetTexture(type, 0, &name, nullptr, nullptr, nullptr, nullptr, modes) != aiReturn_SUCCESS) return use;
   try {
-    use.texture = add_texture(builder, load(builder, scene_path, scene, name.C_Str()), wrap_of(modes[0]),
-                              wrap_of(modes[1]), false);
+    use.texture = add_texture(builder, add_texels(builder, load(builder, scene_path, scene, name.C_Str())),
+                              wrap_of(modes[0]), wrap_of(modes[1]), false);
   } catch (const ImportError& error) {
     note_remark(builder, std::string("a texture is missing: ") + error.what());
   }
@@ -150,7 +150,7 @@ std::uint32_t add_assimp_material(SceneBuilder* builder, const std::string& scen
     material.specular = bounded3(color, 1) * bounded(strength, 0, 1);
     material.exponent = bounded(value, 0, 1e6f);
   }
-  if (source.Get(AI_MATKEY_REFRACTI, value) == aiReturn_SUCCESS) material.ior = bounded(value, 1, 100);
+  if (source.Get(AI_MATKEY_REFRACTI, value) == aiReturn_SUCCESS) material.ior = bounded(value, 1, kIorMax);
   if (source.Get(AI_MATKEY_OPACITY, value) == aiReturn_SUCCESS) material.opacity = bounded(value, 0, 1);
   if (material.opacity < 1 && material.ior > 1 && source.Get(AI_MATKEY_REFRACTI, value) == aiReturn_SUCCESS) {
     material.transmission = Vec3{1, 1, 1} * (1 - material.opacity);

@@ -20,8 +20,9 @@ bool file_exists(const std::string& path) {
 
 Bytes read_file(const std::string& path, std::uint64_t byte_count_max) {
   struct stat info;
-  if (stat(path.c_str(), &info) != 0) fail_import("cannot read %s: %s", path.c_str(), std::strerror(errno));
-  if (!S_ISREG(info.st_mode)) fail_import("%s is no file", path.c_str());
+  if (stat(path.c_str(), &info) != 0)
+    fail_import("cannot read %s: %s; check its name and place", path.c_str(), std::strerror(errno));
+  if (!S_ISREG(info.st_mode)) fail_import("%s is no file; name a scene file", path.c_str());
   if (static_cast<std::uint64_t>(info.st_size) > byte_count_max)
     fail_import("%s has %lld bytes, more than the %llu a scene may take; use a smaller model", path.c_str(),
                 static_cast<long long>(info.st_size), static_cast<unsigned long long>(byte_count_max));

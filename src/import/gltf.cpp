@@ -1,4 +1,4 @@
-// The steps of reading a glTF file, in order.
+// The steps of reading a glTF file, in order, and where each mesh goes.
 #include "import/gltf.h"
 
 #include "import/import_error.h"
@@ -6,16 +6,54 @@
 namespace pocketray {
 namespace {
 
-void append_node_meshes(GltfFile* file, int index, std::map<int, std::vector<MeshData>>* meshes) {
+using MeshCache = std::map<int, std::vector<MeshData>>;
+
+// Meshes whose skin decides where they are; node transforms then do not count (sec. 3.7.3.3).
+bool is_skinned(const tinygltf::Node& node, const MeshData& mesh) {
+  return node.skin >= 0 && !mesh.skin_weights.empty();
+}
+
+void append_moving(GltfFile* file, int index, const MeshData& mesh, const Transform& instance) {
+  const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
+  const GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
+  MovingMesh moving = {};
+  if (is_skinned(source, mesh)) {
+    moving.node = mesh.morph_count > 0 ? node.out_node : kNone;
+    moving.skin = gltf_export_skin(file, source.skin);
+    std::vector<Transform> joints = gltf_skin_transforms(file, source.skin);
+    gltf_check_joints(mesh, joints.size());
+    append_moving_mesh(file->builder, mesh, joints[0], moving);
+  } else {
+    moving.instance = gltf_fixed_part(*file, index, &moving.node) * instance;
+    require_invertible(moving.instance, gltf_node_name(*file, index));
+    append_moving_mesh(file->builder, mesh, node.world * instance, moving);
+  }
+}
+
+// What does not move is posed here, once and for all.
+void append_placed(GltfFile* file, int index, MeshData mesh, const Transform& instance) {
+  const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
+  const GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
+  bool skinned = is_skinned(source, mesh);
+  if (!skinned) mesh.skin_weights.clear();
+  if (mesh.morph_count > 0 && !node.weights_move)
+    gltf_apply_morph(&mesh, gltf_morph_weights(*file, index, mesh.morph_count));
+  bool moves = skinned ? gltf_skin_moves(*file, source.skin) : node.moves;
+  if (moves || (mesh.morph_count > 0 && node.weights_move)) return append_moving(file, index, mesh, instance);
+  if (skinned) gltf_apply_skin(&mesh, gltf_skin_transforms(file, source.skin));
+  append_mesh(file->builder, mesh, skinned ? Transform() : node.world * instance);
+}
+
+void append_node_meshes(GltfFile* file, int index, MeshCache* meshes) {
   const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
   if (source.mesh < 0) return;
-  const GltfNode& node = file->nodes[static_cast<std::size_t>(index)];
   auto known = meshes->find(source.mesh);
   if (known == meshes->end()) known = meshes->emplace(source.mesh, gltf_mesh(file, source.mesh)).first;
-  require_invertible(node.world, gltf_node_name(*file, index));
+  if (source.skin < 0)
+    require_invertible(file->nodes[static_cast<std::size_t>(index)].world, gltf_node_name(*file, index));
   for (const Transform& instance : gltf_instances(file, index)) {
     require_invertible(instance, gltf_node_name(*file, index));
-    for (const MeshData& mesh : known->second) append_mesh(file->builder, mesh, node.world * instance);
+    for (const MeshData& mesh : known->second) append_placed(file, index, mesh, instance);
   }
 }
 
@@ -29,8 +67,12 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   file.materials.assign(file.model.materials.size(), kNone);
   file.material_uv_set.assign(file.model.materials.size(), -1);
   gltf_visit_nodes(&file);
-  std::map<int, std::vector<MeshData>> meshes;
-  for (int index : file.order) append_node_meshes(&file, index, &meshes);
+  gltf_mark_movers(&file);
+  gltf_mark_joints(&file);
+  gltf_export_nodes(&file);
+  gltf_export_animations(&file);
+  MeshCache meshes;
+  for (std::size_t i = 0; i < file.visible_count; ++i) append_node_meshes(&file, file.order[i], &meshes);
   gltf_lights_and_cameras(&file);
 }
 

@@ -14,14 +14,15 @@
 
 namespace pocketray {
 
-// What gltf_node.cpp finds out about a node of the default scene.
+// What is found out about a node of the default scene, or above a joint.
 struct GltfNode {
   bool visited = false;
   int parent = -1;
-  Transform local, world;  // at rest
-  bool moves = false;      // an animation moves it or a node above it
-  int mover = -1;          // the nearest node at or above it that an animation moves
-  bool exported = false;   // becomes a Node of the scene
+  Transform local, world;     // at rest
+  bool moves = false;         // an animation moves it or a node above it
+  bool weights_move = false;  // an animation sets its morph weights
+  int mover = -1;             // the nearest node at or above it that an animation has a channel for
+  bool exported = false;      // becomes a Node of the scene
   std::uint32_t out_node = kNone;
 };
 
@@ -31,12 +32,15 @@ struct GltfFile {
   tinygltf::Model model;
   Bytes binary_chunk;  // of a .glb
   bool has_binary_chunk = false;
-  std::vector<GltfNode> nodes;           // parallel to model.nodes
-  std::vector<int> order;                // nodes of the default scene, parents first
+  std::vector<GltfNode> nodes;         // parallel to model.nodes
+  std::vector<int> order;              // visited nodes, parents first; those of the default scene lead
+  std::size_t visible_count = 0;       // nodes of the default scene in `order`; the rest belong to joints outside of it
+  std::map<int, std::uint32_t> skins;  // glTF skin → scene skin
   std::vector<std::uint32_t> materials;  // glTF index → scene index, made on first use
   std::vector<int> material_uv_set;      // TEXCOORD set each material uses, -1: none; parallel to model.materials
   std::uint32_t default_material = kNone;
   std::map<int, Image> images;            // decoded, for reading channel means
+  std::map<int, TexelRun> texels;         // glTF image → its texels in the scene
   std::map<int, std::uint32_t> textures;  // glTF texture → scene texture
 };
 
@@ -76,6 +80,31 @@ std::vector<Transform> gltf_instances(GltfFile* file, int node);
 // Translation, rotation and scale of a node without a matrix.
 Node gltf_node_trs(const GltfFile& file, int node);
 std::string gltf_node_name(const GltfFile& file, int node);
+
+// Node → the node that moves it (its index in the scene to *out_node), or → the world (kNone).
+Transform gltf_fixed_part(const GltfFile& file, int node, std::uint32_t* out_node);
+
+// gltf_animation.cpp: finds out which nodes move; makes them, with all above them, nodes of the scene; adds the
+// animations.
+void gltf_mark_movers(GltfFile* file);
+void gltf_export_nodes(GltfFile* file);
+void gltf_export_animations(GltfFile* file);
+// The node's morph weights at rest, or its mesh's, or zeros.
+std::vector<float> gltf_morph_weights(const GltfFile& file, int node, std::size_t count);
+
+// gltf_skin.cpp: joints of moving skins become nodes of the scene; the nodes of a skin's joints, checked.
+void gltf_mark_joints(GltfFile* file);
+const std::vector<int>& gltf_joints(const GltfFile& file, int skin);
+bool gltf_skin_moves(const GltfFile& file, int skin);
+// Scene skin of a glTF skin whose joints are nodes of the scene.
+std::uint32_t gltf_export_skin(GltfFile* file, int skin);
+// Rest pose → world for each joint, at rest.
+std::vector<Transform> gltf_skin_transforms(GltfFile* file, int skin);
+// Throws if a vertex follows a joint the skin does not have.
+void gltf_check_joints(const MeshData& mesh, std::size_t joint_count);
+// Moves the vertices once and removes the targets or weights.
+void gltf_apply_morph(MeshData* mesh, const std::vector<float>& weights);
+void gltf_apply_skin(MeshData* mesh, const std::vector<Transform>& joints);
 
 // gltf_light.cpp
 void gltf_lights_and_cameras(GltfFile* file);

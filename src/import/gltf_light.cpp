@@ -12,18 +12,6 @@ namespace {
 
 Vec3 column(const Transform& t, int c) { return {t.m[0][c], t.m[1][c], t.m[2][c]}; }
 
-// Node → the space of the node that moves it, or the world.
-Transform fixed_part(const GltfFile& file, int index, std::uint32_t* out_node) {
-  const GltfNode& node = file.nodes[static_cast<std::size_t>(index)];
-  *out_node = kNone;
-  if (node.mover < 0) return node.world;
-  *out_node = file.nodes[static_cast<std::size_t>(node.mover)].out_node;
-  Transform t;
-  for (int at = index; at != node.mover; at = file.nodes[static_cast<std::size_t>(at)].parent)
-    t = file.nodes[static_cast<std::size_t>(at)].local * t;
-  return t;
-}
-
 void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
   SceneStorage& out = *file->builder->out;
   if (out.lights.size() >= kLightCountMax) fail_import("more than %u lights; remove some", kLightCountMax);
@@ -38,7 +26,7 @@ void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
     note_unused(file->builder, "lights of unknown kind");
     return;
   }
-  Transform t = fixed_part(*file, node_index, &light.node);
+  Transform t = gltf_fixed_part(*file, node_index, &light.node);
   light.position = column(t, 3);
   light.direction = normalize(-column(t, 2));  // along −z
   if (is_zero(light.direction)) light.direction = {0, 0, -1};
@@ -65,7 +53,7 @@ void add_camera(GltfFile* file, int camera_index, int node_index) {
   if (out.cameras.size() >= kCameraCountMax) fail_import("more than %u cameras; remove some", kCameraCountMax);
   const tinygltf::Camera& source = file->model.cameras[static_cast<std::size_t>(camera_index)];
   Camera camera;
-  Transform t = fixed_part(*file, node_index, &camera.node);
+  Transform t = gltf_fixed_part(*file, node_index, &camera.node);
   camera.eye = column(t, 3);
   Vec3 forward = normalize(-column(t, 2)), up = normalize(column(t, 1));
   camera.target = camera.eye + forward;
@@ -89,7 +77,8 @@ void add_camera(GltfFile* file, int camera_index, int node_index) {
 }  // namespace
 
 void gltf_lights_and_cameras(GltfFile* file) {
-  for (int index : file->order) {
+  for (std::size_t i = 0; i < file->visible_count; ++i) {
+    int index = file->order[i];
     const tinygltf::Node& node = file->model.nodes[static_cast<std::size_t>(index)];
     if (node.camera >= 0) add_camera(file, node.camera, index);
     const tinygltf::Value* extension = gltf_extension(node.extensions, "KHR_lights_punctual");

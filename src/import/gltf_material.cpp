@@ -52,7 +52,8 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
   float metallic = unit(pbr.metallicFactor) * texture_mean(file, texture, 2, "metallic-roughness");
   float roughness = unit(pbr.roughnessFactor) * texture_mean(file, texture, 1, "metallic-roughness");
   if (const tinygltf::Value* ior = gltf_extension(source.extensions, "KHR_materials_ior"))
-    material->ior = static_cast<float>(std::min(std::max(gltf_number(*ior, "ior", 1.5), 1.0), 100.0));
+    material->ior =
+        static_cast<float>(std::min(std::max(gltf_number(*ior, "ior", 1.5), 1.0), static_cast<double>(kIorMax)));
   float transmission = 0;
   if (const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_transmission")) {
     transmission = unit(gltf_number(*extension, "transmissionFactor", 0)) * (1 - metallic);
@@ -66,7 +67,7 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
   material->diffuse = base * ((1 - metallic) * (1 - transmission));
   material->mirror = f0 * (k * (1 - transmission));
   material->specular = f0 * (1 - k);
-  material->exponent = alpha * alpha > 2e-6f ? std::max(0.0f, 2 / (alpha * alpha) - 2) : 1e6f;
+  material->exponent = alpha * alpha > 2e-6f ? std::max(0.0f, 2 / (alpha * alpha) - 2) : kPhongExponentMax;
   material->transmission = base * transmission;
   if (transmission > 0) read_volume(source.extensions, material);
 }

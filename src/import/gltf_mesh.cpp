@@ -1,13 +1,12 @@
 // Mesh primitives (secs. 3.7.2, 3.7.3).
 #include <cmath>
 
+#include "base/limits.h"
 #include "import/gltf.h"
 #include "import/import_error.h"
 
 namespace pocketray {
 namespace {
-
-constexpr int kMorphTargetMax = 4096;
 
 int attribute(const tinygltf::Primitive& primitive, const char* name) {
   auto it = primitive.attributes.find(name);
@@ -82,7 +81,7 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* me
   require_count(values.size() / 2, mesh->positions.size(), "TEXCOORD");
   mesh->uvs.resize(mesh->positions.size());
   for (std::size_t i = 0; i < mesh->uvs.size(); ++i) {
-    bool finite = std::isfinite(values[2 * i]) && std::isfinite(values[2 * i + 1]);
+    bool finite = is_coordinate({values[2 * i], values[2 * i + 1], 0});
     mesh->uvs[i] = finite ? Vec2{values[2 * i], values[2 * i + 1]} : Vec2{0, 0};
   }
 }
@@ -114,8 +113,8 @@ void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, Mes
 }
 
 void read_morph_targets(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
-  if (primitive.targets.size() > kMorphTargetMax)
-    fail_import("more than %d morph targets; export fewer", kMorphTargetMax);
+  if (primitive.targets.size() > kMorphTargetCountMax)
+    fail_import("more than %u morph targets; export fewer", kMorphTargetCountMax);
   std::size_t count = mesh->positions.size();
   require_bytes(*file->builder, primitive.targets.size(), count * 2 * sizeof(Vec3), "the morph targets");
   mesh->morph_count = static_cast<std::uint32_t>(primitive.targets.size());

@@ -63,6 +63,26 @@ void visit(GltfFile* file, int index, int parent) {
   file->order.push_back(index);
 }
 
+void visit_tree(GltfFile* file, int root) {
+  std::vector<std::pair<int, int>> stack = {{root, -1}};  // node, parent
+  while (!stack.empty()) {
+    auto [index, parent] = stack.back();
+    stack.pop_back();
+    visit(file, index, parent);
+    const std::vector<int>& children = file->model.nodes[static_cast<std::size_t>(index)].children;
+    for (auto child = children.rbegin(); child != children.rend(); ++child) stack.emplace_back(*child, index);
+  }
+}
+
+std::vector<int> parents_of(const tinygltf::Model& model) {
+  std::vector<int> parents(model.nodes.size(), -1);
+  for (std::size_t i = 0; i < model.nodes.size(); ++i)
+    for (int child : model.nodes[i].children)
+      if (child >= 0 && static_cast<std::size_t>(child) < parents.size())
+        parents[static_cast<std::size_t>(child)] = static_cast<int>(i);
+  return parents;
+}
+
 }  // namespace
 
 Node gltf_node_trs(const GltfFile& file, int index) {
@@ -90,31 +110,42 @@ void gltf_visit_nodes(GltfFile* file) {
   const tinygltf::Model& model = file->model;
   if (model.nodes.size() > kNodeCountMax) fail_import("more than %u nodes; merge some", kNodeCountMax);
   file->nodes.assign(model.nodes.size(), GltfNode());
-  std::vector<std::pair<int, int>> stack;  // node, parent
-  if (!model.scenes.empty()) {
+  std::vector<int> parents = parents_of(model);
+  if (model.scenes.empty()) {
+    // Without a scene, every node that is nobody's child is a root.
+    for (std::size_t i = 0; i < parents.size(); ++i)
+      if (parents[i] < 0) visit_tree(file, static_cast<int>(i));
+  } else {
     int chosen = model.defaultScene < 0 ? 0 : model.defaultScene;
     if (static_cast<std::size_t>(chosen) >= model.scenes.size())
       fail_import("scene %d does not exist; export the file again", chosen);
     if (model.scenes.size() > 1) note_unused(file->builder, std::to_string(model.scenes.size() - 1) + " other scenes");
-    for (int root : model.scenes[static_cast<std::size_t>(chosen)].nodes) stack.emplace_back(root, -1);
-  } else {
-    // Without a scene, every node that is nobody's child is a root.
-    std::vector<bool> is_child(model.nodes.size(), false);
-    for (const tinygltf::Node& node : model.nodes)
-      for (int child : node.children)
-        if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
-          is_child[static_cast<std::size_t>(child)] = true;
-    for (std::size_t i = 0; i < is_child.size(); ++i)
-      if (!is_child[i]) stack.emplace_back(static_cast<int>(i), -1);
+    for (int root : model.scenes[static_cast<std::size_t>(chosen)].nodes) visit_tree(file, root);
   }
-  std::reverse(stack.begin(), stack.end());
-  while (!stack.empty()) {
-    auto [index, parent] = stack.back();
-    stack.pop_back();
-    visit(file, index, parent);
-    const std::vector<int>& children = model.nodes[static_cast<std::size_t>(index)].children;
-    for (auto child = children.rbegin(); child != children.rend(); ++child) stack.emplace_back(*child, index);
+  file->visible_count = file->order.size();
+  for (std::size_t i = 0; i < file->visible_count; ++i) {
+    int skin = model.nodes[static_cast<std::size_t>(file->order[i])].skin;
+    if (skin < 0) continue;
+    for (int joint : gltf_joints(*file, skin)) {
+      if (file->nodes[static_cast<std::size_t>(joint)].visited) continue;
+      int root = joint;
+      std::size_t steps = 0;
+      while (parents[static_cast<std::size_t>(root)] >= 0 && steps++ < parents.size())
+        root = parents[static_cast<std::size_t>(root)];
+      visit_tree(file, root);
+    }
   }
+}
+
+Transform gltf_fixed_part(const GltfFile& file, int index, std::uint32_t* out_node) {
+  const GltfNode& node = file.nodes[static_cast<std::size_t>(index)];
+  *out_node = kNone;
+  if (node.mover < 0) return node.world;
+  *out_node = file.nodes[static_cast<std::size_t>(node.mover)].out_node;
+  Transform t;
+  for (int at = index; at != node.mover; at = file.nodes[static_cast<std::size_t>(at)].parent)
+    t = file.nodes[static_cast<std::size_t>(at)].local * t;
+  return t;
 }
 
 std::vector<Transform> gltf_instances(GltfFile* file, int index) {

@@ -187,7 +187,8 @@ void gltf_parse(GltfFile* file, Bytes bytes) {
   std::string error, warning;
   if (!parser.LoadASCIIFromString(&file->model, &error, &warning, text.c_str(), static_cast<unsigned>(text.size()), "",
                                   tinygltf::REQUIRE_VERSION))
-    fail_import("%.300s (as tinygltf reports); export the file again", error.c_str());
+    fail_import("%.300s (as tinygltf reports); export the file again",
+                error.empty() ? "its structure is not valid" : error.c_str());
   file->model.buffers.swap(buffers);
   file->model.images.swap(images);
 }

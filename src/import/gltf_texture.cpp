@@ -47,8 +47,11 @@ std::uint32_t scene_texture(GltfFile* file, int index) {
       fail_import("sampler %d does not exist; export the file again", texture.sampler);
     sampler = file->model.samplers[static_cast<std::size_t>(texture.sampler)];
   }
-  std::uint32_t result = add_texture(file->builder, gltf_image(file, index), wrap_of(sampler.wrapS),
-                                     wrap_of(sampler.wrapT), sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST);
+  auto texels = file->texels.find(texture.source);
+  if (texels == file->texels.end())
+    texels = file->texels.emplace(texture.source, add_texels(file->builder, gltf_image(file, index))).first;
+  std::uint32_t result = add_texture(file->builder, texels->second, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT),
+                                     sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST);
   file->textures[index] = result;
   return result;
 }

@@ -84,16 +84,22 @@ void shrink_image(Image* image, std::uint32_t side_max) {
   while (image->width > side_max || image->height > side_max) *image = halved(*image);
 }
 
-std::uint32_t add_texture(SceneBuilder* builder, Image image, Wrap wrap_u, Wrap wrap_v, bool nearest) {
+TexelRun add_texels(SceneBuilder* builder, Image image) {
   SceneStorage& out = *builder->out;
   shrink_image(&image, builder->options.texture_side_max);
-  if (out.textures.size() >= kTextureCountMax) fail_import("more than %u textures; merge some", kTextureCountMax);
   charge_bytes(builder, image.texels.size() * 4, "the textures");
-  Texture texture = {};
-  texture.texel_begin = static_cast<std::uint32_t>(out.texels.size());
-  texture.width = static_cast<std::uint16_t>(image.width), texture.height = static_cast<std::uint16_t>(image.height);
-  texture.wrap_u = wrap_u, texture.wrap_v = wrap_v, texture.nearest = nearest ? 1 : 0;
+  TexelRun run = {static_cast<std::uint32_t>(out.texels.size()), image.width, image.height};
   out.texels.insert(out.texels.end(), image.texels.begin(), image.texels.end());
+  return run;
+}
+
+std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wrap_u, Wrap wrap_v, bool nearest) {
+  SceneStorage& out = *builder->out;
+  if (out.textures.size() >= kTextureCountMax) fail_import("more than %u textures; merge some", kTextureCountMax);
+  Texture texture = {};
+  texture.texel_begin = texels.begin;
+  texture.width = static_cast<std::uint16_t>(texels.width), texture.height = static_cast<std::uint16_t>(texels.height);
+  texture.wrap_u = wrap_u, texture.wrap_v = wrap_v, texture.nearest = nearest ? 1 : 0;
   out.textures.push_back(texture);
   return static_cast<std::uint32_t>(out.textures.size() - 1);
 }

@@ -21,8 +21,14 @@ Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string&
 // up.
 void shrink_image(Image* image, std::uint32_t side_max);
 
-// Appends the image (shrunk to options.texture_side_max) as a texture; its index.
-std::uint32_t add_texture(SceneBuilder* builder, Image image, Wrap wrap_u, Wrap wrap_v, bool nearest);
+// Texels of an image in the scene; several textures may sample them differently.
+struct TexelRun {
+  std::uint32_t begin = 0, width = 0, height = 0;
+};
+// Appends the image, shrunk to options.texture_side_max.
+TexelRun add_texels(SceneBuilder* builder, Image image);
+// Appends a texture of these texels; its index.
+std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wrap_u, Wrap wrap_v, bool nearest);
 
 // Mean of a channel (0 = R … 3 = A) as it is stored, 0–1.
 float channel_mean(const Image& image, int channel);

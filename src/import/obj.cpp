@@ -81,7 +81,7 @@ class CornerIndex {
       const float* t = corner.texcoord_index >= 0
                            ? &attributes_.texcoords[2 * static_cast<std::size_t>(corner.texcoord_index)]
                            : nullptr;
-      bool finite = t && std::isfinite(t[0]) && std::isfinite(t[1]);
+      bool finite = t && is_coordinate({t[0], t[1], 0});
       mesh->uvs.push_back(finite ? Vec2{t[0], 1 - t[1]} : Vec2{0, 0});  // v runs upward in OBJ
     }
     if (!attributes_.colors.empty()) {
@@ -97,25 +97,26 @@ class CornerIndex {
   std::vector<tinyobj::index_t> corners_;
 };
 
-void check_corner(const tinyobj::index_t& corner, const tinyobj::attrib_t& attributes) {
+// A face may name normals or texture coordinates that are not there; a position it must have.
+tinyobj::index_t checked_corner(tinyobj::index_t corner, const tinyobj::attrib_t& attributes, SceneBuilder* builder) {
   auto beyond = [](int index, std::size_t count) { return index >= 0 && static_cast<std::size_t>(index) >= count; };
   if (corner.vertex_index < 0 || beyond(corner.vertex_index, attributes.vertices.size() / 3))
     fail_import("a face uses vertex %d of %zu; export the file again", corner.vertex_index + 1,
                 attributes.vertices.size() / 3);
-  if (beyond(corner.normal_index, attributes.normals.size() / 3))
-    fail_import("a face uses normal %d of %zu; export the file again", corner.normal_index + 1,
-                attributes.normals.size() / 3);
-  if (beyond(corner.texcoord_index, attributes.texcoords.size() / 2))
-    fail_import("a face uses texture coordinate %d of %zu; export the file again", corner.texcoord_index + 1,
-                attributes.texcoords.size() / 2);
+  bool no_normal = beyond(corner.normal_index, attributes.normals.size() / 3);
+  bool no_uv = beyond(corner.texcoord_index, attributes.texcoords.size() / 2);
+  if (no_normal || no_uv) note_remark(builder, "faces name normals or texture coordinates that are missing");
+  if (no_normal || corner.normal_index < 0) corner.normal_index = -1;
+  if (no_uv || corner.texcoord_index < 0) corner.texcoord_index = -1;
+  return corner;
 }
 
 bool is_textured(const Material& material) {
   return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
 }
 
-MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attributes,
-                    const std::vector<Material>& materials, std::uint32_t default_material, CornerIndex* index) {
+MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attributes, std::uint32_t default_material,
+                    CornerIndex* index, SceneBuilder* builder) {
   MeshData mesh;
   index->begin_mesh();
   bool normals = false, uvs = false;
@@ -126,17 +127,15 @@ MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attr
     int id = t < shape.mesh.material_ids.size() ? shape.mesh.material_ids[t] : -1;
     bool known = id >= 0 && static_cast<std::uint32_t>(id) < default_material;
     mesh.triangle_materials.push_back(known ? static_cast<std::uint32_t>(id) : default_material);
-    uvs |= is_textured(materials[mesh.triangle_materials.back()]);
+    uvs |= is_textured(builder->out->materials[mesh.triangle_materials.back()]);
   }
-  for (std::size_t c = 0; c < 3 * triangle_count; ++c) {
-    check_corner(shape.mesh.indices[c], attributes);
-    normals |= shape.mesh.indices[c].normal_index >= 0;
+  std::vector<tinyobj::index_t> corners(3 * triangle_count);
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    corners[c] = checked_corner(shape.mesh.indices[c], attributes, builder);
+    normals |= corners[c].normal_index >= 0;
+    if (!uvs) corners[c].texcoord_index = -1;
   }
-  for (std::size_t c = 0; c < 3 * triangle_count; ++c) {
-    tinyobj::index_t corner = shape.mesh.indices[c];
-    if (!uvs) corner.texcoord_index = -1;
-    mesh.indices.push_back(index->vertex(corner, normals, uvs, &mesh));
-  }
+  for (const tinyobj::index_t& corner : corners) mesh.indices.push_back(index->vertex(corner, normals, uvs, &mesh));
   return mesh;
 }
 
@@ -154,6 +153,8 @@ void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* build
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_files, true, false))
     fail_import("%.300s (as tinyobjloader reports); export the file again",
                 error.empty() ? warning.c_str() : error.c_str());
+  if (warning.find("not found in .mtl") != std::string::npos)
+    note_remark(builder, "faces without a known material got the default one");
   for (const tinyobj::material_t& material : materials) add_obj_material(builder, path, material);
   std::uint32_t default_material = static_cast<std::uint32_t>(builder->out->materials.size());
   builder->out->materials.emplace_back();
@@ -164,7 +165,7 @@ void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* build
     if (!shape.lines.indices.empty()) note_unused(builder, "lines");
     if (!shape.points.indices.empty()) note_unused(builder, "points");
     require_bytes(*builder, shape.mesh.indices.size(), 32, "the geometry");
-    MeshData mesh = shape_mesh(shape, attributes, builder->out->materials, default_material, &index);
+    MeshData mesh = shape_mesh(shape, attributes, default_material, &index, builder);
     for (std::uint32_t material : mesh.triangle_materials) default_used |= material == default_material;
     if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
     tidy_mesh(&mesh, "'" + shape.name.substr(0, 60) + "'");

@@ -83,7 +83,7 @@ void read_textures(SceneBuilder* builder, const std::string& scene_path, const t
     material->alpha_mode = put_alpha(&color, mask) && material->opacity == 1 ? AlphaMode::mask : AlphaMode::blend;
   auto add = [&](Image* image, const tinyobj::texture_option_t& option) {
     Wrap wrap = option.clamp ? Wrap::clamp : Wrap::repeat;
-    return use_of(add_texture(builder, std::move(*image), wrap, wrap, false), option);
+    return use_of(add_texture(builder, add_texels(builder, std::move(*image)), wrap, wrap, false), option);
   };
   if (has_color || has_mask)
     material->diffuse_texture = add(&color, has_color ? source.diffuse_texopt : source.alpha_texopt);
@@ -117,7 +117,7 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
   Material material;
   material.diffuse = bounded3(source.diffuse, 1);
   material.emission = bounded3(source.emission, 1e18f);
-  material.ior = bounded(source.ior, 1, 100);
+  material.ior = bounded(source.ior, 1, kIorMax);
   Vec3 ks = bounded3(source.specular, 1), tf = bounded3(source.transmittance, 1);
   int illum = source.illum;
   bool glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
@@ -130,7 +130,7 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
       material.mirror = ks;
     } else if (illum == 2) {
       material.specular = ks;
-      material.exponent = bounded(source.shininess, 0, 1e6f);
+      material.exponent = bounded(source.shininess, 0, kPhongExponentMax);
     }
   }
   read_textures(builder, scene_path, source, &material);

@@ -1,12 +1,13 @@
 #include "import/scene_builder.h"
 
 #include <algorithm>
-#include <cfloat>
 #include <cstring>
 
 #include "base/check.h"
 #include "base/limits.h"
 #include "import/import_error.h"
+#include "scene/animate.h"
+#include "scene/baked.h"
 
 namespace pocketray {
 
@@ -36,10 +37,9 @@ void require_invertible(const Transform& t, const std::string& name) {
     for (float value : row)
       if (!(std::fabs(value) <= kCoordinateMax))
         fail_import("%.100s: its transform is not finite; export the file again", name.c_str());
-  double det = std::fabs(determinant(t));
-  if (!(det >= static_cast<double>(FLT_MIN)) || det > static_cast<double>(FLT_MAX))
+  if (!is_invertible(t))
     fail_import("%.100s: its transform cannot be inverted (determinant %g); give it a scale other than 0", name.c_str(),
-                det);
+                determinant(t));
 }
 
 // Keeps the elements `kept` of each run of `stride` elements.
@@ -116,7 +116,8 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
     out.positions.push_back(usable[i] ? p : Vec3{0, 0, 0});
   }
   std::vector<Vec3> normals(mesh.normals.size());
-  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = transform_normal(to_world, mesh.normals[i]);
+  NormalTransform normal_to_world = normal_transform(to_world);
+  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = transform_normal(normal_to_world, mesh.normals[i]);
   append_optional(&out.normals, normals, begin, count, Vec3{0, 0, 0});
   append_optional(&out.uvs, mesh.uvs, begin, count, Vec2{0, 0});
   append_optional(&out.colors, mesh.colors, begin, count, Rgba16{65535, 65535, 65535, 65535});
@@ -175,6 +176,21 @@ static Array<const T> view(const std::vector<T>& v) {
   return {v.empty() ? nullptr : v.data(), static_cast<std::uint32_t>(v.size())};
 }
 
+// Puts moving vertices where animation 0 has them at time 0.
+static void pose_at_start(const Scene& scene, SceneStorage* out) {
+  if (scene.moving_meshes.empty()) return;
+  std::size_t bytes = pose_need(scene) + kArenaAlignment;
+  std::vector<std::uint8_t> block(bytes);
+  Arena arena = make_arena("pose", block.data(), bytes);
+  Pose pose = make_pose(scene, &arena);
+  std::copy(pose.positions.begin(), pose.positions.end(), out->positions.begin());
+  std::copy(pose.normals.begin(), pose.normals.end(), out->normals.begin());
+}
+
+static bool is_textured(const Material& material) {
+  return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
+}
+
 void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result) {
   SceneStorage& out = *builder->out;
   if (out.triangles.empty())
@@ -183,7 +199,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
-  if (!out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
+  bool textured = std::any_of(out.materials.begin(), out.materials.end(), is_textured);
+  if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())
     out.rest_normals.resize(out.rest_positions.size(), Vec3{0, 0, 0});
@@ -204,6 +221,9 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.rest_positions = view(out.rest_positions), scene.rest_normals = view(out.rest_normals);
   scene.skin_weights = view(out.skin_weights);
   scene.morph_positions = view(out.morph_positions), scene.morph_normals = view(out.morph_normals);
+  Status status = validate_scene(scene);
+  if (!status.ok) fail_import("%s", status.message);
+  pose_at_start(scene, &out);
   result->storage = builder->out;
   result->warning = warning_line(*builder);
 }
