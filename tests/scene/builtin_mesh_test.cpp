@@ -62,8 +62,8 @@ TEST_CASE("builtin_need_is_exact_and_the_scene_is_valid") {
   for (int i = 0; i < count; ++i) {
     CAPTURE(list[i].name);
     auto built = build_builtin(list[i]);
-    CHECK(built->arena.used_max <= list[i].need());
-    CHECK(built->arena.used == list[i].need());
+    CHECK(built->arena.used_max == list[i].need());
+    CHECK(built->arena.used <= list[i].need());
     Status status = validate_scene(built->scene);
     CHECK_MESSAGE(status.ok, status.message);
   }

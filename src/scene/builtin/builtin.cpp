@@ -11,6 +11,8 @@ constexpr BuiltinScene kScenes[] = {
     {"cornell", "the measured Cornell box with a statue and a mirror sphere; 45,109 triangles", cornell_need,
      build_cornell},
     {"statue", "the statue in its niche, between columns; 67,244 triangles", statue_need, build_statue},
+    {"seesaw", "a weight launches a worm in a circus tent; 6,000 triangles, 4 lights, 351 frames", seesaw_need,
+     build_seesaw},
     {"cube", "a closed cube lit by an area light in its ceiling; 20 triangles", cube_need, build_cube},
     {"furnace", "a closed enclosure that emits uniformly, so that radiance is Le/(1-rho) everywhere", furnace_need,
      build_furnace},
