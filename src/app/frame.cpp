@@ -68,7 +68,9 @@ std::uint32_t trace(Renderer* r, Aov aov, const std::atomic<bool>* stop) {
 }  // namespace
 
 Status prepare_frame(Renderer* r, double seconds) {
+  std::uint64_t start = clock_ns();
   pose_scene(r, seconds);
+  r->timings.pose_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   accelerate(r);
   choose_kernels(r);
   light_scene(r);

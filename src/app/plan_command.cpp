@@ -1,13 +1,30 @@
 // pocketray plan: the effects a scene calls for, the memory map, and why.
+#include <cmath>
+
 #include "app/commands.h"
+#include "app/measure.h"
 #include "app/options.h"
 #include "app/picture.h"
 #include "app/report.h"
+#include "effect/effect_list.h"
 
 namespace pocketray {
 namespace {
 
-int run(const CommonOptions& options) {
+// Renders the scene with and without each effect.
+Status print_prices(const CommonOptions& options, OpenScene* opened) {
+  RETURN_IF_ERROR(start_scene(opened, options));
+  Measurement m = make_measurement(opened->renderer, 1);
+  RETURN_IF_ERROR(measure_prices(&opened->renderer, &m));
+  std::printf("prices on this machine, ns per pixel\n");
+  for (const EffectRow& row : kEffectList) {
+    double price = m.effect_price[static_cast<int>(row.effect)];
+    if (std::isfinite(price)) std::printf("  %-18s %8.0f\n", row.name, price);
+  }
+  return success();
+}
+
+int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
   Status status = open_scene(options, picture_bytes, &opened);
   const Renderer& r = opened.renderer;
@@ -29,6 +46,7 @@ int run(const CommonOptions& options) {
       if (!written.ok) return report(written);
     }
   }
+  if (status.ok && prices) status = print_prices(options, &opened);
   return report(status);
 }
 
@@ -36,10 +54,12 @@ int run(const CommonOptions& options) {
 
 void add_plan_command(CLI::App* program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
+  auto prices = std::make_shared<bool>(false);
   CLI::App* command = program->add_subcommand("plan", "show which effects a scene calls for, the memory map, and why");
   add_scene_options(command, options.get());
   command->add_option("--json", options->json, "also write it as JSON to FILE, or - for standard output");
-  command->callback([options, exit_status] { *exit_status = run(*options); });
+  command->add_flag("--prices", *prices, "also render it, and print what each effect costs on this machine");
+  command->callback([=] { *exit_status = run(*options, *prices); });
 }
 
 }  // namespace pocketray

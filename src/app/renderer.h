@@ -8,7 +8,7 @@
 namespace pocketray {
 
 struct Timings {
-  double build_ms = 0, refit_ms = 0, trace_ms = 0;
+  double build_ms = 0, pose_ms = 0, refit_ms = 0, trace_ms = 0;
 };
 
 struct Renderer {
