@@ -1,0 +1,16 @@
+#pragma once
+#include "platform/devices/device.h"
+
+namespace platform {
+
+// OpenDingux's layout, which the MiyooCFW firmware follows: A Ctrl, B Alt, X Space, Y Shift, L Tab, R Backspace.
+constexpr std::uint16_t kMiyooKeys[] = {key::kUp,          key::kDown,      key::kLeft,  key::kRight,
+                                        key::kLeftControl, key::kLeftAlt,   key::kSpace, key::kLeftShift,
+                                        key::kTab,         key::kBackspace, key::kEnter, key::kEscape};
+
+// Allwinner F1C100s: ARM926EJ-S, 32 MiB in the package (F1C100s datasheet, ch. 1); LCD 320 × 240 RGB565. 408 MHz and
+// up. BittBoy, PocketGo and PowKiddy V90 are of this kind.
+constexpr Device kMiyoo = {
+    "miyoo", "Miyoo and kin: F1C100s, ARM926EJ-S, no FPU", "armel", 320, 240, 16, "rgb", 0, mebibytes(16), kMiyooKeys};
+
+}  // namespace platform

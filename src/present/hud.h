@@ -1,0 +1,27 @@
+// Text over a picture: a translucent dark box with lines in a small font, drawn into packed pixels, turned as the
+// picture is.
+#pragma once
+#include "present/pack.h"
+
+namespace pocketray {
+
+// Packed pixels of a picture, as pack_rows() wrote them: a screen's page, or a picture of bytes R, G, B (kRgb888).
+struct Canvas {
+  void* pixels = nullptr;
+  int line_bytes = 0;
+  PixelFormat format;
+  int width = 0, height = 0;  // of the picture, before rotation
+  Rotation rotation = Rotation::none;
+};
+
+// Picture pixels that a box of that much text covers, its margin included. `scale`: pixels per pixel of the font, at
+// least 1.
+int text_box_width(int characters, int scale);
+int text_box_height(int lines, int scale);
+
+// Draws the box with its top left corner at (column, row) of the picture, as wide as its longest line; what lies
+// outside of the picture is cut. Characters that are not printable ASCII show as '?'. What is below is dimmed to a
+// quarter, so draw over freshly packed rows: those from row to row + text_box_height().
+void draw_text_box(const Canvas& canvas, int column, int row, int scale, const char* const* lines, int line_count);
+
+}  // namespace pocketray

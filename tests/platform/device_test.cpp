@@ -1,0 +1,37 @@
+#include "platform/devices/device_list.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <set>
+#include <string>
+
+using namespace platform;
+
+// Goal: the device files can be relied on. Method: every entry of the list within the bounds its fields name.
+TEST_CASE("device_list_has_plausible_and_distinct_entries") {
+  std::set<std::string> names;
+  for (const Device& device : kDevices) {
+    CAPTURE(device.name);
+    names.insert(device.name);
+    CHECK(find_device(device.name) == &device);
+    CHECK(std::strlen(device.description) > 10);
+    bool class_known = false;
+    for (const char* cpu_class : {"armel", "armhf", "aarch64", "x86-64"})
+      class_known |= !std::strcmp(device.cpu_class, cpu_class);
+    CHECK(class_known);
+    CHECK(device.screen_width >= 320);
+    CHECK(device.screen_height >= 240);
+    CHECK((device.bits_per_pixel == 16 || device.bits_per_pixel == 24 || device.bits_per_pixel == 32));
+    CHECK((!std::strcmp(device.channel_order, "rgb") || !std::strcmp(device.channel_order, "bgr")));
+    CHECK((device.rotation >= 0 && device.rotation < 360 && device.rotation % 90 == 0));
+    CHECK((device.memory_bytes >= mebibytes(12) && device.memory_bytes <= mebibytes(512)));
+    std::set<int> keys;
+    for (int i = 0; device.keys && i < 12; ++i) keys.insert(device.keys[i]);
+    CHECK((!device.keys || keys.size() == 12));
+  }
+  CHECK(names.size() == kDeviceCount);
+  CHECK(find_device("miyoo-") == nullptr);
+  CHECK(find_device("miyoo-mini-plus") == nullptr);
+  CHECK(find_device("") == nullptr);
+}
