@@ -21,11 +21,13 @@ const ByteSink kSink = {
     [](void*, const void* bytes, std::size_t count) { written.append(static_cast<const char*>(bytes), count); },
     nullptr};
 
+#if defined(POCKETRAY_HAVE_PNG)
 std::vector<std::uint8_t> noise(int width, int height, std::uint32_t seed) {
   std::vector<std::uint8_t> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (std::uint8_t& level : rgb) level = static_cast<std::uint8_t>((seed = seed * 1664525 + 1013904223) >> 24);
   return rgb;
 }
+#endif
 
 }  // namespace
 
