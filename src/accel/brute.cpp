@@ -81,7 +81,7 @@ float brute_nearest_distance(const Accel& accel, const Vec3& point) {
                                 to_double(accel.positions[triangle.vertex[2]]));
     if (d < least) least = d;
   }
-  return distance_bound(least);
+  return distance_bound(least, accel.bounds);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ float bvh_nearest_distance(const Accel& accel, const Vec3& point) {
       stack[place] = {node.child[lane], d};
     }
   }
-  return distance_bound(least);
+  return distance_bound(least, accel.bounds);
 }
 
 }  // namespace pocketray

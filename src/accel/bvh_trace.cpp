@@ -152,7 +152,7 @@ template <bool kFiltered, bool kAny>
 Hit find_hit(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   Search<kFiltered> search;
   search.best = {0, 0, 0, kNoTriangle};
-  if (!(ray.t_max > 0) || !make_sheared_ray(ray, &search.ray)) return search.best;
+  if (!(ray.t_max > 0) || is_empty(accel.bounds) || !make_sheared_ray(ray, &search.ray)) return search.best;
   search.filter = filter, search.t_max = ray.t_max;
   search_bvh<kFiltered, kAny>(accel, &search, stats);
   return search.best;

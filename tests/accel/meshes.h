@@ -174,6 +174,7 @@ inline std::vector<Mesh> generated_meshes() {
   meshes.push_back(degenerates());
   meshes.push_back(scaled("huge", soup("", 300, 1, 0.5f, 6), 4e17f));
   meshes.push_back(scaled("tiny", soup("", 300, 1, 0.5f, 7), 1e-15f));
+  meshes.push_back(scaled("minute", soup("", 300, 1, 0.5f, 9), 1e-25f));
   meshes.push_back(scaled("denormal", soup("", 60, 1, 0.5f, 8), 1e-40f));
   return meshes;
 }
