@@ -3,6 +3,7 @@
 #include "app/frame.h"
 
 #include "base/color.h"
+#include "effect/effect_probe.h"
 #include "plan/plan_lights.h"
 #include "shade/camera.h"
 #include "shade/filters.h"
@@ -17,6 +18,7 @@ void pose_scene(Renderer* r, double seconds) {
   r->frame.positions = r->scene.positions;
   r->frame.normals = has(r->effects.mask, Effect::smooth_normal) ? r->scene.normals : Array<const Vec3>();
   if (!has(r->effects.mask, Effect::animation) || !is_animated(r->scene)) return;
+  effect_entered<Effect::animation>();
   pose_at(r->scene, 0, seconds, &r->pose);
   if (r->pose.positions.count) r->frame.positions = r->pose.positions;
   if (r->frame.normals.count && r->pose.normals.count) r->frame.normals = r->pose.normals;

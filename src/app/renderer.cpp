@@ -57,9 +57,9 @@ Status adopt_or_build(Renderer* r) {
 
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* r) {
   r->settings = settings;
-  r->settings.memory_bytes = block_bytes;
   r->accel_info = kAccelList[0];
   r->scene_arena = make_arena("scene", block, block_bytes);
+  r->settings.memory_bytes = r->scene_arena.capacity;  // aligning the block's start may have cost a few bytes
 }
 
 Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t output_bytes) {
@@ -69,7 +69,7 @@ Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t outpu
   add_what_is_missing(r);
   r->effects = plan_effects(r->scene, r->settings);
   std::uint32_t point_count;
-  RETURN_IF_ERROR(light_point_count(r->scene, r->settings, &point_count));
+  RETURN_IF_ERROR(light_point_count(r->scene, r->settings, r->effects.mask, &point_count));
   r->light_points.count = point_count;
   return plan_memory(r->scene, r->settings, r->effects, *r->accel_info, storage, point_count, output_bytes, &r->memory);
 }

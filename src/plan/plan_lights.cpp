@@ -131,6 +131,10 @@ std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, L
 
 bool is_emissive(const Scene& scene, std::uint32_t material) { return !is_zero(scene.materials[material].emission); }
 
+Effect effect_of(LightKind kind) {
+  return kind == LightKind::point ? Effect::point_light : kind == LightKind::spot ? Effect::spot_light : Effect::directional_light;
+}
+
 LightPoint to_point(const Light& light) {
   LightPoint p = {};
   p.position = light.position;
@@ -179,10 +183,12 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
 
 }  // namespace
 
-Status light_point_count(const Scene& scene, const Settings& settings, std::uint32_t* count) {
-  std::uint64_t n = scene.lights.count;
-  for (std::uint32_t i = 0; i < scene.materials.count; ++i)
-    if (is_emissive(scene, i)) n += settings.points_per_area_light;
+Status light_point_count(const Scene& scene, const Settings& settings, EffectMask mask, std::uint32_t* count) {
+  std::uint64_t n = 0;
+  for (const Light& light : scene.lights) n += has(mask, effect_of(light.kind));
+  if (has(mask, Effect::area_light))
+    for (std::uint32_t i = 0; i < scene.materials.count; ++i)
+      if (is_emissive(scene, i)) n += settings.points_per_area_light;
   if (n > kPointLightCountMax)
     return failure("the scene's lights make %llu points, more than %u: lower --area-lights", static_cast<unsigned long long>(n), kPointLightCountMax);
   *count = static_cast<std::uint32_t>(n);
@@ -200,9 +206,8 @@ void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData
       for (std::uint32_t m = 0; m < scene.materials.count; ++m)
         if (is_emissive(scene, m)) count += place_area_light(*frame, m, points.data + count);
     } else {
-      LightKind wanted = kind == Effect::point_light ? LightKind::point : kind == Effect::spot_light ? LightKind::spot : LightKind::directional;
       for (const Light& light : lights)
-        if (light.kind == wanted) points[count++] = to_point(light);
+        if (effect_of(light.kind) == kind) points[count++] = to_point(light);
     }
     CHECK_LE(count, points.count);
     if (count > begin) frame->light_runs[frame->light_run_count++] = {begin, count, find_light_sampler(kind)};

@@ -5,8 +5,9 @@
 
 namespace pocketray {
 
-// How many LightPoints the scene makes; fails when there would be more than kPointLightCountMax.
-Status light_point_count(const Scene& scene, const Settings& settings, std::uint32_t* count);
+// How many LightPoints the scene makes for the effects of the mask; fails when there would be more than
+// kPointLightCountMax.
+Status light_point_count(const Scene& scene, const Settings& settings, EffectMask mask, std::uint32_t* count);
 
 // Fills `points` (light_point_count() of them) from posed lights and frame->positions, and sets the frame's lights and runs
 // for the effects of its mask. Allocates nothing.

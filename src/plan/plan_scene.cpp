@@ -50,11 +50,13 @@ Vec3 default_ambient() { return {0.09f, 0.09f, 0.1f}; }
 
 bool has_light(const Scene& scene) {
   if (scene.lights.count || !is_zero(scene.info.ambient)) return true;
-  for (const Material& m : scene.materials)
+  bool needs_light = false;
+  for (const Triangle& t : scene.triangles) {  // what no triangle uses gives no light
+    const Material& m = scene.materials[t.material];
     if (!is_zero(m.emission)) return true;
-  for (const Material& m : scene.materials)
-    if (!m.unlit) return false;
-  return true;
+    needs_light |= !m.unlit;
+  }
+  return !needs_light;
 }
 
 }  // namespace pocketray

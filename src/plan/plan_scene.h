@@ -16,7 +16,8 @@ constexpr std::uint32_t kDefaultLightCount = 2;
 void default_lights(const Camera& camera, Light* lights);
 Vec3 default_ambient();
 
-// Whether anything in the scene gives light: lights, emissive or unlit materials, a bright background or an ambient term.
+// Whether the scene shows without default lights: it has a light, an ambient term or an emissive surface, or all of its
+// surfaces are unlit.
 bool has_light(const Scene& scene);
 
 }  // namespace pocketray
