@@ -1,0 +1,52 @@
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "golden/golden_frames.h"
+#include "scene/baked.h"
+#include "scene/builtin_helpers.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+// Goal: the same pixels, bit for bit, whatever compiler, optimisation and CPU made them (HARDCASES row 63). Method:
+// golden hashes, one table for all builds.
+TEST_CASE("hard_63_golden_frames_are_the_same_in_every_build") {
+  int count, rows = 0;
+  const BuiltinScene* list = builtin_list(&count);
+  bool changed = false;
+  std::string table;
+  for (int i = 0; i < count; ++i) {
+    auto built = build_builtin(list[i]);
+    for (double seconds : {0.0, 1.5}) {
+      if (seconds > 0 && !is_animated(built->scene)) continue;
+      Settings settings;
+      settings.width = kGoldenWidth, settings.height = kGoldenHeight;
+      Picture picture = render_picture(built->scene, settings, seconds);
+      std::uint32_t scene = scene_hash(built->scene), frame = picture_hash(picture.data(), picture.size());
+      const GoldenFrame* golden = nullptr;
+      for (const GoldenFrame& g : kGoldenFrames)
+        if (std::strcmp(g.scene, list[i].name) == 0 && g.seconds == seconds) golden = &g;
+      char row[128];
+      std::snprintf(row, sizeof row, "{\"%s\", %.1f, 0x%08x, 0x%08x},\n", list[i].name, seconds, scene, frame);
+      table += row;
+      ++rows;
+      CAPTURE(std::string(list[i].name));
+      CAPTURE(seconds);
+      if (!golden) {
+        changed = true;
+        MESSAGE("no golden frame for this scene");
+        continue;
+      }
+      if (golden->scene_hash != scene || golden->frame_hash != frame) changed = true;
+      CHECK_MESSAGE(golden->scene_hash == scene, "the scene itself changed");
+      CHECK(golden->frame_hash == frame);
+    }
+  }
+  if (changed || rows != static_cast<int>(sizeof kGoldenFrames / sizeof *kGoldenFrames)) {
+    std::printf("tests/golden/frames.inc should be:\n%s", table.c_str());
+    FAIL("the table of golden frames does not match");
+  }
+}

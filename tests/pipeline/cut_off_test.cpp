@@ -1,0 +1,143 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/color.h"
+#include "scene/builtin_helpers.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+struct CutOff {
+  double difference_max = 0;  // linear, beyond the rounding of the sums
+  double left_out_max = 0, allowed = 0;
+  int level_difference_max = 0;
+  std::uint64_t rays_left_out = 0, rays_left_out_without = 0, rays_with = 0, rays_without = 0;
+};
+
+std::uint64_t all_rays(const Tracer& t) {
+  std::uint64_t sum = 0;
+  for (std::uint64_t rays : t.rays) sum += rays;
+  return sum;
+}
+
+CutOff compare_cut_off(const Scene& scene, Settings settings) {
+  CutOff c;
+  settings.cut_off = true;
+  auto with = make_renderer(scene, settings);
+  settings.cut_off = false;
+  auto without = make_renderer(scene, settings);
+  Renderer &a = with->renderer, &b = without->renderer;
+  REQUIRE(render_frame(&a, 0).ok);
+  REQUIRE(render_frame(&b, 0).ok);
+  Tracer ta = total_counts(a), tb = total_counts(b);
+  c.left_out_max = ta.left_out_max, c.allowed = kHalfLevel / a.exposure;
+  c.rays_left_out = ta.rays_left_out, c.rays_left_out_without = tb.rays_left_out;
+  c.rays_with = all_rays(ta), c.rays_without = all_rays(tb);
+  for (std::uint32_t i = 0; i < a.image.count; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      double left = a.image[i][axis], right = b.image[i][axis];
+      double difference = std::fabs(left - right) - 1e-6 * right;  // a dozen sums round at 6e-8 each
+      if (difference > c.difference_max) c.difference_max = difference;
+      int levels = std::abs(srgb_level(a.image[i][axis] * a.exposure) - srgb_level(b.image[i][axis] * b.exposure));
+      if (levels > c.level_difference_max) c.level_difference_max = levels;
+    }
+  return c;
+}
+
+void check_bounded(const CutOff& c) {
+  CHECK(c.difference_max <= c.left_out_max);
+  CHECK(c.left_out_max <= c.allowed);
+  CHECK(c.level_difference_max <= 1);
+  CHECK(c.rays_left_out_without == 0);
+  CHECK(c.rays_with <= c.rays_without);
+}
+
+}  // namespace
+
+// Goal: what the cut-off leaves out of a pixel stays below what it reports, that below half a level, and no displayed
+// level moves by more than one. Method: differential, with and without, on the Cornell box.
+TEST_CASE("cut_off_is_bounded_on_cornell") {
+  auto built = build_builtin("cornell");
+  Settings settings;
+  settings.width = 96, settings.height = 72;
+  CutOff c = compare_cut_off(built->scene, settings);
+  check_bounded(c);
+  CHECK(c.rays_left_out > 0);
+}
+
+// Goal and method as above, on generated scenes with mirrors, glass and blending, where paths branch and grow faint.
+TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
+  const std::uint32_t lit = bit(Feature::point_light) | bit(Feature::ambient);
+  const std::uint32_t sets[] = {lit | bit(Feature::mirror), lit | bit(Feature::refraction) | bit(Feature::absorption),
+                                lit | bit(Feature::alpha_blend) | bit(Feature::alpha_mask), lit | bit(Feature::thin),
+                                kAllFeatures & ~bit(Feature::animation)};
+  std::uint64_t left_out = 0;
+  for (std::uint32_t features : sets)
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      auto generated = generate_scene(features, seed);
+      for (Material& m : generated->materials)
+        if (!is_zero(m.mirror)) m.mirror = {0.05f, 0.05f, 0.05f};  // faint enough to matter
+      generated->scene.info.exposure = seed % 2 ? 0.02f : 1.0f;
+      Settings settings = settings_for(features, 48, 36);
+      settings.ray_depth = 16;
+      CutOff c = compare_cut_off(generated->scene, settings);
+      CAPTURE(features);
+      CAPTURE(seed);
+      check_bounded(c);
+      left_out += c.rays_left_out;
+    }
+  CHECK(left_out > 1000);
+}
+
+// Goal: no ray brings more than the bound that the cut-off relies on. Method: sampling, rays from everywhere to
+// everywhere through scenes with every kind of light and surface.
+TEST_CASE("radiance_bound_bounds_every_ray") {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    std::uint32_t features = (kAllFeatures & ~bit(Feature::supersampling)) ^ (seed % 2 ? bit(Feature::refraction) : 0u);
+    auto generated = generate_scene(features, seed);
+    Settings settings = settings_for(features, 8, 6);
+    settings.cut_off = false;
+    auto test = make_renderer(generated->scene, settings);
+    const Renderer& r = test->renderer;
+    REQUIRE(std::isfinite(r.frame.radiance_bound));
+    Rng rng = make_rng(seed);
+    auto between = [&](float low, float high) { return low + (high - low) * next_float(&rng); };
+    float most = 0;
+    for (int i = 0; i < 4000; ++i) {
+      Vec3 from = {between(-3, 3), between(0, 3), between(-2.4f, 3)},
+           to = {between(-3, 3), between(0, 3), between(-2.4f, 3)};
+      most = std::max(most, max_component(trace_ray(r, from, normalize(to - from))));
+    }
+    CAPTURE(seed);
+    CHECK(most <= r.frame.radiance_bound);
+    CHECK(most > 0.01f);
+  }
+}
+
+// Goal: the bound is not far above what there is to see. Method: closed form, one mirror facing an emitter: L = Le +
+// ρ·Le.
+TEST_CASE("radiance_bound_is_reached_by_a_mirror_before_an_emitter") {
+  GeneratedScene s;
+  Material lamp, mirror;
+  lamp.diffuse = mirror.diffuse = {0, 0, 0};
+  lamp.emission = {2, 2, 2};
+  lamp.mirror = {0.5f, 0.5f, 0.5f};
+  mirror.mirror = {0.5f, 0.5f, 0.5f};
+  add_quad(&s, {-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, add_material(&s, lamp));
+  add_quad(&s, {1, -1, 1}, {-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, add_material(&s, mirror));
+  aim(&s, {0, 0, 0}, {0, 0, -1}, 40);
+  s.bind();
+  Settings settings = settings_for(0, 4, 3);
+  settings.ray_depth = 16;
+  settings.cut_off = false;
+  auto test = make_renderer(s.scene, settings);
+  float seen = trace_ray(test->renderer, {0, 0, 0}, {0, 0, -1}).x;
+  CHECK(seen <= test->renderer.frame.radiance_bound);
+  CHECK(test->renderer.frame.radiance_bound <= 4 * 1.01f);  // 2/(1 − ½), every surface taken for the strongest
+  CHECK(seen == doctest::Approx(2 / 0.75).epsilon(1e-4));   // Σ (ρ²)ᵏ · 2
+}

@@ -1,0 +1,133 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+
+#include "app/progressive.h"
+#include "scene/baked.h"
+#include "scene/builtin_helpers.h"
+#include "support/feature_sets.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr std::uint32_t kRich = kAllFeatures;
+
+Settings small_settings() { return settings_for(kRich, 45, 34); }
+
+bool same_image(const Array<Vec3>& image, const Picture& picture) {
+  return image.count == picture.size() && std::memcmp(image.data, picture.data(), image.bytes()) == 0;
+}
+
+void shuffle(Rng* rng, std::vector<Span>* spans) {
+  for (std::size_t i = spans->size(); i > 1; --i) std::swap((*spans)[i - 1], (*spans)[next_u32(rng) % i]);
+}
+
+}  // namespace
+
+// Goal: the suites look at scenes that a file could hold. Method: every generated scene passes the checks of a loader.
+TEST_CASE("generated_scenes_are_valid") {
+  for (std::uint32_t features : feature_sets()) {
+    auto generated = generate_scene(features, features);
+    Status status = validate_scene(generated->scene);
+    CAPTURE(std::string(status.message));
+    REQUIRE(status.ok);
+  }
+}
+
+// Goal: the picture does not depend on the number of threads. Method: differential, also of the counted rays.
+TEST_CASE("picture_is_independent_of_threads") {
+  auto generated = generate_scene(kRich, 5);
+  Settings settings = small_settings();
+  auto one = make_renderer(generated->scene, settings);
+  REQUIRE(render_frame(&one->renderer, 0.4).ok);
+  Picture expected(one->renderer.image.begin(), one->renderer.image.end());
+  Tracer counts = total_counts(one->renderer);
+  for (std::uint32_t threads : {2u, 3u, 7u}) {
+    settings.threads = threads;
+    auto test = make_renderer(generated->scene, settings);
+    CAPTURE(threads);
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      REQUIRE(render_frame(&test->renderer, 0.4).ok);
+      CHECK(same_image(test->renderer.image, expected));
+      Tracer total = total_counts(test->renderer);
+      CHECK(std::memcmp(total.rays, counts.rays, sizeof counts.rays) == 0);
+      CHECK(total.rays_left_out == counts.rays_left_out);
+      CHECK(total.left_out_max == counts.left_out_max);
+    }
+  }
+}
+
+// Goal: the picture does not depend on how a frame is cut into spans, nor on their order: threads, servers and temporal
+// coherence rest on that. Method: differential, shuffled pieces of random length by one tracer.
+TEST_CASE("picture_is_independent_of_spans") {
+  auto generated = generate_scene(kRich, 6);
+  auto test = make_renderer(generated->scene, small_settings());
+  Renderer& r = test->renderer;
+  REQUIRE(render_frame(&r, 0.9).ok);
+  Picture expected(r.image.begin(), r.image.end());
+  Rng rng = make_rng(3);
+  for (int round = 0; round < 4; ++round) {
+    std::vector<Span> spans;
+    for (std::uint32_t row = 0; row < r.settings.height; ++row)
+      for (std::uint32_t begin = 0, end; begin < r.settings.width; begin = end) {
+        end = std::min(begin + 1 + next_u32(&rng) % 20, r.settings.width);
+        spans.push_back(
+            {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)});
+      }
+    shuffle(&rng, &spans);
+    Picture picture(expected.size(), Vec3{-1, -1, -1});
+    Tracer tracer = make_tracer(r.frame);
+    trace_spans(&tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, picture.data());
+    CHECK(same_picture(picture, expected));
+  }
+}
+
+// Goal: the picture does not depend on the accelerator. Method: differential over the list of accelerators.
+TEST_CASE("picture_is_independent_of_accelerator") {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    auto generated = generate_scene(kRich, seed);
+    Settings settings = settings_for(kRich, 30, 22);
+    Picture expected = render_picture(generated->scene, settings, 0.5, &kBruteAccel);
+    for (const AccelInfo* accel : kAccelList) {
+      CAPTURE(std::string(accel->name));
+      CAPTURE(seed);
+      CHECK(same_picture(render_picture(generated->scene, settings, 0.5, accel), expected));
+    }
+  }
+}
+
+// Goal: coarse first, then refined ends at the picture that a direct frame gives, each pixel traced once. Method:
+// differential, stopping at every row.
+TEST_CASE("picture_is_independent_of_progressive_refinement") {
+  auto generated = generate_scene(kRich, 8);
+  for (std::uint32_t threads : {1u, 3u}) {
+    Settings settings = small_settings();
+    Picture expected = render_picture(generated->scene, settings, 0.3);
+    settings.threads = threads;
+    auto test = make_renderer(generated->scene, settings);
+    Renderer& r = test->renderer;
+    std::vector<Span> row_spans(settings.width);
+    REQUIRE(prepare_frame(&r, 0.3).ok);
+    Progressive progressive;
+    start_progressive(&r, &progressive);
+    int steps = 0;
+    while (!advance_progressive(&r, {row_spans.data(), settings.width}, 0, &progressive)) ++steps;
+    CHECK(steps > 10);
+    CHECK(progressive.pixels_traced == std::uint64_t(settings.width) * settings.height);
+    CHECK(same_image(r.image, expected));
+  }
+}
+
+// Goal: a frame depends on its time alone, not on the frames before it. Method: differential, times in two orders.
+TEST_CASE("picture_is_independent_of_earlier_frames") {
+  auto generated = generate_scene(kRich, 9);
+  auto test = make_renderer(generated->scene, small_settings());
+  for (double seconds : {1.5, 0.2, 1.0, 0.0}) {
+    REQUIRE(render_frame(&test->renderer, seconds).ok);
+    CAPTURE(seconds);
+    CHECK(same_image(test->renderer.image, render_picture(generated->scene, small_settings(), seconds)));
+  }
+}

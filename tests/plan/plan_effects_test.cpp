@@ -1,0 +1,157 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+
+#include "base/limits.h"
+#include "effect/effect_list.h"
+#include "plan/plan_effects.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+EffectMask plan_of(std::uint32_t features) {
+  return plan_effects(generate_scene(features, 1)->scene, settings_for(features, 8, 6)).mask;
+}
+
+std::string reason(const EffectPlan& plan, Effect effect) { return plan.decisions[static_cast<int>(effect)].reason; }
+
+struct Parsed {
+  bool ok;
+  EffectMask on, off;
+  std::string message;
+};
+Parsed parse(const char* text) {
+  Settings settings;
+  settings.forced_on = settings.forced_off = 7;  // must be overwritten
+  Status status = parse_effects(text, &settings);
+  return {status.ok, settings.forced_on, settings.forced_off, status.message};
+}
+
+}  // namespace
+
+// Goal: a scene gets exactly the effects it calls for. Method: each feature by itself against the effects it needs.
+TEST_CASE("plan_effects_follow_the_scene") {
+  struct Row {
+    std::uint32_t features;
+    EffectMask mask;
+  };
+  using E = Effect;
+  using F = Feature;
+  const Row rows[] = {
+      {0, 0},
+      {bit(F::specular), bit(E::specular)},
+      {bit(F::mirror), bit(E::mirror)},
+      {bit(F::refraction), bit(E::refraction)},
+      {bit(F::refraction) | bit(F::absorption), bit(E::refraction) | bit(E::absorption)},
+      {bit(F::thin), bit(E::refraction)},
+      {bit(F::alpha_mask), bit(E::alpha_mask) | bit(E::texture)},
+      {bit(F::alpha_blend), bit(E::alpha_blend)},
+      {bit(F::emission), bit(E::emission) | bit(E::area_light) | bit(E::shadow)},
+      {bit(F::texture), bit(E::texture)},
+      {bit(F::vertex_color), bit(E::vertex_color)},
+      {bit(F::smooth_normal), bit(E::smooth_normal)},
+      {bit(F::ambient), bit(E::ambient)},
+      {bit(F::point_light), bit(E::point_light) | bit(E::shadow)},
+      {bit(F::spot_light), bit(E::spot_light) | bit(E::shadow)},
+      {bit(F::directional_light), bit(E::directional_light) | bit(E::shadow)},
+      {bit(F::animation), bit(E::animation)},
+      {bit(F::supersampling), bit(E::supersampling)},
+      {kAllFeatures, kAllEffects},
+  };
+  for (const Row& row : rows) {
+    CAPTURE(row.features);
+    CHECK(plan_of(row.features) == row.mask);
+  }
+}
+
+// Goal: every decision says why, in the scene's own figures. Method: examples.
+TEST_CASE("plan_effects_give_reasons") {
+  std::uint32_t features = bit(Feature::mirror) | bit(Feature::point_light);
+  EffectPlan plan = plan_effects(generate_scene(features, 1)->scene, settings_for(features, 8, 6));
+  CHECK(reason(plan, Effect::mirror) == "1 of 10 materials mirror");
+  CHECK(reason(plan, Effect::refraction) == "none of 10 materials would transmit");
+  CHECK(reason(plan, Effect::point_light) == "1 point light");
+  CHECK(reason(plan, Effect::spot_light) == "no spot light");
+  CHECK(reason(plan, Effect::supersampling) == "1 sample per pixel");
+  CHECK(reason(plan, Effect::animation) == "nothing moves");
+  for (const EffectDecision& d : plan.decisions) CHECK(std::strlen(d.reason) > 5);
+  Settings settings = settings_for(features, 8, 6);
+  settings.forced_on = bit(Effect::absorption), settings.forced_off = bit(Effect::mirror) | bit(Effect::animation);
+  plan = plan_effects(generate_scene(features, 1)->scene, settings);
+  CHECK(reason(plan, Effect::absorption) == "asked for (none of 10 materials would absorb inside)");
+  CHECK(reason(plan, Effect::mirror) == "switched off (1 of 10 materials mirror)");
+  CHECK(reason(plan, Effect::animation) == "nothing moves");  // was off anyway
+  CHECK(has(plan.mask, Effect::absorption));
+  CHECK_FALSE(has(plan.mask, Effect::mirror));
+}
+
+// Goal: what no triangle uses calls for nothing. Method: a mirror material that lies idle.
+TEST_CASE("plan_effects_ignore_unused_materials") {
+  auto generated = generate_scene(0, 1);
+  Material idle;
+  idle.mirror = idle.transmission = idle.emission = {1, 1, 1};
+  add_material(generated.get(), idle);
+  generated->bind();
+  CHECK(plan_effects(generated->scene, Settings()).mask == 0);
+}
+
+// Goal: the grammar of --effects. Method: its sentences and their meaning, and what is none.
+TEST_CASE("parse_effects_reads_its_grammar") {
+  CHECK((parse("auto").ok && parse("auto").on == 0 && parse("auto").off == 0));
+  CHECK((parse("all").on == kAllEffects && parse("all").off == 0));
+  Parsed without = parse("auto,-shadow");
+  CHECK((without.ok && without.on == 0 && without.off == bit(Effect::shadow)));
+  Parsed only = parse("shadow,mirror");
+  CHECK((only.ok && only.on == (bit(Effect::shadow) | bit(Effect::mirror))));
+  CHECK(only.off == (kAllEffects & ~only.on));
+  Parsed added = parse("auto,texture");
+  CHECK((added.on == bit(Effect::texture) && added.off == 0));
+  Parsed most = parse("all,-smooth-normal,-alpha-mask");
+  CHECK((most.ok && most.off == (bit(Effect::smooth_normal) | bit(Effect::alpha_mask))));
+  Parsed less = parse("-shadow");
+  CHECK((less.ok && less.on == 0 && less.off == bit(Effect::shadow)));
+  for (const EffectRow& row : kEffectList) {
+    CAPTURE(std::string(row.name));
+    CHECK(parse(row.name).on == bit(row.effect));
+  }
+  for (const char* wrong : {"", "shadows", "shadow,", ",shadow", "shadow,,mirror", "-", "--shadow", "-auto", "-all",
+                            "SHADOW", "shadow mirror", "sha"}) {
+    CAPTURE(std::string(wrong));
+    CHECK_FALSE(parse(wrong).ok);
+  }
+  CHECK(parse("auto,blooming").message.find("'blooming'") != std::string::npos);
+}
+
+// Goal: every setting outside its range is refused by name. Method: each limit and what lies just beyond it.
+TEST_CASE("validate_settings_names_what_is_out_of_range") {
+  CHECK(validate_settings(Settings()).ok);
+  struct Row {
+    std::uint32_t Settings::*field;
+    std::uint32_t low, high;
+    const char* name;
+  };
+  const Row rows[] = {{&Settings::width, 1, kImageSideMax, "width"},
+                      {&Settings::height, 1, kImageSideMax, "height"},
+                      {&Settings::samples_per_pixel, 1, kSampleCountMax, "--samples"},
+                      {&Settings::ray_depth, 0, kRayDepthMax, "--depth"},
+                      {&Settings::points_per_area_light, 1, kPointsPerAreaLightMax, "--area-lights"},
+                      {&Settings::threads, 1, kThreadCountMax, "--threads"}};
+  for (const Row& row : rows) {
+    CAPTURE(std::string(row.name));
+    Settings settings;
+    settings.*row.field = row.low;
+    CHECK(validate_settings(settings).ok);
+    settings.*row.field = row.high;
+    CHECK(validate_settings(settings).ok);
+    for (std::uint32_t wrong : {row.high + 1, row.low - 1, 0xFFFFFFFFu}) {
+      settings.*row.field = wrong;
+      Status status = validate_settings(settings);
+      CHECK_FALSE(status.ok);
+      CHECK(std::string(status.message).find(row.name) != std::string::npos);
+      CHECK(std::string(status.message).find(std::to_string(row.high)) != std::string::npos);
+    }
+  }
+}

@@ -1,0 +1,146 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "base/limits.h"
+#include "plan/plan_lights.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979;
+const std::uint32_t kCounts[] = {1, 2, 3, 4, 5, 7, 9, 16, 50, 64, 256};
+
+std::vector<LightPoint> points_of(const GeneratedScene& s, std::uint32_t n) {
+  Settings settings = settings_for(0, 4, 3);
+  settings.points_per_area_light = n;
+  auto test = make_renderer(s.scene, settings);
+  const Array<const LightPoint>& lights = test->renderer.frame.lights;
+  return std::vector<LightPoint>(lights.begin(), lights.end());
+}
+
+Material lamp(float radiance) {
+  Material m;
+  m.emission = {radiance, radiance / 2, radiance / 4};
+  return m;
+}
+
+std::unique_ptr<GeneratedScene> lamp_scene() {
+  auto s = std::make_unique<GeneratedScene>();
+  aim(s.get(), {0, 0, 9}, {0, 0, 0}, 40);
+  return s;
+}
+
+}  // namespace
+
+// Goal: N points give the power of the surface they stand for, whatever N: emission × area × π [Lambert]. Method:
+// closed form, on a square, a triangle, a box and a sphere.
+TEST_CASE("plan_lights_keep_the_power_of_an_area_light") {
+  for (int shape = 0; shape < 4; ++shape)
+    for (std::uint32_t n : kCounts) {
+      auto s = lamp_scene();
+      std::uint32_t m = add_material(s.get(), lamp(3));
+      double area = 0;
+      if (shape == 0) add_quad(s.get(), {0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}, m), area = 6;
+      if (shape == 1) {
+        for (Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 4, 0}}) add_vertex(s.get(), p);
+        add_triangle(s.get(), 0, 1, 2, m), area = 2;
+      }
+      if (shape == 2) add_box(s.get(), {0, 0, 0}, {1, 2, 3}, m), area = 22;
+      if (shape == 3) {
+        add_sphere(s.get(), {1, 1, 1}, 0.5f, 8, 6, m);
+        for (const Triangle& t : s->triangles) {
+          Vec3 a = s->positions[t.vertex[0]], b = s->positions[t.vertex[1]], c = s->positions[t.vertex[2]];
+          area += 0.5 * double(length(cross(b - a, c - a)));
+        }
+      }
+      s->bind();
+      std::vector<LightPoint> points = points_of(*s, n);
+      CAPTURE(shape);
+      CAPTURE(n);
+      REQUIRE(points.size() == n);
+      double power = 0;
+      for (const LightPoint& p : points) {
+        power += kPi * double(p.intensity.x);
+        CHECK(p.intensity == points[0].intensity);  // equal shares
+        CHECK(p.intensity.y == doctest::Approx(double(p.intensity.x) / 2));
+        CHECK(p.material == m);
+      }
+      CHECK(power == doctest::Approx(3 * area * kPi).epsilon(1e-5));
+    }
+}
+
+// Goal: the points lie on the surface, spread evenly, and one point alone is the centre of a square. Method: closed
+// form: the mean of the points tends to the centre as 1/√N.
+TEST_CASE("plan_lights_points_lie_evenly_on_the_surface") {
+  auto s = lamp_scene();
+  add_quad(s.get(), {-1, -1, 0.5f}, {1, -1, 0.5f}, {1, 1, 0.5f}, {-1, 1, 0.5f}, add_material(s.get(), lamp(1)));
+  s->bind();
+  std::vector<LightPoint> one = points_of(*s, 1);
+  REQUIRE(one.size() == 1);
+  CHECK(one[0].position == Vec3{0, 0, 0.5f});
+  CHECK(one[0].direction == Vec3{0, 0, 1});
+  for (std::uint32_t n : kCounts) {
+    Vec3 mean = {0, 0, 0};
+    int quadrants[4] = {0, 0, 0, 0};
+    for (const LightPoint& p : points_of(*s, n)) {
+      CHECK((std::fabs(p.position.x) < 1 && std::fabs(p.position.y) < 1 && p.position.z == 0.5f));
+      mean += p.position * (1.0f / static_cast<float>(n));
+      ++quadrants[(p.position.x > 0) + 2 * (p.position.y > 0)];
+    }
+    CAPTURE(n);
+    CHECK(std::fabs(mean.x) <= 1.0f / static_cast<float>(n));
+    CHECK(std::fabs(mean.y) <= 1.0f / static_cast<float>(n));
+    if (n % 4 == 0)
+      for (int q : quadrants) CHECK(std::abs(q - int(n) / 4) <= 2);
+  }
+}
+
+// Goal: the shares go where the area is. Method: closed form, two squares of one material, one nine times the other.
+TEST_CASE("plan_lights_points_follow_the_area") {
+  auto s = lamp_scene();
+  std::uint32_t m = add_material(s.get(), lamp(1));
+  add_quad(s.get(), {0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, m);
+  add_quad(s.get(), {9, 0, 0}, {10, 0, 0}, {10, 1, 0}, {9, 1, 0}, m);
+  s->bind();
+  int small = 0;
+  for (const LightPoint& p : points_of(*s, 100)) small += p.position.x > 8;
+  CHECK(small == 10);
+}
+
+// Goal: the same points every time. Method: differential, bit for bit.
+TEST_CASE("plan_lights_are_deterministic") {
+  auto generated = generate_scene(kAllFeatures & ~bit(Feature::animation), 7);
+  for (std::uint32_t n : kCounts) {
+    std::vector<LightPoint> a = points_of(*generated, n), b = points_of(*generated, n);
+    REQUIRE(a.size() == b.size());
+    CHECK(a.size() == n + 3);
+    CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(LightPoint)) == 0);
+  }
+}
+
+// Goal: a scene with too many points is refused before anything is taken for them. Method: at the limit and beyond.
+TEST_CASE("plan_lights_refuse_more_points_than_fit") {
+  auto s = lamp_scene();
+  for (int i = 0; i < 16; ++i) {
+    float x = static_cast<float>(i) * 3;
+    add_quad(s.get(), {x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}, add_material(s.get(), lamp(1)));
+  }
+  s->bind();
+  Settings settings;
+  settings.points_per_area_light = kPointsPerAreaLightMax;
+  std::uint32_t count;
+  REQUIRE(light_point_count(s->scene, settings, kAllEffects, &count).ok);
+  CHECK(count == kPointLightCountMax);
+  CHECK(points_of(*s, kPointsPerAreaLightMax).size() == kPointLightCountMax);
+  s->lights.resize(1);
+  s->bind();
+  Status status = light_point_count(s->scene, settings, kAllEffects, &count);
+  CHECK_FALSE(status.ok);
+  CHECK(std::string(status.message).find("--area-lights") != std::string::npos);
+}

@@ -1,0 +1,149 @@
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "app/progressive.h"
+#include "plan/plan_memory.h"
+#include "support/feature_sets.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+std::size_t part_bytes(const MemoryPlan& plan, const char* name) {
+  for (int i = 0; i < plan.part_count; ++i)
+    if (std::strcmp(plan.parts[i].name, name) == 0) return plan.parts[i].bytes;
+  return 0;
+}
+
+Settings settings_of(std::uint32_t features) {
+  Settings settings = settings_for(features, 32, 24);
+  settings.memory_bytes = 4u << 20;
+  return settings;
+}
+
+}  // namespace
+
+// Goal: the map adds up. Method: invariant, the total is the sum of its arenas, an arena that of its parts and of what
+// its alignment may take.
+TEST_CASE("plan_memory_sums_its_parts") {
+  for (std::uint32_t features : {0u, kAllFeatures, bit(Feature::emission), bit(Feature::animation)}) {
+    auto generated = generate_scene(features, 2);
+    auto test = make_renderer(generated->scene, settings_of(features));
+    const MemoryPlan& plan = test->renderer.memory;
+    std::size_t sums[3] = {0, 0, 0}, total = plan.mapped_bytes;
+    for (int i = 0; i < plan.part_count; ++i) sums[static_cast<int>(plan.parts[i].arena)] += plan.parts[i].bytes;
+    for (int arena = 0; arena < 3; ++arena) {
+      CHECK(plan.arena_bytes[arena] == (sums[arena] ? sums[arena] + kArenaAlignment : 0));
+      total += plan.arena_bytes[arena];
+    }
+    CHECK(plan.total_bytes == total);
+  }
+}
+
+// Goal: an effect that is absent takes no byte. Method: the parts that belong to an effect, with and without it.
+TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
+  auto plan_for = [](std::uint32_t features, EffectMask off) {
+    auto generated = generate_scene(features, 2);
+    Settings settings = settings_of(features);
+    settings.forced_off = off;
+    return make_renderer(generated->scene, settings)->renderer.memory;
+  };
+  CHECK(part_bytes(plan_for(bit(Feature::ambient), 0), "pose") == 0);
+  CHECK(part_bytes(plan_for(bit(Feature::ambient), 0), "lights") == 0);
+  CHECK(part_bytes(plan_for(bit(Feature::animation) | bit(Feature::ambient), 0), "pose") > 0);
+  CHECK(part_bytes(plan_for(bit(Feature::animation) | bit(Feature::ambient), bit(Effect::animation)), "pose") == 0);
+  CHECK(part_bytes(plan_for(bit(Feature::point_light), 0), "lights") == arena_need<LightPoint>(1));
+  CHECK(part_bytes(plan_for(bit(Feature::emission), 0), "lights") ==
+        arena_need<LightPoint>(2));  // 2 points per area light
+  CHECK(part_bytes(plan_for(bit(Feature::emission), bit(Effect::area_light)), "lights") == 0);
+  CHECK(part_bytes(plan_for(bit(Feature::point_light), bit(Effect::point_light)), "lights") == 0);
+}
+
+// Goal: what runs stays inside what was planned, and the plan is not much larger. Method: high-water marks of real
+// runs.
+TEST_CASE("plan_memory_holds_in_a_run") {
+  for (std::uint32_t features : feature_sets()) {
+    if (features % 3) continue;
+    auto generated = generate_scene(features, features);
+    auto test = make_renderer(generated->scene, settings_of(features));
+    Renderer& r = test->renderer;
+    REQUIRE(render_frame(&r, 0.5).ok);
+    CAPTURE(features);
+    CHECK(r.persistent_arena.used_max <= r.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+    CHECK(r.frame_arena.used_max <= r.memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+    CHECK(r.frame_arena.used == 0);
+    // The accelerator's need is an upper bound; all else is exact.
+    std::size_t planned = r.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)];
+    CHECK(r.persistent_arena.used + part_bytes(r.memory, "accelerator") + kArenaAlignment >= planned);
+  }
+}
+
+// Goal: a scene that does not fit is refused with the figures, and what the refusal says would fit does fit. Method:
+// limits from nothing to enough; the size is read back from the message.
+TEST_CASE("plan_memory_refusal_names_what_fits") {
+  auto generated = generate_scene(kAllFeatures, 3);
+  Settings settings = settings_for(kAllFeatures, 640, 480);
+  for (std::size_t limit : {std::size_t(1) << 16, std::size_t(1) << 20, std::size_t(3) << 20}) {
+    settings.memory_bytes = limit;
+    Status status;
+    CHECK(make_renderer(generated->scene, settings, nullptr, &status) == nullptr);
+    std::string message = status.message;
+    CAPTURE(message);
+    CHECK(message.find("radiance") != std::string::npos);  // the largest part
+    std::size_t at = message.find("--memory ", message.find("largest"));
+    REQUIRE(at != std::string::npos);
+    settings.memory_bytes = std::strtoul(message.c_str() + at + 9, nullptr, 10) << 20;
+    auto test = make_renderer(generated->scene, settings, nullptr, &status);
+    REQUIRE(test);
+    CHECK(render_frame(&test->renderer, 0).ok);
+  }
+}
+
+// Goal: a block that just holds the plan is enough, and one byte less is refused rather than overrun, wherever the
+// block starts. Method: exhaustive over the misalignments of a cache line, at the edge.
+TEST_CASE("plan_memory_is_exact_at_the_edge_for_any_alignment") {
+  auto generated = generate_scene(bit(Feature::point_light), 4);
+  Settings settings = settings_for(0, 16, 12);
+  std::size_t need = make_renderer(generated->scene, settings)->renderer.memory.total_bytes;
+  std::vector<std::uint8_t> block(need + 4 * kArenaAlignment);
+  int built = 0, refused = 0;
+  for (std::size_t offset = 0; offset < kArenaAlignment; ++offset)
+    for (std::size_t less : {0, 1, 63, 64, 128}) {
+      Renderer r;
+      start_renderer(block.data() + offset, need - less, settings, &r);
+      r.scene = generated->scene;
+      if (!plan_renderer(&r, SceneStorage(), 0).ok) {
+        ++refused;
+        continue;
+      }
+      REQUIRE(build_renderer(&r).ok);
+      REQUIRE(render_frame(&r, 0).ok);
+      ++built;
+    }
+  CHECK(built > 0);
+  CHECK(refused >= 4 * 64);
+}
+
+// Goal: the drawn map is one line a part and ends within its buffer, however short. Method: every length.
+TEST_CASE("plan_memory_draws_within_its_buffer") {
+  auto generated = generate_scene(kAllFeatures, 3);
+  auto test = make_renderer(generated->scene, settings_of(kAllFeatures));
+  const MemoryPlan& plan = test->renderer.memory;
+  char whole[4096];
+  std::size_t length = draw_memory_plan(plan, whole, sizeof whole);
+  CHECK(length == std::strlen(whole));
+  for (int i = 0; i < plan.part_count; ++i) CHECK(std::strstr(whole, plan.parts[i].name) != nullptr);
+  CHECK(std::strstr(whole, "of 4.0 MiB allowed") != nullptr);
+  for (std::size_t size = 1; size <= length + 1; ++size) {
+    std::string buffer(size + 1, '#');
+    std::size_t drawn = draw_memory_plan(plan, &buffer[0], size);
+    REQUIRE(drawn == size - 1);
+    REQUIRE(std::memcmp(buffer.data(), whole, drawn) == 0);
+    REQUIRE(buffer[size - 1] == 0);
+    REQUIRE(buffer[size] == '#');
+  }
+}

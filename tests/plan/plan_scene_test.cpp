@@ -1,0 +1,106 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plan/plan_scene.h"
+#include "shade/camera.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+// Where a point appears: −1 … 1 from edge to edge, or far outside where it lies behind the camera.
+Vec2 project(const CameraRays& c, const Vec3& p) {
+  Vec3d v = {double(p.x) - c.eye.x, double(p.y) - c.eye.y, double(p.z) - c.eye.z};
+  auto along = [&](const Vec3& a) { return v.x * a.x + v.y * a.y + v.z * a.z; };
+  double depth = along(c.forward);
+  if (!(depth > 0)) return {9, 9};
+  return {static_cast<float>(along(c.right) / dot(c.right, c.right) / depth),
+          static_cast<float>(along(c.up) / dot(c.up, c.up) / depth)};
+}
+
+std::unique_ptr<GeneratedScene> dark_scene() {
+  auto generated = generate_scene(0, 1);
+  generated->cameras.clear();
+  generated->bind();
+  return generated;
+}
+
+}  // namespace
+
+// Goal: the framing camera keeps the whole scene in view and lets it fill the picture. Method: project the corners, for
+// boxes of every shape, size and place and pictures of every aspect.
+TEST_CASE("framing_camera_shows_all_corners") {
+  const Box boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
+                       {{0, 0, 0}, {10, 0, 0.1f}},
+                       {{0, 0, 0}, {0, 5, 0}},
+                       {{100, 100, 100}, {101, 103, 102}},
+                       {{-1e9f, -1e9f, 0}, {1e9f, 1e9f, 1}},
+                       {{1e-9f, 0, 0}, {2e-9f, 1e-9f, 1e-9f}},
+                       {{0, 0, 0}, {0.01f, 0.01f, 9}},
+                       {{-5, 2, -5}, {5, 2, 5}}};
+  for (const Box& box : boxes)
+    for (std::uint32_t width : {32u, 100u, 133u, 400u, 900u}) {
+      Camera camera = framing_camera(box, static_cast<float>(width) / 100.0f);
+      CameraRays rays;
+      REQUIRE(make_camera_rays(camera, width, 100, &rays).ok);
+      float widest = 0;
+      for (int i = 0; i < 8; ++i) {
+        Vec2 p = project(
+            rays, {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z});
+        widest = std::max(widest, std::max(std::fabs(p.x), std::fabs(p.y)));
+      }
+      CAPTURE(width);
+      CAPTURE(box.high.x);
+      CHECK(widest <= 1);
+      CHECK(widest >= 0.6f);
+    }
+}
+
+// Goal: a scene of a single point, or of none, still gets a camera that works. Method: degenerate boxes.
+TEST_CASE("framing_camera_is_defined_for_degenerate_bounds") {
+  const Box boxes[] = {empty_box(), {{0, 0, 0}, {0, 0, 0}}, {{3, 4, 5}, {3, 4, 5}}};
+  for (const Box& box : boxes) {
+    CameraRays rays;
+    CHECK(make_camera_rays(framing_camera(box, 1.33f), 4, 3, &rays).ok);
+  }
+}
+
+// Goal: default lights come only where nothing gives light, and then the scene is lit. Method: one source at a time.
+TEST_CASE("default_lights_come_only_where_nothing_gives_light") {
+  auto dark = dark_scene();
+  CHECK_FALSE(has_light(dark->scene));
+  Settings settings = settings_for(0, 16, 12);
+  auto test = make_renderer(dark->scene, settings);
+  CHECK(test->renderer.scene.info.default_lights == 1);
+  CHECK(test->renderer.scene.info.default_camera == 1);
+  CHECK(test->renderer.scene.lights.count == kDefaultLightCount);
+  CHECK(test->renderer.scene.info.ambient == default_ambient());
+  REQUIRE(render_frame(&test->renderer, 0).ok);
+  float most = 0;
+  for (const Vec3& p : test->renderer.image) most = std::max(most, max_component(p));
+  CHECK(most > 0.3f);
+
+  for (Feature source :
+       {Feature::point_light, Feature::spot_light, Feature::directional_light, Feature::ambient, Feature::emission}) {
+    auto lit = generate_scene(bit(source), 1);
+    CAPTURE(static_cast<int>(source));
+    CHECK(has_light(lit->scene));
+    auto lit_test = make_renderer(lit->scene, settings);
+    CHECK(lit_test->renderer.scene.info.default_lights == 0);
+    CHECK(lit_test->renderer.scene.lights.count == lit->lights.size());
+  }
+  auto unlit = dark_scene();
+  for (Material& m : unlit->materials) m.unlit = 1;
+  CHECK(has_light(unlit->scene));
+  unlit->materials[0].unlit = 0;
+  CHECK_FALSE(has_light(unlit->scene));
+
+  Material idle;
+  idle.emission = {1, 1, 1};
+  add_material(dark.get(), idle);  // which no triangle uses
+  dark->bind();
+  CHECK_FALSE(has_light(dark->scene));
+}

@@ -1,0 +1,109 @@
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+
+#include "effect/effect_list.h"
+#include "effect/effect_probe.h"
+#include "golden/golden_frames.h"
+#include "scene/builtin_helpers.h"
+#include "support/feature_sets.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+std::uint64_t entries(Effect effect) { return effect_probe.entries[static_cast<int>(effect)].load(); }
+
+// Renders while the effects that the scene's own plan leaves out are trapped; *mask is that plan.
+Picture render_trapped(const Scene& scene, const Settings& settings, double seconds, EffectMask* mask) {
+  effect_probe.allowed = kAllEffects;
+  auto test = make_renderer(scene, settings);
+  for (auto& count : effect_probe.entries) count = 0;
+  *mask = test->renderer.effects.mask;
+  effect_probe.allowed = *mask;
+  Status status = render_frame(&test->renderer, seconds);
+  effect_probe.allowed = kAllEffects;
+  REQUIRE(status.ok);
+  return Picture(test->renderer.image.begin(), test->renderer.image.end());
+}
+
+Picture render_all(const Scene& scene, Settings settings, double seconds) {
+  settings.forced_on = kAllEffects;
+  effect_probe.allowed = kAllEffects;
+  return render_picture(scene, settings, seconds);
+}
+
+// What ends a child that renders while one effect is trapped that the scene calls for: the signal, or 0.
+int signal_of_render_without(Effect effect, Renderer* r) {
+  pid_t child = fork();
+  if (child == 0) {
+    rlimit no_core = {0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    std::signal(SIGABRT, SIG_DFL);
+    effect_probe.allowed = kAllEffects & ~bit(effect);
+    _exit(render_frame(r, 0.5).ok ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+}  // namespace
+
+// Goal: a build in which an absent effect's entry traps renders the frames of the normal build. Method: golden hashes,
+// which the normal build is held to as well.
+TEST_CASE("probe_builtin_scenes_render_the_golden_frames") {
+  for (const GoldenFrame& golden : kGoldenFrames) {
+    const BuiltinScene* builtin = find_builtin(golden.scene);
+    REQUIRE(builtin);
+    auto built = build_builtin(*builtin);
+    Settings settings;
+    settings.width = kGoldenWidth, settings.height = kGoldenHeight;
+    EffectMask mask;
+    Picture picture = render_trapped(built->scene, settings, golden.seconds, &mask);
+    CAPTURE(std::string(golden.scene));
+    CHECK(mask != kAllEffects);
+    CHECK(picture_hash(picture.data(), picture.size()) == golden.frame_hash);
+  }
+}
+
+// Goal: absent effects are never entered, present ones are, and the frame is that of a render with everything on.
+// Method: counters and traps over generated scenes of all kinds of combinations.
+TEST_CASE("probe_generated_scenes_enter_what_the_plan_has_and_nothing_else") {
+  for (std::uint32_t features : feature_sets()) {
+    if (features % 2 && features != kAllFeatures) continue;  // half of them: the pipeline suite looks at all
+    auto generated = generate_scene(features, features + 1);
+    Settings settings = settings_for(features, 24, 18);
+    EffectMask mask;
+    Picture picture = render_trapped(generated->scene, settings, 0.5, &mask);
+    std::uint64_t counted[kEffectCount];
+    for (int i = 0; i < kEffectCount; ++i) counted[i] = entries(static_cast<Effect>(i));
+    CAPTURE(features);
+    for (const EffectRow& row : kEffectList) {
+      CAPTURE(std::string(row.name));
+      if (has(mask, row.effect))
+        REQUIRE(counted[static_cast<int>(row.effect)] > 0);
+      else
+        REQUIRE(counted[static_cast<int>(row.effect)] == 0);
+    }
+    REQUIRE(same_picture(picture, render_all(generated->scene, settings, 0.5)));
+  }
+}
+
+// Goal: the trap is there: entering an effect that is not allowed ends the process. Method: death test of each effect
+// in a child process, on a scene that has them all.
+TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
+  auto generated = generate_scene(kAllFeatures, 1);
+  effect_probe.allowed = kAllEffects;
+  auto test = make_renderer(generated->scene, settings_for(kAllFeatures, 24, 18));
+  REQUIRE(test->renderer.effects.mask == kAllEffects);
+  for (const EffectRow& row : kEffectList) {
+    CAPTURE(std::string(row.name));
+    CHECK(signal_of_render_without(row.effect, &test->renderer) == SIGABRT);
+  }
+}

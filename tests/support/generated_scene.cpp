@@ -1,0 +1,136 @@
+#include "support/generated_scene.h"
+
+namespace pocketray {
+namespace {
+
+Vec3 random_color(Rng* rng) {
+  return {0.3f + 0.6f * next_float(rng), 0.3f + 0.6f * next_float(rng), 0.3f + 0.6f * next_float(rng)};
+}
+Material matte(const Vec3& diffuse) {
+  Material m;
+  m.diffuse = diffuse;
+  return m;
+}
+
+std::uint32_t add_noise_texture(GeneratedScene* s, Rng* rng, bool with_alpha) {
+  std::vector<std::array<int, 4>> texels;
+  for (int i = 0; i < 16; ++i) {
+    auto byte = [&] { return static_cast<int>(next_u32(rng) % 256); };
+    texels.push_back({byte(), byte(), byte(), with_alpha ? (byte() < 128 ? 40 : 220) : 255});
+  }
+  return add_texture(s, 4, 4, texels);
+}
+
+void add_floor_and_wall(GeneratedScene* s, std::uint32_t features, Rng* rng) {
+  Material floor = matte(random_color(rng)), wall = matte(random_color(rng));
+  if (has(features, Feature::texture)) floor.diffuse_texture.texture = add_noise_texture(s, rng, false);
+  std::uint32_t f = add_material(s, floor), w = add_material(s, wall);
+  add_quad(s, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}, f);
+  add_quad(s, {-3, 0, -2.5f}, {3, 0, -2.5f}, {3, 3, -2.5f}, {-3, 3, -2.5f}, w);
+}
+
+void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
+  Material shiny = matte(random_color(rng)), reflecting = matte(random_color(rng) * 0.5f),
+           glass = matte(random_color(rng)), core = glass;
+  if (has(features, Feature::specular)) shiny.specular = {0.5f, 0.4f, 0.3f}, shiny.exponent = 20;
+  if (has(features, Feature::mirror)) reflecting.mirror = {0.6f, 0.7f, 0.8f};
+  if (has(features, Feature::refraction)) {
+    glass.diffuse = core.diffuse = {0, 0, 0};
+    glass.transmission = {0.9f, 0.95f, 1}, core.transmission = {1, 0.8f, 0.8f}, core.ior = 1.2f;
+    if (has(features, Feature::absorption)) glass.absorption = {0.4f, 0.2f, 0.1f}, core.absorption = {0, 1.5f, 0};
+  }
+  add_sphere(s, {-1.3f, 0.6f, -0.4f}, 0.6f, 8, 5, add_material(s, shiny));
+  add_box(s, {0.9f, 0, -1.6f}, {1.9f, 1.2f, -0.7f}, add_material(s, reflecting));
+  add_sphere(s, {0.1f, 0.8f, 0.3f}, 0.7f, 8, 6, add_material(s, glass));
+  add_sphere(s, {0.1f, 0.8f, 0.3f}, 0.3f, 6, 4, add_material(s, core));
+}
+
+void add_panes(GeneratedScene* s, std::uint32_t features, Rng* rng) {
+  Material pane = matte(random_color(rng)), masked = matte(random_color(rng)), blended = matte(random_color(rng)),
+           lamp = matte(random_color(rng));
+  if (has(features, Feature::thin)) pane.diffuse = {0, 0, 0}, pane.transmission = {0.7f, 0.9f, 0.8f}, pane.thin = 1;
+  if (has(features, Feature::alpha_mask)) {
+    masked.alpha_mode = AlphaMode::mask;
+    masked.diffuse_texture.texture = add_noise_texture(s, rng, true);
+  }
+  if (has(features, Feature::alpha_blend)) {
+    blended.alpha_mode = AlphaMode::blend, blended.opacity = 0.6f;
+    if (has(features, Feature::texture)) blended.diffuse_texture.texture = add_noise_texture(s, rng, true);
+  }
+  if (has(features, Feature::emission)) {
+    lamp.emission = {4, 3.5f, 3};
+    if (has(features, Feature::texture)) lamp.emission_texture.texture = add_noise_texture(s, rng, false);
+  }
+  add_quad(s, {-2.4f, 0, 0.9f}, {-1.2f, 0, 1.3f}, {-1.2f, 1.4f, 1.3f}, {-2.4f, 1.4f, 0.9f}, add_material(s, pane));
+  add_quad(s, {-0.6f, 0.1f, 1.4f}, {0.2f, 0.1f, 1.5f}, {0.2f, 0.9f, 1.5f}, {-0.6f, 0.9f, 1.4f},
+           add_material(s, masked));
+  add_quad(s, {0.8f, 0.2f, 1}, {2, 0.2f, 0.8f}, {2, 1.4f, 0.8f}, {0.8f, 1.4f, 1}, add_material(s, blended));
+  add_quad(s, {-0.7f, 2.9f, -0.7f}, {0.7f, 2.9f, -0.7f}, {0.7f, 2.9f, 0.7f}, {-0.7f, 2.9f, 0.7f},
+           add_material(s, lamp));
+}
+
+void add_lights(GeneratedScene* s, std::uint32_t features, Rng* rng) {
+  Light light;
+  light.intensity = random_color(rng) * 9.0f;
+  light.position = {1.5f, 2.6f, 1.8f};
+  if (has(features, Feature::point_light)) s->lights.push_back(light);
+  light.kind = LightKind::spot;
+  light.position = {-2, 2.7f, 1.5f};
+  light.direction = normalize(Vec3{1.6f, -2, -1.5f});
+  light.cos_inner = 0.95f, light.cos_outer = 0.75f;
+  if (has(features, Feature::spot_light)) s->lights.push_back(light);
+  light.kind = LightKind::directional;
+  light.direction = normalize(Vec3{0.4f, -1, -0.5f});
+  light.intensity = random_color(rng) * 1.5f;
+  if (has(features, Feature::directional_light)) s->lights.push_back(light);
+  if (has(features, Feature::ambient)) s->scene.info.ambient = random_color(rng) * 0.2f;
+}
+
+// The box moves to and fro, and the first light with it.
+void add_motion(GeneratedScene* s, std::uint32_t first_vertex, std::uint32_t vertex_count) {
+  s->nodes.resize(1);
+  s->key_times = {0, 1, 2};
+  s->key_values = {0, 0, 0, -0.5f, 0.4f, 0.3f, 0, 0, 0};
+  s->channels = {{0, 0, 3, 0, ChannelPath::translation, Interpolation::linear}};
+  s->animations = {{0, 1, 2}};
+  MovingMesh mesh = {};
+  mesh.vertex_begin = first_vertex, mesh.vertex_count = vertex_count;
+  mesh.skin = kNone;
+  mesh.instance = Transform();
+  s->moving_meshes = {mesh};
+  s->rest_positions.assign(s->positions.begin() + first_vertex, s->positions.begin() + first_vertex + vertex_count);
+  s->rest_normals.assign(s->normals.begin() + first_vertex, s->normals.begin() + first_vertex + vertex_count);
+  if (!s->lights.empty()) s->lights[0].node = 0;
+}
+
+}  // namespace
+
+std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint64_t seed) {
+  auto s = std::make_unique<GeneratedScene>();
+  Rng rng = make_rng(seed);
+  add_floor_and_wall(s.get(), features, &rng);
+  std::uint32_t first_vertex = static_cast<std::uint32_t>(s->positions.size());
+  add_bodies(s.get(), features, &rng);
+  std::uint32_t vertex_count = static_cast<std::uint32_t>(s->positions.size()) - first_vertex;
+  add_panes(s.get(), features, &rng);
+  add_lights(s.get(), features, &rng);
+  if (has(features, Feature::animation)) add_motion(s.get(), first_vertex, vertex_count);
+  aim(s.get(), {0.3f, 1.6f, 4.6f}, {0, 1, 0}, 50);
+  s->scene.info.background = {0.1f, 0.15f, 0.2f};
+  s->with_normals = has(features, Feature::smooth_normal);
+  s->with_uvs = !s->textures.empty();
+  s->with_colors = has(features, Feature::vertex_color);
+  s->bind();
+  return s;
+}
+
+Settings settings_for(std::uint32_t features, std::uint32_t width, std::uint32_t height) {
+  Settings settings;
+  settings.width = width;
+  settings.height = height;
+  settings.samples_per_pixel = has(features, Feature::supersampling) ? 2 : 1;
+  settings.points_per_area_light = 2;
+  return settings;
+}
+
+}  // namespace pocketray

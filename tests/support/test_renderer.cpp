@@ -1,0 +1,60 @@
+#include <zlib.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "support/generated_scene.h"
+
+namespace pocketray {
+
+std::unique_ptr<TestRenderer> make_renderer(const Scene& scene, const Settings& settings, const AccelInfo* accel,
+                                            Status* status) {
+  auto test = std::make_unique<TestRenderer>();
+  std::size_t bytes = settings.memory_bytes;
+  test->block.reset(new std::uint8_t[bytes]);
+  Renderer* r = &test->renderer;
+  start_renderer(test->block.get(), bytes, settings, r);
+  if (accel) r->accel_info = accel;
+  r->scene = scene;
+  Status result = plan_renderer(r, SceneStorage(), 0);
+  if (result.ok) {
+    r->workers = start_workers(settings.threads);
+    result = build_renderer(r);
+  }
+  if (status) *status = result;
+  if (result.ok) return test;
+  if (!status) {
+    std::fprintf(stderr, "a test scene was refused: %s\n", result.message);
+    std::abort();
+  }
+  return nullptr;
+}
+
+Picture render_picture(const Scene& scene, const Settings& settings, double seconds, const AccelInfo* accel) {
+  auto test = make_renderer(scene, settings, accel);
+  Status status = render_frame(&test->renderer, seconds);
+  if (!status.ok) {
+    std::fprintf(stderr, "a test frame failed: %s\n", status.message);
+    std::abort();
+  }
+  const Array<Vec3>& image = test->renderer.image;
+  return Picture(image.begin(), image.end());
+}
+
+bool same_picture(const Picture& a, const Picture& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+}
+
+std::uint32_t picture_hash(const Vec3* image, std::size_t pixel_count) {
+  return static_cast<std::uint32_t>(
+      crc32(0, reinterpret_cast<const Bytef*>(image), static_cast<uInt>(pixel_count * sizeof(Vec3))));
+}
+
+Vec3 trace_ray(const Renderer& renderer, const Vec3& origin, const Vec3& direction, Tracer* tracer) {
+  Tracer own = make_tracer(renderer.frame);
+  if (!tracer) tracer = &own;
+  return renderer.frame.radiance(tracer, {origin, direction, __builtin_inff()}, renderer.frame.eye_media);
+}
+
+}  // namespace pocketray
