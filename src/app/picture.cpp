@@ -1,20 +1,74 @@
 #include "app/picture.h"
-#include <cstdio>
+
+#include <algorithm>
 #include <cstring>
+
 #include "platform/file.h"
+#include "present/image_file.h"
+#include "present/png_file.h"
+
 namespace pocketray {
-std::size_t picture_bytes(const Settings& s) { return std::size_t(s.width) * s.height * 3 + 64; }
-Status check_picture_path(const std::string&) { return success(); }
-Status write_picture(const char* path, const PictureOptions&, Renderer* r) {
-  int w = r->settings.width, h = r->settings.height;
+namespace {
+
+enum class Kind { png, ppm, pfm, raw, unknown };
+
+Kind kind_of(const char* path) {
+  const char* dot = std::strrchr(path, '.');
+  if (!dot) return Kind::unknown;
+  constexpr struct {
+    const char* ending;
+    Kind kind;
+  } kEndings[] = {{".png", Kind::png}, {".ppm", Kind::ppm}, {".pfm", Kind::pfm}, {".raw", Kind::raw}};
+  for (const auto& row : kEndings)
+    if (std::strcmp(dot, row.ending) == 0) return row.kind;
+  return Kind::unknown;
+}
+
+void write_to_file(void* user, const void* bytes, std::size_t count) { platform::write_bytes(static_cast<platform::FileWriter*>(user), bytes, count); }
+
+Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& sink) {
+  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
+  if (kind == Kind::pfm) {
+    encode_pfm(&r->image[0].x, 3, width, height, sink);
+    return success();
+  }
+  bool raw = kind == Kind::raw, turned = raw && (o.rotation == Rotation::quarter || o.rotation == Rotation::three_quarters);
+  const PixelFormat& format = raw ? o.raw_format : kRgb888;
+  int row_bytes = (turned ? height : width) * format.bits_per_pixel / 8, rows = turned ? width : height;
+  auto pixels = arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
+  pack_rows(r->image.data, width, height, 0, height, r->exposure, format, raw ? o.rotation : Rotation::none, raw && o.dither, pixels.data, row_bytes);
+  if (raw) encode_raw(pixels.data, row_bytes, row_bytes, rows, sink);
+  if (kind == Kind::ppm) encode_ppm(pixels.data, width, height, sink);
+  return kind == Kind::png ? encode_png(pixels.data, width, height, &r->frame_arena, sink) : success();
+}
+
+}  // namespace
+
+std::size_t picture_bytes(const Settings& s) {
+  std::size_t pixels = static_cast<std::size_t>(s.width) * s.height;
+  return arena_need(pixels * 4) + encode_png_need(static_cast<int>(s.width));
+}
+
+Status check_picture_path(const std::string& path) {
+  Kind kind = kind_of(path.c_str());
+  if (kind == Kind::unknown) return failure("-o is '%s': the name must end in .png, .ppm, .pfm or .raw", path.c_str());
+  if (kind == Kind::png && encode_png_need(1) == 0) return failure("this program was built without libpng: write .ppm or .pfm instead of %s", path.c_str());
+  return success();
+}
+
+Status write_picture(const char* path, const PictureOptions& options, Renderer* r) {
+  platform::FileWriter writer;
+  platform::FileError error;
+  if (!platform::open_writer(path, &writer, &error)) return failure("%s %s", path, error.text);
   std::size_t mark = arena_mark(r->frame_arena);
-  auto rgb = arena_array<std::uint8_t>(&r->frame_arena, std::size_t(w) * h * 3);
-  pack_rgb8(r->image.data, w, h, r->exposure, rgb.data);
-  platform::FileWriter f; platform::FileError e;
-  if (!platform::open_writer(path, &f, &e)) return failure("%s %s", path, e.text);
-  char head[64]; int n = std::snprintf(head, 64, "P6\n%d %d\n255\n", w, h);
-  platform::write_bytes(&f, head, n); platform::write_bytes(&f, rgb.data, rgb.bytes());
+  Status status = encode(kind_of(path), options, r, {write_to_file, &writer});
   arena_release(&r->frame_arena, mark);
-  return platform::close_writer(&f, &e) ? success() : failure("%s %s", path, e.text);
+  if (!status.ok) {
+    platform::discard_writer(&writer);
+    return status;
+  }
+  if (!platform::close_writer(&writer, &error)) return failure("%s %s", path, error.text);
+  return success();
 }
-}
+
+}  // namespace pocketray

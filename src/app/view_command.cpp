@@ -1,2 +1,85 @@
+// pocketray view: the scene on a screen, moved by buttons. Coarse first, then refined; input never waits.
+#include <chrono>
+#include <thread>
+
 #include "app/commands.h"
-namespace pocketray { void add_view_command(CLI::App*, int*) {} }
+#include "app/interrupt.h"
+#include "app/options.h"
+#include "app/report.h"
+#include "app/viewer.h"
+#include "base/seal.h"
+
+namespace pocketray {
+namespace {
+
+// Loads and builds on another thread while the screen says so.
+struct Loading {
+  std::unique_ptr<OpenScene> opened = std::make_unique<OpenScene>();
+  Status status;
+  std::atomic<bool> done{false};
+  std::thread thread;
+
+  explicit Loading(const CommonOptions& options)
+      : thread([this, &options] {
+          status = open_scene(options, viewer_bytes, opened.get());
+          if (status.ok) status = start_scene(opened.get(), options);
+          done = true;
+        }) {}
+  ~Loading() { thread.join(); }
+};
+
+// Shows the viewer's waiting screen until the scene is there. False: the user left before.
+bool wait_for(Viewer* viewer, Loading* loading) {
+  while (!loading->done) {
+    if (!show_waiting(viewer, "loading") || interrupted) return false;
+  }
+  return true;
+}
+
+int run(CommonOptions common, const ViewOptions& view) {
+  Viewer viewer;
+  Settings size;
+  Status status = parse_size(common.size, &size.width, &size.height);
+  if (status.ok) status = open_viewer(view, common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height), &viewer);
+  if (!status.ok) return report(status);
+  for (bool again = true; again && status.ok;) {
+    again = false;
+    Loading loading(common);
+    if (!wait_for(&viewer, &loading)) break;
+    status = loading.status;
+    if (!status.ok) break;
+    print_notes(*loading.opened);
+    seal_memory();
+    status = run_viewer(&viewer, &loading.opened->renderer, &again);
+    unseal_memory();
+    if (viewer.dropped[0]) {
+      common.scene = viewer.scene_path = viewer.dropped;
+      viewer.dropped[0] = 0;
+    }
+  }
+  close_viewer(&viewer);
+  if (!status.ok) return report(status);
+  return interrupted ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace
+
+void add_view_command(CLI::App* program, int* exit_status) {
+  auto common = std::make_shared<CommonOptions>();
+  auto view = std::make_shared<ViewOptions>();
+  CLI::App* command = program->add_subcommand("view", "show a scene in the emulator's window, or on the framebuffer of a device");
+  add_scene_options(command, common.get());
+  command->add_option("--screen", view->backend, "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")->capture_default_str();
+  command->add_option("--framebuffer", view->device, "the framebuffer's device file, if not the usual one");
+  command->add_option("--rotate", view->rotation, "turn the picture clockwise: 0, 90, 180 or 270")->capture_default_str();
+  command->add_option("--scale", view->scale, "window pixels per pixel; 0: as many as fit")->capture_default_str();
+  command->add_flag("--dither", view->dither, "ordered dither, for screens of 16 bits");
+  command->add_option("--frames", view->frame_count, "show so many finished frames, then leave; 0: until quit")->capture_default_str();
+  command->add_option("--screenshots", view->screenshot_folder, "where screenshots go")->capture_default_str();
+  command->footer(
+      "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and fly,\n"
+      "start goes back to the scene's camera, X pauses, Y or F1 shows the display, F2 saves a screenshot, F5 reloads, Esc leaves.");
+  command->callback([=] { *exit_status = run(*common, *view); });
+}
+
+}  // namespace pocketray

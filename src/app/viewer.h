@@ -1,0 +1,47 @@
+// The interactive loop between a screen and a renderer.
+#pragma once
+#include <string>
+
+#include "app/camera_control.h"
+#include "app/progressive.h"
+#include "base/status.h"
+#include "platform/platform.h"
+#include "present/pack.h"
+
+namespace pocketray {
+
+struct ViewOptions {
+  std::string backend = "auto", device, screenshot_folder = ".";
+  int rotation = 0, scale = 0;
+  bool dither = false;
+  std::uint32_t frame_count = 0;
+};
+
+struct Viewer {
+  const platform::Backend* backend = nullptr;
+  ViewOptions options;
+  std::string scene_path;  // reloaded when this file changes
+  int width = 0, height = 0;
+  Rotation rotation = Rotation::none;
+  PixelFormat format;
+  void* page_memory = nullptr;
+  char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
+  bool held[platform::kButtonCount] = {};
+  bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // asked for
+  bool hud = true, hud_shown = false, paused = false;
+  std::uint64_t waiting_since_ns = 0;
+  std::uint32_t screenshot_count = 0, frames_finished = 0;
+};
+
+// What the frame arena must hold while viewing: span list and screenshot encoder.
+std::size_t viewer_bytes(const Settings& settings);
+
+Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* viewer);
+// Shows a sign of life while a scene loads, and takes events. False: the user wants to leave.
+bool show_waiting(Viewer* viewer, const char* text);
+// Runs until the user leaves (*again false), the scene's file changed or is to be reloaded (*again true), or
+// options.frame_count frames are finished. Allocates nothing.
+Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again);
+void close_viewer(Viewer* viewer);
+
+}  // namespace pocketray

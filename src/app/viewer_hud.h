@@ -1,0 +1,24 @@
+// What the display over the picture says, and its drawing.
+#pragma once
+#include "app/camera_control.h"
+#include "app/progressive.h"
+#include "present/pack.h"
+
+namespace pocketray {
+
+constexpr int kHudLineMax = 12, kHudColumnMax = 52;
+
+struct HudText {
+  char lines[kHudLineMax][kHudColumnMax + 1] = {};
+  int line_count = 0;
+};
+
+// Milliseconds per frame, nanoseconds per pixel, rays, memory, effects on.
+void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text);
+void write_waiting(const char* what, double seconds, HudText* text);
+
+// Rows of the picture the display covers.
+std::uint32_t hud_rows(const HudText& text);
+void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height, void* pixels, int line_bytes);
+
+}  // namespace pocketray
