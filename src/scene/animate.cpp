@@ -129,10 +129,10 @@ void place_lights_and_cameras(const Scene& scene, Pose* pose) {
 }
 
 double wrapped(double seconds, double duration) {
-  if (!(duration > 0) || !std::isfinite(seconds)) return 0;
+  if (!(duration > 0)) return 0;
   double time = std::fmod(seconds, duration);  // exact
   if (time < 0) time += duration;
-  return time < duration ? time : 0;  // a tiny negative time rounds up to the duration
+  return time < duration ? time : 0;  // a tiny negative time rounds up to the duration; NaN ends here, too
 }
 
 }  // namespace

@@ -65,11 +65,13 @@ constexpr float kHalf = 0.70710678f;
 // Goal: a value holds until its next key. Method: just before, at and after a key.
 TEST_CASE("animate_step_holds_until_the_next_key") {
   Stage stage;
-  stage.channel(ChannelPath::translation, Interpolation::step, {1, 2}, {0, 1, 0, 0, 9, 0});
+  stage.channel(ChannelPath::translation, Interpolation::step, {1, 2, 3}, {0, 1, 0, 0, 9, 0, 0, 5, 0});
   stage.start();
   CHECK(stage.vertex(1).y == 1);
   CHECK(stage.vertex(1.999999).y == 1);
   CHECK(stage.vertex(2).y == 9);
+  CHECK(stage.vertex(2.5).y == 9);
+  CHECK(stage.vertex(3).y == 5);
 }
 
 // Goal: linear between keys; before the first and after the last one that key holds; exact at keys.
@@ -126,14 +128,14 @@ TEST_CASE("animate_rotation_takes_the_shorter_arc") {
 // Goal: neither equal keys nor keys 1e-4 apart lose precision. Method: turn angles down to zero; halfway is half the
 // angle.
 TEST_CASE("animate_rotation_between_almost_equal_keys_is_accurate") {
-  for (double angle : {0.0, 1e-7, 1e-4, 1e-3, 2.8e-3, 3e-3, 1e-2}) {
+  for (double angle : {0.0, 1e-7, 1e-4, 1e-3, 2.8e-3, 3e-3, 1e-2, 0.3}) {
     CAPTURE(angle);
     Stage stage;
     stage.channel(ChannelPath::rotation, Interpolation::linear, {0, 1},
                   {0, 0, 0, 1, 0, 0, static_cast<float>(std::sin(angle / 2)), static_cast<float>(std::cos(angle / 2))});
     stage.start();
-    check_near(stage.vertex(0.5), {static_cast<float>(std::cos(angle / 2)), static_cast<float>(std::sin(angle / 2)), 0},
-               1e-7);
+    check_near(stage.vertex(0.25),
+               {static_cast<float>(std::cos(angle / 4)), static_cast<float>(std::sin(angle / 4)), 0}, 1e-7);
   }
 }
 
@@ -323,6 +325,13 @@ TEST_CASE("animate_pose_is_a_function_of_time") {
   CHECK(std::memcmp(a.lights.data, b.lights.data, a.lights.bytes()) == 0);
   CHECK(std::memcmp(a.cameras.data, b.cameras.data, a.cameras.bytes()) == 0);
   for (int v = 0; v < 12; ++v) CHECK(a.positions[v] == full.positions[v]);
+  pose_at(full.scene, 1, 0.3, &a);  // after animation 0, which sets what animation 1 does not
+  arena_release(&arena, need);
+  b = make_pose(full.scene, &arena);
+  full.scene.animations.data += 1, full.scene.animations.count = 1;
+  pose_at(full.scene, 0, 0.3, &b);
+  CHECK(std::memcmp(a.positions.data, b.positions.data, a.positions.bytes()) == 0);
+  CHECK(std::memcmp(a.weights.data, full.weights.data(), a.weights.bytes()) == 0);
 }
 
 // Goal: same bits on every CPU. Method: the bytes of a pose that uses every interpolation, hashed; the value was

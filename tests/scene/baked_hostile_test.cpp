@@ -128,6 +128,16 @@ TEST_CASE("baked_open_rejects_crafted_section_tables") {
   }
 }
 
+TEST_CASE("baked_open_rejects_reserved_words_in_use") {
+  BakedFile file = small_file();
+  for (std::size_t at = kSectionCountAt + 4; at < kTableAt; at += 4) {
+    put_u32(file, at, 1);
+    fix_checksum(file);
+    CHECK(mentions(open_error(file), "reserved"));
+    put_u32(file, at, 0);
+  }
+}
+
 // Goal: two sections in one place, or one kind twice, are refused. Method: a copy of a neighbour's row of the table.
 TEST_CASE("baked_open_rejects_overlapping_and_duplicate_sections") {
   BakedFile file = small_file();
@@ -161,6 +171,14 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   put_u32(file, kSectionCountAt, 27);
   fix_checksum(file);
   CHECK(mentions(open_error(file), "27 sections"));
+  put_u32(file, kSectionCountAt, 26);
+  put_u32(file, section_at(0) + 16, 2);
+  fix_checksum(file);
+  CHECK(mentions(open_error(file), "2 info sections"));
+  put_u32(file, section_at(0) + 16, 1);
+  put_u32(file, section_at(1) + 16, kNone);
+  fix_checksum(file);
+  CHECK(mentions(open_error(file), "positions reaches beyond the end"));
   file.data()[1] = 'p';
   CHECK(mentions(open_error(file), "not a .pray file"));
 }

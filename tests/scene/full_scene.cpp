@@ -49,7 +49,7 @@ void make_motion(Rng* rng, std::uint32_t vertex_count, FullScene* f) {
   f->channels = {{0, 0, 3, 0, ChannelPath::translation, Interpolation::cubic},
                  {1, 0, 3, 5, ChannelPath::rotation, Interpolation::linear},
                  {2, 1, 2, 9, ChannelPath::weights, Interpolation::step},
-                 {2, 0, 2, 2, ChannelPath::scale, Interpolation::linear}};
+                 {1, 0, 2, 2, ChannelPath::scale, Interpolation::linear}};
   f->animations = {{0, 3, 2}, {3, 1, 0.5f}};
   f->joints = {{0, Transform()}, {1, Transform()}};
   f->joints[1].inverse_bind.m[0][3] = -1;
