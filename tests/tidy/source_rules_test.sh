@@ -47,6 +47,7 @@ must_fail "exceptions" platform/null/a.cpp 'void f() { try { g(); } catch (...) 
 must_fail "heap in the core" src/base/a.cpp 'int* p = new int;'
 must_fail "heap in the core" src/accel/a.cpp '/* x */ void* p = malloc(4);'
 must_fail "heap in the core" platform/sdl2/a.cpp 'std::free(p);'
+must_fail "heap container" src/base/a.cpp 'int* p = new (std::nothrow) int;'
 must_fail "heap container" src/shade/a.cpp 'std::vector<int> rows;'
 must_fail "header of the heap" src/plan/a.cpp '#include <string>'
 must_fail "libm function" src/shade/a.cpp 'float x = std::pow(a, b);'
@@ -61,6 +62,8 @@ must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'au
 must_pass tests/app/a.cpp '#include "platform/platform.h"' '#include "app/frame.h"' 'std::string s;'
 must_pass src/plan/a.cpp '#include "platform/devices/miyoo_mini.h"'
 must_pass platform/linux/a.cpp '#include "platform/platform.h"' '#ifdef __linux__' '#endif'
+must_pass tests/platform/a_test.cpp '#ifdef __linux__' '#endif'
+must_pass src/accel/a.cpp '#include <new>' 'T* p = new (place) T;'
 must_pass src/base/a.cpp 'x = det_pow(a, b); // pow(a, b), a new one' 'const char* s = "malloc(new)";' 'a.exp(b); std::sqrt(2);' \
   '/* throw' 'malloc(4) */ A(const A&) = delete;' $(seq 400)
 
