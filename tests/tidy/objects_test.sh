@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# objects_test.sh FOLDER NM OBJDUMP COMPILER [FLAGS...] : what the compiled core is made of, on this CPU.
+# Goal: no multiply-add is fused (it would round once where other CPUs round twice), the core calls no heap, no exceptions
+# and no libm function that differs between C libraries, and constructs nothing before main().
+# Method: disassemble the objects in FOLDER, where CMake put them, and read their symbols. Then break each rule in a file of
+# our own, compiled for the same CPU, and see it found.
+set -eu
+folder=$1 nm=$2 objdump=$3 compiler=$4
+shift 4
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# x86 (FMA3, FMA4), aarch64, 32-bit ARM (VFPv4 and NEON). ARM's vmla rounds the product first and is allowed.
+fused='[[:space:]](vfn?m(add|sub|addsub|subadd)[0-9]*[sp][sd]|fn?m(add|sub)|fml[as]|fmlal2?|vfn?m[as](\.[a-z0-9]+)*)[[:space:]]'
+symbols=' U (malloc|calloc|realloc|free|aligned_alloc|posix_memalign|strdup|_Zn[wa].*|_Zd[la].*|__cxa_throw|__cxa_allocate_exception|__cxa_begin_catch|__dynamic_cast|(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|fma)[fl]?)$'
+
+fused_in() { "$objdump" -d --no-show-raw-insn "$@" | grep -E "$fused" | sort | uniq -c | head -n 5 || true; }
+symbols_in() { "$nm" -A --undefined-only "$@" | grep -E "$symbols" || true; }
+constructors_in() { "$objdump" -h "$@" | grep -E '\.(init_array|ctors)' || true; }
+
+failures=0
+expect_nothing() {  # TEXT FOUND
+  [ -n "$2" ] || return 0
+  printf '%s:\n%s\n' "$1" "$2"
+  failures=$((failures + 1))
+}
+expect_found() {  # TEXT FOUND
+  [ -z "$2" ] || return 0
+  echo "the planted violation was not found: $1"
+  failures=$((failures + 1))
+}
+
+mapfile -t all < <(find "$folder" -name '*.o' | sort)
+mapfile -t core < <(find "$folder" -name '*.o' -not -path '*/src/app/*' | sort)
+[ ${#core[@]} -gt 0 ] || { echo "no objects in $folder"; exit 1; }
+expect_nothing "fused multiply-add" "$(fused_in "${all[@]}")"
+expect_nothing "heap, exceptions or libm" "$(symbols_in "${core[@]}")"
+expect_nothing "constructors before main()" "$(constructors_in "${core[@]}")"
+
+plant() {  # CODE FLAGS... : compiles it into $work/planted.o
+  echo "$1" >"$work/planted.cpp"
+  shift
+  "$compiler" "$@" -c "$work/planted.cpp" -o "$work/planted.o"
+}
+case $("$compiler" -dumpmachine) in
+  x86_64* | i?86*) has_fused="-mfma" ;;
+  aarch64* | arm*hf) has_fused="" ;;
+  *) has_fused=none ;;
+esac
+if [ "$has_fused" != none ]; then
+  # shellcheck disable=SC2086
+  plant 'float f(float a, float b, float c) { return a * b + c; }' "$@" -O2 -ffp-contract=fast $has_fused
+  expect_found "fused multiply-add" "$(fused_in "$work/planted.o")"
+fi
+plant '#include <cmath>
+float f(float a) { return std::sin(a); }' "$@"
+expect_found "libm" "$(symbols_in "$work/planted.o")"
+plant 'int* f() { return new int; }' "$@"
+expect_found "heap" "$(symbols_in "$work/planted.o")"
+plant 'int g(); int value = g();' "$@"
+expect_found "constructor" "$(constructors_in "$work/planted.o")"
+
+echo "${#all[@]} objects, $failures failures"
+[ "$failures" = 0 ]
