@@ -22,7 +22,7 @@ void unmap_file(MappedFile* file);
 std::uint64_t file_stamp(const char* path);
 
 // Writes a file so that readers see the old content or the whole new one: into PATH.part first, renamed at the end.
-// A standard stream ("-") is written directly.
+// Standard output ("-"), a device or a pipe is written directly.
 struct FileWriter {
   int descriptor = -1;
   bool failed = false;

@@ -72,6 +72,12 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
     snprintf(error->text, sizeof error->text, "the path is longer than %zu bytes: use a shorter one", sizeof writer->path - 1);
     return false;
   }
+  // A device or a pipe is written as it is: renaming onto it would put a file in its place.
+  struct stat info;
+  if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) {
+    writer->descriptor = open(path, O_WRONLY | O_CLOEXEC);
+    return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
+  }
   strcpy(writer->path, path);
   part_path(*writer, part, sizeof part);
   writer->descriptor = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -92,14 +98,17 @@ void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) 
 }
 
 bool close_writer(FileWriter* writer, FileError* error) {
-  if (writer->descriptor == STDOUT_FILENO && !writer->path[0]) {
-    if (writer->failed) snprintf(error->text, sizeof error->text, "standard output was closed before all was written");
+  if (!writer->path[0]) {
+    if (writer->descriptor != STDOUT_FILENO && close(writer->descriptor) != 0) writer->failed = true;
+    writer->descriptor = -1;
+    if (writer->failed) snprintf(error->text, sizeof error->text, "did not take all that was written: is it full, or closed?");
     return !writer->failed;
   }
   char part[sizeof writer->path + 8];
   part_path(*writer, part, sizeof part);
   bool ok = !writer->failed;
   if (close(writer->descriptor) != 0) ok = false;
+  writer->descriptor = -1;
   if (!ok) {
     unlink(part);
     snprintf(error->text, sizeof error->text, "could not be written to the end: is the disk full?");
@@ -110,12 +119,16 @@ bool close_writer(FileWriter* writer, FileError* error) {
     unlink(part);
     return fail(error, "cannot be replaced", number);
   }
-  writer->descriptor = -1;
   return true;
 }
 
 void discard_writer(FileWriter* writer) {
-  if (!writer->path[0] || writer->descriptor < 0) return;
+  if (writer->descriptor < 0) return;
+  if (!writer->path[0]) {
+    if (writer->descriptor != STDOUT_FILENO) close(writer->descriptor);
+    writer->descriptor = -1;
+    return;
+  }
   char part[sizeof writer->path + 8];
   part_path(*writer, part, sizeof part);
   close(writer->descriptor);

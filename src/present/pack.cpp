@@ -70,12 +70,17 @@ inline std::uint32_t pack_dithered(const ChannelPacker& channel, float linear, s
   return ((n + (n >> 16) + 1) >> 16) << channel.shift;
 }
 
+// Pages are bytes to whoever owns them, and pixels here. Aligned, which memcpy() would not know: ARMv5 would store byte
+// by byte.
+using Pixel16 = std::uint16_t __attribute__((may_alias));
+using Pixel32 = std::uint32_t __attribute__((may_alias));
+
 template <int kBytes>
 inline void store(unsigned char* at, std::uint32_t pixel) {
   if (kBytes == 2) {
-    *reinterpret_cast<std::uint16_t*>(at) = static_cast<std::uint16_t>(pixel);
+    *reinterpret_cast<Pixel16*>(at) = static_cast<Pixel16>(pixel);
   } else if (kBytes == 4) {
-    *reinterpret_cast<std::uint32_t*>(at) = pixel;
+    *reinterpret_cast<Pixel32*>(at) = pixel;
   } else {
     at[0] = static_cast<unsigned char>(pixel);
     at[1] = static_cast<unsigned char>(pixel >> 8);
@@ -153,8 +158,8 @@ void unpack_levels(const PixelFormat& format, std::uint32_t pixel, int levels[3]
 
 std::uint32_t read_pixel(const PixelFormat& format, const void* pixel) {
   const unsigned char* bytes = static_cast<const unsigned char*>(pixel);
-  if (format.bits_per_pixel == 16) return *reinterpret_cast<const std::uint16_t*>(bytes);
-  if (format.bits_per_pixel == 32) return *reinterpret_cast<const std::uint32_t*>(bytes);
+  if (format.bits_per_pixel == 16) return *reinterpret_cast<const Pixel16*>(bytes);
+  if (format.bits_per_pixel == 32) return *reinterpret_cast<const Pixel32*>(bytes);
   return static_cast<std::uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16);
 }
 
