@@ -24,7 +24,7 @@ Vec3 edge_point(const Mesh& mesh, std::uint32_t i, int side, float s, bool corne
 struct Aimed {
   Mesh mesh;
   Vec3 center;
-  float radius;
+  float radius;  // the cube of this side about the center lies inside
 };
 
 // Rays from inside a closed mesh at its edges and corners: every one must hit. Returns how many miss or differ from
@@ -55,7 +55,7 @@ std::vector<Aimed> aimed_meshes() {
   }
   list.push_back({jittered_sphere(3, 1e-15f, {0, 0, 0}, 0.05f, 22), {0, 0, 0}, 1e-15f});
   list.push_back({jittered_sphere(3, 4e17f, {0, 0, 0}, 0.05f, 23), {0, 0, 0}, 4e17f});
-  list.push_back({jittered_sphere(0, 1000, {0, 0, 0}, 0.3f, 24), {0, 0, 0}, 1000});
+  list.push_back({jittered_sphere(0, 1000, {0, 0, 0}, 0.1f, 24), {0, 0, 0}, 600});
   list.push_back({lattice_box(8), {4, 4, 4}, 4});
   return list;
 }
