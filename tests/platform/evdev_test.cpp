@@ -95,6 +95,7 @@ TEST_CASE("evdev_escape_and_control_c_quit") {
   pad.send(EV_KEY, KEY_C, 1);
   CHECK(pad.taken() == "");
   pad.send(EV_KEY, KEY_ESC, 1);
+  pad.send(EV_KEY, KEY_ESC, 2);
   CHECK(pad.taken() == "quit");
 }
 

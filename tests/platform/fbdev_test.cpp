@@ -109,6 +109,9 @@ TEST_CASE("fbdev_shows_every_pixel_of_every_recorded_geometry") {
     for (int frame = 1; frame <= 3; ++frame) {
       Page page = kLinuxBackend.begin_frame();
       REQUIRE(page.pixels != nullptr);
+      std::uintptr_t alignment = geometry.bits == 24 ? 1 : geometry.bits / 8;  // ARMv5 cannot store across it
+      CHECK(reinterpret_cast<std::uintptr_t>(page.pixels) % alignment == 0);
+      CHECK(static_cast<std::uintptr_t>(page.line_bytes) % alignment == 0);
       draw(screen, page, frame, 0, screen.format.height);
       kLinuxBackend.end_frame(0, screen.format.height);
       CHECK(wrong_pixels(screen, frame, 0, screen.format.height) == 0);
@@ -242,6 +245,9 @@ TEST_CASE("fbdev_bounds_a_vsync_that_hangs_later") {
   }
   CHECK(screen.machine.vsync_calls == 4 + 1 + 1);
   CHECK(vsync_period_ns() == 0);
+  std::uint64_t start = kSystemDriver.now_ns();
+  CHECK(vsync_wait() == VsyncKind::never);
+  CHECK(kSystemDriver.now_ns() - start < kVsyncTimeoutNs / 2);
 }
 
 // Goal: panning that is refused, at once or later, ends in copying, without losing a frame. Method: a driver that
@@ -252,8 +258,12 @@ TEST_CASE("fbdev_falls_back_to_copying_when_panning_is_refused") {
     Screen screen(kGeometries[3]);
     screen.machine.pans_accepted = accepted;
     REQUIRE(screen.open());
+    bool copied_before = false;
     for (int frame = 1; frame <= 5; ++frame) {
       Page page = kLinuxBackend.begin_frame();
+      bool copies = page.pixels == screen.memory.data();
+      if (copies) CHECK(page.age == (copied_before ? 1 : 0));  // the back page in memory starts with no frame in it
+      copied_before = copies;
       draw(screen, page, frame, 0, 240);
       kLinuxBackend.end_frame(0, 240);
       CHECK(wrong_pixels(screen, frame, 0, 240) == 0);

@@ -102,6 +102,7 @@ TEST_CASE("sdl2_keys_are_the_handhelds_buttons") {
   push_key(SDL_SCANCODE_9, true);
   CHECK(taken() == "+left +a -left +hud");
   push_key(SDL_SCANCODE_ESCAPE, true);
+  push_key(SDL_SCANCODE_ESCAPE, true, true);
   CHECK(taken() == "quit");
   SDL_Event event = {};
   event.type = SDL_QUIT;
