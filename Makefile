@@ -15,6 +15,7 @@ ifneq ($(DEVICE),)
     $(error DEVICE=$(DEVICE): see above)
   endif
 endif
+override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
@@ -26,7 +27,7 @@ ifneq ($(CLASS),)
 endif
 
 setup:
-	@toolchains/setup.sh desktop $(CLASS)
+	@toolchains/setup.sh $(or $(CLASS),desktop)
 
 # Options that are no part of a target: the generator and the compiler cache where there is one, the toolchain of the device.
 configure: setup

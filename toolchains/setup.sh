@@ -5,20 +5,22 @@ set -eu
 
 # What each group needs. "command=package" counts as there when the command is; a plain name is a Debian package.
 required() {
+  local common="cmake=cmake make=make doctest-dev libcli11-dev nlohmann-json3-dev"
   case $1 in
-    desktop) echo c++=g++ cmake=cmake make=make pkg-config=pkg-config zlib1g-dev doctest-dev libcli11-dev nlohmann-json3-dev ;;
+    desktop) echo $common c++=g++ pkg-config=pkg-config zlib1g-dev ;;
     clang) echo clang++=clang ;;
     format) echo clang-format=clang-format ;;
     tidy) echo clang-tidy=clang-tidy ;;
-    armhf) echo arm-linux-gnueabihf-g++=g++-arm-linux-gnueabihf qemu-arm=qemu-user ;;
-    armel) echo arm-linux-gnueabi-g++=g++-arm-linux-gnueabi qemu-arm=qemu-user ;;
-    aarch64) echo aarch64-linux-gnu-g++=g++-aarch64-linux-gnu qemu-aarch64=qemu-user ;;
+    armhf) echo $common arm-linux-gnueabihf-g++=g++-arm-linux-gnueabihf qemu-arm=qemu-user ;;
+    armel) echo $common arm-linux-gnueabi-g++=g++-arm-linux-gnueabi qemu-arm=qemu-user ;;
+    aarch64) echo $common aarch64-linux-gnu-g++=g++-aarch64-linux-gnu qemu-aarch64=qemu-user ;;
     *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
 }
 # What makes the desktop build better and may be absent: PNG, the emulator window, model formats, a faster build.
 optional() {
   case $1 in
+    armhf | armel | aarch64) echo ninja=ninja-build ;;
     desktop) echo ninja=ninja-build libpng-dev libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }
@@ -42,7 +44,8 @@ missing_packages() {
 
 needs=() extras=()
 for group in "$@"; do
-  read -ra words <<<"$(required "$group")"; needs+=("${words[@]}")
+  list=$(required "$group")
+  read -ra words <<<"$list"; needs+=("${words[@]}")
   read -ra words <<<"$(optional "$group")"; extras+=(${words[@]+"${words[@]}"})
 done
 
