@@ -47,7 +47,7 @@ TEST_CASE("builtin_triangle_counts_are_the_papers") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
-    CAPTURE(list[i].name);
+    CAPTURE(std::string(list[i].name));
     REQUIRE(expected.count(list[i].name) == 1);
     CHECK(build_builtin(list[i])->scene.triangles.count == expected.at(list[i].name));
     CHECK(find_builtin(list[i].name) == &list[i]);
@@ -60,7 +60,7 @@ TEST_CASE("builtin_need_is_exact_and_the_scene_is_valid") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
-    CAPTURE(list[i].name);
+    CAPTURE(std::string(list[i].name));
     auto built = build_builtin(list[i]);
     CHECK(built->arena.used_max == list[i].need());
     CHECK(built->arena.used <= list[i].need());
@@ -73,7 +73,7 @@ TEST_CASE("builtin_need_is_exact_and_the_scene_is_valid") {
 // one direction as in the other, vertices compared by position.
 TEST_CASE("builtin_surfaces_are_closed_but_for_the_front_of_the_cornell_box") {
   for (const char* name : {"cube", "furnace"}) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     CHECK(open_edges(build_builtin(name)->scene).empty());
   }
   auto cornell = build_builtin("cornell");
@@ -92,7 +92,7 @@ TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
-    CAPTURE(list[i].name);
+    CAPTURE(std::string(list[i].name));
     auto built = build_builtin(list[i]);
     const Scene& scene = built->scene;
     int not_unit = 0, behind = 0, degenerate = 0;
@@ -109,6 +109,6 @@ TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
     }
     CHECK(not_unit == 0);
     CHECK(degenerate == 0);
-    CHECK(behind <= static_cast<int>(scene.triangles.count / 50));
+    CHECK(behind <= static_cast<int>(scene.triangles.count / 100));
   }
 }

@@ -66,11 +66,11 @@ void build_cornell(Arena* arena, Scene* scene) {
   MeshWriter mesh = make_mesh(arena, kSize);
   add_room(&mesh);
   const float turn = 3.45f;  // towards the camera and the light
-  const Vec3 place = {365, 0, 330};
+  const Vec3 place = {362, 0, 335};
   mesh.material = kWhite;
-  add_box(&mesh, {-70, 0, -70}, {70, 60, 70}, turned(turn, place));
+  add_box(&mesh, {-72, 0, -72}, {72, 48, 72}, turned(turn, place));
   mesh.material = kMarble;
-  add_figure(&mesh, kFigure, place + Vec3{0, 60, 0}, 46, turn);
+  add_figure(&mesh, kFigure, place + Vec3{0, 48, 0}, 52, turn);
   mesh.material = kMirror;
   add_sphere(&mesh, {158, 88, 190}, {88, 88, 88}, kSphereColumns, kSphereRows);
   finish_mesh(mesh, scene);
@@ -87,7 +87,7 @@ void build_cornell(Arena* arena, Scene* scene) {
   materials[kMirror].mirror = {.9f, .9f, .9f};
   scene->materials = materials;
   scene->info.ambient = {.075f, .058f, .036f};
-  scene->info.exposure = 2.7f;
+  scene->info.exposure = 3.1f;
   set_camera(arena, scene, {278, 273, -800}, {278, 273, 0}, 39.3);
 }
 

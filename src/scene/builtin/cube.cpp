@@ -11,13 +11,13 @@ constexpr MeshSize kSize = {12, 20};
 enum MaterialIndex : std::uint32_t { kWhite, kLeft, kRight, kLamp, kMaterialCount };
 
 void add_room(MeshWriter* mesh) {
-  constexpr float kLampSide = 0.4f;  // half
+  constexpr float kLampSide = 0.4f, kLampBack = 0.3f;  // half, and how far behind the middle
   for (int upper = 0; upper < 2; ++upper)
     for (int i = 0; i < 4; ++i)
       add_vertex(mesh, {i == 1 || i == 2 ? 1.0f : -1.0f, upper ? 1.0f : -1.0f, i >= 2 ? 1.0f : -1.0f}, {0, 0, 0});
   for (std::uint32_t i = 0; i < 4; ++i) {
     Vec3 corner = mesh->positions[4 + i];
-    add_vertex(mesh, {corner.x * kLampSide, 1, corner.z * kLampSide}, {0, 0, 0});
+    add_vertex(mesh, {corner.x * kLampSide, 1, corner.z * kLampSide - kLampBack}, {0, 0, 0});
   }
   mesh->material = kWhite;
   add_triangle(mesh, 0, 2, 1);
@@ -53,7 +53,7 @@ void build_cube(Arena* arena, Scene* scene) {
   scene->materials = materials;
   scene->info.ambient = {.16f, .155f, .15f};
   scene->info.exposure = 1;
-  set_camera(arena, scene, {0, -.05f, .98f}, {0, -.05f, -1}, 75);
+  set_camera(arena, scene, {.1f, -.32f, .97f}, {-.02f, .02f, -1}, 80);
 }
 
 }  // namespace pocketray

@@ -13,8 +13,8 @@ struct RayFan {
 };
 // Where the centre of the rays jumps, two entries stand at all but the same place.
 constexpr RayFan kBodyFan[] = {
-    {0.f, .02f, 0},     {.44f, 4.0f, 0},  {.48f, 4.45f, 0},    {.56f, 5.55f, 0},  {.60f, 5.85f, 8}, {.66f, 5.9f, 62},
-    {.6601f, 6.36f, 0}, {.69f, 6.63f, 0}, {.6901f, 7.1f, -63}, {.71f, 7.1f, -55}, {.91f, 7.1f, 25}, {1.f, 7.1f, 87},
+    {0.f, -.02f, 0},    {.44f, 4.0f, 0},  {.48f, 4.45f, 0},    {.56f, 5.55f, 0},  {.60f, 5.85f, 8}, {.66f, 5.9f, 62},
+    {.6601f, 6.36f, 0}, {.69f, 6.63f, 0}, {.6901f, 7.1f, -58}, {.71f, 7.1f, -55}, {.91f, 7.1f, 25}, {1.f, 7.1f, 87},
 };
 constexpr RayFan kArmFan[] = {{0.f, .0f, -60}, {.15f, .0f, 0}, {.85f, .97f, 0}, {.9f, .9f, 30}, {1.f, .9f, 86}};
 
@@ -54,8 +54,8 @@ Vec3 place(const Placement& at, const Vec3& p) {
 }
 
 struct Frame {
-  Vec3 origin, axis, front, side;  // front × side = -axis … azimuth turns from front to side
-  float length;                    // of the axis, scales the fan's heights
+  Vec3 origin, axis, front, side;  // azimuth 0 is the front, azimuth π/2 the side; side × front = -axis
+  float length;                    // of the axis; scales the fan's heights
 };
 
 template <std::size_t n, class Distance>
@@ -69,25 +69,21 @@ void add_tube(MeshWriter* mesh, const Placement& placement, const Frame& frame, 
   if (fan[0].elevation < 0)
     bottom += frame.axis * -cross_surface(bottom, -frame.axis, .1f, [&](const Vec3& p) { return distance(p, 0); });
   add_vertex(mesh, place(placement, bottom), {0, 0, 0});
-  std::uint32_t previous_row = 0;
   for (std::uint32_t row = 0; row < rows; ++row) {
     RayFan ray = fan_at(fan, static_cast<float>(row) / static_cast<float>(rows - 1));
     Vec3 origin = frame.origin + frame.axis * (ray.height * frame.length);
     double elevation = radians(static_cast<double>(ray.elevation));
     float rise = static_cast<float>(det_sin(elevation)), flat = static_cast<float>(det_cos(elevation));
-    std::uint32_t this_row = mesh->vertex_count;
     for (std::uint32_t column = 0; column < columns; ++column) {
       double azimuth = kPi * (2.0 * column / columns - 1);
       float s = static_cast<float>(det_sin(azimuth)), c = static_cast<float>(det_cos(azimuth));
       Vec3 direction = (frame.front * c + frame.side * s) * flat + frame.axis * rise;
-      float start = first_reach;
-      if (row > 0) start = length(mesh->normals[previous_row + column]) + .06f;
+      float start = row > 0 ? mesh->normals[mesh->vertex_count - columns].x + .06f : first_reach;
       float angle = static_cast<float>(azimuth);
       float t = cross_surface(origin, direction, start, [&](const Vec3& p) { return distance(p, angle); });
       // The normal's place keeps the reach until the normals are made.
       add_vertex(mesh, place(placement, origin + direction * t), {t, 0, 0});
     }
-    previous_row = this_row;
   }
   float t = cross_surface(top, frame.axis, .5f, [&](const Vec3& p) { return distance(p, 0); });
   add_vertex(mesh, place(placement, top + frame.axis * t), {0, 0, 0});

@@ -14,21 +14,19 @@ struct Blob {
 };
 
 constexpr Blob kTorso[] = {
-    {Blob::ellipsoid, {0, 5.70f, -.02f}, {.60f, .80f, .40f}, 0, 0, 0},            // ribs
+    {Blob::ellipsoid, {0, 5.70f, -.02f}, {.60f, .82f, .40f}, 0, 0, 0},            // ribs
     {Blob::ellipsoid, {0, 6.00f, -.04f}, {.66f, .36f, .33f}, 0, 0, .15f},         // chest
     {Blob::cone, {-.66f, 6.15f, -.08f}, {.66f, 6.15f, -.08f}, .17f, .17f, .15f},  // collar bones
     {Blob::cone, {0, 6.46f, -.12f}, {-.64f, 6.19f, -.1f}, .15f, .13f, .14f},      // trapezius
     {Blob::cone, {0, 6.46f, -.12f}, {.64f, 6.19f, -.1f}, .15f, .13f, .14f},
-    {Blob::ellipsoid, {-.76f, 6.06f, -.05f}, {.2f, .26f, .21f}, 0, 0, .12f},  // deltoids
-    {Blob::ellipsoid, {.76f, 6.06f, -.05f}, {.2f, .26f, .21f}, 0, 0, .12f},
-    {Blob::ellipsoid, {-.29f, 5.58f, .29f}, {.24f, .24f, .22f}, 0, 0, .09f},  // breasts
-    {Blob::ellipsoid, {.29f, 5.58f, .29f}, {.24f, .24f, .22f}, 0, 0, .09f},
-    {Blob::ellipsoid, {0, 4.98f, -.01f}, {.49f, .58f, .34f}, 0, 0, .2f},     // waist
+    {Blob::ellipsoid, {-.28f, 5.56f, .27f}, {.24f, .25f, .21f}, 0, 0, .16f},  // breasts
+    {Blob::ellipsoid, {.28f, 5.56f, .27f}, {.24f, .25f, .21f}, 0, 0, .16f},
+    {Blob::ellipsoid, {0, 4.98f, -.01f}, {.53f, .60f, .36f}, 0, 0, .2f},     // waist
     {Blob::ellipsoid, {0, 4.58f, .10f}, {.46f, .42f, .31f}, 0, 0, .15f},     // belly
-    {Blob::ellipsoid, {0, 4.12f, -.03f}, {.72f, .52f, .45f}, 0, 0, .25f},    // pelvis
+    {Blob::ellipsoid, {0, 4.12f, -.03f}, {.69f, .54f, .45f}, 0, 0, .25f},    // pelvis
     {Blob::ellipsoid, {-.3f, 3.95f, -.27f}, {.34f, .38f, .3f}, 0, 0, .15f},  // buttocks
     {Blob::ellipsoid, {.3f, 3.95f, -.27f}, {.34f, .38f, .3f}, 0, 0, .15f},
-    {Blob::cone, {0, 6.3f, -.09f}, {0, 6.95f, -.03f}, .215f, .195f, .14f},  // neck
+    {Blob::cone, {0, 6.3f, -.06f}, {0, 6.95f, .0f}, .23f, .2f, .12f},  // neck
 };
 constexpr Blob kHead[] = {
     {Blob::ellipsoid, {0, 7.26f, -.06f}, {.325f, .36f, .39f}, 0, 0, .08f},  // cranium
@@ -61,13 +59,26 @@ constexpr Blob kLegs[] = {
 struct ArmShape {
   Vec3 shoulder, elbow;
   float shoulder_radius, elbow_radius;
+  Vec3 deltoid;
   Vec3 break_at, break_normal;  // the arm ends in this plane
 };
 constexpr ArmShape kArms[2] = {
-    {{-.79f, 6.05f, -.05f}, {-.98f, 4.75f, -.1f}, .2f, .155f, {-.95f, 5.02f, -.09f}, {-.3f, -.93f, .2f}},
-    {{.79f, 6.05f, -.05f}, {1.02f, 5.1f, .16f}, .2f, .15f, {.9f, 5.55f, .05f}, {.35f, -.9f, .25f}},
+    {{-.79f, 6.05f, -.05f},
+     {-.98f, 4.75f, -.1f},
+     .19f,
+     .155f,
+     {-.77f, 6.03f, -.05f},
+     {-.95f, 5.02f, -.09f},
+     {-.3f, -.93f, .2f}},
+    {{.79f, 6.05f, -.05f},
+     {1.02f, 5.1f, .16f},
+     .19f,
+     .15f,
+     {.77f, 6.03f, -.05f},
+     {.9f, 5.55f, .05f},
+     {.35f, -.9f, .25f}},
 };
-constexpr float kArmTransition = .09f;  // how far the arm's surface may leave the arm to join the shoulder
+constexpr float kArmTransition = .16f;  // how far the arm's surface may leave the arm to join the shoulder
 
 float clamp01(float x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 float smooth_step(float low, float high, float x) {
@@ -96,19 +107,25 @@ float cone_distance(const Vec3& p, const Vec3& a, const Vec3& b, float ra, float
   return length(ap - ab * h) - (ra + (rb - ra) * h);
 }
 
+// Whether y is further than `margin` from the interval between a and b: such blobs do not reach the surface at y.
+bool beyond(float y, float a, float b, float margin) {
+  return (y < a - margin && y < b - margin) || (y > a + margin && y > b + margin);
+}
+
 template <std::size_t n>
 float unite(const Blob (&blobs)[n], const Vec3& p, float distance) {
   for (const Blob& blob : blobs) {
     switch (blob.kind) {
       case Blob::ellipsoid:
-        if (std::fabs(p.y - blob.a.y) > blob.b.y + blob.blend + .1f) break;
+        if (beyond(p.y, blob.a.y, blob.a.y, blob.b.y + blob.blend + .1f)) break;
         distance = smooth_min(distance, ellipsoid_distance(p, blob.a, blob.b), blob.blend + 1e-3f);
         break;
       case Blob::cone:
+        if (beyond(p.y, blob.a.y, blob.b.y, (blob.ra > blob.rb ? blob.ra : blob.rb) + blob.blend + .1f)) break;
         distance = smooth_min(distance, cone_distance(p, blob.a, blob.b, blob.ra, blob.rb), blob.blend);
         break;
       case Blob::carve:
-        if (std::fabs(p.y - blob.a.y) > blob.b.y + blob.blend + .1f) break;
+        if (beyond(p.y, blob.a.y, blob.a.y, blob.b.y + blob.blend + .1f)) break;
         distance = -smooth_min(-distance, ellipsoid_distance(p, blob.a, blob.b), blob.blend);
         break;
     }
@@ -139,8 +156,8 @@ float robe_relief(float azimuth, float y) {
   float drawn = smooth_step(1.3f, 2.2f, y) * smooth_step(edge, edge - .5f, y) * square(front);
   relief += .10f * drawn * fold(3.6f * y + 2.3f * azimuth + .5f * sine(3 * azimuth));
   // The rolled border, twisted like a rope.
-  float roll = 1 - square((y - edge + .16f) / .26f);
-  if (roll > 0) relief += .075f * roll * (1 + .7f * fold(8 * y + 5 * azimuth));
+  float roll = 1 - square((y - edge + .2f) / .32f);
+  if (roll > 0) relief += .07f * roll * (1 + .55f * fold(8 * y + 5 * azimuth));
   return relief + .03f * smooth_step(edge + .08f, edge - .1f, y);
 }
 
@@ -148,7 +165,7 @@ float robe_relief(float azimuth, float y) {
 float hair_relief(const Vec3& p, float y) {
   float back = p.z * .8f;
   float parting = std::fabs(p.x) < .12f && p.z > -.3f ? .03f * square(1 - std::fabs(p.x) / .12f) : 0;
-  return .06f * fold(11 * (y - back) + 2 * std::fabs(p.x)) * smooth_step(6.8f, 6.95f, y) - parting;
+  return .045f * fold(12 * (y - back) + 2 * std::fabs(p.x)) * smooth_step(6.8f, 6.95f, y) - parting;
 }
 
 // Elliptical skirt under the folds, from the hips to the ground.
@@ -166,7 +183,8 @@ float body_distance(const Vec3& p, float azimuth) {
   if (p.y > 3.2f) distance = unite(kTorso, p, distance);
   if (p.y > 6.4f) {
     distance = unite(kHead, p, distance);
-    float hair = unite(kHair, p, 1e3f) - hair_relief(p, p.y);
+    float hair = unite(kHair, p, 1e3f);
+    if (std::fabs(hair) < .2f) hair -= hair_relief(p, p.y);
     // The hair line: no hair over the face.
     float face = ellipsoid_distance(p, {0, 6.98f, .34f}, {.235f, .43f, .3f});
     if (-face > hair) hair = -face;
@@ -176,8 +194,8 @@ float body_distance(const Vec3& p, float azimuth) {
     float robe = unite(kLegs, p, skirt_distance(p));
     float top = p.y - (robe_edge(azimuth) + .12f);
     if (top > robe) robe = top;
-    distance = smooth_min(distance, robe, .04f) - robe_relief(azimuth, p.y);
-    if (-p.y > distance) distance = -p.y;
+    distance = smooth_min(distance, robe, .04f);
+    if (std::fabs(distance) < .3f) distance -= robe_relief(azimuth, p.y);  // folds are shallower than that
   }
   return distance;
 }
@@ -185,8 +203,11 @@ float body_distance(const Vec3& p, float azimuth) {
 float arm_distance(int side, const Vec3& p) {
   const ArmShape& arm = kArms[side];
   float alone = cone_distance(p, arm.shoulder, arm.elbow, arm.shoulder_radius, arm.elbow_radius);
-  float joined = smooth_min(alone, unite(kTorso, p, 1e3f), .14f);
-  float limit = alone - kArmTransition;
+  alone = smooth_min(alone, ellipsoid_distance(p, arm.deltoid, {.2f, .28f, .22f}), .12f);
+  // It grows out of the shoulder, and hangs free below the armpit.
+  float grown = smooth_step(5.5f, 5.95f, p.y);
+  float joined = smooth_min(alone, unite(kTorso, p, 1e3f), .2f * grown + 1e-3f);
+  float limit = alone - kArmTransition * grown;
   float distance = joined > limit ? joined : limit;
   float cut = dot(p - arm.break_at, arm.break_normal);
   return cut > distance ? cut : distance;

@@ -1,4 +1,4 @@
-// What the built-in scenes share: taking the small arrays of a scene from the arena, and colours.
+// What the built-in scenes share: taking the small arrays of a scene from the arena, and materials, lights.
 #pragma once
 #include <cstring>
 
@@ -48,6 +48,19 @@ inline Material emitter(const Vec3& emission, const Vec3& diffuse) {
   Material material = matte(diffuse);
   material.emission = emission;
   return material;
+}
+
+// Full intensity within `inner_degrees` of the axis, none beyond `outer_degrees`.
+inline Light spot_light(const Vec3& from, const Vec3& to, const Vec3& intensity, double inner_degrees,
+                        double outer_degrees) {
+  Light light;
+  light.kind = LightKind::spot;
+  light.position = from;
+  light.direction = normalize(to - from);
+  light.intensity = intensity;
+  light.cos_inner = static_cast<float>(det_cos(radians(inner_degrees)));
+  light.cos_outer = static_cast<float>(det_cos(radians(outer_degrees)));
+  return light;
 }
 
 }  // namespace pocketray

@@ -207,21 +207,10 @@ void add_materials(Arena* arena, Scene* scene) {
   scene->materials = materials;
 }
 
-Light spot(const Vec3& from, const Vec3& to, const Vec3& intensity, double inner_degrees, double outer_degrees) {
-  Light light;
-  light.kind = LightKind::spot;
-  light.position = from;
-  light.direction = normalize(to - from);
-  light.intensity = intensity;
-  light.cos_inner = static_cast<float>(det_cos(radians(inner_degrees)));
-  light.cos_outer = static_cast<float>(det_cos(radians(outer_degrees)));
-  return light;
-}
-
 void add_lights(Arena* arena, Scene* scene) {
   Array<Light> lights = default_array<Light>(arena, kLights);
-  lights[0] = spot({-4, 9, 8}, {.3f, 1.4f, .4f}, {480, 455, 405}, 20, 36);
-  lights[1] = spot({6, 8.5f, 6}, {0, 1.4f, 0}, {170, 160, 180}, 18, 34);
+  lights[0] = spot_light({-4, 9, 8}, {.3f, 1.4f, .4f}, {480, 455, 405}, 20, 36);
+  lights[1] = spot_light({6, 8.5f, 6}, {0, 1.4f, 0}, {170, 160, 180}, 18, 34);
   lights[2].position = {0, 6.6f, -3};
   lights[2].intensity = {75, 62, 44};
   lights[3].position = {0, 5, 10.5f};

@@ -104,17 +104,6 @@ void add_niche(MeshWriter* mesh) {
            {-kWallHalf, kWallTop, kWallZ});
 }
 
-Light spot(const Vec3& from, const Vec3& to, const Vec3& intensity, double inner_degrees, double outer_degrees) {
-  Light light;
-  light.kind = LightKind::spot;
-  light.position = from;
-  light.direction = normalize(to - from);
-  light.intensity = intensity;
-  light.cos_inner = static_cast<float>(det_cos(radians(inner_degrees)));
-  light.cos_outer = static_cast<float>(det_cos(radians(outer_degrees)));
-  return light;
-}
-
 }  // namespace
 
 std::size_t statue_need() { return mesh_need(kSize) + parts_need(kMaterialCount, 3, 1); }
@@ -137,20 +126,20 @@ void build_statue(Arena* arena, Scene* scene) {
   finish_mesh(mesh, scene);
 
   Array<Material> materials = default_array<Material>(arena, kMaterialCount);
-  materials[kMarble] = glossy({.80f, .77f, .72f}, {.07f, .07f, .065f}, 22);
+  materials[kMarble] = glossy({.78f, .75f, .70f}, {.035f, .035f, .033f}, 14);
   materials[kStone] = glossy({.42f, .39f, .36f}, {.05f, .05f, .05f}, 40);
   materials[kPlaster] = matte({.34f, .17f, .12f});
   materials[kFloor] = glossy({.25f, .23f, .21f}, {.05f, .05f, .05f}, 60);
   scene->materials = materials;
 
   Array<Light> lights = default_array<Light>(arena, 3);
-  lights[0] = spot({-6.5f, 12.5f, 9}, {0, 5.6f, 0}, {430, 385, 320}, 16, 34);
+  lights[0] = spot_light({-8.6f, 12.5f, 7.2f}, {0, 5.6f, 0}, {430, 389, 327}, 16, 34);
   lights[1].position = {8, 4.5f, 9};
-  lights[1].intensity = {26, 32, 44};
-  lights[2] = spot({3.6f, 11.5f, -.4f}, {0, 6.5f, 0}, {90, 95, 110}, 25, 50);
+  lights[1].intensity = {17, 21, 29};
+  lights[2] = spot_light({3.6f, 11.5f, -.4f}, {0, 6.5f, 0}, {90, 95, 110}, 25, 50);
   scene->lights = lights;
   scene->info.ambient = {.035f, .037f, .045f};
-  set_camera(arena, scene, {.9f, 5.6f, 15.2f}, {0, 5.25f, 0}, 39);
+  set_camera(arena, scene, {.9f, 5.7f, 13.6f}, {0, 5.3f, 0}, 39);
 }
 
 }  // namespace pocketray
