@@ -122,37 +122,14 @@ bool open_window(const ScreenOptions& options, const char** what) {
   return state.texture != nullptr;
 }
 
-bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
-  close();
-  bool turned = options.rotation == 90 || options.rotation == 270;
-  state.width = turned ? options.height : options.width;
-  state.height = turned ? options.width : options.height;
-  std::size_t bytes = page_bytes_max(state.width, state.height);
-  if (!options.memory || options.memory_bytes < bytes) {
-    std::snprintf(error->text, sizeof error->text, "the back page takes %zu bytes, %zu were given", bytes,
-                  options.memory_bytes);
-    return false;
-  }
-  state.page = static_cast<unsigned char*>(options.memory);
-  const char* what = "";
-  if (!open_window(options, &what)) {
-    std::snprintf(error->text, sizeof error->text, "cannot %s: %s (without a display, write a file instead)", what,
-                  SDL_GetError());
-    close();
-    return false;
-  }
-  *format = {state.width, state.height, 32, {16, 8}, {8, 8}, {0, 8}, {}};
-  return true;
-}
-
-Page begin_frame() { return {state.page, state.width * 4, state.shown ? 1 : 0}; }
-
 void show() {
   SDL_SetRenderDrawColor(state.renderer, 0, 0, 0, 255);
   SDL_RenderClear(state.renderer);
   SDL_RenderCopy(state.renderer, state.texture, nullptr, nullptr);
   SDL_RenderPresent(state.renderer);
 }
+
+Page begin_frame() { return {state.page, state.width * 4, state.shown ? 1 : 0}; }
 
 void end_frame(int row_begin, int row_end) {
   if (row_begin < 0) row_begin = 0;
@@ -264,9 +241,42 @@ void take(const SDL_Event& event) {
   }
 }
 
-bool poll(Event* event) {
+// Takes SDL's events until one of them is for us.
+void pump() {
   SDL_Event next;
   while (state.count == 0 && SDL_PollEvent(&next)) take(next);
+}
+
+bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
+  close();
+  bool turned = options.rotation == 90 || options.rotation == 270;
+  state.width = turned ? options.height : options.width;
+  state.height = turned ? options.width : options.height;
+  std::size_t bytes = page_bytes_max(state.width, state.height);
+  if (!options.memory || options.memory_bytes < bytes) {
+    std::snprintf(error->text, sizeof error->text, "the back page takes %zu bytes, %zu were given", bytes,
+                  options.memory_bytes);
+    return false;
+  }
+  state.page = static_cast<unsigned char*>(options.memory);
+  const char* what = "";
+  if (!open_window(options, &what)) {
+    std::snprintf(error->text, sizeof error->text, "cannot %s: %s (without a display, write a file instead)", what,
+                  SDL_GetError());
+    close();
+    return false;
+  }
+  // A first frame, black, and a first look at the events: what memory SDL takes for them, it takes now.
+  std::memset(state.page, 0, bytes);
+  SDL_UpdateTexture(state.texture, nullptr, state.page, state.width * 4);
+  show();
+  pump();
+  *format = {state.width, state.height, 32, {16, 8}, {8, 8}, {0, 8}, {}};
+  return true;
+}
+
+bool poll(Event* event) {
+  pump();
   if (state.count == 0) return false;
   *event = state.queue[state.first];
   state.first = (state.first + 1) % kQueueCapacity;

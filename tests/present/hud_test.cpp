@@ -105,7 +105,14 @@ TEST_CASE("hud_cuts_what_lies_outside_of_the_picture") {
   constexpr std::size_t kGuard = 2 * 3 * kWidth;  // two rows on either side
   std::vector<std::uint8_t> memory(3 * kWidth * kHeight + 2 * kGuard, 0xa5);
   page.canvas.pixels = memory.data() + kGuard;
-  const int places[][2] = {{-20, -5}, {300, 230}, {-1000, 50}, {1000, 1000}, {-20, 235}, {300, -5}};
+  const int places[][2] = {{-20, -5},
+                           {300, 230},
+                           {-1000, 50},
+                           {1000, 1000},
+                           {-20, 235},
+                           {300, -5},
+                           {9, kHeight + 1 - text_box_height(2, 2)},
+                           {kWidth + 1 - text_box_width(7, 2), 9}};
   for (const auto& place : places) draw_text_box(page.canvas, place[0], place[1], 2, lines, 2);
   int touched = 0;
   for (std::size_t i = 0; i < kGuard; ++i) touched += (memory[i] != 0xa5) + (memory[memory.size() - 1 - i] != 0xa5);
