@@ -8,9 +8,6 @@
 #include "platform/file.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
-#ifdef POCKETRAY_HAVE_IMPORT
-#include "import/import.h"
-#endif
 
 namespace pocketray {
 namespace {
@@ -65,7 +62,7 @@ Status bake(const BakeOptions& o) {
     ImportOptions import_options;
     import_options.texture_side_max = o.texture_side_max;
     import_options.crease_angle = o.crease_angle;
-    RETURN_IF_ERROR(import_scene(o.input, import_options, &imported));
+    RETURN_IF_ERROR(import_model(o.input, import_options, &imported));
     scene = imported.scene;
     warning = imported.warning;
 #else

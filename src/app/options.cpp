@@ -33,6 +33,9 @@ Status parse_texture_filter(const std::string& text, TextureFilter* filter) {
 
 Status parse_settings(const CommonOptions& o, Settings* s) {
   RETURN_IF_ERROR(parse_size(o.size, &s->width, &s->height));
+  const platform::Device* device;
+  RETURN_IF_ERROR(find_device(o, &device));
+  if (device) s->memory_bytes = device->memory_bytes;
   if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &s->memory_bytes));
   RETURN_IF_ERROR(parse_effects(o.effects.c_str(), s));
   RETURN_IF_ERROR(parse_texture_filter(o.texture_filter, &s->texture_filter));
@@ -62,6 +65,16 @@ bool read_numbers(const std::string& text, float* values, int count) {
 }
 
 }  // namespace
+
+Status find_device(const CommonOptions& o, const platform::Device** device) {
+  *device = nullptr;
+  if (o.device.empty()) return success();
+  *device = platform::find_device(o.device.c_str());
+  if (*device) return success();
+  std::string names;
+  for (const platform::Device& d : platform::kDevices) names += std::string(names.empty() ? "" : ", ") + d.name;
+  return failure("--device is '%s': it must be one of %s", o.device.c_str(), names.c_str());
+}
 
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height) {
   int used = 0;
@@ -102,7 +115,8 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("--effects", o->effects,
                       "what to simulate: auto (what the scene calls for), all, or names; \"auto,-shadow\" leaves one out")
       ->capture_default_str();
-  command->add_option("--memory", o->memory, "the block everything must fit in, as 24M")->default_str("64M");
+  command->add_option("--memory", o->memory, "the block everything must fit in, as 24M")->default_str("64M, or the device's");
+  command->add_option("--device", o->device, "take memory, and in view rotation and buttons, from a handheld's profile: gp2x, miyoo, miyoo-mini, pi-zero, …");
   command->add_option("--threads", o->threads, "threads that trace; 0: one per core")->capture_default_str();
   command->add_option("--camera", o->camera, "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up, degrees from top to bottom");
   command->add_option("--camera-index", o->camera_index, "which of the scene's cameras")->capture_default_str();

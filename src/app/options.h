@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/source.h"
+#include "platform/devices/device_list.h"
 
 namespace pocketray {
 
@@ -29,6 +30,9 @@ struct OpenScene {
 Status open_scene(const CommonOptions& options, std::size_t (*output_bytes)(const Settings&), OpenScene* opened);
 // Builds it and starts the threads: ready for render_frame().
 Status start_scene(OpenScene* opened, const CommonOptions& options);
+
+// The profile --device names; null with success() where none was named.
+Status find_device(const CommonOptions& options, const platform::Device** device);
 
 // "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);

@@ -3,6 +3,7 @@
 #include "accel/accel_list.h"
 #include "app/frame.h"
 #include "base/check.h"
+#include "brdf/brdf_list.h"
 #include "base/color.h"
 #include "base/fmath.h"
 #include "plan/plan_effects.h"
@@ -18,14 +19,16 @@ void add_what_is_missing(Renderer* r) {
   float aspect = static_cast<float>(r->settings.width) / static_cast<float>(r->settings.height);
   if (scene.cameras.empty()) {
     scene.info.default_camera = 1;
-    r->camera = framing_camera(scene_bounds(scene), aspect);
+    r->camera = default_camera(scene, aspect);
   } else {
     r->camera = scene.cameras[r->camera_index < scene.cameras.count ? r->camera_index : 0];
   }
-  if (!has_light(scene)) {
+  if (!has_light(scene) || scene.info.default_lights != 0) {
     scene.info.default_lights = 1;
+    scene.info.auto_exposure = 0;
     scene.info.ambient = default_ambient();
-    default_lights(r->camera, r->default_lights);
+    if (is_zero(scene.info.background)) scene.info.background = default_background();
+    default_lights(scene, r->camera, r->default_lights);
     scene.lights = {r->default_lights, kDefaultLightCount};
   }
 }
@@ -66,6 +69,8 @@ Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t outpu
   RETURN_IF_ERROR(validate_settings(r->settings));
   if (r->camera_index > 0 && r->camera_index >= r->scene.cameras.count)
     return failure("there is no camera %u: the scene has %u", r->camera_index, r->scene.cameras.count);
+  for (const Material& m : r->scene.materials)  // a file may come from a program with more lobes
+    if (m.brdf >= kBrdfCount) return failure("a material uses glossy lobe %u and this program has %u: bake the scene again", m.brdf, kBrdfCount);
   add_what_is_missing(r);
   r->effects = plan_effects(r->scene, r->settings);
   std::uint32_t point_count;

@@ -3,11 +3,9 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "plan/plan_scene.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
-#ifdef POCKETRAY_HAVE_IMPORT
-#include "import/import.h"
-#endif
 
 namespace pocketray {
 namespace {
@@ -36,7 +34,7 @@ Status load_baked(const std::string& name, Renderer* r, SceneSource* source, Sce
 #ifdef POCKETRAY_HAVE_IMPORT
 Status load_imported(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
   ImportedScene imported;
-  RETURN_IF_ERROR(import_scene(name, ImportOptions(), &imported));
+  RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported));
   source->warning = imported.warning;
   // From the heap into the block, in the form a device would map.
   std::size_t size = baked_size(imported.scene);
@@ -55,6 +53,16 @@ bool ends_with(const std::string& text, const char* end) {
 }
 
 }  // namespace
+
+#ifdef POCKETRAY_HAVE_IMPORT
+Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported) {
+  RETURN_IF_ERROR(import_scene(name, options, imported));
+  bool lit = lights_itself(imported->scene);
+  imported->scene.info.default_lights = lit ? 0 : 1;
+  imported->scene.info.auto_exposure = lit ? 1.0f : 0.0f;
+  return success();
+}
+#endif
 
 void* take_block(std::size_t bytes) { return std::malloc(bytes); }
 

@@ -4,6 +4,9 @@
 
 #include "app/renderer.h"
 #include "platform/file.h"
+#ifdef POCKETRAY_HAVE_IMPORT
+#include "import/import.h"
+#endif
 
 namespace pocketray {
 
@@ -14,6 +17,12 @@ struct SceneSource {
 
 // The one block, taken at start. Kept until the program ends.
 void* take_block(std::size_t bytes);
+
+#ifdef POCKETRAY_HAVE_IMPORT
+// Imports a model and settles its light: one that lights itself is exposed by measurement, since the units of files vary
+// beyond what a display shows; any other asks for the stated lights.
+Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported);
+#endif
 
 // Puts the scene called `name` into renderer->scene; its arrays lie in the scene arena or in the mapped file.
 Status load_scene(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage);

@@ -36,10 +36,14 @@ bool wait_for(Viewer* viewer, Loading* loading) {
   return true;
 }
 
-int run(CommonOptions common, const ViewOptions& view) {
+int run(CommonOptions common, ViewOptions view) {
   Viewer viewer;
   Settings size;
-  Status status = parse_size(common.size, &size.width, &size.height);
+  const platform::Device* device;
+  Status status = find_device(common, &device);
+  if (view.rotation < 0) view.rotation = device ? device->rotation : 0;
+  if (device) view.keys = device->keys;
+  if (status.ok) status = parse_size(common.size, &size.width, &size.height);
   if (status.ok) status = open_viewer(view, common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height), &viewer);
   if (!status.ok) return report(status);
   for (bool again = true; again && status.ok;) {
@@ -71,7 +75,7 @@ void add_view_command(CLI::App* program, int* exit_status) {
   add_scene_options(command, common.get());
   command->add_option("--screen", view->backend, "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")->capture_default_str();
   command->add_option("--framebuffer", view->device, "the framebuffer's device file, if not the usual one");
-  command->add_option("--rotate", view->rotation, "turn the picture clockwise: 0, 90, 180 or 270")->capture_default_str();
+  command->add_option("--rotate", view->rotation, "turn the picture clockwise: 0, 90, 180 or 270")->default_str("0, or the device's");
   command->add_option("--scale", view->scale, "window pixels per pixel; 0: as many as fit")->capture_default_str();
   command->add_flag("--dither", view->dither, "ordered dither, for screens of 16 bits");
   command->add_option("--frames", view->frame_count, "show so many finished frames, then leave; 0: until quit")->capture_default_str();

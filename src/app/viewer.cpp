@@ -164,6 +164,7 @@ Status open_viewer(const ViewOptions& options, const char* scene, int width, int
   screen.width = width;
   screen.height = height;
   screen.rotation = options.rotation;
+  screen.keys = options.keys;
   screen.scale = options.scale;
   screen.title = "pocketray";
   screen.device = options.device.empty() ? nullptr : options.device.c_str();

@@ -1,5 +1,6 @@
 // One line per glossy lobe. Their order is part of the .pray format: append only.
 #pragma once
+#include "base/limits.h"
 #include "brdf/brdf.h"
 
 namespace pocketray {
@@ -8,5 +9,6 @@ extern const BrdfInfo kPhongBrdf;
 
 inline const BrdfInfo* const kBrdfList[] = {&kPhongBrdf};
 constexpr std::uint32_t kBrdfCount = sizeof kBrdfList / sizeof kBrdfList[0];
+static_assert(kBrdfCount <= kBrdfCountMax, "raise it in base/limits.h");
 
 }  // namespace pocketray

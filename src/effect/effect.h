@@ -23,8 +23,9 @@ enum class Effect : std::uint8_t {
   area_light,
   supersampling,
   animation,
+  back_face_culling,
 };
-constexpr int kEffectCount = 18;
+constexpr int kEffectCount = 19;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

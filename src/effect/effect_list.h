@@ -29,6 +29,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::area_light, "area-light", "an emissive surface"},
     {Effect::supersampling, "supersampling", "more than one sample per pixel"},
     {Effect::animation, "animation", "moving geometry, lights or cameras"},
+    {Effect::back_face_culling, "back-face-culling", "a material that is seen from the front alone"},
 };
 
 }  // namespace pocketray

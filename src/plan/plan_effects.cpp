@@ -11,7 +11,7 @@ namespace {
 // How many of the materials that triangles use have a property.
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0, emissive = 0,
-                textured = 0, scattering = 0;
+                textured = 0, scattering = 0, one_sided = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
@@ -32,6 +32,7 @@ Census take_census(const Scene& scene) {
     c.blended += m.alpha_mode == AlphaMode::blend;
     c.emissive += !is_zero(m.emission);
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
+    c.one_sided += !m.double_sided && !transmits;
     c.scattering += !m.unlit && (!is_zero(m.diffuse) || !is_zero(m.specular));
   }
   for (const Light& light : scene.lights) ++c.lights[static_cast<int>(light.kind)];
@@ -78,6 +79,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::alpha_blend, c.blended, "blend with what is behind");
   w.set_by_materials(Effect::emission, c.emissive, "emit");
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
+  w.set_by_materials(Effect::back_face_culling, c.one_sided, "are seen from the front alone");
   w.set_by_materials(Effect::area_light, c.emissive, "emit onto others");
   w.set_by_count(Effect::point_light, c.lights[static_cast<int>(LightKind::point)], "point light");
   w.set_by_count(Effect::spot_light, c.lights[static_cast<int>(LightKind::spot)], "spot light");

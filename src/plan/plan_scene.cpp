@@ -11,14 +11,15 @@ Box scene_bounds(const Scene& scene) {
   return box;
 }
 
-Camera framing_camera(const Box& bounds, float aspect) {
+Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
   Camera camera;
   if (is_empty(bounds)) return camera;
   camera.vertical_fov = static_cast<float>(radians(40));
   camera.target = center(bounds);
   Vec3 half = extent(bounds) * 0.5f;
-  Vec3 backward = normalize(Vec3{0.45f, 0.35f, 1.0f});
-  Vec3 right = normalize(cross(Vec3{0, 1, 0}, backward)), up = cross(backward, right);
+  Vec3 right = normalize(cross(Vec3{0, 1, 0}, backward)), up;
+  if (is_zero(right)) make_basis(backward, &right, &camera.up);
+  up = cross(backward, right);
   // Each corner c must project inside: |c·up| ≤ (distance − c·backward)·tan(fov/2), likewise to the right.
   float tan_half = static_cast<float>(det_sin(radians(20)) / det_cos(radians(20)));
   float distance = 0;
@@ -33,12 +34,67 @@ Camera framing_camera(const Box& bounds, float aspect) {
   return camera;
 }
 
-void default_lights(const Camera& camera, Light* lights) {
+Camera inside_camera(const Box& bounds) {
+  Camera camera;
+  Vec3 middle = center(bounds), half = extent(bounds) * 0.5f;
+  camera.eye = middle + half * Vec3{0.6f, 0.15f, 0.85f};
+  camera.target = middle - half * Vec3{0.25f, 0.2f, 0.35f};
+  camera.vertical_fov = static_cast<float>(radians(60));
+  return camera;
+}
+
+bool is_room(const Scene& scene, const Box& bounds, Vec3* opening) {
+  // By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative where normals point inward, and
+  // the area vectors of a closed surface add up to zero: what is left is that of the side that is missing.
+  Vec3 middle = center(bounds), size = extent(bounds);
+  Vec3d area = {0, 0, 0};
+  double volume = 0;
+  for (const Triangle& t : scene.triangles) {
+    Vec3 a = scene.positions[t.vertex[0]] - middle, b = scene.positions[t.vertex[1]] - middle, c = scene.positions[t.vertex[2]] - middle;
+    volume += static_cast<double>(dot(a, cross(b, c))) / 6;
+    Vec3 twice = cross(b - a, c - a);
+    area += Vec3d{twice.x, twice.y, twice.z} * 0.5;
+  }
+  *opening = {0, 0, 0};
+  double box_volume = static_cast<double>(size.x) * static_cast<double>(size.y) * static_cast<double>(size.z);
+  if (!(-volume > 0.5 * box_volume)) return false;
+  double side = length(area), box_side = static_cast<double>(half_area(bounds)) / 3;
+  if (side > 0.3 * box_side) *opening = {static_cast<float>(area.x / side), static_cast<float>(area.y / side), static_cast<float>(area.z / side)};
+  return true;
+}
+
+Camera default_camera(const Scene& scene, float aspect) {
+  Box bounds = scene_bounds(scene);
+  Vec3 opening;
+  if (!is_room(scene, bounds, &opening)) return framing_camera(bounds, aspect, normalize(Vec3{0.45f, 0.35f, 1.0f}));
+  bool looks_in = !is_zero(opening) && std::fabs(opening.y) < 0.5f;  // not through a missing roof
+  return looks_in ? framing_camera(bounds, aspect, opening) : inside_camera(bounds);
+}
+
+bool lights_itself(const Scene& scene) {
+  if (scene.lights.count) return true;
+  for (const Material& m : scene.materials)
+    if (max_component(m.emission) > 1) return true;
+  return false;
+}
+
+void default_lights(const Scene& scene, const Camera& camera, Light* lights) {
+  lights[0] = lights[1] = Light();
+  Box bounds = scene_bounds(scene);
+  Vec3 opening;
+  if (is_room(scene, bounds, &opening)) {  // the sun does not get in
+    Vec3 half = extent(bounds) * 0.5f;
+    float square = dot(half, half);
+    lights[0].position = center(bounds) + Vec3{0, half.y * 0.6f, 0};
+    lights[0].intensity = Vec3{0.62f, 0.6f, 0.56f} * square;
+    lights[1].position = camera.eye;
+    lights[1].intensity = Vec3{0.16f, 0.18f, 0.21f} * (is_zero(opening) ? square : 4 * square);
+    return;
+  }
   Vec3 backward = normalize(camera.eye - camera.target);
   Vec3 right = normalize(cross(camera.up, backward));
   if (is_zero(right)) make_basis(backward, &right, &right);
   Vec3 up = cross(backward, right);
-  lights[0] = lights[1] = Light();
   lights[0].kind = lights[1].kind = LightKind::directional;
   lights[0].direction = -normalize(backward * 0.8f + up * 0.9f - right * 0.7f);
   lights[0].intensity = {2.6f, 2.5f, 2.35f};
@@ -47,6 +103,7 @@ void default_lights(const Camera& camera, Light* lights) {
 }
 
 Vec3 default_ambient() { return {0.09f, 0.09f, 0.1f}; }
+Vec3 default_background() { return {0.045f, 0.05f, 0.06f}; }
 
 bool has_light(const Scene& scene) {
   if (scene.lights.count || !is_zero(scene.info.ambient)) return true;

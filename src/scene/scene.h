@@ -148,7 +148,7 @@ struct SceneInfo {
   float exposure = 1;           // displayed = exposure × radiance
   std::uint32_t frame_count = 1;
   float frames_per_second = 30;
-  std::uint32_t default_lights = 0;  // 1: the scene had no light and got the stated ones
+  std::uint32_t default_lights = 0;  // 1: the scene asks for the stated lights (plan/plan_scene.h), or has been given them
   std::uint32_t default_camera = 0;  // 1: framed by its bounds
   float auto_exposure = 0;           // 1: exposure is to be measured before the first frame
 };

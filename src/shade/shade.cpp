@@ -111,6 +111,13 @@ Vec3 radiance(Tracer* tracer, Ray ray, Path path) {
         path.weight *= passed;
       }
     }
+    if constexpr (has(mask, Effect::back_face_culling)) {
+      if (is_culled(s)) {
+        effect_entered<Effect::back_face_culling>();
+        ray.origin = safe_origin(s, -1);
+        continue;
+      }
+    }
     std::uint32_t material = scene.triangles[hit.triangle].material;
     if constexpr (has(mask, Effect::alpha_blend)) {
       if (s.material->alpha_mode == AlphaMode::blend) {
@@ -139,7 +146,8 @@ Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const MediumStack& media) 
 }
 
 // The effects this part is instantiated for, and the instantiation of each of their combinations.
-constexpr Effect kParts[] = {Effect::shadow, Effect::specular, Effect::mirror, Effect::refraction, Effect::absorption, Effect::alpha_blend};
+constexpr Effect kParts[] = {Effect::shadow, Effect::specular, Effect::mirror, Effect::refraction, Effect::absorption, Effect::alpha_blend,
+                             Effect::back_face_culling};
 constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
 
 constexpr EffectMask mask_of(std::size_t index) {

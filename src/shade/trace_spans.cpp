@@ -38,15 +38,22 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
     return same(static_cast<float>(tracer->stats.nodes - before.nodes + tracer->stats.triangles - before.triangles));
   }
   Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
-  Hit hit;
   ++tracer->rays[static_cast<int>(RayKind::primary)];
-  frame.accel_info->closest(frame.accel, ray, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &hit, &tracer->stats);
-  if (hit.triangle == kNoTriangle) return {0, 0, 0};
-  if (aov == Aov::depth) return same(hit.t);
-  if (aov == Aov::triangle) return same(static_cast<float>(hit.triangle + 1));
-  Surface s;
-  frame.surface(frame, ray, hit, &s);
-  return s.normal;
+  float passed = 0;  // in front of culled surfaces
+  for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
+    Hit hit;
+    frame.accel_info->closest(frame.accel, ray, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &hit, &tracer->stats);
+    if (hit.triangle == kNoTriangle) break;
+    Surface s;
+    frame.surface(frame, ray, hit, &s);
+    if (!has(frame.mask, Effect::back_face_culling) || !is_culled(s)) {
+      if (aov == Aov::depth) return same(passed + hit.t);
+      return aov == Aov::triangle ? same(static_cast<float>(hit.triangle + 1)) : s.normal;
+    }
+    passed += hit.t;
+    ray.origin = safe_origin(s, -1);
+  }
+  return {0, 0, 0};
 }
 
 }  // namespace

@@ -53,6 +53,8 @@ expect camera_at_its_target 1 'same point' render cube "${small[@]}" --camera "1
 expect camera_index 1 'no camera 7' render cube "${small[@]}" --camera-index 7 -o a.ppm
 expect too_little_memory 1 'memory .*would' render statue --memory 1M -o a.ppm
 expect aov_name 1 'depth, normal' render cube "${small[@]}" --aov colour -o a.ppm
+expect unknown_device 1 'gp2x' render cube "${small[@]}" --device toaster -o a.ppm
+expect device_memory 0 'of 16.0 MiB' plan cornell --device gp2x
 expect frames_format 1 'first:last' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
 
 # Goal: every output exists and has its size. Method: PPM and PFM headers and byte counts, raw framebuffers.

@@ -43,7 +43,7 @@ TEST_CASE("framing_camera_shows_all_corners") {
                        {{-5, 2, -5}, {5, 2, 5}}};
   for (const Box& box : boxes)
     for (std::uint32_t width : {32u, 100u, 133u, 400u, 900u}) {
-      Camera camera = framing_camera(box, static_cast<float>(width) / 100.0f);
+      Camera camera = framing_camera(box, static_cast<float>(width) / 100.0f, normalize(Vec3{0.45f, 0.35f, 1.0f}));
       CameraRays rays;
       REQUIRE(make_camera_rays(camera, width, 100, &rays).ok);
       float widest = 0;
@@ -64,7 +64,7 @@ TEST_CASE("framing_camera_is_defined_for_degenerate_bounds") {
   const Box boxes[] = {empty_box(), {{0, 0, 0}, {0, 0, 0}}, {{3, 4, 5}, {3, 4, 5}}};
   for (const Box& box : boxes) {
     CameraRays rays;
-    CHECK(make_camera_rays(framing_camera(box, 1.33f), 4, 3, &rays).ok);
+    CHECK(make_camera_rays(framing_camera(box, 1.33f, {0, 0, 1}), 4, 3, &rays).ok);
   }
 }
 
