@@ -7,6 +7,7 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <cstring>
 
@@ -21,14 +22,46 @@ namespace {
 const char* const kEndings[] = {"ply", "stl", "fbx", "dae", "3ds",  "off", "x",   "3mf", "blend",
                                 "lwo", "ac",  "ase", "b3d", "ms3d", "md2", "md3", "smd", "x3d"};
 
+// A file in memory. Some of assimp's readers never tire of reading at the end of a file that was cut: here they do.
+class MemoryStream : public Assimp::IOStream {
+ public:
+  explicit MemoryStream(Bytes bytes) : bytes_(std::move(bytes)) {}
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    std::size_t whole = size ? std::min(count, (bytes_.size() - at_) / size) : 0;
+    if (whole == 0 && ++empty_reads_ > kEmptyReadsMax) fail_import("the file ends too early; copy it again");
+    if (whole) std::memcpy(buffer, bytes_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    std::size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+    if (offset > bytes_.size() - base) return aiReturn_FAILURE;
+    at_ = base + offset;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return at_; }
+  std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  static constexpr int kEmptyReadsMax = 1000;
+  Bytes bytes_;
+  std::size_t at_ = 0;
+  int empty_reads_ = 0;
+};
+
 // Files beside the scene file, and no others.
 class FilesBeside : public Assimp::DefaultIOSystem {
  public:
-  explicit FilesBeside(const std::string& scene_path) : scene_path_(scene_path) {}
+  FilesBeside(const std::string& scene_path, std::uint64_t byte_count_max)
+      : scene_path_(scene_path), byte_count_max_(byte_count_max) {}
   bool Exists(const char* path) const override { return allowed(path) && DefaultIOSystem::Exists(path); }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
-    return allowed(path) && std::strchr(mode, 'r') ? DefaultIOSystem::Open(path, mode) : nullptr;
+    if (!Exists(path) || !std::strchr(mode, 'r')) return nullptr;
+    return new MemoryStream(read_file(path, byte_count_max_));  // the importer gives it back to Close
   }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
 
  private:
   bool allowed(const std::string& path) const {
@@ -44,6 +77,7 @@ class FilesBeside : public Assimp::DefaultIOSystem {
     }
   }
   std::string scene_path_;
+  std::uint64_t byte_count_max_;
 };
 
 // Assimp takes the counts of a PLY header at their word; every element needs at least a byte of the file for each of
@@ -99,9 +133,13 @@ MeshData convert(const AssimpReader& reader, const aiMesh& source) {
     }
     if (source.HasVertexColors(0)) mesh.colors.push_back(assimp_color(source.mColors[0][i]));
   }
+  // A fan: assimp's own triangulation aborts on faces without corners.
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
-    if (source.mFaces[f].mNumIndices != 3) continue;  // points and lines are sorted out by assimp's step below
-    for (unsigned k = 0; k < 3; ++k) mesh.indices.push_back(source.mFaces[f].mIndices[k]);
+    const aiFace& face = source.mFaces[f];
+    require_bytes(*reader.builder, mesh.indices.size() + 3 * static_cast<std::uint64_t>(face.mNumIndices), 4,
+                  "the faces");
+    for (unsigned k = 2; k < face.mNumIndices; ++k)
+      mesh.indices.insert(mesh.indices.end(), {face.mIndices[0], face.mIndices[k - 1], face.mIndices[k]});
   }
   return mesh;
 }
@@ -153,10 +191,10 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
   if (ending == "ply") check_ply_counts(bytes);
   require_bytes(*builder, bytes.size(), 4, "the file");
   Assimp::Importer importer;
-  importer.SetIOHandler(new FilesBeside(path));  // the importer owns it
+  importer.SetIOHandler(new FilesBeside(path, builder->options.byte_count_max));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                                     aiProcess_SortByPType | aiProcess_ValidateDataStructure);
+  const aiScene* scene = importer.ReadFile(
+      path, aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure);
   if (!scene || !scene->mRootNode)
     fail_import("%.300s (as assimp reports); export the file again", importer.GetErrorString());
   if (scene->HasAnimations()) note_unused(builder, "animation (use glTF)");

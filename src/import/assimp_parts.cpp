@@ -102,9 +102,9 @@ void add_camera(SceneBuilder* builder, const aiCamera& source, const Transform& 
   Vec3 forward = normalize(transform_vector(world, {l.x, l.y, l.z}));
   camera.target = camera.eye + forward;
   camera.up = normalize(transform_vector(world, {u.x, u.y, u.z}));
-  // Assimp gives half the horizontal angle for some formats and the whole for others; the header says half.
+  // Called half the horizontal angle in the header, the whole angle by the readers of COLLADA, FBX and 3DS.
   double aspect = source.mAspect > 0 ? static_cast<double>(source.mAspect) : 4.0 / 3.0;
-  double half = std::atan(std::tan(static_cast<double>(source.mHorizontalFOV)) / aspect);
+  double half = std::atan(std::tan(static_cast<double>(source.mHorizontalFOV) / 2) / aspect);
   camera.vertical_fov = static_cast<float>(2 * half);
   bool valid = is_coordinate(camera.eye) && camera.target != camera.eye && !is_zero(cross(forward, camera.up)) &&
                half > 0 && half < kPi / 2;

@@ -1,0 +1,255 @@
+// Materials, textures, lights and cameras of glTF.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "import/gltf_writer.h"
+#include "import/import_testing.h"
+
+using namespace pocketray;
+
+namespace {
+
+// 2 × 2 texels: red, green / half-transparent blue, transparent white.
+const char* const kColors =
+    "data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAFUlEQVR42mP4z8DwHwyBdMP///8ZAEZOCHkCeX4dAAAAAElFTkSuQmCC";
+// 2 × 2 texels of (0, 128, 64): roughness 128/255, metallic 64/255.
+const char* const kRoughMetal =
+    "data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAEElEQVR42mNgaHD4D8YwBgA5dAb9ejoCwQAAAABJRU5ErkJggg==";
+
+ImportedScene load_text(const std::string& text, const ImportOptions& options = ImportOptions()) {
+  TemporaryFolder folder;
+  return load(folder.write("scene.gltf", text), options);
+}
+Material material_of(const std::string& json, const std::string& rest = "") {
+  ImportedScene imported = load_text(triangle_gltf(json, rest));
+  REQUIRE(imported.scene.materials.count == 1);
+  return imported.scene.materials[0];
+}
+std::string images(const std::string& uri, const std::string& textures = "{\"source\":0}",
+                   const std::string& samplers = "") {
+  return ",\"images\":[{\"uri\":\"" + uri + "\"}],\"textures\":[" + textures + "]" +
+         (samplers.empty() ? "" : ",\"samplers\":[" + samplers + "]");
+}
+void check_vec(const Vec3& a, const Vec3& b) {
+  for (int c = 0; c < 3; ++c) CHECK(a[c] == doctest::Approx(b[c]).epsilon(1e-5));
+}
+
+}  // namespace
+
+// Goal: the metallic-roughness mapping as stated in gltf_material.cpp. Method: its formulas by hand at three points.
+TEST_CASE("gltf_metallic_roughness_maps_to_our_lobes") {
+  Material plastic = material_of(
+      "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.8,0.4,0.2,1],\"metallicFactor\":0,\"roughnessFactor\":0.5}}");
+  check_vec(plastic.diffuse, {0.8f, 0.4f, 0.2f});
+  check_vec(plastic.specular, {0.04f, 0.04f, 0.04f});
+  check_vec(plastic.mirror, {0, 0, 0});
+  CHECK(plastic.exponent == doctest::Approx(2 / (0.25 * 0.25) - 2));
+  CHECK(plastic.double_sided == 0);
+  Material gold = material_of(
+      "{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.8,0.4,1],\"metallicFactor\":1,"
+      "\"roughnessFactor\":0.15}}");
+  check_vec(gold.diffuse, {0, 0, 0});
+  check_vec(gold.mirror, {0.25f, 0.2f, 0.1f});
+  check_vec(gold.specular, {0.75f, 0.6f, 0.3f});
+  CHECK(gold.double_sided == 1);
+  Material mirror = material_of("{\"pbrMetallicRoughness\":{\"roughnessFactor\":0}}");
+  check_vec(mirror.mirror, {1, 1, 1});
+  check_vec(mirror.specular, {0, 0, 0});
+  CHECK(mirror.exponent == 1e6f);
+}
+
+// Goal: transmission, index of refraction and volume. Method: Beer–Lambert over the attenuation distance gives back the
+// attenuation colour; without a volume the surface is thin.
+TEST_CASE("gltf_transmission_ior_and_volume_become_glass") {
+  const std::string glass =
+      "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.9,0.9,1,1],\"metallicFactor\":0,\"roughnessFactor\":0},"
+      "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.75},\"KHR_materials_ior\":{\"ior\":1."
+      "8}";
+  Material thick = material_of(glass +
+                               ",\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
+                               "\"attenuationColor\":[0.25,0.5,1]}}}");
+  check_vec(thick.transmission, {0.675f, 0.675f, 0.75f});
+  check_vec(thick.diffuse, {0.225f, 0.225f, 0.25f});
+  CHECK(thick.ior == 1.8f);
+  CHECK(thick.thin == 0);
+  for (int c = 0; c < 3; ++c) {
+    const float kept[] = {0.25f, 0.5f, 1};
+    CHECK(std::exp(-2.0 * static_cast<double>(thick.absorption[c])) == doctest::Approx(kept[c]).epsilon(1e-5));
+  }
+  float f0 = 0.8f / 2.8f;
+  check_vec(thick.mirror, Vec3{1, 1, 1} * (f0 * f0 * 0.25f));
+  CHECK(material_of(glass + "}}").thin == 1);
+}
+
+// Goal: emission with its strength, unlit surfaces, alpha modes.
+TEST_CASE("gltf_emission_unlit_and_alpha_modes") {
+  Material lamp = material_of(
+      "{\"emissiveFactor\":[1,0.5,0.25],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8}}"
+      "}");
+  check_vec(lamp.emission, {8, 4, 2});
+  Material sign = material_of(
+      "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.1,0.2,0.3,0.5]},\"alphaMode\":\"BLEND\",\"emissiveFactor\":[1,"
+      "1,1],"
+      "\"extensions\":{\"KHR_materials_unlit\":{}}}");
+  CHECK(sign.unlit == 1);
+  check_vec(sign.diffuse, {0.1f, 0.2f, 0.3f});
+  check_vec(sign.emission, {0, 0, 0});
+  CHECK(sign.opacity == 0.5f);
+  CHECK(sign.alpha_mode == AlphaMode::blend);
+  Material leaf = material_of("{\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25}");
+  CHECK(leaf.alpha_mode == AlphaMode::mask);
+  CHECK(leaf.alpha_cutoff == 0.25f);
+}
+
+// Goal: textures with sampler, transform and texture-coordinate set; texels as the PNG has them; textures of one image
+// share its texels.
+TEST_CASE("gltf_textures_keep_texels_sampler_transform_and_uv_set") {
+  std::string info =
+      "{\"index\":1,\"texCoord\":0,\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,3],"
+      "\"rotation\":1.5707963267948966,\"texCoord\":1}}}";
+  ImportedScene imported = load_text(triangle_gltf("{\"pbrMetallicRoughness\":{\"baseColorTexture\":" + info +
+                                                       "},\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0,"
+                                                       "\"texCoord\":1}}",
+                                                   images(kColors, "{\"source\":0},{\"source\":0,\"sampler\":0}",
+                                                          "{\"magFilter\":9728,\"wrapS\":33071,\"wrapT\":33648}")));
+  const Scene& s = imported.scene;
+  REQUIRE(s.textures.count == 2);
+  CHECK(s.texels.count == 4);
+  const std::uint8_t expected[16] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 128, 255, 255, 255, 0};
+  CHECK(std::memcmp(s.texels.data, expected, 16) == 0);
+  const Material& m = s.materials[0];
+  const Texture& base = s.textures[m.diffuse_texture.texture];
+  CHECK(base.nearest == 1);
+  CHECK(base.wrap_u == Wrap::clamp);
+  CHECK(base.wrap_v == Wrap::mirror);
+  CHECK(s.textures[m.emission_texture.texture].nearest == 0);
+  CHECK(s.uvs[1].x == 0.75f);  // TEXCOORD_1, as the transform says
+  // uv' = T·R·S·uv of the extension: R turns (1, 0) into (0, −1).
+  const float(*t)[3] = m.diffuse_texture.m;
+  const float u = t[0][0] * 1 + t[0][1] * 0 + t[0][2], v = t[1][0] * 1 + t[1][1] * 0 + t[1][2];
+  CHECK(u == doctest::Approx(0.5));
+  CHECK(v == doctest::Approx(0.25 - 2));
+}
+
+// Goal: a metallic-roughness texture counts by its mean, and the warning says so.
+TEST_CASE("gltf_metallic_roughness_texture_counts_by_its_mean") {
+  std::string json =
+      "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}},\"normalTexture\":{\"index\":0}}";
+  ImportedScene imported = load_text(triangle_gltf(json, images(kRoughMetal)));
+  double metallic = 64 / 255.0, roughness = 128 / 255.0, alpha = roughness * roughness;
+  CHECK(imported.scene.materials[0].diffuse.x == doctest::Approx(1 - metallic));
+  CHECK(imported.scene.materials[0].exponent == doctest::Approx(2 / (alpha * alpha) - 2));
+  CHECK(imported.scene.textures.count == 0);  // it is no texture of the scene
+  CHECK(contains(imported.warning, "normal maps"));
+  CHECK(contains(imported.warning, "by their mean"));
+}
+
+// Goal: textures are halved until they fit. Method: the sample helmet at a side of at most 64.
+TEST_CASE("gltf_large_textures_are_halved_until_they_fit") {
+  std::string path = shared_scene("gltf/DamagedHelmet.glb");
+  if (!have(path)) return;
+  ImportOptions options;
+  options.texture_side_max = 64;
+  ImportedScene imported = load(path, options);
+  REQUIRE(imported.scene.textures.count == 2);
+  for (const Texture& t : imported.scene.textures) CHECK((t.width == 64 && t.height == 64));
+}
+
+// Goal: punctual lights with kind, place, direction, cone and range. Method: a node that turns −z to +x.
+TEST_CASE("gltf_punctual_lights_follow_their_node") {
+  std::string lights =
+      ",\"extensionsRequired\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{"
+      "\"type\":\"spot\","
+      "\"intensity\":50,\"color\":[1,0.5,0],\"range\":9,\"spot\":{\"innerConeAngle\":0.5,\"outerConeAngle\":0.7}},"
+      "{\"type\":\"directional\",\"intensity\":3}]}}";
+  std::string node =
+      ",\"translation\":[1,2,3],\"rotation\":[0,-0.70710678,0,0.70710678],\"extensions\":{\"KHR_lights_punctual\":{"
+      "\"light\":0}}},"
+      "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":1}}";
+  std::string text = triangle_gltf("", lights, node);
+  text.replace(text.find("\"nodes\":[0]"), 11, "\"nodes\":[0,1]");
+  ImportedScene imported = load_text(text);
+  REQUIRE(imported.scene.lights.count == 2);
+  const Light& spot = imported.scene.lights[0];
+  CHECK(spot.kind == LightKind::spot);
+  CHECK(spot.position == Vec3{1, 2, 3});
+  CHECK(spot.direction.x == doctest::Approx(1));
+  check_vec(spot.intensity, {50, 25, 0});
+  CHECK(spot.range == 9);
+  CHECK(spot.cos_inner == doctest::Approx(std::cos(0.5)));
+  CHECK(spot.cos_outer == doctest::Approx(std::cos(0.7)));
+  CHECK(imported.scene.lights[1].kind == LightKind::directional);
+  CHECK(imported.scene.lights[1].direction == Vec3{0, 0, -1});
+  CHECK(imported.scene.info.auto_exposure == 1);
+  CHECK(load_text(triangle_gltf("")).scene.info.auto_exposure == 0);
+}
+
+// Goal: perspective and orthographic cameras stand where their node is; a camera that sees nothing is left out and
+// named.
+TEST_CASE("gltf_cameras_stand_where_their_node_is") {
+  auto with_camera = [](const std::string& camera) {
+    return triangle_gltf("", ",\"cameras\":[" + camera + "]", ",\"camera\":0,\"translation\":[0,1,5]");
+  };
+  ImportedScene a = load_text(with_camera("{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.7,\"znear\":0.1}}"));
+  REQUIRE(a.scene.cameras.count == 1);
+  CHECK(a.scene.cameras[0].projection == Projection::perspective);
+  CHECK(a.scene.cameras[0].vertical_fov == 0.7f);
+  CHECK(a.scene.cameras[0].eye == Vec3{0, 1, 5});
+  CHECK(a.scene.cameras[0].target == Vec3{0, 1, 4});
+  CHECK(a.scene.cameras[0].up == Vec3{0, 1, 0});
+  ImportedScene b = load_text(
+      with_camera("{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":2,\"ymag\":1.5,\"znear\":0.1,\"zfar\":9}}"));
+  REQUIRE(b.scene.cameras.count == 1);
+  CHECK(b.scene.cameras[0].projection == Projection::orthographic);
+  CHECK(b.scene.cameras[0].vertical_extent == 3);
+  ImportedScene none =
+      load_text(with_camera("{\"type\":\"perspective\",\"perspective\":{\"yfov\":3.2,\"znear\":0.1}}"));
+  CHECK(none.scene.cameras.count == 0);
+  CHECK(contains(none.warning, "cameras without a valid view"));
+}
+
+// Goal: the material samples show what they are made to show.
+TEST_CASE("gltf_samples_materials_lights_and_cameras") {
+  auto any = [](const ImportedScene& imported, auto test) {
+    return std::any_of(imported.scene.materials.begin(), imported.scene.materials.end(), test);
+  };
+  std::string path;
+  if (have(path = shared_scene("gltf/EmissiveStrengthTest.glb")))
+    CHECK(any(load(path), [](const Material& m) { return std::fabs(max_component(m.emission) - 14.4f) < 1e-5f; }));
+  if (have(path = shared_scene("gltf/UnlitTest.glb")))
+    CHECK(any(load(path), [](const Material& m) { return m.unlit == 1; }));
+  if (have(path = shared_scene("gltf/AttenuationTest.glb")))
+    CHECK(any(load(path), [](const Material& m) { return max_component(m.absorption) > 0 && !m.thin; }));
+  if (have(path = shared_scene("gltf/TransmissionTest.glb")))
+    CHECK(any(load(path), [](const Material& m) { return m.transmission.x > 0 && m.thin; }));
+  if (have(path = shared_scene("gltf/AlphaBlendModeTest.glb"))) {
+    ImportedScene imported = load(path);
+    CHECK(any(imported, [](const Material& m) { return m.alpha_mode == AlphaMode::mask; }));
+    CHECK(any(imported, [](const Material& m) { return m.alpha_mode == AlphaMode::blend; }));
+  }
+  if (have(path = shared_scene("gltf/BoxVertexColors.glb"))) CHECK(load(path).scene.colors.count == 24);
+  if (have(path = shared_scene("gltf/TextureSettingsTest.glb"))) {
+    ImportedScene imported = load(path);
+    for (Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp})
+      CHECK(std::any_of(imported.scene.textures.begin(), imported.scene.textures.end(),
+                        [&](const Texture& t) { return t.wrap_u == wrap; }));
+  }
+  if (have(path = shared_scene("gltf/LightsPunctualLamp/LightsPunctualLamp.gltf")))
+    CHECK(load(path).scene.lights.count == 5);
+  if (have(path = shared_scene("gltf/Lights.glb"))) {
+    ImportedScene imported = load(path);
+    CHECK(imported.scene.lights.count == 4);
+    CHECK(imported.scene.cameras.count == 1);
+  }
+  if (have(path = shared_scene("gltf/Cameras/Cameras.gltf"))) {
+    ImportedScene imported = load(path);
+    REQUIRE(imported.scene.cameras.count == 2);
+    CHECK(imported.scene.cameras[0].projection == Projection::perspective);
+    CHECK(imported.scene.cameras[1].projection == Projection::orthographic);
+  }
+  if (have(path = shared_scene("cornell/bevy_CornellBox.glb")))
+    CHECK(any(load(path), [](const Material& m) { return max_component(m.emission) > 1; }));
+}

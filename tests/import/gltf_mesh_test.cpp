@@ -1,0 +1,208 @@
+// Meshes, accessors, nodes and instances of glTF files written here.
+#include "import/gltf_writer.h"
+#include "import/import_testing.h"
+
+using namespace pocketray;
+
+namespace {
+
+ImportedScene load_text(const std::string& text) {
+  TemporaryFolder folder;
+  return load(folder.write("scene.gltf", text));
+}
+std::string error_of(const std::string& text) {
+  TemporaryFolder folder;
+  return load_error(folder.write("scene.gltf", text));
+}
+
+Vec3 face_normal(const Scene& s, std::uint32_t triangle) {
+  const Triangle& t = s.triangles[triangle];
+  Vec3 a = s.positions[t.vertex[0]], b = s.positions[t.vertex[1]], c = s.positions[t.vertex[2]];
+  return normalize(cross(b - a, c - a));
+}
+
+std::string mesh_document(const std::string& primitives, const std::string& nodes = "{\"mesh\":0}") {
+  return "\"meshes\":[{\"primitives\":[" + primitives + "]}],\"nodes\":[" + nodes + "],\"scenes\":[{\"nodes\":[0]}]";
+}
+
+}  // namespace
+
+// Goal: strips and fans become the same triangles, all facing one way; what makes no triangles is named. Method: a flat
+// quad of four vertices in every mode.
+TEST_CASE("gltf_primitive_modes_make_triangles_that_face_alike") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+  w.indices({0, 1, 3, 2});
+  w.indices({0, 1, 2, 2, 1, 3});
+  std::string strip = "{\"attributes\":{\"POSITION\":0},\"mode\":5}";
+  std::string fan = "{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":6}";
+  std::string list = "{\"attributes\":{\"POSITION\":0},\"indices\":2,\"mode\":4}";
+  std::string points = "{\"attributes\":{\"POSITION\":0},\"mode\":0}",
+              lines = "{\"attributes\":{\"POSITION\":0},\"mode\":1}";
+  ImportedScene imported =
+      load_text(w.gltf(mesh_document(strip + "," + fan + "," + list + "," + points + "," + lines)));
+  REQUIRE(imported.scene.triangles.count == 6);
+  for (std::uint32_t t = 0; t < 6; ++t) CHECK(face_normal(imported.scene, t) == Vec3{0, 0, 1});
+  CHECK(surface_area(imported.scene) == doctest::Approx(3));
+  CHECK(imported.scene.normals.empty());  // without NORMAL: flat (sec. 3.7.2.1)
+  CHECK(imported.warning == "not used: points, lines");
+}
+
+// Goal: a sparse accessor without a buffer view is zeros but for its own values.
+TEST_CASE("gltf_sparse_accessor_replaces_elements") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  w.add<std::uint8_t>({1, 2}, "SCALAR", 1, 5121);
+  w.vec3s({2, 0, 0, 0, 3, 0});
+  w.accessors +=
+      ",{\"count\":3,\"type\":\"VEC3\",\"componentType\":5126,\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":1,"
+      "\"componentType\":5121},\"values\":{\"bufferView\":2}}}";
+  ImportedScene imported = load_text(w.gltf(mesh_document("{\"attributes\":{\"POSITION\":3}}")));
+  REQUIRE(imported.scene.positions.count == 3);
+  CHECK(imported.scene.positions[0] == Vec3{0, 0, 0});
+  CHECK(imported.scene.positions[1] == Vec3{2, 0, 0});
+  CHECK(imported.scene.positions[2] == Vec3{0, 3, 0});
+}
+
+// Goal: vertex colours of every component type and width arrive linear, 16 bits a channel. Method: the colour (1, 0.5,
+// 0, …) in each.
+TEST_CASE("gltf_vertex_colors_of_all_types_become_linear_16_bit") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  w.add<std::uint8_t>({255, 128, 0, 51, 255, 128, 0, 51, 255, 128, 0, 51}, "VEC4", 4, 5121, ",\"normalized\":true");
+  w.add<std::uint16_t>({65535, 32768, 0, 65535, 32768, 0, 65535, 32768, 0}, "VEC3", 3, 5123, ",\"normalized\":true");
+  w.vec3s({1, 0.5f, 0, 1, 0.5f, 0, 1, 0.5f, 0});
+  std::string primitives;
+  for (int c = 1; c <= 3; ++c)
+    primitives +=
+        (c > 1 ? "," : "") + std::string("{\"attributes\":{\"POSITION\":0,\"COLOR_0\":") + std::to_string(c) + "}}";
+  ImportedScene imported = load_text(w.gltf(mesh_document(primitives)));
+  REQUIRE(imported.scene.colors.count == 9);
+  for (const Rgba16& c : imported.scene.colors) {
+    CHECK(c.r == 65535);
+    CHECK(std::abs(c.g - 32896) <= 128);  // 128/255 in 8 bits, 0.5 in the others
+    CHECK(c.b == 0);
+  }
+  CHECK(imported.scene.colors[0].a == 13107);  // 51/255
+  CHECK(imported.scene.colors[3].a == 65535);
+}
+
+// Goal: a mirrored instance keeps its outside outside. Method: a triangle with normals under scale (−2, 3, 1) and
+// shear; winding and normals must agree, and the normal stay perpendicular to the surface.
+TEST_CASE("hard_26_mirrored_and_sheared_nodes_keep_normals_perpendicular_and_outward") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 1, 0, 1, 1});
+  Vec3 n = normalize(cross(Vec3{1, 0, 1}, Vec3{0, 1, 1}));
+  w.vec3s({n.x, n.y, n.z, n.x, n.y, n.z, n.x, n.y, n.z});
+  std::string primitive = "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1}}";
+  for (const char* node :
+       {"\"scale\":[-2,3,1]", "\"scale\":[2,3,-0.5]", "\"matrix\":[1,0,0,0,0.7,2,0,0,0,0.3,1,0,5,6,7,1]",
+        "\"matrix\":[-1,0,0,0,0.7,2,0,0,0,0.3,1,0,5,6,7,1]"}) {
+    CAPTURE(node);
+    ImportedScene imported = load_text(w.gltf(mesh_document(primitive, std::string("{\"mesh\":0,") + node + "}")));
+    const Scene& s = imported.scene;
+    Vec3 face = face_normal(s, 0);
+    for (std::uint32_t v = 0; v < 3; ++v) CHECK(dot(face, s.normals[v]) == doctest::Approx(1).epsilon(1e-6));
+  }
+}
+
+// Goal: transforms that cannot be inverted are refused, and the error names the node. Method: determinants 0, 1e-38,
+// Inf.
+TEST_CASE("hard_27_singular_transforms_are_refused_naming_the_node") {
+  for (const char* scale : {"[1,0,1]", "[1e-13,1e-13,1e-12]", "[1e15,1e15,1e15]", "[1e400,1,1]", "[1e39,1,1]"}) {
+    CAPTURE(scale);
+    std::string error = error_of(triangle_gltf("", "", std::string(",\"name\":\"squashed\",\"scale\":") + scale));
+    bool named =
+        contains(error, "node 0 'squashed'") || contains(error, "JSON");  // 1e400 is no JSON number for the parser
+    CHECK(named);
+  }
+}
+
+// Goal: coordinates that are no coordinates are left out and counted, the rest stays (HARDCASES row 8).
+TEST_CASE("hard_08_triangles_with_unusable_vertices_are_left_out_and_counted") {
+  GltfWriter w;
+  float nan = std::nanf(""), inf = HUGE_VALF;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 0, inf, 0, 0, 2e18f, 0, 0, 1e-40f, 0, 0});
+  w.indices({0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 5, 6, 1, 2});
+  ImportedScene imported = load_text(w.gltf(mesh_document("{\"attributes\":{\"POSITION\":0},\"indices\":1}")));
+  CHECK(imported.scene.triangles.count == 2);
+  CHECK(contains(imported.warning, "3 triangles left out"));
+
+  GltfWriter beyond;
+  beyond.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  beyond.indices({0, 1, 7});
+  CHECK(contains(error_of(beyond.gltf(mesh_document("{\"attributes\":{\"POSITION\":0},\"indices\":1}"))), "index 7"));
+}
+
+// Goal: EXT_mesh_gpu_instancing places the mesh once for each instance, under the node's own transform.
+TEST_CASE("gltf_instances_are_placed_under_their_node") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  w.vec3s({0, 0, 0, 10, 0, 0, 0, 0, 5});
+  w.vec3s({1, 1, 1, 2, 2, 2, 1, 1, -1});
+  std::string node =
+      "{\"mesh\":0,\"translation\":[100,0,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{"
+      "\"TRANSLATION\":1,"
+      "\"SCALE\":2}}}}";
+  ImportedScene imported = load_text(w.gltf(mesh_document("{\"attributes\":{\"POSITION\":0}}", node)));
+  const Scene& s = imported.scene;
+  REQUIRE(s.triangles.count == 3);
+  CHECK(s.positions[s.triangles[1].vertex[0]] == Vec3{110, 0, 0});
+  CHECK(bounds(s).high.x == 112);
+  CHECK(s.positions[s.triangles[2].vertex[0]] == Vec3{100, 0, 5});
+  CHECK(surface_area(s) == doctest::Approx(0.5 + 2 + 0.5));
+}
+
+// Goal: only the default scene is read, and the others are named. Method: two scenes of one triangle each, the second
+// the default one.
+TEST_CASE("gltf_default_scene_alone_is_read") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  std::string document = w.gltf(
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,"
+      "\"translation\":[5,0,0]}],\"scenes\":[{\"nodes\":[0]},{\"nodes\":[1]}],\"scene\":1");
+  ImportedScene imported = load_text(document);
+  CHECK(imported.scene.triangles.count == 1);
+  CHECK(imported.scene.positions[0].x == 5);
+  CHECK(imported.warning == "not used: 1 other scenes");
+}
+
+// Goal: a .glb is read like the .gltf it wraps.
+TEST_CASE("gltf_binary_container_reads_like_json") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  TemporaryFolder folder;
+  std::string document = mesh_document("{\"attributes\":{\"POSITION\":0}}");
+  ImportedScene text = load(folder.write("a.gltf", w.gltf(document))),
+                binary = load(folder.write("b.glb", w.glb(document)));
+  CHECK(binary.scene.triangles.count == 1);
+  for (std::uint32_t v = 0; v < 3; ++v) CHECK(binary.scene.positions[v] == text.scene.positions[v]);
+}
+
+// Goal: the samples' traps. Method: MultipleScenes shows one; SimpleInstancing's 125 cubes; NegativeScaleTest's
+// triangles all agree with their normals.
+TEST_CASE("gltf_samples_scenes_instances_and_negative_scales") {
+  std::string multiple = shared_scene("gltf/MultipleScenes/MultipleScenes.gltf");
+  if (have(multiple)) {
+    ImportedScene imported = load(multiple);
+    CHECK(imported.scene.triangles.count == 2);  // scene 0, a square; scene 1 would be a triangle
+    CHECK(contains(imported.warning, "1 other scenes"));
+  }
+  std::string instancing = shared_scene("gltf/SimpleInstancing.glb");
+  if (have(instancing)) CHECK(load(instancing).scene.triangles.count == 125 * 12);
+  std::string modes = shared_scene("gltf/MeshPrimitiveModes/MeshPrimitiveModes.gltf");
+  if (have(modes)) {
+    ImportedScene imported = load(modes);
+    CHECK(imported.scene.triangles.count == 16);
+    CHECK(contains(imported.warning, "points, lines"));
+  }
+  std::string negative = shared_scene("gltf/NegativeScaleTest.glb");
+  if (have(negative)) {
+    ImportedScene imported = load(negative);
+    const Scene& s = imported.scene;
+    std::uint32_t against = 0;
+    for (std::uint32_t t = 0; t < s.triangles.count; ++t)
+      against += dot(face_normal(s, t), s.normals[s.triangles[t].vertex[0]]) < 0;
+    CHECK(against == 0);
+  }
+}

@@ -1,0 +1,139 @@
+// OBJ and MTL, written here, and what the samples show.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "import/import_testing.h"
+
+using namespace pocketray;
+
+namespace {
+
+const char* const kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+
+// A quad of one material, whose MTL is given.
+ImportedScene load_material(const std::string& mtl) {
+  TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl m\n" + mtl);
+  return load(folder.write("a.obj", std::string("mtllib m.mtl\n") + kQuad + "usemtl m\nf 1/1 2/2 3/3 4/4\n"));
+}
+const Material& first(const ImportedScene& imported) { return imported.scene.materials[0]; }
+
+// An uncompressed 24-bit TGA of one row, pixels from the left as (r, g, b).
+std::string tga(const std::vector<std::uint8_t>& rgb) {
+  std::string file(18, '\0');
+  file[2] = 2, file[12] = static_cast<char>(rgb.size() / 3), file[14] = 1, file[16] = 24, file[17] = 0x20;
+  for (std::size_t i = 0; i < rgb.size(); i += 3)
+    for (std::size_t c = 3; c-- > 0;) file += static_cast<char>(rgb[i + c]);
+  return file;
+}
+
+}  // namespace
+
+// Goal: MTL's illumination models become the lobes obj_material.cpp states.
+TEST_CASE("obj_illumination_models_map_to_our_lobes") {
+  Material phong = first(load_material("Kd 0.5 0.25 0.125\nKs 0.3 0.2 0.1\nNs 40\nillum 2\n"));
+  CHECK(phong.diffuse == Vec3{0.5f, 0.25f, 0.125f});
+  CHECK(phong.specular == Vec3{0.3f, 0.2f, 0.1f});
+  CHECK(phong.exponent == 40);
+  CHECK(is_zero(phong.mirror));
+  Material matt = first(load_material("Kd 0.5 0.5 0.5\nKs 0.3 0.2 0.1\nillum 1\n"));
+  CHECK(is_zero(matt.specular));
+  for (const char* illum : {"3", "5"}) {
+    Material mirror = first(load_material(std::string("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum ") + illum + "\n"));
+    CHECK(mirror.mirror == Vec3{0.9f, 0.8f, 0.7f});
+    CHECK(is_zero(mirror.specular));
+  }
+  for (const char* illum : {"4", "6", "7", "9"}) {
+    Material glass = first(load_material(std::string("Tf 0.5 1 0.25\nNi 1.5\nillum ") + illum + "\n"));
+    CHECK(glass.transmission == Vec3{0.5f, 1, 0.25f});
+    CHECK(glass.ior == 1.5f);
+    CHECK(glass.thin == 0);
+  }
+  CHECK(is_zero(first(load_material("Tf 1 1 1\nillum 2\n")).transmission));
+  CHECK(first(load_material("illum 7\n")).transmission == Vec3{1, 1, 1});
+}
+
+// Goal: emission and both spellings of opacity.
+TEST_CASE("obj_emission_and_opacity") {
+  CHECK(first(load_material("Ke 17 12 4\n")).emission == Vec3{17, 12, 4});
+  CHECK(first(load_material("d 0.25\n")).opacity == 0.25f);
+  CHECK(first(load_material("Tr 0.25\n")).opacity == 0.75f);
+  CHECK(first(load_material("d 0.25\n")).alpha_mode == AlphaMode::blend);
+  CHECK(first(load_material("d 1\n")).alpha_mode == AlphaMode::opaque);
+}
+
+// Goal: textures, their wrap and offset options, and map_d as alpha. Method: one-row TGA files; v runs upward in OBJ.
+TEST_CASE("obj_textures_and_their_options") {
+  TemporaryFolder folder;
+  folder.write("color.tga", tga({255, 0, 0, 0, 255, 0}));
+  folder.write("mask.tga", tga({0, 0, 0, 255, 255, 255}));
+  folder.write("m.mtl",
+               "newmtl m\nmap_Kd -clamp on -o 0.25 0.125 0 -s 2 4 1 color.tga\nmap_d mask.tga\nmap_bump bump.png\n");
+  ImportedScene imported =
+      load(folder.write("a.obj", std::string("mtllib m.mtl\n") + kQuad + "usemtl m\nf 1/1 2/2 3/3 4/4\n"));
+  const Scene& s = imported.scene;
+  REQUIRE(s.textures.count == 1);
+  REQUIRE(s.texels.count == 2);
+  const std::uint8_t* texels = reinterpret_cast<const std::uint8_t*>(s.texels.data);
+  CHECK((texels[0] == 255 && texels[1] == 0 && texels[3] == 0));
+  CHECK((texels[4] == 0 && texels[5] == 255 && texels[7] == 255));
+  CHECK(s.textures[0].wrap_u == Wrap::clamp);
+  CHECK(s.materials[0].alpha_mode == AlphaMode::mask);
+  CHECK(imported.warning == "not used: bump and normal maps");
+  // Corner (0, 0) of OBJ: u = 0.25, v = 0.125 upward, so 0.875 downward.
+  const TextureUse& use = s.materials[0].diffuse_texture;
+  Vec2 uv = s.uvs[s.triangles[0].vertex[0]];
+  CHECK(uv.y == 1);
+  CHECK(use.m[0][0] * uv.x + use.m[0][1] * uv.y + use.m[0][2] == 0.25f);
+  CHECK(use.m[1][0] * uv.x + use.m[1][1] * uv.y + use.m[1][2] == doctest::Approx(0.875));
+}
+
+// Goal: what is missing is a warning, not an error; what lies outside the folder is not touched.
+TEST_CASE("obj_missing_and_foreign_files_are_remarks") {
+  TemporaryFolder folder;
+  std::string body = std::string(kQuad) + "usemtl gone\nf 1 2 3\n";
+  ImportedScene no_mtl = load(folder.write("a.obj", "mtllib gone.mtl\n" + body));
+  CHECK(no_mtl.scene.triangles.count == 1);
+  CHECK(contains(no_mtl.warning, "gone.mtl"));
+  ImportedScene foreign = load(folder.write("b.obj", "mtllib ../../etc/passwd\n" + body));
+  CHECK(contains(foreign.warning, "beside the scene"));
+  ImportedScene no_image = load_material("map_Kd gone.png\n");
+  CHECK(contains(no_image.warning, "gone.png"));
+  CHECK(no_image.scene.textures.count == 0);
+  ImportedScene no_normal = load(folder.write("c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2/2/2 3/3/3\n"));
+  CHECK(contains(no_normal.warning, "missing"));
+}
+
+// Goal: polygons become triangles that cover them; negative indices count back; a bad index is refused.
+TEST_CASE("obj_polygons_and_indices") {
+  TemporaryFolder folder;
+  ImportedScene hexagon = load(folder.write("a.obj",
+                                            "v 1 0 0\nv 0.5 0.8660254 0\nv -0.5 0.8660254 0\nv -1 0 0\nv -0.5 "
+                                            "-0.8660254 0\nv 0.5 -0.8660254 0\nf -6 -5 -4 -3 -2 -1\n"));
+  CHECK(hexagon.scene.triangles.count == 4);
+  CHECK(hexagon.scene.normals.empty());  // flat: the geometric normals do
+  CHECK(surface_area(hexagon.scene) == doctest::Approx(1.5 * std::sqrt(3.0)));
+  ImportedScene notch = load(folder.write("b.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nf 1 2 3 4 5\n"));
+  CHECK(surface_area(notch.scene) == doctest::Approx(2.5));
+  CHECK(contains(load_error(folder.write("c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")), "vertex 9 of 3"));
+}
+
+// Goal: McGuire's Cornell boxes light by their emissive material, mirror by illum 5, refract by illum 7.
+TEST_CASE("obj_sample_cornell_boxes_have_their_materials") {
+  auto count = [](const ImportedScene& imported, auto test) {
+    return std::count_if(imported.scene.materials.begin(), imported.scene.materials.end(), test);
+  };
+  auto emits = [](const Material& m) { return m.emission == Vec3{17, 12, 4}; };
+  std::string path;
+  if (have(path = shared_scene("cornell/mcguire/CornellBox-Original.obj"))) {
+    ImportedScene imported = load(path);
+    CHECK(count(imported, emits) == 1);
+    CHECK(imported.warning.empty());
+  }
+  if (have(path = shared_scene("cornell/mcguire/CornellBox-Sphere.obj"))) {
+    ImportedScene imported = load(path);
+    CHECK(count(imported, [](const Material& m) { return m.mirror.x == 0.95f; }) == 1);
+    CHECK(count(imported, [](const Material& m) { return m.transmission.x > 0 && m.ior == 2.5f; }) == 1);
+  }
+}
