@@ -79,7 +79,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::alpha_blend, c.blended, "blend with what is behind");
   w.set_by_materials(Effect::emission, c.emissive, "emit");
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
-  w.set_by_materials(Effect::back_face_culling, c.one_sided, "are seen from the front alone");
+  w.set_by_materials(Effect::back_face_culling, c.one_sided, "hide their backs");
   w.set_by_materials(Effect::area_light, c.emissive, "emit onto others");
   w.set_by_count(Effect::point_light, c.lights[static_cast<int>(LightKind::point)], "point light");
   w.set_by_count(Effect::spot_light, c.lights[static_cast<int>(LightKind::spot)], "spot light");

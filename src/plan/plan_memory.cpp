@@ -74,13 +74,14 @@ std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t siz
     std::size_t filled = plan.total_bytes ? bytes * 32 / plan.total_bytes : 0;
     for (std::size_t i = 0; i < 32; ++i) bar[i] = i < filled ? '#' : '.';
     bar[32] = 0;
-    add("  %-11s %-27s %10.3f MiB  %s\n", where, name, megabytes(bytes), bar);
+    bool small = bytes < (100u << 10);
+    add("  %-11s %-27s %9.1f %s  %s\n", where, name, small ? static_cast<double>(bytes) / 1024 : megabytes(bytes), small ? "KiB" : "MiB", bar);
   };
   if (plan.mapped_bytes) line("scene file", "mapped", plan.mapped_bytes);
   for (int arena = 0; arena < 3; ++arena)
     for (int i = 0; i < plan.part_count; ++i)
       if (plan.parts[i].arena == static_cast<ArenaKind>(arena)) line(plan.parts[i].name, kArenaNames[arena], plan.parts[i].bytes);
-  add("  %-11s %-27s %10.3f MiB  of %.1f MiB allowed\n", "total", "", megabytes(plan.total_bytes), megabytes(plan.limit_bytes));
+  add("  %-11s %-27s %9.1f MiB  of %.1f MiB allowed\n", "total", "", megabytes(plan.total_bytes), megabytes(plan.limit_bytes));
   return length;
 }
 
