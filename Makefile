@@ -19,7 +19,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run test bench format tidy clean install help setup configure
+.PHONY: all run setup-tests test bench format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -49,7 +49,10 @@ run: configure
 	  echo "no display here; the picture is $(BUILD)/$(SCENE).png"; \
 	fi
 
-test: configure
+setup-tests:
+	@$(if $(CLASS),:,toolchains/setup.sh tests)
+
+test: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS)
 	cd $(BUILD) && ctest --output-on-failure -j$(JOBS) -R '$(TESTS)'
 

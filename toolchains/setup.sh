@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs what a build needs and this machine lacks. Silent when nothing is missing.
-# Groups: desktop clang format tidy armhf armel aarch64. Run by the Makefile and by .ci/run.
+# Groups: desktop tests clang format tidy armhf armel aarch64. Run by the Makefile and by .ci/run.
 set -eu
 
 # What each group needs. "command=package" counts as there when the command is; a plain name is a Debian package.
@@ -8,6 +8,7 @@ required() {
   local common="cmake=cmake make=make doctest-dev libcli11-dev nlohmann-json3-dev"
   case $1 in
     desktop) echo $common c++=g++ pkg-config=pkg-config zlib1g-dev ;;
+    tests) ;;
     clang) echo clang++=clang ;;
     format) echo clang-format=clang-format ;;
     tidy) echo clang-tidy=clang-tidy ;;
@@ -21,6 +22,7 @@ required() {
 optional() {
   case $1 in
     armhf | armel | aarch64) echo ninja=ninja-build ;;
+    tests) echo libembree-dev ;; # the ray caster that depth is compared with
     desktop) echo ninja=ninja-build libpng-dev libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }
