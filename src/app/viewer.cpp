@@ -8,6 +8,7 @@
 #include "app/interrupt.h"
 #include "app/picture.h"
 #include "app/viewer_hud.h"
+#include "base/seal.h"
 #include "plan/plan_scene.h"
 #include "platform/file.h"
 
@@ -21,6 +22,22 @@ constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two looks at t
 constexpr std::uint64_t kIdleNs = 8 * kMillisecond;
 constexpr std::uint64_t kFileCheckNs = 500 * kMillisecond;
 
+// A window system takes memory when it likes; the seal is lifted while it is called. Screens of devices are not spared.
+class WindowCall {
+ public:
+  explicit WindowCall(const Viewer& v) : pause_(memory_sealed && std::strcmp(v.backend->name, "sdl2") == 0) {
+    if (pause_) unseal_memory();
+  }
+  ~WindowCall() {
+    if (pause_) seal_memory();
+  }
+  WindowCall(const WindowCall&) = delete;
+  WindowCall& operator=(const WindowCall&) = delete;
+
+ private:
+  bool pause_;
+};
+
 PixelFormat to_pixel_format(const platform::ScreenFormat& f) {
   auto channel = [](const platform::Channel& c) { return PixelChannel{c.offset, c.length}; };
   return {f.bits_per_pixel, channel(f.red), channel(f.green), channel(f.blue), channel(f.alpha)};
@@ -31,6 +48,7 @@ int screen_width(const Viewer& v) { return quarter_turned(v) ? v.height : v.widt
 int screen_height(const Viewer& v) { return quarter_turned(v) ? v.width : v.height; }
 
 void take_events(Viewer* v) {
+  WindowCall call(*v);
   platform::Event event;
   while (v->backend->poll(&event)) {
     bool down = event.type == platform::EventType::button_down;
@@ -66,6 +84,7 @@ CameraInput read_input(const Viewer& v) {
 
 // Packs the rows that changed and shows them.
 void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t row_begin, std::uint32_t row_end) {
+  WindowCall call(*v);
   platform::Page page = v->backend->begin_frame();
   if (!page.pixels) return;
   if (page.age != 1 || quarter_turned(*v)) row_begin = 0, row_end = r.settings.height;
@@ -137,7 +156,10 @@ Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
   }
   bool was_finished = loop->finished;
   if (!was_finished) loop->finished = advance_progressive(r, loop->row_spans, clock_ns() + kSliceNs, &loop->progressive);
-  if (loop->finished && !was_finished) ++v->frames_finished;
+  if (loop->finished && !was_finished) {
+    ++v->frames_finished;
+    if (v->options.frame_count > 0) loop->changed = true;  // as many frames as were asked for, even of a still
+  }
   write_hud(*r, loop->progressive, loop->control.mode, &loop->hud);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);

@@ -101,6 +101,11 @@ expect plan_json 0 '"total_bytes"' plan cornell --json -
 expect bench 0 'per pixel' bench cube "${small[@]}" --frames 2
 expect bench_json 0 '"scanline_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --json -
 expect view_null 0 '' view seesaw "${small[@]}" --screen null --frames 3
+expect view_still_frames 0 '' view cube "${small[@]}" --screen null --frames 3
+export SDL_VIDEODRIVER=dummy  # the emulator, where it is built in
+"${run[@]}" view cube "${small[@]}" --screen sdl2 --frames 1 >/dev/null 2>&1
+[ $? -eq 1 ] || expect view_window 0 '' view seesaw "${small[@]}" --screen sdl2 --frames 3
+unset SDL_VIDEODRIVER
 expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
 
 echo "$passed passed, $failed failed"
