@@ -31,12 +31,13 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   const Vec3 &a = frame.positions[t.vertex[0]], &b = frame.positions[t.vertex[1]], &c = frame.positions[t.vertex[2]];
   float u = hit.u, v = hit.v, w = 1 - u - v;
   s->material = &m;
+  s->hit = hit;
   s->point = a * w + b * u + c * v;
   Vec3 outward = normalize(cross(b - a, c - a));
   s->front = dot(outward, ray.direction) <= 0;
   s->geometric = s->front ? outward : -outward;
-  Vec3 corner_max = max(max(abs(a), abs(b)), abs(c));
-  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v), max_component(corner_max), s->geometric);
+  Vec3 to_corners = max(max(abs(a - s->point), abs(b - s->point)), abs(c - s->point));
+  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v), max_component(to_corners), s->geometric);
   s->normal = s->geometric;
   if constexpr (has(mask, Effect::smooth_normal)) {
     effect_entered<Effect::smooth_normal>();
@@ -91,6 +92,23 @@ SurfaceFunction pick(std::size_t wanted, std::index_sequence<index...>) {
 }
 
 }  // namespace
+
+Vec3 curved_origin(const FrameData& frame, const Surface& s) {
+  Surface moved = s;
+  if (frame.normals.count) {
+    const Triangle& t = frame.scene->triangles[s.hit.triangle];
+    float weight[3] = {1 - s.hit.u - s.hit.v, s.hit.u, s.hit.v};
+    Vec3 lift = {0, 0, 0};
+    for (int i = 0; i < 3; ++i) {
+      Vec3 n = frame.normals[t.vertex[i]];
+      if (dot(n, s.normal) < 0) n = -n;
+      float below = dot(s.point - frame.positions[t.vertex[i]], n);
+      if (below < 0) lift += n * (-below * weight[i]);
+    }
+    moved.point = s.point + lift;
+  }
+  return safe_origin(moved, 1);
+}
 
 SurfaceFunction find_surface_function(EffectMask mask) {
   std::size_t index = 0;

@@ -15,6 +15,7 @@ struct Surface {
   Vec3 glow;               // radiance that leaves without any light: emission, ambient
   bool front;  // the ray met the front (counter-clockwise) side
   const Material* material;
+  Hit hit;
 };
 
 // Whether the ray met the back of a surface that is seen from the front alone. Bodies of glass have both sides. Only what
@@ -26,14 +27,14 @@ SurfaceFunction find_surface_function(EffectMask mask);
 
 // A ray origin beside a computed point that no rounding error puts on the wrong side. Each coordinate of the point errs by
 // at most γ₈·Σ|bᵢ vᵢ| [PBR3 sec. 3.9.4]; moving by that error, projected on the normal, leaves the slab of uncertainty. It
-// vanishes on a plane through a zero coordinate; there the next intersection's own rounding decides, which is of double
-// precision relative to the largest coordinate of the triangle: a second term far above 2⁻⁵³ and far below the first.
-// Scale-free: everything is relative to the coordinates.
-inline Vec3 origin_offset(const Vec3& point_magnitude, float coordinate_max, const Vec3& geometric) {
+// vanishes on a plane through a zero coordinate; there the next intersection's own rounding decides. Within a few ulp of an
+// edge that is of float precision relative to the triangle as seen from the point (accel/triangle.h), hence the second term;
+// it was found with 10⁶ spawns a shape (tests/shade/spawn_test.cpp). Scale-free: everything is relative to the coordinates.
+inline Vec3 origin_offset(const Vec3& point_magnitude, float corner_distance, const Vec3& geometric) {
   constexpr float u = std::numeric_limits<float>::epsilon() * 0.5f;
   constexpr float gamma = 8 * u / (1 - 8 * u);
   // Twice: once for the point, once for the rounding of the moved origin.
-  float distance = dot(abs(geometric), point_magnitude) * (2 * gamma) + coordinate_max * 0x1p-44f;
+  float distance = dot(abs(geometric), point_magnitude) * (2 * gamma) + corner_distance * (4 * u);
   return geometric * distance;
 }
 inline float away_from(float value, float step) {
@@ -47,5 +48,10 @@ inline Vec3 safe_origin(const Surface& s, float side) {
   return {away_from(s.point.x, s.offset.x * side), away_from(s.point.y, s.offset.y * side),
           away_from(s.point.z, s.offset.z * side)};
 }
+
+// Where a shadow ray starts that leaves below the flat triangle but above the curved surface that the vertex normals speak
+// of: the point is moved onto the planes through the vertices [Hanika 2021, Ray Tracing Gems II ch. 4, listing 4-1]. On a
+// surface that is flat or hollow there it does not move, and the ray meets the triangle itself.
+Vec3 curved_origin(const FrameData& frame, const Surface& s);
 
 }  // namespace pocketray
