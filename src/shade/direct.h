@@ -3,6 +3,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "effect/effect_probe.h"
+#include "shade/contact.h"
 #include "shade/dielectric.h"
 #include "shade/filters.h"
 #include "shade/media.h"
@@ -20,6 +21,26 @@ inline bool leave_out(Tracer* tracer, float bound) {
   return true;
 }
 
+// What a contact lets through of a ray that is not bent: Fresnel once, from the body that ends there to the one that begins
+// (air where there is none), and the tint of all that is entered.
+inline Vec3 interface_transmittance(const FrameData& frame, const Contact& contact, float cos_i) {
+  Vec3 tint = {1, 1, 1};
+  float from = 1, to = 1;
+  bool any = false;
+  for (std::uint32_t i = 0; i < contact.count; ++i) {
+    const Face& face = contact.face[i];
+    const Material& m = frame.scene->materials[face.material];
+    if (is_zero(m.transmission)) continue;
+    effect_entered<Effect::refraction>();
+    any = true;
+    if (face.front || m.thin) tint *= m.transmission;
+    (face.front || m.thin ? to : from) = m.ior;
+  }
+  if (!any) return tint;
+  float cos_t;
+  return tint * (1 - fresnel(cos_i, from / to, &cos_t));
+}
+
 // What transparent surfaces between the point and the light let through, unbent, in order along the ray: products of floats
 // do not commute in the last bit, and every accelerator must give the same.
 template <EffectMask mask>
@@ -28,7 +49,8 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) 
   HitFilter filter = {frame.accept_clear, &context};
   Vec3 result = {1, 1, 1};
   Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and at exits
-  Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not left
+  Vec3 open = {0, 0, 0};  // absorption of the bodies entered and not left
+  int open_count = 0;     // how many they are: the sum alone keeps a rounding error that an infinite ray makes opaque
   float unit = length(ray.direction), passed = 0;
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
@@ -38,33 +60,37 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) 
       if constexpr (has(mask, Effect::absorption)) {
         float end = (passed + ray.t_max) * unit;
         Vec3 inside = absorbed_end - absorbed_begin;
-        if (!is_zero(open)) inside += max(open, Vec3{0, 0, 0}) * end;
+        if (open_count > 0) inside += max(open, Vec3{0, 0, 0}) * end;
         result *= transmittance(inside, 1.0f);
       }
       return result;
     }
     Surface s;
     frame.surface(frame, ray, hit, &s);
-    const Material& m = *s.material;
-    if (!is_zero(m.transmission)) {
-      effect_entered<Effect::refraction>();
-      float cos_t, cos_i = std::fabs(dot(s.normal, ray.direction)) / unit;
-      float eta = s.front || m.thin ? 1 / m.ior : m.ior;
-      float pass = 1 - fresnel(cos_i, eta, &cos_t);
-      result *= s.front || m.thin ? m.transmission * pass : Vec3{pass, pass, pass};
+    Contact contact;
+    gather_contact(frame, s, hit, &filter, &contact, &tracer->stats);
+    if constexpr (has(mask, Effect::refraction)) {
+      result *= interface_transmittance(frame, contact, std::fabs(dot(s.normal, ray.direction)) / unit);
       if constexpr (has(mask, Effect::absorption)) {
-        if (!m.thin && !is_zero(m.absorption)) {
+        float distance = (passed + hit.t) * unit;
+        for (std::uint32_t i = 0; i < contact.count; ++i) {
+          const Material& m = frame.scene->materials[contact.face[i].material];
+          if (is_zero(m.transmission) || m.thin || is_zero(m.absorption)) continue;
           effect_entered<Effect::absorption>();
-          float distance = (passed + hit.t) * unit;
-          (s.front ? absorbed_begin : absorbed_end) += m.absorption * distance;
-          open = s.front ? open + m.absorption : open - m.absorption;
+          bool enters = contact.face[i].front;
+          (enters ? absorbed_begin : absorbed_end) += m.absorption * distance;
+          open = enters ? open + m.absorption : open - m.absorption;
+          open_count += enters ? 1 : -1;
         }
       }
     }
     if constexpr (has(mask, Effect::alpha_blend)) {
-      if (m.alpha_mode == AlphaMode::blend) {
+      for (std::uint32_t i = 0; i < contact.count; ++i) {
+        const Face& face = contact.face[i];
+        const Material& m = frame.scene->materials[face.material];
+        if (m.alpha_mode != AlphaMode::blend) continue;
         effect_entered<Effect::alpha_blend>();
-        float alpha = hit_alpha(*frame.scene, m, hit.triangle, hit.u, hit.v, frame.settings.texture_filter);
+        float alpha = hit_alpha(*frame.scene, m, face.hit.triangle, face.hit.u, face.hit.v, frame.settings.texture_filter);
         result = result * (1 - alpha);
       }
     }
@@ -107,7 +133,9 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
       if (light.material != kNone && &frame.scene->materials[light.material] == s.material) continue;
       if (!run.sample(light, s.point, &sample)) continue;
       float cosine = dot(s.normal, sample.direction);
-      if (!(cosine > 0) || !(dot(s.geometric, sample.direction) > 0)) continue;
+      if (!(cosine > 0)) continue;
+      bool below = !(dot(s.geometric, sample.direction) > 0);
+      if (below && !has(mask, Effect::shadow)) continue;
       Vec3 f = diffuse;
       if constexpr (has(mask, Effect::specular)) {
         if (!is_zero(m.specular)) {
@@ -120,7 +148,8 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
       if (!(bound > 0)) continue;
       if constexpr (has(mask, Effect::shadow)) {
         if (leave_out(tracer, bound)) continue;
-        light_out *= shadow<mask>(tracer, {safe_origin(s, 1), sample.to_light, sample.t_max}, light.material);
+        Vec3 origin = below ? curved_origin(frame, s) : safe_origin(s, 1);
+        light_out *= shadow<mask>(tracer, {origin, sample.to_light, sample.t_max}, light.material);
       }
       sum += light_out;
     }

@@ -1,8 +1,22 @@
 #include "shade/media.h"
 
-#include "shade/surface.h"
+#include <initializer_list>
 
 namespace pocketray {
+namespace {
+
+bool is_body(const Material& m) { return !is_zero(m.transmission) && !m.thin; }
+
+}  // namespace
+
+void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stack) {
+  for (bool entering : {false, true})
+    for (std::uint32_t i = 0; i < contact.count; ++i) {
+      const Face& face = contact.face[i];
+      if (face.front != entering || !is_body(scene.materials[face.material])) continue;
+      entering ? enter_medium(stack, face.material) : exit_medium(stack, face.material);
+    }
+}
 
 MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direction) {
   // Walking outward, an exit without its entry belongs to a body that holds the eye; the first such is the innermost.
@@ -17,16 +31,16 @@ MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direct
     if (hit.triangle == kNoTriangle) break;
     Surface s;
     frame.surface(frame, ray, hit, &s);
-    std::uint32_t material = frame.scene->triangles[hit.triangle].material;
-    if (!is_zero(s.material->transmission) && !s.material->thin) {
-      std::uint32_t depth = open.depth;
-      if (s.front) {
-        enter_medium(&open, material);
-      } else {
-        exit_medium(&open, material);
-        if (open.depth == depth && exit_count < kMediumDepthMax) exits[exit_count++] = material;
+    Contact contact;
+    gather_contact(frame, s, hit, nullptr, &contact, &stats);
+    for (bool entering : {false, true})
+      for (std::uint32_t i = 0; i < contact.count; ++i) {
+        const Face& face = contact.face[i];
+        if (face.front != entering || !is_body(frame.scene->materials[face.material])) continue;
+        std::uint32_t depth = open.depth;
+        entering ? enter_medium(&open, face.material) : exit_medium(&open, face.material);
+        if (!entering && open.depth == depth && exit_count < kMediumDepthMax) exits[exit_count++] = face.material;
       }
-    }
     ray.origin = safe_origin(s, -1);
   }
   MediumStack stack;

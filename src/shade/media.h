@@ -1,7 +1,7 @@
 // The stack of transparent bodies a ray is inside of.
 #pragma once
 #include "base/fmath.h"
-#include "shade/frame_data.h"
+#include "shade/contact.h"
 
 namespace pocketray {
 
@@ -21,6 +21,8 @@ inline void exit_medium(MediumStack* stack, std::uint32_t material) {
     return;
   }
 }
+// What a ray is inside of beyond a contact: the bodies it leaves are left before others are entered.
+void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stack);
 // Transmittance along a distance (Beer–Lambert).
 inline Vec3 transmittance(const Vec3& absorption, float distance) {
   auto one = [distance](float a) { return a > 0 ? static_cast<float>(det_exp(-static_cast<double>(a) * distance)) : 1.0f; };

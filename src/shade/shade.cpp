@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "shade/contact.h"
 #include "shade/direct.h"
 
 namespace pocketray {
@@ -42,7 +43,7 @@ Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, cons
 
 // A dielectric boundary: reflects by Fresnel, transmits the rest, bent by Snell.
 template <EffectMask mask>
-Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, std::uint32_t material, const Path& path) {
+Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path& path) {
   effect_entered<Effect::refraction>();
   const Scene& scene = *tracer->frame->scene;
   const Material& m = *s.material;
@@ -52,17 +53,22 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, std::uint32_t 
     eta = 1 / m.ior;
   } else {
     float from = medium_ior(scene, path.media);
-    s.front ? enter_medium(&beyond.media, material) : exit_medium(&beyond.media, material);
+    cross_contact(scene, contact, &beyond.media);
     eta = from / medium_ior(scene, beyond.media);
   }
   Vec3 n = -dot(ray.direction, s.normal) > 0 ? s.normal : s.geometric;
   float cos_i = -dot(ray.direction, n), cos_t;
   float reflected = fresnel(cos_i, eta, &cos_t);
+  if (eta == 1) reflected = 0, cos_t = cos_i;  // bodies of one index that touch: no rounding makes a mirror of that
   if (m.thin && reflected < 1) reflected = 2 * reflected / (1 + reflected);  // both faces of the sheet, all orders
   Vec3 sum = {0, 0, 0};
   if (reflected > 0) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, {reflected, reflected, reflected});
   if (reflected < 1) {
-    Vec3 tint = s.front || m.thin ? m.transmission : Vec3{1, 1, 1};
+    Vec3 tint = {1, 1, 1};
+    for (std::uint32_t i = 0; i < contact.count; ++i) {
+      const Material& entered = scene.materials[contact.face[i].material];
+      if (transmits(entered, mask) && (contact.face[i].front || entered.thin)) tint *= entered.transmission;
+    }
     Vec3 direction = m.thin ? ray.direction : normalize(refract(ray.direction, n, eta, cos_i, cos_t));
     if (!(dot(direction, s.geometric) < 0)) direction = ray.direction;  // a shading normal far off the surface
     sum += spawn<mask>(tracer, RayKind::refraction, s, direction, -1, beyond, tint * (1 - reflected));
@@ -70,9 +76,9 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, std::uint32_t 
   return sum;
 }
 
-// What leaves the surface against the ray.
+// What leaves the surface against the ray. `contact` is needed where it transmits.
 template <EffectMask mask>
-Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, std::uint32_t material, const Path& path) {
+Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path& path) {
   const Material& m = *s.material;
   Vec3 sum = s.glow;
   if (m.unlit) return sum;
@@ -86,9 +92,49 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, std::uint32_t mater
     }
   }
   if constexpr (has(mask, Effect::refraction)) {
-    if (!is_zero(m.transmission)) sum += dielectric<mask>(tracer, ray, s, material, path);
+    if (!is_zero(m.transmission)) sum += dielectric<mask>(tracer, ray, s, *contact, path);
   }
   return sum;
+}
+
+// Adds the blending surfaces of a contact, one upon the other. False where what is behind them does not matter.
+template <EffectMask mask>
+bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* sum, Vec3* carried, Path* path) {
+  const FrameData& frame = *tracer->frame;
+  const Scene& scene = *frame.scene;
+  bool any = false;
+  for (std::uint32_t i = 0; i < contact.count; ++i) {
+    const Face& face = contact.face[i];
+    const Material& m = scene.materials[face.material];
+    if (!blends(m, mask) || culls(m, face.front, mask)) continue;
+    effect_entered<Effect::alpha_blend>();
+    any = true;
+    Surface s;
+    frame.surface(frame, ray, face.hit, &s);
+    float alpha = hit_alpha(scene, *s.material, face.hit.triangle, face.hit.u, face.hit.v, frame.settings.texture_filter);
+    Path covered = *path;
+    covered.weight = path->weight * alpha;
+    if (alpha > 0) *sum += *carried * alpha * shade<mask>(tracer, ray, s, &contact, covered);
+    *carried = *carried * (1 - alpha);
+    path->weight = path->weight * (1 - alpha);
+  }
+  float most = max_component(path->weight);
+  return !any || (most > 0 && !leave_out(tracer, most * frame.radiance_bound));
+}
+
+// What a ray meets behind the blending surfaces of a contact: something opaque, else a body that it enters or leaves, else
+// a thin sheet; null: nothing.
+const Face* face_behind_layers(const Scene& scene, const Contact& contact, EffectMask mask) {
+  const Face *body = nullptr, *sheet = nullptr;
+  for (std::uint32_t i = 0; i < contact.count; ++i) {
+    const Face& face = contact.face[i];
+    const Material& m = scene.materials[face.material];
+    if (blends(m, mask) || culls(m, face.front, mask)) continue;
+    if (!transmits(m, mask)) return &face;
+    const Face*& kind = m.thin ? sheet : body;
+    if (!kind) kind = &face;
+  }
+  return body ? body : sheet;
 }
 
 template <EffectMask mask>
@@ -111,31 +157,26 @@ Vec3 radiance(Tracer* tracer, Ray ray, Path path) {
         path.weight *= passed;
       }
     }
-    if constexpr (has(mask, Effect::back_face_culling)) {
-      if (is_culled(s)) {
-        effect_entered<Effect::back_face_culling>();
-        ray.origin = safe_origin(s, -1);
-        continue;
+    if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend) || has(mask, Effect::back_face_culling)) {
+      bool culled = culls(*s.material, s.front, mask);
+      if (culled) effect_entered<Effect::back_face_culling>();
+      if (culled || transmits(*s.material, mask) || blends(*s.material, mask)) {
+        Contact contact;
+        gather_contact(frame, s, hit, filter, &contact, &tracer->stats);
+        if constexpr (has(mask, Effect::alpha_blend)) {
+          if (!blend_layers<mask>(tracer, ray, contact, &sum, &carried, &path)) return sum;
+        }
+        const Face* next = face_behind_layers(scene, contact, mask);
+        if (!next) {
+          if (!culled) ++tracer->rays[static_cast<int>(RayKind::blend)];
+          ray.origin = safe_origin(s, -1);
+          continue;
+        }
+        if (next->hit.triangle != hit.triangle) frame.surface(frame, ray, next->hit, &s);
+        return sum + carried * shade<mask>(tracer, ray, s, &contact, path);
       }
     }
-    std::uint32_t material = scene.triangles[hit.triangle].material;
-    if constexpr (has(mask, Effect::alpha_blend)) {
-      if (s.material->alpha_mode == AlphaMode::blend) {
-        effect_entered<Effect::alpha_blend>();
-        float alpha = hit_alpha(scene, *s.material, hit.triangle, hit.u, hit.v, frame.settings.texture_filter);
-        Path covered = path;
-        covered.weight = path.weight * alpha;
-        if (alpha > 0) sum += carried * alpha * shade<mask>(tracer, ray, s, material, covered);
-        carried = carried * (1 - alpha);
-        path.weight = path.weight * (1 - alpha);
-        float most = max_component(path.weight);
-        if (!(most > 0) || leave_out(tracer, most * frame.radiance_bound)) return sum;
-        ++tracer->rays[static_cast<int>(RayKind::blend)];
-        ray.origin = safe_origin(s, -1);
-        continue;
-      }
-    }
-    return sum + carried * shade<mask>(tracer, ray, s, material, path);
+    return sum + carried * shade<mask>(tracer, ray, s, nullptr, path);
   }
   return sum;
 }

@@ -20,7 +20,7 @@ struct Surface {
 
 // Whether the ray met the back of a surface that is seen from the front alone. Bodies of glass have both sides. Only what
 // is looked at is culled: such a surface casts its shadow whichever side the light is on.
-inline bool is_culled(const Surface& s) { return !s.front && !s.material->double_sided && is_zero(s.material->transmission); }
+inline bool is_culled(const Material& m, bool front) { return !front && !m.double_sided && is_zero(m.transmission); }
 
 // Picks the instantiation for the plan's mask.
 SurfaceFunction find_surface_function(EffectMask mask);

@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "effect/effect_probe.h"
 #include "shade/camera.h"
+#include "shade/contact.h"
 #include "shade/surface.h"
 
 namespace pocketray {
@@ -46,7 +47,20 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
     if (hit.triangle == kNoTriangle) break;
     Surface s;
     frame.surface(frame, ray, hit, &s);
-    if (!has(frame.mask, Effect::back_face_culling) || !is_culled(s)) {
+    if (culls(*s.material, s.front, frame.mask)) {  // what lies on its back may be seen
+      Contact contact;
+      gather_contact(frame, s, hit, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &contact, &tracer->stats);
+      for (std::uint32_t i = 1; i < contact.count; ++i) {
+        const Face& face = contact.face[i];
+        if (culls(frame.scene->materials[face.material], face.front, frame.mask)) continue;
+        float t = hit.t;
+        hit = face.hit;
+        hit.t = t;
+        frame.surface(frame, ray, hit, &s);
+        break;
+      }
+    }
+    if (!culls(*s.material, s.front, frame.mask)) {
       if (aov == Aov::depth) return same(passed + hit.t);
       return aov == Aov::triangle ? same(static_cast<float>(hit.triangle + 1)) : s.normal;
     }
