@@ -59,7 +59,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::directional_light), bit(E::directional_light) | bit(E::shadow)},
       {bit(F::animation), bit(E::animation)},
       {bit(F::supersampling), bit(E::supersampling)},
-      {kAllFeatures, kAllEffects & ~bit(E::back_face_culling)},
+      {bit(F::one_sided), bit(E::back_face_culling)},
+      {kAllFeatures, kAllEffects},
   };
   for (const Row& row : rows) {
     CAPTURE(row.features);

@@ -39,3 +39,33 @@ TEST_CASE("back_face_culling_shows_what_is_behind_the_back_of_a_one_sided_surfac
     }
   }
 }
+
+// Goal: two one-sided surfaces back to back show each its own front, whichever comes first in the list. Method: a ray from
+// either side, colour and depth.
+TEST_CASE("back_face_culling_shows_the_front_of_surfaces_back_to_back") {
+  for (bool swapped : {false, true}) {
+    for (float side : {1.0f, -1.0f}) {
+      GeneratedScene g;
+      Material up, down;
+      up.unlit = down.unlit = 1;
+      up.double_sided = down.double_sided = 0;
+      up.diffuse = {1, 0, 0};
+      down.diffuse = {0, 0, 1};
+      g.materials = {up, down};
+      g.positions = {{-1, -1, 0.5f}, {1, -1, 0.5f}, {0, 1, 0.5f}};
+      g.triangles = {{{0, 1, 2}, 0}, {{0, 2, 1}, 1}};
+      if (swapped) std::swap(g.triangles[0], g.triangles[1]);
+      aim(&g, {0.1f, 0, 0.5f + 3 * side}, {0.1f, 0, 0.5f}, 40);
+      g.bind();
+      Settings settings;
+      settings.width = settings.height = 1;
+      auto test = make_renderer(g.scene, settings);
+      REQUIRE(render_frame(&test->renderer, 0).ok);
+      CAPTURE(swapped);
+      CAPTURE(side);
+      CHECK(test->renderer.image[0] == (side > 0 ? up.diffuse : down.diffuse));
+      REQUIRE(render_frame(&test->renderer, 0, Aov::depth).ok);
+      CHECK(test->renderer.image[0].x == doctest::Approx(3));
+    }
+  }
+}

@@ -29,8 +29,9 @@ enum class Feature : int {
   directional_light,
   animation,
   supersampling,
+  one_sided,
 };
-constexpr int kFeatureCount = 17;
+constexpr int kFeatureCount = 18;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }

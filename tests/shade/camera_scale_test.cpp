@@ -1,0 +1,120 @@
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "shade/camera.h"
+#include "shade/shade_helpers.h"
+
+using namespace pocketray;
+
+namespace {
+
+Status rays_of(const Camera& camera, std::uint32_t width, std::uint32_t height, CameraRays* rays) {
+  return make_camera_rays(camera, width, height, rays);
+}
+
+// Everything that has a length in it, times a power of two; light per area stays what it is.
+void scale_scene(GeneratedScene* s, float k) {
+  for (auto* list : {&s->positions, &s->rest_positions})
+    for (Vec3& p : *list) p = p * k;
+  for (float& value : s->key_values) value *= k;
+  for (Light& light : s->lights) {
+    light.position = light.position * k;
+    light.range *= k;
+    if (light.kind != LightKind::directional) light.intensity = light.intensity * (k * k);
+  }
+  for (Material& m : s->materials) m.absorption = m.absorption * (1 / k);
+  for (Camera& c : s->cameras) c.eye = c.eye * k, c.target = c.target * k;
+  s->bind();
+}
+
+}  // namespace
+
+// Goal: cameras that cannot be are refused and extreme ones give finite unit rays. Method: the degenerate cases by
+// name.
+TEST_CASE("hard_28_degenerate_cameras") {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  CameraRays rays;
+  Camera camera;
+  CHECK(rays_of(camera, 1, 1, &rays).ok);
+  Ray ray = camera_ray(rays, 0.5f, 0.5f);
+  CHECK(ray.direction == Vec3{0, 0, -1});
+  Camera same = camera;
+  same.target = same.eye;
+  CHECK_FALSE(rays_of(same, 4, 3, &rays).ok);
+  for (Vec3 up : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{0, 0, 0}, Vec3{0, 0, 1e-30f}, Vec3{0, 1e30f, 0}}) {
+    camera.up = up;
+    REQUIRE(rays_of(camera, 4, 3, &rays).ok);
+    CHECK(dot(rays.right, rays.up) == doctest::Approx(0));
+    CHECK(dot(rays.right, rays.forward) == doctest::Approx(0));
+    CHECK(length(rays.up) > 0.1f);
+    CHECK(is_finite(camera_ray(rays, 0, 0).direction));
+  }
+  camera = Camera();
+  for (float fov : {0.0f, -1.0f, 1e-9f, 3.14159265f, 3.2f, nan, inf}) {
+    camera.vertical_fov = fov;
+    CHECK_FALSE(rays_of(camera, 4, 3, &rays).ok);
+  }
+  for (float fov : {2e-5f, 3.12f}) {
+    camera.vertical_fov = fov;
+    REQUIRE(rays_of(camera, 320, 240, &rays).ok);
+    CHECK(length(camera_ray(rays, 0, 0).direction) == doctest::Approx(1));
+  }
+  camera = Camera();
+  for (float extent : {0.0f, -1.0f, nan, inf}) {
+    camera.projection = Projection::orthographic;
+    camera.vertical_extent = extent;
+    CHECK_FALSE(rays_of(camera, 4, 3, &rays).ok);
+  }
+  camera = Camera();
+  camera.eye.x = nan;
+  CHECK_FALSE(rays_of(camera, 4, 3, &rays).ok);
+}
+
+// Goal: rays go through pixel centres, row 0 on top, and span the field of view. Method: closed form at edges and
+// centres.
+TEST_CASE("camera_rays_closed_forms") {
+  Camera camera;
+  camera.vertical_fov = static_cast<float>(kPiD / 2);
+  CameraRays rays;
+  REQUIRE(rays_of(camera, 4, 2, &rays).ok);
+  Vec3 top_left = camera_ray(rays, 0, 0).direction;
+  CHECK(top_left.x / -top_left.z == doctest::Approx(-2));
+  CHECK(top_left.y / -top_left.z == doctest::Approx(1));
+  camera.projection = Projection::orthographic;
+  camera.vertical_extent = 6;
+  REQUIRE(rays_of(camera, 4, 2, &rays).ok);
+  CHECK(camera_ray(rays, 4, 2).origin.x == doctest::Approx(6));
+  CHECK(camera_ray(rays, 4, 2).origin.y == doctest::Approx(-3));
+}
+
+// Goal: no absolute epsilon anywhere: the scene × 2^±20 gives the same picture, bit for bit. Method: differential with
+// every feature, lengths scaled everywhere, radiance left alone.
+TEST_CASE("hard_29_scene_scaled_by_powers_of_two_same_image") {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Settings settings = settings_for(kAllFeatures, 48, 36);
+    Picture expected = render_picture(generate_scene(kAllFeatures, seed)->scene, settings, 0.5);
+    for (float k : {0x1p20f, 0x1p-20f, 0x1p7f}) {
+      auto scaled = generate_scene(kAllFeatures, seed);
+      scale_scene(scaled.get(), k);
+      CAPTURE(k);
+      CHECK(same_picture(render_picture(scaled->scene, settings, 0.5), expected));
+    }
+  }
+}
+
+// Goal: normals of any length, none at all, and opposite ones leave no NaN in a picture. Method: sweep of what a file
+// might hold in a normal.
+TEST_CASE("hard_30_strange_normals_give_finite_pictures") {
+  for (float size : {0.0f, 1e-30f, 1e30f, -1.0f, 1.0000002f}) {
+    auto s = generate_scene(kAllFeatures, 2);
+    for (std::size_t i = 0; i < s->normals.size(); ++i) s->normals[i] = (i % 3 ? s->normals[i] : Vec3{0, 1, 0}) * size;
+    s->rest_normals.assign(s->rest_normals.size(), Vec3{0, size, 0});
+    s->bind();
+    CAPTURE(size);
+    bool finite = true;
+    for (const Vec3& p : render_picture(s->scene, settings_for(kAllFeatures, 24, 18), 0.5))
+      finite &= is_finite(p) && p.x >= 0;
+    CHECK(finite);
+  }
+}

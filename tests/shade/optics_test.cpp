@@ -1,0 +1,203 @@
+#include <doctest/doctest.h>
+
+#include "shade/dielectric.h"
+#include "shade/media.h"
+#include "shade/shade_helpers.h"
+
+using namespace pocketray;
+
+namespace {
+
+double reflectance(double degrees, double eta) {
+  float cos_t;
+  return fresnel(static_cast<float>(std::cos(degrees * kPiD / 180)), static_cast<float>(eta), &cos_t);
+}
+
+}  // namespace
+
+// Goal: total internal reflection begins at the critical angle and gives neither more than 1 nor no number around it.
+// Method: sweep of ±2e-7 rad and beyond about asin(1/1.5).
+TEST_CASE("hard_32_fresnel_around_the_critical_angle") {
+  double critical = std::asin(1 / 1.5) * 180 / kPiD;
+  CHECK(critical == doctest::Approx(41.8103).epsilon(1e-6));
+  for (int i = -100; i <= 100; ++i) {
+    double r = reflectance(critical + i * 2e-8 * 180 / kPiD, 1.5);
+    CHECK((r > 0.9 && r <= 1));
+  }
+  for (double degrees = critical + 1e-4; degrees <= 90; degrees += 0.5) CHECK(reflectance(degrees, 1.5) == 1);
+  CHECK(reflectance(critical - 0.1, 1.5) < 0.9);
+}
+
+// Goal: the exact Fresnel equations. Method: closed-form values, either way through the boundary.
+TEST_CASE("hard_33_fresnel_closed_forms") {
+  CHECK(reflectance(0, 1 / 1.33) == doctest::Approx(.0200593).epsilon(1e-5));
+  CHECK(reflectance(0, 1 / 1.5) == doctest::Approx(.04).epsilon(1e-6));
+  CHECK(reflectance(0, 1 / 2.42) == doctest::Approx(.172395).epsilon(1e-5));
+  CHECK(reflectance(45, 1 / 1.5) == doctest::Approx(.0502399).epsilon(1e-5));
+  CHECK(reflectance(60, 1 / 1.5) == doctest::Approx(.0891867).epsilon(1e-5));
+  CHECK(reflectance(80, 1 / 1.5) == doctest::Approx(.387704).epsilon(1e-5));
+  CHECK(reflectance(56.3099, 1 / 1.5) == doctest::Approx(.0739645).epsilon(1e-5));
+  for (double degrees : {5.0, 30.0, 56.3099, 80.0, 89.0}) {  // reciprocity: the same from the other side
+    double inside = std::asin(std::sin(degrees * kPiD / 180) / 1.5) * 180 / kPiD;
+    CHECK(reflectance(degrees, 1 / 1.5) == doctest::Approx(reflectance(inside, 1.5)).epsilon(2e-5));
+  }
+}
+
+// Goal: a slab of n = 1.5 transmits 12/13 and reflects 1/13 at normal incidence. Method: closed form, and its partial
+// sums at every depth of rays: T = (1 − r)²·Σ r²ᵏ over the orders that fit.
+TEST_CASE("hard_34_slab_transmits_12_of_13") {
+  for (bool beyond : {true, false}) {
+    GeneratedScene s;
+    add_box(&s, {-5, -5, -0.5f}, {5, 5, 0.5f}, add_material(&s, glass(1.5f)));
+    add_sheet(&s, beyond ? -3.0f : 3.0f, add_material(&s, unlit(1)));
+    for (std::uint32_t depth : {1u, 2u, 3u, 4u, 5u, 16u}) {
+      double r = 0.04, sum = 0;
+      if (beyond)
+        for (std::uint32_t events = 2; events <= depth; events += 2) sum += (1 - r) * (1 - r) * std::pow(r, events - 2);
+      else
+        for (std::uint32_t events = 1; events <= depth; events += 2)
+          sum += events == 1 ? r : (1 - r) * (1 - r) * std::pow(r, events - 2);
+      CAPTURE(beyond);
+      CAPTURE(depth);
+      CHECK(look(*ray_renderer(&s, depth), {0.1f, 0.2f, 2}, {0.1f, 0.2f, 0}).x == doctest::Approx(sum).epsilon(1e-5));
+      if (depth == 16) CHECK(sum == doctest::Approx(beyond ? 12.0 / 13 : 1.0 / 13).epsilon(1e-6));
+    }
+  }
+}
+
+// Goal: facing mirrors of reflectance ρ that glow with 1 show Σρᵏ. Method: closed form at every depth of rays.
+TEST_CASE("hard_35_facing_mirrors_sum_the_series") {
+  for (float rho : {0.5f, 0.9f, 1.0f}) {
+    GeneratedScene s;
+    Material m = matte(0);
+    m.mirror = {rho, rho, rho};
+    m.emission = {1, 1, 1};
+    std::uint32_t index = add_material(&s, m);
+    add_sheet(&s, -1, index);
+    add_sheet(&s, 1, index, true);
+    double sum = 0;
+    for (std::uint32_t depth = 0; depth <= 16; ++depth) {
+      sum += std::pow(double(rho), depth);
+      CAPTURE(depth);
+      CHECK(look(*ray_renderer(&s, depth, 1), {0, 0, 0}, {0.03f, 0.02f, -1}).x == doctest::Approx(sum).epsilon(1e-5));
+    }
+  }
+}
+
+// Goal: a thin sheet passes 1 − 2r/(1 + r) of the light, unbent, and its tint. Method: closed form.
+TEST_CASE("optics_thin_sheet_closed_form") {
+  GeneratedScene s;
+  Material sheet = glass(1.5f, {0.5f, 1, 1});
+  sheet.thin = 1;
+  add_sheet(&s, 0, add_material(&s, sheet));
+  add_sheet(&s, -1, add_material(&s, unlit(1)));
+  auto t = ray_renderer(&s);
+  for (double degrees : {0.0, 45.0, 80.0}) {
+    double r = reflectance(degrees, 1 / 1.5), x = std::tan(degrees * kPiD / 180);
+    Vec3 seen = look(*t, {float(-x), 0, 1}, {0, 0, 0});
+    CHECK(seen.x == doctest::Approx(0.5 * (1 - 2 * r / (1 + r))).epsilon(1e-4));
+    CHECK(seen.y == doctest::Approx(0.5 * (1 - 2 * r / (1 + r))).epsilon(1e-4));  // unlit(1) is {1, ½, ¼}
+  }
+}
+
+// Goal: light along a body's inside fades as exp(−a·d), for the eye and for shadow rays. Method: closed form, a slab of
+// index 1, so that nothing else happens to the light.
+TEST_CASE("optics_absorption_is_beer_lambert") {
+  GeneratedScene s;
+  add_box(&s, {-5, -5, 0.5f}, {5, 5, 2}, add_material(&s, glass(1, {1, 1, 1}, {0.7f, 0, 2})));
+  add_sheet(&s, -1, add_material(&s, matte(0.8f)));
+  Light light;
+  light.kind = LightKind::directional;
+  light.direction = {0, 0, -1};
+  s.lights.push_back(light);
+  auto t = ray_renderer(&s);
+  Vec3 shaded = look(*t, {0.2f, 0.1f, 0.3f}, {0.2f, 0.1f, -1}), through = look(*t, {0.2f, 0.1f, 5}, {0.2f, 0.1f, -1});
+  double lit = 0.8 / kPiD;
+  for (int axis = 0; axis < 3; ++axis) {
+    double a = axis == 0 ? 0.7 : axis == 1 ? 0 : 2, passes = std::exp(-a * 1.5);
+    CHECK(shaded[axis] == doctest::Approx(lit * passes).epsilon(1e-5));
+    CHECK(through[axis] == doctest::Approx(lit * passes * passes).epsilon(1e-5));
+  }
+}
+
+// Goal: bodies that touch count each once: no medium is lost at their common face and the stack is empty behind them.
+// Method: closed forms through stacks of touching slabs, for the eye and for shadow rays, with the bodies in either
+// order.
+TEST_CASE("hard_25_touching_bodies_balance") {
+  for (bool swapped : {false, true}) {
+    GeneratedScene s;
+    std::uint32_t a = add_material(&s, glass(1, {1, 1, 1}, {0.3f, 0.3f, 0.3f})),
+                  b = add_material(&s, glass(1, {1, 1, 1}, {1.1f, 1.1f, 1.1f}));
+    auto lower = [&] { add_box(&s, {-5, -5, 0}, {5, 5, 1}, a); };
+    auto upper = [&] { add_box(&s, {-4, -4, 1}, {6, 6, 3}, b); };
+    if (swapped)
+      upper(), lower();
+    else
+      lower(), upper();
+    add_sheet(&s, -2, add_material(&s, matte(0.8f)));
+    Light light;
+    light.kind = LightKind::directional;
+    light.direction = {0, 0, -1};
+    s.lights.push_back(light);
+    auto t = ray_renderer(&s);
+    double once = std::exp(-0.3 - 2 * 1.1);
+    CHECK(look(*t, {0.2f, 0.1f, -1}, {0.2f, 0.1f, -2}).x == doctest::Approx(0.8 / kPiD * once).epsilon(1e-5));
+    CHECK(look(*t, {0.2f, 0.1f, 9}, {0.2f, 0.1f, -2}).x == doctest::Approx(0.8 / kPiD * once * once).epsilon(1e-5));
+    CHECK(media_at(t->renderer.frame, {0.2f, 0.1f, 9}, {0, 0, -1}).depth == 0);
+    CHECK(media_at(t->renderer.frame, {0.2f, 0.1f, 0.5f}, {0, 0, 1}).depth == 1);
+    CHECK(media_at(t->renderer.frame, {0.2f, 0.1f, 0.5f}, {0, 0, 1}).material[0] == a);
+    CHECK(media_at(t->renderer.frame, {0.2f, 0.1f, 2}, {0, 0, -1}).material[0] == b);
+  }
+}
+
+// Goal: two touching slabs of one glass are one slab: no reflection at the face between them. Method: closed form
+// 12/13.
+TEST_CASE("hard_25_touching_slabs_of_one_glass_are_one_slab") {
+  for (bool one_material : {true, false}) {
+    GeneratedScene s;
+    std::uint32_t a = add_material(&s, glass(1.5f)), b = one_material ? a : add_material(&s, glass(1.5f));
+    add_box(&s, {-5, -5, 0}, {5, 5, 1}, a);
+    add_box(&s, {-5, -5, 1}, {5, 5, 2}, b);
+    add_sheet(&s, -2, add_material(&s, unlit(1)));
+    CHECK(look(*ray_renderer(&s), {0.2f, 0.1f, 9}, {0.2f, 0.1f, 0}).x == doctest::Approx(12.0 / 13).epsilon(1e-4));
+  }
+}
+
+// Goal: glass that stands on a table does not hide the table: the coincident face does not swallow it. Method: closed
+// form through glass of index 1, rays all over it, with the glass before and behind the table in the list of triangles.
+TEST_CASE("hard_25_glass_on_a_table_shows_the_table") {
+  for (bool glass_first : {true, false}) {
+    GeneratedScene s;
+    std::uint32_t clear = add_material(&s, glass(1)), table = add_material(&s, unlit(0.75f));
+    if (glass_first) add_box(&s, {-1, -1, 0.3f}, {1, 1, 2}, clear);
+    add_sheet(&s, 0.3f, table);
+    if (!glass_first) add_box(&s, {-1, -1, 0.3f}, {1, 1, 2}, clear);
+    auto t = ray_renderer(&s);
+    Rng rng = make_rng(4);
+    int wrong = 0;
+    for (int i = 0; i < 20000; ++i) {
+      Vec3 target = {2 * next_float(&rng) - 1, 2 * next_float(&rng) - 1, 0.3f};
+      Vec3 from = {4 * next_float(&rng) - 2, 4 * next_float(&rng) - 2, 3};
+      wrong += !(std::fabs(look(*t, from, target).x - 0.75f) < 1e-5f);
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+// Goal: nested media and an eye inside glass: the stack knows the bodies around the eye, innermost last. Method: three
+// nested boxes, the eye in each, rays of all directions.
+TEST_CASE("hard_25_media_around_the_eye") {
+  GeneratedScene s;
+  for (float side : {3.0f, 2.0f, 1.0f})
+    add_box(&s, {-side, -side, -side}, {side, side, side}, add_material(&s, glass(1.0f + side / 10)));
+  auto t = ray_renderer(&s);
+  Rng rng = make_rng(5);
+  for (std::uint32_t depth = 0; depth <= 3; ++depth)
+    for (int i = 0; i < 200; ++i) {
+      Vec3 eye = {3.5f - static_cast<float>(depth), 0.1f, -0.2f};
+      Vec3 direction = normalize(Vec3{next_float(&rng) - 0.5f, next_float(&rng) - 0.5f, next_float(&rng) - 0.5f});
+      MediumStack media = media_at(t->renderer.frame, eye, direction);
+      REQUIRE(media.depth == depth);
+      for (std::uint32_t k = 0; k < depth; ++k) REQUIRE(media.material[k] == k);
+    }
+}

@@ -1,0 +1,160 @@
+#include <doctest/doctest.h>
+
+#include "base/color.h"
+#include "shade/shade_helpers.h"
+#include "shade/texture.h"
+
+using namespace pocketray;
+
+namespace {
+
+const std::vector<std::array<int, 4>> kTwoByTwo = {
+    {{255, 0, 0, 255}}, {{0, 255, 0, 128}}, {{0, 0, 255, 64}}, {{255, 255, 255, 0}}};
+
+struct Sampled {
+  Vec3 rgb;
+  float alpha;
+};
+Sampled at(float u, float v, Wrap wrap_u = Wrap::repeat, Wrap wrap_v = Wrap::repeat, bool nearest = false,
+           TextureFilter filter = TextureFilter::as_scene) {
+  GeneratedScene s;
+  TextureUse use;
+  use.texture = add_texture(&s, 2, 2, kTwoByTwo, wrap_u, wrap_v, nearest);
+  s.bind();
+  Rgba c = sample_texture(s.scene, use, {u, v}, filter);
+  return {c.rgb, c.alpha};
+}
+
+}  // namespace
+
+// Goal: a look-up at a texel's centre gives the texel, row 0 at v = 0. Method: closed form, both filters.
+TEST_CASE("texture_centres_give_texels") {
+  for (bool nearest : {true, false}) {
+    CHECK(at(.25f, .25f, Wrap::repeat, Wrap::repeat, nearest).rgb == Vec3{1, 0, 0});
+    CHECK(at(.75f, .25f, Wrap::repeat, Wrap::repeat, nearest).rgb == Vec3{0, 1, 0});
+    CHECK(at(.25f, .75f, Wrap::repeat, Wrap::repeat, nearest).rgb == Vec3{0, 0, 1});
+    CHECK(at(.75f, .75f, Wrap::repeat, Wrap::repeat, nearest).rgb == Vec3{1, 1, 1});
+  }
+  CHECK(at(.75f, .25f).alpha == 128 / 255.0f);
+}
+
+// Goal: between centres colours mix linearly in linear light. Method: closed form half-way and at a quarter.
+TEST_CASE("texture_bilinear_mixes_linear_light") {
+  CHECK(at(.5f, .25f).rgb == Vec3{.5f, .5f, 0});
+  CHECK(at(.375f, .25f).rgb == Vec3{.75f, .25f, 0});
+  CHECK(at(.5f, .5f).rgb == Vec3{.5f, .5f, .5f});
+  CHECK(at(.5f, .5f).alpha == doctest::Approx((255 + 128 + 64) / 4.0 / 255));
+}
+
+// Goal: coordinates wrap as the sampler says. Method: closed form beyond the edges, near and far.
+TEST_CASE("texture_wraps") {
+  for (float turns : {-3.0f, -1.0f, 1.0f, 2.0f, 1000.0f}) {
+    CAPTURE(turns);
+    CHECK(at(.25f + turns, .75f).rgb == Vec3{0, 0, 1});
+    bool odd = static_cast<int>(turns) % 2 != 0;
+    CHECK(at(.25f + turns, .25f, Wrap::mirror).rgb == (odd ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
+    CHECK(at(.25f + turns, .25f, Wrap::clamp).rgb == (turns < 0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+    CHECK(at(.25f, .25f + turns, Wrap::repeat, Wrap::clamp).rgb == (turns < 0 ? Vec3{1, 0, 0} : Vec3{0, 0, 1}));
+  }
+  CHECK(at(0, .25f).rgb == Vec3{.5f, .5f, 0});  // the seam mixes with the other edge
+  CHECK(at(0, .25f, Wrap::clamp).rgb == Vec3{1, 0, 0});
+  CHECK(at(0, .25f, Wrap::mirror).rgb == Vec3{1, 0, 0});
+  for (float wild : {1e30f, -1e30f, 1e9f}) CHECK(is_finite(at(wild, wild).rgb));
+}
+
+// Goal: the settings' filter overrides the scene's. Method: a point where the two differ.
+TEST_CASE("texture_filter_can_be_overridden") {
+  CHECK(at(.45f, .25f, Wrap::repeat, Wrap::repeat, false, TextureFilter::nearest).rgb == Vec3{1, 0, 0});
+  CHECK(at(.5f, .25f, Wrap::repeat, Wrap::repeat, true, TextureFilter::bilinear).rgb == Vec3{.5f, .5f, 0});
+}
+
+// Goal: textures reach the picture where they belong: uv, transform and base colour. Method: rays at texel centres of a
+// textured, unlit square.
+TEST_CASE("texture_shows_on_a_square") {
+  GeneratedScene s;
+  Material m;
+  m.unlit = 1;
+  m.diffuse = {0.5f, 1, 0.25f};
+  m.diffuse_texture.texture = add_texture(&s, 2, 2, kTwoByTwo);
+  add_sheet(&s, 0, add_material(&s, m), false, 1);
+  s.with_uvs = true;
+  auto t = ray_renderer(&s);
+  CHECK(look(*t, {-.5f, -.5f, 1}, {-.5f, -.5f, 0}) == Vec3{.5f, 0, 0});
+  CHECK(look(*t, {.5f, -.5f, 1}, {.5f, -.5f, 0}) == Vec3{0, 1, 0});
+  CHECK(look(*t, {.5f, .5f, 1}, {.5f, .5f, 0}) == Vec3{.5f, 1, .25f});
+  s.materials[0].diffuse_texture.m[0][2] = 0.5f;  // shifted by one texel
+  CHECK(look(*ray_renderer(&s), {-.5f, -.5f, 1}, {-.5f, -.5f, 0}) == Vec3{0, 1, 0});
+}
+
+// Goal: vertex colours interpolate. Method: closed form at vertices' mean.
+TEST_CASE("vertex_colors_interpolate") {
+  GeneratedScene s;
+  Material m;
+  m.unlit = 1;
+  m.diffuse = {1, 1, 1};
+  add_sheet(&s, 0, add_material(&s, m), false, 1);
+  s.colors = {{0, 65535, 0, 65535}, {65535, 65535, 0, 65535}, {65535, 65535, 65535, 65535}, {0, 65535, 65535, 65535}};
+  s.with_colors = true;
+  auto t = ray_renderer(&s);
+  for (float x : {-.8f, 0.1f, .6f})
+    for (float y : {-.5f, 0.2f, .9f}) {
+      Vec3 seen = look(*t, {x, y, 1}, {x, y, 0});
+      CHECK(seen.x == doctest::Approx((x + 1) / 2).epsilon(1e-5));
+      CHECK(seen.y == doctest::Approx(1));
+      CHECK(seen.z == doctest::Approx((y + 1) / 2).epsilon(1e-5));
+    }
+}
+
+// Goal: below its cut-off a surface is a hole, for the eye and for light; above, it is whole. Method: closed form.
+TEST_CASE("alpha_mask_cuts_holes") {
+  for (float opacity : {0.4f, 0.6f}) {
+    GeneratedScene s;
+    Material holes = unlit(1);
+    holes.alpha_mode = AlphaMode::mask;
+    holes.opacity = opacity;
+    add_sheet(&s, 1, add_material(&s, holes));
+    add_sheet(&s, 0, add_material(&s, matte(0.8f)));
+    Light light;
+    light.kind = LightKind::directional;
+    light.direction = {0, 0, -1};
+    s.lights.push_back(light);
+    auto t = ray_renderer(&s);
+    bool hole = opacity < 0.5f;
+    CHECK(look(*t, {0.1f, 0.2f, 2}, {0.1f, 0.2f, 0}).x == doctest::Approx(hole ? 0.8 / kPiD : 1.0));
+    CHECK(look(*t, {0.1f, 0.2f, 0.5f}, {0.1f, 0.2f, 0}).x == doctest::Approx(hole ? 0.8 / kPiD : 0.0));
+  }
+}
+
+// Goal: blending surfaces mix with what is behind, also where they lie upon it, and pass 1 − α of the light. Method: closed
+// form, two layers before an opaque one, apart and coincident, in every order of their triangles. Of coincident surfaces
+// the first in the list is met first: an opaque one hides what is laid upon it later.
+TEST_CASE("alpha_blend_mixes_with_what_is_behind") {
+  for (float gap : {1.0f, 0.0f})
+    for (int order = 0; order < 3; ++order) {
+      GeneratedScene s;
+      auto layer = [&](float radiance, float opacity, float z) {
+        Material m = unlit(radiance);
+        if (opacity < 1) m.alpha_mode = AlphaMode::blend, m.opacity = opacity;
+        add_sheet(&s, z, add_material(&s, m));
+      };
+      if (order == 0) layer(0.25f, 1, 1);
+      layer(1, 0.25f, 1 + 2 * gap);
+      if (order == 1) layer(0.25f, 1, 1);
+      layer(0.5f, 0.5f, 1 + gap);
+      if (order == 2) layer(0.25f, 1, 1);
+      CAPTURE(gap);
+      CAPTURE(order);
+      CHECK(look(*ray_renderer(&s), {0.1f, 0.2f, 5}, {0.1f, 0.2f, 0}).x ==
+            doctest::Approx(gap == 0 && order == 0 ? 0.25 : 0.25 + 0.75 * (0.25 + 0.5 * 0.25)));
+    }
+  GeneratedScene s;
+  Material m = matte(1);
+  m.alpha_mode = AlphaMode::blend, m.opacity = 0.25f;
+  add_sheet(&s, 1, add_material(&s, m));
+  add_sheet(&s, 0, add_material(&s, matte(0.8f)));
+  Light light;
+  light.kind = LightKind::directional;
+  light.direction = {0, 0, -1};
+  s.lights.push_back(light);
+  CHECK(look(*ray_renderer(&s), {0, 0.1f, 0.5f}, {0, 0.1f, 0}).x == doctest::Approx(0.75 * 0.8 / kPiD));
+}
