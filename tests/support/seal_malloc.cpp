@@ -1,46 +1,41 @@
 // The heap of the test build: aborts on any allocation while the seal is on. Linked into pocketray_sealed, which is the
-// program otherwise unchanged.
+// program otherwise unchanged. A dynamic program finds these functions before the C library's; a static one is linked with
+// --wrap, which sends every call here first.
 #include <cstddef>
 #include <unistd.h>
 
 #include "base/seal.h"
 
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-}
+#ifdef POCKETRAY_WRAP_HEAP
+#define HEAP(name) __wrap_##name
+#define REAL(name) __real_##name
+#else
+#define HEAP(name) name
+#define REAL(name) __libc_##name
+#endif
 
-namespace {
-void check_seal() {
+extern "C" {
+void* REAL(malloc)(std::size_t);
+void* REAL(calloc)(std::size_t, std::size_t);
+void* REAL(realloc)(void*, std::size_t);
+
+static void check_seal() {
   if (!pocketray::memory_sealed.load(std::memory_order_relaxed)) return;
   static const char text[] = "an allocation under the seal\n";
   if (write(STDERR_FILENO, text, sizeof text - 1) < 0) _exit(134);
   __builtin_trap();
 }
-}  // namespace
 
-extern "C" {
-void* malloc(std::size_t bytes) {
+void* HEAP(malloc)(std::size_t bytes) {
   check_seal();
-  return __libc_malloc(bytes);
+  return REAL(malloc)(bytes);
 }
-void* calloc(std::size_t count, std::size_t bytes) {
+void* HEAP(calloc)(std::size_t count, std::size_t bytes) {
   check_seal();
-  return __libc_calloc(count, bytes);
+  return REAL(calloc)(count, bytes);
 }
-void* realloc(void* old, std::size_t bytes) {
+void* HEAP(realloc)(void* old, std::size_t bytes) {
   check_seal();
-  return __libc_realloc(old, bytes);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t bytes) {
-  check_seal();
-  return __libc_memalign(alignment, bytes);
-}
-int posix_memalign(void** result, std::size_t alignment, std::size_t bytes) {
-  check_seal();
-  *result = __libc_memalign(alignment, bytes);
-  return *result ? 0 : 12;
+  return REAL(realloc)(old, bytes);
 }
 }
