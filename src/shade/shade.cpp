@@ -2,10 +2,9 @@
 // the plan has; an absent one is not a branch, it is not there.
 #include "shade/shade.h"
 
-#include <utility>
-
 #include "shade/contact.h"
 #include "shade/direct.h"
+#include "shade/instantiate.h"
 
 namespace pocketray {
 namespace {
@@ -186,31 +185,18 @@ Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const MediumStack& media) 
   return radiance<mask>(tracer, ray, {{1, 1, 1}, 0, media});
 }
 
-// The effects this part is instantiated for, and the instantiation of each of their combinations.
-constexpr Effect kParts[] = {Effect::shadow, Effect::specular, Effect::mirror, Effect::refraction, Effect::absorption, Effect::alpha_blend,
-                             Effect::back_face_culling};
-constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
-
-constexpr EffectMask mask_of(std::size_t index) {
-  EffectMask mask = 0;
-  for (std::size_t i = 0; i < kPartCount; ++i)
-    if (index >> i & 1) mask |= bit(kParts[i]);
-  if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);  // nothing to be inside of
-  return mask;
-}
-template <std::size_t... index>
-RadianceFunction pick(std::size_t wanted, std::index_sequence<index...>) {
-  static constexpr RadianceFunction table[] = {primary_radiance<mask_of(index)>...};
-  return table[wanted];
-}
+struct RadiancePart {
+  using Function = RadianceFunction;
+  static constexpr Effect kEffects[] = {Effect::shadow,     Effect::specular,    Effect::mirror,           Effect::refraction,
+                                        Effect::absorption, Effect::alpha_blend, Effect::back_face_culling};
+  template <EffectMask mask>
+  static constexpr Function instance() {  // nothing absorbs where there is nothing to be inside of
+    return has(mask, Effect::refraction) ? primary_radiance<mask> : primary_radiance<(mask & ~bit(Effect::absorption))>;
+  }
+};
 
 }  // namespace
 
-RadianceFunction find_radiance_function(EffectMask mask) {
-  std::size_t index = 0;
-  for (std::size_t i = 0; i < kPartCount; ++i)
-    if (has(mask, kParts[i])) index |= std::size_t(1) << i;
-  return pick(index, std::make_index_sequence<std::size_t(1) << kPartCount>());
-}
+RadianceFunction find_radiance_function(EffectMask mask) { return Instantiations<RadiancePart>::find(mask); }
 
 }  // namespace pocketray

@@ -1,8 +1,7 @@
 #include "shade/surface.h"
 
-#include <utility>
-
 #include "effect/effect_probe.h"
+#include "shade/instantiate.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -75,21 +74,14 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   }
 }
 
-// The effects this part is instantiated for, and the instantiation of each of their combinations.
-constexpr Effect kParts[] = {Effect::smooth_normal, Effect::texture, Effect::vertex_color, Effect::ambient, Effect::emission};
-constexpr std::size_t kPartCount = sizeof kParts / sizeof kParts[0];
-
-constexpr EffectMask mask_of(std::size_t index) {
-  EffectMask mask = 0;
-  for (std::size_t i = 0; i < kPartCount; ++i)
-    if (index >> i & 1) mask |= bit(kParts[i]);
-  return mask;
-}
-template <std::size_t... index>
-SurfaceFunction pick(std::size_t wanted, std::index_sequence<index...>) {
-  static constexpr SurfaceFunction table[] = {evaluate_surface<mask_of(index)>...};
-  return table[wanted];
-}
+struct SurfacePart {
+  using Function = SurfaceFunction;
+  static constexpr Effect kEffects[] = {Effect::smooth_normal, Effect::texture, Effect::vertex_color, Effect::ambient, Effect::emission};
+  template <EffectMask mask>
+  static constexpr Function instance() {
+    return evaluate_surface<mask>;
+  }
+};
 
 }  // namespace
 
@@ -110,11 +102,6 @@ Vec3 curved_origin(const FrameData& frame, const Surface& s) {
   return safe_origin(moved, 1);
 }
 
-SurfaceFunction find_surface_function(EffectMask mask) {
-  std::size_t index = 0;
-  for (std::size_t i = 0; i < kPartCount; ++i)
-    if (has(mask, kParts[i])) index |= std::size_t(1) << i;
-  return pick(index, std::make_index_sequence<std::size_t(1) << kPartCount>());
-}
+SurfaceFunction find_surface_function(EffectMask mask) { return Instantiations<SurfacePart>::find(mask); }
 
 }  // namespace pocketray
