@@ -57,7 +57,8 @@ void unmap_file(MappedFile* file) {
 std::uint64_t file_stamp(const char* path) {
   struct stat info;
   if (stat(path, &info) != 0) return 0;
-  std::uint64_t time = static_cast<std::uint64_t>(info.st_mtim.tv_sec) * 1000000000u + static_cast<std::uint64_t>(info.st_mtim.tv_nsec);
+  std::uint64_t time =
+      static_cast<std::uint64_t>(info.st_mtim.tv_sec) * 1000000000u + static_cast<std::uint64_t>(info.st_mtim.tv_nsec);
   return (time * 31 + static_cast<std::uint64_t>(info.st_size)) | 1;
 }
 
@@ -69,7 +70,8 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
   }
   char part[sizeof writer->path + 8];
   if (strlen(path) >= sizeof writer->path) {
-    snprintf(error->text, sizeof error->text, "the path is longer than %zu bytes: use a shorter one", sizeof writer->path - 1);
+    snprintf(error->text, sizeof error->text, "the path is longer than %zu bytes: use a shorter one",
+             sizeof writer->path - 1);
     return false;
   }
   // A device or a pipe is written as it is: renaming onto it would put a file in its place.
@@ -101,7 +103,8 @@ bool close_writer(FileWriter* writer, FileError* error) {
   if (!writer->path[0]) {
     if (writer->descriptor != STDOUT_FILENO && close(writer->descriptor) != 0) writer->failed = true;
     writer->descriptor = -1;
-    if (writer->failed) snprintf(error->text, sizeof error->text, "did not take all that was written: is it full, or closed?");
+    if (writer->failed)
+      snprintf(error->text, sizeof error->text, "did not take all that was written: is it full, or closed?");
     return !writer->failed;
   }
   char part[sizeof writer->path + 8];

@@ -21,10 +21,12 @@ struct BakeOptions {
 // Builds the accelerator on the heap: baking is desktop work.
 std::vector<std::uint64_t> build_accel(Scene* scene) {
   const AccelInfo& info = *kAccelList[0];
-  std::size_t keep_bytes = info.need(scene->triangles.count) + kArenaAlignment, scratch_bytes = info.scratch_need(scene->triangles.count) + kArenaAlignment;
+  std::size_t keep_bytes = info.need(scene->triangles.count) + kArenaAlignment,
+              scratch_bytes = info.scratch_need(scene->triangles.count) + kArenaAlignment;
   std::vector<std::uint64_t> memory((keep_bytes + scratch_bytes) / 8 + 2);
   auto* bytes = reinterpret_cast<std::uint8_t*>(memory.data());
-  Arena keep = make_arena("accelerator", bytes, keep_bytes), scratch = make_arena("scratch", bytes + keep_bytes, scratch_bytes);
+  Arena keep = make_arena("accelerator", bytes, keep_bytes),
+        scratch = make_arena("scratch", bytes + keep_bytes, scratch_bytes);
   Accel accel;
   accel.positions = scene->positions;
   accel.triangles = scene->triangles;
@@ -66,7 +68,8 @@ Status bake(const BakeOptions& o) {
     scene = imported.scene;
     warning = imported.warning;
 #else
-    return failure("%s cannot be read: this program was built without the importers; bake on a desktop", o.input.c_str());
+    return failure("%s cannot be read: this program was built without the importers; bake on a desktop",
+                   o.input.c_str());
 #endif
   }
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
@@ -77,9 +80,12 @@ Status bake(const BakeOptions& o) {
   RETURN_IF_ERROR(write_scene(o.output, scene, &byte_count));
   if (!warning.empty()) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
   if (o.json != "-" && o.output != "-")
-    std::printf("%s: %s triangles, %u materials, %u textures, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n", o.output.c_str(),
-                grouped(scene.triangles.count).c_str(), scene.materials.count, scene.textures.count, static_cast<double>(byte_count) / (1 << 20),
-                static_cast<double>(scene.accel.bytes()) / (1 << 20), read_ms, build_ms);
+    std::printf(
+        "%s: %s triangles, %u materials, %u textures, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f "
+        "ms\n",
+        o.output.c_str(), grouped(scene.triangles.count).c_str(), scene.materials.count, scene.textures.count,
+        static_cast<double>(byte_count) / (1 << 20), static_cast<double>(scene.accel.bytes()) / (1 << 20), read_ms,
+        build_ms);
   if (o.json.empty()) return success();
   return write_json(o.json, {{"output", o.output},
                              {"triangles", scene.triangles.count},
@@ -102,7 +108,9 @@ void add_bake_command(CLI::App* program, int* exit_status) {
   command->add_option("--texture-max", options->texture_side_max, "halve textures until no side is longer, in texels")
       ->capture_default_str()
       ->check(CLI::Range(1u, kTextureSideMax));
-  command->add_option("--crease-angle", options->crease_angle, "degrees: models that come without normals are smooth below it (glTF: flat)")
+  command
+      ->add_option("--crease-angle", options->crease_angle,
+                   "degrees: models that come without normals are smooth below it (glTF: flat)")
       ->capture_default_str()
       ->check(CLI::Range(0.0f, 180.0f));
   command->add_option("--json", options->json, "also write figures as JSON to FILE, or - for standard output");

@@ -16,12 +16,14 @@ Json to_json(const CommonOptions& options, const Renderer& r, Measurement* m) {
   Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
   Json rows = Json::array();
   for (std::uint32_t row = 0; row < r.settings.height; ++row)
-    rows.push_back(range_of(&m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max], m->frame_count).median / r.settings.width);
+    rows.push_back(range_of(&m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max], m->frame_count).median /
+                   r.settings.width);
   Json rays = Json::object();
   for (int kind = 0; kind < kRayKindCount; ++kind) rays[kRayKindNames[kind]] = m->counts.rays[kind];
   Json effects = effects_json(r.effects);
   for (int i = 0; i < kEffectCount; ++i)
-    if (std::isfinite(m->effect_price[i])) effects[static_cast<std::size_t>(i)]["price_ns_per_pixel"] = m->effect_price[i];
+    if (std::isfinite(m->effect_price[i]))
+      effects[static_cast<std::size_t>(i)]["price_ns_per_pixel"] = m->effect_price[i];
   return {{"scene", options.scene},
           {"triangles", r.scene.triangles.count},
           {"width", r.settings.width},
@@ -45,18 +47,23 @@ Json to_json(const CommonOptions& options, const Renderer& r, Measurement* m) {
 
 void print_table(const CommonOptions& options, const Renderer& r, Measurement* m) {
   Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
-  std::printf("%s: %s triangles, %u×%u, %u thread%s, %u frame%s\n", options.scene.c_str(), grouped(r.scene.triangles.count).c_str(),
-              r.settings.width, r.settings.height, r.settings.threads, r.settings.threads == 1 ? "" : "s", m->frame_count, m->frame_count == 1 ? "" : "s");
+  std::printf("%s: %s triangles, %u×%u, %u thread%s, %u frame%s\n", options.scene.c_str(),
+              grouped(r.scene.triangles.count).c_str(), r.settings.width, r.settings.height, r.settings.threads,
+              r.settings.threads == 1 ? "" : "s", m->frame_count, m->frame_count == 1 ? "" : "s");
   std::printf("  %-22s %10.0f ns   (%.0f … %.0f)\n", "per pixel", pixel.median, pixel.min, pixel.max);
-  std::printf("  %-22s %10.1f ms   (%.1f frames per second)\n", "per frame", pixel.median * pixel_count(r) * 1e-6, 1e9 / (pixel.median * pixel_count(r)));
+  std::printf("  %-22s %10.1f ms   (%.1f frames per second)\n", "per frame", pixel.median * pixel_count(r) * 1e-6,
+              1e9 / (pixel.median * pixel_count(r)));
   std::printf("  %-22s %10.2f million\n", "rays per second", rays_per_second(*m) * 1e-6);
   for (int kind = 0; kind < kRayKindCount; ++kind)
-    if (m->counts.rays[kind]) std::printf("  %-22s %10s per frame\n", (std::string(kRayKindNames[kind]) + " rays").c_str(), grouped(m->counts.rays[kind]).c_str());
-  std::printf("  %-22s %10s per frame, at most %.2g of radiance a sample\n", "rays left out", grouped(m->counts.rays_left_out).c_str(),
-              static_cast<double>(m->counts.left_out_max));
+    if (m->counts.rays[kind])
+      std::printf("  %-22s %10s per frame\n", (std::string(kRayKindNames[kind]) + " rays").c_str(),
+                  grouped(m->counts.rays[kind]).c_str());
+  std::printf("  %-22s %10s per frame, at most %.2g of radiance a sample\n", "rays left out",
+              grouped(m->counts.rays_left_out).c_str(), static_cast<double>(m->counts.left_out_max));
   std::printf("  %-22s %10.1f ms\n", "build", r.timings.build_ms);
   if (has(r.effects.mask, Effect::animation))
-    std::printf("  %-22s %10.2f ms and %.2f ms\n", "pose and refit", range_of(m->pose_ms.data(), m->frame_count).median, range_of(m->refit_ms.data(), m->frame_count).median);
+    std::printf("  %-22s %10.2f ms and %.2f ms\n", "pose and refit", range_of(m->pose_ms.data(), m->frame_count).median,
+                range_of(m->refit_ms.data(), m->frame_count).median);
   std::printf("price of each effect, ns per pixel (by switching it off)\n");
   for (const EffectRow& row : kEffectList) {
     double price = m->effect_price[static_cast<int>(row.effect)];
@@ -67,12 +74,14 @@ void print_table(const CommonOptions& options, const Renderer& r, Measurement* m
 
 int run(const CommonOptions& options, std::uint32_t frame_count, bool prices) {
   OpenScene opened;
-  Status status = open_scene(options, [](const Settings&) -> std::size_t { return 0; }, &opened);
+  Status status = open_scene(
+      options, [](const Settings&) -> std::size_t { return 0; }, &opened);
   if (status.ok) status = start_scene(&opened, options);
   if (!status.ok) return report(status);
   print_notes(opened);
   Renderer* r = &opened.renderer;
-  if (frame_count == 0 || frame_count > kFrameCountMax) return report(failure("--frames is %u: it must lie in 1 … %u", frame_count, kFrameCountMax));
+  if (frame_count == 0 || frame_count > kFrameCountMax)
+    return report(failure("--frames is %u: it must lie in 1 … %u", frame_count, kFrameCountMax));
   Measurement m = make_measurement(*r, frame_count);
   seal_memory();
   status = measure_frames(r, &m);

@@ -28,7 +28,8 @@ CameraControl make_camera_control(const Camera& camera, const Box& bounds) {
   control.home = control.camera = camera;
   float size = is_empty(bounds) ? 0 : length(extent(bounds));
   control.size = size > 0 ? size : length(camera.target - camera.eye);
-  // A camera of a file looks along a direction; orbiting wants the point it looks at: as far away as the scene's centre.
+  // A camera of a file looks along a direction; orbiting wants the point it looks at: as far away as the scene's
+  // centre.
   Vec3 forward = normalize(camera.target - camera.eye);
   if (!is_empty(bounds)) {
     float distance = dot(center(bounds) - camera.eye, forward);

@@ -7,8 +7,8 @@ namespace pocketray {
 
 // What is held down.
 struct CameraInput {
-  float right = 0, up = 0;    // −1 … 1: turn
-  float forward = 0;          // −1 … 1: closer or farther (orbit), ahead or back (fly)
+  float right = 0, up = 0;       // −1 … 1: turn
+  float forward = 0;             // −1 … 1: closer or farther (orbit), ahead or back (fly)
   float sideways = 0, rise = 0;  // −1 … 1: fly alone
 };
 
@@ -16,14 +16,14 @@ enum class CameraMode { orbit, fly };
 
 struct CameraControl {
   CameraMode mode = CameraMode::orbit;
-  Camera home;      // as the scene has it
-  Camera camera;    // now
-  float size = 1;   // of the scene: what speeds are measured by
+  Camera home;     // as the scene has it
+  Camera camera;   // now
+  float size = 1;  // of the scene: what speeds are measured by
 };
 
 CameraControl make_camera_control(const Camera& camera, const Box& bounds);
-// Moves for `seconds`; true if anything changed. Orbit: around the target, 90° a second, the pole kept on top. Fly: turns on
-// the spot, moves half the scene's size a second.
+// Moves for `seconds`; true if anything changed. Orbit: around the target, 90° a second, the pole kept on top. Fly:
+// turns on the spot, moves half the scene's size a second.
 bool move_camera(CameraControl* control, const CameraInput& input, float seconds);
 // Back to the scene's own view.
 void reset_camera(CameraControl* control);

@@ -1,5 +1,5 @@
-// A frame in one sentence: scene → plan → accelerate → trace + shade spans. What is planned was planned before the first
-// frame; showing the frame is the caller's.
+// A frame in one sentence: scene → plan → accelerate → trace + shade spans. What is planned was planned before the
+// first frame; showing the frame is the caller's.
 #include "app/frame.h"
 
 #include "base/color.h"
@@ -46,7 +46,8 @@ void choose_kernels(Renderer* r) {
 
 void light_scene(Renderer* r) {
   place_lights(r->pose.lights.count ? Array<const Light>(r->pose.lights) : r->scene.lights, r->light_points, &r->frame);
-  bool spawns = has(r->effects.mask, Effect::mirror) || has(r->effects.mask, Effect::refraction) || has(r->effects.mask, Effect::alpha_blend);
+  bool spawns = has(r->effects.mask, Effect::mirror) || has(r->effects.mask, Effect::refraction) ||
+                has(r->effects.mask, Effect::alpha_blend);
   r->frame.radiance_bound = spawns ? radiance_bound(r->frame) : 0;
   r->frame.left_out_max = r->settings.cut_off ? kHalfLevel / r->exposure : 0;
 }
@@ -55,14 +56,16 @@ Status aim_camera(Renderer* r) {
   if (!r->camera_overridden && r->pose.cameras.count) r->camera = r->pose.cameras[r->camera_index];
   RETURN_IF_ERROR(make_camera_rays(r->camera, r->settings.width, r->settings.height, &r->frame.camera));
   r->frame.eye_media = MediumStack();
-  if (has(r->effects.mask, Effect::refraction)) r->frame.eye_media = media_at(r->frame, r->frame.camera.eye, r->frame.camera.forward);
+  if (has(r->effects.mask, Effect::refraction))
+    r->frame.eye_media = media_at(r->frame, r->frame.camera.eye, r->frame.camera.forward);
   return success();
 }
 
 std::uint32_t trace(Renderer* r, Aov aov, const std::atomic<bool>* stop) {
   for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
   std::uint64_t start = clock_ns();
-  std::uint32_t rows = trace_with(r->workers, {r->spans.data, r->spans.count, aov, r->image.data, r->tracers.data, r->row_ns.data, stop});
+  std::uint32_t rows = trace_with(
+      r->workers, {r->spans.data, r->spans.count, aov, r->image.data, r->tracers.data, r->row_ns.data, stop});
   r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return rows;
 }

@@ -27,11 +27,16 @@ Result to_result(const Status& status) {
 
 PixelFormat to_format(PixelOrder order) {
   switch (order) {
-    case PixelOrder::rgb565: return kRgb565;
-    case PixelOrder::bgr565: return kBgr565;
-    case PixelOrder::xbgr8888: return kXbgr8888;
-    case PixelOrder::rgb888: return kRgb888;
-    case PixelOrder::xrgb8888: break;
+    case PixelOrder::rgb565:
+      return kRgb565;
+    case PixelOrder::bgr565:
+      return kBgr565;
+    case PixelOrder::xbgr8888:
+      return kXbgr8888;
+    case PixelOrder::rgb888:
+      return kRgb888;
+    case PixelOrder::xrgb8888:
+      break;
   }
   return kXrgb8888;
 }
@@ -44,7 +49,8 @@ Status open_instance(const Options& o, void* memory, std::size_t memory_bytes, I
   *result = nullptr;
   Arena block = make_arena("instance", memory, memory_bytes);
   void* place = arena_try_allocate(&block, sizeof(Instance));
-  if (!place) return failure("%zu bytes of memory are too few: an instance alone takes %zu", memory_bytes, sizeof(Instance));
+  if (!place)
+    return failure("%zu bytes of memory are too few: an instance alone takes %zu", memory_bytes, sizeof(Instance));
   Instance* instance = new (place) Instance;
   instance->format = to_format(o.order);
   instance->dither = o.dither;
@@ -62,27 +68,31 @@ Status open_instance(const Options& o, void* memory, std::size_t memory_bytes, I
   RETURN_IF_ERROR(plan_renderer(r, storage, 0));
   r->workers = start_workers(s.threads);
   Status status = build_renderer(r);
-  if (status.ok) *result = instance;
-  else stop_workers(r->workers);
+  if (status.ok)
+    *result = instance;
+  else
+    stop_workers(r->workers);
   return status;
 }
 
 }  // namespace
 
-Result open_builtin(const char* name, const Options& options, void* memory, std::size_t memory_bytes, Instance** instance) {
+Result open_builtin(const char* name, const Options& options, void* memory, std::size_t memory_bytes,
+                    Instance** instance) {
   return to_result(open_instance(options, memory, memory_bytes, instance, [name](Renderer* r, SceneStorage* storage) {
     const BuiltinScene* builtin = find_builtin(name);
     if (!builtin) return failure("there is no built-in scene '%.60s'", name);
     if (builtin->need() > arena_free(r->scene_arena))
-      return failure("%s alone needs %zu bytes and %zu are free: give more memory", name, builtin->need(), arena_free(r->scene_arena));
+      return failure("%s alone needs %zu bytes and %zu are free: give more memory", name, builtin->need(),
+                     arena_free(r->scene_arena));
     builtin->build(&r->scene_arena, &r->scene);
     storage->arena_bytes = r->scene_arena.used;
     return success();
   }));
 }
 
-Result open_baked(const void* bytes, std::size_t byte_count, const Options& options, void* memory, std::size_t memory_bytes,
-                  Instance** instance) {
+Result open_baked(const void* bytes, std::size_t byte_count, const Options& options, void* memory,
+                  std::size_t memory_bytes, Instance** instance) {
   return to_result(open_instance(options, memory, memory_bytes, instance, [=](Renderer* r, SceneStorage*) {
     return baked_open(static_cast<const std::uint8_t*>(bytes), byte_count, &r->scene);
   }));
@@ -104,7 +114,8 @@ Result render(Instance* instance, double seconds, void* pixels, int line_bytes) 
   int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
   if (line_bytes < width * instance->format.bits_per_pixel / 8)
     return to_result(failure("a row of %d pixels does not fit in %d bytes", width, line_bytes));
-  pack_rows(r->image.data, width, height, 0, height, r->exposure, instance->format, Rotation::none, instance->dither, pixels, line_bytes);
+  pack_rows(r->image.data, width, height, 0, height, r->exposure, instance->format, Rotation::none, instance->dither,
+            pixels, line_bytes);
   return Result();
 }
 

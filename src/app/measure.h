@@ -15,12 +15,12 @@ Range range_of(double* values, std::uint32_t count);
 constexpr std::uint32_t kFrameCountMax = 1000;
 
 struct Measurement {
-  std::uint32_t frame_count = 0;  // measured so far
-  std::uint32_t frame_count_max;  // row_ns has room for
+  std::uint32_t frame_count = 0;                                // measured so far
+  std::uint32_t frame_count_max;                                // row_ns has room for
   std::vector<double> ns_per_pixel, pose_ms, refit_ms, row_ns;  // row_ns: frames of row 0, of row 1, …
-  Tracer counts;                                       // of the last frame
-  double trace_ns = 0;                                 // of all frames
-  double effect_price[kEffectCount];                   // ns per pixel; NaN: not measured
+  Tracer counts;                                                // of the last frame
+  double trace_ns = 0;                                          // of all frames
+  double effect_price[kEffectCount];                            // ns per pixel; NaN: not measured
 };
 
 // Room for so many frames; nothing allocates afterwards.

@@ -24,10 +24,14 @@ std::string scene_help() {
 }
 
 Status parse_texture_filter(const std::string& text, TextureFilter* filter) {
-  if (text == "scene") *filter = TextureFilter::as_scene;
-  else if (text == "nearest") *filter = TextureFilter::nearest;
-  else if (text == "bilinear") *filter = TextureFilter::bilinear;
-  else return failure("--texture-filter is '%s': it must be scene, nearest or bilinear", text.c_str());
+  if (text == "scene")
+    *filter = TextureFilter::as_scene;
+  else if (text == "nearest")
+    *filter = TextureFilter::nearest;
+  else if (text == "bilinear")
+    *filter = TextureFilter::bilinear;
+  else
+    return failure("--texture-filter is '%s': it must be scene, nearest or bilinear", text.c_str());
   return success();
 }
 
@@ -39,7 +43,8 @@ Status parse_settings(const CommonOptions& o, Settings* s) {
   if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &s->memory_bytes));
   RETURN_IF_ERROR(parse_effects(o.effects.c_str(), s));
   RETURN_IF_ERROR(parse_texture_filter(o.texture_filter, &s->texture_filter));
-  if (o.normals != "scene" && o.normals != "flat") return failure("--normals is '%s': it must be scene or flat", o.normals.c_str());
+  if (o.normals != "scene" && o.normals != "flat")
+    return failure("--normals is '%s': it must be scene or flat", o.normals.c_str());
   s->normals = o.normals == "flat" ? NormalMode::flat : NormalMode::as_scene;
   s->samples_per_pixel = o.samples;
   s->ray_depth = o.depth;
@@ -78,7 +83,8 @@ Status find_device(const CommonOptions& o, const platform::Device** device) {
 
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height) {
   int used = 0;
-  if (std::sscanf(text.c_str(), "%5ux%5u%n", width, height, &used) != 2 || static_cast<std::size_t>(used) != text.size())
+  if (std::sscanf(text.c_str(), "%5ux%5u%n", width, height, &used) != 2 ||
+      static_cast<std::size_t>(used) != text.size())
     return failure("--size is '%s': write it as 320x240", text.c_str());
   return success();
 }
@@ -86,7 +92,10 @@ Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* 
 Status parse_bytes(const std::string& text, std::size_t* bytes) {
   char* end;
   double value = std::strtod(text.c_str(), &end);
-  double unit = *end == 'K' || *end == 'k' ? 1 << 10 : *end == 'M' || *end == 'm' ? 1 << 20 : *end == 'G' || *end == 'g' ? 1 << 30 : 1;
+  double unit = *end == 'K' || *end == 'k'   ? 1 << 10
+                : *end == 'M' || *end == 'm' ? 1 << 20
+                : *end == 'G' || *end == 'g' ? 1 << 30
+                                             : 1;
   if (unit > 1) ++end;
   if (end == text.c_str() || *end || !(value * unit >= 65536) || !(value * unit <= 0x1p36))
     return failure("--memory is '%s': write it as 24M (64K … 64G)", text.c_str());
@@ -97,7 +106,8 @@ Status parse_bytes(const std::string& text, std::size_t* bytes) {
 Status parse_camera(const std::string& text, Camera* camera) {
   float v[10];
   if (!read_numbers(text, v, 10))
-    return failure("--camera is '%s': write it as \"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\", the field of view in degrees", text.c_str());
+    return failure("--camera is '%s': write it as \"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\", the field of view in degrees",
+                   text.c_str());
   *camera = Camera();
   camera->eye = {v[0], v[1], v[2]};
   camera->target = {v[3], v[4], v[5]};
@@ -111,14 +121,20 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("--size", o->size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
   command->add_option("--samples", o->samples, "rays through each pixel, 1 … 16")->capture_default_str();
   command->add_option("--depth", o->depth, "reflections and refractions along a path, 0 … 16")->capture_default_str();
-  command->add_option("--area-lights", o->area_lights, "points that each area light is taken as, 1 … 256")->capture_default_str();
-  command->add_option("--effects", o->effects,
-                      "what to simulate: auto (what the scene calls for), all, or names; \"auto,-shadow\" leaves one out")
+  command->add_option("--area-lights", o->area_lights, "points that each area light is taken as, 1 … 256")
       ->capture_default_str();
-  command->add_option("--memory", o->memory, "the block everything must fit in, as 24M")->default_str("64M, or the device's");
-  command->add_option("--device", o->device, "take memory, and in view rotation and buttons, from a handheld's profile: gp2x, miyoo, miyoo-mini, pi-zero, …");
+  command
+      ->add_option("--effects", o->effects,
+                   "what to simulate: auto (what the scene calls for), all, or names; \"auto,-shadow\" leaves one out")
+      ->capture_default_str();
+  command->add_option("--memory", o->memory, "the block everything must fit in, as 24M")
+      ->default_str("64M, or the device's");
+  command->add_option(
+      "--device", o->device,
+      "take memory, and in view rotation and buttons, from a handheld's profile: gp2x, miyoo, miyoo-mini, pi-zero, …");
   command->add_option("--threads", o->threads, "threads that trace; 0: one per core")->capture_default_str();
-  command->add_option("--camera", o->camera, "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up, degrees from top to bottom");
+  command->add_option("--camera", o->camera,
+                      "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up, degrees from top to bottom");
   command->add_option("--camera-index", o->camera_index, "which of the scene's cameras")->capture_default_str();
   command->add_option("--exposure", o->exposure, "stops brighter or darker than the scene's own, or auto");
   command->add_option("--texture-filter", o->texture_filter, "scene, nearest or bilinear")->capture_default_str();
@@ -154,7 +170,8 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
   Renderer* r = &opened->renderer;
   r->workers = start_workers(r->settings.threads);
   float stops = 0;
-  if (o.exposure == "auto") r->scene.info.auto_exposure = 1;
+  if (o.exposure == "auto")
+    r->scene.info.auto_exposure = 1;
   else if (!o.exposure.empty() && (!read_numbers(o.exposure, &stops, 1) || !(std::fabs(stops) <= 64)))
     return failure("--exposure is '%s': write stops as 1.5 or -2, or auto", o.exposure.c_str());
   RETURN_IF_ERROR(build_renderer(r));
@@ -166,7 +183,9 @@ void print_notes(const OpenScene& opened) {
   if (!opened.source.warning.empty()) std::fprintf(stderr, "pocketray: %s\n", opened.source.warning.c_str());
   const SceneInfo& info = opened.renderer.scene.info;
   if (info.default_camera != 0 && info.default_lights != 0)
-    std::fprintf(stderr, "pocketray: the scene has no camera and no light: framed by its bounds, lit by a key and a fill light\n");
+    std::fprintf(
+        stderr,
+        "pocketray: the scene has no camera and no light: framed by its bounds, lit by a key and a fill light\n");
   else if (info.default_camera != 0)
     std::fprintf(stderr, "pocketray: the scene has no camera: framed by its bounds\n");
   else if (info.default_lights != 0)

@@ -11,7 +11,8 @@ namespace pocketray {
 
 struct CommonOptions {
   std::string scene;
-  std::string size = "320x240", memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene", json, device;
+  std::string size = "320x240", memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene",
+              json, device;
   std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
   bool no_cut_off = false;
 };

@@ -24,7 +24,9 @@ Kind kind_of(const char* path) {
   return Kind::unknown;
 }
 
-void write_to_file(void* user, const void* bytes, std::size_t count) { platform::write_bytes(static_cast<platform::FileWriter*>(user), bytes, count); }
+void write_to_file(void* user, const void* bytes, std::size_t count) {
+  platform::write_bytes(static_cast<platform::FileWriter*>(user), bytes, count);
+}
 
 Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& sink) {
   int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
@@ -32,11 +34,14 @@ Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& s
     encode_pfm(&r->image[0].x, 3, width, height, sink);
     return success();
   }
-  bool raw = kind == Kind::raw, turned = raw && (o.rotation == Rotation::quarter || o.rotation == Rotation::three_quarters);
+  bool raw = kind == Kind::raw,
+       turned = raw && (o.rotation == Rotation::quarter || o.rotation == Rotation::three_quarters);
   const PixelFormat& format = raw ? o.raw_format : kRgb888;
   int row_bytes = (turned ? height : width) * format.bits_per_pixel / 8, rows = turned ? width : height;
-  auto pixels = arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
-  pack_rows(r->image.data, width, height, 0, height, r->exposure, format, raw ? o.rotation : Rotation::none, raw && o.dither, pixels.data, row_bytes);
+  auto pixels =
+      arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
+  pack_rows(r->image.data, width, height, 0, height, r->exposure, format, raw ? o.rotation : Rotation::none,
+            raw && o.dither, pixels.data, row_bytes);
   if (raw) encode_raw(pixels.data, row_bytes, row_bytes, rows, sink);
   if (kind == Kind::ppm) encode_ppm(pixels.data, width, height, sink);
   return kind == Kind::png ? encode_png(pixels.data, width, height, &r->frame_arena, sink) : success();
@@ -52,7 +57,8 @@ std::size_t picture_bytes(const Settings& s) {
 Status check_picture_path(const std::string& path) {
   Kind kind = kind_of(path.c_str());
   if (kind == Kind::unknown) return failure("-o is '%s': the name must end in .png, .ppm, .pfm or .raw", path.c_str());
-  if (kind == Kind::png && encode_png_need(1) == 0) return failure("this program was built without libpng: write .ppm or .pfm instead of %s", path.c_str());
+  if (kind == Kind::png && encode_png_need(1) == 0)
+    return failure("this program was built without libpng: write .ppm or .pfm instead of %s", path.c_str());
   return success();
 }
 

@@ -31,8 +31,9 @@ int run(const CommonOptions& options, bool prices) {
   if (r.memory.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);
     if (options.json != "-") {
-      std::printf("%s: %s triangles, %u materials, %u textures, %u lights\n", options.scene.c_str(), grouped(r.scene.triangles.count).c_str(),
-                  r.scene.materials.count, r.scene.textures.count, r.scene.lights.count);
+      std::printf("%s: %s triangles, %u materials, %u textures, %u lights\n", options.scene.c_str(),
+                  grouped(r.scene.triangles.count).c_str(), r.scene.materials.count, r.scene.textures.count,
+                  r.scene.lights.count);
       print_effects(r.effects);
       print_memory(r.memory);
     }

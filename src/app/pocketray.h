@@ -36,11 +36,12 @@ struct View {
 
 struct Instance;  // lies in the memory given
 
-// Opens a built-in scene (cornell, statue, seesaw, cube, furnace), or a .pray file's bytes, which must be aligned to 64 and
-// outlive the instance. `memory` must too; it is all the instance ever uses.
-Result open_builtin(const char* name, const Options& options, void* memory, std::size_t memory_bytes, Instance** instance);
-Result open_baked(const void* bytes, std::size_t byte_count, const Options& options, void* memory, std::size_t memory_bytes,
-                  Instance** instance);
+// Opens a built-in scene (cornell, statue, seesaw, cube, furnace), or a .pray file's bytes, which must be aligned to 64
+// and outlive the instance. `memory` must too; it is all the instance ever uses.
+Result open_builtin(const char* name, const Options& options, void* memory, std::size_t memory_bytes,
+                    Instance** instance);
+Result open_baked(const void* bytes, std::size_t byte_count, const Options& options, void* memory,
+                  std::size_t memory_bytes, Instance** instance);
 // Looks from elsewhere from now on.
 Result look(Instance* instance, const View& view);
 // Renders the scene at a time in seconds into `pixels`, `line_bytes` from row to row, row 0 on top.

@@ -33,7 +33,8 @@ void fill_cells(Renderer* r, Array<Span> spans, std::uint32_t count, std::uint32
     Vec3 value = r->image[static_cast<std::size_t>(span.row) * s.width + span.column_begin];
     std::uint32_t bottom = std::min(span.row + step, s.height), right = std::min(span.column_begin + step, s.width);
     for (std::uint32_t y = span.row; y < bottom; ++y)
-      for (std::uint32_t x = span.column_begin; x < right; ++x) r->image[static_cast<std::size_t>(y) * s.width + x] = value;
+      for (std::uint32_t x = span.column_begin; x < right; ++x)
+        r->image[static_cast<std::size_t>(y) * s.width + x] = value;
   }
 }
 

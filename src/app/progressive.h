@@ -1,5 +1,5 @@
-// Coarse first, then refined: a frame traced on grids of 8, 4, 2 and 1 pixels. Each pixel is traced once; until its turn it
-// shows a coarser neighbour. The finished picture is that of render_frame(), bit for bit.
+// Coarse first, then refined: a frame traced on grids of 8, 4, 2 and 1 pixels. Each pixel is traced once; until its
+// turn it shows a coarser neighbour. The finished picture is that of render_frame(), bit for bit.
 #pragma once
 #include "app/renderer.h"
 
@@ -20,7 +20,8 @@ inline std::size_t progressive_need(const Settings& settings) { return arena_nee
 // Begins a new frame: prepare_frame() has been called.
 void start_progressive(Renderer* renderer, Progressive* progressive);
 // Traces on until about `deadline_ns` by clock_ns(), at least one row. True when the frame is finished.
-bool advance_progressive(Renderer* renderer, Array<Span> row_spans, std::uint64_t deadline_ns, Progressive* progressive);
+bool advance_progressive(Renderer* renderer, Array<Span> row_spans, std::uint64_t deadline_ns,
+                         Progressive* progressive);
 // Rows changed since the last call.
 bool take_dirty_rows(Progressive* progressive, std::uint32_t* begin, std::uint32_t* end);
 

@@ -30,8 +30,8 @@ Status parse_frames(const std::string& text, Sequence* sequence) {
   if (text.empty()) return success();
   int used = 0;
   sequence->numbered = true;
-  if (std::sscanf(text.c_str(), "%6u:%6u%n", &sequence->first, &sequence->last, &used) != 2 || static_cast<std::size_t>(used) != text.size() ||
-      sequence->last < sequence->first)
+  if (std::sscanf(text.c_str(), "%6u:%6u%n", &sequence->first, &sequence->last, &used) != 2 ||
+      static_cast<std::size_t>(used) != text.size() || sequence->last < sequence->first)
     return failure("--frames is '%s': write first:last, as 0:350", text.c_str());
   return success();
 }
@@ -40,7 +40,11 @@ Status parse_aov(const std::string& text, Aov* aov) {
   constexpr struct {
     const char* name;
     Aov aov;
-  } kNames[] = {{"none", Aov::none}, {"depth", Aov::depth}, {"normal", Aov::normal}, {"triangle", Aov::triangle}, {"cost", Aov::cost}};
+  } kNames[] = {{"none", Aov::none},
+                {"depth", Aov::depth},
+                {"normal", Aov::normal},
+                {"triangle", Aov::triangle},
+                {"cost", Aov::cost}};
   for (const auto& row : kNames)
     if (text == row.name) return *aov = row.aov, success();
   return failure("--aov is '%s': it must be depth, normal, triangle or cost", text.c_str());
@@ -50,7 +54,8 @@ Status parse_raw_format(const std::string& text, PixelFormat* format) {
   const struct {
     const char* name;
     PixelFormat format;
-  } kNames[] = {{"rgb565", kRgb565}, {"bgr565", kBgr565}, {"xrgb8888", kXrgb8888}, {"xbgr8888", kXbgr8888}, {"rgb888", kRgb888}, {"bgr888", kBgr888}};
+  } kNames[] = {{"rgb565", kRgb565},     {"bgr565", kBgr565}, {"xrgb8888", kXrgb8888},
+                {"xbgr8888", kXbgr8888}, {"rgb888", kRgb888}, {"bgr888", kBgr888}};
   for (const auto& row : kNames)
     if (text == row.name) return *format = row.format, success();
   return failure("--raw-format is '%s': it must be rgb565, bgr565, xrgb8888, xbgr8888, rgb888 or bgr888", text.c_str());
@@ -88,7 +93,8 @@ struct Job {
 
 // Renders row by row bands, so that progress can be shown and an interrupt loses no more than a frame.
 Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
-  double seconds = job.sequence.numbered ? frame / static_cast<double>(r->scene.info.frames_per_second) : job.options.seconds;
+  double seconds =
+      job.sequence.numbered ? frame / static_cast<double>(r->scene.info.frames_per_second) : job.options.seconds;
   RETURN_IF_ERROR(prepare_frame(r, seconds));
   for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
   constexpr std::uint32_t kBand = 8;
@@ -96,7 +102,8 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
   *complete = true;
   for (std::uint32_t row = 0; row < r->settings.height && *complete; row += kBand) {
     std::uint32_t rows = r->settings.height - row < kBand ? r->settings.height - row : kBand;
-    std::uint32_t done = trace_with(r->workers, {r->spans.data + row, rows, job.aov, r->image.data, r->tracers.data, r->row_ns.data + row, &interrupted});
+    std::uint32_t done = trace_with(r->workers, {r->spans.data + row, rows, job.aov, r->image.data, r->tracers.data,
+                                                 r->row_ns.data + row, &interrupted});
     *complete = done == rows;
     show_progress(progress, std::uint64_t(frame - job.sequence.first) * r->settings.height + row + rows);
   }
@@ -108,25 +115,37 @@ Json to_json(const Job& job, const Renderer& r, const std::vector<std::string>& 
   Tracer counts = total_counts(r);
   Json rays = Json::object();
   for (int kind = 0; kind < kRayKindCount; ++kind) rays[kRayKindNames[kind]] = counts.rays[kind];
-  double pixels = static_cast<double>(r.settings.width) * r.settings.height * static_cast<double>(files.empty() ? 1 : files.size());
-  return {{"scene", job.options.common.scene}, {"files", files},   {"triangles", r.scene.triangles.count},
-          {"width", r.settings.width},         {"height", r.settings.height}, {"ns_per_pixel", trace_ms * 1e6 / pixels},
-          {"rays", rays},                      {"rays_left_out", counts.rays_left_out}, {"left_out_radiance_max", counts.left_out_max},
-          {"exposure", r.exposure},            {"memory", memory_json(r.memory)}, {"effects", effects_json(r.effects)}};
+  double pixels =
+      static_cast<double>(r.settings.width) * r.settings.height * static_cast<double>(files.empty() ? 1 : files.size());
+  return {{"scene", job.options.common.scene},
+          {"files", files},
+          {"triangles", r.scene.triangles.count},
+          {"width", r.settings.width},
+          {"height", r.settings.height},
+          {"ns_per_pixel", trace_ms * 1e6 / pixels},
+          {"rays", rays},
+          {"rays_left_out", counts.rays_left_out},
+          {"left_out_radiance_max", counts.left_out_max},
+          {"exposure", r.exposure},
+          {"memory", memory_json(r.memory)},
+          {"effects", effects_json(r.effects)}};
 }
 
-void print_summary(const Job& job, const Renderer& r, std::size_t file_count, const std::string& last, double trace_ms) {
+void print_summary(const Job& job, const Renderer& r, std::size_t file_count, const std::string& last,
+                   double trace_ms) {
   double pixels = static_cast<double>(r.settings.width) * r.settings.height * static_cast<double>(file_count);
   if (job.options.plan) {
     print_effects(r.effects);
     print_memory(r.memory);
   }
-  std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s\n", last.c_str(), r.settings.width, r.settings.height,
-              grouped(r.scene.triangles.count).c_str(), trace_ms / static_cast<double>(file_count), file_count > 1 ? " a frame" : "", trace_ms * 1e6 / pixels,
-              r.settings.threads, r.settings.threads == 1 ? "" : "s");
+  std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s\n", last.c_str(), r.settings.width,
+              r.settings.height, grouped(r.scene.triangles.count).c_str(), trace_ms / static_cast<double>(file_count),
+              file_count > 1 ? " a frame" : "", trace_ms * 1e6 / pixels, r.settings.threads,
+              r.settings.threads == 1 ? "" : "s");
   Tracer counts = total_counts(r);
   if (counts.rays_left_out)
-    std::printf("  %s rays left out; what they could have added stays below %.2g of a displayed level\n", grouped(counts.rays_left_out).c_str(),
+    std::printf("  %s rays left out; what they could have added stays below %.2g of a displayed level\n",
+                grouped(counts.rays_left_out).c_str(),
                 static_cast<double>(counts.left_out_max * r.exposure) * 255 * 12.92);
 }
 
@@ -179,10 +198,13 @@ int run(const RenderOptions& options) {
   double trace_ms = 0;
   bool stopped = false;
   status = render_files(&opened.renderer, job, &files, &trace_ms, &stopped);
-  if (!files.empty() && options.common.json != "-") print_summary(job, opened.renderer, files.size(), files.back(), trace_ms);
-  if (status.ok && !options.common.json.empty()) status = write_json(options.common.json, to_json(job, opened.renderer, files, trace_ms));
+  if (!files.empty() && options.common.json != "-")
+    print_summary(job, opened.renderer, files.size(), files.back(), trace_ms);
+  if (status.ok && !options.common.json.empty())
+    status = write_json(options.common.json, to_json(job, opened.renderer, files, trace_ms));
   if (status.ok && stopped) {
-    std::fprintf(stderr, "pocketray: interrupted; %zu finished frame%s kept\n", files.size(), files.size() == 1 ? " is" : "s are");
+    std::fprintf(stderr, "pocketray: interrupted; %zu finished frame%s kept\n", files.size(),
+                 files.size() == 1 ? " is" : "s are");
     return kExitInterrupted;
   }
   return report(status);
@@ -194,13 +216,20 @@ void add_render_command(CLI::App* program, int* exit_status) {
   auto o = std::make_shared<RenderOptions>();
   CLI::App* command = program->add_subcommand("render", "render a frame or a sequence into files");
   add_scene_options(command, &o->common);
-  command->add_option("-o,--output", o->output, "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")->capture_default_str();
+  command
+      ->add_option("-o,--output", o->output,
+                   "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")
+      ->capture_default_str();
   command->add_option("--frames", o->frames, "a sequence, first:last; files are numbered: out-0000.png …");
   command->add_option("--time", o->seconds, "seconds into the animation, for a single frame")->capture_default_str();
-  command->add_option("--aov", o->aov, "instead of colour: depth, normal, triangle or cost (.pfm keeps the values)")->capture_default_str();
-  command->add_option("--rotate", o->rotation, "turn .raw pictures clockwise: 0, 90, 180 or 270")->capture_default_str();
+  command->add_option("--aov", o->aov, "instead of colour: depth, normal, triangle or cost (.pfm keeps the values)")
+      ->capture_default_str();
+  command->add_option("--rotate", o->rotation, "turn .raw pictures clockwise: 0, 90, 180 or 270")
+      ->capture_default_str();
   command->add_flag("--dither", o->dither, "ordered dither in .raw pictures");
-  command->add_option("--raw-format", o->raw_format, "pixels of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")->capture_default_str();
+  command
+      ->add_option("--raw-format", o->raw_format, "pixels of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")
+      ->capture_default_str();
   command->add_flag("--plan", o->plan, "also print the effect plan and the memory map");
   command->add_option("--json", o->common.json, "also write figures as JSON to FILE, or - for standard output");
   command->callback([=] { *exit_status = run(*o); });

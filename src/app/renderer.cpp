@@ -3,9 +3,9 @@
 #include "accel/accel_list.h"
 #include "app/frame.h"
 #include "base/check.h"
-#include "brdf/brdf_list.h"
 #include "base/color.h"
 #include "base/fmath.h"
+#include "brdf/brdf_list.h"
 #include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
@@ -70,7 +70,9 @@ Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t outpu
   if (r->camera_index > 0 && r->camera_index >= r->scene.cameras.count)
     return failure("there is no camera %u: the scene has %u", r->camera_index, r->scene.cameras.count);
   for (const Material& m : r->scene.materials)  // a file may come from a program with more lobes
-    if (m.brdf >= kBrdfCount) return failure("a material uses glossy lobe %u and this program has %u: bake the scene again", m.brdf, kBrdfCount);
+    if (m.brdf >= kBrdfCount)
+      return failure("a material uses glossy lobe %u and this program has %u: bake the scene again", m.brdf,
+                     kBrdfCount);
   add_what_is_missing(r);
   r->effects = plan_effects(r->scene, r->settings);
   std::uint32_t point_count;
@@ -97,7 +99,8 @@ Status build_renderer(Renderer* r) {
   r->tracers = arena_array<Tracer>(&r->persistent_arena, r->settings.threads);
   r->spans = arena_array<Span>(&r->persistent_arena, r->settings.height);
   r->row_ns = arena_array_zeroed<std::uint64_t>(&r->persistent_arena, r->settings.height);
-  r->image = arena_array_zeroed<Vec3>(&r->persistent_arena, static_cast<std::size_t>(r->settings.width) * r->settings.height);
+  r->image =
+      arena_array_zeroed<Vec3>(&r->persistent_arena, static_cast<std::size_t>(r->settings.width) * r->settings.height);
   for (std::uint32_t row = 0; row < r->settings.height; ++row)
     r->spans[row] = {static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(r->settings.width)};
   r->exposure = r->scene.info.exposure;
@@ -134,7 +137,8 @@ float measure_exposure(Renderer* r) {
   std::uint32_t lit = 0;
   for (std::uint32_t row = kStep / 2; row < r->settings.height; row += kStep) {
     for (std::uint32_t column = kStep / 2; column < r->settings.width; column += kStep) {
-      Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column), static_cast<std::uint16_t>(column + 1)};
+      Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column),
+                  static_cast<std::uint16_t>(column + 1)};
       trace_spans(&tracer, &one, 1, Aov::none, r->image.data);
       float bright = luminance(r->image[static_cast<std::size_t>(row) * r->settings.width + column]);
       if (bright > 0 && std::isfinite(bright)) log_sum += det_log(bright), ++lit;

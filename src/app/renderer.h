@@ -1,4 +1,5 @@
-// Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. Allocates nothing itself.
+// Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. Allocates nothing
+// itself.
 #pragma once
 #include "app/workers.h"
 #include "plan/plan_memory.h"
@@ -23,10 +24,10 @@ struct Renderer {
   Pose pose;
   Array<LightPoint> light_points;
   FrameData frame;
-  Array<Span> spans;             // one per scanline
-  Array<std::uint64_t> row_ns;   // what each cost in the last frame
-  Array<Tracer> tracers;         // one per thread
-  Array<Vec3> image;             // width × height, linear
+  Array<Span> spans;            // one per scanline
+  Array<std::uint64_t> row_ns;  // what each cost in the last frame
+  Array<Tracer> tracers;        // one per thread
+  Array<Vec3> image;            // width × height, linear
   Camera camera;
   bool camera_overridden = false;
   std::uint32_t camera_index = 0;
@@ -36,12 +37,12 @@ struct Renderer {
   Light default_lights[2];
 };
 
-// First step: carves the scene arena out of the block, so that the scene can be put there. The block stays the caller's and
-// must outlive the renderer.
+// First step: carves the scene arena out of the block, so that the scene can be put there. The block stays the caller's
+// and must outlive the renderer.
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* renderer);
 
-// Second step, with renderer->scene set: gives it the camera and lights it lacks, plans effects and memory. On failure the
-// plans are filled as far as they were made, to be shown. `output_bytes` as plan_memory() takes it.
+// Second step, with renderer->scene set: gives it the camera and lights it lacks, plans effects and memory. On failure
+// the plans are filled as far as they were made, to be shown. `output_bytes` as plan_memory() takes it.
 Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes);
 
 // Third step: carves the arenas, builds the accelerator, poses the scene at time 0. May be called once.
@@ -53,7 +54,8 @@ Status set_camera(Renderer* renderer, const Camera& camera);
 // What all threads together did in the last frame.
 Tracer total_counts(const Renderer& renderer);
 
-// Measures exposure on a coarse grid of pixels: the scene's key value becomes middle grey [Reinhard et al. 2002, sec. 3.1].
+// Measures exposure on a coarse grid of pixels: the scene's key value becomes middle grey [Reinhard et al. 2002,
+// sec. 3.1].
 float measure_exposure(Renderer* renderer);
 
 }  // namespace pocketray

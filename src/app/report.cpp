@@ -52,7 +52,9 @@ Json memory_json(const MemoryPlan& plan) {
   Json parts = Json::array();
   if (plan.mapped_bytes) parts.push_back({{"name", "scene file"}, {"arena", "mapped"}, {"bytes", plan.mapped_bytes}});
   for (int i = 0; i < plan.part_count; ++i)
-    parts.push_back({{"name", plan.parts[i].name}, {"arena", kArenaNames[static_cast<int>(plan.parts[i].arena)]}, {"bytes", plan.parts[i].bytes}});
+    parts.push_back({{"name", plan.parts[i].name},
+                     {"arena", kArenaNames[static_cast<int>(plan.parts[i].arena)]},
+                     {"bytes", plan.parts[i].bytes}});
   return {{"parts", parts}, {"total_bytes", plan.total_bytes}, {"limit_bytes", plan.limit_bytes}};
 }
 

@@ -11,12 +11,14 @@ namespace pocketray {
 namespace {
 
 Status too_large(const std::string& name, std::size_t need, std::size_t limit) {
-  return failure("%s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %zuM would be a start", name.c_str(),
-                 static_cast<double>(need) / (1 << 20), static_cast<double>(limit) / (1 << 20), (need * 5 / 4 >> 20) + 4);
+  return failure("%s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %zuM would be a start",
+                 name.c_str(), static_cast<double>(need) / (1 << 20), static_cast<double>(limit) / (1 << 20),
+                 (need * 5 / 4 >> 20) + 4);
 }
 
 Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneStorage* storage) {
-  if (builtin.need() > arena_free(r->scene_arena)) return too_large(builtin.name, builtin.need(), r->settings.memory_bytes);
+  if (builtin.need() > arena_free(r->scene_arena))
+    return too_large(builtin.name, builtin.need(), r->settings.memory_bytes);
   builtin.build(&r->scene_arena, &r->scene);
   storage->arena_bytes = r->scene_arena.used;
   return success();
@@ -26,7 +28,8 @@ Status load_baked(const std::string& name, Renderer* r, SceneSource* source, Sce
   platform::FileError error;
   if (!platform::map_file(name.c_str(), &source->mapped, &error)) return failure("%s %s", name.c_str(), error.text);
   storage->mapped_bytes = source->mapped.byte_count;
-  if (storage->mapped_bytes > r->settings.memory_bytes) return too_large(name, storage->mapped_bytes, r->settings.memory_bytes);
+  if (storage->mapped_bytes > r->settings.memory_bytes)
+    return too_large(name, storage->mapped_bytes, r->settings.memory_bytes);
   Status status = baked_open(source->mapped.bytes, source->mapped.byte_count, &r->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
 }
@@ -73,7 +76,8 @@ Status load_scene(const std::string& name, Renderer* r, SceneSource* source, Sce
 #ifdef POCKETRAY_HAVE_IMPORT
   return load_imported(name, r, source, storage);
 #else
-  return failure("%s is neither a built-in scene nor a .pray file: bake it on a desktop with `pocketray bake`", name.c_str());
+  return failure("%s is neither a built-in scene nor a .pray file: bake it on a desktop with `pocketray bake`",
+                 name.c_str());
 #endif
 }
 

@@ -19,8 +19,8 @@ struct SceneSource {
 void* take_block(std::size_t bytes);
 
 #ifdef POCKETRAY_HAVE_IMPORT
-// Imports a model and settles its light: one that lights itself is exposed by measurement, since the units of files vary
-// beyond what a display shows; any other asks for the stated lights.
+// Imports a model and settles its light: one that lights itself is exposed by measurement, since the units of files
+// vary beyond what a display shows; any other asks for the stated lights.
 Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported);
 #endif
 

@@ -44,7 +44,9 @@ int run(CommonOptions common, ViewOptions view) {
   if (view.rotation < 0) view.rotation = device ? device->rotation : 0;
   if (device) view.keys = device->keys;
   if (status.ok) status = parse_size(common.size, &size.width, &size.height);
-  if (status.ok) status = open_viewer(view, common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height), &viewer);
+  if (status.ok)
+    status =
+        open_viewer(view, common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height), &viewer);
   if (!status.ok) return report(status);
   for (bool again = true; again && status.ok;) {
     again = false;
@@ -71,18 +73,25 @@ int run(CommonOptions common, ViewOptions view) {
 void add_view_command(CLI::App* program, int* exit_status) {
   auto common = std::make_shared<CommonOptions>();
   auto view = std::make_shared<ViewOptions>();
-  CLI::App* command = program->add_subcommand("view", "show a scene in the emulator's window, or on the framebuffer of a device");
+  CLI::App* command =
+      program->add_subcommand("view", "show a scene in the emulator's window, or on the framebuffer of a device");
   add_scene_options(command, common.get());
-  command->add_option("--screen", view->backend, "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")->capture_default_str();
+  command
+      ->add_option("--screen", view->backend,
+                   "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")
+      ->capture_default_str();
   command->add_option("--framebuffer", view->device, "the framebuffer's device file, if not the usual one");
-  command->add_option("--rotate", view->rotation, "turn the picture clockwise: 0, 90, 180 or 270")->default_str("0, or the device's");
+  command->add_option("--rotate", view->rotation, "turn the picture clockwise: 0, 90, 180 or 270")
+      ->default_str("0, or the device's");
   command->add_option("--scale", view->scale, "window pixels per pixel; 0: as many as fit")->capture_default_str();
   command->add_flag("--dither", view->dither, "ordered dither, for screens of 16 bits");
-  command->add_option("--frames", view->frame_count, "show so many finished frames, then leave; 0: until quit")->capture_default_str();
+  command->add_option("--frames", view->frame_count, "show so many finished frames, then leave; 0: until quit")
+      ->capture_default_str();
   command->add_option("--screenshots", view->screenshot_folder, "where screenshots go")->capture_default_str();
   command->footer(
       "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and fly,\n"
-      "start goes back to the scene's camera, X pauses, Y or F1 shows the display, F2 saves a screenshot, F5 reloads, Esc leaves.");
+      "start goes back to the scene's camera, X pauses, Y or F1 shows the display, F2 saves a screenshot, F5 reloads, "
+      "Esc leaves.");
   command->callback([=] { *exit_status = run(*common, *view); });
 }
 

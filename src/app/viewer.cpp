@@ -43,7 +43,9 @@ PixelFormat to_pixel_format(const platform::ScreenFormat& f) {
   return {f.bits_per_pixel, channel(f.red), channel(f.green), channel(f.blue), channel(f.alpha)};
 }
 
-bool quarter_turned(const Viewer& v) { return v.rotation == Rotation::quarter || v.rotation == Rotation::three_quarters; }
+bool quarter_turned(const Viewer& v) {
+  return v.rotation == Rotation::quarter || v.rotation == Rotation::three_quarters;
+}
 int screen_width(const Viewer& v) { return quarter_turned(v) ? v.height : v.width; }
 int screen_height(const Viewer& v) { return quarter_turned(v) ? v.width : v.height; }
 
@@ -88,9 +90,10 @@ void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t 
   platform::Page page = v->backend->begin_frame();
   if (!page.pixels) return;
   if (page.age != 1 || quarter_turned(*v)) row_begin = 0, row_end = r.settings.height;
-  if (v->hud || v->hud_shown) row_begin = 0, row_end = std::max(row_end, std::min<std::uint32_t>(hud_rows(text), r.settings.height));
-  pack_rows(r.image.data, v->width, v->height, static_cast<int>(row_begin), static_cast<int>(row_end), r.exposure, v->format, v->rotation, v->options.dither,
-            page.pixels, page.line_bytes);
+  if (v->hud || v->hud_shown)
+    row_begin = 0, row_end = std::max(row_end, std::min<std::uint32_t>(hud_rows(text), r.settings.height));
+  pack_rows(r.image.data, v->width, v->height, static_cast<int>(row_begin), static_cast<int>(row_end), r.exposure,
+            v->format, v->rotation, v->options.dither, page.pixels, page.line_bytes);
   if (v->hud) draw_hud_text(text, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);
   v->hud_shown = v->hud;
   bool whole = quarter_turned(*v) || page.age != 1;
@@ -106,7 +109,8 @@ void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t 
 Status save_screenshot(Viewer* v, Renderer* r) {
   char path[600];
   do {
-    std::snprintf(path, sizeof path, "%.500s/pocketray-%04u.png", v->options.screenshot_folder.c_str(), ++v->screenshot_count);
+    std::snprintf(path, sizeof path, "%.500s/pocketray-%04u.png", v->options.screenshot_folder.c_str(),
+                  ++v->screenshot_count);
   } while (platform::file_stamp(path) != 0 && v->screenshot_count < 9999);
   RETURN_IF_ERROR(write_picture(path, PictureOptions(), r));
   std::fprintf(stderr, "pocketray: saved %s\n", path);
@@ -129,7 +133,8 @@ Status step_scene(Viewer* v, Renderer* r, Loop* loop) {
   float elapsed = static_cast<float>(std::min<std::uint64_t>(now - loop->last_ns, 250 * kMillisecond)) * 1e-9f;
   loop->last_ns = now;
   bool moved = move_camera(&loop->control, read_input(*v), elapsed);
-  if (v->change_mode) loop->control.mode = loop->control.mode == CameraMode::orbit ? CameraMode::fly : CameraMode::orbit;
+  if (v->change_mode)
+    loop->control.mode = loop->control.mode == CameraMode::orbit ? CameraMode::fly : CameraMode::orbit;
   if (v->home) reset_camera(&loop->control), moved = true;
   v->change_mode = v->home = false;
   if (moved) {
@@ -155,7 +160,8 @@ Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
     return success();
   }
   bool was_finished = loop->finished;
-  if (!was_finished) loop->finished = advance_progressive(r, loop->row_spans, clock_ns() + kSliceNs, &loop->progressive);
+  if (!was_finished)
+    loop->finished = advance_progressive(r, loop->row_spans, clock_ns() + kSliceNs, &loop->progressive);
   if (loop->finished && !was_finished) {
     ++v->frames_finished;
     if (v->options.frame_count > 0) loop->changed = true;  // as many frames as were asked for, even of a still
@@ -176,9 +182,12 @@ Status open_viewer(const ViewOptions& options, const char* scene, int width, int
   v->scene_path = scene;
   v->width = width;
   v->height = height;
-  if (!rotation_from_degrees(options.rotation, &v->rotation)) return failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
-  v->backend = options.backend == "auto" ? platform::platform_default() : platform::platform_find(options.backend.c_str());
-  if (!v->backend) return failure("--screen is '%s': this program has sdl2, linux or null, as built", options.backend.c_str());
+  if (!rotation_from_degrees(options.rotation, &v->rotation))
+    return failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
+  v->backend =
+      options.backend == "auto" ? platform::platform_default() : platform::platform_find(options.backend.c_str());
+  if (!v->backend)
+    return failure("--screen is '%s': this program has sdl2, linux or null, as built", options.backend.c_str());
   std::size_t page_bytes = platform::page_bytes_max(width, height);
   v->page_memory = std::malloc(page_bytes);
   if (!v->page_memory) return failure("no memory for a page of %dx%d pixels: lower --size", width, height);
@@ -198,8 +207,9 @@ Status open_viewer(const ViewOptions& options, const char* scene, int width, int
   v->format = to_pixel_format(format);
   if (format.width < screen_width(*v) || format.height < screen_height(*v)) {
     v->backend->close();
-    return failure("the screen has %dx%d pixels, too few for the picture: use --size %dx%d", format.width, format.height,
-                   quarter_turned(*v) ? format.height : format.width, quarter_turned(*v) ? format.width : format.height);
+    return failure("the screen has %dx%d pixels, too few for the picture: use --size %dx%d", format.width,
+                   format.height, quarter_turned(*v) ? format.height : format.width,
+                   quarter_turned(*v) ? format.width : format.height);
   }
   v->waiting_since_ns = v->backend->now_ns();
   return success();
@@ -212,7 +222,8 @@ bool show_waiting(Viewer* v, const char* text) {
   if (page.pixels) {
     int bytes = v->format.bits_per_pixel / 8;
     for (int y = 0; y < screen_height(*v); ++y)
-      std::memset(static_cast<std::uint8_t*>(page.pixels) + static_cast<std::ptrdiff_t>(y) * page.line_bytes, 0, static_cast<std::size_t>(screen_width(*v) * bytes));
+      std::memset(static_cast<std::uint8_t*>(page.pixels) + static_cast<std::ptrdiff_t>(y) * page.line_bytes, 0,
+                  static_cast<std::size_t>(screen_width(*v) * bytes));
     HudText hud;
     write_waiting(text, static_cast<double>(v->backend->now_ns() - v->waiting_since_ns) * 1e-9, &hud);
     draw_hud_text(hud, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);

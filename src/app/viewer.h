@@ -12,7 +12,7 @@ namespace pocketray {
 
 struct ViewOptions {
   std::string backend = "auto", device, screenshot_folder = ".";
-  int rotation = -1, scale = 0;  // degrees clockwise; −1: the device's
+  int rotation = -1, scale = 0;         // degrees clockwise; −1: the device's
   const std::uint16_t* keys = nullptr;  // of the device's buttons; null: a keyboard's
   bool dither = false;
   std::uint32_t frame_count = 0;

@@ -43,11 +43,14 @@ void write_hud(const Renderer& r, const Progressive& p, CameraMode mode, HudText
   for (std::uint64_t n : counts.rays) rays += n;
   double ns_per_pixel = p.pixels_traced ? static_cast<double>(p.trace_ns) / static_cast<double>(p.pixels_traced) : 0;
   double frame_ms = ns_per_pixel * static_cast<double>(r.settings.width) * r.settings.height * 1e-6;
-  add_line(text, "%.1f ms/frame  %.0f ns/pixel  %u thread%s", frame_ms, ns_per_pixel, r.settings.threads, r.settings.threads == 1 ? "" : "s");
+  add_line(text, "%.1f ms/frame  %.0f ns/pixel  %u thread%s", frame_ms, ns_per_pixel, r.settings.threads,
+           r.settings.threads == 1 ? "" : "s");
   add_line(text, "%.0fk rays  %.2f M/s  %.0fk left out", static_cast<double>(rays) * 1e-3,
-           p.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(p.trace_ns) : 0.0, static_cast<double>(counts.rays_left_out) * 1e-3);
-  add_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(r.memory.total_bytes) / (1 << 20), static_cast<double>(r.memory.limit_bytes) / (1 << 20),
-           mode == CameraMode::orbit ? "orbit" : "fly", p.step > 0 ? "  refining" : "");
+           p.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(p.trace_ns) : 0.0,
+           static_cast<double>(counts.rays_left_out) * 1e-3);
+  add_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(r.memory.total_bytes) / (1 << 20),
+           static_cast<double>(r.memory.limit_bytes) / (1 << 20), mode == CameraMode::orbit ? "orbit" : "fly",
+           p.step > 0 ? "  refining" : "");
   add_effects(r.effects, text);
 }
 
@@ -58,7 +61,8 @@ void write_waiting(const char* what, double seconds, HudText* text) {
 
 std::uint32_t hud_rows(const HudText& text) { return static_cast<std::uint32_t>(text_box_height(text.line_count, 1)); }
 
-void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height, void* pixels, int line_bytes) {
+void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height,
+                   void* pixels, int line_bytes) {
   const char* lines[kHudLineMax];
   for (int i = 0; i < text.line_count; ++i) lines[i] = text.lines[i];
   draw_text_box({pixels, line_bytes, format, width, height, rotation}, 0, 0, 1, lines, text.line_count);

@@ -19,6 +19,7 @@ void write_waiting(const char* what, double seconds, HudText* text);
 
 // Rows of the picture the display covers.
 std::uint32_t hud_rows(const HudText& text);
-void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height, void* pixels, int line_bytes);
+void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height,
+                   void* pixels, int line_bytes);
 
 }  // namespace pocketray

@@ -25,7 +25,8 @@ std::uint64_t clock_ns() {
 
 namespace {
 
-void take_spans(const TraceJob& job, std::uint32_t thread, std::atomic<std::uint32_t>* next_span, std::atomic<std::uint32_t>* done_count) {
+void take_spans(const TraceJob& job, std::uint32_t thread, std::atomic<std::uint32_t>* next_span,
+                std::atomic<std::uint32_t>* done_count) {
   for (;;) {
     if (job.stop && job.stop->load(std::memory_order_relaxed)) return;
     std::uint32_t i = next_span->fetch_add(1);

@@ -18,8 +18,8 @@ struct TraceJob {
   std::uint32_t span_count;
   Aov aov;
   Vec3* image;
-  Tracer* tracers;         // one per thread
-  std::uint64_t* span_ns;  // what each span cost; null: not measured
+  Tracer* tracers;                          // one per thread
+  std::uint64_t* span_ns;                   // what each span cost; null: not measured
   const std::atomic<bool>* stop = nullptr;  // set: leave the remaining spans
 };
 

@@ -11,7 +11,9 @@ namespace pocketray {
 constexpr std::size_t kArenaAlignment = 64;  // a cache line; every allocation starts on one
 
 // What an allocation of `bytes` takes from an arena.
-constexpr std::size_t arena_need(std::size_t bytes) { return (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment; }
+constexpr std::size_t arena_need(std::size_t bytes) {
+  return (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
+}
 template <class T>
 constexpr std::size_t arena_need(std::size_t count) {
   return arena_need(count * sizeof(T));

@@ -12,15 +12,15 @@ namespace pocketray {
 
 }  // namespace pocketray
 
-#define CHECK_OP(left, op, right)                                                                            \
-  do {                                                                                                       \
-    if (!((left)op(right)))                                                                                  \
-      ::pocketray::check_failed(__FILE__, __LINE__, #left " " #op " " #right, static_cast<double>(left),     \
-                                static_cast<double>(right));                                                 \
+#define CHECK_OP(left, op, right)                                                                        \
+  do {                                                                                                   \
+    if (!((left)op(right)))                                                                              \
+      ::pocketray::check_failed(__FILE__, __LINE__, #left " " #op " " #right, static_cast<double>(left), \
+                                static_cast<double>(right));                                             \
   } while (0)
-#define CHECK(condition)                                                                      \
-  do {                                                                                        \
-    if (!(condition)) ::pocketray::check_failed(__FILE__, __LINE__, #condition, 0, 0);        \
+#define CHECK(condition)                                                               \
+  do {                                                                                 \
+    if (!(condition)) ::pocketray::check_failed(__FILE__, __LINE__, #condition, 0, 0); \
   } while (0)
 #define CHECK_EQ(left, right) CHECK_OP(left, ==, right)
 #define CHECK_LE(left, right) CHECK_OP(left, <=, right)

@@ -1,5 +1,5 @@
-// Linear light ↔ sRGB display levels (IEC 61966-2-1). Tables are made by the compiler with +, ×, ÷ alone: no libm, the same
-// everywhere. sRGB 0.5 → 188, 0.18 → 118 (HARDCASES row 64).
+// Linear light ↔ sRGB display levels (IEC 61966-2-1). Tables are made by the compiler with +, ×, ÷ alone: no libm, the
+// same everywhere. sRGB 0.5 → 188, 0.18 → 118 (HARDCASES row 64).
 #pragma once
 #include <cstdint>
 
@@ -7,7 +7,8 @@
 
 namespace pocketray {
 
-// Half the width of the narrowest displayed level: what is smaller than this cannot move a pixel by more than one level.
+// Half the width of the narrowest displayed level: what is smaller than this cannot move a pixel by more than one
+// level.
 constexpr float kHalfLevel = 0.5f / (255.0f * 12.92f);
 
 struct SrgbTables {

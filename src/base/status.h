@@ -25,8 +25,8 @@ __attribute__((format(printf, 1, 2))) inline Status failure(const char* format, 
 
 }  // namespace pocketray
 
-#define RETURN_IF_ERROR(expression)                                   \
-  do {                                                                \
-    ::pocketray::Status status_of_expression = (expression);          \
-    if (!status_of_expression.ok) return status_of_expression;        \
+#define RETURN_IF_ERROR(expression)                            \
+  do {                                                         \
+    ::pocketray::Status status_of_expression = (expression);   \
+    if (!status_of_expression.ok) return status_of_expression; \
   } while (0)

@@ -1,5 +1,5 @@
-// Glossy lobes. A lobe is one file and one line of brdf_list.h; Material::brdf picks it. The Lambertian lobe is in every
-// material and is not listed: its value is diffuse/π.
+// Glossy lobes. A lobe is one file and one line of brdf_list.h; Material::brdf picks it. The Lambertian lobe is in
+// every material and is not listed: its value is diffuse/π.
 #pragma once
 #include "scene/scene.h"
 

@@ -10,8 +10,8 @@ namespace {
 
 // How many of the materials that triangles use have a property.
 struct Census {
-  std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0, emissive = 0,
-                textured = 0, scattering = 0, one_sided = 0;
+  std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
+                emissive = 0, textured = 0, scattering = 0, one_sided = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
@@ -91,13 +91,17 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     w.set(Effect::shadow, false, lit ? "no material scatters light" : "no light");
   bool colored = scene.colors.count > 0, smooth = scene.normals.count > 0 && settings.normals == NormalMode::as_scene;
   w.set(Effect::vertex_color, colored, colored ? "vertices have colours" : "no vertex has a colour");
-  w.set(Effect::smooth_normal, smooth, smooth ? "vertices have normals" : scene.normals.count ? "flat normals were asked for" : "no vertex has a normal");
+  w.set(Effect::smooth_normal, smooth,
+        smooth                ? "vertices have normals"
+        : scene.normals.count ? "flat normals were asked for"
+                              : "no vertex has a normal");
   bool ambient = !is_zero(scene.info.ambient);
   w.set(Effect::ambient, ambient, ambient ? "the scene has a constant indirect light" : "no constant indirect light");
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
   bool animated = is_animated(scene);
-  w.set(Effect::animation, animated, animated ? "%u animation%s" : "nothing moves", scene.animations.count, scene.animations.count == 1 ? "" : "s");
+  w.set(Effect::animation, animated, animated ? "%u animation%s" : "nothing moves", scene.animations.count,
+        scene.animations.count == 1 ? "" : "s");
 
   for (int i = 0; i < kEffectCount; ++i) {
     Effect effect = static_cast<Effect>(i);
@@ -123,7 +127,9 @@ Status parse_effects(const char* text, Settings* settings) {
     bool minus = count > 0 && *at == '-';
     const char* name = at + minus;
     std::size_t name_count = count - minus;
-    auto is = [&](const char* word) { return std::strlen(word) == name_count && std::memcmp(word, name, name_count) == 0; };
+    auto is = [&](const char* word) {
+      return std::strlen(word) == name_count && std::memcmp(word, name, name_count) == 0;
+    };
     EffectMask mask = 0;
     if (is("auto") && !minus) {
       automatic = true;
@@ -133,7 +139,8 @@ Status parse_effects(const char* text, Settings* settings) {
       for (const EffectRow& row : kEffectList)
         if (is(row.name)) mask = bit(row.effect);
       if (!mask)
-        return failure("--effects: there is no effect '%.*s'; `pocketray plan SCENE` lists them", static_cast<int>(name_count), name);
+        return failure("--effects: there is no effect '%.*s'; `pocketray plan SCENE` lists them",
+                       static_cast<int>(name_count), name);
     }
     if (minus) {
       settings->forced_off |= mask;

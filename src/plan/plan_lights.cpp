@@ -97,7 +97,8 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
   p.direction = normalize(cross(b - a, c - a));
   Vec3 emission = m.emission;
   if (m.emission_texture.texture != kNone && scene.uvs.count)
-    emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
+    emission *=
+        sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
   p.intensity = emission * static_cast<float>(area);
   p.material = t.material;
   p.two_sided = m.double_sided;
@@ -132,7 +133,9 @@ std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, L
 bool is_emissive(const Scene& scene, std::uint32_t material) { return !is_zero(scene.materials[material].emission); }
 
 Effect effect_of(LightKind kind) {
-  return kind == LightKind::point ? Effect::point_light : kind == LightKind::spot ? Effect::spot_light : Effect::directional_light;
+  return kind == LightKind::point  ? Effect::point_light
+         : kind == LightKind::spot ? Effect::spot_light
+                                   : Effect::directional_light;
 }
 
 LightPoint to_point(const Light& light) {
@@ -190,7 +193,8 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
     for (std::uint32_t i = 0; i < scene.materials.count; ++i)
       if (is_emissive(scene, i)) n += settings.points_per_area_light;
   if (n > kPointLightCountMax)
-    return failure("the scene's lights make %llu points, more than %u: lower --area-lights", static_cast<unsigned long long>(n), kPointLightCountMax);
+    return failure("the scene's lights make %llu points, more than %u: lower --area-lights",
+                   static_cast<unsigned long long>(n), kPointLightCountMax);
   *count = static_cast<std::uint32_t>(n);
   return success();
 }
@@ -219,9 +223,11 @@ float radiance_bound(const FrameData& frame) {
   const Scene& scene = *frame.scene;
   float glow = 0, reflectance = 0, scattering = 0;
   for (const Material& m : scene.materials) {
-    float own = max_component(m.emission) + (m.unlit ? max_component(m.diffuse) : max_component(m.diffuse * scene.info.ambient));
+    float own = max_component(m.emission) +
+                (m.unlit ? max_component(m.diffuse) : max_component(m.diffuse * scene.info.ambient));
     if (own > glow) glow = own;
-    float passes = max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));
+    float passes =
+        max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));
     if (passes > reflectance) reflectance = passes;
     float f = max_component(m.diffuse) / kPiF;
     if (!is_zero(m.specular)) f += max_component(kBrdfList[m.brdf]->peak(m));
@@ -231,9 +237,10 @@ float radiance_bound(const FrameData& frame) {
   for (int r = 0; r < frame.light_run_count; ++r) {
     for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
       const LightPoint& light = frame.lights[i];
-      Effect kind = light.material != kNone ? Effect::area_light : frame.light_runs[r].sample == find_light_sampler(Effect::directional_light)
-                                                                       ? Effect::directional_light
-                                                                       : Effect::point_light;
+      Effect kind = light.material != kNone ? Effect::area_light
+                    : frame.light_runs[r].sample == find_light_sampler(Effect::directional_light)
+                        ? Effect::directional_light
+                        : Effect::point_light;
       irradiance += irradiance_bound(frame, light, kind);
     }
   }

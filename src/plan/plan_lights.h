@@ -9,12 +9,13 @@ namespace pocketray {
 // kPointLightCountMax.
 Status light_point_count(const Scene& scene, const Settings& settings, EffectMask mask, std::uint32_t* count);
 
-// Fills `points` (light_point_count() of them) from posed lights and frame->positions, and sets the frame's lights and runs
-// for the effects of its mask. Allocates nothing.
+// Fills `points` (light_point_count() of them) from posed lights and frame->positions, and sets the frame's lights and
+// runs for the effects of its mask. Allocates nothing.
 void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame);
 
-// An upper bound of the radiance any ray can bring, for the cut-off: emission, direct light at the least distance of every
-// light from the geometry, and what ray_depth interreflections at the strongest mirror can add. Infinite where there is none.
+// An upper bound of the radiance any ray can bring, for the cut-off: emission, direct light at the least distance of
+// every light from the geometry, and what ray_depth interreflections at the strongest mirror can add. Infinite where
+// there is none.
 float radiance_bound(const FrameData& frame);
 
 }  // namespace pocketray

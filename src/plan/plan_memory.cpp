@@ -24,7 +24,8 @@ double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 
 }  // namespace
 
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes, MemoryPlan* plan) {
+                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
+                   MemoryPlan* plan) {
   *plan = MemoryPlan();
   plan->limit_bytes = settings.memory_bytes;
   plan->mapped_bytes = plan->total_bytes = storage.mapped_bytes;
@@ -43,11 +44,13 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
   add_part(plan, "lights", ArenaKind::persistent, light_point_count ? arena_need<LightPoint>(light_point_count) : 0);
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
-  add_part(plan, "spans", ArenaKind::persistent, arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
+  add_part(plan, "spans", ArenaKind::persistent,
+           arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
   // The build's scratch is free again when the first frame is shown: the two share the frame arena.
-  add_part(plan, scratch > output_bytes ? "build scratch, then output" : "output", ArenaKind::frame, std::max(scratch, output_bytes));
+  add_part(plan, scratch > output_bytes ? "build scratch, then output" : "output", ArenaKind::frame,
+           std::max(scratch, output_bytes));
   for (std::size_t& bytes : plan->arena_bytes)
     if (bytes) bytes += kArenaAlignment, plan->total_bytes += kArenaAlignment;  // to align its start
 
@@ -56,9 +59,11 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   for (int i = 1; i < plan->part_count; ++i)
     if (plan->parts[i].bytes > largest->bytes) largest = &plan->parts[i];
   std::size_t fits = (plan->total_bytes + (1 << 20) - 1) >> 20;
-  return failure("the scene needs %.1f MiB of memory and --memory allows %.1f MiB; the largest part is %s with %.1f MiB%s. --memory %zuM would fit",
-                 megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
-                 scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
+  return failure(
+      "the scene needs %.1f MiB of memory and --memory allows %.1f MiB; the largest part is %s with %.1f MiB%s. "
+      "--memory %zuM would fit",
+      megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
+      scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
 }
 
 std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size) {
@@ -75,13 +80,16 @@ std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t siz
     for (std::size_t i = 0; i < 32; ++i) bar[i] = i < filled ? '#' : '.';
     bar[32] = 0;
     bool small = bytes < (100u << 10);
-    add("  %-11s %-27s %9.1f %s  %s\n", where, name, small ? static_cast<double>(bytes) / 1024 : megabytes(bytes), small ? "KiB" : "MiB", bar);
+    add("  %-11s %-27s %9.1f %s  %s\n", where, name, small ? static_cast<double>(bytes) / 1024 : megabytes(bytes),
+        small ? "KiB" : "MiB", bar);
   };
   if (plan.mapped_bytes) line("scene file", "mapped", plan.mapped_bytes);
   for (int arena = 0; arena < 3; ++arena)
     for (int i = 0; i < plan.part_count; ++i)
-      if (plan.parts[i].arena == static_cast<ArenaKind>(arena)) line(plan.parts[i].name, kArenaNames[arena], plan.parts[i].bytes);
-  add("  %-11s %-27s %9.1f MiB  of %.1f MiB allowed\n", "total", "", megabytes(plan.total_bytes), megabytes(plan.limit_bytes));
+      if (plan.parts[i].arena == static_cast<ArenaKind>(arena))
+        line(plan.parts[i].name, kArenaNames[arena], plan.parts[i].bytes);
+  add("  %-11s %-27s %9.1f MiB  of %.1f MiB allowed\n", "total", "", megabytes(plan.total_bytes),
+      megabytes(plan.limit_bytes));
   return length;
 }
 

@@ -39,7 +39,8 @@ struct SceneStorage {
 // Fails with the figures and a setting that would fit when the total exceeds settings.memory_bytes; the plan is filled
 // in either case.
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes, MemoryPlan* plan);
+                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
+                   MemoryPlan* plan);
 
 // Draws the map as text, one line a part, into `text` (of `size` bytes, always terminated). Returns its length.
 std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size);

@@ -44,13 +44,14 @@ Camera inside_camera(const Box& bounds) {
 }
 
 bool is_room(const Scene& scene, const Box& bounds, Vec3* opening) {
-  // By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative where normals point inward, and
-  // the area vectors of a closed surface add up to zero: what is left is that of the side that is missing.
+  // By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative where normals point inward,
+  // and the area vectors of a closed surface add up to zero: what is left is that of the side that is missing.
   Vec3 middle = center(bounds), size = extent(bounds);
   Vec3d area = {0, 0, 0};
   double volume = 0;
   for (const Triangle& t : scene.triangles) {
-    Vec3 a = scene.positions[t.vertex[0]] - middle, b = scene.positions[t.vertex[1]] - middle, c = scene.positions[t.vertex[2]] - middle;
+    Vec3 a = scene.positions[t.vertex[0]] - middle, b = scene.positions[t.vertex[1]] - middle,
+         c = scene.positions[t.vertex[2]] - middle;
     volume += static_cast<double>(dot(a, cross(b, c))) / 6;
     Vec3 twice = cross(b - a, c - a);
     area += Vec3d{twice.x, twice.y, twice.z} * 0.5;
@@ -59,7 +60,9 @@ bool is_room(const Scene& scene, const Box& bounds, Vec3* opening) {
   double box_volume = static_cast<double>(size.x) * static_cast<double>(size.y) * static_cast<double>(size.z);
   if (!(-volume > 0.5 * box_volume)) return false;
   double side = length(area), box_side = static_cast<double>(half_area(bounds)) / 3;
-  if (side > 0.3 * box_side) *opening = {static_cast<float>(area.x / side), static_cast<float>(area.y / side), static_cast<float>(area.z / side)};
+  if (side > 0.3 * box_side)
+    *opening = {static_cast<float>(area.x / side), static_cast<float>(area.y / side),
+                static_cast<float>(area.z / side)};
   return true;
 }
 

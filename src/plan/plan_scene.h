@@ -12,18 +12,19 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward);
 // A camera that stands inside the box and looks across it, 60° high.
 Camera inside_camera(const Box& bounds);
 
-// Whether the scene is a room: its surfaces face inward and enclose most of its bounds. `opening` is then the unit vector
-// out through its open side, or zero where it is closed.
+// Whether the scene is a room: its surfaces face inward and enclose most of its bounds. `opening` is then the unit
+// vector out through its open side, or zero where it is closed.
 bool is_room(const Scene& scene, const Box& bounds, Vec3* opening);
 
-// The camera of a scene that has none: inside a closed room, in front of an open one, else framing from the front, a little
-// above and to the right.
+// The camera of a scene that has none: inside a closed room, in front of an open one, else framing from the front, a
+// little above and to the right.
 Camera default_camera(const Scene& scene, float aspect);
 // Whether what a model brings lights it: a light, or a surface that emits more than display white.
 bool lights_itself(const Scene& scene);
 
-// The lights of a scene that has none, or asks for them: a key from the upper left of the camera and a weaker fill from its
-// right, both directional; in a room a point light below the ceiling and one at the camera. An ambient term comes with them.
+// The lights of a scene that has none, or asks for them: a key from the upper left of the camera and a weaker fill from
+// its right, both directional; in a room a point light below the ceiling and one at the camera. An ambient term comes
+// with them.
 constexpr std::uint32_t kDefaultLightCount = 2;
 void default_lights(const Scene& scene, const Camera& camera, Light* lights);
 Vec3 default_ambient();

@@ -48,12 +48,12 @@ struct Material {
   Vec3 specular = {0, 0, 0};          // albedo of the glossy lobe at its peak direction, see brdf/
   float exponent = 0;                 // of the Phong lobe, 0 to kPhongExponentMax
   Vec3 mirror = {0, 0, 0};            // reflectance of the perfect mirror
-  Vec3 transmission = {0, 0, 0};      // of the dielectric; zero: opaque. Reflects by Fresnel, transmits the rest × this
-  float ior = 1.5f;                   // index of refraction, 1 to kIorMax
-  Vec3 absorption = {0, 0, 0};        // per scene unit inside the body (Beer–Lambert)
-  Vec3 emission = {0, 0, 0};          // radiance; × emission texture
-  float opacity = 1;                  // alpha; × texture alpha × vertex alpha
-  float alpha_cutoff = 0.5f;          // alpha mode mask: less than this is a hole
+  Vec3 transmission = {0, 0, 0};  // of the dielectric; zero: opaque. Reflects by Fresnel, transmits the rest × this
+  float ior = 1.5f;               // index of refraction, 1 to kIorMax
+  Vec3 absorption = {0, 0, 0};    // per scene unit inside the body (Beer–Lambert)
+  Vec3 emission = {0, 0, 0};      // radiance; × emission texture
+  float opacity = 1;              // alpha; × texture alpha × vertex alpha
+  float alpha_cutoff = 0.5f;      // alpha mode mask: less than this is a hole
   TextureUse diffuse_texture, emission_texture;
   std::uint32_t brdf = 0;  // index into brdf_list(): the glossy lobe
   AlphaMode alpha_mode = AlphaMode::opaque;
@@ -79,13 +79,14 @@ enum class Projection : std::uint32_t { perspective, orthographic };
 
 struct Camera {
   Vec3 eye = {0, 0, 0}, target = {0, 0, -1}, up = {0, 1, 0};
-  float vertical_fov = 0.8f;       // radians, perspective
-  float vertical_extent = 1;       // scene units from bottom to top, orthographic
+  float vertical_fov = 0.8f;  // radians, perspective
+  float vertical_extent = 1;  // scene units from bottom to top, orthographic
   Projection projection = Projection::perspective;
   std::uint32_t node = kNone;  // moves with this node: eye, target and up are then in its space
 };
 
-// ---- animation -------------------------------------------------------------------------------------------------------
+// ---- animation
+// -------------------------------------------------------------------------------------------------------
 
 struct Node {
   std::uint32_t parent = kNone;  // index lower than the node's own
@@ -134,12 +135,14 @@ struct MovingMesh {
   std::uint32_t rest_begin;                  // in Scene::rest_positions (and rest_normals)
   std::uint32_t node;                        // ignored where there is a skin
   std::uint32_t skin = kNone;
-  std::uint32_t skin_weight_begin = 0;                // in Scene::skin_weights, vertex_count of them
-  std::uint32_t morph_begin = 0, morph_count = 0;     // first delta in Scene::morph_positions; targets lie one after another
-  Transform instance;  // between the node and the mesh (instancing); ignored where there is a skin
+  std::uint32_t skin_weight_begin = 0;  // in Scene::skin_weights, vertex_count of them
+  std::uint32_t morph_begin = 0,
+                morph_count = 0;  // first delta in Scene::morph_positions; targets lie one after another
+  Transform instance;             // between the node and the mesh (instancing); ignored where there is a skin
 };
 
-// ---- the whole -------------------------------------------------------------------------------------------------------
+// ---- the whole
+// -------------------------------------------------------------------------------------------------------
 
 struct SceneInfo {
   char name[64] = {0};
@@ -148,20 +151,21 @@ struct SceneInfo {
   float exposure = 1;           // displayed = exposure × radiance
   std::uint32_t frame_count = 1;
   float frames_per_second = 30;
-  std::uint32_t default_lights = 0;  // 1: the scene asks for the stated lights (plan/plan_scene.h), or has been given them
+  std::uint32_t default_lights =
+      0;  // 1: the scene asks for the stated lights (plan/plan_scene.h), or has been given them
   std::uint32_t default_camera = 0;  // 1: framed by its bounds
   float auto_exposure = 0;           // 1: exposure is to be measured before the first frame
 };
 
-struct BvhNode;      // accel/bvh.h
-struct BvhLeaf;      // accel/bvh.h
+struct BvhNode;  // accel/bvh.h
+struct BvhLeaf;  // accel/bvh.h
 
 struct Scene {
   SceneInfo info;
-  Array<const Vec3> positions;    // world space, at time 0
-  Array<const Vec3> normals;      // unit, one per vertex, or empty; the zero vector asks for the geometric normal
-  Array<const Vec2> uvs;          // one per vertex, or empty
-  Array<const Rgba16> colors;     // one per vertex, or empty
+  Array<const Vec3> positions;  // world space, at time 0
+  Array<const Vec3> normals;    // unit, one per vertex, or empty; the zero vector asks for the geometric normal
+  Array<const Vec2> uvs;        // one per vertex, or empty
+  Array<const Rgba16> colors;   // one per vertex, or empty
   Array<const Triangle> triangles;
   Array<const Material> materials;
   Array<const Texture> textures;
@@ -181,6 +185,8 @@ struct Scene {
   Array<const std::uint8_t> accel;  // baked accelerator, as accel/ lays it out; may be empty
 };
 
-inline bool is_animated(const Scene& scene) { return scene.animations.count > 0 && scene.moving_meshes.count + scene.nodes.count > 0; }
+inline bool is_animated(const Scene& scene) {
+  return scene.animations.count > 0 && scene.moving_meshes.count + scene.nodes.count > 0;
+}
 
 }  // namespace pocketray

@@ -19,7 +19,8 @@ Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t
   rays->orthographic = camera.projection == Projection::orthographic;
   if (rays->orthographic) {
     if (!(camera.vertical_extent > 0) || !(camera.vertical_extent < kCoordinateMax))
-      return failure("the orthographic camera's height is %g: it must be above 0 and finite", static_cast<double>(camera.vertical_extent));
+      return failure("the orthographic camera's height is %g: it must be above 0 and finite",
+                     static_cast<double>(camera.vertical_extent));
     half_height = camera.vertical_extent * 0.5f;
   } else {
     double fov = camera.vertical_fov;

@@ -5,7 +5,8 @@
 
 namespace pocketray {
 
-// Fails for an eye at the target, a non-finite or impossible field of view or extent; a view along `up` picks another up.
+// Fails for an eye at the target, a non-finite or impossible field of view or extent; a view along `up` picks another
+// up.
 Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t height, CameraRays* rays);
 
 // The ray through the image point (x, y) in pixels. Its direction is unit, so t is distance.

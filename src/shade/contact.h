@@ -1,5 +1,6 @@
 // Contact: faces that lie on one another where a ray meets them, within rounding: glass that touches glass, a glass
-// block on a table, a label on a wall, two one-sided surfaces back to back. A ray that passes one of them has to pass or meet them all.
+// block on a table, a label on a wall, two one-sided surfaces back to back. A ray that passes one of them has to pass
+// or meet them all.
 #pragma once
 #include "shade/surface.h"
 

@@ -5,7 +5,8 @@
 namespace pocketray {
 
 // Reflectance of unpolarised light that meets the boundary at cos_i ∈ [0, 1] with relative index eta = n_from / n_to
-// [Born & Wolf 1999, sec. 1.5.2, eqs. 21]. Sets *cos_t, the cosine of the refracted ray; total internal reflection gives 1 and cos_t = 0.
+// [Born & Wolf 1999, sec. 1.5.2, eqs. 21]. Sets *cos_t, the cosine of the refracted ray; total internal reflection
+// gives 1 and cos_t = 0.
 inline float fresnel(float cos_i, float eta, float* cos_t) {
   if (cos_i > 1) cos_i = 1;
   float sin2_t = eta * eta * ((1 - cos_i) * (1 + cos_i));

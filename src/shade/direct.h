@@ -12,8 +12,8 @@
 
 namespace pocketray {
 
-// Whether a contribution of at most `bound` may be left out: the sum of what is left out of a sample stays below half the
-// narrowest displayed level, so no pixel moves by more than one.
+// Whether a contribution of at most `bound` may be left out: the sum of what is left out of a sample stays below half
+// the narrowest displayed level, so no pixel moves by more than one.
 inline bool leave_out(Tracer* tracer, float bound) {
   if (!(bound <= tracer->budget)) return false;
   tracer->budget -= bound;
@@ -21,8 +21,8 @@ inline bool leave_out(Tracer* tracer, float bound) {
   return true;
 }
 
-// What a contact lets through of a ray that is not bent: Fresnel once, from the body that ends there to the one that begins
-// (air where there is none), and the tint of all that is entered.
+// What a contact lets through of a ray that is not bent: Fresnel once, from the body that ends there to the one that
+// begins (air where there is none), and the tint of all that is entered.
 inline Vec3 interface_transmittance(const FrameData& frame, const Contact& contact, float cos_i) {
   Vec3 tint = {1, 1, 1};
   float from = 1, to = 1;
@@ -41,16 +41,16 @@ inline Vec3 interface_transmittance(const FrameData& frame, const Contact& conta
   return tint * (1 - fresnel(cos_i, from / to, &cos_t));
 }
 
-// What transparent surfaces between the point and the light let through, unbent, in order along the ray: products of floats
-// do not commute in the last bit, and every accelerator must give the same.
+// What transparent surfaces between the point and the light let through, unbent, in order along the ray: products of
+// floats do not commute in the last bit, and every accelerator must give the same.
 template <EffectMask mask>
 Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) {
   const FrameData& frame = *tracer->frame;
   HitFilter filter = {frame.accept_clear, &context};
   Vec3 result = {1, 1, 1};
   Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and at exits
-  Vec3 open = {0, 0, 0};  // absorption of the bodies entered and not left
-  int open_count = 0;     // how many they are: the sum alone keeps a rounding error that an infinite ray makes opaque
+  Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not left
+  int open_count = 0;  // how many they are: the sum alone keeps a rounding error that an infinite ray makes opaque
   float unit = length(ray.direction), passed = 0;
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
@@ -90,7 +90,8 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) 
         const Material& m = frame.scene->materials[face.material];
         if (m.alpha_mode != AlphaMode::blend) continue;
         effect_entered<Effect::alpha_blend>();
-        float alpha = hit_alpha(*frame.scene, m, face.hit.triangle, face.hit.u, face.hit.v, frame.settings.texture_filter);
+        float alpha =
+            hit_alpha(*frame.scene, m, face.hit.triangle, face.hit.u, face.hit.v, frame.settings.texture_filter);
         result = result * (1 - alpha);
       }
     }
@@ -118,7 +119,8 @@ Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t emitter) {
   return {1, 1, 1};
 }
 
-// Radiance towards the viewer by light that arrives straight from the lights. `weight` is what the path so far lets through.
+// Radiance towards the viewer by light that arrives straight from the lights. `weight` is what the path so far lets
+// through.
 template <EffectMask mask>
 Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const Vec3& weight) {
   const FrameData& frame = *tracer->frame;

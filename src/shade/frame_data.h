@@ -11,12 +11,12 @@ namespace pocketray {
 // A light as it is used: points, spots, directions, and the points that stand for area lights.
 struct LightPoint {
   Vec3 position;
-  Vec3 direction;   // spot, directional: the way light travels; area: normal of the emitter
-  Vec3 intensity;   // radiant intensity along `direction` (area) or everywhere (point, spot); directional: irradiance
-  float range;      // 0: no limit
+  Vec3 direction;  // spot, directional: the way light travels; area: normal of the emitter
+  Vec3 intensity;  // radiant intensity along `direction` (area) or everywhere (point, spot); directional: irradiance
+  float range;     // 0: no limit
   float cos_inner, cos_outer;
-  std::uint32_t material;    // of the emitter: it casts no shadow of itself and does not light itself; kNone otherwise
-  std::uint32_t two_sided;   // area: emits to both sides
+  std::uint32_t material;   // of the emitter: it casts no shadow of itself and does not light itself; kNone otherwise
+  std::uint32_t two_sided;  // area: emits to both sides
 };
 
 struct LightSample {
@@ -68,11 +68,11 @@ struct FrameData {
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;
   RadianceFunction radiance = nullptr;
-  HitFilter visible_filter;                                   // accept is null where nothing is cut out; see filters.h
+  HitFilter visible_filter;  // accept is null where nothing is cut out; see filters.h
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
-  bool filter_every_shadow = false;                           // false: only area lights' shadow rays need the filter
-  float radiance_bound = 0;                                   // no ray brings more
-  float left_out_max = 0;                                     // what may be left out of one sample, in radiance
+  bool filter_every_shadow = false;  // false: only area lights' shadow rays need the filter
+  float radiance_bound = 0;          // no ray brings more
+  float left_out_max = 0;            // what may be left out of one sample, in radiance
 };
 
 enum class RayKind : int { primary, shadow, mirror, refraction, blend };

@@ -1,4 +1,5 @@
-// A part of the kernel, instantiated for every combination of the effects it knows; the plan's is picked once per frame.
+// A part of the kernel, instantiated for every combination of the effects it knows; the plan's is picked once per
+// frame.
 #pragma once
 #include <cstddef>
 #include <utility>

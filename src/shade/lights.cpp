@@ -8,7 +8,8 @@
 namespace pocketray {
 namespace {
 
-// Direction and inverse square of a light at a position. False where the point is the light or the light is out of range.
+// Direction and inverse square of a light at a position. False where the point is the light or the light is out of
+// range.
 bool reach(const LightPoint& light, const Vec3& point, LightSample* s, float* inverse_square) {
   s->to_light = light.position - point;
   float square = dot(s->to_light, s->to_light);
@@ -71,10 +72,15 @@ bool sample_area_light(const LightPoint& light, const Vec3& point, LightSample* 
 
 LightSampler find_light_sampler(Effect kind) {
   switch (kind) {
-    case Effect::point_light: return sample_point_light;
-    case Effect::spot_light: return sample_spot_light;
-    case Effect::directional_light: return sample_directional_light;
-    default: CHECK(kind == Effect::area_light); return sample_area_light;
+    case Effect::point_light:
+      return sample_point_light;
+    case Effect::spot_light:
+      return sample_spot_light;
+    case Effect::directional_light:
+      return sample_directional_light;
+    default:
+      CHECK(kind == Effect::area_light);
+      return sample_area_light;
   }
 }
 

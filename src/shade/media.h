@@ -25,7 +25,9 @@ inline void exit_medium(MediumStack* stack, std::uint32_t material) {
 void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stack);
 // Transmittance along a distance (Beer–Lambert).
 inline Vec3 transmittance(const Vec3& absorption, float distance) {
-  auto one = [distance](float a) { return a > 0 ? static_cast<float>(det_exp(-static_cast<double>(a) * distance)) : 1.0f; };
+  auto one = [distance](float a) {
+    return a > 0 ? static_cast<float>(det_exp(-static_cast<double>(a) * distance)) : 1.0f;
+  };
   return {one(absorption.x), one(absorption.y), one(absorption.z)};
 }
 

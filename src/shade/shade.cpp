@@ -1,5 +1,5 @@
-// From a ray to radiance: recursive ray tracing after [Whitted 1980], [Aranha07] sec. 3.1, instantiated for the effects that
-// the plan has; an absent one is not a branch, it is not there.
+// From a ray to radiance: recursive ray tracing after [Whitted 1980], [Aranha07] sec. 3.1, instantiated for the effects
+// that the plan has; an absent one is not a branch, it is not there.
 #include "shade/shade.h"
 
 #include "shade/contact.h"
@@ -20,7 +20,8 @@ Vec3 radiance(Tracer* tracer, Ray ray, Path path);
 
 // Radiance along a spawned ray, or nothing where it could not matter or the path is long enough.
 template <EffectMask mask>
-Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path& path, const Vec3& weight) {
+Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path& path,
+           const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
   if (path.depth >= frame.settings.ray_depth) return {0, 0, 0};
   Path next = path;
@@ -110,7 +111,8 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
     any = true;
     Surface s;
     frame.surface(frame, ray, face.hit, &s);
-    float alpha = hit_alpha(scene, *s.material, face.hit.triangle, face.hit.u, face.hit.v, frame.settings.texture_filter);
+    float alpha =
+        hit_alpha(scene, *s.material, face.hit.triangle, face.hit.u, face.hit.v, frame.settings.texture_filter);
     Path covered = *path;
     covered.weight = path->weight * alpha;
     if (alpha > 0) *sum += *carried * alpha * shade<mask>(tracer, ray, s, &contact, covered);
@@ -121,8 +123,8 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
   return !any || (most > 0 && !leave_out(tracer, most * frame.radiance_bound));
 }
 
-// What a ray meets behind the blending surfaces of a contact: something opaque, else a body that it enters or leaves, else
-// a thin sheet; null: nothing.
+// What a ray meets behind the blending surfaces of a contact: something opaque, else a body that it enters or leaves,
+// else a thin sheet; null: nothing.
 const Face* face_behind_layers(const Scene& scene, const Contact& contact, EffectMask mask) {
   const Face *body = nullptr, *sheet = nullptr;
   for (std::uint32_t i = 0; i < contact.count; ++i) {
@@ -156,7 +158,8 @@ Vec3 radiance(Tracer* tracer, Ray ray, Path path) {
         path.weight *= passed;
       }
     }
-    if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend) || has(mask, Effect::back_face_culling)) {
+    if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend) ||
+                  has(mask, Effect::back_face_culling)) {
       bool culled = culls(*s.material, s.front, mask);
       if (culled) effect_entered<Effect::back_face_culling>();
       if (culled || transmits(*s.material, mask) || blends(*s.material, mask)) {
@@ -187,8 +190,9 @@ Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const MediumStack& media) 
 
 struct RadiancePart {
   using Function = RadianceFunction;
-  static constexpr Effect kEffects[] = {Effect::shadow,     Effect::specular,    Effect::mirror,           Effect::refraction,
-                                        Effect::absorption, Effect::alpha_blend, Effect::back_face_culling};
+  static constexpr Effect kEffects[] = {Effect::shadow,           Effect::specular,   Effect::mirror,
+                                        Effect::refraction,       Effect::absorption, Effect::alpha_blend,
+                                        Effect::back_face_culling};
   template <EffectMask mask>
   static constexpr Function instance() {  // nothing absorbs where there is nothing to be inside of
     return has(mask, Effect::refraction) ? primary_radiance<mask> : primary_radiance<(mask & ~bit(Effect::absorption))>;

@@ -36,7 +36,8 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   s->front = dot(outward, ray.direction) <= 0;
   s->geometric = s->front ? outward : -outward;
   Vec3 to_corners = max(max(abs(a - s->point), abs(b - s->point)), abs(c - s->point));
-  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v), max_component(to_corners), s->geometric);
+  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v),
+                            max_component(to_corners), s->geometric);
   s->normal = s->geometric;
   if constexpr (has(mask, Effect::smooth_normal)) {
     effect_entered<Effect::smooth_normal>();
@@ -47,7 +48,8 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
     if (m.diffuse_texture.texture != kNone) {
       effect_entered<Effect::texture>();
       s->diffuse *=
-          sample_texture(scene, m.diffuse_texture, hit_uv(scene, hit.triangle, u, v), frame.settings.texture_filter).rgb;
+          sample_texture(scene, m.diffuse_texture, hit_uv(scene, hit.triangle, u, v), frame.settings.texture_filter)
+              .rgb;
     }
   }
   if constexpr (has(mask, Effect::vertex_color)) {
@@ -67,7 +69,9 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
       Vec3 emission = m.emission;
       if constexpr (has(mask, Effect::texture)) {
         if (m.emission_texture.texture != kNone)
-          emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, hit.triangle, u, v), frame.settings.texture_filter).rgb;
+          emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, hit.triangle, u, v),
+                                     frame.settings.texture_filter)
+                          .rgb;
       }
       s->glow += emission;
     }
@@ -76,7 +80,8 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
 
 struct SurfacePart {
   using Function = SurfaceFunction;
-  static constexpr Effect kEffects[] = {Effect::smooth_normal, Effect::texture, Effect::vertex_color, Effect::ambient, Effect::emission};
+  static constexpr Effect kEffects[] = {Effect::smooth_normal, Effect::texture, Effect::vertex_color, Effect::ambient,
+                                        Effect::emission};
   template <EffectMask mask>
   static constexpr Function instance() {
     return evaluate_surface<mask>;

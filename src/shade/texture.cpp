@@ -23,7 +23,8 @@ int wrap_texel(float coordinate, int size, Wrap wrap) {
 Rgba texel(const Scene& scene, const Texture& t, int x, int y) {
   const std::uint32_t* texels = scene.texels.data + t.texel_begin;
   const auto* c = reinterpret_cast<const std::uint8_t*>(texels + static_cast<std::size_t>(y) * t.width + x);
-  return {{srgb_to_linear(c[0]), srgb_to_linear(c[1]), srgb_to_linear(c[2])}, static_cast<float>(c[3]) * (1.0f / 255.0f)};
+  return {{srgb_to_linear(c[0]), srgb_to_linear(c[1]), srgb_to_linear(c[2])},
+          static_cast<float>(c[3]) * (1.0f / 255.0f)};
 }
 
 Rgba blend(const Rgba& a, const Rgba& b, float f) {

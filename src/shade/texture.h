@@ -23,6 +23,7 @@ inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v)
 }
 
 // Alpha of a material at a hit: opacity × texture alpha × vertex alpha.
-float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v, TextureFilter filter);
+float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
+                TextureFilter filter);
 
 }  // namespace pocketray

@@ -43,13 +43,15 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   float passed = 0;  // in front of culled surfaces
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
-    frame.accel_info->closest(frame.accel, ray, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &hit, &tracer->stats);
+    frame.accel_info->closest(frame.accel, ray, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &hit,
+                              &tracer->stats);
     if (hit.triangle == kNoTriangle) break;
     Surface s;
     frame.surface(frame, ray, hit, &s);
     if (culls(*s.material, s.front, frame.mask)) {  // what lies on its back may be seen
       Contact contact;
-      gather_contact(frame, s, hit, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &contact, &tracer->stats);
+      gather_contact(frame, s, hit, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &contact,
+                     &tracer->stats);
       for (std::uint32_t i = 1; i < contact.count; ++i) {
         const Face& face = contact.face[i];
         if (culls(frame.scene->materials[face.material], face.front, frame.mask)) continue;
@@ -94,7 +96,8 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
     CHECK_LE(span.column_end, settings.width);
     Vec3* row = image + static_cast<std::size_t>(span.row) * settings.width;
     for (std::uint32_t column = span.column_begin; column < span.column_end; ++column)
-      row[column] = aov == Aov::none ? pixel_radiance(tracer, column, span.row) : pixel_aov(tracer, column, span.row, aov);
+      row[column] =
+          aov == Aov::none ? pixel_radiance(tracer, column, span.row) : pixel_aov(tracer, column, span.row, aov);
   }
 }
 

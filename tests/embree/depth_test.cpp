@@ -2,10 +2,10 @@
 #include <doctest/doctest.h>
 #include <embree3/rtcore.h>
 
+#include <sys/stat.h>
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <sys/stat.h>
 #include <vector>
 
 #include "app/frame.h"
@@ -23,10 +23,12 @@ struct EmbreeCaster {
   explicit EmbreeCaster(const Scene& s) {
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, s.positions.count));
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, s.positions.count));
     for (std::uint32_t i = 0; i < s.positions.count; ++i)
       for (int axis = 0; axis < 3; ++axis) vertices[3 * i + static_cast<std::uint32_t>(axis)] = s.positions[i][axis];
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, s.triangles.count));
+    auto* indices = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, s.triangles.count));
     for (std::uint32_t i = 0; i < s.triangles.count; ++i)
       for (std::uint32_t k = 0; k < 3; ++k) indices[3 * i + k] = s.triangles[i].vertex[k];
     rtcCommitGeometry(geometry);
@@ -71,7 +73,8 @@ double agreement(const std::string& name) {
   for (std::uint32_t row = 0; row < settings.height; ++row) {
     for (std::uint32_t column = 0; column < settings.width; ++column) {
       Ray ray = camera_ray(renderer->frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
-      float theirs = embree.cast(ray), ours = renderer->image[static_cast<std::size_t>(row) * settings.width + column].x;
+      float theirs = embree.cast(ray),
+            ours = renderer->image[static_cast<std::size_t>(row) * settings.width + column].x;
       agree += std::fabs(ours - theirs) <= 1e-4f * theirs;
     }
   }
@@ -82,16 +85,21 @@ double agreement(const std::string& name) {
 
 }  // namespace
 
-// Goal: primary visibility is right. Method: every pixel of 320×240 against Embree in its robust mode; what disagrees may
-// only lie on silhouettes, at most one pixel in a thousand.
+// Goal: primary visibility is right. Method: every pixel of 320×240 against Embree in its robust mode; what disagrees
+// may only lie on silhouettes, at most one pixel in a thousand.
 TEST_CASE("depth_agrees_with_embree_on_built_in_scenes") {
   CHECK(agreement("cornell") >= 0.999);
   CHECK(agreement("statue") >= 0.999);
 }
 
 TEST_CASE("depth_agrees_with_embree_on_models") {
-  const char* models[] = {"mesh/happy_vrip_res3.ply",       "gltf/Duck.glb", "cornell/mcguire/CornellBox-Original.obj", "cornell/mcguire/CornellBox-Sphere.obj",
-                          "cornell/mcguire/CornellBox-Mirror.obj", "cornell/embree/cornell_box.obj", "cornell/bevy_CornellBox.glb"};
+  const char* models[] = {"mesh/happy_vrip_res3.ply",
+                          "gltf/Duck.glb",
+                          "cornell/mcguire/CornellBox-Original.obj",
+                          "cornell/mcguire/CornellBox-Sphere.obj",
+                          "cornell/mcguire/CornellBox-Mirror.obj",
+                          "cornell/embree/cornell_box.obj",
+                          "cornell/bevy_CornellBox.glb"};
   for (const char* model : models) {
     std::string path = std::string(POCKETRAY_SHARED "/scenes/") + model;
     struct stat info;

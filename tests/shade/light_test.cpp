@@ -68,18 +68,20 @@ TEST_CASE("light_point_spot_and_directional_closed_forms") {
   }
 }
 
-// Goal: a disk light of radius r at height h gives E = πL·r²/(r² + h²) below its centre. Method: closed form; 256 points
-// stand for it, whose error grows as they come near: 0.2 % from h = 2r on, 1 % at h = r, 9 % at h = r/2.
+// Goal: a disk light of radius r at height h gives E = πL·r²/(r² + h²) below its centre. Method: closed form; 256
+// points stand for it, whose error grows as they come near: 0.2 % from h = 2r on, 1 % at h = r, 9 % at h = r/2.
 TEST_CASE("hard_36_disk_light") {
   for (float h : {4.0f, 2.0f, 1.0f, 0.5f}) {
     GeneratedScene s;
     add_floor(&s);
     add_disk(&s, 1, h);
     double polygon = 16 / (2 * kPiD) * std::sin(2 * kPiD / 16);  // its area over the circle's
-    double r2 = polygon;  // a disk of the polygon's area
+    double r2 = polygon;                                         // a disk of the polygon's area
     double expected = kPiD * r2 / (r2 + double(h) * double(h));
     CAPTURE(h);
-    CHECK(irradiance(*ray_renderer(&s), 0, 0) == doctest::Approx(expected).epsilon(h > 1 ? 0.002 : h == 1 ? 0.01 : 0.09));
+    CHECK(irradiance(*ray_renderer(&s), 0, 0) == doctest::Approx(expected).epsilon(h > 1    ? 0.002
+                                                                                   : h == 1 ? 0.01
+                                                                                            : 0.09));
   }
 }
 

@@ -125,9 +125,9 @@ TEST_CASE("alpha_mask_cuts_holes") {
   }
 }
 
-// Goal: blending surfaces mix with what is behind, also where they lie upon it, and pass 1 − α of the light. Method: closed
-// form, two layers before an opaque one, apart and coincident, in every order of their triangles. Of coincident surfaces
-// the first in the list is met first: an opaque one hides what is laid upon it later.
+// Goal: blending surfaces mix with what is behind, also where they lie upon it, and pass 1 − α of the light. Method:
+// closed form, two layers before an opaque one, apart and coincident, in every order of their triangles. Of coincident
+// surfaces the first in the list is met first: an opaque one hides what is laid upon it later.
 TEST_CASE("alpha_blend_mixes_with_what_is_behind") {
   for (float gap : {1.0f, 0.0f})
     for (int order = 0; order < 3; ++order) {

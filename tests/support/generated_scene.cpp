@@ -70,7 +70,8 @@ void add_panes(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   if (has(features, Feature::one_sided)) {  // seen from behind: not at all, but for its shadow
     Material back = matte(random_color(rng));
     back.double_sided = 0;
-    add_quad(s, {0.7f, 1.2f, 1.7f}, {-0.3f, 1.2f, 1.7f}, {-0.3f, 1.9f, 1.7f}, {0.7f, 1.9f, 1.7f}, add_material(s, back));
+    add_quad(s, {0.7f, 1.2f, 1.7f}, {-0.3f, 1.2f, 1.7f}, {-0.3f, 1.9f, 1.7f}, {0.7f, 1.9f, 1.7f},
+             add_material(s, back));
   }
 }
 

@@ -1,8 +1,9 @@
 // The heap of the test build: aborts on any allocation while the seal is on. Linked into pocketray_sealed, which is the
-// program otherwise unchanged. A dynamic program finds these functions before the C library's; a static one is linked with
+// program otherwise unchanged. A dynamic program finds these functions before the C library's; a static one is linked
+// with
 // --wrap, which sends every call here first.
-#include <cstddef>
 #include <unistd.h>
+#include <cstddef>
 
 #include "base/seal.h"
 
