@@ -5,6 +5,7 @@
 
 #include "accel/accel_world.h"
 #include "accel/triangle.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -41,7 +42,7 @@ TEST_CASE("accel_hits_are_those_of_brute_force") {
       auto world = make_world(mesh, info);
       Rng rng = make_rng(101);
       int wrong = 0, hits = 0;
-      for (int i = 0; i < 3000; ++i) {
+      for (int i = 0; i < effort(3000); ++i) {
         Ray ray = ray_about(&rng, mesh, oracle->accel.bounds);
         Hit expected = closest(*oracle, ray), found = closest(*world, ray);
         wrong += !same_hit(expected, found);
@@ -78,7 +79,7 @@ TEST_CASE("accel_filter_is_respected") {
     auto world = make_world(mesh, info);
     Rng rng = make_rng(104);
     int wrong = 0, passed = 0, changed = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < effort(3000); ++i) {
       Ray ray = {random_vec3(&rng, 1), random_vec3(&rng, 1), kInfinity};
       Hit hit = closest(*world, ray, nullptr, &filter), expected = closest(*oracle, ray, nullptr, &filter);
       Hit unfiltered = closest(*world, ray, nullptr, &none);
@@ -101,14 +102,14 @@ TEST_CASE("accel_filter_is_respected") {
 TEST_CASE("accel_ties_go_to_the_smallest_id") {
   Mesh mesh;
   Rng rng = make_rng(105);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < effort(200); ++i) {
     float s = 1 + static_cast<float>(next_u32(&rng) % 8);
     add_triangle(&mesh, {-s, -s, 0.5f}, {s, -s, 0.5f}, {0, s, 0.5f});
   }
   for (const AccelInfo* info : kAccelList) {
     auto world = make_world(mesh, info);
     int wrong = 0;
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < effort(1000); ++i) {
       Vec3 origin = random_vec3(&rng, 6);
       origin.z = i % 2 ? 4.0f : -4.0f;
       std::uint32_t least = kNoTriangle;
@@ -133,7 +134,7 @@ TEST_CASE("accel_raises_no_invalid_operation") {
       auto world = make_world(mesh, info);
       Rng rng = make_rng(109);
       std::feclearexcept(FE_ALL_EXCEPT);
-      for (int i = 0; i < 1000; ++i) closest(*world, ray_about(&rng, mesh, world->accel.bounds));
+      for (int i = 0; i < effort(1000); ++i) closest(*world, ray_about(&rng, mesh, world->accel.bounds));
       INFO(mesh.name << ", " << info->name);
       CHECK(std::fetestexcept(FE_INVALID) == 0);
     }
@@ -150,7 +151,7 @@ TEST_CASE("accel_nearest_distance_is_a_tight_lower_bound") {
       Box bounds = world->accel.bounds;
       float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
       int wrong = 0;
-      for (int i = 0; i < 60; ++i) {
+      for (int i = 0; i < effort(60); ++i) {
         Vec3 p = (is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds)) + random_vec3(&rng, size);
         float bound = info->nearest_distance(world->accel, p);
         wrong += !same_bits(bound, kBruteAccel.nearest_distance(oracle->accel, p));

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "accel/accel_world.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -12,7 +13,7 @@ namespace {
 // The suite runs a share of the gate of 10^8; POCKETRAY_AIMED_RAYS asks for another number.
 int aimed_ray_count(int usual) {
   const char* wanted = std::getenv("POCKETRAY_AIMED_RAYS");
-  return wanted ? std::atoi(wanted) : usual;
+  return wanted ? std::atoi(wanted) : effort(usual);
 }
 
 // A point of an edge of triangle i, in float as a user would compute it; a corner where `corner`.
@@ -70,7 +71,7 @@ TEST_CASE("hard_01_rays_aimed_at_edges_and_vertices_never_miss") {
     bool slow = info == &kBruteAccel;
     for (const Aimed& aimed : aimed_meshes()) {
       INFO(info->name << ", radius " << aimed.radius << ", center " << aimed.center.x << ", rays " << per_mesh);
-      CHECK(misses_from_inside(aimed, info, slow ? 500 : per_mesh, slow ? 1 << 30 : 500) == 0);
+      CHECK(misses_from_inside(aimed, info, slow ? effort(500) : per_mesh, slow ? 1 << 30 : 500) == 0);
     }
   }
 }
@@ -83,7 +84,7 @@ TEST_CASE("hard_01_rays_from_far_outside_aimed_at_edges_never_miss") {
     auto world = make_world(mesh, &kBvhAccel);
     Rng rng = make_rng(202);
     int missed = 0;
-    for (int i = 0; i < 50000; ++i) {
+    for (int i = 0; i < effort(50000); ++i) {
       std::uint32_t triangle = next_u32(&rng) % mesh.triangles.size();
       Vec3 target = edge_point(mesh, triangle, i % 3, next_float(&rng), i % 4 == 0);
       Vec3 origin = normalize(target + random_vec3(&rng, 0.4f)) * distance;
@@ -127,7 +128,7 @@ TEST_CASE("hard_02_rays_at_vertices_cross_once_and_have_a_decided_id") {
     auto world = make_world(mesh, info);
     Rng rng = make_rng(203);
     int odd = 0, split_fans = 0, undecided = 0, several = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < effort(3000); ++i) {
       Vec3 target = mesh.positions[next_u32(&rng) % mesh.positions.size()];
       Vec3 origin = normalize(target + random_vec3(&rng, 0.4f)) * 4.0f;
       Ray ray = {origin, target - origin, kInfinity};
@@ -157,14 +158,14 @@ TEST_CASE("hard_13_flat_boxes_are_entered_wherever_their_triangle_is_hit") {
     for (float plane : {0.0f, 0.1f, -1234.567f, 1e7f}) {
       Mesh mesh;
       Rng rng = make_rng(204);
-      for (int i = 0; i < 120; ++i) {
+      for (int i = 0; i < effort(120); ++i) {
         Vec3 p = random_vec3(&rng, 10), q = p + random_vec3(&rng, 4), r = p + random_vec3(&rng, 4);
         p[axis] = q[axis] = r[axis] = plane;
         add_triangle(&mesh, p, q, r);
       }
       auto world = make_world(mesh, &kBvhAccel), oracle = make_world(mesh, &kBruteAccel);
       int wrong = 0, hits = 0;
-      for (int i = 0; i < 3000; ++i) {
+      for (int i = 0; i < effort(3000); ++i) {
         Vec3 target = edge_point(mesh, next_u32(&rng) % 120, i % 3, next_float(&rng), i % 5 == 0), origin = target;
         origin[axis] += between(&rng, -3, 3);
         if (i % 2) origin = origin + random_vec3(&rng, i % 4 == 1 ? 5.0f : 5e-4f);

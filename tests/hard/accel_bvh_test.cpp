@@ -5,6 +5,7 @@
 
 #include "accel/bvh.h"
 #include "accel/oracle.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -90,7 +91,7 @@ TEST_CASE("hard_08_spoilt_triangles_are_left_out_and_the_rest_agrees_with_brute_
       CHECK(world->accel.bounds.high.x <= kCoordinateMax);
       Rng rng = make_rng(401);
       int wrong = 0, wrong_in_double = 0, decided = 0, hits = 0;
-      for (int i = 0; i < 10000; ++i) {
+      for (int i = 0; i < effort(10000); ++i) {
         Ray ray = {random_vec3(&rng, 2 * scale), random_vec3(&rng, 1), kInfinity};
         Hit hit = closest(*world, ray);
         wrong += !same_hit(hit, closest(*oracle, ray));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accel/oracle.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -63,7 +64,7 @@ TEST_CASE("hard_04_pointlike_and_collinear_triangles_are_missed_and_t_is_untouch
   for (const AccelInfo* info : kAccelList) {
     Rng rng = make_rng(302);
     int touched = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < effort(20000); ++i) {
       float size = std::ldexp(1.0f, static_cast<int>(next_u32(&rng) % 80) - 40);
       Vec3 a = random_vec3(&rng, size), q = random_vec3(&rng, size);
       Mesh mesh = i % 3 == 0   ? one_triangle(a, a, a)
@@ -87,7 +88,7 @@ TEST_CASE("hard_05_slivers_and_edge_on_rays_are_as_double_says_outside_4_ulp") {
   for (const AccelInfo* info : kAccelList) {
     Rng rng = make_rng(303);
     int wrong = 0, decided = 0, hits = 0;
-    for (int i = 0; i < 30000; ++i) {
+    for (int i = 0; i < effort(30000); ++i) {
       Vec3 a = random_vec3(&rng, 1), q = random_vec3(&rng, 1), r = normalize(cross(q, random_vec3(&rng, 1)));
       Mesh mesh = one_triangle(a, a + q, a + q * 0.4f + r * (length(q) * 1e-6f));
       auto world = make_world(mesh, info);
@@ -104,7 +105,7 @@ TEST_CASE("hard_05_slivers_and_edge_on_rays_are_as_double_says_outside_4_ulp") {
     }
     INFO(info->name << ": " << decided << " decided, " << hits << " hits");
     CHECK(wrong == 0);
-    CHECK(decided > 10000);
+    CHECK(decided > effort(10000));
     CHECK(hits > 200);
   }
 }
@@ -181,7 +182,7 @@ TEST_CASE("hard_62_float_ids_are_those_of_double_outside_a_band_of_4_ulp") {
     Rng rng = make_rng(304);
     float size = mesh.triangles.empty() ? 1.0f : max_component(extent(world->accel.bounds));
     int wrong = 0, decided = 0;
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < effort(1000); ++i) {
       Vec3 origin = random_vec3(&rng, size), direction = random_vec3(&rng, 1);
       Ray ray = {origin, direction, kInfinity};
       wrong += !oracle_agrees(*world, ray, closest(*world, ray), 4, &decided);

@@ -7,6 +7,7 @@
 #include "base/color.h"
 #include "scene/builtin_helpers.h"
 #include "support/generated_scene.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -64,7 +65,7 @@ void check_bounded(const CutOff& c) {
 TEST_CASE("cut_off_is_bounded_on_cornell") {
   auto built = build_builtin("cornell");
   Settings settings;
-  settings.width = 96, settings.height = 72;
+  settings.width = effort_side(96), settings.height = effort_side(72);
   CutOff c = compare_cut_off(built->scene, settings);
   check_bounded(c);
   CHECK(c.rays_left_out > 0);
@@ -83,7 +84,7 @@ TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
       for (Material& m : generated->materials)
         if (!is_zero(m.mirror)) m.mirror = {0.05f, 0.05f, 0.05f};  // faint enough to matter
       generated->scene.info.exposure = seed % 2 ? 0.02f : 1.0f;
-      Settings settings = settings_for(features, 48, 36);
+      Settings settings = settings_for(features, effort_side(48), effort_side(36));
       settings.ray_depth = 16;
       CutOff c = compare_cut_off(generated->scene, settings);
       CAPTURE(features);
@@ -91,7 +92,7 @@ TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
       check_bounded(c);
       left_out += c.rays_left_out;
     }
-  CHECK(left_out > 1000);
+  CHECK(left_out > static_cast<std::uint64_t>(effort(1000)));
 }
 
 // Goal: no ray brings more than the bound that the cut-off relies on. Method: sampling, rays from everywhere to
@@ -108,7 +109,7 @@ TEST_CASE("radiance_bound_bounds_every_ray") {
     Rng rng = make_rng(seed);
     auto between = [&](float low, float high) { return low + (high - low) * next_float(&rng); };
     float most = 0;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < effort(4000); ++i) {
       Vec3 from = {between(-3, 3), between(0, 3), between(-2.4f, 3)},
            to = {between(-3, 3), between(0, 3), between(-2.4f, 3)};
       most = std::max(most, max_component(trace_ray(r, from, normalize(to - from))));

@@ -6,6 +6,7 @@
 #include "app/progressive.h"
 #include "scene/baked.h"
 #include "scene/builtin_helpers.h"
+#include "support/effort.h"
 #include "support/feature_sets.h"
 #include "support/generated_scene.h"
 
@@ -87,7 +88,7 @@ TEST_CASE("picture_is_independent_of_spans") {
 
 // Goal: the picture does not depend on the accelerator. Method: differential over the list of accelerators.
 TEST_CASE("picture_is_independent_of_accelerator") {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(6)); ++seed) {
     auto generated = generate_scene(kRich, seed);
     Settings settings = settings_for(kRich, 30, 22);
     Picture expected = render_picture(generated->scene, settings, 0.5, &kBruteAccel);

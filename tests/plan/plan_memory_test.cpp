@@ -99,7 +99,7 @@ TEST_CASE("plan_memory_refusal_names_what_fits") {
     settings.memory_bytes = std::strtoul(message.c_str() + at + 9, nullptr, 10) << 20;
     auto test = make_renderer(generated->scene, settings, nullptr, &status);
     REQUIRE(test);
-    CHECK(render_frame(&test->renderer, 0).ok);
+    CHECK(prepare_frame(&test->renderer, 0).ok);
   }
 }
 

@@ -3,6 +3,7 @@
 #include "shade/dielectric.h"
 #include "shade/media.h"
 #include "shade/shade_helpers.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -175,7 +176,7 @@ TEST_CASE("hard_25_glass_on_a_table_shows_the_table") {
     auto t = ray_renderer(&s);
     Rng rng = make_rng(4);
     int wrong = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < effort(20000); ++i) {
       Vec3 target = {2 * next_float(&rng) - 1, 2 * next_float(&rng) - 1, 0.3f};
       Vec3 from = {4 * next_float(&rng) - 2, 4 * next_float(&rng) - 2, 3};
       wrong += !(std::fabs(look(*t, from, target).x - 0.75f) < 1e-5f);

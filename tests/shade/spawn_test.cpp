@@ -6,6 +6,7 @@
 #include "scene/builtin_helpers.h"
 #include "shade/shade_helpers.h"
 #include "shade/surface.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -52,7 +53,7 @@ int self_hits(GeneratedScene* s, int spawns) {
 // Goal: a ray that leaves a surface does not meet it. Method: 10⁶ spawns per shape, a quarter of them grazing: spheres
 // of sizes from 10⁻⁸ to 10⁸, at the origin and far from it, planes through zero coordinates.
 TEST_CASE("hard_20_spawned_rays_do_not_meet_their_surface") {
-  constexpr int kSpawns = 1000000;
+  constexpr int kSpawns = effort(1000000);
   struct Shape {
     const char* name;
     Vec3 center;
@@ -94,7 +95,7 @@ TEST_CASE("hard_21_near_surface_of_a_narrow_gap_is_seen") {
     auto t = ray_renderer(&s);
     Rng rng = make_rng(7);
     int wrong = 0;
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < effort(5000); ++i) {
       Vec3 target = random_vec3(&rng);
       target.z = near;
       wrong += look(*t, {2 * next_float(&rng), 0, 2}, target).x != 1;
@@ -117,7 +118,7 @@ TEST_CASE("hard_21_near_surface_of_a_narrow_gap_is_seen") {
   auto t = ray_renderer(&s);
   Rng rng = make_rng(8);
   int dark = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < effort(20000); ++i) {
     Vec3 d = normalize(random_vec3(&rng));
     if (d.z < 0.2f) continue;
     dark += !(look(*t, d * 5.0f, {0, 0, 0}).x > 0);
@@ -136,7 +137,7 @@ TEST_CASE("hard_24_nothing_escapes_from_a_closed_room") {
     const Scene& scene = t->renderer.scene;
     Rng rng = make_rng(24);
     int escaped = 0;
-    for (int i = 0; i < 300000; ++i) {
+    for (int i = 0; i < effort(300000); ++i) {
       Vec3 from = random_vec3(&rng) * 0.999f, to = random_vec3(&rng);
       if (i % 2) {
         const Triangle& triangle = scene.triangles[next_u32(&rng) % scene.triangles.count];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "support/effort.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {
@@ -28,6 +29,10 @@ inline std::vector<std::uint32_t> feature_sets() {
   for (int i = 0; i < 200; ++i) sets.push_back(next_u32(&rng) & kAllFeatures);
   std::sort(sets.begin(), sets.end());
   sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < sets.size(); ++i)
+    if (i % kEffortDivisor == 0 || i + 1 == sets.size()) sets[kept++] = sets[i];
+  sets.resize(kept);
   return sets;
 }
 
