@@ -4,6 +4,7 @@
 
 #include "shade/camera.h"
 #include "shade/shade_helpers.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -92,7 +93,7 @@ TEST_CASE("camera_rays_closed_forms") {
 // every feature, lengths scaled everywhere, radiance left alone.
 TEST_CASE("hard_29_scene_scaled_by_powers_of_two_same_image") {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Settings settings = settings_for(kAllFeatures, 48, 36);
+    Settings settings = settings_for(kAllFeatures, effort_side(48), effort_side(36));
     Picture expected = render_picture(generate_scene(kAllFeatures, seed)->scene, settings, 0.5);
     for (float k : {0x1p20f, 0x1p-20f, 0x1p7f}) {
       auto scaled = generate_scene(kAllFeatures, seed);
