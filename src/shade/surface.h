@@ -51,8 +51,8 @@ inline Vec3 safe_origin(const Surface& s, float side) {
 }
 
 // Where a shadow ray starts that leaves below the flat triangle but above the curved surface that the vertex normals
-// speak of: the point is moved onto the planes through the vertices [Hanika 2021, Ray Tracing Gems II ch. 4, listing
-// 4-1]. On a surface that is flat or hollow there it does not move, and the ray meets the triangle itself.
+// speak of: the point is moved onto the planes through the vertices [Hanika 2021, Ray Tracing Gems II ch. 4]. On a
+// surface that is flat or hollow there it does not move, and the ray meets the triangle itself.
 Vec3 curved_origin(const FrameData& frame, const Surface& s);
 
 }  // namespace pocketray
