@@ -145,15 +145,16 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
 OpenScene::~OpenScene() {
   stop_workers(renderer.workers);
   platform::unmap_file(&source.mapped);
+  give_block_back(block);
 }
 
 Status open_scene(const CommonOptions& o, std::size_t (*output_bytes)(const Settings&), OpenScene* opened) {
   Settings settings;
   RETURN_IF_ERROR(parse_settings(o, &settings));
-  void* block = take_block(settings.memory_bytes);
-  if (!block) return failure("%zu bytes of memory cannot be had: lower --memory", settings.memory_bytes);
+  opened->block = take_block(settings.memory_bytes);
+  if (!opened->block) return failure("%zu bytes of memory cannot be had: lower --memory", settings.memory_bytes);
   Renderer* r = &opened->renderer;
-  start_renderer(block, settings.memory_bytes, settings, r);
+  start_renderer(opened->block, settings.memory_bytes, settings, r);
   r->camera_index = o.camera_index;
   SceneStorage storage;
   RETURN_IF_ERROR(load_scene(o.scene, r, &opened->source, &storage));

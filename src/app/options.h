@@ -24,6 +24,10 @@ void add_scene_options(CLI::App* command, CommonOptions* options);
 struct OpenScene {
   Renderer renderer;
   SceneSource source;
+  void* block = nullptr;
+  OpenScene() = default;
+  OpenScene(const OpenScene&) = delete;
+  OpenScene& operator=(const OpenScene&) = delete;
   ~OpenScene();
 };
 

@@ -68,10 +68,18 @@ Status import_model(const std::string& name, const ImportOptions& options, Impor
 #endif
 
 void* take_block(std::size_t bytes) { return std::malloc(bytes); }
+void give_block_back(void* block) { std::free(block); }
 
 Status load_scene(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
   *storage = SceneStorage();
   if (const BuiltinScene* builtin = find_builtin(name.c_str())) return load_builtin(*builtin, r, storage);
+  if (platform::file_stamp(name.c_str()) == 0) {
+    std::string names;
+    int count;
+    const BuiltinScene* list = builtin_list(&count);
+    for (int i = 0; i < count; ++i) names += std::string(i ? ", " : "") + list[i].name;
+    return failure("%.300s is no file, nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
+  }
   if (ends_with(name, ".pray")) return load_baked(name, r, source, storage);
 #ifdef POCKETRAY_HAVE_IMPORT
   return load_imported(name, r, source, storage);

@@ -15,8 +15,9 @@ struct SceneSource {
   std::string warning;          // one line, empty if there is nothing to say
 };
 
-// The one block, taken at start. Kept until the program ends.
+// The one block, taken at start and kept as long as its scene is open. Null when it cannot be had.
 void* take_block(std::size_t bytes);
+void give_block_back(void* block);
 
 #ifdef POCKETRAY_HAVE_IMPORT
 // Imports a model and settles its light: one that lights itself is exposed by measurement, since the units of files
