@@ -122,8 +122,9 @@ struct Loop {
   Progressive progressive;
   Array<Span> row_spans;
   HudText hud;
-  double seconds = 0;  // of the animation
-  bool changed = true, finished = false;
+  double seconds = 0;                 // of the animation
+  bool moved = false, passed = true;  // the camera has moved, time has passed: another picture is due
+  bool finished = false;
   std::uint64_t last_ns = 0, last_check_ns = 0, stamp = 0;
 };
 
@@ -139,21 +140,24 @@ Status step_scene(Viewer* v, Renderer* r, Loop* loop) {
   v->change_mode = v->home = false;
   if (moved) {
     RETURN_IF_ERROR(set_camera(r, loop->control.camera));
-    loop->changed = true;
+    loop->moved = true;
   }
   if (has(r->effects.mask, Effect::animation) && !v->paused) {
     loop->seconds += static_cast<double>(elapsed);
-    loop->changed = true;
+    loop->passed = true;
   }
   return success();
 }
 
 // Begins the next picture once the present one can be seen, traces a slice of it, shows it.
 Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
-  if (loop->changed && (loop->finished || loop->progressive.shown_coarse)) {
+  // A moving camera is followed as soon as something can be seen; time waits until the picture is finished, and so does
+  // everything where finished frames are counted.
+  bool follow = loop->moved && loop->progressive.shown_coarse && v->options.frame_count == 0;
+  if (follow || (loop->finished && (loop->moved || loop->passed))) {
     RETURN_IF_ERROR(prepare_frame(r, loop->seconds));
     start_progressive(r, &loop->progressive);
-    loop->changed = loop->finished = false;
+    loop->moved = loop->passed = loop->finished = false;
   }
   if (loop->finished && v->hud == v->hud_shown) {
     v->backend->sleep_ns(kIdleNs);
@@ -164,7 +168,7 @@ Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
     loop->finished = advance_progressive(r, loop->row_spans, clock_ns() + kSliceNs, &loop->progressive);
   if (loop->finished && !was_finished) {
     ++v->frames_finished;
-    if (v->options.frame_count > 0) loop->changed = true;  // as many frames as were asked for, even of a still
+    if (v->options.frame_count > 0) loop->passed = true;  // as many frames as were asked for, even of a still
   }
   write_hud(*r, loop->progressive, loop->control.mode, &loop->hud);
   std::uint32_t begin = 0, end = 0;
