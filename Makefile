@@ -2,6 +2,7 @@
 #   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
 #   PREFIX=   where `make install` goes
 #   TESTS=    only the test programs that match this regular expression
+#   JSON=     a file that takes the table of `make hardcases`, too
 DEVICE ?=
 PREFIX ?= /usr/local
 TESTS ?= .
@@ -19,7 +20,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test bench format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases bench format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -56,6 +57,9 @@ test: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS)
 	cd $(BUILD) && ctest --output-on-failure -j$(JOBS) -R '$(TESTS)'
 
+hardcases: setup-tests configure
+	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases
+
 bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) bench $(SCENE) --json -
@@ -79,6 +83,7 @@ help:
 	@echo "make              build for this machine into build/"
 	@echo "make run          build, then render, plan and time SCENE=$(SCENE); open the emulator where there is a display"
 	@echo "make test         build and run all tests (TESTS=regex: those that match)"
+	@echo "make hardcases    every hard case in full: case, inputs, wrong answers, bound (JSON=FILE: as a list, too)"
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make format       clang-format on all sources;  make tidy: clang-tidy"
 	@echo "make install      into PREFIX=$(PREFIX) (and DESTDIR)"

@@ -1,20 +1,12 @@
 // Rays aimed where triangles meet: HARDCASES rows 1, 2, 13 and 16.
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-
-#include "accel/accel_world.h"
-#include "support/effort.h"
+#include "accel/variant.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
 namespace {
-
-// The suite runs a share of the gate of 10^8; POCKETRAY_AIMED_RAYS asks for another number.
-int aimed_ray_count(int usual) {
-  const char* wanted = std::getenv("POCKETRAY_AIMED_RAYS");
-  return wanted ? std::atoi(wanted) : effort(usual);
-}
 
 // A point of an edge of triangle i, in float as a user would compute it; a corner where `corner`.
 Vec3 edge_point(const Mesh& mesh, std::uint32_t i, int side, float s, bool corner) {
@@ -28,22 +20,27 @@ struct Aimed {
   float radius;  // the cube of this side about the center lies inside
 };
 
-// Rays from inside a closed mesh at its edges and corners: every one must hit. Returns how many miss or differ from
-// brute force, which is asked about every `oracle_every`-th ray.
-int misses_from_inside(const Aimed& aimed, const AccelInfo* info, int ray_count, int oracle_every) {
-  auto world = make_world(aimed.mesh, info);
-  auto oracle = make_world(aimed.mesh, &kBruteAccel);
-  Rng rng = make_rng(201);
+// Rays from inside a closed mesh at its edges and corners, in groups that share an origin: every one must hit. Returns
+// how many miss or, of one group in `oracle_every`, differ from brute force.
+int wrong_from_inside(const Variant& variant, const World& world, const World& oracle, const Aimed& aimed, Rng* rng,
+                      int ray_count, int oracle_every) {
   int wrong = 0;
-  for (int i = 0; i < ray_count; ++i) {
-    Vec3 origin = aimed.center + random_vec3(&rng, 0.5f * aimed.radius);
-    std::uint32_t triangle = next_u32(&rng) % aimed.mesh.triangles.size();
-    int side = static_cast<int>(next_u32(&rng) % 3);
-    float s = next_float(&rng);
-    Ray ray = {origin, edge_point(aimed.mesh, triangle, side, s, i % 4 == 0) - origin, kInfinity};
-    Hit hit = closest(*world, ray);
-    wrong += hit.triangle == kNoTriangle;
-    if (i % oracle_every == 0) wrong += !same_hit(hit, closest(*oracle, ray));
+  Ray rays[kGroupMax];
+  Hit hits[kGroupMax];
+  for (int begin = 0, group = 0; begin < ray_count; begin += kGroupMax, ++group) {
+    int count = std::min(kGroupMax, ray_count - begin);
+    Vec3 origin = aimed.center + random_vec3(rng, 0.5f * aimed.radius);
+    for (int i = 0; i < count; ++i) {
+      std::uint32_t triangle = next_u32(rng) % aimed.mesh.triangles.size();
+      int side = static_cast<int>(next_u32(rng) % 3);
+      float s = next_float(rng);
+      rays[i] = {origin, edge_point(aimed.mesh, triangle, side, s, i % 4 == 0) - origin, kInfinity};
+    }
+    answer(variant, world, rays, count, nullptr, hits);
+    for (int i = 0; i < count; ++i) {
+      wrong += hits[i].triangle == kNoTriangle;
+      if (group % oracle_every == 0) wrong += !same_hit(hits[i], closest(oracle, rays[i]));
+    }
   }
   return wrong;
 }
@@ -64,34 +61,48 @@ std::vector<Aimed> aimed_meshes() {
 }  // namespace
 
 // Goal: no ray slips between triangles. Method: closed meshes near the origin, far from it, tiny and huge; rays from
-// inside at points of edges and at corners; each must hit something.
+// inside at points of edges and at corners; each must hit something, a share of them just what brute force hits.
 TEST_CASE("hard_01_rays_aimed_at_edges_and_vertices_never_miss") {
-  int per_mesh = aimed_ray_count(960000) / static_cast<int>(aimed_meshes().size());
-  for (const AccelInfo* info : kAccelList) {
-    bool slow = info == &kBruteAccel;
-    for (const Aimed& aimed : aimed_meshes()) {
-      INFO(info->name << ", radius " << aimed.radius << ", center " << aimed.center.x << ", rays " << per_mesh);
-      CHECK(misses_from_inside(aimed, info, slow ? effort(500) : per_mesh, slow ? 1 << 30 : 500) == 0);
+  std::vector<Aimed> meshes = aimed_meshes();
+  int per_mesh = gate_share(800000, 100000000) / static_cast<int>(meshes.size());
+  for (const Variant& variant : all_variants())
+    for (const Aimed& aimed : meshes) {
+      auto world = make_world(aimed.mesh, variant.accel), oracle = make_world(aimed.mesh, &kBruteAccel);
+      std::uint64_t wrong = count_wrong(per_mesh, 201, [&](Rng* rng, int count) {
+        return wrong_from_inside(variant, *world, *oracle, aimed, rng, count, whole_gate() ? 256 : 32);
+      });
+      INFO(name_of(variant) << ", radius " << aimed.radius << ", center " << aimed.center.x);
+      CHECK(wrong == 0);
+      count_hard(per_mesh, wrong, "0 misses");
     }
-  }
 }
 
 // Goal: the same from outside, where the ray has crossed half the tree's boxes edge-on. Method: a ray from outside
-// through a point of an edge, well inside the outline, must hit; the hit is the one of brute force.
+// through a point of an edge, well inside the outline, must hit.
 TEST_CASE("hard_01_rays_from_far_outside_aimed_at_edges_never_miss") {
-  for (float distance : {3.0f, 1e3f, 1e5f}) {
-    Mesh mesh = jittered_sphere(3, 1, {0, 0, 0}, 0.02f, 25);
-    auto world = make_world(mesh, &kBvhAccel);
-    Rng rng = make_rng(202);
-    int missed = 0;
-    for (int i = 0; i < effort(50000); ++i) {
-      std::uint32_t triangle = next_u32(&rng) % mesh.triangles.size();
-      Vec3 target = edge_point(mesh, triangle, i % 3, next_float(&rng), i % 4 == 0);
-      Vec3 origin = normalize(target + random_vec3(&rng, 0.4f)) * distance;
-      missed += closest(*world, {origin, target - origin, kInfinity}).triangle == kNoTriangle;
+  Mesh mesh = jittered_sphere(3, 1, {0, 0, 0}, 0.02f, 25);
+  int per_distance = gate_share(50000, 10000000);
+  for (const Variant& variant : all_variants()) {
+    auto world = make_world(mesh, variant.accel);
+    for (float distance : {3.0f, 1e3f, 1e5f}) {
+      auto missed = [&](Rng* rng, int count) {
+        int misses = 0;
+        for (int i = 0; i < count; ++i) {
+          std::uint32_t triangle = next_u32(rng) % mesh.triangles.size();
+          Vec3 target = edge_point(mesh, triangle, i % 3, next_float(rng), i % 4 == 0);
+          Vec3 origin = normalize(target + random_vec3(rng, 0.4f)) * distance;
+          Ray ray = {origin, target - origin, kInfinity};
+          Hit hit;
+          answer(variant, *world, &ray, 1, nullptr, &hit);
+          misses += hit.triangle == kNoTriangle;
+        }
+        return misses;
+      };
+      std::uint64_t wrong = count_wrong(per_distance, 202, missed);
+      INFO(name_of(variant) << ", distance " << distance);
+      CHECK(wrong == 0);
+      count_hard(per_distance, wrong, "0 misses");
     }
-    INFO("distance " << distance);
-    CHECK(missed == 0);
   }
 }
 
@@ -124,17 +135,18 @@ bool share_vertex(const Triangle& a, const Triangle& b) {
 TEST_CASE("hard_02_rays_at_vertices_cross_once_and_have_a_decided_id") {
   Mesh mesh = jittered_sphere(3, 1, {0, 0, 0}, 0, 26);
   auto oracle = make_world(mesh, &kBruteAccel);
+  int rays = gate_share(3000, 100000);
   for (const AccelInfo* info : kAccelList) {
     auto world = make_world(mesh, info);
     Rng rng = make_rng(203);
-    int odd = 0, split_fans = 0, undecided = 0, several = 0;
-    for (int i = 0; i < effort(3000); ++i) {
+    int odd = 0, split_fans = 0, undecided = 0, several = 0, refused = 0;
+    for (int i = 0; i < rays; ++i) {
       Vec3 target = mesh.positions[next_u32(&rng) % mesh.positions.size()];
       Vec3 origin = normalize(target + random_vec3(&rng, 0.4f)) * 4.0f;
       Ray ray = {origin, target - origin, kInfinity};
       Crossings crossings;
       HitFilter filter = {Crossings::collect, &crossings};
-      CHECK(closest(*world, ray, nullptr, &filter).triangle == kNoTriangle);
+      refused += closest(*world, ray, nullptr, &filter).triangle == kNoTriangle;
       std::vector<std::uint32_t> sides[2];
       for (std::uint32_t id : crossings.ids) sides[faces(mesh, id, ray.direction)].push_back(id);
       odd += sides[0].empty() != sides[1].empty() || sides[0].empty();
@@ -148,6 +160,8 @@ TEST_CASE("hard_02_rays_at_vertices_cross_once_and_have_a_decided_id") {
     CHECK(split_fans == 0);
     CHECK(undecided == 0);
     CHECK(several > 0);  // rays did meet shared edges
+    CHECK(refused == rays);
+    count_hard(rays, odd + split_fans + undecided, "even parity, the id of brute force");
   }
 }
 
@@ -163,21 +177,21 @@ TEST_CASE("hard_13_flat_boxes_are_entered_wherever_their_triangle_is_hit") {
         p[axis] = q[axis] = r[axis] = plane;
         add_triangle(&mesh, p, q, r);
       }
-      auto world = make_world(mesh, &kBvhAccel), oracle = make_world(mesh, &kBruteAccel);
-      int wrong = 0, hits = 0;
-      for (int i = 0; i < effort(3000); ++i) {
-        Vec3 target = edge_point(mesh, next_u32(&rng) % 120, i % 3, next_float(&rng), i % 5 == 0), origin = target;
-        origin[axis] += between(&rng, -3, 3);
-        if (i % 2) origin = origin + random_vec3(&rng, i % 4 == 1 ? 5.0f : 5e-4f);
-        Ray ray = {origin, target - origin, kInfinity};
-        if (is_zero(ray.direction)) continue;
-        Hit expected = closest(*oracle, ray);
-        wrong += !same_hit(expected, closest(*world, ray));
-        hits += expected.triangle != kNoTriangle;
+      for (const Variant& variant : all_variants()) {
+        auto world = make_world(mesh, variant.accel), oracle = make_world(mesh, &kBruteAccel);
+        Tally tally;
+        for (int i = 0; i < gate_share(3000, 60000); ++i) {
+          Vec3 target = edge_point(mesh, next_u32(&rng) % 120, i % 3, next_float(&rng), i % 5 == 0), origin = target;
+          origin[axis] += between(&rng, -3, 3);
+          if (i % 2) origin = origin + random_vec3(&rng, i % 4 == 1 ? 5.0f : 5e-4f);
+          Ray ray = {origin, target - origin, kInfinity};
+          if (!is_zero(ray.direction)) compare(variant, *world, *oracle, ray, &tally);
+        }
+        INFO("axis " << axis << ", plane " << plane << ", " << name_of(variant));
+        CHECK(tally.wrong == 0);
+        CHECK(tally.hits > tally.rays / 4);
+        count_hard(tally.rays, tally.wrong, "0 drops");
       }
-      INFO("axis " << axis << ", plane " << plane);
-      CHECK(wrong == 0);
-      CHECK(hits > effort(1000));
     }
 }
 
@@ -186,21 +200,26 @@ TEST_CASE("hard_13_flat_boxes_are_entered_wherever_their_triangle_is_hit") {
 // stay within twice those of rays moved by a fraction of a cell.
 TEST_CASE("hard_16_axis_parallel_rays_on_a_lattice_find_no_hole_and_visit_few_nodes") {
   const int n = 16;
-  auto world = make_world(lattice_box(n), &kBvhAccel);
-  TraceStats exact, moved;
-  int holes = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i <= 2 * n; ++i)
-      for (int j = 0; j <= 2 * n; ++j)
-        for (float sign : {1.0f, -1.0f}) {
-          Vec3 origin, direction = {0, 0, 0};
-          origin[axis] = sign > 0 ? -2.0f : n + 2.0f, direction[axis] = sign;
-          origin[(axis + 1) % 3] = 0.5f * i, origin[(axis + 2) % 3] = 0.5f * j;
-          Hit hit = closest(*world, {origin, direction, kInfinity}, &exact);
-          holes += hit.triangle == kNoTriangle || hit.t != 2;
-          origin[(axis + 1) % 3] += i < n ? 0.13f : -0.13f, origin[(axis + 2) % 3] += j < n ? 0.17f : -0.17f;
-          holes += closest(*world, {origin, direction, kInfinity}, &moved).triangle == kNoTriangle;
-        }
-  CHECK(holes == 0);
-  CHECK(exact.nodes <= 2 * moved.nodes);
+  for (const Variant& variant : all_variants()) {
+    auto world = make_world(lattice_box(n), variant.accel);
+    TraceStats exact, moved;
+    int holes = 0, rays = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i <= 2 * n; ++i)
+        for (int j = 0; j <= 2 * n; ++j)
+          for (float sign : {1.0f, -1.0f}) {
+            Vec3 origin, direction = {0, 0, 0};
+            origin[axis] = sign > 0 ? -2.0f : n + 2.0f, direction[axis] = sign;
+            origin[(axis + 1) % 3] = 0.5f * i, origin[(axis + 2) % 3] = 0.5f * j;
+            Hit hit = closest(*world, {origin, direction, kInfinity}, &exact);
+            holes += hit.triangle == kNoTriangle || hit.t != 2;
+            origin[(axis + 1) % 3] += i < n ? 0.13f : -0.13f, origin[(axis + 2) % 3] += j < n ? 0.17f : -0.17f;
+            holes += closest(*world, {origin, direction, kInfinity}, &moved).triangle == kNoTriangle;
+            rays += 2;
+          }
+    INFO(name_of(variant));
+    CHECK(holes == 0);
+    CHECK(exact.nodes <= 2 * moved.nodes);
+    count_hard(rays, holes, "0 holes, at most 2 x the nodes of a moved ray");
+  }
 }

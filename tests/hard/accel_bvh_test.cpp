@@ -1,11 +1,12 @@
-// The tree around the triangle test: HARDCASES rows 8, 11, 12, 14, 15 and 19.
+// The tree around the triangle test: HARDCASES rows 8, 11, 12, 14, 15, 18 and 19.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 
 #include "accel/bvh.h"
 #include "accel/oracle.h"
-#include "support/effort.h"
+#include "accel/variant.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -26,7 +27,7 @@ std::uint32_t depth_of(const World& world) {
 // Whether every child's box holds exactly what is under it, and each triangle lies in one leaf.
 bool is_sound(const World& world) {
   Accel copy = world.accel;
-  return bvh_adopt(&copy, world.accel.data).ok;
+  return world.info->adopt(&copy, world.accel.data).ok;
 }
 
 bool contains_children(const BvhView& bvh) {
@@ -49,10 +50,10 @@ bool contains_children(const BvhView& bvh) {
 }
 
 // Rays at and around the mesh: how many answers differ from brute force.
-int wrong_answers(const World& world, const Mesh& mesh, int ray_count, std::uint64_t seed) {
+int wrong_answers(const Variant& variant, const World& world, const Mesh& mesh, int ray_count, std::uint64_t seed) {
   auto oracle = make_world(mesh, &kBruteAccel);
   Rng rng = make_rng(seed);
-  int wrong = 0;
+  Tally tally;
   Vec3 size = extent(oracle->accel.bounds), low = oracle->accel.bounds.low;
   for (int i = 0; i < ray_count; ++i) {
     Vec3 f = {next_float(&rng), next_float(&rng), next_float(&rng)};
@@ -60,9 +61,9 @@ int wrong_answers(const World& world, const Mesh& mesh, int ray_count, std::uint
     const Triangle& t = mesh.triangles[next_u32(&rng) % mesh.triangles.size()];
     if (i % 4) target = mesh.positions[t.vertex[i % 3]] * 0.5f + mesh.positions[t.vertex[(i + 1) % 3]] * 0.5f;
     Ray ray = {origin, target - origin, kInfinity};
-    wrong += !same_hit(closest(world, ray), closest(*oracle, ray));
+    compare(variant, world, *oracle, ray, &tally);
   }
-  return wrong;
+  return static_cast<int>(tally.wrong);
 }
 
 }  // namespace
@@ -91,7 +92,8 @@ TEST_CASE("hard_08_spoilt_triangles_are_left_out_and_the_rest_agrees_with_brute_
       CHECK(world->accel.bounds.high.x <= kCoordinateMax);
       Rng rng = make_rng(401);
       int wrong = 0, wrong_in_double = 0, decided = 0, hits = 0;
-      for (int i = 0; i < effort(10000); ++i) {
+      int rays = effort(10000);
+      for (int i = 0; i < rays; ++i) {
         Ray ray = {random_vec3(&rng, 2 * scale), random_vec3(&rng, 1), kInfinity};
         Hit hit = closest(*world, ray);
         wrong += !same_hit(hit, closest(*oracle, ray));
@@ -103,6 +105,7 @@ TEST_CASE("hard_08_spoilt_triangles_are_left_out_and_the_rest_agrees_with_brute_
       CHECK(wrong_in_double == 0);
       CHECK(hits > effort(1500));
       if (scale > 1e-30f) CHECK(decided > effort(400));
+      count_hard(rays, wrong + wrong_in_double, "as brute force");
     }
   }
 }
@@ -111,26 +114,24 @@ TEST_CASE("hard_08_spoilt_triangles_are_left_out_and_the_rest_agrees_with_brute_
 // lattice, origins at vertices' coordinates so that slabs are met on their faces.
 TEST_CASE("hard_11_all_sign_and_zero_combinations_of_the_direction_are_as_brute_force") {
   const float values[] = {-1, -0.0f, 0.0f, 1, -1e-30f, 1e-30f, 0.3f};
-  for (const Mesh& mesh : {lattice_box(6), soup("soup", 300, 4, 2, 42)}) {
-    auto world = make_world(mesh, &kBvhAccel), oracle = make_world(mesh, &kBruteAccel);
-    Rng rng = make_rng(402);
-    int wrong = 0, hits = 0;
-    for (float dx : values)
-      for (float dy : values)
-        for (float dz : values)
-          for (int i = 0; i < 20; ++i) {
-            Vec3 p = mesh.positions[next_u32(&rng) % mesh.positions.size()], origin = random_vec3(&rng, 6);
-            for (int axis = 0; axis < 3; ++axis)
-              if (next_u32(&rng) % 2) origin[axis] = p[axis];
-            Ray ray = {origin, {dx, dy, dz}, kInfinity};
-            Hit expected = closest(*oracle, ray);
-            wrong += !same_hit(expected, closest(*world, ray));
-            hits += expected.triangle != kNoTriangle;
-          }
-    INFO(mesh.name);
-    CHECK(wrong == 0);
-    CHECK(hits > 700);
-  }
+  for (const Mesh& mesh : {lattice_box(6), soup("soup", 300, 4, 2, 42)})
+    for (const Variant& variant : all_variants()) {
+      auto world = make_world(mesh, variant.accel), oracle = make_world(mesh, &kBruteAccel);
+      Rng rng = make_rng(402);
+      Tally tally;
+      for (int combination = 0; combination < 343; ++combination)
+        for (int i = 0; i < gate_share(20, 400); ++i) {
+          Vec3 direction = {values[combination % 7], values[combination / 7 % 7], values[combination / 49]};
+          Vec3 p = mesh.positions[next_u32(&rng) % mesh.positions.size()], origin = random_vec3(&rng, 6);
+          for (int axis = 0; axis < 3; ++axis)
+            if (next_u32(&rng) % 2) origin[axis] = p[axis];
+          compare(variant, *world, *oracle, {origin, direction, kInfinity}, &tally);
+        }
+      INFO(mesh.name << ", " << name_of(variant));
+      CHECK(tally.wrong == 0);
+      CHECK(tally.hits > tally.rays / 10);
+      count_hard(tally.rays, tally.wrong, "the bits of brute force");
+    }
 }
 
 // Goal: rays that lie in faces of boxes, where slabs give 0·∞, are as brute force. Method: a lattice, whose boxes have
@@ -139,20 +140,50 @@ TEST_CASE("hard_11_all_sign_and_zero_combinations_of_the_direction_are_as_brute_
 TEST_CASE("hard_12_rays_lying_in_box_faces_are_as_brute_force") {
   const int n = 5;
   Mesh mesh = lattice_box(n);
-  auto world = make_world(mesh, &kBvhAccel), oracle = make_world(mesh, &kBruteAccel);
-  int wrong = 0, hits = 0;
-  for (int dx = -1; dx <= 1; ++dx)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dz = -1; dz <= 1; ++dz)
-        for (int i = 0; i < 8 * 8 * 8; ++i) {
-          Vec3 origin = {float(i % 8 - 1), float(i / 8 % 8 - 1), float(i / 64 - 1)};
-          Ray ray = {origin, {float(dx), float(dy), float(dz)}, kInfinity};
-          Hit expected = closest(*oracle, ray);
-          wrong += !same_hit(expected, closest(*world, ray));
-          hits += expected.triangle != kNoTriangle;
-        }
-  CHECK(wrong == 0);
-  CHECK(hits > 3000);
+  for (const Variant& variant : all_variants()) {
+    auto world = make_world(mesh, variant.accel), oracle = make_world(mesh, &kBruteAccel);
+    Tally tally;
+    for (int d = 0; d < 27; ++d)
+      for (int i = 0; i < 8 * 8 * 8; ++i) {
+        Vec3 origin = {float(i % 8 - 1), float(i / 8 % 8 - 1), float(i / 64 - 1)};
+        Vec3 direction = {float(d % 3 - 1), float(d / 3 % 3 - 1), float(d / 9 - 1)};
+        compare(variant, *world, *oracle, {origin, direction, kInfinity}, &tally);
+      }
+    INFO(name_of(variant));
+    CHECK(tally.wrong == 0);
+    CHECK(tally.hits > 3000);
+    count_hard(tally.rays, tally.wrong, "the bits of brute force");
+  }
+}
+
+// Goal: rays through corners and along edges of any box that a tree or a grid may draw about triangles are as brute
+// force, from outside and from on the boundary, with triangles that span many boxes among small ones. Method: every
+// face of such a box lies at a coordinate of some vertex; corners, edges and origins are made of those.
+TEST_CASE("hard_18_rays_through_box_corners_and_on_boundaries_are_as_brute_force") {
+  Mesh mixed = soup("small and spanning", 300, 1, 0.1f, 45);
+  Rng shapes = make_rng(47);
+  for (int i = 0; i < 20; ++i)
+    add_triangle(&mixed, random_vec3(&shapes, 1), random_vec3(&shapes, 1), random_vec3(&shapes, 1));
+  for (const Mesh& mesh : {mixed, lattice_box(8)})
+    for (const Variant& variant : all_variants()) {
+      auto world = make_world(mesh, variant.accel), oracle = make_world(mesh, &kBruteAccel);
+      Rng rng = make_rng(409);
+      auto coordinate = [&](int axis) { return mesh.positions[next_u32(&rng) % mesh.positions.size()][axis]; };
+      auto corner = [&] { return Vec3{coordinate(0), coordinate(1), coordinate(2)}; };
+      Tally tally;
+      for (int i = 0; i < gate_share(4000, 100000); ++i) {
+        Vec3 target = corner(), origin = corner();
+        int axis = i % 3;
+        if (i % 4 == 0) origin = target, origin[axis] = coordinate(axis);           // along an edge
+        if (i % 4 == 1) origin[axis] = target[axis];                                // within a face
+        if (i % 4 == 2) origin = origin + normalize(random_vec3(&rng, 1)) * 20.0f;  // through a corner, from outside
+        compare(variant, *world, *oracle, {origin, target - origin, kInfinity}, &tally);
+      }
+      INFO(mesh.name << ", " << name_of(variant));
+      CHECK(tally.wrong == 0);
+      CHECK(tally.hits > tally.rays / 4);
+      count_hard(tally.rays, tally.wrong, "the bits of brute force");
+    }
 }
 
 // Goal: triangles that no split can tell apart end the build within the planned depth and bytes (make_world() gives the
@@ -173,10 +204,18 @@ TEST_CASE("hard_14_identical_triangles_and_equal_centroids_end_the_build_within_
     CHECK(world->keep.used_max <= kBvhAccel.need(10000));
     CHECK(world->scratch.used == 0);
     CHECK(is_sound(*world));
-    CHECK(wrong_answers(*world, *mesh, 30, 404) == 0);
   }
   auto world = make_world(same, &kBvhAccel);
   CHECK(closest(*world, {{0, 0, 5}, {0, 0, -1}, kInfinity}).triangle == 0);  // the smallest id of ten thousand equals
+  for (const Variant& variant : all_variants())
+    for (const Mesh* mesh : {&same, &concentric}) {
+      auto other = make_world(*mesh, variant.accel);
+      int wrong = wrong_answers(variant, *other, *mesh, gate_share(30, 1000), 404);
+      INFO(name_of(variant));
+      CHECK(wrong == 0);
+      CHECK(other->keep.used_max <= variant.accel->need(10000));
+      count_hard(gate_share(30, 1000), wrong, "ends within planned depth and bytes");
+    }
 }
 
 // Goal: boxes nested 2^-i, which drive a greedy tree into depth, end the build within plan. Method: all the powers of
@@ -192,7 +231,13 @@ TEST_CASE("hard_15_boxes_nested_by_powers_of_two_end_the_build_within_plan") {
       CHECK(depth_of(*world) <= kBvhDepthMax);
       CHECK(world->keep.used_max <= kBvhAccel.need(static_cast<std::uint32_t>(mesh.triangles.size())));
       CHECK(is_sound(*world));
-      CHECK(wrong_answers(*world, mesh, 100, 405) == 0);
+      for (const Variant& variant : all_variants()) {
+        int rays = gate_share(100, 10000);
+        int wrong = wrong_answers(variant, *make_world(mesh, variant.accel), mesh, rays, 405);
+        INFO(name_of(variant));
+        CHECK(wrong == 0);
+        count_hard(rays, wrong, "ends within planned depth and bytes");
+      }
     }
 }
 
@@ -200,25 +245,30 @@ TEST_CASE("hard_15_boxes_nested_by_powers_of_two_end_the_build_within_plan") {
 // of several meshes, a little and beyond recognition, through NaN and back; compare with brute force and a rebuilt
 // tree.
 TEST_CASE("hard_19_refit_after_motion_contains_children_and_hits_as_a_rebuild") {
-  for (Mesh mesh : {jittered_sphere(3, 1, {0, 0, 0}, 0.05f, 43), soup("soup", 500, 1, 0.2f, 44), degenerates()}) {
-    auto world = make_world(mesh, &kBvhAccel);
-    Rng rng = make_rng(406);
-    for (float motion : {0.0f, 1e-3f, 0.5f, 1e3f, 1e15f, 0.1f}) {
-      for (Vec3& p : mesh.positions) p = p + random_vec3(&rng, motion);
-      world->positions[0].x = kNan, world->positions.back().y = kInfinity;
-      Array<std::uint8_t> data = {world->keep.base, world->accel.data.count};
-      kBvhAccel.refit(&world->accel, data);
-      CHECK(is_finite(world->accel.bounds.low));
-      std::copy(mesh.positions.begin(), mesh.positions.end(), world->positions.begin());
-      kBvhAccel.refit(&world->accel, data);
-      auto rebuilt = make_world(mesh, &kBvhAccel);
-      INFO(mesh.name << ", motion " << motion);
-      CHECK(contains_children(BvhView(world->accel.data.data)));
-      CHECK(is_sound(*world));
-      CHECK(world->accel.bounds.low == rebuilt->accel.bounds.low);
-      CHECK(world->accel.bounds.high == rebuilt->accel.bounds.high);
-      CHECK(wrong_answers(*world, mesh, 400, 407) == 0);
-      CHECK(wrong_answers(*rebuilt, mesh, 100, 408) == 0);
+  for (Mesh start : {jittered_sphere(3, 1, {0, 0, 0}, 0.05f, 43), soup("soup", 500, 1, 0.2f, 44), degenerates()})
+    for (const Variant& variant : all_variants()) {
+      if (!variant.accel->refit) continue;  // is rebuilt instead
+      Mesh mesh = start;
+      auto world = make_world(mesh, variant.accel);
+      Rng rng = make_rng(406);
+      for (float motion : {0.0f, 1e-3f, 0.5f, 1e3f, 1e15f, 0.1f}) {
+        for (Vec3& p : mesh.positions) p = p + random_vec3(&rng, motion);
+        world->positions[0].x = kNan, world->positions.back().y = kInfinity;
+        Array<std::uint8_t> data = {world->keep.base, world->accel.data.count};
+        variant.accel->refit(&world->accel, data);
+        CHECK(is_finite(world->accel.bounds.low));
+        std::copy(mesh.positions.begin(), mesh.positions.end(), world->positions.begin());
+        variant.accel->refit(&world->accel, data);
+        auto rebuilt = make_world(mesh, variant.accel);
+        INFO(mesh.name << ", motion " << motion << ", " << name_of(variant));
+        if (variant.accel == &kBvhAccel) CHECK(contains_children(BvhView(world->accel.data.data)));
+        CHECK(is_sound(*world));
+        CHECK(world->accel.bounds.low == rebuilt->accel.bounds.low);
+        CHECK(world->accel.bounds.high == rebuilt->accel.bounds.high);
+        int rays = gate_share(400, 10000), wrong = wrong_answers(variant, *world, mesh, rays, 407);
+        wrong += wrong_answers(variant, *rebuilt, mesh, rays / 4, 408);
+        CHECK(wrong == 0);
+        count_hard(rays + rays / 4, wrong, "the bits of a rebuilt tree");
+      }
     }
-  }
 }

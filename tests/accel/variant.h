@@ -1,0 +1,43 @@
+// The ways to ask for hits: every accelerator of the list. Suites loop over them; all have to give the same bits.
+#pragma once
+#include <string>
+
+#include "accel/accel_world.h"
+
+namespace pocketray {
+
+struct Variant {
+  const AccelInfo* accel;
+};
+inline std::string name_of(const Variant& variant) { return variant.accel->name; }
+
+// All but brute force, which is what they are compared with.
+inline std::vector<Variant> all_variants() {
+  std::vector<Variant> list;
+  for (const AccelInfo* info : kAccelList)
+    if (info != &kBruteAccel) list.push_back({info});
+  return list;
+}
+
+constexpr int kGroupMax = 64;
+
+// Closest hits of up to kGroupMax rays that share an origin.
+inline void answer(const Variant&, const World& world, const Ray* rays, int count, const HitFilter* filter, Hit* hits) {
+  for (int i = 0; i < count; ++i) hits[i] = closest(world, rays[i], nullptr, filter);
+}
+
+// What a comparison with brute force came to.
+struct Tally {
+  std::uint64_t rays = 0, hits = 0, wrong = 0;
+};
+
+// Asks about one ray: closest hit, and whether there is any.
+inline void compare(const Variant& variant, const World& world, const World& oracle, const Ray& ray, Tally* tally) {
+  Hit hit, expected = closest(oracle, ray);
+  answer(variant, world, &ray, 1, nullptr, &hit);
+  bool found = expected.triangle != kNoTriangle;
+  ++tally->rays, tally->hits += found;
+  tally->wrong += !same_hit(hit, expected) || variant.accel->occluded(world.accel, ray, nullptr, nullptr) != found;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,50 @@
+// The hard cases (rows of HARDCASES.md) as one gate. A test named hard_NN_… counts what it tries and what comes out
+// wrong. The suite runs a share of the gate; with POCKETRAY_HARDCASES=FILE in the environment, which `make hardcases`
+// sets, all of it runs, with progress on stderr, and each such test appends a line to FILE:
+//   case TAB inputs TAB wrong TAB bound TAB seconds
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "base/rng.h"
+#include "support/effort.h"
+
+namespace pocketray {
+
+// Whether all of the gate is asked for.
+bool whole_gate();
+
+// How many inputs a test tries: `usual` in the suite, `whole` in the gate, fewer of either under emulation.
+inline int gate_share(int usual, int whole) { return effort(whole_gate() ? whole : usual); }
+
+// Counts inputs of the running test and how many of them got a wrong answer; calls add up. `bound` says what a right
+// answer is; the last one is kept. A test that never calls this is listed with the number of its assertions.
+void count_hard(std::uint64_t inputs, std::uint64_t wrong, const char* bound);
+
+// Says on stderr how far a test of the whole gate is, at most twice a second. Any thread may call it.
+void show_gate_progress(std::uint64_t done, std::uint64_t count);
+
+// Adds up check(rng, count) → wrong answers over blocks that make `count` in all, on every thread of the machine. Each
+// block has a stream of random numbers of its own, so the sum does not depend on the threads.
+template <class Check>
+std::uint64_t count_wrong(std::uint64_t count, std::uint64_t seed, Check check) {
+  constexpr std::uint64_t kBlock = 1 << 14;
+  std::atomic<std::uint64_t> next{0}, wrong{0};
+  auto take_blocks = [&] {
+    for (std::uint64_t begin; (begin = kBlock * next.fetch_add(1)) < count;) {
+      Rng rng = make_rng(seed, begin / kBlock);
+      wrong += check(&rng, static_cast<int>(std::min(kBlock, count - begin)));
+      show_gate_progress(begin, count);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) threads.emplace_back(take_blocks);
+  take_blocks();
+  for (std::thread& thread : threads) thread.join();
+  return wrong;
+}
+
+}  // namespace pocketray
