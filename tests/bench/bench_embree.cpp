@@ -1,0 +1,149 @@
+// bench_embree: the tracing core against Embree.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+
+#include "accel/accel_list.h"
+#include "app/commands.h"
+#include "app/options.h"
+#include "app/report.h"
+#include "bench/duel.h"
+#include "bench/duel_report.h"
+
+namespace pocketray {
+namespace {
+
+struct BenchOptions {
+  std::vector<std::string> scenes, sizes = {"320x240", "1280x960"}, isas = {"sse2", "native"},
+                                   kinds = {"primary", "shadow", "bounce"};
+  std::string accel = kAccelList[0]->name, models = POCKETRAY_SHARED "/scenes", cache = POCKETRAY_CACHE, json;
+  int rounds = 15;
+};
+
+bool asks(const std::vector<std::string>& list, const char* name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+const AccelInfo* find_accel(const std::string& name) {
+  for (const AccelInfo* info : kAccelList)
+    if (name == info->name) return info;
+  return nullptr;
+}
+
+float lit_share(const OurSide& ours, const RaySet& shadow) {
+  std::vector<unsigned char> occluded(shadow.rays.size());
+  trace_shadow_ours(ours, shadow, &occluded);
+  std::size_t lit = static_cast<std::size_t>(std::count(occluded.begin(), occluded.end(), 0));
+  return static_cast<float>(lit) / static_cast<float>(occluded.empty() ? 1 : occluded.size());
+}
+
+// The light stands off the eye by a share of the scene's size: in a narrow room less far, until it reaches a third.
+RaySet lit_shadow_rays(const BenchScene& scene, const OurSide& ours, const RaySet& primary,
+                       const std::vector<Hit>& hits) {
+  RaySet shadow;
+  for (float distance = 0.25f; distance > 0.01f; distance /= 2) {
+    shadow = make_shadow_rays(scene, primary, hits, distance);
+    if (lit_share(ours, shadow) > 1 / 3.0f) break;
+  }
+  return shadow;
+}
+
+Status bench_size(const BenchScene& scene, const std::string& isa, const std::string& size, const BenchOptions& options,
+                  const OurSide& ours, EmbreeSide* embree, std::vector<DuelRow>* rows) {
+  std::uint32_t width, height;
+  RETURN_IF_ERROR(parse_size(size, &width, &height));
+  RaySet primary;
+  RETURN_IF_ERROR(make_primary_rays(scene, width, height, &primary));
+  std::vector<Hit> hits(primary.rays.size());
+  trace_primary_ours(ours, primary, &hits);
+  auto add = [&](const RaySet& set) {
+    std::vector<DuelRow> more = duel(scene, isa, ours, embree, set, options.rounds);
+    if (options.json != "-") print_duel_rows(more);
+    rows->insert(rows->end(), more.begin(), more.end());
+  };
+  if (asks(options.kinds, "primary")) add(primary);
+  if (asks(options.kinds, "shadow")) add(lit_shadow_rays(scene, ours, primary, hits));
+  if (asks(options.kinds, "bounce")) add(make_bounce_rays(scene, primary, hits));
+  return success();
+}
+
+Status bench_scene(const std::string& name, const BenchOptions& options, std::vector<DuelRow>* rows) {
+  BenchScene scene;
+  bool found;
+  RETURN_IF_ERROR(load_bench_scene(name, options.models, options.cache, &scene, &found));
+  if (!found) {
+    std::fprintf(stderr, "left out: %s, which is not under %s\n", name.c_str(), options.models.c_str());
+    return success();
+  }
+  for (const std::string& isa : options.isas) {
+    hold_ours(isa);
+    OurSide ours = build_ours(scene, find_accel(options.accel));
+    EmbreeSide embree(scene, isa);
+    for (const std::string& size : options.sizes)
+      RETURN_IF_ERROR(bench_size(scene, isa, size, options, ours, &embree, rows));
+  }
+  return success();
+}
+
+Status check_rows(const std::vector<DuelRow>& rows) {
+  for (const DuelRow& r : rows)
+    if (r.differing_share > kDifferingShareMax)
+      return failure("%s, %s rays at %s: %.3f %% differ from Embree's mode \"%s\", more than %.1f %%", r.scene.c_str(),
+                     r.rays.c_str(), r.size.c_str(), r.differing_share * 100, r.embree_mode.c_str(),
+                     kDifferingShareMax * 100);
+  return success();
+}
+
+int run(const BenchOptions& options) {
+  std::vector<DuelRow> rows;
+  if (options.json != "-") print_duel_header();
+  for (const std::string& scene : options.scenes.empty() ? default_scene_names() : options.scenes) {
+    Status status = bench_scene(scene, options, &rows);
+    if (!status.ok) return report(status);
+  }
+  Status status = success();
+  if (!options.json.empty()) status = write_json(options.json, duel_json(rows));
+  return report(status.ok ? check_rows(rows) : status);
+}
+
+void add_options(CLI::App* program, BenchOptions* o) {
+  std::vector<std::string> accels;
+  for (const AccelInfo* info : kAccelList) accels.push_back(info->name);
+  program->add_option(
+      "--scene", o->scenes,
+      "buddha, bunny, dragon, conference, a built-in scene or a file; several, too. Default: these four, "
+      "cornell and statue");
+  program->add_option("--rays", o->kinds, "primary, shadow, bounce: which to trace; default: all")
+      ->check(CLI::IsMember({"primary", "shadow", "bounce"}));
+  program->add_option("--size", o->sizes, "picture sizes, multiples of 8; default: 320x240 1280x960");
+  program->add_option("--isa", o->isas, "sse2: both sides held to SSE2; native: all the CPU has; default: both")
+      ->check(CLI::IsMember({"sse2", "native"}));
+  program->add_option("--accel", o->accel, "our accelerator")->check(CLI::IsMember(accels))->capture_default_str();
+  program->add_option("--rounds", o->rounds, "how often both trace them in turn")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  program->add_option("--models", o->models, "where the models lie")->capture_default_str();
+  program->add_option("--cache", o->cache, "where archives are unpacked")->capture_default_str();
+  program->add_option("--json", o->json, "write the table as JSON to FILE, or - for standard output");
+}
+
+}  // namespace
+}  // namespace pocketray
+
+int main(int argument_count, char** arguments) {
+  using namespace pocketray;
+  CLI::App program{
+      "bench_embree traces the same rays through pocketray's accelerator and through Embree, in turn, on one thread,\n"
+      "checks that both hit the same, and prints how many million rays per second each does.\n"
+      "Try:  bench_embree --scene bunny --size 320x240 --isa sse2\n"
+      "      bench_embree --scene cornell --rays shadow bounce --json -\n"};
+  program.name("bench_embree");
+  BenchOptions options;
+  add_options(&program, &options);
+  try {
+    program.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kExitDone : kExitUsage;
+  }
+  return run(options);
+}

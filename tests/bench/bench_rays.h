@@ -1,0 +1,36 @@
+// The rays of the comparison, the same for both sides. They lie in tiles of 8×8 pixels, in the order that suits
+// coherent tracing; packets take the pixels of a tile in smaller blocks.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "accel/ray.h"
+#include "bench/bench_scene.h"
+
+namespace pocketray {
+
+enum class RayKindOfBench : int { primary, shadow, bounce };
+constexpr const char* kBenchRayNames[] = {"primary", "shadow", "bounce"};
+
+constexpr std::uint32_t kTileSide = 8, kTileSize = kTileSide * kTileSide;
+
+struct RaySet {
+  RayKindOfBench kind;
+  std::uint32_t width, height;  // of the picture; multiples of kTileSide
+  std::vector<Ray> rays;        // primary: one a pixel, in tiles; else in the order of the hits
+  std::string size() const { return std::to_string(width) + "x" + std::to_string(height); }
+};
+
+// Where, in the order of tiles, the pixel (x, y) of tile `tile` lies when a tile is cut into blocks of block_width ×
+// block_height pixels. Returns for every slot of such an order its slot in plain tile order (blocks of 8×8).
+std::vector<std::uint32_t> block_order(std::uint32_t ray_count, std::uint32_t block_width, std::uint32_t block_height);
+
+Status make_primary_rays(const BenchScene& scene, std::uint32_t width, std::uint32_t height, RaySet* set);
+
+// From where the primary rays hit, a little in front of the surface: to a point light beside the eye, ending just
+// before it, and into a cosine-distributed direction. `hits` answer the primary rays, slot by slot.
+RaySet make_shadow_rays(const BenchScene& scene, const RaySet& primary, const std::vector<Hit>& hits,
+                        float light_distance);
+RaySet make_bounce_rays(const BenchScene& scene, const RaySet& primary, const std::vector<Hit>& hits);
+
+}  // namespace pocketray
