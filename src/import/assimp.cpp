@@ -129,7 +129,7 @@ MeshData convert(const AssimpReader& reader, const aiMesh& source) {
     }
     if (textured && source.HasTextureCoords(0)) {
       const aiVector3D& t = source.mTextureCoords[0][i];
-      mesh.uvs.push_back(is_coordinate({t.x, t.y, 0}) ? Vec2{t.x, 1 - t.y} : Vec2{0, 0});
+      mesh.uvs.push_back({t.x, 1 - t.y});
     }
     if (source.HasVertexColors(0)) mesh.colors.push_back(assimp_color(source.mColors[0][i]));
   }
@@ -193,13 +193,17 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
   Assimp::Importer importer;
   importer.SetIOHandler(new FilesBeside(path, builder->options.byte_count_max));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(
-      path, aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure);
+  bool own_normals = ending != "stl";
+  const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
+  if (scene && scene->mRootNode) {
+    check_assimp_numbers(*scene, own_normals);  // vertices still bear the file's numbers
+    scene = importer.ApplyPostProcessing(aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+  }
   if (!scene || !scene->mRootNode)
     fail_import("%.300s (as assimp reports); export the file again", importer.GetErrorString());
   if (scene->HasAnimations()) note_unused(builder, "animation (use glTF)");
 
-  AssimpReader reader = {scene, builder, {}, ending != "stl"};
+  AssimpReader reader = {scene, builder, {}, own_normals};
   bool bare = ending == "ply" || ending == "stl" || ending == "off";  // no materials; assimp makes up one that shines
   for (unsigned i = 0; i < scene->mNumMaterials; ++i)
     reader.materials.push_back(bare ? add_default_material(builder)
@@ -208,7 +212,8 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
     const aiMesh& source = *scene->mMeshes[i];
     MeshData mesh = convert(reader, source);
-    tidy_mesh(&mesh, std::string("mesh '") + source.mName.C_Str() + "'");
+    mesh.name = std::string("mesh '") + source.mName.C_Str() + "'";
+    tidy_mesh(&mesh);
     if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
     meshes.push_back(std::move(mesh));
   }

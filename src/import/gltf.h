@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/limits.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/scene_builder.h"
@@ -52,13 +53,18 @@ void gltf_parse(GltfFile* file, Bytes bytes);
 // Bytes of a buffer view, checked. Throws for a view that leaves its buffer.
 const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t* byte_count);
 
+// gltf_json.cpp: refuses, saying where, text that is no JSON, that nests too deeply, or with a number no float holds.
+void gltf_check_json(const std::string& text);
+
 // gltf_accessor.cpp: elements as floats (normalised integers expanded, sparse values applied), `components` each; fewer
-// components in the file are an error. `what` names the use in errors.
-std::vector<float> gltf_floats(GltfFile* file, int accessor, int components, const char* what);
+// components in the file are an error, and so is a value that is not finite or larger than `limit`. `what` names the
+// use in errors.
+std::vector<float> gltf_floats(GltfFile* file, int accessor, int components, const char* what,
+                               float limit = kCoordinateMax);
 std::vector<std::uint32_t> gltf_uints(GltfFile* file, int accessor, int components, const char* what);
 std::size_t gltf_count(const GltfFile& file, int accessor, const char* what);
 int gltf_component_count(const GltfFile& file, int accessor);
-std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what);
+std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit = kCoordinateMax);
 
 // gltf_texture.cpp
 const Image& gltf_image(GltfFile* file, int texture_index);

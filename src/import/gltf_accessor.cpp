@@ -1,4 +1,5 @@
 // Accessors (sec. 3.6.2): bounds are checked before an element is read or memory is taken.
+#include <cmath>
 #include <cstring>
 
 #include "import/gltf.h"
@@ -70,6 +71,8 @@ const tinygltf::Accessor& accessor_at(const GltfFile& file, int index, const cha
     fail_import("%s: accessor %d does not exist; export the file again", what, index);
   return file.model.accessors[static_cast<std::size_t>(index)];
 }
+
+std::string quoted(const std::string& name) { return name.empty() ? "" : " '" + name.substr(0, 60) + "'"; }
 
 std::uint32_t integer_component(const std::uint8_t* p, int type) {
   std::uint16_t u16;
@@ -163,14 +166,18 @@ int gltf_component_count(const GltfFile& file, int accessor) {
   return component_count(accessor_at(file, accessor, "an attribute").type);
 }
 
-std::vector<float> gltf_floats(GltfFile* file, int index, int components, const char* what) {
+std::vector<float> gltf_floats(GltfFile* file, int index, int components, const char* what, float limit) {
   const tinygltf::Accessor& accessor = accessor_at(*file, index, what);
   Elements dense = dense_elements(file, accessor, components, what);
   std::vector<float> values(dense.count * static_cast<std::size_t>(components), 0.0f);
   for_each_component(*file, accessor, dense, what, [&](std::size_t element, int c, const std::uint8_t* p) {
-    if (c < components)
-      values[element * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] =
-          float_component(p, accessor.componentType, accessor.normalized);
+    if (c >= components) return;
+    float value = float_component(p, accessor.componentType, accessor.normalized);
+    if (!(std::fabs(value) <= limit))
+      fail_import("%s: element %zu of accessor %d%s is %g, no finite number of at most %g; export the file again", what,
+                  element, index, quoted(accessor.name).c_str(), static_cast<double>(value),
+                  static_cast<double>(limit));
+    values[element * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] = value;
   });
   return values;
 }
@@ -190,8 +197,8 @@ std::vector<std::uint32_t> gltf_uints(GltfFile* file, int index, int components,
   return values;
 }
 
-std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what) {
-  std::vector<float> values = gltf_floats(file, accessor, 3, what);
+std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit) {
+  std::vector<float> values = gltf_floats(file, accessor, 3, what, limit);
   std::vector<Vec3> result(values.size() / 3);
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
   return result;

@@ -1,5 +1,5 @@
 // Mesh primitives (secs. 3.7.2, 3.7.3).
-#include <cmath>
+#include <limits>
 
 #include "base/limits.h"
 #include "import/gltf.h"
@@ -80,10 +80,7 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* me
   std::vector<float> values = gltf_floats(file, accessor, 2, "TEXCOORD");
   require_count(values.size() / 2, mesh->positions.size(), "TEXCOORD");
   mesh->uvs.resize(mesh->positions.size());
-  for (std::size_t i = 0; i < mesh->uvs.size(); ++i) {
-    bool finite = is_coordinate({values[2 * i], values[2 * i + 1], 0});
-    mesh->uvs[i] = finite ? Vec2{values[2 * i], values[2 * i + 1]} : Vec2{0, 0};
-  }
+  for (std::size_t i = 0; i < mesh->uvs.size(); ++i) mesh->uvs[i] = {values[2 * i], values[2 * i + 1]};
 }
 
 void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
@@ -100,7 +97,7 @@ void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, Mes
     float sum = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       float w = weight[4 * i + k];
-      s.weight[k] = std::isfinite(w) && w > 0 ? w : 0;
+      s.weight[k] = w > 0 ? w : 0;
       if (s.weight[k] > 0 && joint[4 * i + k] > 65535)
         fail_import("JOINTS_0: joint %u; export the file again", joint[4 * i + k]);
       s.joint[k] = s.weight[k] > 0 ? static_cast<std::uint16_t>(joint[4 * i + k]) : std::uint16_t(0);
@@ -128,8 +125,6 @@ void read_morph_targets(GltfFile* file, const tinygltf::Primitive& primitive, Me
       std::vector<Vec3> deltas(count, Vec3{0, 0, 0});
       if (found != target.end()) deltas = gltf_vec3s(file, found->second, "a morph target");
       require_count(deltas.size(), count, "a morph target");
-      for (Vec3& d : deltas)
-        if (!is_coordinate(d)) fail_import("a morph target is not finite; export the file again");
       list->insert(list->end(), deltas.begin(), deltas.end());
     }
   }
@@ -137,11 +132,12 @@ void read_morph_targets(GltfFile* file, const tinygltf::Primitive& primitive, Me
 
 MeshData read_primitive(GltfFile* file, const tinygltf::Primitive& primitive, const std::string& name) {
   MeshData mesh;
+  mesh.name = name;
   mesh.positions = gltf_vec3s(file, attribute(primitive, "POSITION"), "POSITION");
   read_indices(file, primitive, &mesh);
   int normals = attribute(primitive, "NORMAL"), colors = attribute(primitive, "COLOR_0");
   if (normals >= 0) {
-    mesh.normals = gltf_vec3s(file, normals, "NORMAL");
+    mesh.normals = gltf_vec3s(file, normals, "NORMAL", std::numeric_limits<float>::max());
     require_count(mesh.normals.size(), mesh.positions.size(), "NORMAL");
     for (Vec3& n : mesh.normals) n = normalize(n);
   }
@@ -151,8 +147,12 @@ MeshData read_primitive(GltfFile* file, const tinygltf::Primitive& primitive, co
   if (attribute(primitive, "COLOR_1") >= 0) note_unused(file->builder, "second vertex colours");
   read_skin_weights(file, primitive, &mesh);
   read_morph_targets(file, primitive, &mesh);
-  tidy_mesh(&mesh, name);
+  tidy_mesh(&mesh);
   return mesh;
+}
+
+std::string mesh_name(const tinygltf::Mesh& mesh, int index) {
+  return "mesh " + std::to_string(index) + (mesh.name.empty() ? "" : " '" + mesh.name.substr(0, 60) + "'");
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ std::vector<MeshData> gltf_mesh(GltfFile* file, int index) {
       note_unused(file->builder, "meshes without positions");
       continue;
     }
-    result.push_back(read_primitive(file, primitive, "mesh " + std::to_string(index)));
+    result.push_back(read_primitive(file, primitive, mesh_name(mesh, index)));
   }
   return result;
 }

@@ -11,8 +11,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kJsonDepthMax = 64;  // tinygltf walks extras and extensions by recursion
-
 // Implemented here or by their nature harmless to leave out.
 const char* const kKnownExtensions[] = {
     "KHR_texture_transform", "KHR_materials_transmission", "KHR_materials_ior",
@@ -56,24 +54,6 @@ std::string split_glb(GltfFile* file, const Bytes& bytes) {
     at += size;
   }
   return text;
-}
-
-void check_depth(const std::string& text) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kJsonDepthMax) fail_import("the JSON nests deeper than %d; export the file again", kJsonDepthMax);
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
 }
 
 const Json* member(const Json& object, const char* key) {
@@ -168,10 +148,9 @@ void gltf_parse(GltfFile* file, Bytes bytes) {
   std::string text = binary ? split_glb(file, bytes) : std::string(bytes.begin(), bytes.end());
   Bytes().swap(bytes);
   require_bytes(*file->builder, text.size(), 16, "the JSON");
-  check_depth(text);
+  gltf_check_json(text);
   Json root = Json::parse(text, nullptr, false);
-  if (root.is_discarded() || !root.is_object())
-    fail_import("this is no valid JSON object, so no glTF; export the file again");
+  if (!root.is_object()) fail_import("this is no valid JSON object, so no glTF; export the file again");
   check_version_and_extensions(file, root);
   fetch_buffers(file, root);
   list_images(file, root);

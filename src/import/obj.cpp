@@ -10,6 +10,7 @@
 #include "import/import_error.h"
 #include "import/normals.h"
 #include "import/obj_material.h"
+#include "import/obj_numbers.h"
 
 namespace pocketray {
 namespace {
@@ -27,16 +28,18 @@ class MaterialFiles : public tinyobj::MaterialReader {
   MaterialFiles(const std::string& scene_path, SceneBuilder* builder) : scene_path_(scene_path), builder_(builder) {}
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* by_name, std::string* warning, std::string* error) override {
+    Bytes bytes;
     try {
-      Bytes bytes = read_file(path_beside(scene_path_, name), builder_->options.byte_count_max / 16);
-      MemoryBuffer buffer(bytes);
-      std::istream stream(&buffer);
-      tinyobj::LoadMtl(by_name, materials, &stream, warning, error);
-      return true;
+      bytes = read_file(path_beside(scene_path_, name), builder_->options.byte_count_max / 16);
     } catch (const ImportError& failure) {
       note_remark(builder_, std::string("materials are missing: ") + failure.what());
       return false;
     }
+    check_mtl_numbers(bytes, name);
+    MemoryBuffer buffer(bytes);
+    std::istream stream(&buffer);
+    tinyobj::LoadMtl(by_name, materials, &stream, warning, error);
+    return true;
   }
 
  private:
@@ -81,8 +84,7 @@ class CornerIndex {
       const float* t = corner.texcoord_index >= 0
                            ? &attributes_.texcoords[2 * static_cast<std::size_t>(corner.texcoord_index)]
                            : nullptr;
-      bool finite = t && is_coordinate({t[0], t[1], 0});
-      mesh->uvs.push_back(finite ? Vec2{t[0], 1 - t[1]} : Vec2{0, 0});  // v runs upward in OBJ
+      mesh->uvs.push_back(t ? Vec2{t[0], 1 - t[1]} : Vec2{0, 0});  // v runs upward in OBJ
     }
     if (!attributes_.colors.empty()) {
       const float* c = &attributes_.colors[3 * p];
@@ -143,6 +145,7 @@ MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attr
 
 void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* builder) {
   require_bytes(*builder, bytes.size(), 8, "the OBJ text");
+  check_obj_numbers(bytes);
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
@@ -168,7 +171,8 @@ void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* build
     MeshData mesh = shape_mesh(shape, attributes, default_material, &index, builder);
     for (std::uint32_t material : mesh.triangle_materials) default_used |= material == default_material;
     if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
-    tidy_mesh(&mesh, "'" + shape.name.substr(0, 60) + "'");
+    mesh.name = "'" + shape.name.substr(0, 60) + "'";
+    tidy_mesh(&mesh);
     append_mesh(builder, mesh, Transform());
   }
   if (!default_used && default_material > 0) builder->out->materials.pop_back();

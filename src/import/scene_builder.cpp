@@ -53,7 +53,7 @@ static void gather(std::vector<T>* array, const std::vector<std::uint32_t>& kept
   array->swap(result);
 }
 
-void tidy_mesh(MeshData* mesh, const std::string& name) {
+void tidy_mesh(MeshData* mesh) {
   std::size_t count = mesh->positions.size();
   CHECK(mesh->normals.empty() || mesh->normals.size() == count);
   CHECK(mesh->uvs.empty() || mesh->uvs.size() == count);
@@ -66,7 +66,8 @@ void tidy_mesh(MeshData* mesh, const std::string& name) {
   std::vector<std::uint32_t> renumbered(count, kNone), kept;
   for (std::uint32_t& index : mesh->indices) {
     if (index >= count)
-      fail_import("%s: index %u, but there are only %zu vertices; export the file again", name.c_str(), index, count);
+      fail_import("%s: index %u, but there are only %zu vertices; export the file again", mesh->name.c_str(), index,
+                  count);
     if (renumbered[index] == kNone) {
       renumbered[index] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(index);
@@ -100,6 +101,13 @@ static std::uint64_t vertex_bytes(const MeshData& mesh) {
          (mesh.colors.empty() ? 0 : sizeof(Rgba16));
 }
 
+static void require_coordinate(const Vec3& p, const MeshData& mesh) {
+  if (!is_coordinate(p))
+    fail_import("%.100s: a vertex is placed at (%g, %g, %g), not finite or beyond %g; scale the model down",
+                mesh.name.c_str(), static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z),
+                static_cast<double>(kCoordinateMax));
+}
+
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world) {
   SceneStorage& out = *builder->out;
   std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
@@ -108,12 +116,11 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   if (begin + count > kVertexCountMax || out.triangles.size() + triangle_count > kTriangleCountMax)
     fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
 
-  std::vector<bool> usable(count);
   out.positions.reserve(begin + count > out.positions.capacity() ? std::max(begin + count, begin * 3 / 2) : 0);
   for (std::size_t i = 0; i < count; ++i) {
     Vec3 p = transform_point(to_world, mesh.positions[i]);
-    usable[i] = is_coordinate(p);
-    out.positions.push_back(usable[i] ? p : Vec3{0, 0, 0});
+    require_coordinate(p, mesh);
+    out.positions.push_back(p);
   }
   std::vector<Vec3> normals(mesh.normals.size());
   NormalTransform normal_to_world = normal_transform(to_world);
@@ -126,10 +133,6 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   std::uint32_t base = static_cast<std::uint32_t>(begin);
   for (std::size_t t = 0; t < triangle_count; ++t) {
     const std::uint32_t* v = &mesh.indices[3 * t];
-    if (!usable[v[0]] || !usable[v[1]] || !usable[v[2]]) {
-      ++builder->excluded_triangles;
-      continue;
-    }
     std::uint32_t material = mesh.triangle_materials.empty() ? mesh.material : mesh.triangle_materials[t];
     out.triangles.push_back({{base + v[0], base + v[mirrored ? 2 : 1], base + v[mirrored ? 1 : 2]}, material});
   }
@@ -139,8 +142,7 @@ void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Trans
   SceneStorage& out = *builder->out;
   std::size_t count = mesh.positions.size();
   if (count == 0) return;
-  for (const Vec3& p : mesh.positions)
-    if (!is_coordinate(p)) fail_import("a moving mesh has a vertex that is not finite or beyond 1e18; export it again");
+  for (const Vec3& p : mesh.positions) require_coordinate(p, mesh);
   charge_bytes(builder,
                count * (2 * sizeof(Vec3) + sizeof(SkinWeight)) +
                    (mesh.morph_positions.size() + mesh.morph_normals.size()) * sizeof(Vec3),
@@ -165,9 +167,6 @@ static std::string warning_line(const SceneBuilder& builder) {
   std::string line;
   for (const std::string& item : builder.unused) line += (line.empty() ? "not used: " : ", ") + item;
   for (const std::string& item : builder.remarks) line += (line.empty() ? "" : "; ") + item;
-  if (builder.excluded_triangles > 0)
-    line += (line.empty() ? "" : "; ") + std::to_string(builder.excluded_triangles) +
-            " triangles left out: a vertex is not finite or beyond 1e18";
   return line;
 }
 
@@ -193,9 +192,7 @@ static bool is_textured(const Material& material) {
 
 void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result) {
   SceneStorage& out = *builder->out;
-  if (out.triangles.empty())
-    fail_import(builder->excluded_triangles ? "no triangle has finite vertices; export the file again"
-                                            : "no triangles to render; export meshes with faces");
+  if (out.triangles.empty()) fail_import("no triangles to render; export meshes with faces");
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});

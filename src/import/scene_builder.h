@@ -12,6 +12,7 @@ namespace pocketray {
 
 // One mesh with one material, in object space.
 struct MeshData {
+  std::string name;  // for error lines
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  // unit, one per vertex, or empty: the geometric normal
   std::vector<Vec2> uvs;      // one per vertex, or empty
@@ -52,7 +53,6 @@ struct SceneBuilder {
   ImportOptions options;
   std::shared_ptr<SceneStorage> out = std::make_shared<SceneStorage>();
   std::uint64_t bytes_charged = 0;
-  std::uint64_t excluded_triangles = 0;
   std::vector<std::string> unused;   // what the file has and this program does not use
   std::vector<std::string> remarks;  // what was simplified or repaired
 };
@@ -65,11 +65,11 @@ void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64
 void note_unused(SceneBuilder* builder, const std::string& what);
 void note_remark(SceneBuilder* builder, const std::string& what);
 
-// Checks indices and array lengths, removes vertices that no triangle uses. `name` is for the error line.
-void tidy_mesh(MeshData* mesh, const std::string& name);
+// Checks indices and array lengths, removes vertices that no triangle uses.
+void tidy_mesh(MeshData* mesh);
 
-// Appends the tidied mesh in world space. A mirroring transform flips the winding; triangles with a vertex that is not
-// finite or beyond kCoordinateMax are left out and counted.
+// Appends the tidied mesh in world space. A mirroring transform flips the winding. A vertex that is not finite or
+// beyond kCoordinateMax is refused.
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world);
 
 // Appends the tidied mesh as one that moves: world-space vertices by `to_world` (its transform at time 0), and the rest

@@ -94,6 +94,10 @@ expect truncated_scene 1 'cut.pray' render cut.pray -o b.ppm
 expect empty_scene 1 'empty' render empty.pray -o b.ppm
 mkdir folder.pray
 expect folder_as_scene 1 "regular file" render folder.pray -o b.ppm
+if "${run[@]}" render --help | grep -q glTF; then
+  printf 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
+  expect number_that_is_none 1 "nan.obj: line 2: 'nan' .*export" render nan.obj -o b.ppm
+fi
 check nothing_was_written test ! -e b.ppm
 
 # Goal: reports.

@@ -112,21 +112,20 @@ TEST_CASE("hard_27_singular_transforms_are_refused_naming_the_node") {
   for (const char* scale : {"[1,0,1]", "[1e-13,1e-13,1e-12]", "[1e15,1e15,1e15]", "[1e400,1,1]", "[1e39,1,1]"}) {
     CAPTURE(scale);
     std::string error = error_of(triangle_gltf("", "", std::string(",\"name\":\"squashed\",\"scale\":") + scale));
-    bool named =
-        contains(error, "node 0 'squashed'") || contains(error, "JSON");  // 1e400 is no JSON number for the parser
-    CHECK(named);
+    bool named = contains(error, "node 0 'squashed'") || contains(error, "/nodes/0/scale/0 ('squashed')");
+    CHECK_MESSAGE(named, error);
   }
 }
 
-// Goal: coordinates that are no coordinates are left out and counted, the rest stays (HARDCASES row 8).
-TEST_CASE("hard_08_triangles_with_unusable_vertices_are_left_out_and_counted") {
+// Goal: denormal coordinates are taken, indices out of range refused (HARDCASES row 8; non_finite_test.cpp has the
+// rest).
+TEST_CASE("hard_08_denormal_vertices_are_taken_and_indices_out_of_range_refused") {
   GltfWriter w;
-  float nan = std::nanf(""), inf = HUGE_VALF;
-  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 0, inf, 0, 0, 2e18f, 0, 0, 1e-40f, 0, 0});
-  w.indices({0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 5, 6, 1, 2});
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e-40f, 0, 0});
+  w.indices({0, 1, 2, 3, 1, 2});
   ImportedScene imported = load_text(w.gltf(mesh_document("{\"attributes\":{\"POSITION\":0},\"indices\":1}")));
   CHECK(imported.scene.triangles.count == 2);
-  CHECK(contains(imported.warning, "3 triangles left out"));
+  CHECK(bounds(imported.scene).low.x == 0);
 
   GltfWriter beyond;
   beyond.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});

@@ -2,6 +2,7 @@
 // valid.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -43,7 +44,74 @@ void use(const Scene& scene) {
     for (double seconds : {0.3, 1.7}) pose_at(scene, a, seconds, &pose);
 }
 
+// How many floats the scene holds, and how many of them are not finite.
+struct FloatCount {
+  int all = 0, bad = 0;
+  void add(const float* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) ++all, bad += !std::isfinite(values[i]);
+  }
+  void add(float value) { add(&value, 1); }
+  void add(const Vec2& v) { add(&v.x, 2); }
+  void add(const Vec3& v) { add(&v.x, 3); }
+  void add(const Transform& t) { add(&t.m[0][0], 12); }
+  void add(const SkinWeight& w) { add(w.weight, 4); }
+  void add(const Joint& j) { add(j.inverse_bind); }
+  void add(const MovingMesh& m) { add(m.instance); }
+  void add(const Animation& a) { add(a.duration); }
+  void add(const Node& n) { add(n.translation), add(&n.rotation.x, 4), add(n.scale); }
+  void add(const Camera& c) { add(c.eye), add(c.target), add(c.up), add(c.vertical_fov), add(c.vertical_extent); }
+  void add(const Light& l) {
+    add(l.position), add(l.direction), add(l.intensity), add(l.range), add(l.cos_inner), add(l.cos_outer);
+  }
+  void add(const Material& m) {
+    for (const Vec3& v : {m.diffuse, m.specular, m.mirror, m.transmission, m.absorption, m.emission}) add(v);
+    for (float value : {m.exponent, m.ior, m.opacity, m.alpha_cutoff}) add(value);
+    add(&m.diffuse_texture.m[0][0], 6), add(&m.emission_texture.m[0][0], 6);
+  }
+  template <class T>
+  void add(Array<const T> array) {
+    for (const T& element : array) add(element);
+  }
+};
+
+FloatCount count_floats(const Scene& s) {
+  FloatCount n;
+  n.add(s.info.background), n.add(s.info.ambient), n.add(s.info.exposure), n.add(s.info.frames_per_second);
+  n.add(s.info.auto_exposure), n.add(s.positions), n.add(s.normals), n.add(s.uvs), n.add(s.materials), n.add(s.lights);
+  n.add(s.cameras), n.add(s.nodes), n.add(s.animations), n.add(s.key_times), n.add(s.key_values), n.add(s.weights);
+  n.add(s.joints), n.add(s.moving_meshes), n.add(s.rest_positions), n.add(s.rest_normals), n.add(s.skin_weights);
+  n.add(s.morph_positions), n.add(s.morph_normals);
+  return n;
+}
+
 }  // namespace
+
+// Goal: HARDCASES row 8 in a .pray file: no float of any kind may be NaN, infinite or, as a coordinate, too large; the
+// refusal names the element. Method: each word of a sound file in turn; what still opens holds finite floats alone.
+TEST_CASE("hard_08_baked_numbers_that_are_not_finite_are_refused_by_element") {
+  BakedFile file = small_file();
+  Scene scene;
+  REQUIRE(baked_open(file.data(), file.size(), &scene).ok);
+  int float_count = count_floats(scene).all;
+  CHECK(float_count > 400);
+  for (float bad : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
+    std::uint32_t word, sound;
+    std::memcpy(&word, &bad, sizeof word);
+    int refused = 0, named = 0;
+    for (std::size_t at = kTableAt; at < file.size(); at += 4) {
+      std::memcpy(&sound, file.data() + at, sizeof sound);
+      put_u32(file, at, word);
+      fix_checksum(file);
+      Status status = baked_open(file.data(), file.size(), &scene);
+      if (status.ok && count_floats(scene).bad) FAIL_CHECK("opened with ", static_cast<double>(bad), " at byte ", at);
+      refused += !status.ok;
+      named += !status.ok && (std::strchr(status.message, '[') || std::strstr(status.message, "info"));
+      put_u32(file, at, sound);
+    }
+    CHECK(refused >= float_count);
+    CHECK(named >= float_count);
+  }
+}
 
 // Goal: a file cut short anywhere is refused. Method: every length, in a block of exactly that length, so that a
 // sanitizer sees any read beyond it; then again with a header that states the shorter length and a right checksum.
