@@ -22,6 +22,18 @@ Vec3 vertex_color(const Scene& scene, const Triangle& t, float w, float u, float
   return at(0) * w + at(1) * u + at(2) * v;
 }
 
+// Moves a point that lies at an edge of its triangle, within rounding, a little towards the middle. From beside the
+// edge a ray would start beyond the face that meets the triangle there, and leave a closed room through it (HARDCASES
+// row 24). How near and how far was found with rays along the edges of the Cornell box (tests/shade/room_test.cpp).
+void keep_off_edges(const Vec3& a, const Vec3& b, const Vec3& c, float least_weight, float double_area,
+                    float corner_distance, float offset, Vec3* point) {
+  // The height over an edge is the doubled area by the edge's length, which is at most 2√3 corner_distance.
+  if (least_weight * double_area > corner_distance * (16 * offset)) return;
+  Vec3 inward = (a + b + c) * (1.0f / 3) - *point;
+  float size = max_component(abs(inward)), step = 8 * offset;
+  *point += step < size ? inward * (step / size) : inward;
+}
+
 template <EffectMask mask>
 void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   const Scene& scene = *frame.scene;
@@ -32,12 +44,16 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   s->material = &m;
   s->hit = hit;
   s->point = a * w + b * u + c * v;
-  Vec3 outward = normalize(cross(b - a, c - a));
+  Vec3 perpendicular = cross(b - a, c - a), outward = normalize(perpendicular);
   s->front = dot(outward, ray.direction) <= 0;
   s->geometric = s->front ? outward : -outward;
-  Vec3 to_corners = max(max(abs(a - s->point), abs(b - s->point)), abs(c - s->point));
-  s->offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v),
-                            max_component(to_corners), s->geometric);
+  float corner_distance = max_component(max(max(abs(a - s->point), abs(b - s->point)), abs(c - s->point)));
+  float offset = origin_offset(abs(a) * std::fabs(w) + abs(b) * std::fabs(u) + abs(c) * std::fabs(v), corner_distance,
+                               s->geometric);
+  s->offset = s->geometric * offset;
+  float least_weight = u < v ? u : v;
+  if (w < least_weight) least_weight = w;
+  keep_off_edges(a, b, c, least_weight, max_component(abs(perpendicular)), corner_distance, offset, &s->point);
   s->normal = s->geometric;
   if constexpr (has(mask, Effect::smooth_normal)) {
     effect_entered<Effect::smooth_normal>();

@@ -31,12 +31,11 @@ SurfaceFunction find_surface_function(EffectMask mask);
 // Within a few ulp of an edge that is of float precision relative to the triangle as seen from the point
 // (accel/triangle.h), hence the second term; it was found with 10⁶ spawns a shape (tests/shade/spawn_test.cpp).
 // Scale-free: everything is relative to the coordinates.
-inline Vec3 origin_offset(const Vec3& point_magnitude, float corner_distance, const Vec3& geometric) {
+inline float origin_offset(const Vec3& point_magnitude, float corner_distance, const Vec3& geometric) {
   constexpr float u = std::numeric_limits<float>::epsilon() * 0.5f;
   constexpr float gamma = 8 * u / (1 - 8 * u);
   // Twice: once for the point, once for the rounding of the moved origin.
-  float distance = dot(abs(geometric), point_magnitude) * (2 * gamma) + corner_distance * (4 * u);
-  return geometric * distance;
+  return dot(abs(geometric), point_magnitude) * (2 * gamma) + corner_distance * (4 * u);
 }
 inline float away_from(float value, float step) {
   float moved = value + step;

@@ -3,10 +3,9 @@
 #include <cstdio>
 
 #include "accel/triangle.h"
-#include "scene/builtin_helpers.h"
 #include "shade/shade_helpers.h"
 #include "shade/surface.h"
-#include "support/effort.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -124,31 +123,4 @@ TEST_CASE("hard_21_near_surface_of_a_narrow_gap_is_seen") {
     dark += !(look(*t, d * 5.0f, {0, 0, 0}).x > 0);
   }
   CHECK(dark == 0);
-}
-
-// Goal: nothing escapes from a closed room, least of all through its edges and corners. Method: rays from inside, half
-// of them aimed at edges, vertices and along the walls of the built-in closed rooms.
-TEST_CASE("hard_24_nothing_escapes_from_a_closed_room") {
-  for (const char* name : {"cube", "furnace"}) {
-    auto built = build_builtin(name);
-    Settings settings;
-    settings.width = 4, settings.height = 3;
-    auto t = make_renderer(built->scene, settings);
-    const Scene& scene = t->renderer.scene;
-    Rng rng = make_rng(24);
-    int escaped = 0;
-    for (int i = 0; i < effort(300000); ++i) {
-      Vec3 from = random_vec3(&rng) * 0.999f, to = random_vec3(&rng);
-      if (i % 2) {
-        const Triangle& triangle = scene.triangles[next_u32(&rng) % scene.triangles.count];
-        Vec3 a = scene.positions[triangle.vertex[i % 3]], b = scene.positions[triangle.vertex[(i + 1) % 3]];
-        to = i % 4 == 1 ? a : a + (b - a) * next_float(&rng);
-        if (i % 16 == 3) from = (a + b) * 0.49999f;
-      }
-      Hit hit;
-      t->renderer.accel_info->closest(t->renderer.accel, {from, to - from, __builtin_inff()}, nullptr, &hit, nullptr);
-      escaped += hit.triangle == kNoTriangle && to != from;
-    }
-    CHECK(escaped == 0);
-  }
 }
