@@ -72,7 +72,8 @@ setup-bench-embree:
 BENCH_SCENE := $(if $(filter command line environment,$(origin SCENE)),$(SCENE))
 bench-embree: setup-bench-embree configure
 	@cmake --build $(BUILD) -j$(JOBS) --target bench_embree >&2
-	@$(BUILD)/bench_embree $(BENCH_SCENE:%=--scene %) $(JSON:%=--json %) $(BENCH_OPTIONS)
+	@$(BUILD)/bench_embree $(BENCH_SCENE:%=--scene %) $(JSON:%=--json %) \
+	  $(BUILD_JSON:%=--build-json %) $(BENCH_OPTIONS)
 
 install: configure
 	cmake --build $(BUILD) -j$(JOBS)
@@ -95,7 +96,7 @@ help:
 	@echo "make test         build and run all tests (TESTS=regex: those that match)"
 	@echo "make hardcases    every hard case in full: case, inputs, wrong answers, bound (JSON=FILE: as a list, too)"
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
-	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE the table as JSON,"
+	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"
 	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31' and others ($(BUILD)/bench_embree --help)"
 	@echo "make format       clang-format on all sources;  make tidy: clang-tidy"
 	@echo "make install      into PREFIX=$(PREFIX) (and DESTDIR)"

@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/report.h"
+#include "bench/build_report.h"
 #include "bench/duel.h"
 #include "bench/duel_report.h"
 
@@ -16,8 +17,9 @@ namespace {
 struct BenchOptions {
   std::vector<std::string> scenes, sizes = {"320x240", "1280x960"}, isas = {"sse2", "native"},
                                    kinds = {"primary", "shadow", "bounce"};
-  std::string accel = kAccelList[0]->name, models = POCKETRAY_SHARED "/scenes", cache = POCKETRAY_CACHE, json;
-  int rounds = 15;
+  std::string accel = kAccelList[0]->name, models = POCKETRAY_SHARED "/scenes", cache = POCKETRAY_CACHE, json,
+              build_json;
+  int rounds = 15, build_rounds = 5;
 };
 
 bool asks(const std::vector<std::string>& list, const char* name) {
@@ -31,10 +33,10 @@ const AccelInfo* find_accel(const std::string& name) {
 }
 
 float lit_share(const OurSide& ours, const RaySet& shadow) {
-  std::vector<unsigned char> occluded(shadow.rays.size());
-  trace_shadow_ours(ours, shadow, &occluded);
-  std::size_t lit = static_cast<std::size_t>(std::count(occluded.begin(), occluded.end(), 0));
-  return static_cast<float>(lit) / static_cast<float>(occluded.empty() ? 1 : occluded.size());
+  Answers answers = room_for_answers(shadow);
+  trace_ours(ours, shadow, &answers);
+  std::size_t lit = static_cast<std::size_t>(std::count(answers.occluded.begin(), answers.occluded.end(), 0));
+  return static_cast<float>(lit) / static_cast<float>(shadow.rays.empty() ? 1 : shadow.rays.size());
 }
 
 // The light stands off the eye by a share of the scene's size: in a narrow room less far, until it reaches a third.
@@ -48,26 +50,23 @@ RaySet lit_shadow_rays(const BenchScene& scene, const OurSide& ours, const RaySe
   return shadow;
 }
 
-Status bench_size(const BenchScene& scene, const std::string& isa, const std::string& size, const BenchOptions& options,
-                  const OurSide& ours, EmbreeSide* embree, std::vector<DuelRow>* rows) {
+// The ray sets of a picture size, of the kinds that are asked for.
+Status make_sets(const BenchScene& scene, const std::string& size, const BenchOptions& options, const OurSide& ours,
+                 std::vector<RaySet>* sets) {
   std::uint32_t width, height;
   RETURN_IF_ERROR(parse_size(size, &width, &height));
   RaySet primary;
   RETURN_IF_ERROR(make_primary_rays(scene, width, height, &primary));
-  std::vector<Hit> hits(primary.rays.size());
-  trace_primary_ours(ours, primary, &hits);
-  auto add = [&](const RaySet& set) {
-    std::vector<DuelRow> more = duel(scene, isa, ours, embree, set, options.rounds);
-    if (options.json != "-") print_duel_rows(more);
-    rows->insert(rows->end(), more.begin(), more.end());
-  };
-  if (asks(options.kinds, "primary")) add(primary);
-  if (asks(options.kinds, "shadow")) add(lit_shadow_rays(scene, ours, primary, hits));
-  if (asks(options.kinds, "bounce")) add(make_bounce_rays(scene, primary, hits));
+  Answers answers = room_for_answers(primary);
+  trace_ours(ours, primary, &answers);
+  if (asks(options.kinds, "shadow")) sets->push_back(lit_shadow_rays(scene, ours, primary, answers.hits));
+  if (asks(options.kinds, "bounce")) sets->push_back(make_bounce_rays(scene, primary, answers.hits));
+  if (asks(options.kinds, "primary")) sets->insert(sets->begin(), std::move(primary));
   return success();
 }
 
-Status bench_scene(const std::string& name, const BenchOptions& options, std::vector<DuelRow>* rows) {
+Status bench_scene(const std::string& name, const BenchOptions& options, std::vector<DuelRow>* rows,
+                   std::vector<BuildRow>* builds) {
   BenchScene scene;
   bool found;
   RETURN_IF_ERROR(load_bench_scene(name, options.models, options.cache, &scene, &found));
@@ -79,8 +78,18 @@ Status bench_scene(const std::string& name, const BenchOptions& options, std::ve
     hold_ours(isa);
     OurSide ours = build_ours(scene, find_accel(options.accel));
     EmbreeSide embree(scene, isa);
-    for (const std::string& size : options.sizes)
-      RETURN_IF_ERROR(bench_size(scene, isa, size, options, ours, &embree, rows));
+    for (const std::string& size : options.sizes) {
+      std::vector<RaySet> sets;
+      RETURN_IF_ERROR(make_sets(scene, size, options, ours, &sets));
+      for (const RaySet& set : sets) {
+        std::vector<DuelRow> more = duel(scene, isa, ours, &embree, set, options.rounds);
+        if (options.json != "-") print_duel_rows(more);
+        rows->insert(rows->end(), more.begin(), more.end());
+      }
+      if (isa != options.isas.back() || size != options.sizes.front() || options.build_rounds == 0) continue;
+      std::vector<BuildRow> more = bench_builds(&scene, &embree, sets, options.build_rounds);
+      builds->insert(builds->end(), more.begin(), more.end());
+    }
   }
   return success();
 }
@@ -96,13 +105,19 @@ Status check_rows(const std::vector<DuelRow>& rows) {
 
 int run(const BenchOptions& options) {
   std::vector<DuelRow> rows;
+  std::vector<BuildRow> builds;
   if (options.json != "-") print_duel_header();
   for (const std::string& scene : options.scenes.empty() ? default_scene_names() : options.scenes) {
-    Status status = bench_scene(scene, options, &rows);
+    Status status = bench_scene(scene, options, &rows, &builds);
     if (!status.ok) return report(status);
+  }
+  if (options.json != "-") {
+    if (!builds.empty()) print_builds(builds);
+    print_verdicts(rows, builds);
   }
   Status status = success();
   if (!options.json.empty()) status = write_json(options.json, duel_json(rows));
+  if (status.ok && !options.build_json.empty()) status = write_json(options.build_json, builds_json(builds));
   return report(status.ok ? check_rows(rows) : status);
 }
 
@@ -122,9 +137,13 @@ void add_options(CLI::App* program, BenchOptions* o) {
   program->add_option("--rounds", o->rounds, "how often both trace them in turn")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
+  program->add_option("--build-rounds", o->build_rounds, "the same for building and refitting; 0: leave them out")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
   program->add_option("--models", o->models, "where the models lie")->capture_default_str();
   program->add_option("--cache", o->cache, "where archives are unpacked")->capture_default_str();
   program->add_option("--json", o->json, "write the table as JSON to FILE, or - for standard output");
+  program->add_option("--build-json", o->build_json, "write the table of structures as JSON to FILE");
 }
 
 }  // namespace

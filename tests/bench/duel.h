@@ -23,12 +23,6 @@ struct DuelRow {
 constexpr float kSameHit = 1e-4f;
 constexpr double kDifferingShareMax = 1e-3;
 
-// Seconds of CPU time that this thread has used.
-double thread_seconds();
-
-// The value below which this share of the values lies, interpolated. Sorts them.
-double percentile(std::vector<double>* values, double share);
-
 // One row a mode.
 std::vector<DuelRow> duel(const BenchScene& scene, const std::string& isa, const OurSide& ours, EmbreeSide* embree,
                           const RaySet& set, int rounds);

@@ -19,10 +19,9 @@ std::string mode_name(const EmbreeMode& mode) {
 
 std::vector<EmbreeMode> embree_modes(RayKindOfBench kind, const std::string& isa) {
   constexpr EmbreeBuild kMedium = EmbreeBuild::medium, kHigh = EmbreeBuild::high, kCompact = EmbreeBuild::compact;
-  std::vector<EmbreeMode> modes = {{1, true, kMedium}, {1, true, kHigh}, {1, false, kMedium}, {1, true, kCompact}};
+  std::vector<EmbreeMode> modes = {
+      {1, true, kMedium}, {1, true, kCompact}, {1, false, kMedium}, {1, false, kHigh}, {1, false, kCompact}};
   if (kind != RayKindOfBench::primary) return modes;
-  modes.push_back({1, false, kHigh});
-  modes.push_back({1, false, kCompact});
   for (int lanes = 4; lanes <= (isa == "native" ? 16 : 4); lanes *= 2)
     for (EmbreeBuild build : {kMedium, kHigh}) modes.push_back({lanes, false, build});
   return modes;

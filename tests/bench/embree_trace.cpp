@@ -1,7 +1,20 @@
+#ifdef __SSE2__
+#include <pmmintrin.h>
+#endif
+
 #include "bench/embree_side.h"
 
 namespace pocketray {
 namespace {
+
+// Embree asks its users to let denormal numbers be zero, for speed; ours must not.
+struct DenormalsAreZero {
+#ifdef __SSE2__
+  unsigned saved = _mm_getcsr();
+  DenormalsAreZero() { _mm_setcsr(saved | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
+  ~DenormalsAreZero() { _mm_setcsr(saved); }
+#endif
+};
 
 constexpr std::uint32_t kAllRays = ~0u;
 
@@ -116,6 +129,7 @@ EmbreeTask make_embree_task(EmbreeSide* side, const EmbreeMode& mode, const RayS
 }
 
 void trace_embree(EmbreeTask* task) {
+  DenormalsAreZero denormals;
   switch (task->mode.lanes) {
     case 4:
       return trace_packets<RTCRayHit4, 4>(task);

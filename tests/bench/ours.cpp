@@ -24,21 +24,37 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
 // The core has one build for every CPU so far, and it is the one for SSE2.
 void hold_ours(const std::string&) {}
 
-void trace_primary_ours(const OurSide& ours, const RaySet& set, std::vector<Hit>* hits) {
-  trace_bounce_ours(ours, set, hits);
-}
-
-void trace_bounce_ours(const OurSide& ours, const RaySet& set, std::vector<Hit>* hits) {
-  for (std::size_t i = 0; i < set.rays.size(); ++i) {
+void trace_primary_ours(const OurSide& ours, const Ray* rays, std::size_t count, Hit* hits) {
+  for (std::size_t i = 0; i < count; ++i) {
     Hit hit;
-    ours.info->closest(ours.accel, set.rays[i], nullptr, &hit, nullptr);
-    (*hits)[i] = hit;
+    ours.info->closest(ours.accel, rays[i], nullptr, &hit, nullptr);
+    hits[i] = hit;
   }
 }
 
-void trace_shadow_ours(const OurSide& ours, const RaySet& set, std::vector<unsigned char>* occluded) {
-  for (std::size_t i = 0; i < set.rays.size(); ++i)
-    (*occluded)[i] = ours.info->occluded(ours.accel, set.rays[i], nullptr, nullptr);
+Answers room_for_answers(const RaySet& set) {
+  Answers answers;
+  if (set.kind == RayKindOfBench::shadow)
+    answers.occluded.resize(set.rays.size());
+  else
+    answers.hits.resize(set.rays.size());
+  return answers;
+}
+
+void trace_ours(const OurSide& ours, const RaySet& set, Answers* answers) {
+  std::size_t count = set.rays.size();
+  if (set.kind == RayKindOfBench::primary)
+    return trace_primary_ours(ours, set.rays.data(), count, answers->hits.data());
+  if (set.kind == RayKindOfBench::shadow) {
+    for (std::size_t i = 0; i < count; ++i)
+      answers->occluded[i] = ours.info->occluded(ours.accel, set.rays[i], nullptr, nullptr);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    Hit hit;
+    ours.info->closest(ours.accel, set.rays[i], nullptr, &hit, nullptr);
+    answers->hits[i] = hit;
+  }
 }
 
 }  // namespace pocketray

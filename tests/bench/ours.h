@@ -20,9 +20,15 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info);
 // "sse2" holds our code to what every x86-64 has, "native" lets it use what this CPU has.
 void hold_ours(const std::string& isa);
 
-// hits[i] answers set.rays[i]. The set's rays are primary rays.
-void trace_primary_ours(const OurSide& ours, const RaySet& set, std::vector<Hit>* hits);
-void trace_bounce_ours(const OurSide& ours, const RaySet& set, std::vector<Hit>* hits);
-void trace_shadow_ours(const OurSide& ours, const RaySet& set, std::vector<unsigned char>* occluded);
+// hits[i] answers rays[i]: primary rays, whole tiles of them.
+void trace_primary_ours(const OurSide& ours, const Ray* rays, std::size_t count, Hit* hits);
+
+// What answers the set: `occluded` for shadow rays, else `hits`.
+struct Answers {
+  std::vector<Hit> hits;
+  std::vector<unsigned char> occluded;
+};
+Answers room_for_answers(const RaySet& set);
+void trace_ours(const OurSide& ours, const RaySet& set, Answers* answers);
 
 }  // namespace pocketray
