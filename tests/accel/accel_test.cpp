@@ -33,28 +33,6 @@ Ray ray_about(Rng* rng, const Mesh& mesh, const Box& bounds) {
 
 }  // namespace
 
-// Goal: every accelerator gives the same bits as brute force, on meshes of every kind. Method: differential, with rays
-// that aim at vertices and edges, start on them, run along the axes.
-TEST_CASE("accel_hits_are_those_of_brute_force") {
-  for (const Mesh& mesh : generated_meshes()) {
-    auto oracle = make_world(mesh, &kBruteAccel);
-    for (const AccelInfo* info : kAccelList) {
-      auto world = make_world(mesh, info);
-      Rng rng = make_rng(101);
-      int wrong = 0, hits = 0;
-      for (int i = 0; i < effort(3000); ++i) {
-        Ray ray = ray_about(&rng, mesh, oracle->accel.bounds);
-        Hit expected = closest(*oracle, ray), found = closest(*world, ray);
-        wrong += !same_hit(expected, found);
-        wrong += world->info->occluded(world->accel, ray, nullptr, nullptr) != (expected.triangle != kNoTriangle);
-        hits += expected.triangle != kNoTriangle;
-      }
-      INFO(mesh.name << ", " << info->name << ", " << hits << " hits");
-      CHECK(wrong == 0);
-    }
-  }
-}
-
 namespace {
 
 // Refuses odd triangles and the half of each even one where u > v; counts what it is asked.

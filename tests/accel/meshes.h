@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,7 +14,7 @@
 namespace pocketray {
 
 struct Mesh {
-  const char* name = "";
+  std::string name;
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
 };

@@ -64,10 +64,14 @@ inline bool oracle_agrees(const World& world, const Ray& ray, const Hit& found, 
                                     world.positions[triangle.vertex[2]], ulps);
     if (hit.verdict == Verdict::miss) continue;
     double margin = hit.t_error + 4 * kFloatUlp * std::fabs(hit.t);
+    if (!std::isfinite(hit.t + margin)) {  // the ray runs within the plane: it may meet the triangle anywhere
+      open = 0;
+      continue;
+    }
     if (!(hit.t - margin < ray.t_max) || !(hit.t + margin > 0)) continue;
     bool sure = hit.verdict == Verdict::hit && hit.t - margin > 0 && hit.t + margin < ray.t_max;
     if (!sure) {
-      open = std::fmin(open, std::isnan(hit.t - margin) ? 0 : hit.t - margin);
+      open = std::fmin(open, hit.t - margin);
     } else if (hit.t < nearest) {
       second = nearest, nearest = hit.t, id = i;
     } else {

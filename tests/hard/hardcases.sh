@@ -1,13 +1,13 @@
 #!/bin/bash
-# The whole gate of hard cases: runs every test hard_NN_… of the programs given and prints a table: case, inputs, wrong
-# answers, bound, seconds. With JSON=FILE in the environment the same as a list of objects. EMULATOR runs programs of
-# another CPU. Exit status 1 if any answer is wrong.
+# The whole gate of hard cases: runs the tests hard_NN_… and differential_… of the programs given and prints a table:
+# case, inputs, wrong answers, bound. With JSON=FILE in the environment the same as a list of objects. EMULATOR runs
+# programs of another CPU. Exit status 1 if any answer is wrong.
 set -u
 lines=$(mktemp) && log=$(mktemp) || exit 1
 trap 'rm -f "$lines" "$log"' EXIT
 status=0
 for program in "$@"; do
-  POCKETRAY_HARDCASES=$lines ${EMULATOR:-} "$program" --test-case='hard_*' >"$log" || { status=1; cat "$log"; }
+  POCKETRAY_HARDCASES=$lines ${EMULATOR:-} "$program" --test-case='hard_*,differential_*' >"$log" || { status=1; cat "$log"; }
 done
 
 sort -o "$lines" "$lines"

@@ -45,7 +45,10 @@ struct GateListener : doctest::IReporter {
     std::fclose(file);
     std::fprintf(stderr, "\r\033[K");
   }
-  static bool is_hard_case() { return whole_gate() && running.name.compare(0, 5, "hard_") == 0; }
+  static bool is_hard_case() {
+    return whole_gate() &&
+           (running.name.compare(0, 5, "hard_") == 0 || running.name.compare(0, 13, "differential_") == 0);
+  }
 
   void report_query(const doctest::QueryData&) override {}
   void test_run_start() override {}

@@ -1,6 +1,6 @@
-// The hard cases (rows of HARDCASES.md) as one gate. A test named hard_NN_… counts what it tries and what comes out
-// wrong. The suite runs a share of the gate; with POCKETRAY_HARDCASES=FILE in the environment, which `make hardcases`
-// sets, all of it runs, with progress on stderr, and each such test appends a line to FILE:
+// The hard cases (rows of HARDCASES.md) as one gate. A test named hard_NN_… or differential_… counts what it tries and
+// what comes out wrong. The suite runs a share of the gate; with POCKETRAY_HARDCASES=FILE in the environment, which
+// `make hardcases` sets, all of it runs, with progress on stderr, and each such test appends a line to FILE:
 //   case TAB inputs TAB wrong TAB bound TAB seconds
 #pragma once
 #include <algorithm>

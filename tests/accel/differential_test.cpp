@@ -1,0 +1,148 @@
+// Every accelerator and every way to ask it against brute force, bit for bit, and against the oracle in double.
+#include <doctest/doctest.h>
+
+#include "accel/oracle.h"
+#include "accel/variant.h"
+#include "support/hard_case.h"
+
+using namespace pocketray;
+
+namespace {
+
+// Refuses a third of the triangles and a part of each other one.
+bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return triangle % 3 != 0 && u <= v + 0.25f; }
+constexpr HitFilter kSome = {accept_some, nullptr};
+
+// Rays that share an origin, and what brute force says of them.
+struct Group {
+  std::vector<Ray> rays;
+  std::vector<Hit> hits, filtered;
+};
+
+// Origins: far outside, inside, within the box of a triangle, at a vertex.
+Vec3 random_origin(Rng* rng, const Mesh& mesh, const Vec3& middle, float size) {
+  std::uint32_t kind = next_u32(rng) % 8;
+  if (kind < 2 || mesh.triangles.empty()) return middle + random_vec3(rng, 2 * size);
+  if (kind == 2) return middle + normalize(random_vec3(rng, 1)) * std::fmin(40 * size, 2 * kCoordinateMax);
+  if (kind < 5) return middle + random_vec3(rng, 0.6f * size);
+  const Triangle& t = mesh.triangles[next_u32(rng) % mesh.triangles.size()];
+  Vec3 a = mesh.positions[t.vertex[0]], b = mesh.positions[t.vertex[1]], c = mesh.positions[t.vertex[2]];
+  return kind < 7 ? min(min(a, b), c) * 0.5f + max(max(a, b), c) * 0.5f : a;
+}
+
+// Directions: at edges and corners, at anything, along axes and diagonals.
+Vec3 random_direction(Rng* rng, const Mesh& mesh, const Vec3& origin, const Vec3& middle, float size) {
+  std::uint32_t kind = next_u32(rng) % 8;
+  if (kind == 0) {
+    Vec3 direction = {0, 0, 0};
+    direction[static_cast<int>(next_u32(rng) % 3)] = next_u32(rng) % 2 ? 1.0f : -1.0f;
+    if (next_u32(rng) % 4 == 0) direction[static_cast<int>(next_u32(rng) % 3)] = 1;
+    return direction;
+  }
+  if (kind < 3 || mesh.triangles.empty()) return middle + random_vec3(rng, 0.6f * size) - origin;
+  const Triangle& t = mesh.triangles[next_u32(rng) % mesh.triangles.size()];
+  Vec3 a = mesh.positions[t.vertex[0]], b = mesh.positions[t.vertex[1]];
+  return (kind < 5 ? a : a + (b - a) * next_float(rng)) - origin;
+}
+
+// The rays of a group: scattered, or side by side as those of a picture. A quarter end before they may have hit.
+std::vector<Ray> random_rays(Rng* rng, const Mesh& mesh, const Box& bounds) {
+  Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
+  float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
+  Vec3 origin = random_origin(rng, mesh, middle, size), common = random_direction(rng, mesh, origin, middle, size);
+  Vec3 right = random_vec3(rng, 0.02f) * max_component(abs(common)),
+       up = random_vec3(rng, 0.02f) * max_component(abs(common));
+  bool side_by_side = next_u32(rng) % 2;
+  std::vector<Ray> rays;
+  int count = next_u32(rng) % 4 ? kGroupMax : 1 + static_cast<int>(next_u32(rng) % kGroupMax);
+  for (int i = 0; i < count; ++i) {
+    Vec3 direction = side_by_side ? common + right * static_cast<float>(i % 8) + up * static_cast<float>(i / 8)
+                                  : random_direction(rng, mesh, origin, middle, size);
+    rays.push_back({origin, direction, next_u32(rng) % 4 ? kInfinity : 0.9f});
+  }
+  return rays;
+}
+
+// Ends a group's rays just at, after or before what they hit: t_max is exclusive.
+void cut_at_hits(Rng* rng, const World& oracle, std::vector<Ray>* rays) {
+  for (Ray& ray : *rays) {
+    Hit hit = closest(oracle, ray);
+    if (hit.triangle == kNoTriangle) continue;
+    int kind = static_cast<int>(next_u32(rng) % 3);
+    ray.t_max = kind == 0 ? hit.t : std::nextafter(hit.t, kind == 1 ? kInfinity : 0.0f);
+  }
+}
+
+std::vector<Group> random_groups(Rng* rng, const Mesh& mesh, const World& oracle, int count) {
+  std::vector<Group> groups(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    Group& group = groups[static_cast<std::size_t>(i)];
+    group.rays = random_rays(rng, mesh, oracle.accel.bounds);
+    if (i % 4 == 3) cut_at_hits(rng, oracle, &group.rays);
+    for (const Ray& ray : group.rays) {
+      group.hits.push_back(closest(oracle, ray));
+      group.filtered.push_back(closest(oracle, ray, nullptr, &kSome));
+    }
+  }
+  return groups;
+}
+
+int wrong_in_group(const Variant& variant, const World& world, const Group& group) {
+  int wrong = 0, count = static_cast<int>(group.rays.size());
+  Hit hits[kGroupMax], filtered[kGroupMax];
+  answer(variant, world, group.rays.data(), count, nullptr, hits);
+  answer(variant, world, group.rays.data(), count, &kSome, filtered);
+  for (int i = 0; i < count; ++i) {
+    const Hit &hit = group.hits[static_cast<std::size_t>(i)], &other = group.filtered[static_cast<std::size_t>(i)];
+    const Ray& ray = group.rays[static_cast<std::size_t>(i)];
+    bool occluded = world.info->occluded(world.accel, ray, nullptr, nullptr);
+    bool occluded_by_some = world.info->occluded(world.accel, ray, &kSome, nullptr);
+    wrong += !same_hit(hits[i], hit) || !same_hit(filtered[i], other) || occluded != (hit.triangle != kNoTriangle) ||
+             occluded_by_some != (other.triangle != kNoTriangle);
+  }
+  return wrong;
+}
+
+}  // namespace
+
+// Goal: the same (t, u, v, id), whatever structure, instruction set and packet answers, and whether anything is hit.
+// Method: differential against brute force on meshes of every kind; rays from within boxes, from outside and afar, at
+// corners and edges, along axes, ended by t_max just at their hits, with a filter and without.
+TEST_CASE("differential_every_variant_answers_as_brute_force") {
+  for (const Mesh& mesh : generated_meshes()) {
+    auto oracle = make_world(mesh, &kBruteAccel);
+    Rng rng = make_rng(101);
+    std::vector<Group> groups = random_groups(&rng, mesh, *oracle, gate_share(60, 4000));
+    for (const Variant& variant : all_variants()) {
+      auto world = make_world(mesh, variant.accel);
+      std::uint64_t wrong = 0, rays = 0, hits = 0;
+      for (const Group& group : groups) {
+        wrong += wrong_in_group(variant, *world, group);
+        rays += group.rays.size();
+        for (const Hit& hit : group.hits) hits += hit.triangle != kNoTriangle;
+      }
+      INFO(mesh.name << ", " << name_of(variant) << ", " << hits << " hits of " << rays);
+      CHECK(wrong == 0);
+      if (!mesh.triangles.empty()) CHECK(hits > rays / 20);
+      count_hard(rays, wrong, "the bits of brute force");
+    }
+  }
+}
+
+// Goal: brute force, and so all, hit what exact arithmetic hits, outside a band of 4 ulp. Method: the oracle in double,
+// which tests by another method, on the same meshes and rays; it decides about most of them.
+TEST_CASE("differential_brute_force_answers_as_double_outside_4_ulp") {
+  for (const Mesh& mesh : generated_meshes()) {
+    if (mesh.name == "denormal") continue;  // float has no ulp to speak of there
+    auto oracle = make_world(mesh, &kBruteAccel);
+    Rng rng = make_rng(102);
+    int rays = 0, wrong = 0, decided = 0;
+    for (const Group& group : random_groups(&rng, mesh, *oracle, gate_share(16, 400)))
+      for (std::size_t i = 0; i < group.rays.size(); ++i, ++rays)
+        wrong += !oracle_agrees(*oracle, group.rays[i], group.hits[i], 4, &decided);
+    INFO(mesh.name << ": " << decided << " of " << rays << " decided");
+    CHECK(wrong == 0);
+    CHECK(decided > rays / 4);
+    count_hard(decided, wrong, "t and id of double outside 4 ulp");
+  }
+}
