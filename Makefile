@@ -20,7 +20,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases bench setup-bench-embree bench-embree format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -64,16 +64,20 @@ bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) bench $(SCENE) --json -
 
-# The tracing core against Embree. Without SCENE= all of the list; what make itself has to say goes to stderr, so that
+# Against other ray tracers. Without SCENE= all scenes of the list; what make itself has to say goes to stderr, so that
 # JSON=- can be piped.
-setup-bench-embree:
-	@toolchains/setup.sh bench-embree >&2
+setup-bench-%:
+	@toolchains/setup.sh bench-$* >&2
 
 BENCH_SCENE := $(if $(filter command line environment,$(origin SCENE)),$(SCENE))
 bench-embree: setup-bench-embree configure
 	@cmake --build $(BUILD) -j$(JOBS) --target bench_embree >&2
 	@$(BUILD)/bench_embree $(BENCH_SCENE:%=--scene %) $(JSON:%=--json %) \
 	  $(BUILD_JSON:%=--build-json %) $(BENCH_OPTIONS)
+
+bench-povray: setup-bench-povray configure
+	@cmake --build $(BUILD) -j$(JOBS) --target bench_povray >&2
+	@$(BUILD)/bench_povray $(JSON:%=--json %) $(BENCH_OPTIONS)
 
 install: configure
 	cmake --build $(BUILD) -j$(JOBS)
@@ -98,6 +102,7 @@ help:
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"
 	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31' and others ($(BUILD)/bench_embree --help)"
+	@echo "make bench-povray whole frames of the statue against POV-Ray; JSON=FILE its table"
 	@echo "make format       clang-format on all sources;  make tidy: clang-tidy"
 	@echo "make install      into PREFIX=$(PREFIX) (and DESTDIR)"
 	@echo "make clean        remove build/ and build-*/"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs what a build needs and this machine lacks. Silent when nothing is missing.
-# Groups: desktop tests bench-embree clang format tidy armhf armel aarch64. Run by the Makefile and by .ci/run.
+# Groups: desktop tests bench-embree bench-povray clang format tidy armhf armel aarch64. Run by the Makefile and by .ci/run.
 set -eu
 
 # What each group needs. "command=package" counts as there when the command is; a plain name is a Debian package.
@@ -10,6 +10,7 @@ required() {
     desktop) echo $common c++=g++ pkg-config=pkg-config zlib1g-dev ;;
     tests) ;;
     bench-embree) echo libembree-dev unzip=unzip ;;
+    bench-povray) echo povray=povray ;;
     clang) echo clang++=clang ;;
     format) echo clang-format=clang-format ;;
     tidy) echo clang-tidy=clang-tidy ;;
