@@ -5,6 +5,7 @@
 
 #include "accel/accel_list.h"
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/options.h"
 #include "app/report.h"
 #include "bench/build_report.h"
@@ -82,11 +83,13 @@ Status bench_scene(const std::string& name, const BenchOptions& options, std::ve
       std::vector<RaySet> sets;
       RETURN_IF_ERROR(make_sets(scene, size, options, ours, &sets));
       for (const RaySet& set : sets) {
+        if (interrupted) return success();
         std::vector<DuelRow> more = duel(scene, isa, ours, &embree, set, options.rounds);
         if (options.json != "-") print_duel_rows(more);
         rows->insert(rows->end(), more.begin(), more.end());
       }
-      if (isa != options.isas.back() || size != options.sizes.front() || options.build_rounds == 0) continue;
+      if (isa != options.isas.back() || size != options.sizes.front() || options.build_rounds == 0 || interrupted)
+        continue;
       std::vector<BuildRow> more = bench_builds(&scene, &embree, sets, options.build_rounds);
       builds->insert(builds->end(), more.begin(), more.end());
     }
@@ -110,6 +113,7 @@ int run(const BenchOptions& options) {
   for (const std::string& scene : options.scenes.empty() ? default_scene_names() : options.scenes) {
     Status status = bench_scene(scene, options, &rows, &builds);
     if (!status.ok) return report(status);
+    if (interrupted) break;
   }
   if (options.json != "-") {
     if (!builds.empty()) print_builds(builds);
@@ -118,7 +122,8 @@ int run(const BenchOptions& options) {
   Status status = success();
   if (!options.json.empty()) status = write_json(options.json, duel_json(rows));
   if (status.ok && !options.build_json.empty()) status = write_json(options.build_json, builds_json(builds));
-  return report(status.ok ? check_rows(rows) : status);
+  if (status.ok) status = check_rows(rows);
+  return status.ok && interrupted ? kExitInterrupted : report(status);
 }
 
 void add_options(CLI::App* program, BenchOptions* o) {
@@ -159,6 +164,8 @@ int main(int argument_count, char** arguments) {
   program.name("bench_embree");
   BenchOptions options;
   add_options(&program, &options);
+  program.footer("All of it takes about twenty minutes; Ctrl-C keeps what is finished.");
+  catch_interrupts();
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
