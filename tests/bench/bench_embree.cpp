@@ -34,9 +34,9 @@ const AccelInfo* find_accel(const std::string& name) {
 }
 
 float lit_share(const OurSide& ours, const RaySet& shadow) {
-  Answers answers = room_for_answers(shadow);
-  trace_ours(ours, shadow, &answers);
-  std::size_t lit = static_cast<std::size_t>(std::count(answers.occluded.begin(), answers.occluded.end(), 0));
+  OurTask task = make_our_task(ours, shadow);
+  trace_ours(&task);
+  std::size_t lit = static_cast<std::size_t>(std::count(task.occluded.begin(), task.occluded.end(), 0));
   return static_cast<float>(lit) / static_cast<float>(shadow.rays.empty() ? 1 : shadow.rays.size());
 }
 
@@ -58,10 +58,10 @@ Status make_sets(const BenchScene& scene, const std::string& size, const BenchOp
   RETURN_IF_ERROR(parse_size(size, &width, &height));
   RaySet primary;
   RETURN_IF_ERROR(make_primary_rays(scene, width, height, &primary));
-  Answers answers = room_for_answers(primary);
-  trace_ours(ours, primary, &answers);
-  if (asks(options.kinds, "shadow")) sets->push_back(lit_shadow_rays(scene, ours, primary, answers.hits));
-  if (asks(options.kinds, "bounce")) sets->push_back(make_bounce_rays(scene, primary, answers.hits));
+  OurTask task = make_our_task(ours, primary);
+  trace_ours(&task);
+  if (asks(options.kinds, "shadow")) sets->push_back(lit_shadow_rays(scene, ours, primary, task.hits));
+  if (asks(options.kinds, "bounce")) sets->push_back(make_bounce_rays(scene, primary, task.hits));
   if (asks(options.kinds, "primary")) sets->insert(sets->begin(), std::move(primary));
   return success();
 }

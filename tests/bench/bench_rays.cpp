@@ -7,6 +7,9 @@
 namespace pocketray {
 namespace {
 
+// Bits 0, 2 and 4, side by side.
+std::uint32_t even_bits(std::uint32_t slot) { return (slot & 1) | (slot >> 1 & 2) | (slot >> 2 & 4); }
+
 struct Start {
   Vec3 origin, normal;  // on the side that the primary ray came from
 };
@@ -49,29 +52,21 @@ RaySet make_secondary(RayKindOfBench kind, const BenchScene& scene, const RaySet
 
 }  // namespace
 
-std::vector<std::uint32_t> block_order(std::uint32_t ray_count, std::uint32_t block_width, std::uint32_t block_height) {
-  std::vector<std::uint32_t> order;
-  order.reserve(ray_count);
-  for (std::uint32_t tile = 0; tile < ray_count; tile += kTileSize)
-    for (std::uint32_t y0 = 0; y0 < kTileSide; y0 += block_height)
-      for (std::uint32_t x0 = 0; x0 < kTileSide; x0 += block_width)
-        for (std::uint32_t y = y0; y < y0 + block_height; ++y)
-          for (std::uint32_t x = x0; x < x0 + block_width; ++x) order.push_back(tile + y * kTileSide + x);
-  return order;
-}
-
 Status make_primary_rays(const BenchScene& scene, std::uint32_t width, std::uint32_t height, RaySet* set) {
   if (width == 0 || height == 0 || width % kTileSide || height % kTileSide)
     return failure("--size %ux%u: width and height must be multiples of %u", width, height, kTileSide);
   CameraRays camera;
   RETURN_IF_ERROR(make_camera_rays(scene.camera, width, height, &camera));
+  if (camera.orthographic)
+    return failure("%s has an orthographic camera: primary rays must share the eye", scene.name.c_str());
   *set = {RayKindOfBench::primary, width, height, {}};
   set->rays.reserve(static_cast<std::size_t>(width) * height);
   for (std::uint32_t y0 = 0; y0 < height; y0 += kTileSide)
     for (std::uint32_t x0 = 0; x0 < width; x0 += kTileSide)
-      for (std::uint32_t y = y0; y < y0 + kTileSide; ++y)
-        for (std::uint32_t x = x0; x < x0 + kTileSide; ++x)
-          set->rays.push_back(camera_ray(camera, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+      for (std::uint32_t slot = 0; slot < kTileSize; ++slot) {
+        std::uint32_t x = x0 + even_bits(slot), y = y0 + even_bits(slot >> 1);
+        set->rays.push_back(camera_ray(camera, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+      }
   return success();
 }
 

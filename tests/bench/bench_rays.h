@@ -1,5 +1,6 @@
-// The rays of the comparison, the same for both sides. They lie in tiles of 8×8 pixels, in the order that suits
-// coherent tracing; packets take the pixels of a tile in smaller blocks.
+// The rays of the comparison, the same for both sides. They lie in tiles of 8×8 pixels and in Morton order within a
+// tile, which suits coherent tracing: any 4, 8, 16 or 64 that follow one another are a block of 2×2, 4×2, 4×4 or 8×8
+// pixels.
 #pragma once
 #include <string>
 #include <vector>
@@ -20,10 +21,6 @@ struct RaySet {
   std::vector<Ray> rays;        // primary: one a pixel, in tiles; else in the order of the hits
   std::string size() const { return std::to_string(width) + "x" + std::to_string(height); }
 };
-
-// Where, in the order of tiles, the pixel (x, y) of tile `tile` lies when a tile is cut into blocks of block_width ×
-// block_height pixels. Returns for every slot of such an order its slot in plain tile order (blocks of 8×8).
-std::vector<std::uint32_t> block_order(std::uint32_t ray_count, std::uint32_t block_width, std::uint32_t block_height);
 
 Status make_primary_rays(const BenchScene& scene, std::uint32_t width, std::uint32_t height, RaySet* set);
 

@@ -55,12 +55,11 @@ double refit_ms(const BenchScene& scene, const AccelInfo* info, int rounds) {
 // Each thread takes every other row of tiles. Counted is the CPU time of the one that works longer: what the wall clock
 // shows when both cores are free. The fastest rounds are compared.
 double two_threads(const OurSide& ours, const RaySet& primary, int rounds) {
-  Answers answers = room_for_answers(primary);
-  std::size_t row_size = static_cast<std::size_t>(primary.width) * kTileSide, row_count = primary.height / kTileSide;
+  OurTask task = make_our_task(ours, primary);
+  std::size_t row_size = primary.width / kTileSide, row_count = primary.height / kTileSide;
   auto trace_rows = [&](std::size_t first, std::size_t step) {
     return thread_seconds_of([&] {
-      for (std::size_t row = first; row < row_count; row += step)
-        trace_primary_ours(ours, &primary.rays[row * row_size], row_size, &answers.hits[row * row_size]);
+      for (std::size_t row = first; row < row_count; row += step) trace_tiles_ours(&task, row * row_size, row_size);
     });
   };
   double one = __builtin_inf(), two = __builtin_inf();
@@ -76,11 +75,11 @@ double two_threads(const OurSide& ours, const RaySet& primary, int rounds) {
 }
 
 double speed_against(const OurSide& reference, const OurSide& ours, const RaySet& set, int rounds) {
-  Answers answers = room_for_answers(set);
+  OurTask reference_task = make_our_task(reference, set), task = make_our_task(ours, set);
   std::vector<double> ratios;
   for (int round = 0; round < rounds; ++round) {
-    double theirs = thread_seconds_of([&] { trace_ours(reference, set, &answers); });
-    ratios.push_back(theirs / thread_seconds_of([&] { trace_ours(ours, set, &answers); }));
+    double theirs = thread_seconds_of([&] { trace_ours(&reference_task); });
+    ratios.push_back(theirs / thread_seconds_of([&] { trace_ours(&task); }));
   }
   return median(&ratios);
 }

@@ -12,7 +12,7 @@ bool same_hit(const Hit& a, const Hit& b) {
   return std::fabs(a.t - b.t) <= kSameHit * std::fabs(a.t);
 }
 
-double differing_share(const Answers& ours, const EmbreeTask& task, const RaySet& set) {
+double differing_share(const OurTask& ours, const EmbreeTask& task, const RaySet& set) {
   std::size_t differing = 0;
   if (set.kind == RayKindOfBench::shadow) {
     for (std::size_t i = 0; i < set.rays.size(); ++i) differing += ours.occluded[i] != task.occluded[i];
@@ -29,23 +29,23 @@ std::vector<DuelRow> duel(const BenchScene& scene, const std::string& isa, const
                           const RaySet& set, int rounds) {
   std::vector<DuelRow> rows;
   if (set.rays.empty()) return rows;
-  Answers answers = room_for_answers(set);
-  trace_ours(ours, set, &answers);
+  OurTask our_task = make_our_task(ours, set);
+  trace_ours(&our_task);
   std::vector<EmbreeTask> tasks;
   std::vector<double> differing;
   for (const EmbreeMode& mode : embree_modes(set.kind, isa)) {
     tasks.push_back(make_embree_task(embree, mode, set));
     trace_embree(&tasks.back());
-    differing.push_back(differing_share(answers, tasks.back(), set));
+    differing.push_back(differing_share(our_task, tasks.back(), set));
   }
   std::vector<std::vector<double>> ratios(tasks.size()), theirs(tasks.size());
   std::vector<double> our_seconds;
   for (int round = 0; round < rounds; ++round) {
-    our_seconds.push_back(thread_seconds_of([&] { trace_ours(ours, set, &answers); }));
+    our_seconds.push_back(thread_seconds_of([&] { trace_ours(&our_task); }));
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       double before = our_seconds.back();
       theirs[i].push_back(thread_seconds_of([&] { trace_embree(&tasks[i]); }));
-      our_seconds.push_back(thread_seconds_of([&] { trace_ours(ours, set, &answers); }));
+      our_seconds.push_back(thread_seconds_of([&] { trace_ours(&our_task); }));
       ratios[i].push_back(theirs[i].back() / ((before + our_seconds.back()) / 2));
     }
   }

@@ -52,16 +52,16 @@ struct EmbreeTask {
   RTCScene scene;
   EmbreeMode mode;
   RayKindOfBench kind;
-  Vec3 eye;                          // of primary rays
-  std::vector<RTCRay> singles;       // modes of one lane
-  std::vector<float> directions;     // packets: x, y, z of the lanes in turn
-  std::vector<std::uint32_t> order;  // packets: slot in the ray set
-  std::vector<Hit> hits;             // one lane
+  Vec3 eye;                       // of primary rays
+  std::vector<RTCRay> singles;    // modes of one lane
+  std::vector<float> directions;  // packets: x, y, z of the lanes in turn
+  std::vector<Hit> hits;          // one lane
   std::vector<unsigned char> occluded;
   std::vector<float> packet_t, packet_u, packet_v;
   std::vector<std::uint32_t> packet_triangle;
 };
 
+// Lays out the rays of the set and makes room for the hits.
 EmbreeTask make_embree_task(EmbreeSide* side, const EmbreeMode& mode, const RaySet& set);
 void trace_embree(EmbreeTask* task);
 // The hits in the order of the ray set.

@@ -69,7 +69,7 @@ void trace_packets(EmbreeTask* task) {
     packet.ray.mask[lane] = kAllRays, packet.ray.id[lane] = packet.ray.flags[lane] = 0;
   }
   const float* direction = task->directions.data();
-  for (std::size_t first = 0; first < task->order.size(); first += lanes, direction += 3 * lanes) {
+  for (std::size_t first = 0; first < task->packet_t.size(); first += lanes, direction += 3 * lanes) {
     __builtin_memcpy(packet.ray.dir_x, direction, sizeof packet.ray.dir_x);
     __builtin_memcpy(packet.ray.dir_y, direction + lanes, sizeof packet.ray.dir_y);
     __builtin_memcpy(packet.ray.dir_z, direction + 2 * lanes, sizeof packet.ray.dir_z);
@@ -96,14 +96,13 @@ RTCRay embree_ray(const Ray& ray) {
 }
 
 void lay_out_packets(const RaySet& set, EmbreeTask* task) {
-  std::uint32_t lanes = static_cast<std::uint32_t>(task->mode.lanes), height = lanes == 16 ? 4 : 2;
+  std::uint32_t lanes = static_cast<std::uint32_t>(task->mode.lanes);
   std::uint32_t count = static_cast<std::uint32_t>(set.rays.size());
-  task->order = block_order(count, lanes / height, height);
   task->directions.resize(std::size_t(3) * count);
   for (std::uint32_t i = 0; i < count; ++i)
     for (std::uint32_t axis = 0; axis < 3; ++axis)
       task->directions[std::size_t(i / lanes) * 3 * lanes + axis * lanes + i % lanes] =
-          set.rays[task->order[i]].direction[static_cast<int>(axis)];
+          set.rays[i].direction[static_cast<int>(axis)];
   task->packet_t.resize(count), task->packet_u.resize(count), task->packet_v.resize(count);
   task->packet_triangle.resize(count);
 }
@@ -144,9 +143,9 @@ void trace_embree(EmbreeTask* task) {
 
 std::vector<Hit> embree_hits(const EmbreeTask& task) {
   if (task.mode.lanes == 1) return task.hits;
-  std::vector<Hit> hits(task.order.size());
+  std::vector<Hit> hits(task.packet_t.size());
   for (std::size_t i = 0; i < hits.size(); ++i)
-    hits[task.order[i]] = {task.packet_t[i], task.packet_u[i], task.packet_v[i], task.packet_triangle[i]};
+    hits[i] = {task.packet_t[i], task.packet_u[i], task.packet_v[i], task.packet_triangle[i]};
   return hits;
 }
 

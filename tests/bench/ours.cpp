@@ -3,6 +3,24 @@
 #include "plan/plan_scene.h"
 
 namespace pocketray {
+namespace {
+
+void trace_hits(OurTask* task, std::size_t first, std::size_t count) {
+  const OurSide& side = *task->side;
+  for (std::size_t i = first; i < first + count; ++i) {
+    Hit hit;
+    side.info->closest(side.accel, task->set->rays[i], nullptr, &hit, nullptr);
+    task->hits[i] = hit;
+  }
+}
+
+void trace_occlusion(OurTask* task, std::size_t first, std::size_t count) {
+  const OurSide& side = *task->side;
+  for (std::size_t i = first; i < first + count; ++i)
+    task->occluded[i] = side.info->occluded(side.accel, task->set->rays[i], nullptr, nullptr);
+}
+
+}  // namespace
 
 OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
   OurSide ours;
@@ -10,10 +28,10 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
   std::uint32_t count = scene.scene().triangles.count;
   std::size_t keep_bytes = info->need(count) + kArenaAlignment;
   std::size_t scratch_bytes = info->scratch_need(count) + kArenaAlignment;
-  ours.keep_block.reset(new unsigned char[keep_bytes]);
-  ours.scratch_block.reset(new unsigned char[scratch_bytes]);
-  Arena keep = make_arena("keep", ours.keep_block.get(), keep_bytes);
-  Arena scratch = make_arena("scratch", ours.scratch_block.get(), scratch_bytes);
+  ours.block.reset(new unsigned char[keep_bytes]);
+  std::unique_ptr<unsigned char[]> scratch_block(new unsigned char[scratch_bytes]);
+  Arena keep = make_arena("keep", ours.block.get(), keep_bytes);
+  Arena scratch = make_arena("scratch", scratch_block.get(), scratch_bytes);
   ours.accel.positions = scene.scene().positions;
   ours.accel.triangles = scene.scene().triangles;
   ours.accel.bounds = scene.bounds;
@@ -24,36 +42,28 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
 // The core has one build for every CPU so far, and it is the one for SSE2.
 void hold_ours(const std::string&) {}
 
-void trace_primary_ours(const OurSide& ours, const Ray* rays, std::size_t count, Hit* hits) {
-  for (std::size_t i = 0; i < count; ++i) {
-    Hit hit;
-    ours.info->closest(ours.accel, rays[i], nullptr, &hit, nullptr);
-    hits[i] = hit;
-  }
-}
-
-Answers room_for_answers(const RaySet& set) {
-  Answers answers;
+OurTask make_our_task(const OurSide& side, const RaySet& set) {
+  OurTask task = {&side, &set, {}, {}};
   if (set.kind == RayKindOfBench::shadow)
-    answers.occluded.resize(set.rays.size());
+    task.occluded.resize(set.rays.size());
   else
-    answers.hits.resize(set.rays.size());
-  return answers;
+    task.hits.resize(set.rays.size());
+  return task;
 }
 
-void trace_ours(const OurSide& ours, const RaySet& set, Answers* answers) {
-  std::size_t count = set.rays.size();
-  if (set.kind == RayKindOfBench::primary)
-    return trace_primary_ours(ours, set.rays.data(), count, answers->hits.data());
-  if (set.kind == RayKindOfBench::shadow) {
-    for (std::size_t i = 0; i < count; ++i)
-      answers->occluded[i] = ours.info->occluded(ours.accel, set.rays[i], nullptr, nullptr);
-    return;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    Hit hit;
-    ours.info->closest(ours.accel, set.rays[i], nullptr, &hit, nullptr);
-    answers->hits[i] = hit;
+void trace_tiles_ours(OurTask* task, std::size_t first, std::size_t count) {
+  trace_hits(task, first * kTileSize, count * kTileSize);
+}
+
+void trace_ours(OurTask* task) {
+  std::size_t count = task->set->rays.size();
+  switch (task->set->kind) {
+    case RayKindOfBench::primary:
+      return trace_tiles_ours(task, 0, count / kTileSize);
+    case RayKindOfBench::shadow:
+      return trace_occlusion(task, 0, count);
+    case RayKindOfBench::bounce:
+      return trace_hits(task, 0, count);
   }
 }
 

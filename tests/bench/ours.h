@@ -12,7 +12,7 @@ namespace pocketray {
 struct OurSide {
   const AccelInfo* info = nullptr;
   Accel accel;
-  std::unique_ptr<unsigned char[]> keep_block, scratch_block;
+  std::unique_ptr<unsigned char[]> block;  // holds the structure
 };
 
 OurSide build_ours(const BenchScene& scene, const AccelInfo* info);
@@ -20,15 +20,18 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info);
 // "sse2" holds our code to what every x86-64 has, "native" lets it use what this CPU has.
 void hold_ours(const std::string& isa);
 
-// hits[i] answers rays[i]: primary rays, whole tiles of them.
-void trace_primary_ours(const OurSide& ours, const Ray* rays, std::size_t count, Hit* hits);
-
-// What answers the set: `occluded` for shadow rays, else `hits`.
-struct Answers {
+// Rays in the layout that we like best, and what answers them, in the order of the ray set: `occluded` for shadow rays,
+// else `hits`. The side and the set must outlive it.
+struct OurTask {
+  const OurSide* side;
+  const RaySet* set;
   std::vector<Hit> hits;
   std::vector<unsigned char> occluded;
 };
-Answers room_for_answers(const RaySet& set);
-void trace_ours(const OurSide& ours, const RaySet& set, Answers* answers);
+
+OurTask make_our_task(const OurSide& side, const RaySet& set);
+void trace_ours(OurTask* task);
+// The tiles of primary rays from first to first + count − 1.
+void trace_tiles_ours(OurTask* task, std::size_t first, std::size_t count);
 
 }  // namespace pocketray
