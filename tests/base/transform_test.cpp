@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/rng.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -41,6 +42,7 @@ Vec3d applied(const Transform& t, const Vec3d& v) {
 // their images (in double, so that the float tangents' own rounding does not count) and, where the map mirrors, agree
 // with the winding flipped: n′ · (t1′ × t2′) · det > 0.
 TEST_CASE("hard_26_normals_stay_perpendicular_and_keep_their_side") {
+  count_assertions("perpendicular within 1e-6, side kept");
   Rng rng = make_rng(26);
   for (int i = 0; i < 5000; ++i) {
     CAPTURE(i);
@@ -67,6 +69,7 @@ TEST_CASE("hard_26_normals_stay_perpendicular_and_keep_their_side") {
 // Goal: HARDCASES row 27: what cannot be inverted within float range is told apart; normals never become NaN. Method:
 // determinants 0, 1e-38, infinite, NaN.
 TEST_CASE("hard_27_singular_transforms_are_told_apart") {
+  count_assertions("told apart");
   Transform t;
   CHECK(is_invertible(t));
   for (float bad :

@@ -8,6 +8,7 @@
 
 #include "base/box.h"
 #include "base/rng.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -24,6 +25,7 @@ Vec3 random_vector(Rng* rng) { return {next_float(rng) - 0.5f, next_float(rng) -
 // Goal: HARDCASES row 30: normals of every size become unit, zero and non-finite ones become zero, nothing becomes NaN.
 // Method: random directions scaled by all powers of two from denormal to the largest; compared in double.
 TEST_CASE("hard_30_normalize_takes_every_magnitude") {
+  count_assertions("unit within 2e-7, or zero");
   Rng rng = make_rng(30);
   for (int exponent = -120; exponent <= 126; ++exponent) {
     CAPTURE(exponent);

@@ -6,6 +6,7 @@
 
 #include "base/rng.h"
 #include "brdf/brdf_list.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -95,6 +96,7 @@ TEST_CASE("brdf_conserves_energy") {
 // 10⁶ (HARDCASES row 31). Method: sampling, aimed at the mirror direction and beyond: vectors a little longer than
 // unit.
 TEST_CASE("hard_31_brdf_is_finite_and_below_its_peak") {
+  count_assertions("finite, at most the peak");
   for (std::uint32_t b = 0; b < kBrdfCount; ++b)
     for (float exponent : kExponents) {
       Material m = lobe(b, exponent);

@@ -1,6 +1,7 @@
 // Meshes, accessors, nodes and instances of glTF files written here.
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -90,6 +91,7 @@ TEST_CASE("gltf_vertex_colors_of_all_types_become_linear_16_bit") {
 // Goal: a mirrored instance keeps its outside outside. Method: a triangle with normals under scale (−2, 3, 1) and
 // shear; winding and normals must agree, and the normal stay perpendicular to the surface.
 TEST_CASE("hard_26_mirrored_and_sheared_nodes_keep_normals_perpendicular_and_outward") {
+  count_assertions("perpendicular, outward");
   GltfWriter w;
   w.vec3s({0, 0, 0, 1, 0, 1, 0, 1, 1});
   Vec3 n = normalize(cross(Vec3{1, 0, 1}, Vec3{0, 1, 1}));
@@ -109,6 +111,7 @@ TEST_CASE("hard_26_mirrored_and_sheared_nodes_keep_normals_perpendicular_and_out
 // Goal: transforms that cannot be inverted are refused, and the error names the node. Method: determinants 0, 1e-38,
 // Inf.
 TEST_CASE("hard_27_singular_transforms_are_refused_naming_the_node") {
+  count_assertions("refused by name");
   for (const char* scale : {"[1,0,1]", "[1e-13,1e-13,1e-12]", "[1e15,1e15,1e15]", "[1e400,1,1]", "[1e39,1,1]"}) {
     CAPTURE(scale);
     std::string error = error_of(triangle_gltf("", "", std::string(",\"name\":\"squashed\",\"scale\":") + scale));
@@ -120,6 +123,7 @@ TEST_CASE("hard_27_singular_transforms_are_refused_naming_the_node") {
 // Goal: denormal coordinates are taken, indices out of range refused (HARDCASES row 8; non_finite_test.cpp has the
 // rest).
 TEST_CASE("hard_08_denormal_vertices_are_taken_and_indices_out_of_range_refused") {
+  count_assertions("left out and counted");
   GltfWriter w;
   w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e-40f, 0, 0});
   w.indices({0, 1, 2, 3, 1, 2});

@@ -7,6 +7,7 @@
 #include "base/fmath.h"
 #include "import/image.h"
 #include "import/import_testing.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -59,6 +60,7 @@ TEST_CASE("smooth_normals_weights_by_angle") {
 
 // Goal: hard-case normals are finite. Method: degenerate triangles among sound ones, coordinates 1e-30 and 1e15.
 TEST_CASE("hard_30_smoothed_normals_are_unit_or_zero") {
+  count_assertions("unit or zero");
   for (float scale : {1e-30f, 1.0f, 1e15f}) {
     MeshData mesh = folded(20);
     for (Vec3& p : mesh.positions) p = p * scale;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "support/hard_case.h"
+
 using namespace pocketray;
 
 namespace {
@@ -35,6 +37,7 @@ double encode_exactly(double linear) {
 // Goal: the fast tone curve is the plain one. Method: every float around each threshold and each bucket's edges, and a
 // stride through all floats.
 TEST_CASE("hard_64_tone_level_equals_the_search_for_every_kind_of_float") {
+  count_assertions("the level of the plain search");
   ToneCounts counts;
   int wrong = 0;
   auto compare = [&](std::uint32_t bits) {
@@ -53,6 +56,7 @@ TEST_CASE("hard_64_tone_level_equals_the_search_for_every_kind_of_float") {
 
 // Goal: what no display can show is shown as the header says and counted once per channel. Method: one picture of each.
 TEST_CASE("hard_64_pack_counts_nan_infinite_and_negative_radiance") {
+  count_assertions("defined and counted");
   float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   Vec3 radiance[4] = {{nan, -nan, 0.5f}, {infinity, -infinity, -1}, {-0.0f, 1, 1e30f}, {-1e-40f, 0, 0.18f}};
   const std::uint8_t expected[12] = {0, 0, 188, 255, 0, 0, 0, 255, 255, 0, 0, 118};
@@ -87,6 +91,7 @@ TEST_CASE("tone_fine_is_within_one_of_65535") {
 
 // Goal: RGB565 is idempotent and as near as five and six bits allow. Method: all 65,536 pixels, all 256 levels.
 TEST_CASE("hard_65_rgb565_is_idempotent_and_near") {
+  count_assertions("idempotent, error at most 4/255 (R, B), 2/255 (G)");
   for (const PixelFormat& format : {kRgb565, kBgr565}) {
     int changed = 0;
     for (std::uint32_t pixel = 0; pixel < 65536; ++pixel) {
@@ -108,6 +113,7 @@ TEST_CASE("hard_65_rgb565_is_idempotent_and_near") {
 // Goal: the mean of a dithered tile is the display value to 1/64 step. Method: tiles of one colour over the whole
 // range, with every rotation (the pattern is fixed to the screen, a tile is a tile whichever way it is turned).
 TEST_CASE("hard_65_dither_mean_is_within_a_64th_of_a_step") {
+  count_assertions("mean within 1/64 step");
   std::vector<Vec3> radiance(64);
   std::uint16_t pixels[64];
   double error_max = 0;

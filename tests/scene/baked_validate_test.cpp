@@ -10,6 +10,7 @@
 #include "base/limits.h"
 #include "scene/baked.h"
 #include "scene/full_scene.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -53,6 +54,7 @@ E unknown(int value) {
 
 // Goal: HARDCASES row 8: what is not a coordinate, or no index, never gets in. Method: each in each array.
 TEST_CASE("hard_08_vertices_and_indices_out_of_range_are_refused") {
+  count_assertions("refused, saying why");
   for (float bad : {kNan, -kNan, kInf, -kInf, 1.0001e18f, -2e18f, 3e38f}) {
     refuses("positions[13]", [=](FullScene* f) { f->positions[13].z = bad; });
     refuses("normals[4]", [=](FullScene* f) { f->normals[4].y = bad; });
@@ -80,6 +82,7 @@ TEST_CASE("hard_08_vertices_and_indices_out_of_range_are_refused") {
 // Goal: HARDCASES row 27: transforms that flatten or burst are refused, naming the node. Method: determinants 0, below
 // the smallest normal float, infinite; tiny and huge ones inside the range are fine.
 TEST_CASE("hard_27_singular_nodes_are_refused_by_name") {
+  count_assertions("refused by name");
   refuses("nodes[2]", [](FullScene* f) { f->nodes[2].scale = {1, 0, 1}; });
   refuses("nodes[2]", [](FullScene* f) { f->nodes[2].scale = {1e-19f, 1e-19f, 1}; });
   refuses("nodes[1]", [](FullScene* f) { f->nodes[1].scale = {1e17f, 1e17f, 1e17f}; });
@@ -171,6 +174,7 @@ TEST_CASE("validate_scene_refuses_bad_textures") {
 
 // Goal: lights and cameras that would give NaN are refused. HARDCASES row 28.
 TEST_CASE("hard_28_degenerate_lights_and_cameras_are_refused") {
+  count_assertions("refused, saying why");
   refuses("lights[2]", [](FullScene* f) { f->lights[2].kind = unknown<LightKind>(3); });
   refuses("lights[0]", [](FullScene* f) { f->lights[0].node = 3; });
   refuses("lights[1].position", [](FullScene* f) { f->lights[1].position.x = kInf; });

@@ -20,6 +20,7 @@ Status rays_of(const Camera& camera, std::uint32_t width, std::uint32_t height, 
 // Goal: cameras that cannot be are refused and extreme ones give finite unit rays. Method: the degenerate cases by
 // name.
 TEST_CASE("hard_28_degenerate_cameras") {
+  count_assertions("defined or refused, no NaN");
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   CameraRays rays;
   Camera camera;
@@ -95,6 +96,7 @@ TEST_CASE("hard_29_scene_scaled_by_powers_of_two_same_image") {
 // Goal: normals of any length, none at all, and opposite ones leave no NaN in a picture. Method: sweep of what a file
 // might hold in a normal.
 TEST_CASE("hard_30_strange_normals_give_finite_pictures") {
+  count_assertions("finite");
   for (float size : {0.0f, 1e-30f, 1e30f, -1.0f, 1.0000002f}) {
     auto s = generate_scene(kAllFeatures, 2);
     for (std::size_t i = 0; i < s->normals.size(); ++i) s->normals[i] = (i % 3 ? s->normals[i] : Vec3{0, 1, 0}) * size;

@@ -32,10 +32,8 @@ struct GateListener : doctest::IReporter {
     if (!is_hard_case()) return;
     std::uint64_t failed = static_cast<std::uint64_t>(stats.numAssertsFailedCurrentTest);
     if (stats.failure_flags && failed == 0) failed = 1;
-    if (running.inputs == 0) {
-      running.inputs = static_cast<std::uint64_t>(stats.numAssertsCurrentTest);
-      running.bound = "every assertion holds";
-    }
+    if (running.inputs == 0) running.inputs = static_cast<std::uint64_t>(stats.numAssertsCurrentTest);
+    if (running.bound.empty()) running.bound = "every assertion holds";
     std::uint64_t wrong = running.wrong > 0 ? running.wrong : failed;
     std::FILE* file = std::fopen(line_file(), "a");
     if (!file) std::perror(line_file()), std::abort();
@@ -70,6 +68,8 @@ bool whole_gate() { return line_file() != nullptr; }
 void count_hard(std::uint64_t inputs, std::uint64_t wrong, const char* bound) {
   running.inputs += inputs, running.wrong += wrong, running.bound = bound;
 }
+
+void count_assertions(const char* bound) { running.bound = bound; }
 
 void show_gate_progress(std::uint64_t done, std::uint64_t count) {
   if (!whole_gate()) return;

@@ -21,8 +21,10 @@ bool whole_gate();
 inline int gate_share(int usual, int whole) { return effort(whole_gate() ? whole : usual); }
 
 // Counts inputs of the running test and how many of them got a wrong answer; calls add up. `bound` says what a right
-// answer is; the last one is kept. A test that never calls this is listed with the number of its assertions.
+// answer is; the last one is kept.
 void count_hard(std::uint64_t inputs, std::uint64_t wrong, const char* bound);
+// For a test that asserts each of its inputs: its assertions are counted.
+void count_assertions(const char* bound);
 
 // Says on stderr how far a test of the whole gate is, at most twice a second. Any thread may call it.
 void show_gate_progress(std::uint64_t done, std::uint64_t count);
