@@ -11,8 +11,8 @@ namespace {
 // Index of a texel coordinate after wrapping. The coordinate is any integer in float; sizes are at most 2^14.
 int wrap_texel(float coordinate, int size, Wrap wrap) {
   float n = static_cast<float>(size);
+  if (wrap == Wrap::clamp) return coordinate >= n ? size - 1 : coordinate > 0 ? static_cast<int>(coordinate) : 0;
   if (!(coordinate > -1e9f && coordinate < 1e9f)) return 0;
-  if (wrap == Wrap::clamp) return coordinate < 0 ? 0 : coordinate >= n ? size - 1 : static_cast<int>(coordinate);
   float period = wrap == Wrap::mirror ? 2 * n : n;
   int i = static_cast<int>(coordinate - std::floor(coordinate / period) * period);
   int last = static_cast<int>(period) - 1;

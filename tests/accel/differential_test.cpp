@@ -13,7 +13,7 @@ namespace {
 bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return triangle % 3 != 0 && u <= v + 0.25f; }
 constexpr HitFilter kSome = {accept_some, nullptr};
 
-// Rays that share an origin, and what brute force says of them.
+// Rays that share an origin and t_max, and what brute force says of them.
 struct Group {
   std::vector<Ray> rays;
   std::vector<Hit> hits, filtered;
@@ -30,8 +30,9 @@ Vec3 random_origin(Rng* rng, const Mesh& mesh, const Vec3& middle, float size) {
   return kind < 7 ? min(min(a, b), c) * 0.5f + max(max(a, b), c) * 0.5f : a;
 }
 
-// Directions: at edges and corners, at anything, along axes and diagonals.
+// Directions: at edges and corners, at anything, along axes and diagonals; a few that are none.
 Vec3 random_direction(Rng* rng, const Mesh& mesh, const Vec3& origin, const Vec3& middle, float size) {
+  if (next_u32(rng) % 100 == 0) return {0, next_u32(rng) % 2 ? 0 : std::numeric_limits<float>::quiet_NaN(), 0};
   std::uint32_t kind = next_u32(rng) % 8;
   if (kind == 0) {
     Vec3 direction = {0, 0, 0};
@@ -45,40 +46,39 @@ Vec3 random_direction(Rng* rng, const Mesh& mesh, const Vec3& origin, const Vec3
   return (kind < 5 ? a : a + (b - a) * next_float(rng)) - origin;
 }
 
-// The rays of a group: scattered, or side by side as those of a picture. A quarter end before they may have hit.
-std::vector<Ray> random_rays(Rng* rng, const Mesh& mesh, const Box& bounds) {
+// The rays of a group: scattered, or side by side as those of a picture. A quarter of the groups ends early.
+std::vector<Ray> random_rays(Rng* rng, const Mesh& mesh, const Box& bounds, int count) {
   Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
   float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
   Vec3 origin = random_origin(rng, mesh, middle, size), common = random_direction(rng, mesh, origin, middle, size);
-  Vec3 right = random_vec3(rng, 0.02f) * max_component(abs(common)),
-       up = random_vec3(rng, 0.02f) * max_component(abs(common));
+  float step = max_component(abs(common));
+  Vec3 right = random_vec3(rng, 0.02f) * step, up = random_vec3(rng, 0.02f) * step;
   bool side_by_side = next_u32(rng) % 2;
+  float t_max = next_u32(rng) % 4 ? kInfinity : 0.9f;
   std::vector<Ray> rays;
-  int count = next_u32(rng) % 4 ? kGroupMax : 1 + static_cast<int>(next_u32(rng) % kGroupMax);
   for (int i = 0; i < count; ++i) {
     Vec3 direction = side_by_side ? common + right * static_cast<float>(i % 8) + up * static_cast<float>(i / 8)
                                   : random_direction(rng, mesh, origin, middle, size);
-    rays.push_back({origin, direction, next_u32(rng) % 4 ? kInfinity : 0.9f});
+    rays.push_back({origin, direction, t_max});
   }
   return rays;
 }
 
-// Ends a group's rays just at, after or before what they hit: t_max is exclusive.
-void cut_at_hits(Rng* rng, const World& oracle, std::vector<Ray>* rays) {
-  for (Ray& ray : *rays) {
-    Hit hit = closest(oracle, ray);
-    if (hit.triangle == kNoTriangle) continue;
-    int kind = static_cast<int>(next_u32(rng) % 3);
-    ray.t_max = kind == 0 ? hit.t : std::nextafter(hit.t, kind == 1 ? kInfinity : 0.0f);
-  }
+// Ends a group's rays just at, after or before what one of them hits: t_max is exclusive.
+void cut_at_hit(Rng* rng, const World& oracle, std::vector<Ray>* rays) {
+  Hit hit = closest(oracle, (*rays)[next_u32(rng) % rays->size()]);
+  if (hit.triangle == kNoTriangle) return;
+  std::uint32_t kind = next_u32(rng) % 3;
+  for (Ray& ray : *rays) ray.t_max = kind == 0 ? hit.t : std::nextafter(hit.t, kind == 1 ? kInfinity : 0.0f);
 }
 
 std::vector<Group> random_groups(Rng* rng, const Mesh& mesh, const World& oracle, int count) {
   std::vector<Group> groups(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     Group& group = groups[static_cast<std::size_t>(i)];
-    group.rays = random_rays(rng, mesh, oracle.accel.bounds);
-    if (i % 4 == 3) cut_at_hits(rng, oracle, &group.rays);
+    const int counts[] = {kGroupMax, kGroupMax, 1 + static_cast<int>(next_u32(rng) % kGroupMax), 1};
+    group.rays = random_rays(rng, mesh, oracle.accel.bounds, counts[i % 4]);
+    if (i % 8 >= 5) cut_at_hit(rng, oracle, &group.rays);
     for (const Ray& ray : group.rays) {
       group.hits.push_back(closest(oracle, ray));
       group.filtered.push_back(closest(oracle, ray, nullptr, &kSome));
@@ -112,7 +112,7 @@ TEST_CASE("differential_every_variant_answers_as_brute_force") {
   for (const Mesh& mesh : generated_meshes()) {
     auto oracle = make_world(mesh, &kBruteAccel);
     Rng rng = make_rng(101);
-    std::vector<Group> groups = random_groups(&rng, mesh, *oracle, gate_share(60, 4000));
+    std::vector<Group> groups = random_groups(&rng, mesh, *oracle, gate_share(96, 6000));
     for (const Variant& variant : all_variants()) {
       auto world = make_world(mesh, variant.accel);
       std::uint64_t wrong = 0, rays = 0, hits = 0;
@@ -137,7 +137,7 @@ TEST_CASE("differential_brute_force_answers_as_double_outside_4_ulp") {
     auto oracle = make_world(mesh, &kBruteAccel);
     Rng rng = make_rng(102);
     int rays = 0, wrong = 0, decided = 0;
-    for (const Group& group : random_groups(&rng, mesh, *oracle, gate_share(16, 400)))
+    for (const Group& group : random_groups(&rng, mesh, *oracle, gate_share(24, 600)))
       for (std::size_t i = 0; i < group.rays.size(); ++i, ++rays)
         wrong += !oracle_agrees(*oracle, group.rays[i], group.hits[i], 4, &decided);
     INFO(mesh.name << ": " << decided << " of " << rays << " decided");

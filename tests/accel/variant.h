@@ -21,7 +21,7 @@ inline std::vector<Variant> all_variants() {
 
 constexpr int kGroupMax = 64;
 
-// Closest hits of up to kGroupMax rays that share an origin.
+// Closest hits of up to kGroupMax rays that share an origin and t_max.
 inline void answer(const Variant&, const World& world, const Ray* rays, int count, const HitFilter* filter, Hit* hits) {
   for (int i = 0; i < count; ++i) hits[i] = closest(world, rays[i], nullptr, filter);
 }

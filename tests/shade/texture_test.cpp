@@ -3,6 +3,7 @@
 #include "base/color.h"
 #include "shade/shade_helpers.h"
 #include "shade/texture.h"
+#include "support/hard_case.h"
 
 using namespace pocketray;
 
@@ -60,6 +61,26 @@ TEST_CASE("texture_wraps") {
   CHECK(at(0, .25f, Wrap::clamp).rgb == Vec3{1, 0, 0});
   CHECK(at(0, .25f, Wrap::mirror).rgb == Vec3{1, 0, 0});
   for (float wild : {1e30f, -1e30f, 1e9f}) CHECK(is_finite(at(wild, wild).rgb));
+}
+
+// Goal: the integers that texture coordinates become saturate: the last texel beyond the far edge, the first before the
+// near one, some texel of a repeated texture. Method: coordinates up to the largest that a scene may hold, both
+// filters.
+TEST_CASE("hard_62_texture_coordinates_saturate") {
+  const float values[] = {0.0f, 1e-45f, 0.99f, 1.5f, 1e6f, 1e9f, 2147483648.0f, 4.3e9f, 1e18f};
+  std::uint64_t wrong = 0, tried = 0;
+  for (bool nearest : {false, true})
+    for (float value : values)
+      for (Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp})
+        for (float u : {value, -value}) {
+          Vec3 color = at(u, 0.25f, wrap, Wrap::clamp, nearest).rgb;  // the upper row: red, then green
+          bool right = std::fabs(color.x + color.y - 1) < 1e-6f && color.z == 0;
+          if (wrap == Wrap::clamp && u >= 1) right = color == Vec3{0, 1, 0};
+          if (wrap == Wrap::clamp && u <= 0) right = color == Vec3{1, 0, 0};
+          wrong += !right, ++tried;
+        }
+  CHECK(wrong == 0);
+  count_hard(tried, wrong, "saturates");
 }
 
 // Goal: the settings' filter overrides the scene's. Method: a point where the two differ.
