@@ -34,6 +34,9 @@ struct AccelInfo {
   // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none. `filter` and
   // `stats` may be null.
   void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
+  // closest() for every ray of the packet: the same bits, in hits[0 .. rays.count).
+  void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
+                         TraceStats* stats);
   // Whether anything is hit in (0, ray.t_max).
   bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
   // No triangle is nearer to the point than this: their least distance, less its rounding error. Infinity without

@@ -62,6 +62,14 @@ void brute_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, 
   });
 }
 
+void brute_closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
+                          TraceStats* stats) {
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    Vec3 direction = {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
+    brute_closest(accel, {rays.origin, direction, rays.t_max}, filter, &hits[i], stats);
+  }
+}
+
 bool brute_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   bool any = false;
   for_each_hit(accel, ray, filter, stats, [&](std::uint32_t, const Hit&) {
@@ -86,7 +94,9 @@ float brute_nearest_distance(const Accel& accel, const Vec3& point) {
 
 }  // namespace
 
-const AccelInfo kBruteAccel = {"brute",     brute_need,    brute_scratch_need, brute_build,           brute_refit,
-                               brute_adopt, brute_closest, brute_occluded,     brute_nearest_distance};
+const AccelInfo kBruteAccel = {
+    "brute",     brute_need,    brute_scratch_need,   brute_build,    brute_refit,
+    brute_adopt, brute_closest, brute_closest_packet, brute_occluded, brute_nearest_distance,
+};
 
 }  // namespace pocketray

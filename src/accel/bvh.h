@@ -54,6 +54,15 @@ struct BvhParts {
 using BvhView = BvhParts<const std::uint8_t, const BvhHeader, const BvhNode, const TriangleBlock>;
 using BvhWritableView = BvhParts<std::uint8_t, BvhHeader, BvhNode, TriangleBlock>;
 
+// Starts to fetch what a child reference stands for.
+inline void prefetch(const BvhView& bvh, std::uint32_t child) {
+  bool leaf = child & kLeafBit;
+  const char* first = leaf ? reinterpret_cast<const char*>(&bvh.leaves[child & kLeafIndexMask])
+                           : reinterpret_cast<const char*>(&bvh.nodes[child]);
+  __builtin_prefetch(first), __builtin_prefetch(first + 64);
+  if (leaf) __builtin_prefetch(first + 128);
+}
+
 constexpr std::size_t bvh_bytes(std::size_t node_count, std::size_t leaf_count) {
   return sizeof(BvhHeader) + sizeof(BvhNode) * node_count + sizeof(TriangleBlock) * leaf_count;
 }
@@ -81,6 +90,8 @@ void bvh_build(Accel* accel, Arena* keep, Arena* scratch);
 void bvh_refit(Accel* accel, Array<std::uint8_t> data);
 Status bvh_adopt(Accel* accel, Array<const std::uint8_t> data);
 void bvh_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
+void bvh_closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
+                        TraceStats* stats);
 bool bvh_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
 float bvh_nearest_distance(const Accel& accel, const Vec3& point);
 

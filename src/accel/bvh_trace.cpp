@@ -34,7 +34,7 @@ BoxRay make_box_ray(const ShearedRay& ray, const Box& bounds) {
   float reach_low = std::fabs(bounds.low[ray.kz] - o), reach_high = std::fabs(bounds.high[ray.kz] - o);
   float reach = reach_low > reach_high ? reach_low : reach_high;  // Z
   // The powers of two below 2^-90 cover denormal rounding; they are relative to nothing, but boxes decide no result.
-  r.slack = splat((reach * 0x1p-19f + 0x1p-100f) / size);
+  r.slack = Float4::splat((reach * 0x1p-19f + 0x1p-100f) / size);
   for (int axis = 0; axis < 3; ++axis) {
     r.near_row[axis] = d[axis] < 0 ? axis + 3 : axis;
     float near = ray.origin[axis], far = near, inverse = 1 / d[axis];
@@ -44,7 +44,8 @@ BoxRay make_box_ray(const ShearedRay& ray, const Box& bounds) {
       float wider = (std::fabs(near) + reach) * 0x1p-20f + 0x1p-90f;
       near += wider, far -= wider, inverse = 0x1p44f / size;
     }
-    r.near_origin[axis] = splat(near), r.far_origin[axis] = splat(far), r.inverse[axis] = splat(inverse);
+    r.near_origin[axis] = Float4::splat(near), r.far_origin[axis] = Float4::splat(far),
+    r.inverse[axis] = Float4::splat(inverse);
   }
   return r;
 }
@@ -56,15 +57,15 @@ float box_distance(const BoxRay& ray, float t) {
 
 // Mask of the children that may hold a hit before `t_max`; `entry` gets where each is entered, less the slack.
 unsigned enter_boxes(const BoxRay& ray, const BvhNode& node, Float4 t_max, float* entry) {
-  Float4 enter = splat(0), leave = t_max;
+  Float4 enter = Float4::splat(0), leave = t_max;
   for (int axis = 0; axis < 3; ++axis) {
     int row = ray.near_row[axis], other = row < 3 ? row + 3 : row - 3;
-    enter = max((load(node.bounds[row]) - ray.near_origin[axis]) * ray.inverse[axis], enter);
-    leave = min((load(node.bounds[other]) - ray.far_origin[axis]) * ray.inverse[axis], leave);
+    enter = max((Float4::load(node.bounds[row]) - ray.near_origin[axis]) * ray.inverse[axis], enter);
+    leave = min((Float4::load(node.bounds[other]) - ray.far_origin[axis]) * ray.inverse[axis], leave);
   }
   enter = enter - ray.slack;
   store(entry, enter);
-  return less_equal(enter, leave);
+  return bits(enter <= leave);
 }
 
 struct Entry {
@@ -141,7 +142,7 @@ void search_bvh(const Accel& accel, Search<kFiltered>* search, TraceStats* stats
       const BvhNode& node = bvh.nodes[entry.child];
       ++nodes;
       alignas(16) float enter[4];
-      unsigned mask = enter_boxes(ray, node, splat(t_box), enter);
+      unsigned mask = enter_boxes(ray, node, Float4::splat(t_box), enter);
       top = push_children(node, mask, enter, stack, top);
     }
   }

@@ -15,6 +15,16 @@ struct Ray {
   float t_max;
 };
 
+// Rays that share their origin, such as those of a block of pixels; neighbours should follow one another in squares of
+// four, of sixteen … (Morton order). Directions as in Ray, by axis.
+constexpr std::uint32_t kPacketMax = 64;
+struct RayPacket {
+  Vec3 origin;
+  float t_max;
+  std::uint32_t count;  // up to kPacketMax
+  alignas(64) float direction[3][kPacketMax];
+};
+
 // Point of the hit: (1−u−v)·v0 + u·v1 + v·v2.
 struct Hit {
   float t, u, v;

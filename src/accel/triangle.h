@@ -28,10 +28,15 @@ struct ShearedRay {
 // Origins farther out than this hit nothing: within it no product of the test overflows.
 constexpr float kOriginMax = 4 * kCoordinateMax;
 
+inline bool has_valid_origin(const Vec3& origin) {
+  Vec3 o = abs(origin);
+  return o.x <= kOriginMax && o.y <= kOriginMax && o.z <= kOriginMax;
+}
+
 // False where the ray cannot hit anything: origin not finite or beyond kOriginMax, direction zero or not finite.
 inline bool make_sheared_ray(const Ray& ray, ShearedRay* result) {
-  Vec3 o = abs(ray.origin), d = abs(ray.direction);
-  if (!(o.x <= kOriginMax && o.y <= kOriginMax && o.z <= kOriginMax)) return false;
+  Vec3 d = abs(ray.direction);
+  if (!has_valid_origin(ray.origin)) return false;
   if (!is_finite(ray.direction) || is_zero(ray.direction)) return false;
   int kz = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);
   int kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
@@ -69,9 +74,21 @@ inline EdgeValues<double> exact_weights(const ShearedRay& ray, const Vec3& a, co
                              (c[ray.kx] - ox) * dz - cz * dx, (c[ray.ky] - oy) * dz - cz * dy);
 }
 
-// Where the ray crosses the triangle a, b, c, if it does: t may have any sign or be infinite, the caller bounds it.
-// hit->triangle is left alone, all of hit where there is no crossing.
-inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Hit* hit) {
+// Where a ray crosses a triangle: t, and the weights of b and c over the sum of all three.
+struct Crossing {
+  double b, c, sum;
+  float t;
+};
+
+inline Crossing place_crossing(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c,
+                               const EdgeValues<double>& w) {
+  double sum = w.a + w.b + w.c, z = ray.origin[ray.kz];
+  double t = (w.a * (a[ray.kz] - z) + w.b * (b[ray.kz] - z) + w.c * (c[ray.kz] - z)) / (sum * ray.direction[ray.kz]);
+  return {w.b, w.c, sum, static_cast<float>(t)};
+}
+
+// Whether the ray crosses the triangle a, b, c, and where: t may have any sign or be infinite, the caller bounds it.
+inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
   float ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
   float az = a[ray.kz] - oz, bz = b[ray.kz] - oz, cz = c[ray.kz] - oz;
   float ax = (a[ray.kx] - ox) - ray.shear_x * az, ay = (a[ray.ky] - oy) - ray.shear_y * az;
@@ -85,11 +102,25 @@ inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3&
   }
   EdgeValues<double> w = exact_weights(ray, a, b, c);
   if (signs_differ(w) || all_zero(w)) w = edge_values<double>(ax, ay, bx, by, cx, cy);
-  double sum = w.a + w.b + w.c, z = ray.origin[ray.kz];
-  double t = (w.a * (a[ray.kz] - z) + w.b * (b[ray.kz] - z) + w.c * (c[ray.kz] - z)) / (sum * ray.direction[ray.kz]);
-  hit->t = static_cast<float>(t);
-  hit->u = static_cast<float>(w.b / sum);
-  hit->v = static_cast<float>(w.c / sum);
+  *crossing = place_crossing(ray, a, b, c, w);
+  return true;
+}
+
+// The same for a ray of which the signs, none zero, have already said that it crosses.
+inline bool locate_crossing(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
+  EdgeValues<double> w = exact_weights(ray, a, b, c);
+  if (signs_differ(w) || all_zero(w)) return cross_triangle(ray, a, b, c, crossing);
+  *crossing = place_crossing(ray, a, b, c, w);
+  return true;
+}
+
+// The same as a hit; hit->triangle is left alone, all of hit where there is no crossing.
+inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Hit* hit) {
+  Crossing crossing;
+  if (!cross_triangle(ray, a, b, c, &crossing)) return false;
+  hit->t = crossing.t;
+  hit->u = static_cast<float>(crossing.b / crossing.sum);
+  hit->v = static_cast<float>(crossing.c / crossing.sum);
   return true;
 }
 
@@ -107,19 +138,20 @@ inline Vec3 block_vertex(const TriangleBlock& block, int vertex, int lane) {
 // Lanes whose float edge functions do not exclude a hit; intersect_triangle() decides about those. The arithmetic is
 // that of intersect_triangle(), so no hit is lost.
 inline unsigned filter_triangles(const ShearedRay& ray, const TriangleBlock& block) {
-  Float4 ox = splat(ray.origin[ray.kx]), oy = splat(ray.origin[ray.ky]), oz = splat(ray.origin[ray.kz]);
-  Float4 sx = splat(ray.shear_x), sy = splat(ray.shear_y);
+  Float4 ox = Float4::splat(ray.origin[ray.kx]), oy = Float4::splat(ray.origin[ray.ky]),
+         oz = Float4::splat(ray.origin[ray.kz]);
+  Float4 sx = Float4::splat(ray.shear_x), sy = Float4::splat(ray.shear_y);
   Float4 x[3], y[3];
   for (int i = 0; i < 3; ++i) {
-    Float4 z = load(block.vertex[i][ray.kz]) - oz;
-    x[i] = (load(block.vertex[i][ray.kx]) - ox) - sx * z;
-    y[i] = (load(block.vertex[i][ray.ky]) - oy) - sy * z;
+    Float4 z = Float4::load(block.vertex[i][ray.kz]) - oz;
+    x[i] = (Float4::load(block.vertex[i][ray.kx]) - ox) - sx * z;
+    y[i] = (Float4::load(block.vertex[i][ray.ky]) - oy) - sy * z;
   }
   Float4 a = x[2] * y[1] - y[2] * x[1];
   Float4 b = x[0] * y[2] - y[0] * x[2];
   Float4 c = x[1] * y[0] - y[1] * x[0];
-  Float4 zero = splat(0);
-  return less_equal(zero, min(min(a, b), c)) | less_equal(max(max(a, b), c), zero);
+  Float4 zero = Float4::splat(0);
+  return bits((zero <= min(min(a, b), c)) | (max(max(a, b), c) <= zero));
 }
 
 // Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not on one line.

@@ -20,9 +20,10 @@ TEST_CASE("simd_lanes_are_the_scalar_operations") {
         alignas(16) float a[4] = {1, 2, 3, 4}, b[4] = {2, 2, 2, 2}, sum[4], difference[4], product[4], least[4],
                           most[4];
         a[lane] = x, b[lane] = y;
-        store(sum, load(a) + load(b)), store(difference, load(a) - load(b)), store(product, load(a) * load(b));
-        store(least, min(load(a), load(b))), store(most, max(load(a), load(b)));
-        unsigned mask = less_equal(load(a), load(b)), expected = 0;
+        store(sum, Float4::load(a) + Float4::load(b)), store(difference, Float4::load(a) - Float4::load(b)),
+            store(product, Float4::load(a) * Float4::load(b));
+        store(least, min(Float4::load(a), Float4::load(b))), store(most, max(Float4::load(a), Float4::load(b)));
+        unsigned mask = bits(Float4::load(a) <= Float4::load(b)), expected = 0;
         for (unsigned i = 0; i < 4; ++i) {
           CHECK(same(sum[i], a[i] + b[i]));
           CHECK(same(difference[i], a[i] - b[i]));
@@ -32,7 +33,7 @@ TEST_CASE("simd_lanes_are_the_scalar_operations") {
           expected |= static_cast<unsigned>(a[i] <= b[i]) << i;
         }
         CHECK(mask == expected);
-        store(sum, splat(x));
+        store(sum, Float4::splat(x));
         CHECK(same(sum[lane], x));
       }
 }

@@ -1,0 +1,108 @@
+// Sorts the rays of a packet by dominant axis and walks the BVH with each sort. Part of the kernels: see bvh_packet.h.
+#pragma once
+#include "accel/bvh_packet.h"
+
+namespace pocketray {
+namespace POCKETRAY_ISA {
+
+// Dominant axis and sign of a direction, as make_sheared_ray() has them: 2·axis + (1 if negative). −1: hits nothing.
+inline int axis_class(float dx, float dy, float dz) {
+  float x = std::fabs(dx), y = std::fabs(dy), z = std::fabs(dz);
+  constexpr float max = std::numeric_limits<float>::max();
+  if (!(x <= max && y <= max && z <= max) || (x == 0 && y == 0 && z == 0)) return -1;
+  int kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+  return 2 * kz + ((kz == 0 ? dx : kz == 1 ? dy : dz) < 0);
+}
+
+// Whether all 64 directions are surely of the class; the other axes must be strictly less.
+inline bool all_of_class(const RayPacket& rays, int kx, int ky, int kz, float sign) {
+  Float4 direction = Float4::splat(sign), max = Float4::splat(std::numeric_limits<float>::max());
+  unsigned all = 15;
+  for (std::uint32_t i = 0; i < kPacketMax; i += 4) {
+    Float4 z = Float4::load(rays.direction[kz] + i) * direction;
+    all &= bits((abs(Float4::load(rays.direction[kx] + i)) < z) & (abs(Float4::load(rays.direction[ky] + i)) < z) &
+                (z <= max));
+  }
+  return all == 15;
+}
+
+inline void set_axes(Packet* p, int axis) {
+  p->kz = axis >> 1, p->kx = p->kz == 2 ? 0 : p->kz + 1, p->ky = p->kx == 2 ? 0 : p->kx + 1;
+  p->sign = axis & 1 ? -1.0f : 1.0f;
+}
+
+// The rays of one sort, where they are not the whole packet.
+struct GatheredRays {
+  alignas(64) float direction[3][kPacketMax];  // by kx, ky, kz
+  std::uint8_t place[kPacketMax];
+};
+inline int gather_rays(const RayPacket& rays, const std::int8_t* classes, int wanted, const Packet& p,
+                       GatheredRays* gathered) {
+  int n = 0;
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    if (classes[i] != wanted) continue;
+    gathered->direction[0][n] = rays.direction[p.kx][i], gathered->direction[1][n] = rays.direction[p.ky][i];
+    gathered->direction[2][n] = rays.direction[p.kz][i];
+    gathered->place[n++] = static_cast<std::uint8_t>(i);
+  }
+  return n;
+}
+
+template <int kLanes>
+void closest_of_class(const Accel& accel, const RayPacket& rays, const std::int8_t* classes, int wanted, Packet* p,
+                      Hit* hits, TraceStats* stats) {
+  GatheredRays gathered;
+  set_axes(p, wanted);
+  int count = gather_rays(rays, classes, wanted, *p, &gathered), padded = (count + 3) & ~3;
+  for (int i = count; i < padded; ++i)
+    for (float* row : gathered.direction) row[i] = row[count - 1];
+  p->direction_x = gathered.direction[0], p->direction_y = gathered.direction[1];
+  p->direction_z = gathered.direction[2], p->place = gathered.place;
+  p->count = padded;
+  prepare_packet(p);
+  for (int i = count; i < static_cast<int>(kPacketMax); ++i) p->far[i] = -kInfinity;
+  search_packet<kLanes>(accel, p, stats);
+  write_hits(*p, count, hits);
+}
+
+struct Places {
+  std::uint8_t at[kPacketMax];
+};
+constexpr Places own_places() {
+  Places p = {};
+  for (std::uint32_t i = 0; i < kPacketMax; ++i) p.at[i] = static_cast<std::uint8_t>(i);
+  return p;
+}
+
+template <int kLanes>
+void closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits, TraceStats* stats) {
+  static constexpr Places kOwnPlaces = own_places();
+  for (std::uint32_t i = 0; i < rays.count; ++i) hits[i].triangle = kNoTriangle;
+  if (!(rays.t_max > 0) || rays.count == 0 || is_empty(accel.bounds) || !has_valid_origin(rays.origin)) return;
+  Packet packet;
+  packet.origin = rays.origin, packet.t_max = rays.t_max;
+  packet.filter = filter && filter->accept ? filter : nullptr;
+  int first = axis_class(rays.direction[0][0], rays.direction[1][0], rays.direction[2][0]);
+  if (first >= 0 && rays.count == kPacketMax) {
+    set_axes(&packet, first);
+    if (all_of_class(rays, packet.kx, packet.ky, packet.kz, packet.sign)) {
+      packet.direction_x = rays.direction[packet.kx], packet.direction_y = rays.direction[packet.ky];
+      packet.direction_z = rays.direction[packet.kz], packet.place = kOwnPlaces.at;
+      packet.count = kPacketMax;
+      prepare_packet(&packet);
+      search_packet<kLanes>(accel, &packet, stats);
+      write_hits(packet, kPacketMax, hits);
+      return;
+    }
+  }
+  std::int8_t classes[kPacketMax];
+  unsigned met = 0;
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    classes[i] = static_cast<std::int8_t>(axis_class(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]));
+    if (classes[i] >= 0) met |= 1u << classes[i];
+  }
+  for (; met; met &= met - 1) closest_of_class<kLanes>(accel, rays, classes, __builtin_ctz(met), &packet, hits, stats);
+}
+
+}  // namespace POCKETRAY_ISA
+}  // namespace pocketray

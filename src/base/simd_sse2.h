@@ -1,0 +1,92 @@
+// Four lanes in SSE2. See simd.h.
+#pragma once
+#include <emmintrin.h>
+
+namespace pocketray {
+
+struct Float4 {
+  __m128 v;
+  static constexpr int kLanes = 4;
+  static Float4 splat(float x) { return {_mm_set1_ps(x)}; }
+  static Float4 load(const float* p) { return {_mm_load_ps(p)}; }
+};
+inline void store(float* p, Float4 a) { _mm_store_ps(p, a.v); }
+inline Float4 operator+(Float4 a, Float4 b) { return {_mm_add_ps(a.v, b.v)}; }
+inline Float4 operator-(Float4 a, Float4 b) { return {_mm_sub_ps(a.v, b.v)}; }
+inline Float4 operator*(Float4 a, Float4 b) { return {_mm_mul_ps(a.v, b.v)}; }
+inline Float4 operator/(Float4 a, Float4 b) { return {_mm_div_ps(a.v, b.v)}; }
+inline Float4 min(Float4 a, Float4 b) { return {_mm_min_ps(a.v, b.v)}; }
+inline Float4 abs(Float4 a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
+inline Float4 max(Float4 a, Float4 b) { return {_mm_max_ps(a.v, b.v)}; }
+
+struct Mask4 {
+  __m128 v;
+};
+inline Mask4 operator<=(Float4 a, Float4 b) { return {_mm_cmple_ps(a.v, b.v)}; }
+inline Mask4 operator<(Float4 a, Float4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
+inline Mask4 operator==(Float4 a, Float4 b) { return {_mm_cmpeq_ps(a.v, b.v)}; }
+inline Mask4 operator&(Mask4 a, Mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
+inline Mask4 operator|(Mask4 a, Mask4 b) { return {_mm_or_ps(a.v, b.v)}; }
+inline Float4 select(Mask4 m, Float4 a, Float4 b) { return {_mm_or_ps(_mm_and_ps(m.v, a.v), _mm_andnot_ps(m.v, b.v))}; }
+inline Mask4 mask_of(unsigned bits) {
+  __m128i lane = _mm_set_epi32(8, 4, 2, 1);
+  return {_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(bits)), lane), lane))};
+}
+inline unsigned bits(Mask4 m) { return static_cast<unsigned>(_mm_movemask_ps(m.v)); }
+
+// The least and the greatest of the lanes.
+inline float lowest(Float4 a) {
+  __m128 b = _mm_min_ps(a.v, _mm_movehl_ps(a.v, a.v));
+  return _mm_cvtss_f32(_mm_min_ss(b, _mm_shuffle_ps(b, b, 1)));
+}
+inline float highest(Float4 a) {
+  __m128 b = _mm_max_ps(a.v, _mm_movehl_ps(a.v, a.v));
+  return _mm_cvtss_f32(_mm_max_ss(b, _mm_shuffle_ps(b, b, 1)));
+}
+
+struct Double4 {
+  __m128d low, high;
+  static Double4 splat(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
+};
+inline Double4 widen(Float4 a) { return {_mm_cvtps_pd(a.v), _mm_cvtps_pd(_mm_movehl_ps(a.v, a.v))}; }
+inline Double4 operator+(Double4 a, Double4 b) { return {_mm_add_pd(a.low, b.low), _mm_add_pd(a.high, b.high)}; }
+inline Double4 operator-(Double4 a, Double4 b) { return {_mm_sub_pd(a.low, b.low), _mm_sub_pd(a.high, b.high)}; }
+inline Double4 operator*(Double4 a, Double4 b) { return {_mm_mul_pd(a.low, b.low), _mm_mul_pd(a.high, b.high)}; }
+
+inline Double4 operator/(Double4 a, Double4 b) { return {_mm_div_pd(a.low, b.low), _mm_div_pd(a.high, b.high)}; }
+inline Double4 min(Double4 a, Double4 b) { return {_mm_min_pd(a.low, b.low), _mm_min_pd(a.high, b.high)}; }
+inline Double4 max(Double4 a, Double4 b) { return {_mm_max_pd(a.low, b.low), _mm_max_pd(a.high, b.high)}; }
+inline Float4 narrow(Double4 a) { return {_mm_movelh_ps(_mm_cvtpd_ps(a.low), _mm_cvtpd_ps(a.high))}; }
+
+struct DoubleMask4 {
+  __m128d low, high;
+};
+inline DoubleMask4 operator<=(Double4 a, Double4 b) {
+  return {_mm_cmple_pd(a.low, b.low), _mm_cmple_pd(a.high, b.high)};
+}
+inline DoubleMask4 operator<(Double4 a, Double4 b) {
+  return {_mm_cmplt_pd(a.low, b.low), _mm_cmplt_pd(a.high, b.high)};
+}
+inline DoubleMask4 operator&(DoubleMask4 a, DoubleMask4 b) {
+  return {_mm_and_pd(a.low, b.low), _mm_and_pd(a.high, b.high)};
+}
+inline DoubleMask4 operator|(DoubleMask4 a, DoubleMask4 b) {
+  return {_mm_or_pd(a.low, b.low), _mm_or_pd(a.high, b.high)};
+}
+inline Double4 select(DoubleMask4 m, Double4 a, Double4 b) {
+  return {_mm_or_pd(_mm_and_pd(m.low, a.low), _mm_andnot_pd(m.low, b.low)),
+          _mm_or_pd(_mm_and_pd(m.high, a.high), _mm_andnot_pd(m.high, b.high))};
+}
+inline unsigned bits(DoubleMask4 m) {
+  return static_cast<unsigned>(_mm_movemask_pd(m.low) | _mm_movemask_pd(m.high) << 2);
+}
+
+template <int kLanes>
+struct Lanes;
+template <>
+struct Lanes<4> {
+  using Floats = Float4;
+  using Doubles = Double4;
+};
+
+}  // namespace pocketray

@@ -1,0 +1,61 @@
+#include <doctest/doctest.h>
+
+#include "accel/accel_world.h"
+#include "support/effort.h"
+
+using namespace pocketray;
+
+namespace {
+
+// Rays from one point: towards a part of the mesh that is `spread` of its size wide, some at vertices, or all around.
+RayPacket packet_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spread) {
+  Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
+  float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
+  RayPacket packet;
+  packet.origin = middle + random_vec3(rng, size * (next_u32(rng) % 2 ? 2.0f : 0.6f));
+  packet.t_max = next_u32(rng) % 4 ? kInfinity : 0.9f;
+  packet.count = next_u32(rng) % 2 ? kPacketMax : 1 + next_u32(rng) % kPacketMax;
+  Vec3 target = middle + random_vec3(rng, size * 0.4f);
+  for (std::uint32_t i = 0; i < packet.count; ++i) {
+    Vec3 aim = target + random_vec3(rng, size * spread);
+    if (!mesh.triangles.empty() && next_u32(rng) % 4 == 0)
+      aim = mesh.positions[mesh.triangles[next_u32(rng) % mesh.triangles.size()].vertex[next_u32(rng) % 3]];
+    Vec3 direction = next_u32(rng) % 64 ? aim - packet.origin : Vec3{0, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
+  }
+  return packet;
+}
+
+bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return triangle % 3 != 0 && u <= 0.7f - v; }
+
+}  // namespace
+
+// Goal: a packet's answers are those of its rays. Method: packets that point one way, several ways and all around,
+// whole and in part, with a filter and without, against closest() of brute force, bit for bit.
+TEST_CASE("accel_packets_hit_what_their_rays_hit") {
+  HitFilter some = {accept_some, nullptr};
+  for (const Mesh& mesh : generated_meshes()) {
+    auto oracle = make_world(mesh, &kBruteAccel);
+    for (const AccelInfo* info : kAccelList) {
+      auto world = make_world(mesh, info);
+      Rng rng = make_rng(131);
+      int wrong = 0, hit_count = 0;
+      for (int n = 0; n < effort(120); ++n) {
+        float spread[] = {0.02f, 0.2f, 2.0f};
+        RayPacket packet = packet_about(&rng, mesh, oracle->accel.bounds, spread[n % 3]);
+        const HitFilter* filter = n % 4 == 0 ? &some : nullptr;
+        Hit hits[kPacketMax];
+        world->info->closest_packet(world->accel, packet, filter, hits, nullptr);
+        for (std::uint32_t i = 0; i < packet.count; ++i) {
+          Vec3 direction = {packet.direction[0][i], packet.direction[1][i], packet.direction[2][i]};
+          Hit expected = closest(*oracle, {packet.origin, direction, packet.t_max}, nullptr, filter);
+          bool hit = expected.triangle != kNoTriangle;
+          wrong += hit ? !same_hit(expected, hits[i]) : hits[i].triangle != kNoTriangle;
+          hit_count += hit;
+        }
+      }
+      INFO(mesh.name << ", " << info->name << ", " << hit_count << " hits");
+      CHECK(wrong == 0);
+    }
+  }
+}
