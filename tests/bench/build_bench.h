@@ -17,7 +17,7 @@ struct BuildRow {
   double mesh_bytes_per_triangle = 0;   // positions and indices, as each side keeps them
   double refit_ms = -1;                 // ours
   double two_threads = -1;              // primary rays per second of two threads against one, by CPU time
-  double frame_ns_per_pixel = -1;       // whole Whitted frames at 320×240, one thread; the default accelerator's
+  double frame_ns_per_pixel = -1;       // CPU time of whole Whitted frames at 320×240; the default accelerator's
   double speed[3] = {-1, -1, -1};       // primary, shadow, bounce rays per second against our default
 };
 

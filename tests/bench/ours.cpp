@@ -5,19 +5,31 @@
 namespace pocketray {
 namespace {
 
-void trace_hits(OurTask* task, std::size_t first, std::size_t count) {
+void trace_bounces(OurTask* task) {
   const OurSide& side = *task->side;
-  for (std::size_t i = first; i < first + count; ++i) {
+  for (std::size_t i = 0; i < task->hits.size(); ++i) {
     Hit hit;
     side.info->closest(side.accel, task->set->rays[i], nullptr, &hit, nullptr);
     task->hits[i] = hit;
   }
 }
 
-void trace_occlusion(OurTask* task, std::size_t first, std::size_t count) {
+void trace_occlusion(OurTask* task) {
   const OurSide& side = *task->side;
-  for (std::size_t i = first; i < first + count; ++i)
+  for (std::size_t i = 0; i < task->occluded.size(); ++i)
     task->occluded[i] = side.info->occluded(side.accel, task->set->rays[i], nullptr, nullptr);
+}
+
+static_assert(kTileSize == kPacketMax, "a packet is a tile");
+
+std::vector<RayPacket> lay_out_packets(const RaySet& set) {
+  std::vector<RayPacket> packets(set.rays.size() / kTileSize);
+  for (std::size_t i = 0; i < set.rays.size(); ++i) {
+    RayPacket& packet = packets[i / kTileSize];
+    packet.origin = set.rays[i].origin, packet.t_max = set.rays[i].t_max, packet.count = kTileSize;
+    for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i % kTileSize] = set.rays[i].direction[axis];
+  }
+  return packets;
 }
 
 }  // namespace
@@ -43,7 +55,8 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
 void hold_ours(const std::string&) {}
 
 OurTask make_our_task(const OurSide& side, const RaySet& set) {
-  OurTask task = {&side, &set, {}, {}};
+  OurTask task = {&side, &set, {}, {}, {}};
+  if (set.kind == RayKindOfBench::primary) task.packets = lay_out_packets(set);
   if (set.kind == RayKindOfBench::shadow)
     task.occluded.resize(set.rays.size());
   else
@@ -52,18 +65,19 @@ OurTask make_our_task(const OurSide& side, const RaySet& set) {
 }
 
 void trace_tiles_ours(OurTask* task, std::size_t first, std::size_t count) {
-  trace_hits(task, first * kTileSize, count * kTileSize);
+  const OurSide& side = *task->side;
+  for (std::size_t i = first; i < first + count; ++i)
+    side.info->closest_packet(side.accel, task->packets[i], nullptr, &task->hits[i * kTileSize], nullptr);
 }
 
 void trace_ours(OurTask* task) {
-  std::size_t count = task->set->rays.size();
   switch (task->set->kind) {
     case RayKindOfBench::primary:
-      return trace_tiles_ours(task, 0, count / kTileSize);
+      return trace_tiles_ours(task, 0, task->packets.size());
     case RayKindOfBench::shadow:
-      return trace_occlusion(task, 0, count);
+      return trace_occlusion(task);
     case RayKindOfBench::bounce:
-      return trace_hits(task, 0, count);
+      return trace_bounces(task);
   }
 }
 

@@ -25,6 +25,7 @@ void hold_ours(const std::string& isa);
 struct OurTask {
   const OurSide* side;
   const RaySet* set;
+  std::vector<RayPacket> packets;  // primary rays: a tile each
   std::vector<Hit> hits;
   std::vector<unsigned char> occluded;
 };
