@@ -1,4 +1,5 @@
-// The ways to ask for hits: every accelerator of the list. Suites loop over them; all have to give the same bits.
+// The ways to ask for hits: every accelerator of the list, one ray at a time and in packets. Suites loop over them; all
+// have to give the same bits.
 #pragma once
 #include <string>
 
@@ -8,22 +9,37 @@ namespace pocketray {
 
 struct Variant {
   const AccelInfo* accel;
+  bool in_packets;
 };
-inline std::string name_of(const Variant& variant) { return variant.accel->name; }
+inline std::string name_of(const Variant& variant) {
+  return std::string(variant.accel->name) + (variant.in_packets ? ", in packets" : "");
+}
 
 // All but brute force, which is what they are compared with.
 inline std::vector<Variant> all_variants() {
   std::vector<Variant> list;
   for (const AccelInfo* info : kAccelList)
-    if (info != &kBruteAccel) list.push_back({info});
+    if (info != &kBruteAccel)
+      for (bool in_packets : {false, true}) list.push_back({info, in_packets});
   return list;
 }
 
-constexpr int kGroupMax = 64;
+constexpr int kGroupMax = static_cast<int>(kPacketMax);
 
 // Closest hits of up to kGroupMax rays that share an origin and t_max.
-inline void answer(const Variant&, const World& world, const Ray* rays, int count, const HitFilter* filter, Hit* hits) {
-  for (int i = 0; i < count; ++i) hits[i] = closest(world, rays[i], nullptr, filter);
+inline void answer(const Variant& variant, const World& world, const Ray* rays, int count, const HitFilter* filter,
+                   Hit* hits) {
+  if (!variant.in_packets) {
+    for (int i = 0; i < count; ++i) hits[i] = closest(world, rays[i], nullptr, filter);
+    return;
+  }
+  RayPacket packet;
+  packet.origin = rays[0].origin, packet.t_max = rays[0].t_max, packet.count = static_cast<std::uint32_t>(count);
+  for (int i = 0; i < count; ++i) {
+    hits[i] = {-1, -1, -1, 0};
+    for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = rays[i].direction[axis];
+  }
+  variant.accel->closest_packet(world.accel, packet, filter, hits, nullptr);
 }
 
 // What a comparison with brute force came to.
