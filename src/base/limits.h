@@ -27,6 +27,9 @@ constexpr std::uint32_t kTransparentLayerMax = 64;  // alpha or glass surfaces t
 constexpr std::uint32_t kThreadCountMax = 64;
 constexpr std::uint32_t kBvhDepthMax = 64;  // bounds the traversal stack
 constexpr float kCoordinateMax = 1e18f;     // its square is finite; HARDCASES row 8
+// Radiance, intensity and absorption a scene may state, and irradiance that a light gives close by. What a frame makes
+// of them stays finite: no ∞ · 0 arises.
+constexpr float kRadianceMax = 1e18f;
 
 static_assert(kImageSideMax <= 1u << 16, "span columns are 16 bit");
 static_assert(kVertexCountMax >= 3 * kTriangleCountMax, "a triangle soup must fit");

@@ -1,7 +1,11 @@
 #include "plan/plan_lights.h"
 
+#include <cmath>
+#include <limits>
+
 #include "base/check.h"
 #include "base/fmath.h"
+#include "base/limits.h"
 #include "brdf/brdf_list.h"
 #include "shade/lights.h"
 #include "shade/texture.h"
@@ -22,7 +26,12 @@ double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   const Triangle& t = frame.scene->triangles[triangle];
   Vec3 e1 = frame.positions[t.vertex[1]] - frame.positions[t.vertex[0]];
   Vec3 e2 = frame.positions[t.vertex[2]] - frame.positions[t.vertex[0]];
-  return 0.5 * static_cast<double>(length(cross(e1, e2)));
+  // Edges of any length: the powers of two are exact, and out of range is nothing then.
+  int exponent;
+  std::frexp(max_component(max(abs(e1), abs(e2))), &exponent);
+  for (int axis = 0; axis < 3; ++axis)
+    e1[axis] = std::ldexp(e1[axis], -exponent), e2[axis] = std::ldexp(e2[axis], -exponent);
+  return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
 }
 
 // The emitter that starts at a triangle: (a, b, c) followed by (a, c, d) with b − a = c − d is a parallelogram.
@@ -99,7 +108,8 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
   if (m.emission_texture.texture != kNone && scene.uvs.count)
     emission *=
         sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
-  p.intensity = emission * static_cast<float>(area);
+  constexpr float most = std::numeric_limits<float>::max();
+  p.intensity = min(emission * static_cast<float>(area), Vec3{most, most, most});
   p.material = t.material;
   p.two_sided = m.double_sided;
   return p;
@@ -159,6 +169,7 @@ float box_distance_square(const Box& box, const Vec3& p) {
 // The greatest irradiance a light gives on any triangle but its own.
 float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind) {
   float intensity = max_component(light.intensity), most = 0;
+  if (!(intensity > 0)) return 0;
   if (kind == Effect::directional_light) return intensity;
   for (const Triangle& t : frame.scene->triangles) {
     if (t.material == light.material) continue;
@@ -179,9 +190,9 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
     }
     if (light.range > 0 && square > light.range * light.range) continue;
     float irradiance = intensity * scale / square;
-    if (!(irradiance <= most)) most = irradiance;
+    if (irradiance > most) most = irradiance;
   }
-  return most;
+  return most < kRadianceMax ? most : kRadianceMax;
 }
 
 }  // namespace
@@ -246,7 +257,7 @@ float radiance_bound(const FrameData& frame) {
   }
   float leaves = glow + scattering * irradiance, background = max_component(scene.info.background), bound = background;
   for (std::uint32_t depth = 0; depth <= frame.settings.ray_depth; ++depth) {
-    float next = leaves + (reflectance > 0 ? reflectance * bound : 0);  // the bound may be infinite
+    float next = leaves + (reflectance > 0 ? reflectance * bound : 0);
     bound = next > background ? next : background;
   }
   return bound * 1.0001f;  // for the rounding of the sums

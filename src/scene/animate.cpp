@@ -11,9 +11,15 @@
 namespace pocketray {
 namespace {
 
+// Whatever is computed of a pose goes no farther than coordinates may: the products of two stay finite.
 float hold(float x) {
   if (std::fabs(x) <= kCoordinateMax) return x;
   return x > 0 ? kCoordinateMax : x < 0 ? -kCoordinateMax : 0.0f;
+}
+Transform hold(Transform t) {
+  for (auto& row : t.m)
+    for (float& x : row) x = hold(x);
+  return t;
 }
 Vec3 hold(const Vec3& p) { return {hold(p.x), hold(p.y), hold(p.z)}; }
 
@@ -53,10 +59,10 @@ void place_nodes(const Scene& scene, Pose* pose) {
   for (std::uint32_t n = 0; n < scene.nodes.count; ++n) {
     const Node& node = pose->local_nodes[n];
     Transform local = compose(node.translation, node.rotation, node.scale);
-    pose->nodes[n] = node.parent == kNone ? local : pose->nodes[node.parent] * local;
+    pose->nodes[n] = hold(node.parent == kNone ? local : pose->nodes[node.parent] * hold(local));
   }
   for (std::uint32_t j = 0; j < scene.joints.count; ++j)
-    pose->joints[j] = pose->nodes[scene.joints[j].node] * scene.joints[j].inverse_bind;
+    pose->joints[j] = hold(pose->nodes[scene.joints[j].node] * scene.joints[j].inverse_bind);
 }
 
 // base + Σ weight · delta over the morph targets of vertex `v` [glTF 2.0, sec. 3.7.2.2].
@@ -87,7 +93,7 @@ void place_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
   const float* weights = mesh.morph_count ? pose->weights.data + pose->local_nodes[mesh.node].weight_begin : nullptr;
   const Transform* joints = skinned ? pose->joints.data + scene.skins[mesh.skin].joint_begin : nullptr;
   Transform placed;
-  if (!skinned) placed = pose->nodes[mesh.node] * mesh.instance;
+  if (!skinned) placed = hold(pose->nodes[mesh.node] * mesh.instance);
   NormalTransform placed_normal = normal_transform(placed);
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     if (skinned) {
@@ -95,7 +101,7 @@ void place_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
       if (with_normals) placed_normal = normal_transform(placed);
     }
     Vec3 rest = morphed(mesh, weights, scene.morph_positions, v, scene.rest_positions[mesh.rest_begin + v]);
-    pose->positions[mesh.vertex_begin + v] = hold(transform_point(placed, rest));
+    pose->positions[mesh.vertex_begin + v] = hold(transform_point(placed, hold(rest)));
     if (!with_normals) continue;
     Vec3 normal = scene.rest_normals[mesh.rest_begin + v];
     if (scene.morph_normals.count) normal = morphed(mesh, weights, scene.morph_normals, v, normal);

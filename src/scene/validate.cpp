@@ -40,10 +40,10 @@ Status validate_info(const SceneInfo& info) {
     return failure("info.default_lights and _camera must be 0 or 1");
   constexpr float least = std::numeric_limits<float>::min();
   const FieldRange fields[] = {
-      {"background.x", info.background.x, 0, kFloatMax}, {"background.y", info.background.y, 0, kFloatMax},
-      {"background.z", info.background.z, 0, kFloatMax}, {"ambient.x", info.ambient.x, 0, kFloatMax},
-      {"ambient.y", info.ambient.y, 0, kFloatMax},       {"ambient.z", info.ambient.z, 0, kFloatMax},
-      {"exposure", info.exposure, least, kFloatMax},     {"frames_per_second", info.frames_per_second, 1e-3f, 1e6f},
+      {"background.x", info.background.x, 0, kRadianceMax}, {"background.y", info.background.y, 0, kRadianceMax},
+      {"background.z", info.background.z, 0, kRadianceMax}, {"ambient.x", info.ambient.x, 0, kRadianceMax},
+      {"ambient.y", info.ambient.y, 0, kRadianceMax},       {"ambient.z", info.ambient.z, 0, kRadianceMax},
+      {"exposure", info.exposure, least, kFloatMax},        {"frames_per_second", info.frames_per_second, 1e-3f, 1e6f},
       {"auto_exposure", info.auto_exposure, 0, 1},
   };
   return check_fields("info", 0, fields);
@@ -77,12 +77,12 @@ Status validate_material(const Scene& scene, std::uint32_t index) {
       {"transmission.y", m.transmission.y, 0, 1},
       {"transmission.z", m.transmission.z, 0, 1},
       {"ior", m.ior, 1, kIorMax},
-      {"absorption.x", m.absorption.x, 0, kFloatMax},
-      {"absorption.y", m.absorption.y, 0, kFloatMax},
-      {"absorption.z", m.absorption.z, 0, kFloatMax},
-      {"emission.x", m.emission.x, 0, kFloatMax},
-      {"emission.y", m.emission.y, 0, kFloatMax},
-      {"emission.z", m.emission.z, 0, kFloatMax},
+      {"absorption.x", m.absorption.x, 0, kRadianceMax},
+      {"absorption.y", m.absorption.y, 0, kRadianceMax},
+      {"absorption.z", m.absorption.z, 0, kRadianceMax},
+      {"emission.x", m.emission.x, 0, kRadianceMax},
+      {"emission.y", m.emission.y, 0, kRadianceMax},
+      {"emission.z", m.emission.z, 0, kRadianceMax},
       {"opacity", m.opacity, 0, 1},
       {"alpha_cutoff", m.alpha_cutoff, 0, kFloatMax},
   };
@@ -119,9 +119,9 @@ Status validate_light(const Scene& scene, std::uint32_t index) {
   if (light.node != kNone && scene.animations.empty())
     return failure("lights[%u] follows a node, but nothing is animated: place it in world space", index);
   const FieldRange fields[] = {
-      {"intensity.x", light.intensity.x, 0, kFloatMax},
-      {"intensity.y", light.intensity.y, 0, kFloatMax},
-      {"intensity.z", light.intensity.z, 0, kFloatMax},
+      {"intensity.x", light.intensity.x, 0, kRadianceMax},
+      {"intensity.y", light.intensity.y, 0, kRadianceMax},
+      {"intensity.z", light.intensity.z, 0, kRadianceMax},
       {"range", light.range, 0, kFloatMax},
       {"cos_inner", light.cos_inner, -1, 1},
       {"cos_outer", light.cos_outer, -1, light.cos_inner},

@@ -41,6 +41,14 @@ inline Vec3 interface_transmittance(const FrameData& frame, const Contact& conta
   return tint * (1 - fresnel(cos_i, from / to, &cos_t));
 }
 
+// Σ absorption × distance through bodies, of the sums at their entries and exits and of what is `open` to the end of
+// the ray, which may be at infinity. Sums beyond float cannot be told apart: nothing passes.
+inline float optical_depth(float begin, float end, float open, float distance) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  if (!(begin < kInfinity && end < kInfinity)) return kInfinity;
+  return open > 0 ? (end - begin) + open * distance : end - begin;
+}
+
 // What transparent surfaces between the point and the light let through, unbent, in order along the ray: products of
 // floats do not commute in the last bit, and every accelerator must give the same.
 template <EffectMask mask>
@@ -59,8 +67,9 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) 
     if (hit.triangle == kNoTriangle) {
       if constexpr (has(mask, Effect::absorption)) {
         float end = (passed + ray.t_max) * unit;
-        Vec3 inside = absorbed_end - absorbed_begin;
-        if (open_count > 0) inside += max(open, Vec3{0, 0, 0}) * end;
+        if (open_count <= 0) open = {0, 0, 0};
+        Vec3 inside;
+        for (int c = 0; c < 3; ++c) inside[c] = optical_depth(absorbed_begin[c], absorbed_end[c], open[c], end);
         result *= transmittance(inside, 1.0f);
       }
       return result;

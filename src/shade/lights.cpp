@@ -3,10 +3,17 @@
 #include <limits>
 
 #include "base/check.h"
+#include "base/limits.h"
 #include "effect/effect_probe.h"
 
 namespace pocketray {
 namespace {
+
+constexpr float kInverseSquareMax = std::numeric_limits<float>::max() / 2;  // finite × a cosine just above 1, too
+
+// What a light gives, of which even a point on the light itself gets no more than kRadianceMax: all that shading makes
+// of it stays finite.
+Vec3 bounded(const Vec3& irradiance) { return min(irradiance, Vec3{kRadianceMax, kRadianceMax, kRadianceMax}); }
 
 // Direction and inverse square of a light at a position. False where the point is the light or the light is out of
 // range.
@@ -17,7 +24,8 @@ bool reach(const LightPoint& light, const Vec3& point, LightSample* s, float* in
   float distance = std::sqrt(square);
   s->direction = s->to_light / distance;
   s->t_max = 1;
-  *inverse_square = 1 / square;
+  float inverse = 1 / square;
+  *inverse_square = inverse < kInverseSquareMax ? inverse : kInverseSquareMax;
   if (light.range > 0) {
     // The smooth end that KHR_lights_punctual recommends: max(min(1 − (d/range)⁴, 1), 0) / d².
     float q = square / (light.range * light.range);
@@ -32,7 +40,7 @@ bool sample_point_light(const LightPoint& light, const Vec3& point, LightSample*
   effect_entered<Effect::point_light>();
   float inverse_square;
   if (!reach(light, point, s, &inverse_square)) return false;
-  s->irradiance = light.intensity * inverse_square;
+  s->irradiance = bounded(light.intensity * inverse_square);
   return true;
 }
 
@@ -44,7 +52,7 @@ bool sample_spot_light(const LightPoint& light, const Vec3& point, LightSample* 
   if (cos_angle <= light.cos_outer) return false;
   // KHR_lights_punctual, "Inner and Outer Cone Angles": linear in the cosine, then squared.
   float f = cos_angle >= light.cos_inner ? 1 : (cos_angle - light.cos_outer) / (light.cos_inner - light.cos_outer);
-  s->irradiance = light.intensity * (inverse_square * (f * f));
+  s->irradiance = bounded(light.intensity * (inverse_square * (f * f)));
   return true;
 }
 
@@ -64,7 +72,7 @@ bool sample_area_light(const LightPoint& light, const Vec3& point, LightSample* 
   float cos_light = -dot(s->direction, light.direction);
   if (light.two_sided) cos_light = std::fabs(cos_light);
   if (!(cos_light > 0)) return false;
-  s->irradiance = light.intensity * (cos_light * inverse_square);
+  s->irradiance = bounded(light.intensity * (cos_light * inverse_square));
   return true;
 }
 

@@ -8,6 +8,12 @@
 namespace pocketray {
 namespace {
 
+// In texels, held where a float has long lost the fraction: the difference of two infinities would be none.
+float texel_coordinate(float u, int size) {
+  float x = u * static_cast<float>(size);
+  return x < 1e9f ? (x > -1e9f ? x : -1e9f) : 1e9f;
+}
+
 // Index of a texel coordinate after wrapping. The coordinate is any integer in float; sizes are at most 2^14.
 int wrap_texel(float coordinate, int size, Wrap wrap) {
   float n = static_cast<float>(size);
@@ -37,7 +43,7 @@ Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureF
   const Texture& t = scene.textures[use.texture];
   float u = use.m[0][0] * uv.x + use.m[0][1] * uv.y + use.m[0][2];
   float v = use.m[1][0] * uv.x + use.m[1][1] * uv.y + use.m[1][2];
-  float x = u * static_cast<float>(t.width), y = v * static_cast<float>(t.height);
+  float x = texel_coordinate(u, t.width), y = texel_coordinate(v, t.height);
   bool nearest = filter == TextureFilter::as_scene ? t.nearest != 0 : filter == TextureFilter::nearest;
   if (nearest)
     return texel(scene, t, wrap_texel(std::floor(x), t.width, t.wrap_u), wrap_texel(std::floor(y), t.height, t.wrap_v));
