@@ -1,9 +1,10 @@
-// How much a test does: all of it on the machine itself, a share where every instruction is emulated and floats are, too.
+// How much a test does: all of it on the machine itself, a share where every instruction is emulated and floats are,
+// too, or where nothing is optimised.
 #pragma once
 
 namespace pocketray {
 
-#ifdef POCKETRAY_EMULATED
+#if defined(POCKETRAY_EMULATED) || !defined(__OPTIMIZE__)
 constexpr int kEffortDivisor = 40;
 #else
 constexpr int kEffortDivisor = 1;
