@@ -93,19 +93,22 @@ TEST_CASE("hard_29_scene_scaled_by_powers_of_two_same_image") {
   }
 }
 
-// Goal: normals of any length, none at all, and opposite ones leave no NaN in a picture. Method: sweep of what a file
-// might hold in a normal.
+// Goal: normals of any length, none at all, and opposite ones leave no NaN in a picture, and those of no length give
+// the picture of a scene without. Method: sweep of what a file might hold in a normal; differential.
 TEST_CASE("hard_30_strange_normals_give_finite_pictures") {
-  count_assertions("finite");
+  count_assertions("finite; without length as without normals");
+  Settings settings = settings_for(kAllFeatures, 24, 18), flat = settings;
+  flat.normals = NormalMode::flat;
   for (float size : {0.0f, 1e-30f, 1e30f, -1.0f, 1.0000002f}) {
     auto s = generate_scene(kAllFeatures, 2);
     for (std::size_t i = 0; i < s->normals.size(); ++i) s->normals[i] = (i % 3 ? s->normals[i] : Vec3{0, 1, 0}) * size;
     s->rest_normals.assign(s->rest_normals.size(), Vec3{0, size, 0});
     s->bind();
     CAPTURE(size);
+    Picture picture = render_picture(s->scene, settings, 0.5);
     bool finite = true;
-    for (const Vec3& p : render_picture(s->scene, settings_for(kAllFeatures, 24, 18), 0.5))
-      finite &= is_finite(p) && p.x >= 0;
+    for (const Vec3& p : picture) finite &= is_finite(p) && p.x >= 0;
     CHECK(finite);
+    CHECK(same_picture(picture, render_picture(s->scene, flat, 0.5)) == (size == 0));
   }
 }
