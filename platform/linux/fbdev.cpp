@@ -76,7 +76,7 @@ unsigned char* page_address(const Framebuffer* fb, int page) {
 
 void copy_rows(Framebuffer* fb, const unsigned char* from, int from_line_bytes, unsigned char* to, int row_begin,
                int row_end) {
-  std::size_t bytes = static_cast<std::size_t>(fb->width * fb->pixel_bytes);
+  std::size_t bytes = static_cast<std::size_t>(fb->width) * static_cast<std::size_t>(fb->pixel_bytes);
   for (int row = row_begin; row < row_end; ++row)
     memcpy(to + static_cast<std::ptrdiff_t>(row) * fb->line_bytes,
            from + static_cast<std::ptrdiff_t>(row) * from_line_bytes, bytes);
