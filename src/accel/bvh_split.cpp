@@ -1,0 +1,172 @@
+#include "accel/bvh_split.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kBinCount = 32;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+struct BinSplit {
+  double cost = kInfinite;
+  int axis = -1;  // -1: there is none
+  std::uint32_t left_bins = 0, left_count = 0;
+};
+
+// Maps centroids to bins; scale is 0 on an axis where all centroids agree.
+struct BinMap {
+  Float4 low, scale;
+  float axis_low[4], axis_scale[4];
+  explicit BinMap(const WideBox& centroids) {
+    alignas(16) float l[4], h[4], s[4] = {0, 0, 0, 0};
+    store(l, centroids.low), store(h, centroids.high);
+    for (int axis = 0; axis < 3; ++axis) {
+      float per_unit = kBinCount / (h[axis] - l[axis]);  // infinite where the extent is 0 or denormal
+      s[axis] = h[axis] > l[axis] && per_unit <= std::numeric_limits<float>::max() ? per_unit : 0;
+    }
+    low = centroids.low, scale = Float4::load(s);
+    for (int axis = 0; axis < 4; ++axis) axis_low[axis] = l[axis], axis_scale[axis] = s[axis];
+  }
+  static std::uint32_t clamp(float position) { return std::min(static_cast<std::uint32_t>(position), kBinCount - 1); }
+  std::uint32_t bin(const BuildPrimitive& p, int axis) const {
+    return clamp((centroid2(p, axis) - axis_low[axis]) * axis_scale[axis]);
+  }
+};
+
+struct Bins {
+  WideBox box[3][kBinCount];
+  std::uint32_t count[3][kBinCount];
+};
+
+void fill_bins(const BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, Bins* bins) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::uint32_t i = 0; i < kBinCount; ++i) bins->box[axis][i] = empty_wide_box(), bins->count[axis][i] = 0;
+  for (std::uint32_t i = part.begin; i < part.begin + part.count; ++i) {
+    WideBox box = wide_box(primitives[i]);
+    alignas(16) float position[4];
+    store(position, (centroid2(box) - map.low) * map.scale);
+    for (int axis = 0; axis < 3; ++axis) {
+      std::uint32_t bin = BinMap::clamp(position[axis]);
+      bins->box[axis][bin] = merge(bins->box[axis][bin], box);
+      ++bins->count[axis][bin];
+    }
+  }
+}
+
+bool side_is_allowed(std::uint32_t count) {
+  return count > 0 && (leaves_for(count) == 1 || leaves_for(count) >= kSideLeavesMin);
+}
+bool split_is_allowed(const BuildPart& part, std::uint32_t left) {
+  return side_is_allowed(left) && side_is_allowed(part.count - left) &&
+         leaves_for(left) + leaves_for(part.count - left) <= part.leaf_max;
+}
+
+// The allowed count that is nearest to the one wished for.
+std::uint32_t allowed_left_count(const BuildPart& part, std::uint32_t wish) {
+  for (std::uint32_t step = 0;; ++step) {
+    if (wish > step && split_is_allowed(part, wish - step)) return wish - step;
+    if (wish + step < part.count && split_is_allowed(part, wish + step)) return wish + step;
+    CHECK_LT(step, part.count);
+  }
+}
+
+BinSplit bin_split(const Bins& bins, const BuildPart& part, const BinMap& map) {
+  BinSplit best;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (map.axis_scale[axis] == 0) continue;
+    double right_cost[kBinCount];
+    WideBox box = empty_wide_box();
+    std::uint32_t right = 0;
+    for (std::uint32_t i = kBinCount; i-- > 1;) {
+      box = merge(box, bins.box[axis][i]), right += bins.count[axis][i];
+      right_cost[i] = right ? part_cost(box, right) : 0;
+    }
+    box = empty_wide_box();
+    std::uint32_t left = 0;
+    for (std::uint32_t i = 1; i < kBinCount; ++i) {
+      box = merge(box, bins.box[axis][i - 1]), left += bins.count[axis][i - 1];
+      if (!side_is_allowed(left) || !side_is_allowed(part.count - left)) continue;
+      double cost = part_cost(box, left) + right_cost[i];
+      if (cost < best.cost) best.cost = cost, best.axis = axis, best.left_bins = i, best.left_count = left;
+    }
+  }
+  return best;
+}
+
+// Brings the primitives of the lower bins to the front.
+void partition(BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, const BinSplit& split) {
+  BuildPrimitive *first = primitives + part.begin, *last = first + part.count;
+  while (true) {
+    while (first < last && map.bin(*first, split.axis) < split.left_bins) ++first;
+    while (first < last && map.bin(last[-1], split.axis) >= split.left_bins) --last;
+    if (first >= last) break;
+    std::swap(*first++, *--last);
+  }
+}
+
+struct CentroidLess {
+  int axis;
+  bool operator()(const BuildPrimitive& a, const BuildPrimitive& b) const {
+    float ca = centroid2(a, axis), cb = centroid2(b, axis);
+    return ca != cb ? ca < cb : a.tagged_id < b.tagged_id;
+  }
+};
+
+// Moves the boundary between two sides, taking the primitives that lie nearest to it.
+void move_boundary(BuildPrimitive* primitives, const BuildPart& part, int axis, std::uint32_t from, std::uint32_t to) {
+  BuildPrimitive* first = primitives + part.begin;
+  for (; from < to; ++from)
+    std::swap(first[from], *std::min_element(first + from, first + part.count, CentroidLess{axis}));
+  for (; from > to; --from) std::swap(first[from - 1], *std::max_element(first, first + from, CentroidLess{axis}));
+}
+
+int widest_axis(const WideBox& box) {
+  alignas(16) float e[4];
+  store(e, box.high - box.low);
+  return e[0] >= e[1] && e[0] >= e[2] ? 0 : e[1] >= e[2] ? 1 : 2;
+}
+
+}  // namespace
+
+BuildPart make_part(const BuildPrimitive* primitives, std::uint32_t begin, std::uint32_t count,
+                    std::uint32_t leaf_max) {
+  BuildPart part = {begin, count, leaf_max, empty_wide_box(), empty_wide_box()};
+  for (std::uint32_t i = begin; i < begin + count; ++i) {
+    WideBox box = wide_box(primitives[i]);
+    Float4 centroid = centroid2(box);
+    part.box = merge(part.box, box);
+    part.centroids = {min(part.centroids.low, centroid), max(part.centroids.high, centroid)};
+  }
+  return part;
+}
+
+void split_part(BuildPrimitive* primitives, const BuildPart& part, bool halve, BuildPart* left, BuildPart* right) {
+  BinMap map(part.centroids);
+  BinSplit split;
+  if (!halve) {
+    Bins bins;
+    fill_bins(primitives, part, map, &bins);
+    split = bin_split(bins, part, map);
+  }
+  std::uint32_t middle;
+  if (split.axis >= 0) {
+    middle = allowed_left_count(part, split.left_count);
+    partition(primitives, part, map, split);
+    move_boundary(primitives, part, split.axis, split.left_count, middle);
+  } else {
+    middle = allowed_left_count(part, part.count / 2);
+    BuildPrimitive* first = primitives + part.begin;
+    std::sort(first, first + part.count, CentroidLess{widest_axis(part.centroids)});
+  }
+  std::uint32_t right_count = part.count - middle, spare = part.leaf_max - leaves_for(middle) - leaves_for(right_count);
+  std::uint32_t left_spare =
+      static_cast<std::uint32_t>((2 * std::uint64_t(spare) * middle + part.count) / (2 * std::uint64_t(part.count)));
+  std::uint32_t begin = part.begin;
+  *left = make_part(primitives, begin, middle, leaves_for(middle) + left_spare);
+  *right = make_part(primitives, begin + middle, right_count, leaves_for(right_count) + spare - left_spare);
+}
+
+}  // namespace pocketray
