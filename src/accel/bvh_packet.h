@@ -17,7 +17,7 @@
 #include "base/simd.h"
 
 namespace pocketray {
-namespace POCKETRAY_ISA {
+inline namespace POCKETRAY_ISA {
 
 // The rays of a packet that share dominant axis and sign of direction, and how far they have come. A group is four
 // rays, a block four groups.

@@ -3,7 +3,7 @@
 #include "accel/bvh_packet.h"
 
 namespace pocketray {
-namespace POCKETRAY_ISA {
+inline namespace POCKETRAY_ISA {
 
 // Dominant axis and sign of a direction, as make_sheared_ray() has them: 2·axis + (1 if negative). −1: hits nothing.
 inline int axis_class(float dx, float dy, float dz) {

@@ -12,11 +12,40 @@
 #pragma once
 #include "accel/ray.h"
 #include "base/array.h"
+#include "base/isa.h"
 #include "base/limits.h"
 #include "base/simd.h"
 #include "scene/scene.h"
 
 namespace pocketray {
+
+// Four triangles for the wide filter: vertex, axis, lane.
+struct alignas(16) TriangleBlock {
+  float vertex[3][3][4];
+  std::uint32_t triangle[4];
+};
+static_assert(sizeof(TriangleBlock) == 160, "nine rows of floats and one of ids");
+
+// Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not on one line.
+// All accelerators leave the others out.
+inline bool has_valid_vertices(Array<const Vec3> positions, const Triangle& triangle) {
+  for (std::uint32_t vertex : triangle.vertex) {
+    if (vertex >= positions.count) return false;
+    Vec3 p = abs(positions[vertex]);
+    if (!(p.x <= kCoordinateMax && p.y <= kCoordinateMax && p.z <= kCoordinateMax)) return false;
+  }
+  return true;
+}
+inline Vec3d to_double(const Vec3& p) { return {p.x, p.y, p.z}; }
+inline bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return is_zero(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
+}
+inline bool is_hittable(Array<const Vec3> positions, const Triangle& triangle) {
+  return has_valid_vertices(positions, triangle) &&
+         !is_degenerate(positions[triangle.vertex[0]], positions[triangle.vertex[1]], positions[triangle.vertex[2]]);
+}
+
+inline namespace POCKETRAY_ISA {
 
 // A ray made ready for the test. kz is the dominant axis of the direction.
 struct ShearedRay {
@@ -124,13 +153,6 @@ inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3&
   return true;
 }
 
-// Four triangles for the wide filter: vertex, axis, lane.
-struct alignas(16) TriangleBlock {
-  float vertex[3][3][4];
-  std::uint32_t triangle[4];
-};
-static_assert(sizeof(TriangleBlock) == 160, "nine rows of floats and one of ids");
-
 inline Vec3 block_vertex(const TriangleBlock& block, int vertex, int lane) {
   return {block.vertex[vertex][0][lane], block.vertex[vertex][1][lane], block.vertex[vertex][2][lane]};
 }
@@ -154,23 +176,5 @@ inline unsigned filter_triangles(const ShearedRay& ray, const TriangleBlock& blo
   return bits((zero <= min(min(a, b), c)) | (max(max(a, b), c) <= zero));
 }
 
-// Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not on one line.
-// All accelerators leave the others out.
-inline bool has_valid_vertices(Array<const Vec3> positions, const Triangle& triangle) {
-  for (std::uint32_t vertex : triangle.vertex) {
-    if (vertex >= positions.count) return false;
-    Vec3 p = abs(positions[vertex]);
-    if (!(p.x <= kCoordinateMax && p.y <= kCoordinateMax && p.z <= kCoordinateMax)) return false;
-  }
-  return true;
-}
-inline Vec3d to_double(const Vec3& p) { return {p.x, p.y, p.z}; }
-inline bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return is_zero(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
-}
-inline bool is_hittable(Array<const Vec3> positions, const Triangle& triangle) {
-  return has_valid_vertices(positions, triangle) &&
-         !is_degenerate(positions[triangle.vertex[0]], positions[triangle.vertex[1]], positions[triangle.vertex[2]]);
-}
-
+}  // namespace POCKETRAY_ISA
 }  // namespace pocketray

@@ -81,6 +81,18 @@ Status find_device(const CommonOptions& o, const platform::Device** device) {
   return failure("--device is '%s': it must be one of %s", o.device.c_str(), names.c_str());
 }
 
+Status parse_isa(const std::string& text, Isa* isa) {
+  *isa = best_isa();
+  if (text.empty()) return success();
+  std::string names;
+  for (int i = 0; i <= static_cast<int>(best_isa()); ++i) {
+    *isa = static_cast<Isa>(i);
+    if (text == isa_name(*isa)) return success();
+    names += std::string(i ? ", " : "") + isa_name(*isa);
+  }
+  return failure("--isa is '%s': this CPU has %s", text.c_str(), names.c_str());
+}
+
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height) {
   int used = 0;
   if (std::sscanf(text.c_str(), "%5ux%5u%n", width, height, &used) != 2 ||
@@ -133,6 +145,8 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
       "--device", o->device,
       "take memory, and in view rotation and buttons, from a handheld's profile: gp2x, miyoo, miyoo-mini, pi-zero, …");
   command->add_option("--threads", o->threads, "threads that trace; 0: one per core")->capture_default_str();
+  command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
+      ->default_str("the best of this CPU");
   command->add_option("--camera", o->camera,
                       "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up, degrees from top to bottom");
   command->add_option("--camera-index", o->camera_index, "which of the scene's cameras")->capture_default_str();
@@ -151,6 +165,9 @@ OpenScene::~OpenScene() {
 Status open_scene(const CommonOptions& o, std::size_t (*output_bytes)(const Settings&), OpenScene* opened) {
   Settings settings;
   RETURN_IF_ERROR(parse_settings(o, &settings));
+  Isa isa;
+  RETURN_IF_ERROR(parse_isa(o.isa, &isa));
+  select_isa(isa);
   opened->block = take_block(settings.memory_bytes);
   if (!opened->block) return failure("%zu bytes of memory cannot be had: lower --memory", settings.memory_bytes);
   Renderer* r = &opened->renderer;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/source.h"
+#include "base/isa.h"
 #include "platform/devices/device_list.h"
 
 namespace pocketray {
@@ -12,7 +13,7 @@ namespace pocketray {
 struct CommonOptions {
   std::string scene;
   std::string size = "320x240", memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene",
-              json, device;
+              json, device, isa;
   std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
   bool no_cut_off = false;
 };
@@ -39,6 +40,8 @@ Status start_scene(OpenScene* opened, const CommonOptions& options);
 // The profile --device names; null with success() where none was named.
 Status find_device(const CommonOptions& options, const platform::Device** device);
 
+// The instruction set --isa names, the best of this CPU where it names none.
+Status parse_isa(const std::string& text, Isa* isa);
 // "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
 Status parse_bytes(const std::string& text, std::size_t* bytes);

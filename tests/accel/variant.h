@@ -1,26 +1,28 @@
-// The ways to ask for hits: every accelerator of the list, one ray at a time and in packets. Suites loop over them; all
-// have to give the same bits.
+// The ways to ask for hits: every accelerator of the list with every instruction set that this CPU has, one ray at a
+// time and in packets. Suites loop over them; all have to give the same bits.
 #pragma once
 #include <string>
 
 #include "accel/accel_world.h"
+#include "base/isa.h"
 
 namespace pocketray {
 
 struct Variant {
   const AccelInfo* accel;
+  Isa isa;
   bool in_packets;
 };
 inline std::string name_of(const Variant& variant) {
-  return std::string(variant.accel->name) + (variant.in_packets ? ", in packets" : "");
+  return std::string(variant.accel->name) + ", " + isa_name(variant.isa) + (variant.in_packets ? ", in packets" : "");
 }
 
 // All but brute force, which is what they are compared with.
 inline std::vector<Variant> all_variants() {
   std::vector<Variant> list;
   for (const AccelInfo* info : kAccelList)
-    if (info != &kBruteAccel)
-      for (bool in_packets : {false, true}) list.push_back({info, in_packets});
+    for (int isa = 0; info != &kBruteAccel && isa <= static_cast<int>(best_isa()); ++isa)
+      for (bool in_packets : {false, true}) list.push_back({info, static_cast<Isa>(isa), in_packets});
   return list;
 }
 
@@ -29,6 +31,7 @@ constexpr int kGroupMax = static_cast<int>(kPacketMax);
 // Closest hits of up to kGroupMax rays that share an origin and t_max.
 inline void answer(const Variant& variant, const World& world, const Ray* rays, int count, const HitFilter* filter,
                    Hit* hits) {
+  select_isa(variant.isa);
   if (!variant.in_packets) {
     for (int i = 0; i < count; ++i) hits[i] = closest(world, rays[i], nullptr, filter);
     return;

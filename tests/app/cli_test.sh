@@ -57,6 +57,8 @@ expect too_little_memory 1 'memory .*would' render statue --memory 1M -o a.ppm
 expect aov_name 1 'depth, normal' render cube "${small[@]}" --aov colour -o a.ppm
 expect unknown_device 1 'gp2x' render cube "${small[@]}" --device toaster -o a.ppm
 expect device_memory 0 'of 16.0 MiB' plan cornell --device gp2x
+expect isa_name 1 'this CPU has baseline' render cube "${small[@]}" --isa sse9 -o a.ppm
+expect isa_in_report 0 '2 threads, baseline' bench cube "${small[@]}" --frames 1 --no-prices --isa baseline
 expect frames_format 1 'first:last' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
 
 # Goal: every output exists and has its size. Method: PPM and PFM headers and byte counts, raw framebuffers.

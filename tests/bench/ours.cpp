@@ -1,5 +1,6 @@
 #include "bench/ours.h"
 
+#include "base/isa.h"
 #include "plan/plan_scene.h"
 
 namespace pocketray {
@@ -51,8 +52,7 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
   return ours;
 }
 
-// The core has one build for every CPU so far, and it is the one for SSE2.
-void hold_ours(const std::string&) {}
+void hold_ours(const std::string& isa) { select_isa(isa == "sse2" ? Isa::kBaseline : best_isa()); }
 
 OurTask make_our_task(const OurSide& side, const RaySet& set) {
   OurTask task = {&side, &set, {}, {}, {}};

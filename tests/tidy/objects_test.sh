@@ -18,6 +18,12 @@ fused_in() { "$objdump" -d --no-show-raw-insn "$@" | grep -E "$fused" | sort | u
 symbols_in() { "$nm" -A --undefined-only "$@" | grep -E "$symbols" || true; }
 constructors_in() { "$objdump" -h "$@" | grep -E '\.(init_array|ctors)' || true; }
 
+# Weak symbols of kernels for a wider instruction set, but those of its own namespace: the linker may take such a copy for
+# all objects, and CPUs without the set would then run it. Without optimisation nothing is inlined and this means nothing.
+weak_in() {
+  "$nm" -A --defined-only "$@" | grep -E ' [uVvWw] ' | grep -vE ' [uVvWw] _Z(T[A-Z]|Z)*N[KO]*9pocketray(4avx2|6avx512)' || true
+}
+
 failures=0
 expect_nothing() {  # TEXT FOUND
   [ -n "$2" ] || return 0
@@ -36,6 +42,14 @@ mapfile -t core < <(find "$folder" -name '*.o' -not -path '*/src/app/*' | sort)
 expect_nothing "fused multiply-add" "$(fused_in "${all[@]}")"
 expect_nothing "heap, exceptions or libm" "$(symbols_in "${core[@]}")"
 expect_nothing "constructors before main()" "$(constructors_in "${core[@]}")"
+optimised=0
+for flag in "$@"; do
+  case $flag in -O0) optimised=0 ;; -O*) optimised=1 ;; esac
+done
+mapfile -t wide < <(find "$folder" -name '*_avx2*.o' -o -name '*_avx512*.o' | sort)
+if [ $optimised = 1 ] && [ ${#wide[@]} -gt 0 ]; then
+  expect_nothing "weak symbols of wide kernels" "$(weak_in "${wide[@]}")"
+fi
 
 plant() {  # CODE FLAGS... : compiles it into $work/planted.o
   echo "$1" >"$work/planted.cpp"
@@ -59,6 +73,12 @@ plant 'int* f() { return new int; }' "$@"
 expect_found "heap" "$(symbols_in "$work/planted.o")"
 plant 'int g(); int value = g();' "$@"
 expect_found "constructor" "$(constructors_in "$work/planted.o")"
+
+plant 'namespace pocketray { inline namespace avx2 { template <class T> int own(T) { return 1; } template int own(int); } }
+template <class T> int shared(T) { return 2; } template int shared(int);' "$@"
+found=$(weak_in "$work/planted.o")
+expect_found "weak symbol" "$found"
+expect_nothing "weak symbol of its own namespace" "$(grep own <<<"$found" || true)"
 
 echo "${#all[@]} objects, $failures failures"
 [ "$failures" = 0 ]

@@ -1,4 +1,5 @@
-// Walks the BVH in the order in which the ray enters the boxes, four boxes or four triangles at a time.
+// Single rays walk the BVH in the order in which they enter the boxes, four boxes or four triangles at a time. Part of
+// the kernels: see bvh_kernels.h.
 //
 // A box must never hide a hit of its triangles. The slab test [Kay & Kajiya 1986] is therefore slackened, as [Ize 2013,
 // JCGT 2(2)] asks, but by more than his 2 ulp of each distance: intersect_triangle() takes a ray for a hit that passes
@@ -6,12 +7,13 @@
 // products and a difference), which may be larger than the distance of the hit. With Z the farthest such distance in
 // the scene the errors of the triangle test (6u Z), of the slabs (3u) and of t itself (u) stay below 16u Z for each
 // side of an interval.
+#pragma once
 #include <limits>
 
 #include "accel/bvh.h"
 
 namespace pocketray {
-namespace {
+inline namespace POCKETRAY_ISA {
 
 struct BoxRay {
   Float4 near_origin[3], far_origin[3], inverse[3];
@@ -20,7 +22,7 @@ struct BoxRay {
   int exponent;     // boxes are entered at t · 2^exponent: keeps directions from 1e-45 to 1e38 in range
 };
 
-BoxRay make_box_ray(const ShearedRay& ray, const Box& bounds) {
+inline BoxRay make_box_ray(const ShearedRay& ray, const Box& bounds) {
   BoxRay r;
   Vec3 d = ray.direction;
   r.exponent = 0;
@@ -51,12 +53,12 @@ BoxRay make_box_ray(const ShearedRay& ray, const Box& bounds) {
 }
 
 // t as the boxes count it, not rounded down.
-float box_distance(const BoxRay& ray, float t) {
+inline float box_distance(const BoxRay& ray, float t) {
   return ray.exponent == 0 ? t : std::ldexp(t, ray.exponent) + std::numeric_limits<float>::min();
 }
 
 // Mask of the children that may hold a hit before `t_max`; `entry` gets where each is entered, less the slack.
-unsigned enter_boxes(const BoxRay& ray, const BvhNode& node, Float4 t_max, float* entry) {
+inline unsigned enter_boxes(const BoxRay& ray, const BvhNode& node, Float4 t_max, float* entry) {
   Float4 enter = Float4::splat(0), leave = t_max;
   for (int axis = 0; axis < 3; ++axis) {
     int row = ray.near_row[axis], other = row < 3 ? row + 3 : row - 3;
@@ -73,10 +75,10 @@ struct Entry {
   float enter;
 };
 
-int lowest_bit(unsigned mask) { return __builtin_ctz(mask); }
+inline int lowest_bit(unsigned mask) { return __builtin_ctz(mask); }
 
 // Pushes the entered children, the nearest last.
-int push_children(const BvhNode& node, unsigned mask, const float* enter, Entry* stack, int top) {
+inline int push_children(const BvhNode& node, unsigned mask, const float* enter, Entry* stack, int top) {
   int first = top;
   for (; mask; mask &= mask - 1) {
     int lane = lowest_bit(mask), place = top++;
@@ -159,9 +161,7 @@ Hit find_hit(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceS
   return search.best;
 }
 
-}  // namespace
-
-void bvh_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
+inline void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
   bool filtered = filter && filter->accept;
   Hit found =
       filtered ? find_hit<true, false>(accel, ray, filter, stats) : find_hit<false, false>(accel, ray, filter, stats);
@@ -169,11 +169,12 @@ void bvh_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hi
   if (found.triangle != kNoTriangle) *hit = found;
 }
 
-bool bvh_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
+inline bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   bool filtered = filter && filter->accept;
   Hit found =
       filtered ? find_hit<true, true>(accel, ray, filter, stats) : find_hit<false, true>(accel, ray, filter, stats);
   return found.triangle != kNoTriangle;
 }
 
+}  // namespace POCKETRAY_ISA
 }  // namespace pocketray

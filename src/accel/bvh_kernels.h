@@ -1,0 +1,21 @@
+// The traversals of the BVH, compiled once per instruction set (base/isa.h) by bvh_kernels_*.cpp. All give the same
+// bits.
+#pragma once
+#include "accel/accel.h"
+
+namespace pocketray {
+
+// As the functions of AccelInfo.
+struct BvhKernels {
+  void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
+  void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
+                         TraceStats* stats);
+  bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+};
+
+extern const BvhKernels kBaselineKernels;
+#if defined(__x86_64__)
+extern const BvhKernels kAvx2Kernels, kAvx512Kernels;
+#endif
+
+}  // namespace pocketray

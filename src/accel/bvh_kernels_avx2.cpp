@@ -1,0 +1,14 @@
+// Kernels for AVX2.
+#define POCKETRAY_ISA avx2
+#include "accel/bvh_kernels.h"
+
+#include "accel/bvh_packet_entry.h"
+#include "accel/bvh_single.h"
+
+#if defined(__x86_64__)
+namespace pocketray {
+
+const BvhKernels kAvx2Kernels = {avx2::closest, avx2::closest_packet<4>, avx2::occluded};
+
+}  // namespace pocketray
+#endif

@@ -1,0 +1,11 @@
+// Kernels for every CPU of the build.
+#include "accel/bvh_kernels.h"
+
+#include "accel/bvh_packet_entry.h"
+#include "accel/bvh_single.h"
+
+namespace pocketray {
+
+const BvhKernels kBaselineKernels = {baseline::closest, baseline::closest_packet<4>, baseline::occluded};
+
+}  // namespace pocketray
