@@ -78,6 +78,7 @@ std::vector<Group> random_groups(Rng* rng, const Mesh& mesh, const World& oracle
     Group& group = groups[static_cast<std::size_t>(i)];
     const int counts[] = {kGroupMax, kGroupMax, 1 + static_cast<int>(next_u32(rng) % kGroupMax), 1};
     group.rays = random_rays(rng, mesh, oracle.accel.bounds, counts[i % 4]);
+    show_gate_progress(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(count));
     if (i % 8 >= 5) cut_at_hit(rng, oracle, &group.rays);
     for (const Ray& ray : group.rays) {
       group.hits.push_back(closest(oracle, ray));
@@ -112,7 +113,7 @@ TEST_CASE("differential_every_variant_answers_as_brute_force") {
   for (const Mesh& mesh : generated_meshes()) {
     auto oracle = make_world(mesh, &kBruteAccel);
     Rng rng = make_rng(101);
-    std::vector<Group> groups = random_groups(&rng, mesh, *oracle, gate_share(96, 6000));
+    std::vector<Group> groups = random_groups(&rng, mesh, *oracle, gate_share(96, 1500));
     for (const Variant& variant : all_variants()) {
       auto world = make_world(mesh, variant.accel);
       std::uint64_t wrong = 0, rays = 0, hits = 0;
@@ -137,7 +138,7 @@ TEST_CASE("differential_brute_force_answers_as_double_outside_4_ulp") {
     auto oracle = make_world(mesh, &kBruteAccel);
     Rng rng = make_rng(102);
     int rays = 0, wrong = 0, decided = 0;
-    for (const Group& group : random_groups(&rng, mesh, *oracle, gate_share(24, 600)))
+    for (const Group& group : random_groups(&rng, mesh, *oracle, gate_share(24, 300)))
       for (std::size_t i = 0; i < group.rays.size(); ++i, ++rays)
         wrong += !oracle_agrees(*oracle, group.rays[i], group.hits[i], 4, &decided);
     INFO(mesh.name << ": " << decided << " of " << rays << " decided");
