@@ -34,10 +34,10 @@ double plane_t(const Ray& ray, const Mesh& mesh) {
 TEST_CASE("hard_03_tiny_triangles_are_hit_with_t_within_4_ulp") {
   for (const AccelInfo* info : kAccelList) {
     Rng rng = make_rng(301);
-    int missed = 0, rays = 0, inexact = 0;
+    int missed = 0, rays = 0, tried = 0, inexact = 0;
     double worst = 0;
     for (float leg = 2e-4f; leg >= 1e-15f; leg *= 0.37f)
-      for (int i = 0; i < gate_share(200, 10000); ++i, ++rays) {
+      for (int i = 0; i < gate_share(200, 10000); ++i, ++tried) {
         Vec3 a = random_vec3(&rng, leg), b = a + Vec3{leg, 0, leg * next_float(&rng)}, c = a + Vec3{0, leg, -leg};
         Mesh mesh = one_triangle(a, b, c);
         auto world = make_world(mesh, info);
@@ -48,8 +48,10 @@ TEST_CASE("hard_03_tiny_triangles_are_hit_with_t_within_4_ulp") {
           origin.z = between(&rng, 0.5f, 2.0f);
         }
         Ray ray = {origin, centroid - origin, kInfinity};
+        // An oblique ray nearly within the plane may pass the triangle by the rounding of its own direction.
+        if (i % 2 && oracle_triangle(ray, a, b, c, 4).verdict != Verdict::hit) continue;
         Hit hit = closest(*world, ray);
-        missed += hit.triangle != 0;
+        missed += hit.triangle != 0, ++rays;
         if (hit.triangle != 0) continue;
         double error = std::fabs(hit.t - plane_t(ray, mesh)) / ulp_of(hit.t);
         inexact += !(error <= 4);
@@ -58,6 +60,7 @@ TEST_CASE("hard_03_tiny_triangles_are_hit_with_t_within_4_ulp") {
     INFO(info->name << ", worst t error " << worst << " ulp");
     CHECK(missed == 0);
     CHECK(inexact == 0);
+    CHECK(rays > tried / 1000 * 999);
     count_hard(rays, missed + inexact, "hit, t within 4 ulp");
   }
 }
@@ -185,8 +188,7 @@ TEST_CASE("hard_10_unit_triangle_gives_t_u_v_within_16_ulp_edges_included") {
 // rays at random; the oracle decides nearly all of them.
 TEST_CASE("hard_62_float_ids_are_those_of_double_outside_a_band_of_4_ulp") {
   for (const Mesh& mesh : generated_meshes()) {
-    if (mesh.triangles.size() > 700 || mesh.name == "denormal")
-      continue;  // float has no ulp to speak of there
+    if (mesh.triangles.size() > 700 || mesh.name == "denormal") continue;  // float has no ulp to speak of there
     auto world = make_world(mesh, &kBvhAccel);
     Rng rng = make_rng(304);
     float size = mesh.triangles.empty() ? 1.0f : max_component(extent(world->accel.bounds));
