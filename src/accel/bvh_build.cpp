@@ -24,27 +24,28 @@ constexpr std::uint32_t kTrianglesPerSpareLeaf = 128;  // what leaves may be sho
 constexpr std::size_t leaf_count_max(std::size_t triangles) {
   return leaves_for(static_cast<std::uint32_t>(triangles)) + triangles / kTrianglesPerSpareLeaf;
 }
-// With L leaves the sum of (children - 1) over the nodes is L - 1; collapsed greedily, a node of two or three children
-// would have leaves alone, and a treelet has no more nodes than that.
-constexpr std::size_t node_count_max(std::size_t leaves) { return 2 * leaves / 3 + 1; }
+// Nodes above the treelets have four children, treelets or leaves at their ends. So a treelet of L leaves accounts for
+// treelet_node_count(L) nodes and a third of one, which for the L >= 4 that there are is at most 7/15 L (L = 5).
+constexpr std::size_t node_count_max(std::size_t leaves) { return 7 * leaves / 15 + 1; }
+static_assert(kSideLeavesMin == 4, "as above");
 
 // Levels of nodes under which n triangles surely fit when every range is halved: two halvings a level, rounding
 // included.
 std::uint32_t levels_when_halved(std::uint32_t n) {
-  std::uint32_t levels = kTreeletLeafMax;
+  std::uint32_t levels = static_cast<std::uint32_t>(treelet_node_count(kTreeletLeafMax));
   for (std::uint64_t capacity = kTreeletMax; capacity < n; capacity *= 3) ++levels;
   return levels;
 }
 
-// The part to split next: the one on which most work is spent, its surface times its triangles, or the one with the
-// most triangles when the depth runs out. -1 where all are leaves.
+// The part to split next: the one with the largest surface, or with the most triangles when the range is halved. -1
+// where none can be split: never among fewer than four parts of more triangles than a treelet has.
 int part_to_split(const BuildPart* parts, int count, bool halve) {
   int best = -1;
   double best_weight = -1;
   for (int i = 0; i < count; ++i) {
     std::uint32_t n = parts[i].count;
     if (!can_be_split(n)) continue;
-    double weight = halve ? n : half_area(parts[i].box) * n;
+    double weight = halve ? n : half_area(parts[i].box);
     if (weight > best_weight || (weight == best_weight && n > parts[best].count)) best = i, best_weight = weight;
   }
   return best;
@@ -93,17 +94,17 @@ void set_inner(BvhNode* node, int lane, std::uint32_t child, const WideBox& wide
 void build_lower(Builder* builder, const BuildPart& part, std::uint32_t root) {
   Treelet& t = builder->treelet;
   const BuildPrimitive* primitives = builder->primitives + part.begin;
-  build_treelet(primitives, part.count, std::min(part.leaf_max, kTreeletLeafMax), &t);
+  build_treelet(primitives, part.count, &t);
   struct Pair {
     std::uint32_t from, to;
-  } stack[kTreeletNodeMax];
+  } stack[kTreeletLeafMax];
   int top = 0;
   stack[top++] = {0, root};
   while (top > 0) {
     Pair pair = stack[--top];
     BvhNode* node = clear_node(builder, pair.to);
-    std::uint32_t children[4] = {0};
-    std::uint32_t count = t.nodes[pair.from].left ? treelet_children(t, pair.from, children) : 1;
+    std::uint32_t children[4];
+    std::uint32_t count = treelet_children(t, pair.from, children);
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       const TreeletNode& child = t.nodes[children[lane]];
       if (child.left) {
@@ -130,7 +131,7 @@ std::uint32_t build_node(Builder* builder, const Task& task, Task* stack, std::u
   }
   BuildPart parts[4] = {task.part};
   int part_count = 1;
-  bool halve = task.depth + levels_when_halved(task.part.count) >= kBvhDepthMax;
+  bool halve = !has_split_axis(task.part) || task.depth + levels_when_halved(task.part.count) >= kBvhDepthMax;
   for (int i; part_count < 4 && (i = part_to_split(parts, part_count, halve)) >= 0; ++part_count) {
     BuildPart whole = parts[i];
     split_part(builder->primitives, whole, halve, &parts[i], &parts[part_count]);

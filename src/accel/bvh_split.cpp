@@ -30,9 +30,9 @@ struct BinMap {
     low = centroids.low, scale = Float4::load(s);
     for (int axis = 0; axis < 4; ++axis) axis_low[axis] = l[axis], axis_scale[axis] = s[axis];
   }
-  static std::uint32_t clamp(float position) { return std::min(static_cast<std::uint32_t>(position), kBinCount - 1); }
   std::uint32_t bin(const BuildPrimitive& p, int axis) const {
-    return clamp((centroid2(p, axis) - axis_low[axis]) * axis_scale[axis]);
+    float position = (centroid2(p, axis) - axis_low[axis]) * axis_scale[axis];
+    return std::min(static_cast<std::uint32_t>(static_cast<std::int32_t>(position)), kBinCount - 1);
   }
 };
 
@@ -41,21 +41,34 @@ struct Bins {
   std::uint32_t count[3][kBinCount];
 };
 
-void fill_bins(const BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, Bins* bins) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::uint32_t i = 0; i < kBinCount; ++i) bins->box[axis][i] = empty_wide_box(), bins->count[axis][i] = 0;
-  for (std::uint32_t i = part.begin; i < part.begin + part.count; ++i) {
-    WideBox box = wide_box(primitives[i]);
-    alignas(16) float position[4];
-    store(position, (centroid2(box) - map.low) * map.scale);
-    for (int axis = 0; axis < 3; ++axis) {
-      std::uint32_t bin = BinMap::clamp(position[axis]);
-      bins->box[axis][bin] = merge(bins->box[axis][bin], box);
-      ++bins->count[axis][bin];
-    }
+void add_to_bins(const BuildPrimitive& primitive, const BinMap& map, Bins* bins) {
+  WideBox box = wide_box(primitive);
+  alignas(16) float position[4];
+  store(position, min((centroid2(box) - map.low) * map.scale, Float4::splat(kBinCount - 1)));
+  for (int axis = 0; axis < 3; ++axis) {
+    std::uint32_t bin = static_cast<std::uint32_t>(static_cast<std::int32_t>(position[axis]));
+    bins->box[axis][bin] = merge(bins->box[axis][bin], box);
+    ++bins->count[axis][bin];
   }
 }
 
+// Neighbours go to bins of their own: they often share a bin, and would wait for one another.
+void fill_bins(const BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, Bins* bins) {
+  Bins odd;
+  for (Bins* b : {bins, &odd})
+    for (int axis = 0; axis < 3; ++axis)
+      for (std::uint32_t i = 0; i < kBinCount; ++i) b->box[axis][i] = empty_wide_box(), b->count[axis][i] = 0;
+  const BuildPrimitive *p = primitives + part.begin, *end = p + part.count;
+  for (; p + 1 < end; p += 2) add_to_bins(p[0], map, bins), add_to_bins(p[1], map, &odd);
+  if (p < end) add_to_bins(*p, map, bins);
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::uint32_t i = 0; i < kBinCount; ++i) {
+      bins->box[axis][i] = merge(bins->box[axis][i], odd.box[axis][i]);
+      bins->count[axis][i] += odd.count[axis][i];
+    }
+}
+
+// Both sides have to be one leaf or at least four.
 bool side_is_allowed(std::uint32_t count) {
   return count > 0 && (leaves_for(count) == 1 || leaves_for(count) >= kSideLeavesMin);
 }
@@ -96,14 +109,14 @@ BinSplit bin_split(const Bins& bins, const BuildPart& part, const BinMap& map) {
   return best;
 }
 
-// Brings the primitives of the lower bins to the front.
+// Brings the primitives of the lower bins to the front, without a branch that depends on them.
 void partition(BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, const BinSplit& split) {
-  BuildPrimitive *first = primitives + part.begin, *last = first + part.count;
-  while (true) {
-    while (first < last && map.bin(*first, split.axis) < split.left_bins) ++first;
-    while (first < last && map.bin(last[-1], split.axis) >= split.left_bins) --last;
-    if (first >= last) break;
-    std::swap(*first++, *--last);
+  BuildPrimitive *first = primitives + part.begin, *end = first + part.count, *middle = first;
+  for (BuildPrimitive* p = first; p < end; ++p) {
+    BuildPrimitive here = *p;
+    bool is_left = map.bin(here, split.axis) < split.left_bins;
+    *p = *middle, *middle = here;
+    middle += is_left;
   }
 }
 
@@ -130,6 +143,11 @@ int widest_axis(const WideBox& box) {
 }
 
 }  // namespace
+
+bool has_split_axis(const BuildPart& part) {
+  BinMap map(part.centroids);
+  return map.axis_scale[0] > 0 || map.axis_scale[1] > 0 || map.axis_scale[2] > 0;
+}
 
 BuildPart make_part(const BuildPrimitive* primitives, std::uint32_t begin, std::uint32_t count,
                     std::uint32_t leaf_max) {

@@ -13,6 +13,9 @@ struct BuildPart {
 // The part of primitives[begin .. begin + count); measures its boxes.
 BuildPart make_part(const BuildPrimitive* primitives, std::uint32_t begin, std::uint32_t count, std::uint32_t leaf_max);
 
+// Whether centroids tell primitives of the part apart, so that one split is better than another.
+bool has_split_axis(const BuildPart& part);
+
 // Whether split_part() finds a split: both sides have to be one leaf or at least four, lest nodes stay half empty.
 constexpr std::uint32_t kSideLeavesMin = 4;
 constexpr bool can_be_split(std::uint32_t count) { return leaves_for(count) > kSideLeavesMin; }

@@ -34,14 +34,22 @@ void sort_primitives(Treelet* treelet, std::uint32_t count) {
   }
 }
 
-// The cheapest split of a node that keeps to its leaf_max: all positions on all axes.
+// Whether a split leaves full leaves, and lets nodes be full. The latter: as a forest of k roots with k = L modulo 3 a
+// subtree of L leaves needs (L - k) / 3 nodes of four children and none else. Its halves can always be such forests
+// with k roots together, but where one L is a multiple of three and the other one is that or leaves the remainder two.
+bool split_is_full(std::uint32_t left, std::uint32_t right) {
+  std::uint32_t left_leaves = leaves_for(left), right_leaves = leaves_for(right);
+  if (left_leaves + right_leaves != leaves_for(left + right)) return false;
+  return left_leaves % 3 == 1 || right_leaves % 3 == 1 || (left_leaves % 3 == 2 && right_leaves % 3 == 2);
+}
+
+// The cheapest full split of a node, among all positions on all axes. There is one: four primitives on the left.
 SweepSplit sweep(const Treelet& treelet, const TreeletNode& node) {
   SweepSplit best;
   double right_cost[kTreeletMax];
   bool allowed[kTreeletMax];
   std::uint32_t count = node.count;
-  for (std::uint32_t left = 1; left < count; ++left)
-    allowed[left] = leaves_for(left) + leaves_for(count - left) <= node.leaf_max;
+  for (std::uint32_t left = 1; left < count; ++left) allowed[left] = split_is_full(left, count - left);
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint8_t* order = treelet.order[axis] + node.begin;
     WideBox box = empty_wide_box();
@@ -62,10 +70,8 @@ SweepSplit sweep(const Treelet& treelet, const TreeletNode& node) {
 
 // Brings the primitives of the left half to the front in the orders of all axes.
 void partition_orders(Treelet* treelet, const TreeletNode& node, const SweepSplit& split) {
-  std::uint64_t left_set = 0;
-  static_assert(kTreeletMax <= 64, "a set is a word");
-  for (std::uint32_t i = 0; i < split.left_count; ++i)
-    left_set |= std::uint64_t(1) << treelet->order[split.axis][node.begin + i];
+  std::uint8_t in_left[kTreeletMax] = {0};
+  for (std::uint32_t i = 0; i < split.left_count; ++i) in_left[treelet->order[split.axis][node.begin + i]] = 1;
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == split.axis) continue;
     std::uint8_t* order = treelet->order[axis] + node.begin;
@@ -73,46 +79,40 @@ void partition_orders(Treelet* treelet, const TreeletNode& node, const SweepSpli
     std::uint32_t left_count = 0, right_count = 0;
     for (std::uint32_t i = 0; i < node.count; ++i) {
       std::uint8_t id = order[i];
-      bool is_left = left_set >> id & 1;
+      std::uint8_t is_left = in_left[id];
       order[left_count] = id, right[right_count] = id;
-      left_count += is_left, right_count += !is_left;
+      left_count += is_left, right_count += 1u - is_left;
     }
     std::memcpy(order + left_count, right, right_count);
   }
 }
 
-std::uint32_t add_node(Treelet* treelet, std::uint32_t begin, std::uint32_t count, std::uint32_t leaf_max) {
-  CHECK_LT(treelet->node_count, kTreeletNodeMax);
+std::uint32_t add_node(Treelet* treelet, std::uint32_t begin, std::uint32_t count) {
+  CHECK_LT(treelet->node_count, 2 * kTreeletLeafMax - 1);
   TreeletNode& node = treelet->nodes[treelet->node_count];
-  node.begin = begin, node.count = count, node.leaf_max = leaf_max, node.left = node.right = 0;
+  node.begin = begin, node.count = count, node.left = node.right = 0;
   node.box = empty_wide_box();
-  for (std::uint32_t i = 0; i < count; ++i)
-    node.box = merge(node.box, wide_box(treelet->primitives[treelet->order[0][begin + i]]));
+  for (std::uint32_t i = begin; i < begin + count; ++i)
+    node.box = merge(node.box, wide_box(treelet->primitives[treelet->order[0][i]]));
   return treelet->node_count++;
 }
 
-void split_node(Treelet* treelet, std::uint32_t index) {
-  TreeletNode node = treelet->nodes[index];
-  SweepSplit split = sweep(*treelet, node);
-  partition_orders(treelet, node, split);
-  std::uint32_t right_count = node.count - split.left_count;
-  std::uint32_t spare = node.leaf_max - leaves_for(split.left_count) - leaves_for(right_count);
-  std::uint32_t left_spare = (2 * spare * split.left_count + node.count) / (2 * node.count);
-  std::uint32_t left = add_node(treelet, node.begin, split.left_count, leaves_for(split.left_count) + left_spare);
-  std::uint32_t right =
-      add_node(treelet, node.begin + split.left_count, right_count, leaves_for(right_count) + spare - left_spare);
-  treelet->nodes[index].left = left, treelet->nodes[index].right = right;
+void split_node(Treelet* treelet, TreeletNode* node) {
+  SweepSplit split = sweep(*treelet, *node);
+  partition_orders(treelet, *node, split);
+  node->left = add_node(treelet, node->begin, split.left_count);
+  node->right = add_node(treelet, node->begin + split.left_count, node->count - split.left_count);
 }
 
 // The cheapest ways to stand for a subtree by one to four roots, from those of its halves [Wald, Benthin & Boulos 2008,
 // "Getting Rid of Packets", sec. 3.2].
-void choose_roots(Treelet* treelet, TreeletNode* node, double node_price) {
+void choose_roots(TreeletNode* node, const Treelet& treelet, double node_price) {
   double area = half_area(node->box);
   if (node->left == 0) {
     for (int roots = 1; roots <= 4; ++roots) node->cost[roots] = area, node->left_roots[roots] = 0;
     return;
   }
-  const TreeletNode &left = treelet->nodes[node->left], &right = treelet->nodes[node->right];
+  const TreeletNode &left = treelet.nodes[node->left], &right = treelet.nodes[node->right];
   double split_cost[5];
   std::uint8_t split_left[5];
   for (int roots = 2; roots <= 4; ++roots) {
@@ -144,20 +144,22 @@ void add_children(const Treelet& treelet, std::uint32_t index, std::uint32_t roo
 
 }  // namespace
 
-void build_treelet(const BuildPrimitive* primitives, std::uint32_t count, std::uint32_t leaf_max, Treelet* treelet) {
+void build_treelet(const BuildPrimitive* primitives, std::uint32_t count, Treelet* treelet) {
+  CHECK_GT(count, 0u);
   CHECK_LE(count, kTreeletMax);
   treelet->primitives = primitives, treelet->node_count = 0;
   sort_primitives(treelet, count);
-  add_node(treelet, 0, count, leaf_max);
+  add_node(treelet, 0, count);
   for (std::uint32_t i = 0; i < treelet->node_count; ++i)
-    if (treelet->nodes[i].count > kBvhLeafSize) split_node(treelet, i);
-  // More than all surfaces of a treelet together: fewest nodes first, then the least surface.
-  double price = half_area(treelet->nodes[0].box) * (2 * kTreeletNodeMax);
-  for (std::uint32_t i = treelet->node_count; i-- > 0;) choose_roots(treelet, &treelet->nodes[i], price);
+    if (treelet->nodes[i].count > kBvhLeafSize) split_node(treelet, &treelet->nodes[i]);
+  // More than all surfaces of the treelet together: the fewest nodes first, then the least surface.
+  double node_price = half_area(treelet->nodes[0].box) * (2 * kTreeletLeafMax);
+  for (std::uint32_t i = treelet->node_count; i-- > 0;) choose_roots(&treelet->nodes[i], *treelet, node_price);
 }
 
 std::uint32_t treelet_children(const Treelet& treelet, std::uint32_t index, std::uint32_t children[4]) {
   const TreeletNode& node = treelet.nodes[index];
+  if (node.left == 0) return children[0] = index, 1;
   std::uint32_t count = 0;
   add_children(treelet, node.left, node.left_roots[1], children, &count);
   add_children(treelet, node.right, 4 - node.left_roots[1], children, &count);

@@ -1,0 +1,123 @@
+// What the builder of the BVH promises about the tree.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "accel/accel_world.h"
+#include "accel/bvh.h"
+#include "accel/bvh_treelet.h"
+
+using namespace pocketray;
+
+namespace {
+
+struct TreeCount {
+  std::size_t nodes, leaves, children, triangles;
+};
+
+TreeCount count_tree(const World& world) {
+  BvhView bvh(world.accel.data.data);
+  TreeCount count = {bvh.header->node_count, bvh.header->leaf_count, 0, 0};
+  for (std::uint32_t i = 0; i < bvh.header->node_count; ++i)
+    for (std::uint32_t child : bvh.nodes[i].child) {
+      count.children += child != kNoChild;
+      if (child != kNoChild && (child & kLeafBit)) count.triangles += leaf_triangle_count(child);
+    }
+  return count;
+}
+
+// FNV-1a over the words of the tree.
+std::uint64_t hash_of(const World& world) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (std::uint8_t byte : world.accel.data) hash = (hash ^ byte) * 1099511628211u;
+  return hash;
+}
+
+// Triangles in a cloud, drawn in an order that no compiler changes.
+Mesh ordered_cloud(int count) {
+  Mesh mesh;
+  Rng rng = make_rng(126);
+  for (int i = 0; i < count; ++i) {
+    Vec3 p[3];
+    for (Vec3& vertex : p)
+      for (int axis = 0; axis < 3; ++axis) vertex[axis] = between(&rng, -0.1f, 0.1f);
+    for (int axis = 0; axis < 3; ++axis) p[0][axis] += between(&rng, -1, 1);
+    add_triangle(&mesh, p[0], p[0] + p[1], p[0] + p[2]);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+// Goal: however many triangles there are, all are in the tree, and it has no more leaves and nodes than planned: a leaf
+// in 128 triangles above what four in each need, 7/15 of that in nodes. Method: every count up to past two treelets,
+// then some larger ones, of triangles in a cloud and of triangles without a place of their own.
+TEST_CASE("bvh_has_no_more_leaves_and_nodes_than_planned_for_any_triangle_count") {
+  for (std::uint32_t n = 1; n < 6000; n += n < 300 ? 1 : 571)
+    for (const Mesh& mesh :
+         {soup("cloud", static_cast<int>(n), 1, 0.1f, n), duplicates("equal", static_cast<int>(n))}) {
+      auto world = make_world(mesh, &kBvhAccel);
+      TreeCount count = count_tree(*world);
+      INFO(mesh.name << ", " << n << " triangles");
+      CHECK(count.triangles == n);
+      CHECK(count.leaves <= (n + 3) / 4 + n / 128);
+      CHECK(count.nodes <= 7 * count.leaves / 15 + 1);
+    }
+}
+
+// Goal: leaves and nodes of meshes are nearly full, which keeps the bytes per triangle low. Method: a soup and a sphere
+// of some thousand triangles; the bounds are what the builder reaches, less some slack.
+TEST_CASE("bvh_leaves_and_nodes_are_nearly_full") {
+  for (const Mesh& mesh : {soup("soup", 5000, 1, 0.05f, 121), jittered_sphere(5, 1, {0, 0, 0}, 0.02f, 122)}) {
+    auto world = make_world(mesh, &kBvhAccel);
+    TreeCount count = count_tree(*world);
+    double triangles = static_cast<double>(mesh.triangles.size());
+    INFO(mesh.name << ": " << triangles / static_cast<double>(count.leaves) << " a leaf, "
+                   << static_cast<double>(count.children) / static_cast<double>(count.nodes) << " a node");
+    CHECK(triangles >= 3.85 * static_cast<double>(count.leaves));
+    CHECK(count.children >= 3.7 * static_cast<double>(count.nodes));
+    CHECK(world->accel.data.count <= 53 * triangles);
+  }
+}
+
+// Goal: a treelet of L leaves collapses into treelet_node_count(L) nodes. Method: every count of triangles, in clouds.
+TEST_CASE("bvh_treelet_collapses_into_the_fewest_nodes") {
+  for (std::uint32_t n = 1; n <= kTreeletMax; ++n) {
+    auto world = make_world(soup("cloud", static_cast<int>(n), 1, 0.1f, 1000 + n), &kBvhAccel);
+    TreeCount count = count_tree(*world);
+    INFO(n << " triangles");
+    CHECK(count.leaves == leaves_for(n));
+    CHECK(count.nodes == treelet_node_count(count.leaves));
+  }
+}
+
+// Goal: the tree separates what lies apart. Method: clusters far from one another; rays through one of them meet
+// hardly more nodes and triangles than in a tree over it alone.
+TEST_CASE("bvh_separates_clusters_that_lie_apart") {
+  Mesh alone = soup("alone", 800, 1, 0.1f, 123), all = alone;
+  for (int k = 1; k < 7; ++k) {
+    Mesh other = soup("", 100 * k, 1, 0.1f, 124 + static_cast<std::uint64_t>(k));
+    for (const Triangle& t : other.triangles) {
+      Vec3 shift = {k % 2 ? 50.0f : 0.0f, k % 3 ? 70.0f * static_cast<float>(k) : 0.0f, 90};
+      add_triangle(&all, other.positions[t.vertex[0]] + shift, other.positions[t.vertex[1]] + shift,
+                   other.positions[t.vertex[2]] + shift);
+    }
+  }
+  TraceStats few, many;
+  auto small = make_world(alone, &kBvhAccel), large = make_world(all, &kBvhAccel);
+  Rng rng = make_rng(125);
+  for (int i = 0; i < 2000; ++i) {
+    Ray ray = {random_vec3(&rng, 1), {next_float(&rng) - 0.5f, 1, -0.2f}, kInfinity};
+    closest(*small, ray, &few), closest(*large, ray, &many);
+  }
+  CHECK(many.nodes < few.nodes + 2 * 2000 + few.nodes / 10);
+  CHECK(many.triangles < few.triangles + few.triangles / 10);
+}
+
+// Goal: the same tree on every CPU, with every compiler and library. Method: hashes of trees whose builds split ranges,
+// sweep treelets and break ties.
+TEST_CASE("bvh_is_the_same_tree_everywhere") {
+  CHECK(hash_of(*make_world(ordered_cloud(3000), &kBvhAccel)) == 16119029426937795748u);
+  CHECK(hash_of(*make_world(lattice_box(12), &kBvhAccel)) == 403473868773348233u);
+  CHECK(hash_of(*make_world(duplicates("", 1000), &kBvhAccel)) == 4844613320998837954u);
+}
