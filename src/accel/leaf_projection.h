@@ -1,51 +1,48 @@
 // The triangles of a leaf as they appear in the plane at depth 1, four at a time. Part of the kernels: see
 // bvh_packet.h.
 #pragma once
-#include <limits>
-
+#include "accel/packet.h"
 #include "accel/triangle.h"
-#include "base/simd.h"
 
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-constexpr float kPacketSlack = 0x1p-20f;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// A rectangle of the plane, slack included.
-struct Window {
-  float x_low, x_high, y_low, y_high;
+// The lines of the edges: x·qx + y·qy + z is the edge function of a ray q, but for its error.
+struct EdgeLines {
+  alignas(16) float x[3][4], y[3][4], z[3][4];
 };
-
-// Four of them, with their centres and half sizes.
-struct alignas(16) Windows4 {
-  float x_low[4], x_high[4], y_low[4], y_high[4], x[4], y[4], half_x[4], half_y[4];
-};
-inline void set_window(Windows4* w, int i, const Window& window) {
-  w->x_low[i] = window.x_low, w->x_high[i] = window.x_high, w->y_low[i] = window.y_low, w->y_high[i] = window.y_high;
-  w->x[i] = (window.x_low + window.x_high) * 0.5f, w->y[i] = (window.y_low + window.y_high) * 0.5f;
-  w->half_x[i] = (window.x_high - window.x_low) * 0.5f, w->half_y[i] = (window.y_high - window.y_low) * 0.5f;
-}
 
 struct LeafProjection {
-  alignas(16) float x[3][4], y[3][4], depth[3][4];                      // vertices relative to the origin
-  alignas(16) float x_low[4], x_high[4], y_low[4], y_high[4], near[4];  // bounds of the projections
-  unsigned behind;  // lanes with a vertex at or behind the origin: their projection has no bounds
-  Window bounds;    // of the triangles that may meet the window, if none is behind
+  unsigned lanes;   // triangles that may meet the packet's window no deeper than it has to look
+  unsigned behind;  // those with a vertex at or behind the origin: their projection has no bounds
+  Window bounds;    // of all lanes together, where none is behind
+  float nearest;    // depth of the nearest lane
+  alignas(16) float x_low[4], x_high[4], y_low[4], y_high[4], near[4];
+  alignas(16) float x[3][4], y[3][4], depth[3][4];  // vertices relative to the origin
   bool has_edges;
-  alignas(16) float edge_x[3][4], edge_y[3][4], edge_z[3][4], edge_error[3][4];
+  EdgeLines edge;
+  alignas(16) float error[4];
 };
 
-// Fills the projection but for its edges; returns the mask of the triangles that may meet the window no deeper than
-// `far`.
-inline unsigned project_leaf(const TriangleBlock& block, int kx, int ky, int kz, const Vec3& origin, float direction,
-                             const Window& window, float far, LeafProjection* leaf) {
-  Float4 ox = Float4::splat(origin[kx]), oy = Float4::splat(origin[ky]), oz = Float4::splat(origin[kz]);
-  Float4 sign = Float4::splat(direction), tiny = Float4::splat(std::numeric_limits<float>::min());
+// What an edge function may err by, here or in the decision of cross_triangle(). With u = 2^-24, that decision is exact
+// for vertices that are off by less than 4uM, M = |x| + |y| + 2|z|, and the vertices here are off by less than that, so
+// the value is by 16u M S, where S bounds |x| + |y| as seen from any ray of the window; sums and products add 8u S².
+// The constant covers underflow: it is relative to nothing, but says no more than that cross_triangle() shall decide.
+inline Float4 edge_error(const Packet& p, const Float4 (&x)[3], const Float4 (&y)[3], const Float4 (&depth)[3]) {
+  Float4 aside = max(max(abs(x[0]) + abs(y[0]), abs(x[1]) + abs(y[1])), abs(x[2]) + abs(y[2]));
+  Float4 along = max(max(abs(depth[0]), abs(depth[1])), abs(depth[2]));
+  Float4 s = aside + along * (p.half4[0] + p.half4[1]), m = aside + along * Float4::splat(4);
+  return s * m * Float4::splat(0x1p-19f) + Float4::splat(0x1p-140f);
+}
+
+// Fills all but the edges; nothing but lanes where there are none.
+inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjection* leaf) {
+  const Float4 tiny = Float4::splat(std::numeric_limits<float>::min());
   Float4 px[3], py[3], depth[3];
   for (int i = 0; i < 3; ++i) {
-    Float4 x = Float4::load(block.vertex[i][kx]) - ox, y = Float4::load(block.vertex[i][ky]) - oy;
-    depth[i] = (Float4::load(block.vertex[i][kz]) - oz) * sign;
+    depth[i] = (Float4::load(block.vertex[i][p.kz]) - p.origin4[2]) * p.sign4;
+    Float4 x = Float4::load(block.vertex[i][p.kx]) - p.origin4[0];
+    Float4 y = Float4::load(block.vertex[i][p.ky]) - p.origin4[1];
     store(leaf->x[i], x), store(leaf->y[i], y), store(leaf->depth[i], depth[i]);
     Float4 inverse = Float4::splat(1) / max(depth[i], tiny);
     px[i] = x * inverse, py[i] = y * inverse;
@@ -53,75 +50,99 @@ inline unsigned project_leaf(const TriangleBlock& block, int kx, int ky, int kz,
   Float4 near = min(min(depth[0], depth[1]), depth[2]), deepest = max(max(depth[0], depth[1]), depth[2]);
   Float4 x_low = min(min(px[0], px[1]), px[2]), x_high = max(max(px[0], px[1]), px[2]);
   Float4 y_low = min(min(py[0], py[1]), py[2]), y_high = max(max(py[0], py[1]), py[2]);
+  Mask4 behind = near <= tiny;
+  Mask4 met = (x_low <= p.window4[1]) & (p.window4[0] <= x_high) & (y_low <= p.window4[3]) & (p.window4[2] <= y_high);
+  Mask4 alive = (met | behind) & (Float4::splat(0) < deepest) & (near <= Float4::splat(p.all_far));
+  leaf->lanes = bits(alive);
+  if (!leaf->lanes) return;
+  leaf->behind = bits(behind & alive), leaf->has_edges = false;
   store(leaf->x_low, x_low), store(leaf->x_high, x_high), store(leaf->y_low, y_low), store(leaf->y_high, y_high);
   store(leaf->near, near);
-  leaf->has_edges = false;
-  Mask4 behind = near <= tiny;
-  leaf->behind = bits(behind);
-  Mask4 met = (x_low <= Float4::splat(window.x_high)) & (Float4::splat(window.x_low) <= x_high) &
-              (y_low <= Float4::splat(window.y_high)) & (Float4::splat(window.y_low) <= y_high);
-  Mask4 alive = (met | behind) & (Float4::splat(0) < deepest) & (near <= Float4::splat(far));
-  unsigned lanes = bits(alive);
-  if (lanes) {
-    Float4 infinity = Float4::splat(kInfinity), minus = Float4::splat(-kInfinity);
-    leaf->bounds = {lowest(select(alive, x_low, infinity)), highest(select(alive, x_high, minus)),
-                    lowest(select(alive, y_low, infinity)), highest(select(alive, y_high, minus))};
-  }
-  return lanes;
+  Float4 infinity = Float4::splat(kInfinity), minus = Float4::splat(-kInfinity);
+  leaf->bounds = {lowest(select(alive, x_low, infinity)), highest(select(alive, x_high, minus)),
+                  lowest(select(alive, y_low, infinity)), highest(select(alive, y_high, minus))};
+  leaf->nearest = lowest(select(alive, near, infinity));
 }
 
-// The lines of the edges: N·(q, 1) is the edge function of a ray q, where N is the cross product of two vertices. The
-// decision about a ray is exact for vertices that are off by up to 4u(|x| + |y| + 2|z|) = 4uM; products and sums here
-// err by less than that again: 2^-18 M M' covers both.
-inline void find_edges(LeafProjection* leaf) {
-  Float4 x[3], y[3], z[3], size[3];
+inline void find_edges(const Packet& p, LeafProjection* leaf) {
+  Float4 x[3], y[3], depth[3];
   for (int i = 0; i < 3; ++i) {
-    x[i] = Float4::load(leaf->x[i]), y[i] = Float4::load(leaf->y[i]), z[i] = Float4::load(leaf->depth[i]);
-    size[i] = abs(x[i]) + abs(y[i]) + (abs(z[i]) + abs(z[i]));
+    depth[i] = Float4::load(leaf->depth[i]);
+    x[i] = Float4::load(leaf->x[i]) - p.middle4[0] * depth[i];
+    y[i] = Float4::load(leaf->y[i]) - p.middle4[1] * depth[i];
   }
   for (int i = 0; i < 3; ++i) {
     int j = i == 2 ? 0 : i + 1;
-    store(leaf->edge_x[i], y[i] * z[j] - z[i] * y[j]);
-    store(leaf->edge_y[i], z[i] * x[j] - x[i] * z[j]);
-    store(leaf->edge_z[i], x[i] * y[j] - y[i] * x[j]);
-    store(leaf->edge_error[i], size[i] * size[j] * Float4::splat(0x1p-18f));
+    store(leaf->edge.x[i], y[i] * depth[j] - depth[i] * y[j]);
+    store(leaf->edge.y[i], depth[i] * x[j] - x[i] * depth[j]);
+    store(leaf->edge.z[i], x[i] * y[j] - y[i] * x[j]);
   }
+  store(leaf->error, edge_error(p, x, y, depth));
   leaf->has_edges = true;
 }
 
-// One lane of the projection, in all lanes.
-struct Bounds4 {
-  Float4 x_low, x_high, y_low, y_high, near;
+// The least and the greatest of three edge functions.
+template <class F>
+struct EdgeRange {
+  F low, high;
 };
-inline Bounds4 splat_bounds(const LeafProjection& leaf, int lane) {
-  return {Float4::splat(leaf.x_low[lane]), Float4::splat(leaf.x_high[lane]), Float4::splat(leaf.y_low[lane]),
-          Float4::splat(leaf.y_high[lane]), Float4::splat(leaf.near[lane])};
+
+// Those of rays or triangles, in lanes, that may be hits as far as the edge functions say, and those of them that
+// surely are none of the doubtful ones.
+struct Passing {
+  unsigned pass, sure;
+};
+template <class F, class Mask>
+inline Passing judge(const EdgeRange<F>& e, F error, Mask alive) {
+  F minus = F::splat(0) - error;
+  unsigned pass = bits(((minus <= e.low) | (e.high <= error)) & alive);
+  return {pass, pass ? bits((error < e.low) | (e.high < minus)) : 0};
 }
+
+template <class F>
+struct EdgeLine {
+  F x, y, z;
+};
+template <class F>
+inline EdgeRange<F> edge_range(const EdgeLine<F> (&line)[3], F qx, F qy) {
+  F e[3];
+  for (int i = 0; i < 3; ++i) e[i] = line[i].x * qx + line[i].y * qy + line[i].z;
+  return {min(min(e[0], e[1]), e[2]), max(max(e[0], e[1]), e[2])};
+}
+
+// One lane of the projection, in all lanes.
+template <class F>
+struct SplatTriangle {
+  EdgeLine<F> line[3];
+  F error, near;
+};
+template <class F>
+inline SplatTriangle<F> splat_triangle(const LeafProjection& leaf, int lane) {
+  SplatTriangle<F> t;
+  for (int i = 0; i < 3; ++i)
+    t.line[i] = {F::splat(leaf.edge.x[i][lane]), F::splat(leaf.edge.y[i][lane]), F::splat(leaf.edge.z[i][lane])};
+  t.error = F::splat(leaf.error[lane]), t.near = F::splat(leaf.near[lane]);
+  return t;
+}
+
+// Four times a rectangle.
+struct Bounds4 {
+  Float4 x_low, x_high, y_low, y_high;
+};
 inline Mask4 meets(const Bounds4& b, const Windows4& w) {
   return (b.x_low <= Float4::load(w.x_high)) & (Float4::load(w.x_low) <= b.x_high) &
          (b.y_low <= Float4::load(w.y_high)) & (Float4::load(w.y_low) <= b.y_high);
 }
 
-struct Edges4 {
-  Float4 x[3], y[3], z[3], error[3];
-};
-inline Edges4 splat_edges(const LeafProjection& leaf, int lane) {
-  Edges4 e;
-  for (int i = 0; i < 3; ++i) {
-    e.x[i] = Float4::splat(leaf.edge_x[i][lane]), e.y[i] = Float4::splat(leaf.edge_y[i][lane]);
-    e.z[i] = Float4::splat(leaf.edge_z[i][lane]), e.error[i] = Float4::splat(leaf.edge_error[i][lane]);
-  }
-  return e;
-}
-// Mask of the windows with a point whose edge functions may agree in sign; *inside are those where they surely do, all
-// over the window.
-inline unsigned cross_windows(const Edges4& e, const Windows4& w, unsigned* inside) {
-  Float4 x = Float4::load(w.x), y = Float4::load(w.y), half_x = Float4::load(w.half_x), half_y = Float4::load(w.half_y);
+// Mask of the windows with a point where the triangle may be hit; *inside are those where it surely is everywhere.
+inline unsigned cross_windows(const Packet& p, const SplatTriangle<Float4>& t, const Windows4& w, unsigned* inside) {
+  Float4 x = Float4::load(w.x) - p.middle4[0], y = Float4::load(w.y) - p.middle4[1], half_x = Float4::load(w.half_x),
+         half_y = Float4::load(w.half_y);
   Float4 low_min = Float4::splat(kInfinity), low_max = Float4::splat(-kInfinity), high_min = low_min,
          high_max = low_max;
-  for (int i = 0; i < 3; ++i) {
-    Float4 middle = e.x[i] * x + e.y[i] * y + e.z[i];
-    Float4 radius = abs(e.x[i]) * half_x + abs(e.y[i]) * half_y + e.error[i];
+  for (const EdgeLine<Float4>& line : t.line) {
+    Float4 middle = line.x * x + line.y * y + line.z;
+    Float4 radius = abs(line.x) * half_x + abs(line.y) * half_y + t.error;
     Float4 low = middle - radius, high = middle + radius;
     low_min = min(low_min, low), low_max = max(low_max, low);
     high_min = min(high_min, high), high_max = max(high_max, high);

@@ -6,11 +6,18 @@
 
 namespace pocketray {
 
+struct Mask4 {
+  uint32x4_t v;
+};
 struct Float4 {
   float32x4_t v;
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {vdupq_n_f32(x)}; }
   static Float4 load(const float* p) { return {vld1q_f32(p)}; }
+  static Mask4 mask_of(unsigned bits) {
+    const std::uint32_t lane[4] = {1, 2, 4, 8};
+    return {vtstq_u32(vdupq_n_u32(bits), vld1q_u32(lane))};
+  }
 };
 inline void store(float* p, Float4 a) { vst1q_f32(p, a.v); }
 inline Float4 operator+(Float4 a, Float4 b) { return {vaddq_f32(a.v, b.v)}; }
@@ -21,9 +28,6 @@ inline Float4 min(Float4 a, Float4 b) { return {vbslq_f32(vcltq_f32(a.v, b.v), a
 inline Float4 abs(Float4 a) { return {vabsq_f32(a.v)}; }
 inline Float4 max(Float4 a, Float4 b) { return {vbslq_f32(vcgtq_f32(a.v, b.v), a.v, b.v)}; }
 
-struct Mask4 {
-  uint32x4_t v;
-};
 inline Mask4 operator<=(Float4 a, Float4 b) { return {vcleq_f32(a.v, b.v)}; }
 inline Mask4 operator<(Float4 a, Float4 b) { return {vcltq_f32(a.v, b.v)}; }
 inline Mask4 operator==(Float4 a, Float4 b) { return {vceqq_f32(a.v, b.v)}; }
@@ -32,10 +36,6 @@ inline Mask4 operator|(Mask4 a, Mask4 b) { return {vorrq_u32(a.v, b.v)}; }
 inline Float4 select(Mask4 m, Float4 a, Float4 b) { return {vbslq_f32(m.v, a.v, b.v)}; }
 inline float lowest(Float4 a) { return vminvq_f32(a.v); }
 inline float highest(Float4 a) { return vmaxvq_f32(a.v); }
-inline Mask4 mask_of(unsigned bits) {
-  const std::uint32_t lane[4] = {1, 2, 4, 8};
-  return {vtstq_u32(vdupq_n_u32(bits), vld1q_u32(lane))};
-}
 inline unsigned bits(Mask4 m) {
   const std::uint32_t weights[4] = {1, 2, 4, 8};
   return vaddvq_u32(vandq_u32(m.v, vld1q_u32(weights)));

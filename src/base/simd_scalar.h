@@ -3,18 +3,24 @@
 
 namespace pocketray {
 
+struct Mask4 {
+  bool v[4];
+};
 struct Float4 {
   float v[4];
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {{x, x, x, x}}; }
   static Float4 load(const float* p) { return {{p[0], p[1], p[2], p[3]}}; }
+  static Mask4 mask_of(unsigned bits) { return {{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0}}; }
+  inline unsigned bits(const Mask4& m) {
+    unsigned r = 0;
+    for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
+    return r;
+  }
 };
 struct Double4 {
   double v[4];
   static Double4 splat(double x) { return {{x, x, x, x}}; }
-};
-struct Mask4 {
-  bool v[4];
 };
 
 template <class Result, class A, class B, class Operation>
@@ -58,12 +64,6 @@ template <class Value>
 inline Value select(const Mask4& m, const Value& a, const Value& b) {
   Value r;
   for (int i = 0; i < 4; ++i) r.v[i] = m.v[i] ? a.v[i] : b.v[i];
-  return r;
-}
-inline Mask4 mask_of(unsigned bits) { return {{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0}}; }
-inline unsigned bits(const Mask4& m) {
-  unsigned r = 0;
-  for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
   return r;
 }
 inline float lowest(const Float4& a) {

@@ -4,11 +4,18 @@
 
 namespace pocketray {
 
+struct Mask4 {
+  __m128 v;
+};
 struct Float4 {
   __m128 v;
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {_mm_set1_ps(x)}; }
   static Float4 load(const float* p) { return {_mm_load_ps(p)}; }
+  static Mask4 mask_of(unsigned bits) {
+    __m128i lane = _mm_set_epi32(8, 4, 2, 1);
+    return {_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(bits)), lane), lane))};
+  }
 };
 inline void store(float* p, Float4 a) { _mm_store_ps(p, a.v); }
 inline Float4 operator+(Float4 a, Float4 b) { return {_mm_add_ps(a.v, b.v)}; }
@@ -19,19 +26,12 @@ inline Float4 min(Float4 a, Float4 b) { return {_mm_min_ps(a.v, b.v)}; }
 inline Float4 abs(Float4 a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
 inline Float4 max(Float4 a, Float4 b) { return {_mm_max_ps(a.v, b.v)}; }
 
-struct Mask4 {
-  __m128 v;
-};
 inline Mask4 operator<=(Float4 a, Float4 b) { return {_mm_cmple_ps(a.v, b.v)}; }
 inline Mask4 operator<(Float4 a, Float4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
 inline Mask4 operator==(Float4 a, Float4 b) { return {_mm_cmpeq_ps(a.v, b.v)}; }
 inline Mask4 operator&(Mask4 a, Mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
 inline Mask4 operator|(Mask4 a, Mask4 b) { return {_mm_or_ps(a.v, b.v)}; }
 inline Float4 select(Mask4 m, Float4 a, Float4 b) { return {_mm_or_ps(_mm_and_ps(m.v, a.v), _mm_andnot_ps(m.v, b.v))}; }
-inline Mask4 mask_of(unsigned bits) {
-  __m128i lane = _mm_set_epi32(8, 4, 2, 1);
-  return {_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(bits)), lane), lane))};
-}
 inline unsigned bits(Mask4 m) { return static_cast<unsigned>(_mm_movemask_ps(m.v)); }
 
 // The least and the greatest of the lanes.
