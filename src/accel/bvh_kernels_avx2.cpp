@@ -8,7 +8,7 @@
 #if defined(__x86_64__)
 namespace pocketray {
 
-const BvhKernels kAvx2Kernels = {avx2::closest, avx2::closest_packet<4>, avx2::occluded};
+const BvhKernels kAvx2Kernels = {avx2::closest, avx2::closest_packet<8>, avx2::occluded};
 
 }  // namespace pocketray
 #endif

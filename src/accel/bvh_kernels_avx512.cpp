@@ -8,7 +8,7 @@
 #if defined(__x86_64__)
 namespace pocketray {
 
-const BvhKernels kAvx512Kernels = {avx512::closest, avx512::closest_packet<4>, avx512::occluded};
+const BvhKernels kAvx512Kernels = {avx512::closest, avx512::closest_packet<16>, avx512::occluded};
 
 }  // namespace pocketray
 #endif

@@ -7,7 +7,8 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Mask of the children that the pyramid meets no deeper than it has to look; `depth` gets where they begin.
+// Mask of the children that the pyramid meets; `depth` gets where they begin. What the bounds on depth exclude is left
+// to branches, here and in leaves: they are predicted, where a mask would have to wait for the last hit.
 inline unsigned enter_boxes(const Packet& p, const BvhNode& node, float* depth) {
   const float *low_x = node.bounds[p.kx], *low_y = node.bounds[p.ky], *low_z = node.bounds[p.kz];
   const float *high_x = node.bounds[3 + p.kx], *high_y = node.bounds[3 + p.ky], *high_z = node.bounds[3 + p.kz];
@@ -23,7 +24,7 @@ inline unsigned enter_boxes(const Packet& p, const BvhNode& node, float* depth) 
   Float4 y = min((Float4::load(high_y) - p.origin4[1]) - bottom, top - (Float4::load(low_y) - p.origin4[1]));
   store(depth, near);
   Mask4 inside = zero <= min(x, y) + far * Float4::splat(kPacketSlack);
-  return bits(inside & (near <= Float4::splat(p.all_far)) & (zero <= far));
+  return bits(inside & (zero <= far));
 }
 
 struct DepthEntry {

@@ -13,7 +13,7 @@ struct EdgeLines {
 };
 
 struct LeafProjection {
-  unsigned lanes;   // triangles that may meet the packet's window no deeper than it has to look
+  unsigned lanes;   // triangles that may meet the packet's window
   unsigned behind;  // those with a vertex at or behind the origin: their projection has no bounds
   Window bounds;    // of all lanes together, where none is behind
   float nearest;    // depth of the nearest lane
@@ -52,7 +52,7 @@ inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjec
   Float4 y_low = min(min(py[0], py[1]), py[2]), y_high = max(max(py[0], py[1]), py[2]);
   Mask4 behind = near <= tiny;
   Mask4 met = (x_low <= p.window4[1]) & (p.window4[0] <= x_high) & (y_low <= p.window4[3]) & (p.window4[2] <= y_high);
-  Mask4 alive = (met | behind) & (Float4::splat(0) < deepest) & (near <= Float4::splat(p.all_far));
+  Mask4 alive = (met | behind) & (Float4::splat(0) < deepest);
   leaf->lanes = bits(alive);
   if (!leaf->lanes) return;
   leaf->behind = bits(behind & alive), leaf->has_edges = false;

@@ -119,42 +119,53 @@ inline bool is_small(const Packet& p, const LeafProjection& leaf) {
                              p.half_x * p.half_y;
 }
 
-// The float test of cross_triangle() on four triangles.
-inline bool search_ray(Packet* p, const TriangleBlock& block, const LeafProjection& leaf, unsigned lanes, int i) {
-  Float4 qx = Float4::splat(p->x[i]), qy = Float4::splat(p->y[i]), x[3], y[3];
+// The float test of cross_triangle(): kLanes/4 rays from `first` on, of which those of the mask count, and the leaf's
+// four triangles.
+template <int kLanes>
+bool search_rays(Packet* p, const TriangleBlock& block, const LeafProjection& leaf, unsigned lanes, int first,
+                 unsigned rays) {
+  using F = typename Lanes<kLanes>::Floats;
+  F qx = F::spread(p->x + first), qy = F::spread(p->y + first), x[3], y[3];
   for (int k = 0; k < 3; ++k) {
-    Float4 depth = Float4::load(leaf.depth[k]);
-    x[k] = Float4::load(leaf.x[k]) - qx * depth, y[k] = Float4::load(leaf.y[k]) - qy * depth;
+    F depth = F::repeat(Float4::load(leaf.depth[k]));
+    x[k] = F::repeat(Float4::load(leaf.x[k])) - qx * depth, y[k] = F::repeat(Float4::load(leaf.y[k])) - qy * depth;
   }
-  EdgeValues<Float4> e = edge_values<Float4>(x[0], y[0], x[1], y[1], x[2], y[2]);
-  Float4 zero = Float4::splat(0), low = min(min(e.a, e.b), e.c), high = max(max(e.a, e.b), e.c);
-  unsigned pass =
-      lanes & bits(((zero <= low) | (high <= zero)) & (Float4::load(leaf.near) <= Float4::splat(p->far[i])));
+  EdgeValues<F> e = edge_values<F>(x[0], y[0], x[1], y[1], x[2], y[2]);
+  F zero = F::splat(0), low = min(min(e.a, e.b), e.c), high = max(max(e.a, e.b), e.c);
+  unsigned pass = bits((zero <= low) | (high <= zero));
+  for (int i = 0; i < kLanes / 4; ++i) pass &= ~((rays >> i & 1 ? ~lanes & 15 : 15u) << 4 * i);
   if (!pass) return false;
   unsigned sure = bits((zero < low) | (high < zero));
   bool better = false;
   for (; pass; pass &= pass - 1) {
-    int lane = __builtin_ctz(pass);
-    better |= sure >> lane & 1 ? settle_ray(p, block, lane, i) : settle_doubtful(p, block, lane, i);
+    int bit = __builtin_ctz(pass), i = first + bit / 4;
+    if (!(leaf.near[bit % 4] <= p->far[i])) continue;
+    better |= sure >> bit & 1 ? settle_ray(p, block, bit % 4, i) : settle_doubtful(p, block, bit % 4, i);
   }
   return better;
 }
 
-inline bool search_small_leaf(Packet* p, const TriangleBlock& block, const LeafProjection& leaf, unsigned lanes) {
+template <int kLanes>
+bool search_small_leaf(Packet* p, const TriangleBlock& block, const LeafProjection& leaf, unsigned lanes) {
+  constexpr int kRays = kLanes / 4;
   const Window& w = leaf.bounds;
   Bounds4 bounds = {Float4::splat(w.x_low - kPacketSlack), Float4::splat(w.x_high + kPacketSlack),
                     Float4::splat(w.y_low - kPacketSlack), Float4::splat(w.y_high + kPacketSlack)};
-  Float4 nearest = Float4::splat(leaf.nearest);
   bool better = false;
   for (unsigned blocks = bits(meets(bounds, p->block)); blocks; blocks &= blocks - 1) {
     int b = __builtin_ctz(blocks);
-    unsigned groups = bits(meets(bounds, p->group[b]) & (nearest <= Float4::load(p->group_far + 4 * b)));
-    for (; groups; groups &= groups - 1) {
+    for (unsigned groups = bits(meets(bounds, p->group[b])); groups; groups &= groups - 1) {
       int group = 4 * b + __builtin_ctz(groups), first = 4 * group;
+      if (!(leaf.nearest <= p->group_far[group])) continue;
       Float4 x = Float4::load(p->x + first), y = Float4::load(p->y + first);
       bool group_better = false;
       unsigned rays = bits((bounds.x_low <= x) & (x <= bounds.x_high) & (bounds.y_low <= y) & (y <= bounds.y_high));
-      for (; rays; rays &= rays - 1) group_better |= search_ray(p, block, leaf, lanes, first + __builtin_ctz(rays));
+      while (rays) {
+        int i = __builtin_ctz(rays) & ~(kRays - 1);
+        unsigned taken = rays >> i & ((1u << kRays) - 1);
+        group_better |= search_rays<kLanes>(p, block, leaf, lanes, first + i, taken);
+        rays &= ~(taken << i);
+      }
       if (!group_better) continue;
       p->group_far[group] = highest(Float4::load(p->far + first));
       better = true;
@@ -179,11 +190,13 @@ bool search_triangle(Packet* p, const TriangleBlock& block, LeafProjection* proj
   if (blocks & (blocks - 1)) blocks &= cross_windows(*p, narrow_triangle, p->block, &inside);
   for (; blocks; blocks &= blocks - 1) {
     int b = __builtin_ctz(blocks);
-    Mask4 met = narrow_triangle.near <= Float4::load(p->group_far + 4 * b);
-    if (bounded && !(inside >> b & 1)) met = met & meets(bounds, p->group[b]);
-    for (unsigned groups = bits(met); groups;) {
+    unsigned groups = bounded && !(inside >> b & 1) ? bits(meets(bounds, p->group[b])) : 15;
+    while (groups) {
       int group = __builtin_ctz(groups) & ~(kGroups - 1), first = 16 * b + 4 * group;
       groups &= ~(((1u << kGroups) - 1) << group);
+      float far = p->group_far[first / 4];
+      for (int g = 1; g < kGroups; ++g) far = p->group_far[first / 4 + g] > far ? p->group_far[first / 4 + g] : far;
+      if (!(leaf.near[lane] <= far)) continue;
       Passing rays = judge(edge_range(triangle.line, F::load(p->x + first) - F::splat(p->middle_x),
                                       F::load(p->y + first) - F::splat(p->middle_y)),
                            triangle.error, triangle.near <= F::load(p->far + first));
@@ -203,10 +216,10 @@ void search_leaf(Packet* p, const TriangleBlock& block, std::uint32_t count) {
   LeafProjection leaf;
   project_leaf(*p, block, &leaf);
   unsigned lanes = leaf.lanes & ((1u << count) - 1);
-  if (!lanes) return;
+  if (!lanes || !(leaf.nearest <= p->all_far)) return;
   bool better = false;
   if (is_small(*p, leaf)) {
-    better = search_small_leaf(p, block, leaf, lanes);
+    better = search_small_leaf<kLanes>(p, block, leaf, lanes);
   } else {
     for (; lanes; lanes &= lanes - 1) better |= search_triangle<kLanes>(p, block, &leaf, __builtin_ctz(lanes));
   }

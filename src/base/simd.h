@@ -1,9 +1,10 @@
-// Floats and doubles side by side: the same operations on 4 lanes, as SSE2 on x86-64, NEON on aarch64,
-// plain scalars elsewhere. Every operation rounds as IEEE says and none is fused, so all give the same bits.
+// Floats and doubles side by side: the same operations on 4, 8 or 16 lanes, as SSE2, AVX2 or AVX-512 on x86-64, NEON on
+// aarch64, plain scalars elsewhere. Every operation rounds as IEEE says and none is fused, so all give the same bits.
 // NEON of 32-bit ARM flushes denormals and is left out for that.
 //
 // min and max return the second operand where the operands are equal or not ordered. Comparisons give one bit per lane.
-// Pointers of load() and store() are aligned to the size of the vector.
+// Pointers of load() and store() are aligned to the size of the vector. repeat() fills the lanes with four values again
+// and again, spread() with lanes/4 values four times each; its pointer is aligned to them.
 #pragma once
 #if defined(__SSE2__)
 #include "base/simd_sse2.h"
@@ -11,4 +12,10 @@
 #include "base/simd_neon.h"
 #else
 #include "base/simd_scalar.h"
+#endif
+#if defined(__AVX2__)
+#include "base/simd_avx2.h"
+#endif
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#include "base/simd_avx512.h"
 #endif

@@ -14,6 +14,8 @@ struct Float4 {
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {vdupq_n_f32(x)}; }
   static Float4 load(const float* p) { return {vld1q_f32(p)}; }
+  static Float4 repeat(Float4 a) { return a; }
+  static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) {
     const std::uint32_t lane[4] = {1, 2, 4, 8};
     return {vtstq_u32(vdupq_n_u32(bits), vld1q_u32(lane))};

@@ -11,6 +11,8 @@ struct Float4 {
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {{x, x, x, x}}; }
   static Float4 load(const float* p) { return {{p[0], p[1], p[2], p[3]}}; }
+  static Float4 repeat(Float4 a) { return a; }
+  static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) { return {{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0}}; }
   inline unsigned bits(const Mask4& m) {
     unsigned r = 0;

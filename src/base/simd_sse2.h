@@ -12,6 +12,8 @@ struct Float4 {
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {_mm_set1_ps(x)}; }
   static Float4 load(const float* p) { return {_mm_load_ps(p)}; }
+  static Float4 repeat(Float4 a) { return a; }
+  static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) {
     __m128i lane = _mm_set_epi32(8, 4, 2, 1);
     return {_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(bits)), lane), lane))};
