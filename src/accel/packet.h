@@ -14,7 +14,7 @@
 #include "base/simd.h"
 
 namespace pocketray {
-namespace POCKETRAY_ISA {
+inline namespace POCKETRAY_ISA {
 
 constexpr float kPacketSlack = 0x1p-20f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();

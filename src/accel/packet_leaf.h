@@ -7,7 +7,7 @@
 #include "accel/leaf_projection.h"
 
 namespace pocketray {
-namespace POCKETRAY_ISA {
+inline namespace POCKETRAY_ISA {
 
 // A triangle's vertices relative to the origin, as doubles.
 struct ExactTriangle {

@@ -14,11 +14,6 @@ struct Float4 {
   static Float4 repeat(Float4 a) { return a; }
   static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) { return {{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0}}; }
-  inline unsigned bits(const Mask4& m) {
-    unsigned r = 0;
-    for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
-    return r;
-  }
 };
 struct Double4 {
   double v[4];
@@ -66,6 +61,11 @@ template <class Value>
 inline Value select(const Mask4& m, const Value& a, const Value& b) {
   Value r;
   for (int i = 0; i < 4; ++i) r.v[i] = m.v[i] ? a.v[i] : b.v[i];
+  return r;
+}
+inline unsigned bits(const Mask4& m) {
+  unsigned r = 0;
+  for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
   return r;
 }
 inline float lowest(const Float4& a) {
