@@ -1,179 +1,214 @@
-// Single rays walk the BVH in the order in which they enter the boxes, four boxes or four triangles at a time. Part of
-// the kernels: see bvh_kernels.h.
-//
-// A box must never hide a hit of its triangles. The slab test [Kay & Kajiya 1986] is therefore slackened, as [Ize 2013,
-// JCGT 2(2)] asks, but by more than his 2 ulp of each distance: intersect_triangle() takes a ray for a hit that passes
-// a triangle by up to 4u of the distance along the dominant axis at which the vertices lie (u = 2^-24: shear, two
-// products and a difference), which may be larger than the distance of the hit. With Z the farthest such distance in
-// the scene the errors of the triangle test (6u Z), of the slabs (3u) and of t itself (u) stay below 16u Z for each
-// side of an interval.
+// Single rays walk the BVH, four boxes or four triangles at a time: for the closest hit in the order in which they
+// enter the boxes, for any hit in the order of the children. Part of the kernels: see bvh_kernels.h.
 #pragma once
-#include <limits>
+#include <cstring>
 
-#include "accel/bvh.h"
+#include "accel/box_ray.h"
+#include "accel/leaf_ray.h"
 
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-struct BoxRay {
-  Float4 near_origin[3], far_origin[3], inverse[3];
-  Float4 slack;     // 32u Z, in units of t
-  int near_row[3];  // rows of BvhNode::bounds in which the ray enters; it leaves by the other row of the axis
-  int exponent;     // boxes are entered at t · 2^exponent: keeps directions from 1e-45 to 1e38 in range
+constexpr int kStackSize = 3 * kBvhDepthMax + 4;
+
+struct Counts {
+  std::uint64_t nodes = 0, triangles = 0;
 };
-
-inline BoxRay make_box_ray(const ShearedRay& ray, const Box& bounds) {
-  BoxRay r;
-  Vec3 d = ray.direction;
-  r.exponent = 0;
-  float size = std::fabs(d[ray.kz]);
-  if (!(size >= 0x1p-40f && size <= 0x1p40f)) {
-    std::frexp(size, &r.exponent);
-    for (int axis = 0; axis < 3; ++axis) d[axis] = std::ldexp(d[axis], -r.exponent);
-    size = std::fabs(d[ray.kz]);
-  }
-  float o = ray.origin[ray.kz];
-  float reach_low = std::fabs(bounds.low[ray.kz] - o), reach_high = std::fabs(bounds.high[ray.kz] - o);
-  float reach = reach_low > reach_high ? reach_low : reach_high;  // Z
-  // The powers of two below 2^-90 cover denormal rounding; they are relative to nothing, but boxes decide no result.
-  r.slack = Float4::splat((reach * 0x1p-19f + 0x1p-100f) / size);
-  for (int axis = 0; axis < 3; ++axis) {
-    r.near_row[axis] = d[axis] < 0 ? axis + 3 : axis;
-    float near = ray.origin[axis], far = near, inverse = 1 / d[axis];
-    if (std::fabs(d[axis]) < size * 0x1p-40f) {
-      // Parallel to the slab, or as good as: inside a slightly wider slab everywhere or nowhere. No 0·∞ arises.
-      r.near_row[axis] = axis;
-      float wider = (std::fabs(near) + reach) * 0x1p-20f + 0x1p-90f;
-      near += wider, far -= wider, inverse = 0x1p44f / size;
-    }
-    r.near_origin[axis] = Float4::splat(near), r.far_origin[axis] = Float4::splat(far),
-    r.inverse[axis] = Float4::splat(inverse);
-  }
-  return r;
+inline void add_counts(const Counts& counts, TraceStats* stats) {
+  if (stats) stats->nodes += counts.nodes, stats->triangles += counts.triangles;
 }
 
-// t as the boxes count it, not rounded down.
-inline float box_distance(const BoxRay& ray, float t) {
-  return ray.exponent == 0 ? t : std::ldexp(t, ray.exponent) + std::numeric_limits<float>::min();
-}
-
-// Mask of the children that may hold a hit before `t_max`; `entry` gets where each is entered, less the slack.
-inline unsigned enter_boxes(const BoxRay& ray, const BvhNode& node, Float4 t_max, float* entry) {
-  Float4 enter = Float4::splat(0), leave = t_max;
-  for (int axis = 0; axis < 3; ++axis) {
-    int row = ray.near_row[axis], other = row < 3 ? row + 3 : row - 3;
-    enter = max((Float4::load(node.bounds[row]) - ray.near_origin[axis]) * ray.inverse[axis], enter);
-    leave = min((Float4::load(node.bounds[other]) - ray.far_origin[axis]) * ray.inverse[axis], leave);
-  }
-  enter = enter - ray.slack;
-  store(entry, enter);
-  return bits(enter <= leave);
-}
-
-struct Entry {
-  std::uint32_t child;
-  float enter;
-};
-
-inline int lowest_bit(unsigned mask) { return __builtin_ctz(mask); }
-
-// Pushes the entered children, the nearest last.
-inline int push_children(const BvhNode& node, unsigned mask, const float* enter, Entry* stack, int top) {
-  int first = top;
-  for (; mask; mask &= mask - 1) {
-    int lane = lowest_bit(mask), place = top++;
-    for (; place > first && stack[place - 1].enter < enter[lane]; --place) stack[place] = stack[place - 1];
-    stack[place] = {node.child[lane], enter[lane]};
-  }
-  return top;
-}
-
-// The state of one traversal.
-template <bool kFiltered>
+// A ray made ready, and the best hit so far.
 struct Search {
-  ShearedRay ray;
-  const HitFilter* filter;
-  Hit best;
+  BoxRay box;
+  LeafRay leaf;
+  const HitFilter* filter;  // with an accept()
   float t_max;
+  float t;  // of the best hit; t_max where there is none
+  std::uint32_t triangle;
+  double b, c, sum;  // its weights; with a filter …
+  float u, v;        // … instead, divided already
 };
 
-// Tests the triangles of a leaf against the best hit so far. Returns whether it got better.
+// False where there is nothing to hit.
+inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* filter, Search* search) {
+  if (!(ray.t_max > 0) || is_empty(accel.bounds) || !make_sheared_ray(ray, &search->leaf.sheared)) return false;
+  make_box_ray(ray, search->leaf.sheared.kz, accel.bounds, &search->box);
+  make_leaf_ray(ray, &search->leaf);
+  search->filter = filter;
+  search->t = search->t_max = ray.t_max;
+  search->triangle = kNoTriangle;
+  return true;
+}
+
+inline const TriangleBlock& leaf_of(const BvhView& bvh, std::uint32_t child) {
+  return bvh.leaves[child & kLeafIndexMask];
+}
+inline unsigned lanes_in_use(std::uint32_t leaf_child) { return 15u >> (4 - leaf_triangle_count(leaf_child)); }
+
+// Takes what is nearer than the best hit so far. Returns whether there was any.
 template <bool kFiltered>
-bool search_leaf(Search<kFiltered>* search, const TriangleBlock& block, std::uint32_t count) {
+bool search_leaf(Search* search, const TriangleBlock& block, unsigned in_use) {
+  LeafLanes lanes = test_leaf<false>(search->leaf, block);
+  lanes.pass &= in_use;
+  if (!lanes.pass) return false;
   bool better = false;
-  unsigned mask = filter_triangles(search->ray, block) & ((1u << count) - 1);
-  for (; mask; mask &= mask - 1) {
-    int lane = lowest_bit(mask);
-    Hit hit;
-    if (!intersect_triangle(search->ray, block_vertex(block, 0, lane), block_vertex(block, 1, lane),
-                            block_vertex(block, 2, lane), &hit))
-      continue;
-    hit.triangle = block.triangle[lane];
-    if (!(hit.t > 0 && hit.t < search->t_max)) continue;
-    const Hit& best = search->best;
-    if (best.triangle != kNoTriangle && !(hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle)))
-      continue;
-    if (kFiltered && !search->filter->accept(search->filter->context, hit.triangle, hit.u, hit.v)) continue;
-    search->best = hit;
+  for_each_crossing(search->leaf, block, lanes, [&](int lane, const Crossing& crossing) {
+    float t = crossing.t;
+    std::uint32_t triangle = block.triangle[lane];
+    if (!(t > 0 && (t < search->t || (t == search->t && triangle < search->triangle && t < search->t_max))))
+      return false;
+    if (kFiltered) {
+      float u = static_cast<float>(crossing.b / crossing.sum), v = static_cast<float>(crossing.c / crossing.sum);
+      if (!search->filter->accept(search->filter->context, triangle, u, v)) return false;
+      search->u = u, search->v = v;
+    } else {
+      search->b = crossing.b, search->c = crossing.c, search->sum = crossing.sum;
+    }
+    search->t = t, search->triangle = triangle;
     better = true;
-  }
+    return false;
+  });
+  if (better) bound_depth(&search->leaf, search->t);
   return better;
 }
 
-// Finds the closest hit, or with kAny some hit. search->best.triangle is kNoTriangle where there is none.
-template <bool kFiltered, bool kAny>
-void search_bvh(const Accel& accel, Search<kFiltered>* search, TraceStats* stats) {
-  BvhView bvh(accel.data.data);
-  BoxRay ray = make_box_ray(search->ray, accel.bounds);
-  float t_box = box_distance(ray, search->t_max);
-  std::uint64_t nodes = 0, triangles = 0;
-  Entry stack[3 * kBvhDepthMax + 4];
-  int top = 0;
-  stack[top++] = {0, -std::numeric_limits<float>::infinity()};
-  while (top > 0) {
-    Entry entry = stack[--top];
-    if (!(entry.enter <= t_box)) continue;
-    if (entry.child & kLeafBit) {
-      std::uint32_t count = leaf_triangle_count(entry.child);
-      triangles += count;
-      if (search_leaf(search, bvh.leaves[entry.child & kLeafIndexMask], count)) {
-        if (kAny) break;
-        t_box = box_distance(ray, search->best.t);
-      }
-    } else {
-      const BvhNode& node = bvh.nodes[entry.child];
-      ++nodes;
-      alignas(16) float enter[4];
-      unsigned mask = enter_boxes(ray, node, Float4::splat(t_box), enter);
-      top = push_children(node, mask, enter, stack, top);
-    }
-  }
-  if (stats) stats->nodes += nodes, stats->triangles += triangles;
+// Whether any triangle of the leaf is hit in (0, t_max).
+template <bool kFiltered>
+bool any_in_leaf(const Search& search, const TriangleBlock& block, unsigned in_use) {
+  LeafLanes lanes = test_leaf<!kFiltered>(search.leaf, block);
+  lanes.pass &= in_use;
+  if (!lanes.pass) return false;
+  if (!kFiltered && lanes.sure) return true;
+  return for_each_crossing(search.leaf, block, lanes, [&](int lane, const Crossing& crossing) {
+    if (!(crossing.t > 0 && crossing.t < search.t_max)) return false;
+    if (!kFiltered) return true;
+    float u = static_cast<float>(crossing.b / crossing.sum), v = static_cast<float>(crossing.c / crossing.sum);
+    return search.filter->accept(search.filter->context, block.triangle[lane], u, v);
+  });
 }
 
-template <bool kFiltered, bool kAny>
-Hit find_hit(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
-  Search<kFiltered> search;
-  search.best = {0, 0, 0, kNoTriangle};
-  if (!(ray.t_max > 0) || is_empty(accel.bounds) || !make_sheared_ray(ray, &search.ray)) return search.best;
-  search.filter = filter, search.t_max = ray.t_max;
-  search_bvh<kFiltered, kAny>(accel, &search, stats);
-  return search.best;
+// A child to be visited: where it is entered, above its reference. No distance is negative, so words sort as distances.
+using Entry = std::uint64_t;
+inline Entry make_entry(float enter, std::uint32_t child) {
+  std::uint32_t distance;
+  std::memcpy(&distance, &enter, sizeof distance);
+  return static_cast<Entry>(distance) << 32 | child;
+}
+inline std::uint32_t child_of(Entry entry) { return static_cast<std::uint32_t>(entry); }
+inline void sort_two(Entry* a, Entry* b) {
+  Entry low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
+  *a = low, *b = high;
+}
+
+// Pushes the entered children, at least two, but for the nearest, the farthest first. Returns the nearest.
+inline std::uint32_t push_farther(const BvhView& bvh, const BvhNode& node, unsigned mask, const float* enter,
+                                  Entry** stack) {
+  auto take = [&] {
+    int lane = __builtin_ctz(mask);
+    mask &= mask - 1;
+    prefetch(bvh, node.child[lane]);
+    return make_entry(enter[lane], node.child[lane]);
+  };
+  Entry a = take(), b = take();
+  if (!mask) {
+    sort_two(&a, &b);
+    *(*stack)++ = b;
+    return child_of(a);
+  }
+  Entry c = take();
+  sort_two(&a, &b), sort_two(&b, &c), sort_two(&a, &b);
+  if (mask) {
+    Entry d = take();
+    sort_two(&c, &d), sort_two(&b, &c), sort_two(&a, &b);
+    *(*stack)++ = d;
+  }
+  *(*stack)++ = c, *(*stack)++ = b;
+  return child_of(a);
+}
+
+template <bool kFiltered>
+void search_closest(const BvhView& bvh, Search* search, TraceStats* stats) {
+  Counts counts;
+  Entry stack[kStackSize], *top = stack;
+  const BoxRay box = search->box;  // a copy stays in registers
+  float limit = box_limit(box, search->t);
+  Entry last = make_entry(limit, ~0u);  // what is worth a visit is not above
+  std::uint32_t child = 0;
+  for (;;) {
+    while (!(child & kLeafBit)) {
+      const BvhNode& node = bvh.nodes[child];
+      ++counts.nodes;
+      alignas(16) float enter[4];
+      unsigned mask = enter_boxes(box, node, Float4::splat(limit), enter);
+      if (!mask) goto next;
+      child = mask & (mask - 1) ? push_farther(bvh, node, mask, enter, &top) : node.child[__builtin_ctz(mask)];
+    }
+    counts.triangles += leaf_triangle_count(child);
+    if (search_leaf<kFiltered>(search, leaf_of(bvh, child), lanes_in_use(child))) {
+      limit = box_limit(box, search->t);
+      last = make_entry(limit, ~0u);
+    }
+  next:
+    do {
+      if (top == stack) return add_counts(counts, stats);
+      child = child_of(*--top);
+    } while (*top > last);
+  }
+}
+
+template <bool kFiltered>
+bool search_any(const BvhView& bvh, const Search& search, TraceStats* stats) {
+  Counts counts;
+  std::uint32_t stack[kStackSize], *top = stack, child = 0;
+  const BoxRay box = search.box;  // a copy stays in registers
+  Float4 limit = Float4::splat(box_limit(box, search.t_max));
+  for (bool found = false;;) {
+    if (child & kLeafBit) {
+      counts.triangles += leaf_triangle_count(child);
+      found = any_in_leaf<kFiltered>(search, leaf_of(bvh, child), lanes_in_use(child));
+    } else {
+      const BvhNode& node = bvh.nodes[child];
+      ++counts.nodes;
+      alignas(16) float enter[4];
+      unsigned mask = enter_boxes(box, node, limit, enter);
+      if (mask) {
+        child = node.child[__builtin_ctz(mask)];
+        for (mask &= mask - 1; mask; mask &= mask - 1) {
+          *top = node.child[__builtin_ctz(mask)];
+          ++top;
+        }
+        continue;
+      }
+    }
+    if (found || top == stack) {
+      add_counts(counts, stats);
+      return found;
+    }
+    child = *--top;
+  }
 }
 
 inline void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
-  bool filtered = filter && filter->accept;
-  Hit found =
-      filtered ? find_hit<true, false>(accel, ray, filter, stats) : find_hit<false, false>(accel, ray, filter, stats);
+  Search search;
   hit->triangle = kNoTriangle;
-  if (found.triangle != kNoTriangle) *hit = found;
+  if (!start_search(accel, ray, filter, &search)) return;
+  if (filter && filter->accept) {
+    search_closest<true>(BvhView(accel.data.data), &search, stats);
+    if (search.triangle != kNoTriangle) *hit = {search.t, search.u, search.v, search.triangle};
+  } else {
+    search_closest<false>(BvhView(accel.data.data), &search, stats);
+    if (search.triangle == kNoTriangle) return;
+    *hit = {search.t, static_cast<float>(search.b / search.sum), static_cast<float>(search.c / search.sum),
+            search.triangle};
+  }
 }
 
 inline bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
-  bool filtered = filter && filter->accept;
-  Hit found =
-      filtered ? find_hit<true, true>(accel, ray, filter, stats) : find_hit<false, true>(accel, ray, filter, stats);
-  return found.triangle != kNoTriangle;
+  Search search;
+  if (!start_search(accel, ray, filter, &search)) return false;
+  BvhView bvh(accel.data.data);
+  return filter && filter->accept ? search_any<true>(bvh, search, stats) : search_any<false>(bvh, search, stats);
 }
 
 }  // namespace POCKETRAY_ISA

@@ -19,7 +19,7 @@
 
 namespace pocketray {
 
-// Four triangles for the wide filter: vertex, axis, lane.
+// Four triangles side by side: vertex, axis, lane.
 struct alignas(16) TriangleBlock {
   float vertex[3][3][4];
   std::uint32_t triangle[4];
@@ -67,8 +67,10 @@ inline bool make_sheared_ray(const Ray& ray, ShearedRay* result) {
   Vec3 d = abs(ray.direction);
   if (!has_valid_origin(ray.origin)) return false;
   if (!is_finite(ray.direction) || is_zero(ray.direction)) return false;
-  int kz = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);
-  int kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
+  // Without branches: for scattered rays none could be foreseen.
+  int wider = !(d.x > d.y), kz = (d.x > d.y ? d.x : d.y) > d.z ? wider : 2;
+  constexpr int kNext[] = {1, 2, 0};
+  int kx = kNext[kz], ky = kNext[kx];
   float dz = ray.direction[kz];
   *result = {ray.origin, ray.direction, kx, ky, kz, ray.direction[kx] / dz, ray.direction[ky] / dz};
   return true;
@@ -135,14 +137,6 @@ inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, 
   return true;
 }
 
-// The same for a ray of which the signs, none zero, have already said that it crosses.
-inline bool locate_crossing(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
-  EdgeValues<double> w = exact_weights(ray, a, b, c);
-  if (signs_differ(w) || all_zero(w)) return cross_triangle(ray, a, b, c, crossing);
-  *crossing = place_crossing(ray, a, b, c, w);
-  return true;
-}
-
 // The same as a hit; hit->triangle is left alone, all of hit where there is no crossing.
 inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Hit* hit) {
   Crossing crossing;
@@ -155,25 +149,6 @@ inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3&
 
 inline Vec3 block_vertex(const TriangleBlock& block, int vertex, int lane) {
   return {block.vertex[vertex][0][lane], block.vertex[vertex][1][lane], block.vertex[vertex][2][lane]};
-}
-
-// Lanes whose float edge functions do not exclude a hit; intersect_triangle() decides about those. The arithmetic is
-// that of intersect_triangle(), so no hit is lost.
-inline unsigned filter_triangles(const ShearedRay& ray, const TriangleBlock& block) {
-  Float4 ox = Float4::splat(ray.origin[ray.kx]), oy = Float4::splat(ray.origin[ray.ky]),
-         oz = Float4::splat(ray.origin[ray.kz]);
-  Float4 sx = Float4::splat(ray.shear_x), sy = Float4::splat(ray.shear_y);
-  Float4 x[3], y[3];
-  for (int i = 0; i < 3; ++i) {
-    Float4 z = Float4::load(block.vertex[i][ray.kz]) - oz;
-    x[i] = (Float4::load(block.vertex[i][ray.kx]) - ox) - sx * z;
-    y[i] = (Float4::load(block.vertex[i][ray.ky]) - oy) - sy * z;
-  }
-  Float4 a = x[2] * y[1] - y[2] * x[1];
-  Float4 b = x[0] * y[2] - y[0] * x[2];
-  Float4 c = x[1] * y[0] - y[1] * x[0];
-  Float4 zero = Float4::splat(0);
-  return bits((zero <= min(min(a, b), c)) | (max(max(a, b), c) <= zero));
 }
 
 }  // namespace POCKETRAY_ISA

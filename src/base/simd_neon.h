@@ -77,6 +77,31 @@ inline Double4 select(DoubleMask4 m, Double4 a, Double4 b) {
 }
 inline unsigned bits(DoubleMask4 m) { return bits(Mask4{vcombine_u32(vmovn_u64(m.low), vmovn_u64(m.high))}); }
 
+// Two doubles.
+struct DoubleMask2 {
+  uint64x2_t v;
+};
+struct Double2 {
+  float64x2_t v;
+  static Double2 splat(double x) { return {vdupq_n_f64(x)}; }
+  static Double2 widen(const float* p) { return {vcvt_f64_f32(vld1_f32(p))}; }  // p[0], p[1]
+};
+inline void store(double* p, Double2 a) { vst1q_f64(p, a.v); }
+inline Double2 operator+(Double2 a, Double2 b) { return {vaddq_f64(a.v, b.v)}; }
+inline Double2 operator-(Double2 a, Double2 b) { return {vsubq_f64(a.v, b.v)}; }
+inline Double2 operator*(Double2 a, Double2 b) { return {vmulq_f64(a.v, b.v)}; }
+inline Double2 operator/(Double2 a, Double2 b) { return {vdivq_f64(a.v, b.v)}; }
+inline Double2 min(Double2 a, Double2 b) { return {vbslq_f64(vcltq_f64(a.v, b.v), a.v, b.v)}; }
+inline Double2 max(Double2 a, Double2 b) { return {vbslq_f64(vcgtq_f64(a.v, b.v), a.v, b.v)}; }
+inline DoubleMask2 operator<=(Double2 a, Double2 b) { return {vcleq_f64(a.v, b.v)}; }
+inline DoubleMask2 operator<(Double2 a, Double2 b) { return {vcltq_f64(a.v, b.v)}; }
+inline DoubleMask2 operator&(DoubleMask2 a, DoubleMask2 b) { return {vandq_u64(a.v, b.v)}; }
+inline DoubleMask2 operator|(DoubleMask2 a, DoubleMask2 b) { return {vorrq_u64(a.v, b.v)}; }
+inline Double2 select(DoubleMask2 m, Double2 a, Double2 b) { return {vbslq_f64(m.v, a.v, b.v)}; }
+inline unsigned bits(DoubleMask2 m) {
+  return static_cast<unsigned>((vgetq_lane_u64(m.v, 0) & 1) | (vgetq_lane_u64(m.v, 1) & 2));
+}
+
 template <int kLanes>
 struct Lanes;
 template <>

@@ -88,6 +88,38 @@ inline Float4 narrow(const Double4& a) {
   return r;
 }
 
+// Two doubles.
+struct DoubleMask2 {
+  bool v[2];
+};
+struct Double2 {
+  double v[2];
+  static Double2 splat(double x) { return {{x, x}}; }
+  static Double2 widen(const float* p) { return {{p[0], p[1]}}; }
+};
+inline void store(double* p, const Double2& a) { p[0] = a.v[0], p[1] = a.v[1]; }
+// clang-format off
+#define POCKETRAY_PAIRS(Result, A, name, first, second) \
+  inline Result name(const A& a, const A& b) { return {{first, second}}; }
+POCKETRAY_PAIRS(Double2, Double2, operator+, a.v[0] + b.v[0], a.v[1] + b.v[1])
+POCKETRAY_PAIRS(Double2, Double2, operator-, a.v[0] - b.v[0], a.v[1] - b.v[1])
+POCKETRAY_PAIRS(Double2, Double2, operator*, a.v[0] * b.v[0], a.v[1] * b.v[1])
+POCKETRAY_PAIRS(Double2, Double2, operator/, a.v[0] / b.v[0], a.v[1] / b.v[1])
+POCKETRAY_PAIRS(Double2, Double2, min, a.v[0] < b.v[0] ? a.v[0] : b.v[0], a.v[1] < b.v[1] ? a.v[1] : b.v[1])
+POCKETRAY_PAIRS(Double2, Double2, max, a.v[0] > b.v[0] ? a.v[0] : b.v[0], a.v[1] > b.v[1] ? a.v[1] : b.v[1])
+POCKETRAY_PAIRS(DoubleMask2, Double2, operator<=, a.v[0] <= b.v[0], a.v[1] <= b.v[1])
+POCKETRAY_PAIRS(DoubleMask2, Double2, operator<, a.v[0] < b.v[0], a.v[1] < b.v[1])
+POCKETRAY_PAIRS(DoubleMask2, DoubleMask2, operator&, a.v[0] && b.v[0], a.v[1] && b.v[1])
+POCKETRAY_PAIRS(DoubleMask2, DoubleMask2, operator|, a.v[0] || b.v[0], a.v[1] || b.v[1])
+#undef POCKETRAY_PAIRS
+// clang-format on
+inline Double2 select(const DoubleMask2& m, const Double2& a, const Double2& b) {
+  return {{m.v[0] ? a.v[0] : b.v[0], m.v[1] ? a.v[1] : b.v[1]}};
+}
+inline unsigned bits(const DoubleMask2& m) {
+  return static_cast<unsigned>(m.v[0]) | static_cast<unsigned>(m.v[1]) << 1;
+}
+
 template <int kLanes>
 struct Lanes;
 template <>

@@ -83,6 +83,33 @@ inline unsigned bits(DoubleMask4 m) {
   return static_cast<unsigned>(_mm_movemask_pd(m.low) | _mm_movemask_pd(m.high) << 2);
 }
 
+// Two doubles.
+struct DoubleMask2 {
+  __m128d v;
+};
+struct Double2 {
+  __m128d v;
+  static Double2 splat(double x) { return {_mm_set1_pd(x)}; }
+  static Double2 widen(const float* p) {  // p[0], p[1]
+    return {_mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))))};
+  }
+};
+inline void store(double* p, Double2 a) { _mm_store_pd(p, a.v); }
+inline Double2 operator+(Double2 a, Double2 b) { return {_mm_add_pd(a.v, b.v)}; }
+inline Double2 operator-(Double2 a, Double2 b) { return {_mm_sub_pd(a.v, b.v)}; }
+inline Double2 operator*(Double2 a, Double2 b) { return {_mm_mul_pd(a.v, b.v)}; }
+inline Double2 operator/(Double2 a, Double2 b) { return {_mm_div_pd(a.v, b.v)}; }
+inline Double2 min(Double2 a, Double2 b) { return {_mm_min_pd(a.v, b.v)}; }
+inline Double2 max(Double2 a, Double2 b) { return {_mm_max_pd(a.v, b.v)}; }
+inline DoubleMask2 operator<=(Double2 a, Double2 b) { return {_mm_cmple_pd(a.v, b.v)}; }
+inline DoubleMask2 operator<(Double2 a, Double2 b) { return {_mm_cmplt_pd(a.v, b.v)}; }
+inline DoubleMask2 operator&(DoubleMask2 a, DoubleMask2 b) { return {_mm_and_pd(a.v, b.v)}; }
+inline DoubleMask2 operator|(DoubleMask2 a, DoubleMask2 b) { return {_mm_or_pd(a.v, b.v)}; }
+inline Double2 select(DoubleMask2 m, Double2 a, Double2 b) {
+  return {_mm_or_pd(_mm_and_pd(m.v, a.v), _mm_andnot_pd(m.v, b.v))};
+}
+inline unsigned bits(DoubleMask2 m) { return static_cast<unsigned>(_mm_movemask_pd(m.v)); }
+
 template <int kLanes>
 struct Lanes;
 template <>
