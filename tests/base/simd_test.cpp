@@ -2,38 +2,151 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
 using namespace pocketray;
+
+namespace {
+
+// A vector type as the array that it is in memory.
+template <class Vector, class T, int kLanes>
+struct Kind {
+  using Lane = T;
+  static constexpr int kCount = kLanes;
+  static_assert(sizeof(Vector) == kLanes * sizeof(T), "lanes side by side and nothing else");
+  static Vector pack(const T* lanes) {
+    Vector v;
+    std::memcpy(&v, lanes, sizeof v);
+    return v;
+  }
+  static void unpack(const Vector& v, T* lanes) { std::memcpy(lanes, &v, sizeof v); }
+};
+
+template <class T>
+bool same(T a, T b) {
+  return (a != a && b != b) || std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+template <class T>
+constexpr T kAwkward[] = {T(0),
+                          T(-0.0),
+                          T(1),
+                          T(-1.5),
+                          std::numeric_limits<T>::denorm_min(),
+                          -std::numeric_limits<T>::min() / 3,
+                          std::numeric_limits<T>::max(),
+                          std::numeric_limits<T>::lowest(),
+                          T(1) / 3,
+                          T(1e-20),
+                          std::numeric_limits<T>::infinity(),
+                          -std::numeric_limits<T>::infinity(),
+                          std::numeric_limits<T>::quiet_NaN()};
+
+// Calls check(a, b) with arrays that hold every pair of awkward values in every lane.
+template <class T, int kLanes, class Check>
+void for_each_pair(Check check) {
+  for (T x : kAwkward<T>)
+    for (T y : kAwkward<T>)
+      for (int lane = 0; lane < kLanes; ++lane) {
+        T a[kLanes], b[kLanes];
+        for (int i = 0; i < kLanes; ++i) a[i] = static_cast<T>(i + 1), b[i] = 2;
+        a[lane] = x, b[lane] = y;
+        check(a, b);
+      }
+}
+
+template <class K, class Vector, class Expected>
+int wrong_lanes(const Vector& v, Expected expected) {
+  typename K::Lane lanes[K::kCount];
+  K::unpack(v, lanes);
+  int wrong = 0;
+  for (int i = 0; i < K::kCount; ++i) wrong += !same(lanes[i], expected(i));
+  return wrong;
+}
+template <class Mask, class Expected>
+bool wrong_bits(const Mask& mask, int count, Expected expected) {
+  unsigned wanted = 0;
+  for (int i = 0; i < count; ++i) wanted |= static_cast<unsigned>(expected(i)) << i;
+  return bits(mask) != wanted;
+}
+
+template <class Vector, class T, int kLanes>
+int wrong_operations() {
+  using K = Kind<Vector, T, kLanes>;
+  int wrong = 0;
+  for_each_pair<T, kLanes>([&](const T* a, const T* b) {
+    Vector x = K::pack(a), y = K::pack(b), two = Vector::splat(2);
+    wrong += wrong_lanes<K>(x + y, [=](int i) { return a[i] + b[i]; });
+    wrong += wrong_lanes<K>(x - y, [=](int i) { return a[i] - b[i]; });
+    wrong += wrong_lanes<K>(x * y, [=](int i) { return a[i] * b[i]; });
+    wrong += wrong_lanes<K>(x / y, [=](int i) { return a[i] / b[i]; });
+    wrong += wrong_lanes<K>(min(x, y), [=](int i) { return a[i] < b[i] ? a[i] : b[i]; });
+    wrong += wrong_lanes<K>(max(x, y), [=](int i) { return a[i] > b[i] ? a[i] : b[i]; });
+    wrong += wrong_lanes<K>(select(x <= y, x, y), [=](int i) { return a[i] <= b[i] ? a[i] : b[i]; });
+    wrong += wrong_lanes<K>(Vector::splat(a[0]), [=](int) { return a[0]; });
+    wrong += wrong_bits(x <= y, kLanes, [=](int i) { return a[i] <= b[i]; });
+    wrong += wrong_bits(x < y, kLanes, [=](int i) { return a[i] < b[i]; });
+    wrong += wrong_bits((x <= y) & (two <= x), kLanes, [=](int i) { return a[i] <= b[i] && 2 <= a[i]; });
+    wrong += wrong_bits((x < y) | (two < x), kLanes, [=](int i) { return a[i] < b[i] || 2 < a[i]; });
+  });
+  return wrong;
+}
+
+}  // namespace
 
 // Goal: each lane of each operation is the scalar operation, bit for bit, with NaN, infinities, denormals and both
 // zeros. Method: all pairs of awkward values, in every lane; min and max give the second operand where < and > are
 // false.
 TEST_CASE("simd_lanes_are_the_scalar_operations") {
-  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-  const float values[] = {0.0f, -0.0f, 1.0f, -1.5f, 1e-45f, -1e-40f, 3e38f, -3e38f, 1.0f / 3, 1e-20f, inf, -inf, nan};
-  auto same = [](float a, float b) { return (a != a && b != b) || std::memcmp(&a, &b, sizeof a) == 0; };
-  for (float x : values)
-    for (float y : values)
-      for (unsigned lane = 0; lane < 4; ++lane) {
-        alignas(16) float a[4] = {1, 2, 3, 4}, b[4] = {2, 2, 2, 2}, sum[4], difference[4], product[4], least[4],
-                          most[4];
-        a[lane] = x, b[lane] = y;
-        store(sum, Float4::load(a) + Float4::load(b)), store(difference, Float4::load(a) - Float4::load(b)),
-            store(product, Float4::load(a) * Float4::load(b));
-        store(least, min(Float4::load(a), Float4::load(b))), store(most, max(Float4::load(a), Float4::load(b)));
-        unsigned mask = bits(Float4::load(a) <= Float4::load(b)), expected = 0;
-        for (unsigned i = 0; i < 4; ++i) {
-          CHECK(same(sum[i], a[i] + b[i]));
-          CHECK(same(difference[i], a[i] - b[i]));
-          CHECK(same(product[i], a[i] * b[i]));
-          CHECK(same(least[i], a[i] < b[i] ? a[i] : b[i]));
-          CHECK(same(most[i], a[i] > b[i] ? a[i] : b[i]));
-          expected |= static_cast<unsigned>(a[i] <= b[i]) << i;
-        }
-        CHECK(mask == expected);
-        store(sum, Float4::splat(x));
-        CHECK(same(sum[lane], x));
-      }
+  CHECK(wrong_operations<Float4, float, 4>() == 0);
+  CHECK(wrong_operations<Double4, double, 4>() == 0);
+  CHECK(wrong_operations<Double2, double, 2>() == 0);
+}
+
+// Goal: what floats alone have: load and store, ==, abs, the least and the greatest lane, masks from bits. Method: as
+// above; lowest and highest without NaN, where the order of comparisons would show.
+TEST_CASE("simd_floats_load_compare_and_reduce_by_lane") {
+  using K = Kind<Float4, float, 4>;
+  int wrong = 0;
+  for_each_pair<float, 4>([&](const float* a, const float* b) {
+    alignas(16) float aligned[4], stored[4];
+    std::memcpy(aligned, a, sizeof aligned);
+    Float4 x = Float4::load(aligned), y = K::pack(b);
+    store(stored, x);
+    for (int i = 0; i < 4; ++i) wrong += !same(stored[i], a[i]);
+    wrong += wrong_bits(x == y, 4, [=](int i) { return a[i] == b[i]; });
+    wrong += wrong_lanes<K>(abs(x), [=](int i) { return a[i] != a[i] ? a[i] : std::signbit(a[i]) ? -a[i] : a[i]; });
+    float least = a[0], most = a[0];
+    bool ordered = a[0] == a[0];
+    for (int i = 1; i < 4; ++i) {
+      ordered &= a[i] == a[i];
+      least = a[i] < least ? a[i] : least, most = a[i] > most ? a[i] : most;
+    }
+    if (ordered) wrong += lowest(x) != least, wrong += highest(x) != most;
+  });
+  CHECK(wrong == 0);
+  for (unsigned mask = 0; mask < 16; ++mask) CHECK(bits(Float4::mask_of(mask)) == mask);
+}
+
+// Goal: floats widen exactly and doubles round to the nearest float. Method: awkward values and values halfway between
+// two floats, in every lane.
+TEST_CASE("simd_widens_and_narrows_as_the_language_does") {
+  int wrong = 0;
+  for_each_pair<float, 4>([&](const float* a, const float*) {
+    wrong += wrong_lanes<Kind<Double4, double, 4>>(widen(Kind<Float4, float, 4>::pack(a)),
+                                                   [=](int i) { return double(a[i]); });
+    for (int first : {0, 2})
+      wrong +=
+          wrong_lanes<Kind<Double2, double, 2>>(Double2::widen(a + first), [=](int i) { return double(a[first + i]); });
+  });
+  for_each_pair<double, 4>([&](const double* a, const double* b) {
+    double c[4];
+    for (int i = 0; i < 4; ++i) c[i] = a[i] * (1 + b[i] * 0x1p-24);
+    wrong += wrong_lanes<Kind<Float4, float, 4>>(narrow(Kind<Double4, double, 4>::pack(c)),
+                                                 [&](int i) { return static_cast<float>(c[i]); });
+  });
+  CHECK(wrong == 0);
 }
