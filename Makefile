@@ -2,7 +2,7 @@
 #   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
 #   PREFIX=   where `make install` goes
 #   TESTS=    only the test programs that match this regular expression
-#   JSON=     a file that takes the table of `make hardcases`, too
+#   JSON=     a file that takes the table of `make hardcases` or `make mutants`, too
 DEVICE ?=
 PREFIX ?= /usr/local
 TESTS ?= .
@@ -20,7 +20,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases mutants bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -59,6 +59,10 @@ test: setup-tests configure
 
 hardcases: setup-tests configure
 	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases
+
+# Deliberate faults, one at a time: does some test fail? MUTANTS= takes options: see tests/mutation/mutate.sh.
+mutants: setup-tests
+	@JSON=$(JSON) tests/mutation/mutate.sh --jobs $(JOBS) $(MUTANTS)
 
 bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
@@ -99,6 +103,8 @@ help:
 	@echo "make run          build, then render, plan and time SCENE=$(SCENE); open the emulator where there is a display"
 	@echo "make test         build and run all tests (TESTS=regex: those that match)"
 	@echo "make hardcases    every hard case in full: case, inputs, wrong answers, bound (JSON=FILE: as a list, too)"
+	@echo "make mutants      deliberate faults in the core, one at a time: how many the tests notice (JSON=FILE: as a list, too;"
+	@echo "                  MUTANTS='--only x': that one, MUTANTS=--list: their names)"
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"
 	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31' and others ($(BUILD)/bench_embree --help)"
