@@ -16,7 +16,7 @@ namespace pocketray {
 // leaf.
 constexpr std::uint32_t kLeafBit = 1u << 31;
 constexpr std::uint32_t kLeafIndexMask = (1u << 29) - 1;
-constexpr std::uint32_t kNoChild = 0xFFFFFFFFu;  // empty lane; its bounds are those of empty_box(), which no ray enters
+constexpr std::uint32_t kNoChild = 0xFFFFFFFFu;  // empty lane
 constexpr std::uint32_t kBvhLeafSize = 4;
 static_assert(kTriangleCountMax < kLeafIndexMask, "kNoChild is no leaf");
 
@@ -74,6 +74,11 @@ inline Box child_box(const BvhNode& node, int lane) {
 inline void set_child_box(BvhNode* node, int lane, const Box& box) {
   for (int axis = 0; axis < 3; ++axis)
     node->bounds[axis][lane] = box.low[axis], node->bounds[3 + axis][lane] = box.high[axis];
+}
+// The box of an empty lane, which no ray enters: inside out, but finite, so that no difference of its planes is a NaN.
+inline Box no_child_box() {
+  constexpr float far = 16 * kCoordinateMax;
+  return {{far, far, far}, {-far, -far, -far}};
 }
 inline Box node_box(const BvhNode& node) {
   return merge(merge(child_box(node, 0), child_box(node, 1)), merge(child_box(node, 2), child_box(node, 3)));

@@ -39,7 +39,7 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
   bool ended = false;
   for (int lane = 0; lane < 4; ++lane) {
     std::uint32_t child = node.child[lane];
-    Box box = child_box(node, lane), none = empty_box();
+    Box box = child_box(node, lane), none = no_child_box();
     ended = ended || child == kNoChild;
     bool sound = node.reserved[lane] == 0;
     if (ended) {

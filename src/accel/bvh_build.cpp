@@ -66,7 +66,7 @@ BvhNode* clear_node(Builder* builder, std::uint32_t index) {
   for (int lane = 0; lane < 4; ++lane) {
     node->reserved[lane] = 0;
     node->child[lane] = kNoChild;
-    set_child_box(node, lane, empty_box());
+    set_child_box(node, lane, no_child_box());
   }
   return node;
 }

@@ -53,7 +53,7 @@ void closest_of_class(const Accel& accel, const RayPacket& rays, const std::int8
                       Hit* hits, TraceStats* stats) {
   GatheredRays gathered;
   set_axes(p, wanted);
-  int count = gather_rays(rays, classes, wanted, *p, &gathered), padded = (count + 3) & ~3;
+  int count = gather_rays(rays, classes, wanted, *p, &gathered), padded = (count + 15) & ~15;
   for (int i = count; i < padded; ++i)
     for (float* row : gathered.direction) row[i] = row[count - 1];
   p->direction_x = gathered.direction[0], p->direction_y = gathered.direction[1];

@@ -47,9 +47,9 @@ struct Packet {
   Vec3 origin;
   float t_max;
   const HitFilter* filter;
-  const float *direction_x, *direction_y, *direction_z;  // by kx, ky, kz; a multiple of four of each
+  const float *direction_x, *direction_y, *direction_z;  // by kx, ky, kz; as many as the widest lanes want
   const std::uint8_t* place;                             // of a ray in the caller's arrays
-  int count;                                             // a multiple of four
+  int count;                                             // a multiple of sixteen
   bool has_groups;
   float all_far;  // bound on the depth of a hit that would count, for any ray
   float middle_x, middle_y, half_x, half_y;
