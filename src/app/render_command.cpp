@@ -97,11 +97,11 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
       job.sequence.numbered ? frame / static_cast<double>(r->scene.info.frames_per_second) : job.options.seconds;
   RETURN_IF_ERROR(prepare_frame(r, seconds));
   for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
-  constexpr std::uint32_t kBand = 8;
+  const std::uint32_t band = 4 * kTileRows * r->settings.threads;
   std::uint64_t start = clock_ns();
   *complete = true;
-  for (std::uint32_t row = 0; row < r->settings.height && *complete; row += kBand) {
-    std::uint32_t rows = r->settings.height - row < kBand ? r->settings.height - row : kBand;
+  for (std::uint32_t row = 0; row < r->settings.height && *complete; row += band) {
+    std::uint32_t rows = r->settings.height - row < band ? r->settings.height - row : band;
     std::uint32_t done = trace_with(r->workers, {r->spans.data + row, rows, job.aov, r->image.data, r->tracers.data,
                                                  r->row_ns.data + row, &interrupted});
     *complete = done == rows;

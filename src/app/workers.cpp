@@ -25,16 +25,30 @@ std::uint64_t clock_ns() {
 
 namespace {
 
-void take_spans(const TraceJob& job, std::uint32_t thread, std::atomic<std::uint32_t>* next_span,
-                std::atomic<std::uint32_t>* done_count) {
+// Spans to take at once: a tile's rows, fewer towards the end so that all threads end together.
+std::uint32_t spans_at_once(std::uint32_t left, std::uint32_t thread_count) {
+  std::uint32_t share = left / (2 * thread_count), count = kTileRows;
+  if (thread_count > 1)
+    while (count > 1 && count > share) count /= 2;
+  return count < left ? count : left;
+}
+
+void take_spans(const TraceJob& job, std::uint32_t thread, std::uint32_t thread_count,
+                std::atomic<std::uint32_t>* next_span, std::atomic<std::uint32_t>* done_count) {
   for (;;) {
     if (job.stop && job.stop->load(std::memory_order_relaxed)) return;
-    std::uint32_t i = next_span->fetch_add(1);
-    if (i >= job.span_count) return;
+    std::uint32_t begin = next_span->load(), count;
+    do {
+      if (begin >= job.span_count) return;
+      count = spans_at_once(job.span_count - begin, thread_count);
+    } while (!next_span->compare_exchange_weak(begin, begin + count));
     std::uint64_t start = job.span_ns ? clock_ns() : 0;
-    trace_spans(&job.tracers[thread], &job.spans[i], 1, job.aov, job.image);
-    if (job.span_ns) job.span_ns[i] = clock_ns() - start;
-    done_count->fetch_add(1);
+    trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image);
+    if (job.span_ns) {
+      std::uint64_t each = (clock_ns() - start) / count;
+      for (std::uint32_t i = 0; i < count; ++i) job.span_ns[begin + i] = each;
+    }
+    done_count->fetch_add(count);
   }
 }
 
@@ -47,7 +61,7 @@ void run_worker(Workers* w, std::uint32_t thread) {
     seen = w->generation;
     TraceJob job = w->job;
     lock.unlock();
-    take_spans(job, thread, &w->next_span, &w->done_count);
+    take_spans(job, thread, static_cast<std::uint32_t>(w->threads.size()) + 1, &w->next_span, &w->done_count);
     lock.lock();
     if (--w->busy == 0) w->end.notify_one();
   }
@@ -76,7 +90,7 @@ void stop_workers(Workers* workers) {
 std::uint32_t trace_with(Workers* w, const TraceJob& job) {
   std::atomic<std::uint32_t> next_span{0}, done_count{0};
   if (!w) {
-    take_spans(job, 0, &next_span, &done_count);
+    take_spans(job, 0, 1, &next_span, &done_count);
     return done_count;
   }
   {
@@ -88,7 +102,7 @@ std::uint32_t trace_with(Workers* w, const TraceJob& job) {
     ++w->generation;
   }
   w->begin.notify_all();
-  take_spans(job, 0, &w->next_span, &w->done_count);
+  take_spans(job, 0, static_cast<std::uint32_t>(w->threads.size()) + 1, &w->next_span, &w->done_count);
   std::unique_lock<std::mutex> lock(w->mutex);
   w->end.wait(lock, [&] { return w->busy == 0; });
   return w->done_count;

@@ -1,4 +1,4 @@
-// Threads that take spans. Started before the seal; the picture does not depend on how many there are.
+// Threads that take spans, a few at a time. Started before the seal; the picture does not depend on how many there are.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -19,7 +19,7 @@ struct TraceJob {
   Aov aov;
   Vec3* image;
   Tracer* tracers;                          // one per thread
-  std::uint64_t* span_ns;                   // what each span cost; null: not measured
+  std::uint64_t* span_ns;                   // what each span cost, those taken together alike; null: not measured
   const std::atomic<bool>* stop = nullptr;  // set: leave the remaining spans
 };
 

@@ -67,6 +67,7 @@ template <class T>
 inline Vec3T<T> normalize(const Vec3T<T>& a) {
   T size = max_component(Vec3T<T>{std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
   if (!(size > 0) || !std::isfinite(size)) return {0, 0, 0};
+  if (size > T(0x1p-40) && size < T(0x1p40)) return a / std::sqrt(dot(a, a));  // nothing to lose
   int exponent;
   std::frexp(size, &exponent);
   Vec3T<T> scaled = {std::ldexp(a.x, -exponent), std::ldexp(a.y, -exponent), std::ldexp(a.z, -exponent)};

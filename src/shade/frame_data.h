@@ -52,7 +52,8 @@ struct Tracer;
 
 // The instantiated parts of the kernel, chosen once per frame for the plan.
 using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
-using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const MediumStack& media);
+// What comes along a ray, given what it hits first.
+using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const MediumStack& media);
 
 struct FrameData {
   const Scene* scene = nullptr;
@@ -79,8 +80,8 @@ enum class RayKind : int { primary, shadow, mirror, refraction, blend };
 constexpr int kRayKindCount = 5;
 constexpr const char* kRayKindNames[kRayKindCount] = {"primary", "shadow", "mirror", "refraction", "blend"};
 
-// One thread's state; counters add up.
-struct Tracer {
+// One thread's state; counters add up. Aligned so that threads share no cache line.
+struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0;

@@ -16,7 +16,7 @@ struct Path {
 };
 
 template <EffectMask mask>
-Vec3 radiance(Tracer* tracer, Ray ray, Path path);
+Vec3 radiance(Tracer* tracer, const Ray& ray, const Path& path);
 
 // Radiance along a spawned ray, or nothing where it could not matter or the path is long enough.
 template <EffectMask mask>
@@ -138,15 +138,19 @@ const Face* face_behind_layers(const Scene& scene, const Contact& contact, Effec
   return body ? body : sheet;
 }
 
+inline const HitFilter* visible_filter(const FrameData& frame) {
+  return frame.visible_filter.accept ? &frame.visible_filter : nullptr;
+}
+
+// What comes along a ray that was found to hit first what `hit` says.
 template <EffectMask mask>
-Vec3 radiance(Tracer* tracer, Ray ray, Path path) {
+Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, Path path) {
   const FrameData& frame = *tracer->frame;
   const Scene& scene = *frame.scene;
-  const HitFilter* filter = frame.visible_filter.accept ? &frame.visible_filter : nullptr;
+  const HitFilter* filter = visible_filter(frame);
   Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // through the surfaces that blend
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
-    Hit hit;
-    frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
+    if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) return sum + carried * scene.info.background;
     Surface s;
     frame.surface(frame, ray, hit, &s);
@@ -184,8 +188,16 @@ Vec3 radiance(Tracer* tracer, Ray ray, Path path) {
 }
 
 template <EffectMask mask>
-Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const MediumStack& media) {
-  return radiance<mask>(tracer, ray, {{1, 1, 1}, 0, media});
+Vec3 radiance(Tracer* tracer, const Ray& ray, const Path& path) {
+  const FrameData& frame = *tracer->frame;
+  Hit hit;
+  frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+  return radiance_from<mask>(tracer, ray, hit, path);
+}
+
+template <EffectMask mask>
+Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const MediumStack& media) {
+  return radiance_from<mask>(tracer, ray, hit, {{1, 1, 1}, 0, media});
 }
 
 struct RadiancePart {

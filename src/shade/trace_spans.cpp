@@ -16,17 +16,31 @@ Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t row, s
   return camera_ray(frame.camera, static_cast<float>(column) + offset.x, static_cast<float>(row) + offset.y);
 }
 
+const HitFilter* visible_filter(const FrameData& frame) {
+  return frame.visible_filter.accept ? &frame.visible_filter : nullptr;
+}
+
+// One sample of a pixel, whose ray hits first what `hit` says.
+Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit) {
+  const FrameData& frame = *tracer->frame;
+  tracer->budget = frame.left_out_max;
+  ++tracer->rays[static_cast<int>(RayKind::primary)];
+  Vec3 radiance = frame.radiance(tracer, ray, hit, frame.eye_media);
+  float left_out = frame.left_out_max - tracer->budget;
+  if (left_out > tracer->left_out_max) tracer->left_out_max = left_out;
+  return radiance;
+}
+
 Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
   const FrameData& frame = *tracer->frame;
   std::uint32_t sample_count = frame.settings.samples_per_pixel;
   if (sample_count > 1) effect_entered<Effect::supersampling>();
   Vec3 sum = {0, 0, 0};
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-    tracer->budget = frame.left_out_max;
-    ++tracer->rays[static_cast<int>(RayKind::primary)];
-    sum += frame.radiance(tracer, pixel_ray(frame, column, row, sample), frame.eye_media);
-    float left_out = frame.left_out_max - tracer->budget;
-    if (left_out > tracer->left_out_max) tracer->left_out_max = left_out;
+    Ray ray = pixel_ray(frame, column, row, sample);
+    Hit hit;
+    frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+    sum += sample_radiance(tracer, ray, hit);
   }
   return sum * (1.0f / static_cast<float>(sample_count));
 }
@@ -43,15 +57,13 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   float passed = 0;  // in front of culled surfaces
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
-    frame.accel_info->closest(frame.accel, ray, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &hit,
-                              &tracer->stats);
+    frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) break;
     Surface s;
     frame.surface(frame, ray, hit, &s);
     if (culls(*s.material, s.front, frame.mask)) {  // what lies on its back may be seen
       Contact contact;
-      gather_contact(frame, s, hit, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &contact,
-                     &tracer->stats);
+      gather_contact(frame, s, hit, visible_filter(frame), &contact, &tracer->stats);
       for (std::uint32_t i = 1; i < contact.count; ++i) {
         const Face& face = contact.face[i];
         if (culls(frame.scene->materials[face.material], face.front, frame.mask)) continue;
@@ -72,6 +84,62 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   return {0, 0, 0};
 }
 
+// Up to 64 pixels that are traced together, neighbours next to one another.
+struct Tile {
+  std::uint32_t count = 0;
+  std::uint16_t column[kPacketMax], row[kPacketMax];
+};
+
+void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
+  const FrameData& frame = *tracer->frame;
+  std::uint32_t sample_count = frame.settings.samples_per_pixel;
+  if (sample_count > 1) effect_entered<Effect::supersampling>();
+  Vec3 sum[kPacketMax] = {};
+  RayPacket packet;
+  packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
+  for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+    for (std::uint32_t i = 0; i < tile.count; ++i) {
+      Vec3 direction = pixel_ray(frame, tile.column[i], tile.row[i], sample).direction;
+      for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
+    }
+    Hit hits[kPacketMax];
+    frame.accel_info->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
+    for (std::uint32_t i = 0; i < tile.count; ++i) {
+      Vec3 direction = {packet.direction[0][i], packet.direction[1][i], packet.direction[2][i]};
+      sum[i] += sample_radiance(tracer, {packet.origin, direction, packet.t_max}, hits[i]);
+    }
+  }
+  for (std::uint32_t i = 0; i < tile.count; ++i)
+    image[static_cast<std::size_t>(tile.row[i]) * frame.settings.width + tile.column[i]] =
+        sum[i] * (1.0f / static_cast<float>(sample_count));
+}
+
+// Spans of following rows over the same columns, up to eight, which tiles divide.
+std::uint32_t band_height(const Span* spans, std::uint32_t span_count) {
+  std::uint32_t n = 1;
+  while (n < span_count && n < kTileRows && spans[n].row == spans[0].row + n &&
+         spans[n].column_begin == spans[0].column_begin && spans[n].column_end == spans[0].column_end)
+    ++n;
+  return n;
+}
+
+void trace_band(Tracer* tracer, const Span& top, std::uint32_t height, Vec3* image) {
+  constexpr std::uint32_t kSide = 8;  // of a square in Morton order
+  Tile tile;
+  for (std::uint32_t left = top.column_begin; left < top.column_end; left += kSide) {
+    for (std::uint32_t m = 0; m < kSide * kSide; ++m) {
+      std::uint32_t column = left + ((m & 1) | (m >> 1 & 2) | (m >> 2 & 4));
+      std::uint32_t row = (m >> 1 & 1) | (m >> 2 & 2) | (m >> 3 & 4);
+      if (column >= top.column_end || row >= height) continue;
+      tile.column[tile.count] = static_cast<std::uint16_t>(column);
+      tile.row[tile.count++] = static_cast<std::uint16_t>(top.row + row);
+    }
+    if (tile.count + kSide * height <= kPacketMax && left + kSide < top.column_end) continue;  // room for more
+    trace_tile(tracer, tile, image);
+    tile.count = 0;
+  }
+}
+
 }  // namespace
 
 Vec2 sample_offset(std::uint32_t sample, std::uint32_t sample_count) {
@@ -89,15 +157,24 @@ Tracer make_tracer(const FrameData& frame) {
 }
 
 void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Aov aov, Vec3* image) {
-  const Settings& settings = tracer->frame->settings;
-  for (std::uint32_t i = 0; i < span_count; ++i) {
-    Span span = spans[i];
+  const FrameData& frame = *tracer->frame;
+  const Settings& settings = frame.settings;
+  for (std::uint32_t i = 0; i < span_count;) {
+    const Span& span = spans[i];
     CHECK_LT(span.row, settings.height);
     CHECK_LE(span.column_end, settings.width);
-    Vec3* row = image + static_cast<std::size_t>(span.row) * settings.width;
-    for (std::uint32_t column = span.column_begin; column < span.column_end; ++column)
-      row[column] =
-          aov == Aov::none ? pixel_radiance(tracer, column, span.row) : pixel_aov(tracer, column, span.row, aov);
+    if (aov == Aov::none && !frame.camera.orthographic) {
+      std::uint32_t height = band_height(spans + i, span_count - i);
+      CHECK_LT(span.row + height - 1, settings.height);
+      trace_band(tracer, span, height, image);
+      i += height;
+    } else {
+      Vec3* row = image + static_cast<std::size_t>(span.row) * settings.width;
+      for (std::uint32_t column = span.column_begin; column < span.column_end; ++column)
+        row[column] =
+            aov == Aov::none ? pixel_radiance(tracer, column, span.row) : pixel_aov(tracer, column, span.row, aov);
+      ++i;
+    }
   }
 }
 

@@ -54,7 +54,12 @@ std::uint32_t picture_hash(const Vec3* image, std::size_t pixel_count) {
 Vec3 trace_ray(const Renderer& renderer, const Vec3& origin, const Vec3& direction, Tracer* tracer) {
   Tracer own = make_tracer(renderer.frame);
   if (!tracer) tracer = &own;
-  return renderer.frame.radiance(tracer, {origin, direction, __builtin_inff()}, renderer.frame.eye_media);
+  const FrameData& frame = renderer.frame;
+  Ray ray = {origin, direction, __builtin_inff()};
+  Hit hit;
+  frame.accel_info->closest(frame.accel, ray, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &hit,
+                            nullptr);
+  return frame.radiance(tracer, ray, hit, frame.eye_media);
 }
 
 }  // namespace pocketray
