@@ -61,13 +61,14 @@ inline T length(const Vec3T<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
-// Unit vector along a. Scales by the largest component first, so neither 1e-30 nor 1e30 is lost (HARDCASES row 30).
-// The zero vector and anything not finite gives the zero vector.
+// Unit vector along a. Scales by the largest component where squares might be lost, so neither 1e-30 nor 1e30 is lost
+// (HARDCASES row 30). The zero vector and anything not finite gives the zero vector.
 template <class T>
 inline Vec3T<T> normalize(const Vec3T<T>& a) {
+  T square = dot(a, a);
+  if (square > T(0x1p-80) && square < T(0x1p80)) return a / std::sqrt(square);
   T size = max_component(Vec3T<T>{std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
   if (!(size > 0) || !std::isfinite(size)) return {0, 0, 0};
-  if (size > T(0x1p-40) && size < T(0x1p40)) return a / std::sqrt(dot(a, a));  // nothing to lose
   int exponent;
   std::frexp(size, &exponent);
   Vec3T<T> scaled = {std::ldexp(a.x, -exponent), std::ldexp(a.y, -exponent), std::ldexp(a.z, -exponent)};
