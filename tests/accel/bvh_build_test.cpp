@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "accel/accel_world.h"
 #include "accel/bvh.h"
@@ -112,6 +114,29 @@ TEST_CASE("bvh_separates_clusters_that_lie_apart") {
   }
   CHECK(many.nodes < few.nodes + 2 * 2000 + few.nodes / 10);
   CHECK(many.triangles < few.triangles + few.triangles / 10);
+}
+
+// Goal: no tree is too deep for the stack of a traversal. Method: triangles that shrink by powers of two, first along
+// x, then along y. Each node can part but the largest five powers from the rest, which would go on for more levels than
+// there may be: beyond a depth ranges have to be halved instead.
+TEST_CASE("bvh_halves_ranges_before_the_tree_is_too_deep") {
+  Mesh mesh;
+  for (int axis = 0; axis < 2; ++axis)
+    for (int power = 59; power > -120; --power)
+      for (int copy = 0; copy < (axis == 1 && power == -119 ? 5000 : 8); ++copy) {
+        float size = std::ldexp(1.0f, power);
+        Vec3 high = axis == 0 ? Vec3{size, 0x1p59f, 0} : Vec3{0x1p-120f, size, 0};
+        add_triangle(&mesh, {0, 0, 0}, {high.x, 0, 0}, high);
+      }
+  auto world = make_world(mesh, &kBvhAccel);
+  BvhView bvh(world->accel.data.data);
+  std::vector<std::uint32_t> depth(bvh.header->node_count, 1);
+  for (std::uint32_t i = 0; i < bvh.header->node_count; ++i)
+    for (std::uint32_t child : bvh.nodes[i].child)
+      if (!(child & kLeafBit)) depth[child] = depth[i] + 1;
+  std::uint32_t deepest = *std::max_element(depth.begin(), depth.end());
+  CHECK(deepest <= kBvhDepthMax);
+  CHECK(deepest > kBvhDepthMax - 14);  // as deep as ranges that need 11 levels for their treelets may get
 }
 
 // Goal: the same tree on every CPU, with every compiler and library. Method: hashes of trees whose builds split ranges,

@@ -130,15 +130,15 @@ work() {
     result=$(try_fault "$copy" "$i")
     printf '%s\t%s\t%s\t%d\n' "${name[i]}" "${file[i]}" "$result" $((SECONDS - start)) >"$build/result-$i"
     finished=("$build"/result-*)
-    printf '%3d of %d  %-32s %s (%d s)\n' ${#finished[@]} ${#chosen[@]} "${name[i]}" \
+    printf '%3d of %d  %-34s %s (%d s)\n' ${#finished[@]} ${#chosen[@]} "${name[i]}" \
       "$(tr '\t' ' ' <<<"$result")" $((SECONDS - start)) >&2
   done
 }
 
 print_table() {
   awk -F'\t' '
-    BEGIN { printf "%-32s %-26s %-9s %-9s %5s  %s\n", "fault", "file", "verdict", "suite", "s", "test" }
-    { printf "%-32s %-26s %-9s %-9s %5d  %s\n", $1, $2, $3, $4, $6, $5; ++count[$3] }
+    BEGIN { printf "%-34s %-26s %-9s %-9s %5s  %s\n", "fault", "file", "verdict", "suite", "s", "test" }
+    { printf "%-34s %-26s %-9s %-9s %5d  %s\n", $1, $2, $3, $4, $6, $5; ++count[$3] }
     END {
       printf "%d of %d faults killed: %.1f %%", count["killed"], NR, 100 * count["killed"] / NR
       if (count["survived"]) printf ", %d survived", count["survived"]
@@ -175,7 +175,7 @@ check_faults || fail "faults.txt does not fit the sources"
 case $mode in
   check) echo "${#name[@]} faults, each found once" && exit 0 ;;
   list)
-    for i in "${!name[@]}"; do printf '%-32s %-26s %s\n' "${name[i]}" "${file[i]}" "${why[i]}"; done
+    for i in "${!name[@]}"; do printf '%-34s %-26s %s\n' "${name[i]}" "${file[i]}" "${why[i]}"; done
     exit 0
     ;;
 esac
@@ -193,14 +193,14 @@ build=$(cd "$build" && pwd)
 started=$SECONDS
 first_suites=$(for i in "${chosen[@]}"; do printf '%s\n' ${suites[i]}; done | sort -u)
 echo "building the sources as they are; then ${#chosen[@]} faults, $jobs at a time" >&2
-make_copy "$build/1" || exit 1
+[ "$jobs" -le ${#chosen[@]} ] || jobs=${#chosen[@]}
+for ((k = 1; k <= jobs; ++k)); do make_copy "$build/$k" || exit 1; done
 build_suites "$build/1" "$jobs" $first_suites || { cat "$build/1/log" >&2; fail "the sources do not build"; }
 for suite in $first_suites; do
   run_suite "$build/1" "$suite" || { cat "$build/1/log" >&2; fail "test_$suite fails without any fault"; }
 done
-[ "$jobs" -le ${#chosen[@]} ] || jobs=${#chosen[@]}
 for ((k = 1; k <= jobs; ++k)); do
-  { [ $k = 1 ] || { make_copy "$build/$k" && build_suites "$build/$k" 1 $first_suites; }; } && work "$build/$k" &
+  { [ $k = 1 ] || build_suites "$build/$k" 1 $first_suites; } && work "$build/$k" &
 done
 wait
 results=$(for i in "${chosen[@]}"; do cat "$build/result-$i"; done)
