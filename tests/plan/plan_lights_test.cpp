@@ -144,3 +144,21 @@ TEST_CASE("plan_lights_refuse_more_points_than_fit") {
   CHECK_FALSE(status.ok);
   CHECK(std::string(status.message).find("--area-lights") != std::string::npos);
 }
+
+// Goal: the bound on radiance holds on both sides of a light that has two. Method: a wall at the same distance before
+// and behind it: the same bound, and more than the light itself.
+TEST_CASE("plan_lights_radiance_bound_knows_both_sides_of_a_light") {
+  float bound[2];
+  for (int side = 0; side < 2; ++side) {
+    auto s = lamp_scene();
+    Material two_sided = lamp(1), wall;
+    two_sided.double_sided = true, wall.diffuse = {1, 1, 1};
+    add_quad(s.get(), {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, add_material(s.get(), two_sided));
+    float z = side ? -0.25f : 0.25f;
+    add_quad(s.get(), {-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}, add_material(s.get(), wall));
+    s->bind();
+    bound[side] = radiance_bound(make_renderer(s->scene, settings_for(0, 4, 3))->renderer.frame);
+  }
+  CHECK(bound[0] == bound[1]);
+  CHECK(bound[0] > 2);
+}

@@ -225,3 +225,25 @@ TEST_CASE("hard_23_terminator_of_a_coarse_smooth_sphere") {
   CHECK(brighter == 0);
   count_hard(180 * 721, relit + dark_facets + brighter, "monotone, no lit-dark-lit");
 }
+
+// Goal: what lies beyond a light casts no shadow. Method: a floor under a point light, with and without a wall above
+// the light: the same radiance, bit for bit; and none where the wall is between them.
+TEST_CASE("light_is_not_shadowed_by_what_lies_beyond_it") {
+  Vec3 seen[3];
+  for (int i = 0; i < 3; ++i) {
+    GeneratedScene s;
+    std::uint32_t m = add_material(&s, Material());
+    add_quad(&s, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, m);
+    float z = i == 1 ? 1.25f : 0.75f;
+    if (i > 0) add_quad(&s, {-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}, m);
+    Light light;
+    light.position = {0, 0, 1}, light.intensity = {1, 1, 1};
+    s.lights.push_back(light);
+    aim(&s, {0, 0, 9}, {0, 0, 0}, 40);
+    s.bind();
+    seen[i] = trace_ray(make_renderer(s.scene, settings_for(0, 4, 3))->renderer, {0.25f, 0, 0.5f}, {0, 0, -1});
+  }
+  CHECK(seen[0].x > 0);
+  CHECK(seen[1].x == seen[0].x);
+  CHECK(seen[2].x == 0);
+}
