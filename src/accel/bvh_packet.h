@@ -2,7 +2,7 @@
 // compiled once per instruction set, each time in a namespace of its own.
 #pragma once
 #include "accel/bvh.h"
-#include "accel/packet_leaf.h"
+#include "accel/leaf_batch.h"
 
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
@@ -37,15 +37,19 @@ void search_packet(const Accel& accel, Packet* p, TraceStats* stats) {
   BvhView bvh(accel.data.data);
   std::uint64_t nodes = 0, triangles = 0;
   DepthEntry stack[3 * kBvhDepthMax + 4];
+  LeafBatch batch;
   int top = 0;
   stack[top++] = {0, 0};
-  while (top > 0) {
+  for (;;) {
+    if (batch.count == kLeavesAtOnce || (top == 0 && batch.count > 0)) search_leaves<kLanes>(p, &batch);
+    if (top == 0) break;
     DepthEntry entry = stack[--top];
     if (!(entry.depth <= p->all_far)) continue;
     if (entry.child & kLeafBit) {
       std::uint32_t count = leaf_triangle_count(entry.child);
       triangles += count;
-      search_leaf<kLanes>(p, bvh.leaves[entry.child & kLeafIndexMask], count);
+      batch.block[batch.count] = &bvh.leaves[entry.child & kLeafIndexMask];
+      batch.in_use[batch.count++] = (1u << count) - 1;
       continue;
     }
     const BvhNode& node = bvh.nodes[entry.child];

@@ -35,7 +35,7 @@ inline Float4 edge_error(const Packet& p, const Float4 (&x)[3], const Float4 (&y
   return s * m * Float4::splat(0x1p-19f) + Float4::splat(0x1p-140f);
 }
 
-// Fills all but the edges; nothing but lanes where there are none.
+// Fills all but the edges.
 inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjection* leaf) {
   const Float4 tiny = Float4::splat(std::numeric_limits<float>::min());
   Float4 px[3], py[3], depth[3];
@@ -54,7 +54,6 @@ inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjec
   Mask4 met = (x_low <= p.window4[1]) & (p.window4[0] <= x_high) & (y_low <= p.window4[3]) & (p.window4[2] <= y_high);
   Mask4 alive = (met | behind) & (Float4::splat(0) < deepest);
   leaf->lanes = bits(alive);
-  if (!leaf->lanes) return;
   leaf->behind = bits(behind & alive), leaf->has_edges = false;
   store(leaf->x_low, x_low), store(leaf->x_high, x_high), store(leaf->y_low, y_low), store(leaf->y_high, y_high);
   store(leaf->near, near);

@@ -1,4 +1,4 @@
-// The rays of a packet against the triangles of a leaf. Part of the kernels: see bvh_packet.h.
+// The rays of a packet against one triangle. Part of the kernels: see bvh_packet.h.
 //
 // Windows and edge lines say which rays surely miss a triangle and which surely hit it; about the others, next to an
 // edge, cross_triangle() decides. Where a hit lies is computed as there, for several rays at once. So the answers are
@@ -112,68 +112,6 @@ bool settle_rays(Packet* p, const TriangleBlock& block, int lane, const ExactTri
   return better;
 }
 
-// Whether the leaf is small in the plane: then each ray in its bounds is tested with all its triangles. That takes less
-// time below some ten rays (measured with bench_embree).
-inline bool is_small(const Packet& p, const LeafProjection& leaf) {
-  return !leaf.behind && (leaf.bounds.x_high - leaf.bounds.x_low) * (leaf.bounds.y_high - leaf.bounds.y_low) * 1.5f <=
-                             p.half_x * p.half_y;
-}
-
-// The float test of cross_triangle(): kLanes/4 rays from `first` on, of which those of the mask count, and the leaf's
-// four triangles.
-template <int kLanes>
-bool search_rays(Packet* p, const TriangleBlock& block, const LeafProjection& leaf, unsigned lanes, int first,
-                 unsigned rays) {
-  using F = typename Lanes<kLanes>::Floats;
-  F qx = F::spread(p->x + first), qy = F::spread(p->y + first), x[3], y[3];
-  for (int k = 0; k < 3; ++k) {
-    F depth = F::repeat(Float4::load(leaf.depth[k]));
-    x[k] = F::repeat(Float4::load(leaf.x[k])) - qx * depth, y[k] = F::repeat(Float4::load(leaf.y[k])) - qy * depth;
-  }
-  EdgeValues<F> e = edge_values<F>(x[0], y[0], x[1], y[1], x[2], y[2]);
-  F zero = F::splat(0), low = min(min(e.a, e.b), e.c), high = max(max(e.a, e.b), e.c);
-  unsigned pass = bits((zero <= low) | (high <= zero));
-  for (int i = 0; i < kLanes / 4; ++i) pass &= ~((rays >> i & 1 ? ~lanes & 15 : 15u) << 4 * i);
-  if (!pass) return false;
-  unsigned sure = bits((zero < low) | (high < zero));
-  bool better = false;
-  for (; pass; pass &= pass - 1) {
-    int bit = __builtin_ctz(pass), i = first + bit / 4;
-    if (!(leaf.near[bit % 4] <= p->far[i])) continue;
-    better |= sure >> bit & 1 ? settle_ray(p, block, bit % 4, i) : settle_doubtful(p, block, bit % 4, i);
-  }
-  return better;
-}
-
-template <int kLanes>
-bool search_small_leaf(Packet* p, const TriangleBlock& block, const LeafProjection& leaf, unsigned lanes) {
-  constexpr int kRays = kLanes / 4;
-  const Window& w = leaf.bounds;
-  Bounds4 bounds = {Float4::splat(w.x_low - kPacketSlack), Float4::splat(w.x_high + kPacketSlack),
-                    Float4::splat(w.y_low - kPacketSlack), Float4::splat(w.y_high + kPacketSlack)};
-  bool better = false;
-  for (unsigned blocks = bits(meets(bounds, p->block)); blocks; blocks &= blocks - 1) {
-    int b = __builtin_ctz(blocks);
-    for (unsigned groups = bits(meets(bounds, p->group[b])); groups; groups &= groups - 1) {
-      int group = 4 * b + __builtin_ctz(groups), first = 4 * group;
-      if (!(leaf.nearest <= p->group_far[group])) continue;
-      Float4 x = Float4::load(p->x + first), y = Float4::load(p->y + first);
-      bool group_better = false;
-      unsigned rays = bits((bounds.x_low <= x) & (x <= bounds.x_high) & (bounds.y_low <= y) & (y <= bounds.y_high));
-      while (rays) {
-        int i = __builtin_ctz(rays) & ~(kRays - 1);
-        unsigned taken = rays >> i & ((1u << kRays) - 1);
-        group_better |= search_rays<kLanes>(p, block, leaf, lanes, first + i, taken);
-        rays &= ~(taken << i);
-      }
-      if (!group_better) continue;
-      p->group_far[group] = highest(Float4::load(p->far + first));
-      better = true;
-    }
-  }
-  return better;
-}
-
 template <int kLanes>
 bool search_triangle(Packet* p, const TriangleBlock& block, LeafProjection* projection, int lane) {
   using F = typename Lanes<kLanes>::Floats;
@@ -208,23 +146,6 @@ bool search_triangle(Packet* p, const TriangleBlock& block, LeafProjection* proj
     }
   }
   return better;
-}
-
-template <int kLanes>
-void search_leaf(Packet* p, const TriangleBlock& block, std::uint32_t count) {
-  if (!p->has_groups) prepare_groups(p);
-  LeafProjection leaf;
-  project_leaf(*p, block, &leaf);
-  unsigned lanes = leaf.lanes & ((1u << count) - 1);
-  if (!lanes || !(leaf.nearest <= p->all_far)) return;
-  bool better = false;
-  if (is_small(*p, leaf)) {
-    better = search_small_leaf<kLanes>(p, block, leaf, lanes);
-  } else {
-    for (; lanes; lanes &= lanes - 1) better |= search_triangle<kLanes>(p, block, &leaf, __builtin_ctz(lanes));
-  }
-  if (!better) return;
-  update_all_far(p);
 }
 
 }  // namespace POCKETRAY_ISA
