@@ -11,6 +11,7 @@
 #include "scene/baked.h"
 #include "scene/baked_file.h"
 #include "scene/full_scene.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -94,11 +95,12 @@ TEST_CASE("hard_08_baked_numbers_that_are_not_finite_are_refused_by_element") {
   REQUIRE(baked_open(file.data(), file.size(), &scene).ok);
   int float_count = count_floats(scene).all;
   CHECK(float_count > 400);
+  const std::size_t step = kEffortDivisor > 1 ? 13 : 1;  // words; a prime, so as to keep to no field of a struct
   for (float bad : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
     std::uint32_t word, sound;
     std::memcpy(&word, &bad, sizeof word);
     int refused = 0, named = 0;
-    for (std::size_t at = kTableAt; at < file.size(); at += 4) {
+    for (std::size_t at = kTableAt; at < file.size(); at += 4 * step) {
       std::memcpy(&sound, file.data() + at, sizeof sound);
       put_u32(file, at, word);
       fix_checksum(file);
@@ -108,8 +110,9 @@ TEST_CASE("hard_08_baked_numbers_that_are_not_finite_are_refused_by_element") {
       named += !status.ok && (std::strchr(status.message, '[') || std::strstr(status.message, "info"));
       put_u32(file, at, sound);
     }
-    CHECK(refused >= float_count);
-    CHECK(named >= float_count);
+    int least = step == 1 ? float_count : float_count / static_cast<int>(2 * step);
+    CHECK(refused >= least);
+    CHECK(named >= least);
   }
 }
 
