@@ -1,7 +1,8 @@
 // Rays from one point walk the BVH together, as the pyramid over the window that holds them. Like every kernel it is
 // compiled once per instruction set, each time in a namespace of its own.
 #pragma once
-#include "accel/bvh.h"
+#include <utility>
+
 #include "accel/leaf_batch.h"
 
 namespace pocketray {

@@ -4,6 +4,7 @@
 // which of these pass the float test of a triangle, what those hit. A step's loops do not wait for one another's
 // results, as they would leaf by leaf.
 #pragma once
+#include "accel/bvh.h"
 #include "accel/packet_leaf.h"
 
 namespace pocketray {
@@ -30,8 +31,9 @@ struct Candidate {
 // Whether each ray in the leaf's bounds should be tested with all its triangles. That takes less time below some ten
 // rays (measured with bench_embree).
 inline bool is_small(const Packet& p, const LeafProjection& leaf) {
-  return !leaf.behind && (leaf.bounds.x_high - leaf.bounds.x_low) * (leaf.bounds.y_high - leaf.bounds.y_low) * 1.5f <=
-                             p.half_x * p.half_y;
+  float width = leaf.bounds.x_high - leaf.bounds.x_low, height = leaf.bounds.y_high - leaf.bounds.y_low;
+  width = width < 2 ? width : 2, height = height < 2 ? height : 2;  // no window is larger; nor is 0·∞ asked for
+  return !leaf.behind && width * height * 1.5f <= p.half_x * p.half_y;
 }
 
 template <int kLanes>
@@ -72,8 +74,7 @@ Passing test_rays(const Packet& p, const LeafProjection& leaf, int first) {
   return {bits((zero <= low) | (high <= zero)), bits((zero < low) | (high < zero))};
 }
 
-// Decides about the candidates. Returns 0, the number that is left.
-inline int settle_candidates(Packet* p, const LeafBatch& batch, const Candidate* candidates, int count) {
+inline void settle_candidates(Packet* p, const LeafBatch& batch, const Candidate* candidates, int count) {
   for (int n = 0; n < count; ++n) {
     const Candidate& c = candidates[n];
     const TriangleBlock& block = *batch.block[c.leaf];
@@ -81,13 +82,12 @@ inline int settle_candidates(Packet* p, const LeafBatch& batch, const Candidate*
     if (!(c.sure ? settle_ray(p, block, c.lane, c.ray) : settle_doubtful(p, block, c.lane, c.ray))) continue;
     p->group_far[c.ray / 4] = highest(Float4::load(p->far + (c.ray & ~3)));
   }
-  return 0;
 }
 
 template <int kLanes>
 void search_small_leaves(Packet* p, const LeafBatch& batch, const RayTest* tests, int test_count) {
   constexpr unsigned kEachRay = 0x1111;
-  Candidate candidates[kLeavesAtOnce * kPacketMax];
+  Candidate candidates[kBvhLeafSize * kLeavesAtOnce * kPacketMax];
   int candidate_count = 0;
   for (int n = 0; n < test_count; ++n) {
     const RayTest& test = tests[n];
@@ -97,8 +97,6 @@ void search_small_leaves(Packet* p, const LeafBatch& batch, const RayTest* tests
       int bit = __builtin_ctz(pass);
       candidates[candidate_count++] = {test.leaf, static_cast<std::uint8_t>(bit % 4),
                                        static_cast<std::uint8_t>(test.first + bit / 4), (found.sure >> bit & 1) != 0};
-      if (candidate_count == kLeavesAtOnce * kPacketMax)
-        candidate_count = settle_candidates(p, batch, candidates, candidate_count);
     }
   }
   settle_candidates(p, batch, candidates, candidate_count);

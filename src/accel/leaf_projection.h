@@ -63,6 +63,7 @@ inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjec
   leaf->nearest = lowest(select(alive, near, infinity));
 }
 
+// Fills the edges, as seen from the middle of the window.
 inline void find_edges(const Packet& p, LeafProjection* leaf) {
   Float4 x[3], y[3], depth[3];
   for (int i = 0; i < 3; ++i) {
@@ -86,11 +87,11 @@ struct EdgeRange {
   F low, high;
 };
 
-// Those of rays or triangles, in lanes, that may be hits as far as the edge functions say, and those of them that
-// surely are none of the doubtful ones.
+// Masks of the lanes that may be hits and of those about which there is no doubt.
 struct Passing {
   unsigned pass, sure;
 };
+// From edge functions that may err by `error`; `alive` are the lanes that are asked about.
 template <class F, class Mask>
 inline Passing judge(const EdgeRange<F>& e, F error, Mask alive) {
   F minus = F::splat(0) - error;

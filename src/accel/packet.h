@@ -1,13 +1,14 @@
 // Rays from one point on their way through the BVH. Part of the kernels: see bvh_packet.h.
 //
 // Seen along the dominant axis of their directions the rays are points q of the plane at depth 1, |q| ≤ 1, and so is
-// everything they can hit. Windows of the plane that hold such points decide what may be left out. Leaves are seen from
-// the middle of the packet's window: coordinates there are small, and so are their rounding errors.
+// everything they can hit. Windows of the plane that hold such points decide what may be left out. Edge lines are
+// seen from the middle of the packet's window: coordinates there are small, and so are their rounding errors.
 //
 // How far the windows are widened: cross_triangle() takes a ray for a hit that passes the triangle by up to 4u of the
 // depth z at which its vertices lie (u = 2^-24: the shear, two products, a difference), that is by 4u in the plane.
 // Projections and pyramids round by a few u more. 16u = 2^-20 covers both.
 #pragma once
+#include <cmath>
 #include <limits>
 
 #include "accel/ray.h"
@@ -73,7 +74,7 @@ inline F depth_bound(F t, F direction_z) {
   return (t + F::splat(std::numeric_limits<float>::denorm_min())) * abs(direction_z) * F::splat(1 + kPacketSlack);
 }
 
-// From axes, origin and directions to everything but the groups; x and y are still q.
+// From axes, origin and directions to everything but the groups.
 inline void prepare_packet(Packet* p) {
   Float4 x_low = Float4::splat(kInfinity), x_high = Float4::splat(-kInfinity), y_low = x_low, y_high = x_high;
   Float4 sign = Float4::splat(p->sign), far = x_high, t_max = Float4::splat(p->t_max);

@@ -113,12 +113,12 @@ bool settle_rays(Packet* p, const TriangleBlock& block, int lane, const ExactTri
 }
 
 template <int kLanes>
-bool search_triangle(Packet* p, const TriangleBlock& block, LeafProjection* projection, int lane) {
+void search_triangle(Packet* p, const TriangleBlock& block, LeafProjection* projection, int lane) {
   using F = typename Lanes<kLanes>::Floats;
   constexpr int kGroups = kLanes / 4;
   if (!projection->has_edges) find_edges(*p, projection);
   const LeafProjection& leaf = *projection;
-  bool bounded = !(leaf.behind >> lane & 1), better = false, has_exact = false;
+  bool bounded = !(leaf.behind >> lane & 1), has_exact = false;
   Bounds4 bounds = {Float4::splat(leaf.x_low[lane]), Float4::splat(leaf.x_high[lane]), Float4::splat(leaf.y_low[lane]),
                     Float4::splat(leaf.y_high[lane])};
   SplatTriangle<Float4> narrow_triangle = splat_triangle<Float4>(leaf, lane);
@@ -142,10 +142,8 @@ bool search_triangle(Packet* p, const TriangleBlock& block, LeafProjection* proj
       if (!has_exact) exact = exact_triangle(*p, block, lane), has_exact = true;
       if (!settle_rays<kLanes>(p, block, lane, exact, first, rays.pass, ~rays.sure)) continue;
       for (int i = first; i < first + kLanes; i += 4) p->group_far[i / 4] = highest(Float4::load(p->far + i));
-      better = true;
     }
   }
-  return better;
 }
 
 }  // namespace POCKETRAY_ISA

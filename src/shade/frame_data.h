@@ -76,6 +76,11 @@ struct FrameData {
   float left_out_max = 0;            // what may be left out of one sample, in radiance
 };
 
+// What a ray that looks may see: null where nothing is cut out.
+inline const HitFilter* visible_filter(const FrameData& frame) {
+  return frame.visible_filter.accept ? &frame.visible_filter : nullptr;
+}
+
 enum class RayKind : int { primary, shadow, mirror, refraction, blend };
 constexpr int kRayKindCount = 5;
 constexpr const char* kRayKindNames[kRayKindCount] = {"primary", "shadow", "mirror", "refraction", "blend"};

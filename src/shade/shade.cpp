@@ -138,10 +138,6 @@ const Face* face_behind_layers(const Scene& scene, const Contact& contact, Effec
   return body ? body : sheet;
 }
 
-inline const HitFilter* visible_filter(const FrameData& frame) {
-  return frame.visible_filter.accept ? &frame.visible_filter : nullptr;
-}
-
 // What comes along a ray that was found to hit first what `hit` says.
 template <EffectMask mask>
 Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, Path path) {

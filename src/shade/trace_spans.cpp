@@ -16,10 +16,6 @@ Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t row, s
   return camera_ray(frame.camera, static_cast<float>(column) + offset.x, static_cast<float>(row) + offset.y);
 }
 
-const HitFilter* visible_filter(const FrameData& frame) {
-  return frame.visible_filter.accept ? &frame.visible_filter : nullptr;
-}
-
 // One sample of a pixel, whose ray hits first what `hit` says.
 Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit) {
   const FrameData& frame = *tracer->frame;

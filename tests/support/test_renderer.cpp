@@ -57,8 +57,7 @@ Vec3 trace_ray(const Renderer& renderer, const Vec3& origin, const Vec3& directi
   const FrameData& frame = renderer.frame;
   Ray ray = {origin, direction, __builtin_inff()};
   Hit hit;
-  frame.accel_info->closest(frame.accel, ray, frame.visible_filter.accept ? &frame.visible_filter : nullptr, &hit,
-                            nullptr);
+  frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, nullptr);
   return frame.radiance(tracer, ray, hit, frame.eye_media);
 }
 
