@@ -15,7 +15,7 @@ void update_bounds(Accel* accel) {
   accel->bounds = empty_box();
   for (const Triangle& triangle : accel->triangles) {
     if (!has_valid_vertices(accel->positions, triangle)) continue;
-    for (std::uint32_t vertex : triangle.vertex) accel->bounds = merge(accel->bounds, accel->positions[vertex]);
+    for (std::uint32_t vertex : triangle.vertices()) accel->bounds = merge(accel->bounds, accel->positions[vertex]);
   }
 }
 
@@ -42,8 +42,8 @@ void for_each_hit(const Accel& accel, const Ray& ray, const HitFilter* filter, T
     if (!is_hittable(accel.positions, triangle)) continue;
     if (stats) ++stats->triangles;
     Hit hit;
-    if (!intersect_triangle(sheared, accel.positions[triangle.vertex[0]], accel.positions[triangle.vertex[1]],
-                            accel.positions[triangle.vertex[2]], &hit))
+    if (!intersect_triangle(sheared, accel.positions[triangle.vertex(0)], accel.positions[triangle.vertex(1)],
+                            accel.positions[triangle.vertex(2)], &hit))
       continue;
     if (!(hit.t > 0 && hit.t < ray.t_max)) continue;
     if (filter && filter->accept && !filter->accept(filter->context, i, hit.u, hit.v)) continue;
@@ -84,9 +84,9 @@ float brute_nearest_distance(const Accel& accel, const Vec3& point) {
   double least = std::numeric_limits<double>::infinity();
   for (const Triangle& triangle : accel.triangles) {
     if (!is_hittable(accel.positions, triangle)) continue;
-    double d = squared_distance(to_double(point), to_double(accel.positions[triangle.vertex[0]]),
-                                to_double(accel.positions[triangle.vertex[1]]),
-                                to_double(accel.positions[triangle.vertex[2]]));
+    double d = squared_distance(to_double(point), to_double(accel.positions[triangle.vertex(0)]),
+                                to_double(accel.positions[triangle.vertex(1)]),
+                                to_double(accel.positions[triangle.vertex(2)]));
     if (d < least) least = d;
   }
   return distance_bound(least, accel.bounds);

@@ -170,7 +170,7 @@ std::uint32_t collect_primitives(const Accel& accel, BuildPrimitive* primitives)
     const Triangle& triangle = accel.triangles[i];
     if (!has_valid_vertices(accel.positions, triangle)) continue;
     Box b = empty_box();
-    for (std::uint32_t vertex : triangle.vertex) b = merge(b, accel.positions[vertex]);
+    for (std::uint32_t vertex : triangle.vertices()) b = merge(b, accel.positions[vertex]);
     primitives[count++] = {{b.low.x, b.low.y, b.low.z}, i | kIdTag, {b.high.x, b.high.y, b.high.z}, 0};
   }
   return count;

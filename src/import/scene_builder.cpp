@@ -113,7 +113,8 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
   if (count == 0) return;
   charge_bytes(builder, count * vertex_bytes(mesh) + triangle_count * sizeof(Triangle), "the geometry");
-  if (begin + count > kVertexCountMax || out.triangles.size() + triangle_count > kTriangleCountMax)
+  if (begin + count > kVertexCountMax) fail_import("more than %u vertices; simplify the model", kVertexCountMax);
+  if (out.triangles.size() + triangle_count > kTriangleCountMax)
     fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
 
   out.positions.reserve(begin + count > out.positions.capacity() ? std::max(begin + count, begin * 3 / 2) : 0);
@@ -134,7 +135,7 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   for (std::size_t t = 0; t < triangle_count; ++t) {
     const std::uint32_t* v = &mesh.indices[3 * t];
     std::uint32_t material = mesh.triangle_materials.empty() ? mesh.material : mesh.triangle_materials[t];
-    out.triangles.push_back({{base + v[0], base + v[mirrored ? 2 : 1], base + v[mirrored ? 1 : 2]}, material});
+    out.triangles.emplace_back(base + v[0], base + v[mirrored ? 2 : 1], base + v[mirrored ? 1 : 2], material);
   }
 }
 

@@ -18,7 +18,7 @@ struct Census {
 Census take_census(const Scene& scene) {
   Census c;
   std::uint32_t used[kMaterialCountMax / 32] = {};
-  for (const Triangle& t : scene.triangles) used[t.material / 32] |= 1u << t.material % 32;
+  for (const Triangle& t : scene.triangles) used[t.material() / 32] |= 1u << t.material() % 32;
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
     if (!(used[i / 32] >> i % 32 & 1)) continue;
     const Material& m = scene.materials[i];

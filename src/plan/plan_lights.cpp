@@ -24,8 +24,8 @@ struct Emitter {
 
 double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   const Triangle& t = frame.scene->triangles[triangle];
-  Vec3 e1 = frame.positions[t.vertex[1]] - frame.positions[t.vertex[0]];
-  Vec3 e2 = frame.positions[t.vertex[2]] - frame.positions[t.vertex[0]];
+  Vec3 e1 = frame.positions[t.vertex(1)] - frame.positions[t.vertex(0)];
+  Vec3 e2 = frame.positions[t.vertex(2)] - frame.positions[t.vertex(0)];
   // Edges of any length: the powers of two are exact, and out of range is nothing then.
   int exponent;
   std::frexp(max_component(max(abs(e1), abs(e2))), &exponent);
@@ -40,10 +40,10 @@ Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
   Emitter e = {triangle, false, triangle_area(frame, triangle)};
   if (triangle + 1 >= scene.triangles.count) return e;
   const Triangle &t = scene.triangles[triangle], &next = scene.triangles[triangle + 1];
-  const Vec3 &a = frame.positions[t.vertex[0]], &b = frame.positions[t.vertex[1]], &c = frame.positions[t.vertex[2]];
-  const Vec3& d = frame.positions[next.vertex[2]];
+  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  const Vec3& d = frame.positions[next.vertex(2)];
   Vec3 skew = (b - a) - (c - d);
-  if (next.material == t.material && frame.positions[next.vertex[0]] == a && frame.positions[next.vertex[1]] == c &&
+  if (next.material() == t.material() && frame.positions[next.vertex(0)] == a && frame.positions[next.vertex(1)] == c &&
       length(skew) <= length(b - a) * 1e-3f) {
     e.parallelogram = true;
     e.area += triangle_area(frame, triangle + 1);
@@ -56,7 +56,7 @@ template <class Visit>
 void each_emitter(const FrameData& frame, std::uint32_t material, Visit visit) {
   const Scene& scene = *frame.scene;
   for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
-    if (scene.triangles[i].material != material) continue;
+    if (scene.triangles[i].material() != material) continue;
     Emitter e = emitter_at(frame, i);
     if (e.area > 0) visit(e);
     if (e.parallelogram) ++i;
@@ -99,8 +99,8 @@ void place_on_emitter(const Emitter& e, float x, float y, std::uint32_t* triangl
 LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, float v, double area) {
   const Scene& scene = *frame.scene;
   const Triangle& t = scene.triangles[triangle];
-  const Material& m = scene.materials[t.material];
-  const Vec3 &a = frame.positions[t.vertex[0]], &b = frame.positions[t.vertex[1]], &c = frame.positions[t.vertex[2]];
+  const Material& m = scene.materials[t.material()];
+  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
   LightPoint p = {};
   p.position = a * (1 - u - v) + b * u + c * v;
   p.direction = normalize(cross(b - a, c - a));
@@ -110,7 +110,7 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
         sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
   constexpr float most = std::numeric_limits<float>::max();
   p.intensity = min(emission * static_cast<float>(area), Vec3{most, most, most});
-  p.material = t.material;
+  p.material = t.material();
   p.two_sided = m.double_sided;
   return p;
 }
@@ -172,10 +172,10 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
   if (!(intensity > 0)) return 0;
   if (kind == Effect::directional_light) return intensity;
   for (const Triangle& t : frame.scene->triangles) {
-    if (t.material == light.material) continue;
+    if (t.material() == light.material) continue;
     Box box = empty_box();
     float height = 0;  // above the emitter's plane: cos ≤ height / distance
-    for (std::uint32_t v : t.vertex) {
+    for (std::uint32_t v : t.vertices()) {
       const Vec3& p = frame.positions[v];
       box = merge(box, p);
       float h = dot(p - light.position, light.direction);

@@ -7,7 +7,7 @@ namespace pocketray {
 Box scene_bounds(const Scene& scene) {
   Box box = empty_box();
   for (const Triangle& t : scene.triangles)
-    for (std::uint32_t v : t.vertex) box = merge(box, scene.positions[v]);
+    for (std::uint32_t v : t.vertices()) box = merge(box, scene.positions[v]);
   return box;
 }
 
@@ -50,8 +50,8 @@ bool is_room(const Scene& scene, const Box& bounds, Vec3* opening) {
   Vec3d area = {0, 0, 0};
   double volume = 0;
   for (const Triangle& t : scene.triangles) {
-    Vec3 a = scene.positions[t.vertex[0]] - middle, b = scene.positions[t.vertex[1]] - middle,
-         c = scene.positions[t.vertex[2]] - middle;
+    Vec3 a = scene.positions[t.vertex(0)] - middle, b = scene.positions[t.vertex(1)] - middle,
+         c = scene.positions[t.vertex(2)] - middle;
     volume += static_cast<double>(dot(a, cross(b, c))) / 6;
     Vec3 twice = cross(b - a, c - a);
     area += Vec3d{twice.x, twice.y, twice.z} * 0.5;
@@ -112,7 +112,7 @@ bool has_light(const Scene& scene) {
   if (scene.lights.count || !is_zero(scene.info.ambient)) return true;
   bool needs_light = false;
   for (const Triangle& t : scene.triangles) {  // what no triangle uses gives no light
-    const Material& m = scene.materials[t.material];
+    const Material& m = scene.materials[t.material()];
     if (!is_zero(m.emission)) return true;
     needs_light |= !m.unlit;
   }

@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kBakedVersion = 1;
+constexpr std::uint32_t kBakedVersion = 2;
 
 // Bytes of the file that baked_write() makes of the scene.
 std::size_t baked_size(const Scene& scene);

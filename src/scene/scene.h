@@ -3,10 +3,12 @@
 // indices are in range, floats are finite, nodes come after their parents.
 // Units: distances in scene units, angles in radians, colours linear with sRGB primaries, +Y up, right-handed.
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "base/array.h"
 #include "base/box.h"
+#include "base/limits.h"
 #include "base/transform.h"
 #include "base/vec3.h"
 
@@ -14,9 +16,28 @@ namespace pocketray {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;  // "no such index"
 
-struct Triangle {
-  std::uint32_t vertex[3];  // counter-clockwise seen from the front
-  std::uint32_t material;
+// Three vertices, counter-clockwise seen from the front, and a material, in 12 bytes: every word has a vertex in its
+// low bits and a share of the material above them.
+class Triangle {
+ public:
+  Triangle() = default;
+  Triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
+  std::uint32_t vertex(std::uint32_t corner) const { return word_[corner] & kVertexMask; }
+  std::array<std::uint32_t, 3> vertices() const { return {{vertex(0), vertex(1), vertex(2)}}; }
+  std::uint32_t material() const {
+    return word_[0] >> kVertexIndexBits | word_[1] >> kVertexIndexBits << kShareBits |
+           word_[2] >> kVertexIndexBits << 2 * kShareBits;
+  }
+  // Abort where the value has more bits than there are for it, which is below kVertexCountMax or kMaterialCountMax
+  // never.
+  void set_vertex(std::uint32_t corner, std::uint32_t value);
+  void set_material(std::uint32_t value);
+
+ private:
+  static constexpr std::uint32_t kVertexMask = (1u << kVertexIndexBits) - 1, kShareBits = 32 - kVertexIndexBits;
+  static_assert(kVertexCountMax <= 1u << kVertexIndexBits, "a word holds any vertex");
+  static_assert(kMaterialCountMax <= 1u << 3 * kShareBits, "three shares hold any material");
+  std::uint32_t word_[3] = {0, 0, 0};
 };
 
 // A linear colour as it is stored per vertex: 16 bits a channel, 65535 = 1.

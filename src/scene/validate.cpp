@@ -164,10 +164,10 @@ Status validate_geometry(const Scene& scene) {
   std::uint32_t vertex_count = scene.positions.count, material_count = scene.materials.count;
   for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
     const Triangle& t = scene.triangles[i];
-    for (std::uint32_t vertex : t.vertex)
+    for (std::uint32_t vertex : t.vertices())
       if (vertex >= vertex_count) return failure("triangles[%u] has vertex %u of %u", i, vertex, vertex_count);
-    if (t.material >= material_count)
-      return failure("triangles[%u] has material %u of %u", i, t.material, material_count);
+    if (t.material() >= material_count)
+      return failure("triangles[%u] has material %u of %u", i, t.material(), material_count);
   }
   return success();
 }

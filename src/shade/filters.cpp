@@ -15,7 +15,7 @@ bool is_hole(const FrameData& frame, const Material& m, std::uint32_t triangle, 
 bool lets_light_through(const Material& m) { return !is_zero(m.transmission) || m.alpha_mode == AlphaMode::blend; }
 
 const Material& material_of(const FrameData& frame, std::uint32_t triangle) {
-  return frame.scene->materials[frame.scene->triangles[triangle].material];
+  return frame.scene->materials[frame.scene->triangles[triangle].material()];
 }
 
 template <bool masked>
@@ -30,14 +30,14 @@ template <bool masked, bool clear>
 bool accept_opaque(const void* context, std::uint32_t triangle, float u, float v) {
   const auto& shadow = *static_cast<const ShadowContext*>(context);
   const FrameData& frame = *shadow.frame;
-  if (frame.scene->triangles[triangle].material == shadow.emitter) return false;
+  if (frame.scene->triangles[triangle].material() == shadow.emitter) return false;
   return !(clear && lets_light_through(material_of(frame, triangle))) && is_visible<masked>(frame, triangle, u, v);
 }
 template <bool masked>
 bool accept_clear(const void* context, std::uint32_t triangle, float u, float v) {
   const auto& shadow = *static_cast<const ShadowContext*>(context);
   const FrameData& frame = *shadow.frame;
-  if (frame.scene->triangles[triangle].material == shadow.emitter) return false;
+  if (frame.scene->triangles[triangle].material() == shadow.emitter) return false;
   return lets_light_through(material_of(frame, triangle)) && is_visible<masked>(frame, triangle, u, v);
 }
 

@@ -9,14 +9,14 @@ namespace {
 
 // Turns the interpolated normal to the geometric normal's side; falls back to it where there is none.
 Vec3 smooth_normal(const FrameData& frame, const Triangle& t, float w, float u, float v, const Vec3& geometric) {
-  Vec3 n = normalize(frame.normals[t.vertex[0]] * w + frame.normals[t.vertex[1]] * u + frame.normals[t.vertex[2]] * v);
+  Vec3 n = normalize(frame.normals[t.vertex(0)] * w + frame.normals[t.vertex(1)] * u + frame.normals[t.vertex(2)] * v);
   if (is_zero(n)) return geometric;
   return dot(n, geometric) < 0 ? -n : n;
 }
 
 Vec3 vertex_color(const Scene& scene, const Triangle& t, float w, float u, float v) {
   auto at = [&](int i) {
-    const Rgba16& c = scene.colors[t.vertex[i]];
+    const Rgba16& c = scene.colors[t.vertex(i)];
     return Vec3{static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b)} * (1.0f / 65535.0f);
   };
   return at(0) * w + at(1) * u + at(2) * v;
@@ -38,8 +38,8 @@ template <EffectMask mask>
 void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   const Scene& scene = *frame.scene;
   const Triangle& t = scene.triangles[hit.triangle];
-  const Material& m = scene.materials[t.material];
-  const Vec3 &a = frame.positions[t.vertex[0]], &b = frame.positions[t.vertex[1]], &c = frame.positions[t.vertex[2]];
+  const Material& m = scene.materials[t.material()];
+  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
   float u = hit.u, v = hit.v, w = 1 - u - v;
   s->material = &m;
   s->hit = hit;
@@ -113,9 +113,9 @@ Vec3 curved_origin(const FrameData& frame, const Surface& s) {
     float weight[3] = {1 - s.hit.u - s.hit.v, s.hit.u, s.hit.v};
     Vec3 lift = {0, 0, 0};
     for (int i = 0; i < 3; ++i) {
-      Vec3 n = frame.normals[t.vertex[i]];
+      Vec3 n = frame.normals[t.vertex(i)];
       if (dot(n, s.normal) < 0) n = -n;
-      float below = dot(s.point - frame.positions[t.vertex[i]], n);
+      float below = dot(s.point - frame.positions[t.vertex(i)], n);
       if (below < 0) lift += n * (-below * weight[i]);
     }
     moved.point = s.point + lift;

@@ -62,7 +62,7 @@ float hit_alpha(const Scene& scene, const Material& material, std::uint32_t tria
     alpha *= sample_texture(scene, material.diffuse_texture, hit_uv(scene, triangle, u, v), filter).alpha;
   if (scene.colors.count) {
     const Triangle& t = scene.triangles[triangle];
-    float a = scene.colors[t.vertex[0]].a, b = scene.colors[t.vertex[1]].a, c = scene.colors[t.vertex[2]].a;
+    float a = scene.colors[t.vertex(0)].a, b = scene.colors[t.vertex(1)].a, c = scene.colors[t.vertex(2)].a;
     alpha *= ((1 - u - v) * a + u * b + v * c) * (1.0f / 65535.0f);
   }
   return alpha;

@@ -17,7 +17,7 @@ Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureF
 // uv of a hit, interpolated from its triangle.
 inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v) {
   const Triangle& t = scene.triangles[triangle];
-  Vec2 a = scene.uvs[t.vertex[0]], b = scene.uvs[t.vertex[1]], c = scene.uvs[t.vertex[2]];
+  Vec2 a = scene.uvs[t.vertex(0)], b = scene.uvs[t.vertex(1)], c = scene.uvs[t.vertex(2)];
   float w = 1 - u - v;
   return {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
 }

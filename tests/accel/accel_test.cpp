@@ -19,7 +19,7 @@ Ray ray_about(Rng* rng, const Mesh& mesh, const Box& bounds) {
   Vec3 target = middle + random_vec3(rng, size * 0.6f);
   if (!mesh.triangles.empty() && next_u32(rng) % 4 != 0) {
     const Triangle& t = mesh.triangles[next_u32(rng) % mesh.triangles.size()];
-    Vec3 a = mesh.positions[t.vertex[0]], b = mesh.positions[t.vertex[1]];
+    Vec3 a = mesh.positions[t.vertex(0)], b = mesh.positions[t.vertex(1)];
     target = next_u32(rng) % 2 ? a : a + (b - a) * next_float(rng);
     if (next_u32(rng) % 8 == 0) origin = a;
     if (next_u32(rng) % 4 == 0) {
@@ -93,7 +93,7 @@ TEST_CASE("accel_ties_go_to_the_smallest_id") {
       std::uint32_t least = kNoTriangle;
       for (std::uint32_t t = 200; t-- > 0;) {
         Mesh one;
-        for (std::uint32_t v : mesh.triangles[t].vertex) one.positions.push_back(mesh.positions[v]);
+        for (std::uint32_t v : mesh.triangles[t].vertices()) one.positions.push_back(mesh.positions[v]);
         float s = one.positions[1].x;
         if (origin.y >= -s && origin.y <= s - 2 * std::fabs(origin.x)) least = t;
       }
@@ -136,8 +136,8 @@ TEST_CASE("accel_nearest_distance_is_a_tight_lower_bound") {
         for (const Triangle& t : mesh.triangles) {
           if (!is_hittable(world->accel.positions, t)) continue;
           double u = next_double(&rng), v = (1 - u) * next_double(&rng);
-          Vec3d a = to_double(mesh.positions[t.vertex[0]]), b = to_double(mesh.positions[t.vertex[1]]),
-                c = to_double(mesh.positions[t.vertex[2]]);
+          Vec3d a = to_double(mesh.positions[t.vertex(0)]), b = to_double(mesh.positions[t.vertex(1)]),
+                c = to_double(mesh.positions[t.vertex(2)]);
           wrong += bound > length(a * (1 - u - v) + b * u + c * v - to_double(p));
           wrong += bound > length(a - to_double(p));
         }

@@ -101,8 +101,8 @@ TEST_CASE("bvh_separates_clusters_that_lie_apart") {
     Mesh other = soup("", 100 * k, 1, 0.1f, 124 + static_cast<std::uint64_t>(k));
     for (const Triangle& t : other.triangles) {
       Vec3 shift = {k % 2 ? 50.0f : 0.0f, k % 3 ? 70.0f * static_cast<float>(k) : 0.0f, 90};
-      add_triangle(&all, other.positions[t.vertex[0]] + shift, other.positions[t.vertex[1]] + shift,
-                   other.positions[t.vertex[2]] + shift);
+      add_triangle(&all, other.positions[t.vertex(0)] + shift, other.positions[t.vertex(1)] + shift,
+                   other.positions[t.vertex(2)] + shift);
     }
   }
   TraceStats few, many;

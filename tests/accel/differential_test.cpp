@@ -26,7 +26,7 @@ Vec3 random_origin(Rng* rng, const Mesh& mesh, const Vec3& middle, float size) {
   if (kind == 2) return middle + normalize(random_vec3(rng, 1)) * std::fmin(40 * size, 2 * kCoordinateMax);
   if (kind < 5) return middle + random_vec3(rng, 0.6f * size);
   const Triangle& t = mesh.triangles[next_u32(rng) % mesh.triangles.size()];
-  Vec3 a = mesh.positions[t.vertex[0]], b = mesh.positions[t.vertex[1]], c = mesh.positions[t.vertex[2]];
+  Vec3 a = mesh.positions[t.vertex(0)], b = mesh.positions[t.vertex(1)], c = mesh.positions[t.vertex(2)];
   return kind < 7 ? min(min(a, b), c) * 0.5f + max(max(a, b), c) * 0.5f : a;
 }
 
@@ -42,7 +42,7 @@ Vec3 random_direction(Rng* rng, const Mesh& mesh, const Vec3& origin, const Vec3
   }
   if (kind < 3 || mesh.triangles.empty()) return middle + random_vec3(rng, 0.6f * size) - origin;
   const Triangle& t = mesh.triangles[next_u32(rng) % mesh.triangles.size()];
-  Vec3 a = mesh.positions[t.vertex[0]], b = mesh.positions[t.vertex[1]];
+  Vec3 a = mesh.positions[t.vertex(0)], b = mesh.positions[t.vertex(1)];
   return (kind < 5 ? a : a + (b - a) * next_float(rng)) - origin;
 }
 

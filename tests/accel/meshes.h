@@ -32,7 +32,7 @@ inline std::uint32_t add_vertex(Mesh* mesh, const Vec3& p) {
 inline void add_triangle(Mesh* mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
   std::uint32_t first = add_vertex(mesh, a);
   add_vertex(mesh, b), add_vertex(mesh, c);
-  mesh->triangles.push_back({{first, first + 1, first + 2}, 0});
+  mesh->triangles.emplace_back(first, first + 1, first + 2, 0);
 }
 
 inline Mesh soup(const char* name, int count, float spread, float size, std::uint64_t seed) {
@@ -131,7 +131,7 @@ inline Mesh jittered_sphere(int level, float radius, const Vec3& center, float j
   Rng rng = make_rng(seed);
   for (const Vec3& p : points)
     add_vertex(&mesh, center + normalize(p) * (radius * (1 + between(&rng, -jitter, jitter))));
-  for (const auto& f : faces) mesh.triangles.push_back({{f[0], f[1], f[2]}, 0});
+  for (const auto& f : faces) mesh.triangles.emplace_back(f[0], f[1], f[2], 0);
   return mesh;
 }
 
@@ -153,7 +153,7 @@ inline Mesh lattice_box(int n) {
         for (int j = 0; j < n; ++j) {
           std::uint32_t a = vertex(axis, side, i, j), b = vertex(axis, side, i + 1, j),
                         c = vertex(axis, side, i + 1, j + 1), d = vertex(axis, side, i, j + 1);
-          mesh.triangles.push_back({{a, b, c}, 0}), mesh.triangles.push_back({{a, c, d}, 0});
+          mesh.triangles.emplace_back(a, b, c, 0), mesh.triangles.emplace_back(a, c, d, 0);
         }
   return mesh;
 }

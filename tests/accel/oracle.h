@@ -60,8 +60,8 @@ inline bool oracle_agrees(const World& world, const Ray& ray, const Hit& found, 
   for (std::uint32_t i = 0; i < world.triangles.size(); ++i) {
     const Triangle& triangle = world.triangles[i];
     if (!is_hittable(world.accel.positions, triangle)) continue;
-    OracleHit hit = oracle_triangle(ray, world.positions[triangle.vertex[0]], world.positions[triangle.vertex[1]],
-                                    world.positions[triangle.vertex[2]], ulps);
+    OracleHit hit = oracle_triangle(ray, world.positions[triangle.vertex(0)], world.positions[triangle.vertex(1)],
+                                    world.positions[triangle.vertex(2)], ulps);
     if (hit.verdict == Verdict::miss) continue;
     double margin = hit.t_error + 4 * kFloatUlp * std::fabs(hit.t);
     if (!std::isfinite(hit.t + margin)) {  // the ray runs within the plane: it may meet the triangle anywhere

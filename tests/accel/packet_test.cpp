@@ -19,7 +19,7 @@ RayPacket packet_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spre
   for (std::uint32_t i = 0; i < packet.count; ++i) {
     Vec3 aim = target + random_vec3(rng, size * spread);
     if (!mesh.triangles.empty() && next_u32(rng) % 4 == 0)
-      aim = mesh.positions[mesh.triangles[next_u32(rng) % mesh.triangles.size()].vertex[next_u32(rng) % 3]];
+      aim = mesh.positions[mesh.triangles[next_u32(rng) % mesh.triangles.size()].vertex(next_u32(rng) % 3)];
     Vec3 direction = next_u32(rng) % 64 ? aim - packet.origin : Vec3{0, 0, 0};
     for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
   }

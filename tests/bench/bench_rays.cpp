@@ -18,7 +18,7 @@ struct Start {
 bool start_at(const BenchScene& bench, const Ray& ray, const Hit& hit, Start* start) {
   const Scene& scene = bench.scene();
   const Triangle& t = scene.triangles[hit.triangle];
-  Vec3 a = scene.positions[t.vertex[0]], b = scene.positions[t.vertex[1]], c = scene.positions[t.vertex[2]];
+  Vec3 a = scene.positions[t.vertex(0)], b = scene.positions[t.vertex(1)], c = scene.positions[t.vertex(2)];
   Vec3 normal = normalize(cross(b - a, c - a));
   if (is_zero(normal)) return false;
   start->normal = dot(normal, ray.direction) > 0 ? -normal : normal;

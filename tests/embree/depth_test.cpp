@@ -30,7 +30,7 @@ struct EmbreeCaster {
     auto* indices = static_cast<unsigned*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, s.triangles.count));
     for (std::uint32_t i = 0; i < s.triangles.count; ++i)
-      for (std::uint32_t k = 0; k < 3; ++k) indices[3 * i + k] = s.triangles[i].vertex[k];
+      for (std::uint32_t k = 0; k < 3; ++k) indices[3 * i + k] = s.triangles[i].vertex(k);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);

@@ -10,7 +10,7 @@ namespace {
 
 // A point of an edge of triangle i, in float as a user would compute it; a corner where `corner`.
 Vec3 edge_point(const Mesh& mesh, std::uint32_t i, int side, float s, bool corner) {
-  Vec3 a = mesh.positions[mesh.triangles[i].vertex[side]], b = mesh.positions[mesh.triangles[i].vertex[(side + 1) % 3]];
+  Vec3 a = mesh.positions[mesh.triangles[i].vertex(side)], b = mesh.positions[mesh.triangles[i].vertex((side + 1) % 3)];
   return corner ? a : a + (b - a) * s;
 }
 
@@ -117,12 +117,12 @@ struct Crossings {
 };
 
 bool faces(const Mesh& mesh, std::uint32_t i, const Vec3& direction) {
-  Vec3 a = mesh.positions[mesh.triangles[i].vertex[0]], b = mesh.positions[mesh.triangles[i].vertex[1]];
-  return dot(cross(b - a, mesh.positions[mesh.triangles[i].vertex[2]] - a), direction) < 0;
+  Vec3 a = mesh.positions[mesh.triangles[i].vertex(0)], b = mesh.positions[mesh.triangles[i].vertex(1)];
+  return dot(cross(b - a, mesh.positions[mesh.triangles[i].vertex(2)] - a), direction) < 0;
 }
 bool share_vertex(const Triangle& a, const Triangle& b) {
-  for (std::uint32_t v : a.vertex)
-    for (std::uint32_t w : b.vertex)
+  for (std::uint32_t v : a.vertices())
+    for (std::uint32_t w : b.vertices())
       if (v == w) return true;
   return false;
 }

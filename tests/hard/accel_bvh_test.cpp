@@ -59,7 +59,7 @@ int wrong_answers(const Variant& variant, const World& world, const Mesh& mesh, 
     Vec3 f = {next_float(&rng), next_float(&rng), next_float(&rng)};
     Vec3 origin = low + size * f + random_vec3(&rng, max_component(size)), target = origin + random_vec3(&rng, 1);
     const Triangle& t = mesh.triangles[next_u32(&rng) % mesh.triangles.size()];
-    if (i % 4) target = mesh.positions[t.vertex[i % 3]] * 0.5f + mesh.positions[t.vertex[(i + 1) % 3]] * 0.5f;
+    if (i % 4) target = mesh.positions[t.vertex(i % 3)] * 0.5f + mesh.positions[t.vertex((i + 1) % 3)] * 0.5f;
     Ray ray = {origin, target - origin, kInfinity};
     compare(variant, world, *oracle, ray, &tally);
   }
@@ -78,12 +78,13 @@ TEST_CASE("hard_08_spoilt_triangles_are_left_out_and_the_rest_agrees_with_brute_
     for (Vec3& p : mesh.positions) p = p * scale;
     good = mesh;
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
-      good.triangles[i].vertex[2] = good.triangles[i].vertex[1] = good.triangles[i].vertex[0];
-      std::uint32_t vertex = mesh.triangles[i].vertex[i / 3 % 3];
+      for (std::uint32_t corner : {1u, 2u}) good.triangles[i].set_vertex(corner, good.triangles[i].vertex(0));
+      std::uint32_t vertex = mesh.triangles[i].vertex(i / 3 % 3);
       if (i % 2) {
         mesh.positions[vertex][static_cast<int>(i / 9 % 3)] = spoilt[i % 5];
       } else {
-        mesh.triangles[i].vertex[1] = i % 4 ? 0xFFFFFFFFu : static_cast<std::uint32_t>(mesh.positions.size());
+        std::uint32_t first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.triangles[i].set_vertex(1, i % 4 ? kVertexCountMax - 1 : first);
       }
     }
     auto oracle = make_world(good, &kBruteAccel);

@@ -88,7 +88,7 @@ TEST_CASE("assimp_collada_transforms_materials_lights_and_cameras") {
   const Scene& s = imported.scene;
   REQUIRE(s.triangles.count == 1);
   CHECK(bounds(s).low == Vec3{5, 6, 7});
-  const Material& m = s.materials[s.triangles[0].material];
+  const Material& m = s.materials[s.triangles[0].material()];
   CHECK(m.diffuse == Vec3{0.5f, 0.25f, 0.125f});
   CHECK(m.specular == Vec3{0.25f, 0.25f, 0.25f});
   CHECK(m.exponent == 20);

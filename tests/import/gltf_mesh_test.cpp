@@ -18,7 +18,7 @@ std::string error_of(const std::string& text) {
 
 Vec3 face_normal(const Scene& s, std::uint32_t triangle) {
   const Triangle& t = s.triangles[triangle];
-  Vec3 a = s.positions[t.vertex[0]], b = s.positions[t.vertex[1]], c = s.positions[t.vertex[2]];
+  Vec3 a = s.positions[t.vertex(0)], b = s.positions[t.vertex(1)], c = s.positions[t.vertex(2)];
   return normalize(cross(b - a, c - a));
 }
 
@@ -150,9 +150,9 @@ TEST_CASE("gltf_instances_are_placed_under_their_node") {
   ImportedScene imported = load_text(w.gltf(mesh_document("{\"attributes\":{\"POSITION\":0}}", node)));
   const Scene& s = imported.scene;
   REQUIRE(s.triangles.count == 3);
-  CHECK(s.positions[s.triangles[1].vertex[0]] == Vec3{110, 0, 0});
+  CHECK(s.positions[s.triangles[1].vertex(0)] == Vec3{110, 0, 0});
   CHECK(bounds(s).high.x == 112);
-  CHECK(s.positions[s.triangles[2].vertex[0]] == Vec3{100, 0, 5});
+  CHECK(s.positions[s.triangles[2].vertex(0)] == Vec3{100, 0, 5});
   CHECK(surface_area(s) == doctest::Approx(0.5 + 2 + 0.5));
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("gltf_samples_scenes_instances_and_negative_scales") {
     const Scene& s = imported.scene;
     std::uint32_t against = 0;
     for (std::uint32_t t = 0; t < s.triangles.count; ++t)
-      against += dot(face_normal(s, t), s.normals[s.triangles[t].vertex[0]]) < 0;
+      against += dot(face_normal(s, t), s.normals[s.triangles[t].vertex(0)]) < 0;
     CHECK(against == 0);
   }
 }

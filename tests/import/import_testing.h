@@ -60,14 +60,14 @@ struct TemporaryFolder {
 inline Box bounds(const Scene& scene) {
   Box box = empty_box();
   for (const Triangle& t : scene.triangles)
-    for (std::uint32_t v : t.vertex) box = merge(box, scene.positions[v]);
+    for (std::uint32_t v : t.vertices()) box = merge(box, scene.positions[v]);
   return box;
 }
 
 inline double surface_area(const Scene& scene) {
   double area = 0;
   for (const Triangle& t : scene.triangles) {
-    Vec3 a = scene.positions[t.vertex[0]], b = scene.positions[t.vertex[1]], c = scene.positions[t.vertex[2]];
+    Vec3 a = scene.positions[t.vertex(0)], b = scene.positions[t.vertex(1)], c = scene.positions[t.vertex(2)];
     area += 0.5 * static_cast<double>(length(cross(b - a, c - a)));
   }
   return area;

@@ -83,7 +83,7 @@ TEST_CASE("obj_textures_and_their_options") {
   CHECK(imported.warning == "not used: bump and normal maps");
   // Corner (0, 0) of OBJ: u = 0.25, v = 0.125 upward, so 0.875 downward.
   const TextureUse& use = s.materials[0].diffuse_texture;
-  Vec2 uv = s.uvs[s.triangles[0].vertex[0]];
+  Vec2 uv = s.uvs[s.triangles[0].vertex(0)];
   CHECK(uv.y == 1);
   CHECK(use.m[0][0] * uv.x + use.m[0][1] * uv.y + use.m[0][2] == 0.25f);
   CHECK(use.m[1][0] * uv.x + use.m[1][1] * uv.y + use.m[1][2] == doctest::Approx(0.875));

@@ -101,7 +101,7 @@ TEST_CASE("import_samples_have_their_triangles_and_sound_arrays") {
     CHECK((s.colors.empty() || s.colors.count == n));
     bool indices_fit = true, finite = true;
     for (const Triangle& t : s.triangles) {
-      indices_fit &= t.vertex[0] < n && t.vertex[1] < n && t.vertex[2] < n && t.material < s.materials.count;
+      indices_fit &= t.vertex(0) < n && t.vertex(1) < n && t.vertex(2) < n && t.material() < s.materials.count;
     }
     for (const Vec3& p : s.positions) finite &= is_finite(p);
     for (const Vec3& p : s.normals) finite &= is_finite(p);

@@ -55,7 +55,7 @@ TEST_CASE("plan_lights_keep_the_power_of_an_area_light") {
       if (shape == 3) {
         add_sphere(s.get(), {1, 1, 1}, 0.5f, 8, 6, m);
         for (const Triangle& t : s->triangles) {
-          Vec3 a = s->positions[t.vertex[0]], b = s->positions[t.vertex[1]], c = s->positions[t.vertex[2]];
+          Vec3 a = s->positions[t.vertex(0)], b = s->positions[t.vertex(1)], c = s->positions[t.vertex(2)];
           area += 0.5 * double(length(cross(b - a, c - a)));
         }
       }

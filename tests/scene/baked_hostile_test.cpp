@@ -232,8 +232,8 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(baked_open(file.data(), 40, &scene).message, "cut short after 40 bytes"));
   CHECK(mentions(baked_open(file.data(), file.size() - 64, &scene).message, "it should be"));
   CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "multiple of 64"));
-  put_u32(file, kVersionAt, 2);
-  CHECK(open_error(file) == "made by version 2, this program reads version 1: bake it again");
+  put_u32(file, kVersionAt, 1);
+  CHECK(open_error(file) == "made by version 1, this program reads version 2: bake it again");
   put_u32(file, kVersionAt, kBakedVersion);
   file.data()[file.size() - 1] ^= 1;
   CHECK(mentions(open_error(file), "checksum"));

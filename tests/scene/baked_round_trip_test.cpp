@@ -92,9 +92,9 @@ TEST_CASE("scene_hash_depends_on_content_alone") {
   make_full_scene(8, 15, 6, &a);
   make_full_scene(8, 15, 6, &b);
   CHECK(scene_hash(a.scene) == scene_hash(b.scene));
-  b.triangles[5].material ^= 1;
+  b.triangles[5].set_material(b.triangles[5].material() ^ 1);
   CHECK(scene_hash(a.scene) != scene_hash(b.scene));
-  b.triangles[5].material ^= 1;
+  b.triangles[5].set_material(b.triangles[5].material() ^ 1);
   b.accel[36] ^= 1;
   CHECK(scene_hash(a.scene) != scene_hash(b.scene));
   b.accel[36] ^= 1;

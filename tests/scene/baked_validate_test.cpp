@@ -74,9 +74,9 @@ TEST_CASE("hard_08_vertices_and_indices_out_of_range_are_refused") {
   }
   accepts([](FullScene* f) { f->positions[0] = {1e18f, -1e18f, 1e-45f}; });
   for (int corner = 0; corner < 3; ++corner)
-    refuses("triangles[5]", [=](FullScene* f) { f->triangles[5].vertex[corner] = 14; });
-  refuses("triangles[0]", [](FullScene* f) { f->triangles[0].vertex[1] = kNone; });
-  refuses("triangles[2]", [](FullScene* f) { f->triangles[2].material = 2; });
+    refuses("triangles[5]", [=](FullScene* f) { f->triangles[5].set_vertex(corner, 14); });
+  refuses("triangles[0]", [](FullScene* f) { f->triangles[0].set_vertex(1, kVertexCountMax - 1); });
+  refuses("triangles[2]", [](FullScene* f) { f->triangles[2].set_material(2); });
 }
 
 // Goal: HARDCASES row 27: transforms that flatten or burst are refused, naming the node. Method: determinants 0, below

@@ -21,7 +21,7 @@ std::map<std::pair<Point, Point>, int> open_edges(const Scene& scene) {
   std::map<std::pair<Point, Point>, int> edges;
   for (const Triangle& t : scene.triangles) {
     for (int i = 0; i < 3; ++i) {
-      Point a = point(scene.positions[t.vertex[i]]), b = point(scene.positions[t.vertex[(i + 1) % 3]]);
+      Point a = point(scene.positions[t.vertex(i)]), b = point(scene.positions[t.vertex((i + 1) % 3)]);
       if (a == b) continue;
       if (a < b)
         ++edges[{a, b}];
@@ -34,8 +34,8 @@ std::map<std::pair<Point, Point>, int> open_edges(const Scene& scene) {
 }
 
 Vec3 area_vector(const Scene& scene, const Triangle& t) {
-  Vec3 a = scene.positions[t.vertex[0]];
-  return cross(scene.positions[t.vertex[1]] - a, scene.positions[t.vertex[2]] - a);
+  Vec3 a = scene.positions[t.vertex(0)];
+  return cross(scene.positions[t.vertex(1)] - a, scene.positions[t.vertex(2)] - a);
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
     for (const Triangle& t : scene.triangles) {
       Vec3 area = area_vector(scene, t);
       degenerate += is_zero(area);
-      for (std::uint32_t v : t.vertex) {
+      for (std::uint32_t v : t.vertices()) {
         if (dot(area, scene.normals[v]) < 0) {
           ++behind;
           break;

@@ -25,11 +25,11 @@ std::uint32_t material_seen(const Scene& scene, double x, double y) {
   double nearest = 1e300;
   std::uint32_t seen = kNone;
   for (const Triangle& t : scene.triangles) {
-    Vec3d a = wide(scene.positions[t.vertex[0]]);
-    Vec3d ab = wide(scene.positions[t.vertex[1]]) - a, ac = wide(scene.positions[t.vertex[2]]) - a;
+    Vec3d a = wide(scene.positions[t.vertex(0)]);
+    Vec3d ab = wide(scene.positions[t.vertex(1)]) - a, ac = wide(scene.positions[t.vertex(2)]) - a;
     Vec3d p = cross(d, ac), s = eye - a, q = cross(s, ab);
     double det = dot(ab, p), u = dot(s, p) / det, v = dot(d, q) / det, along = dot(ac, q) / det;
-    if (u >= 0 && v >= 0 && u + v <= 1 && along > 0 && along < nearest) nearest = along, seen = t.material;
+    if (u >= 0 && v >= 0 && u + v <= 1 && along > 0 && along < nearest) nearest = along, seen = t.material();
   }
   return seen;
 }
@@ -45,7 +45,10 @@ std::uint32_t geometry_crc(const Scene& scene) {
   std::uint32_t still = scene.moving_meshes.empty() ? scene.positions.count : scene.moving_meshes[0].vertex_begin;
   std::uint32_t crc = add_crc(0, Array<const Vec3>{scene.positions.data, still});
   crc = add_crc(crc, Array<const Vec3>{scene.normals.data, still});
-  crc = add_crc(crc, scene.triangles);
+  for (const Triangle& t : scene.triangles) {
+    const std::uint32_t values[4] = {t.vertex(0), t.vertex(1), t.vertex(2), t.material()};
+    crc = add_crc(crc, Array<const std::uint32_t>{values, 4});
+  }
   crc = add_crc(crc, scene.key_values);
   crc = add_crc(crc, scene.rest_positions);
   return add_crc(crc, scene.skin_weights);
@@ -120,7 +123,7 @@ TEST_CASE("builtin_materials_are_all_used_and_something_shines") {
     auto built = build_builtin(list[i]);
     const Scene& scene = built->scene;
     std::vector<int> uses(scene.materials.count);
-    for (const Triangle& t : scene.triangles) ++uses[t.material];
+    for (const Triangle& t : scene.triangles) ++uses[t.material()];
     for (std::uint32_t m = 0; m < scene.materials.count; ++m) {
       CAPTURE(m);
       CHECK(uses[m] > 0);

@@ -25,7 +25,7 @@ void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_c
   }
   for (std::uint32_t i = 0; i < triangle_count; ++i)
     f->triangles.push_back(
-        {{next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, next_u32(rng) % vertex_count}, i % 2});
+        {next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, i % 2});
   Material plain, rich;
   rich.specular = color(rng), rich.mirror = color(rng), rich.transmission = color(rng),
   rich.absorption = color(rng) * 9.0f;

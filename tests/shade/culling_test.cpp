@@ -19,7 +19,7 @@ TEST_CASE("back_face_culling_shows_what_is_behind_the_back_of_a_one_sided_surfac
       g.materials = {near, far};
       g.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {-9, -9, -1}, {9, -9, -1}, {0, 9, -1}};
       std::uint32_t second = from_front ? 1 : 2, third = from_front ? 2 : 1;
-      g.triangles = {{{0, second, third}, 0}, {{3, 4, 5}, 1}};
+      g.triangles = {{0, second, third, 0}, {3, 4, 5, 1}};
       Camera camera;
       camera.eye = {0, 0, 3};
       camera.target = {0, 0, 0};
@@ -53,7 +53,7 @@ TEST_CASE("back_face_culling_shows_the_front_of_surfaces_back_to_back") {
       down.diffuse = {0, 0, 1};
       g.materials = {up, down};
       g.positions = {{-1, -1, 0.5f}, {1, -1, 0.5f}, {0, 1, 0.5f}};
-      g.triangles = {{{0, 1, 2}, 0}, {{0, 2, 1}, 1}};
+      g.triangles = {{0, 1, 2, 0}, {0, 2, 1, 1}};
       if (swapped) std::swap(g.triangles[0], g.triangles[1]);
       aim(&g, {0.1f, 0, 0.5f + 3 * side}, {0.1f, 0, 0.5f}, 40);
       g.bind();

@@ -24,7 +24,7 @@ Vec3 random_direction(Rng* rng) {
 std::unique_ptr<ScaledScene> closed_cornell(const Scene& cornell, float scale) {
   auto room = scale_scene(cornell, scale);
   constexpr std::uint32_t kFront[3][3] = {{12, 0, 4}, {12, 4, 5}, {12, 5, 1}};  // floor, ceiling, the floor's middle
-  for (const auto& f : kFront) room->triangles.push_back({{f[0], f[1], f[2]}, 0});
+  for (const auto& f : kFront) room->triangles.push_back({f[0], f[1], f[2], 0});
   room->bind();
   return room;
 }
@@ -50,8 +50,8 @@ int rays_that_escape(const Room& room, Rng* rng, int ray_count) {
       std::uint32_t wall = next_u32(rng) % (room.first_walls + room.last_walls);
       if (wall >= room.first_walls) wall = r.scene.triangles.count - 1 - (wall - room.first_walls);
       const Triangle& triangle = r.scene.triangles[wall];
-      Vec3 a = r.scene.positions[triangle.vertex[i / kPath % 3]],
-           b = r.scene.positions[triangle.vertex[(i / kPath + 1) % 3]];
+      Vec3 a = r.scene.positions[triangle.vertex(i / kPath % 3)],
+           b = r.scene.positions[triangle.vertex((i / kPath + 1) % 3)];
       if (i % (2 * kPath) == 0) to = i % (8 * kPath) == 0 ? a : a + (b - a) * next_float(rng);
       ray = {from, normalize(to - from), __builtin_inff()};
     }

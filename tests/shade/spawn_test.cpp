@@ -40,8 +40,8 @@ int self_hits(GeneratedScene* s, int spawns) {
     if (!make_sheared_ray({safe_origin(surface, side), outgoing, __builtin_inff()}, &sheared)) return spawns;
     const Triangle& triangle = frame.scene->triangles[hit.triangle];
     Hit again;
-    hits += intersect_triangle(sheared, frame.positions[triangle.vertex[0]], frame.positions[triangle.vertex[1]],
-                               frame.positions[triangle.vertex[2]], &again) &&
+    hits += intersect_triangle(sheared, frame.positions[triangle.vertex(0)], frame.positions[triangle.vertex(1)],
+                               frame.positions[triangle.vertex(2)], &again) &&
             again.t > 0;
   }
   return hits;
@@ -57,7 +57,7 @@ int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
   float size = max_component(extent(r.accel.bounds));
   for (int i = 0; i < spawns; ++i) {
     const Triangle& triangle = r.scene.triangles[next_u32(&rng) % r.scene.triangles.count];
-    Vec3 a = r.scene.positions[triangle.vertex[0]], b = r.scene.positions[triangle.vertex[1]];
+    Vec3 a = r.scene.positions[triangle.vertex(0)], b = r.scene.positions[triangle.vertex(1)];
     float along = i % 6 == 0 ? 0.0f : next_float(&rng);
     Vec3 target = i % 3 == 0 ? a + (b - a) * along : center + random_vec3(&rng) * (0.3f * size);
     Vec3 origin = center + normalize(random_vec3(&rng)) * (2 * size);
@@ -104,8 +104,8 @@ TEST_CASE("hard_10_geometric_normal_is_within_16_ulp") {
   std::uint64_t tried = 0, wrong = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Triangle& triangle = s.triangles[i];
-    Vec3d a = to_double(s.positions[triangle.vertex[0]]), b = to_double(s.positions[triangle.vertex[1]]),
-          c = to_double(s.positions[triangle.vertex[2]]), n = normalize(cross(b - a, c - a));
+    Vec3d a = to_double(s.positions[triangle.vertex(0)]), b = to_double(s.positions[triangle.vertex(1)]),
+          c = to_double(s.positions[triangle.vertex(2)]), n = normalize(cross(b - a, c - a));
     if (is_zero(n)) continue;
     for (const Vec3& incoming : {Vec3{0.3f, -0.5f, -0.8f}, Vec3{-0.3f, 0.5f, 0.8f}}) {
       if (std::fabs(dot(n, to_double(incoming))) < 1e-5) continue;  // either side

@@ -44,7 +44,7 @@ std::uint32_t add_vertex(GeneratedScene* s, const Vec3& position, const Vec3& no
 }
 
 void add_triangle(GeneratedScene* s, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material) {
-  s->triangles.push_back({{a, b, c}, material});
+  s->triangles.emplace_back(a, b, c, material);
 }
 
 void add_quad(GeneratedScene* s, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::uint32_t material) {

@@ -20,9 +20,9 @@ void build_furnace(Arena* arena, Scene* scene) {
   add_box(&mesh, {-1, -1, -1}, {1, 1, 1});
   for (Triangle& t : mesh.triangles) {  // the room is seen from inside
     if (&t == mesh.triangles.data + mesh.triangle_count) break;
-    std::uint32_t swap = t.vertex[1];
-    t.vertex[1] = t.vertex[2];
-    t.vertex[2] = swap;
+    std::uint32_t swap = t.vertex(1);
+    t.set_vertex(1, t.vertex(2));
+    t.set_vertex(2, swap);
   }
   Quaternion tilt = {.2f, .4f, .1f, .88881944f};
   add_box(&mesh, {-.3f, -.3f, -.3f}, {.3f, .3f, .3f}, compose({.1f, -.2f, -.2f}, tilt, {1, 1, 1}));

@@ -30,7 +30,7 @@ std::uint32_t add_vertex(MeshWriter* mesh, const Vec3& position, const Vec3& nor
 
 void add_triangle(MeshWriter* mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   CHECK_LT(mesh->triangle_count, mesh->triangles.count);
-  mesh->triangles[mesh->triangle_count++] = {{a, b, c}, mesh->material};
+  mesh->triangles[mesh->triangle_count++] = Triangle(a, b, c, mesh->material);
 }
 
 void add_quad(MeshWriter* mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -111,9 +111,9 @@ void smooth_normals(MeshWriter* mesh, std::uint32_t first_vertex, std::uint32_t 
   for (std::uint32_t v = first_vertex; v < mesh->vertex_count; ++v) mesh->normals[v] = {0, 0, 0};
   for (std::uint32_t i = first_triangle; i < mesh->triangle_count; ++i) {
     const Triangle& t = mesh->triangles[i];
-    Vec3 a = mesh->positions[t.vertex[0]], b = mesh->positions[t.vertex[1]], c = mesh->positions[t.vertex[2]];
+    Vec3 a = mesh->positions[t.vertex(0)], b = mesh->positions[t.vertex(1)], c = mesh->positions[t.vertex(2)];
     Vec3 area = cross(b - a, c - a);
-    for (std::uint32_t v : t.vertex) mesh->normals[v] += area;
+    for (std::uint32_t v : t.vertices()) mesh->normals[v] += area;
   }
   for (std::uint32_t v = first_vertex; v < mesh->vertex_count; ++v) mesh->normals[v] = normalize(mesh->normals[v]);
 }

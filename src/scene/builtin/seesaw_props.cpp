@@ -88,7 +88,8 @@ void add_tent(MeshWriter* mesh) {
   std::uint32_t curb = mesh->triangle_count;
   mesh->material = kCurbRed;
   add_lathe(mesh, {0, 0, 0}, {kCurb, kCurbPoints}, kCurbColumns);
-  for (std::uint32_t i = curb + 2 * kCurbColumns; i < curb + 6 * kCurbColumns; ++i) mesh->triangles[i].material = kGold;
+  for (std::uint32_t i = curb + 2 * kCurbColumns; i < curb + 6 * kCurbColumns; ++i)
+    mesh->triangles[i].set_material(kGold);
   mesh->material = kPoleWood;
   add_lathe(mesh, {-6.4f, 0, -5}, {kPole, 2}, kPoleColumns);
   add_lathe(mesh, {6.4f, 0, -5}, {kPole, 2}, kPoleColumns);
@@ -96,7 +97,7 @@ void add_tent(MeshWriter* mesh) {
   mesh->material = kGold;
   add_lathe(mesh, {0, 0, 0}, {kTub, kTubPoints}, kTubColumns);
   for (std::uint32_t i = tub + 4 * kTubColumns; i < tub + 6 * kTubColumns; ++i)
-    mesh->triangles[i].material = (i - tub) / 4 % 2 ? kTentRed : kTentCream;
+    mesh->triangles[i].set_material((i - tub) / 4 % 2 ? kTentRed : kTentCream);
 }
 
 void add_board(MeshWriter* mesh) {
@@ -130,8 +131,8 @@ void add_worm(MeshWriter* mesh) {
   smooth_normals(mesh, first_vertex, first_triangle);
   for (std::uint32_t i = first_triangle; i < mesh->triangle_count; ++i) {  // the belly is in front, below the head
     Triangle* t = &mesh->triangles[i];
-    Vec3 p = mesh->positions[t->vertex[0]];
-    if (p.z > .72f * worm_radius(p.y) && p.y < kWormLength - .7f) t->material = kWormBelly;
+    Vec3 p = mesh->positions[t->vertex(0)];
+    if (p.z > .72f * worm_radius(p.y) && p.y < kWormLength - .7f) t->set_material(kWormBelly);
   }
 
   const Vec3 face = {0, kWormLength - .36f, 0};

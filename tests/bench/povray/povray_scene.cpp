@@ -76,7 +76,7 @@ void write_mesh(std::FILE* file, const Scene& scene) {
   }
   std::fprintf(file, "\n  }\n  face_indices { %u", scene.triangles.count);
   for (const Triangle& t : scene.triangles)
-    std::fprintf(file, ",\n    <%u,%u,%u>,%u", t.vertex[0], t.vertex[1], t.vertex[2], t.material);
+    std::fprintf(file, ",\n    <%u,%u,%u>,%u", t.vertex(0), t.vertex(1), t.vertex(2), t.material());
   std::fprintf(file, "\n  }\n}\n");
 }
 
