@@ -1,0 +1,49 @@
+#include "split/smooth.h"
+
+namespace pocketray {
+namespace {
+
+// Tuned with tests/split/simulation_test.cpp: frames to settle against unrest of the split.
+constexpr double kWeight = 0.25;      // of a new sample in the exponential mean
+constexpr double kNoise = 0.125;      // samples this close to the value do not tell of a change
+constexpr double kOutlierFactor = 2;  // samples further off wait until others confirm them
+constexpr int kRunMax = 3;            // this many on one side are a change, and their mean is the new value
+constexpr double kSampleMin = 1e-30, kSampleMax = 1e30;  // floats hold them and their products with each other's ratios
+
+double clamp(double x) { return x < kSampleMin ? kSampleMin : x > kSampleMax ? kSampleMax : x; }
+
+}  // namespace
+
+void smooth(Smoothed* s, double sample) {
+  if (!(sample >= kSampleMin && sample <= kSampleMax)) return;
+  if (!is_known(*s)) {
+    *s = {static_cast<float>(sample), 0, 0};
+    return;
+  }
+  double value = static_cast<double>(s->value);
+  bool above = sample > value;
+  if (sample >= value * (1 - kNoise) && sample <= value * (1 + kNoise)) {
+    s->run = 0;
+  } else {
+    bool goes_on = above ? s->run > 0 : s->run < 0;
+    int count = goes_on ? (above ? s->run : -s->run) + 1 : 1;
+    double mean = goes_on ? static_cast<double>(s->run_mean) : 0;
+    mean += (sample - mean) / count;
+    s->run_mean = static_cast<float>(mean);
+    s->run = static_cast<std::int8_t>(above ? count : -count);
+    if (count == kRunMax) {
+      *s = {static_cast<float>(clamp(mean)), 0, 0};
+      return;
+    }
+    if (sample > value * kOutlierFactor || sample * kOutlierFactor < value) return;
+  }
+  s->value = static_cast<float>(clamp(value + kWeight * (sample - value)));
+}
+
+void scale(Smoothed* s, double factor) {
+  if (!is_known(*s) || !(factor >= kSampleMin && factor <= kSampleMax)) return;
+  s->value = static_cast<float>(clamp(static_cast<double>(s->value) * factor));
+  s->run_mean = static_cast<float>(clamp(static_cast<double>(s->run_mean) * factor));
+}
+
+}  // namespace pocketray
