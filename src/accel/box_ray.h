@@ -1,11 +1,10 @@
 // A ray against the boxes of four children. Part of the kernels: see bvh_kernels.h.
 //
 // A box must never hide a hit of its triangles. The slab test [Kay & Kajiya 1986] is therefore slackened, as [Ize 2013,
-// JCGT 2(2)] asks, but by more than his 2 ulp of each distance: intersect_triangle() takes a ray for a hit that passes
-// a triangle by up to 4u of the distance along the dominant axis at which the vertices lie (u = 2^-24: shear, two
-// products and a difference), which may be larger than the distance of the hit. With Z the farthest such distance in
-// the scene the errors of the triangle test (6u Z), of the slabs (3u) and of t itself (u) stay below 16u Z for each
-// side of an interval.
+// JCGT 2(2)] asks, but in space: every plane is moved outwards by 16u (|o| + R), with u = 2^-24, o the origin's
+// coordinate along its axis and R the farthest that the scene reaches from the origin along any. That is more than all
+// errors together: t = plane·inverse − offset rounds by 3u (|o| + R), its inverse included; cross_triangle() takes a
+// ray for a hit that passes a triangle by up to 6u R (shear, two products, differences); t itself rounds by u R.
 #pragma once
 #include <limits>
 
@@ -15,72 +14,62 @@ namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
 struct BoxRay {
-  Float4 near_origin[3], far_origin[3], inverse[3];
-  Float4 slack;                               // 32u Z, in units of t
-  std::size_t near_offset[3], far_offset[3];  // in BvhNode::bounds, of the rows in which the ray enters and leaves
-  float slack_t;
+  // t = plane · inverse − offset, along each axis, for the planes by which the ray enters and leaves.
+  Float4 inverse[3], near_offset[3], far_offset[3];
+  std::size_t near_row[3], far_row[3];  // of these planes, in BvhNode::bounds
   int exponent;  // boxes are entered at t · 2^exponent: keeps directions from 1e-45 to 1e38 in range
 };
 
-// One axis of the slabs; `backward` where the ray enters by the high bound.
-inline void set_slab(BoxRay* r, int axis, float near, float far, float inverse, bool backward) {
-  std::size_t low = 4 * static_cast<std::size_t>(axis), high = low + 12;
-  std::size_t swap = (low ^ high) & -static_cast<std::size_t>(backward);
-  r->near_offset[axis] = low ^ swap, r->far_offset[axis] = high ^ swap;
-  r->near_origin[axis] = Float4::splat(near), r->far_origin[axis] = Float4::splat(far);
-  r->inverse[axis] = Float4::splat(inverse);
-}
-
-// For a direction d whose component along kz, the dominant one, is neither tiny nor huge.
-inline void set_slabs(const Vec3& origin, const Vec3& d, int kz, const Box& bounds, BoxRay* r) {
-  float size = std::fabs(d[kz]), o = origin[kz], inverse_size = 1 / size;
-  float reach_low = std::fabs(bounds.low[kz] - o), reach_high = std::fabs(bounds.high[kz] - o);
-  float reach = reach_low > reach_high ? reach_low : reach_high;  // Z
-  // The powers of two below 2^-90 cover denormal rounding; they are relative to nothing, but boxes decide no result.
-  r->slack_t = (reach * 0x1p-19f + 0x1p-100f) * inverse_size;
-  r->slack = Float4::splat(r->slack_t);
-  set_slab(r, 0, origin.x, origin.x, 1 / d.x, d.x < 0);
-  set_slab(r, 1, origin.y, origin.y, 1 / d.y, d.y < 0);
-  set_slab(r, 2, origin.z, origin.z, 1 / d.z, d.z < 0);
-  Vec3 along = abs(d);
-  float parallel = size * 0x1p-40f;
-  if (along.x >= parallel && along.y >= parallel && along.z >= parallel) return;
-  // Parallel to a slab, or as good as: inside a slightly wider slab everywhere or nowhere. No 0·∞ arises.
+// Rows by which a ray of these signs enters (bit 0: d.x < 0 …) and leaves.
+struct SlabRows {
+  std::size_t near[3], far[3];
+};
+constexpr SlabRows slab_rows(int signs) {
+  SlabRows rows = {};
   for (int axis = 0; axis < 3; ++axis) {
-    if (along[axis] >= parallel) continue;
-    float wider = (std::fabs(origin[axis]) + reach) * 0x1p-20f + 0x1p-90f;
-    set_slab(r, axis, origin[axis] + wider, origin[axis] - wider, 0x1p44f * inverse_size, false);
+    std::size_t low = 4 * static_cast<std::size_t>(axis), high = low + 12;
+    bool backward = signs >> axis & 1;
+    rows.near[axis] = backward ? high : low, rows.far[axis] = backward ? low : high;
   }
+  return rows;
 }
+constexpr SlabRows kSlabRows[8] = {slab_rows(0), slab_rows(1), slab_rows(2), slab_rows(3),
+                                   slab_rows(4), slab_rows(5), slab_rows(6), slab_rows(7)};
 
-inline void make_box_ray(const Ray& ray, int kz, const Box& bounds, BoxRay* r) {
-  r->exponent = 0;
-  float size = std::fabs(ray.direction[kz]);
-  if (size >= 0x1p-40f && size <= 0x1p40f) return set_slabs(ray.origin, ray.direction, kz, bounds, r);
-  Vec3 d;
-  std::frexp(size, &r->exponent);
-  for (int axis = 0; axis < 3; ++axis) d[axis] = std::ldexp(ray.direction[axis], -r->exponent);
-  set_slabs(ray.origin, d, kz, bounds, r);
+// `d` is the direction, `size` its greatest component, by amount, in all lanes.
+inline void make_box_ray(Float4 origin, Float4 d, Float4 size, Float4 low, Float4 high, BoxRay* r) {
+  // Parallel to a slab, or as good as: the ray stays inside the moved planes or outside. No 0·∞ arises.
+  Float4 inverse_size = Float4::splat(1) / max(abs(d), size * Float4::splat(0x1p-40f));
+  Float4 inverse = copy_sign(inverse_size, d);
+  Float4 reach = max(abs(low - origin), abs(high - origin));
+  // 2^-100 covers denormal rounding; it is relative to nothing, but boxes decide no result.
+  Float4 slack = (abs(origin) + Float4::splat(highest(reach))) * Float4::splat(0x1p-20f) + Float4::splat(0x1p-100f);
+  Float4 offset = origin * inverse;
+  slack = slack * inverse_size;
+  Float4 near = offset + slack, far = offset - slack;
+  r->inverse[0] = lane<0>(inverse), r->inverse[1] = lane<1>(inverse), r->inverse[2] = lane<2>(inverse);
+  r->near_offset[0] = lane<0>(near), r->near_offset[1] = lane<1>(near), r->near_offset[2] = lane<2>(near);
+  r->far_offset[0] = lane<0>(far), r->far_offset[1] = lane<1>(far), r->far_offset[2] = lane<2>(far);
+  const SlabRows& rows = kSlabRows[signs(d) & 7];
+  for (int axis = 0; axis < 3; ++axis) r->near_row[axis] = rows.near[axis], r->far_row[axis] = rows.far[axis];
 }
 
 // The distance up to which boxes have to be entered for hits up to t.
-inline float box_limit(const BoxRay& ray, float t) {
-  return (ray.exponent == 0 ? t : std::ldexp(t, ray.exponent) + std::numeric_limits<float>::min()) + ray.slack_t;
+inline float box_limit(int exponent, float t) {
+  return __builtin_expect(exponent == 0, 1) ? t : std::ldexp(t, exponent) + std::numeric_limits<float>::min();
 }
 
-// Mask of the children that may hold a hit up to `limit`; `enter`, none below 0, gets where each is entered.
-inline unsigned enter_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, float* enter) {
+// Which children hold no hit up to `limit`; `enter`, none below 0, gets where each is entered.
+inline Mask4 miss_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, Float4* enter) {
   const float* bounds = node.bounds[0];
-  Float4 enter_x = (Float4::load(bounds + ray.near_offset[0]) - ray.near_origin[0]) * ray.inverse[0];
-  Float4 enter_y = (Float4::load(bounds + ray.near_offset[1]) - ray.near_origin[1]) * ray.inverse[1];
-  Float4 enter_z = (Float4::load(bounds + ray.near_offset[2]) - ray.near_origin[2]) * ray.inverse[2];
-  Float4 leave_x = (Float4::load(bounds + ray.far_offset[0]) - ray.far_origin[0]) * ray.inverse[0];
-  Float4 leave_y = (Float4::load(bounds + ray.far_offset[1]) - ray.far_origin[1]) * ray.inverse[1];
-  Float4 leave_z = (Float4::load(bounds + ray.far_offset[2]) - ray.far_origin[2]) * ray.inverse[2];
-  Float4 entered = max(max(enter_x, enter_y), max(enter_z, Float4::splat(0)));
-  Float4 left = min(min(min(leave_x, leave_y), leave_z) + ray.slack, limit);
-  store(enter, entered);
-  return bits(entered <= left);
+  Float4 enter_x = Float4::load(bounds + ray.near_row[0]) * ray.inverse[0] - ray.near_offset[0];
+  Float4 enter_y = Float4::load(bounds + ray.near_row[1]) * ray.inverse[1] - ray.near_offset[1];
+  Float4 enter_z = Float4::load(bounds + ray.near_row[2]) * ray.inverse[2] - ray.near_offset[2];
+  Float4 leave_x = Float4::load(bounds + ray.far_row[0]) * ray.inverse[0] - ray.far_offset[0];
+  Float4 leave_y = Float4::load(bounds + ray.far_row[1]) * ray.inverse[1] - ray.far_offset[1];
+  Float4 leave_z = Float4::load(bounds + ray.far_row[2]) * ray.inverse[2] - ray.far_offset[2];
+  *enter = later(later(enter_x, enter_y), later(enter_z, Float4::splat(0)));
+  return is_later(*enter, sooner(sooner(leave_x, leave_y), sooner(leave_z, limit)));
 }
 
 }  // namespace POCKETRAY_ISA

@@ -20,7 +20,6 @@ inline void add_counts(const Counts& counts, TraceStats* stats) {
 
 // A ray made ready, and the best hit so far.
 struct Search {
-  BoxRay box;
   LeafRay leaf;
   const HitFilter* filter;  // with an accept()
   float t_max;
@@ -31,10 +30,25 @@ struct Search {
 };
 
 // False where there is nothing to hit.
-inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* filter, Search* search) {
-  if (!(ray.t_max > 0) || is_empty(accel.bounds) || !make_sheared_ray(ray, &search->leaf.sheared)) return false;
-  make_box_ray(ray, search->leaf.sheared.kz, accel.bounds, &search->box);
-  make_leaf_ray(ray, &search->leaf);
+inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* filter, Search* search, BoxRay* box) {
+  Float4 origin = Float4::load3(&ray.origin.x), d = Float4::load3(&ray.direction.x), amount = abs(d);
+  Float4 low = Float4::load3(&accel.bounds.low.x), high = Float4::load3(&accel.bounds.high.x);
+  Mask4 valid = (abs(origin) <= Float4::splat(kOriginMax)) & (low <= high) &
+                (amount <= Float4::splat(std::numeric_limits<float>::max()));
+  if (bits(valid) != 15 || !(ray.t_max > 0)) return false;
+  Float4 size = Float4::splat(highest(amount));
+  const Axes& axes = kAxesBySize[bits(amount == size) & 7];
+  float greatest = first(size);
+  box->exponent = 0;
+  if (__builtin_expect(!(greatest >= 0x1p-20f && greatest <= 0x1p20f), 0)) {
+    if (greatest == 0) return false;
+    std::frexp(greatest, &box->exponent);
+    Vec3 scaled;
+    for (int axis = 0; axis < 3; ++axis) scaled[axis] = std::ldexp(ray.direction[axis], -box->exponent);
+    d = Float4::load3(&scaled.x), size = Float4::splat(highest(abs(d)));
+  }
+  make_box_ray(origin, d, size, low, high, box);
+  make_leaf_ray(ray, axes, &search->leaf);
   search->filter = filter;
   search->t = search->t_max = ray.t_max;
   search->triangle = kNoTriangle;
@@ -46,12 +60,10 @@ inline const TriangleBlock& leaf_of(const BvhView& bvh, std::uint32_t child) {
 }
 inline unsigned lanes_in_use(std::uint32_t leaf_child) { return 15u >> (4 - leaf_triangle_count(leaf_child)); }
 
-// Takes what is nearer than the best hit so far. Returns whether there was any.
+// Of the lanes that pass, takes what is nearer than the best hit so far. Returns whether there was any. A function of
+// its own, to leave the registers to the nodes.
 template <bool kFiltered>
-bool search_leaf(Search* search, const TriangleBlock& block, unsigned in_use) {
-  LeafLanes lanes = test_leaf<false>(search->leaf, block);
-  lanes.pass &= in_use;
-  if (!lanes.pass) return false;
+__attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& block, LeafLanes lanes) {
   bool better = false;
   for_each_crossing(search->leaf, block, lanes, [&](int lane, const Crossing& crossing) {
     float t = crossing.t;
@@ -73,13 +85,9 @@ bool search_leaf(Search* search, const TriangleBlock& block, unsigned in_use) {
   return better;
 }
 
-// Whether any triangle of the leaf is hit in (0, t_max).
+// Whether any triangle in the lanes that pass is hit in (0, t_max).
 template <bool kFiltered>
-bool any_in_leaf(const Search& search, const TriangleBlock& block, unsigned in_use) {
-  LeafLanes lanes = test_leaf<!kFiltered>(search.leaf, block);
-  lanes.pass &= in_use;
-  if (!lanes.pass) return false;
-  if (!kFiltered && lanes.sure) return true;
+__attribute__((noinline)) bool any_crossing(const Search& search, const TriangleBlock& block, LeafLanes lanes) {
   return for_each_crossing(search.leaf, block, lanes, [&](int lane, const Crossing& crossing) {
     if (!(crossing.t > 0 && crossing.t < search.t_max)) return false;
     if (!kFiltered) return true;
@@ -102,12 +110,10 @@ inline void sort_two(Entry* a, Entry* b) {
 }
 
 // Pushes the entered children, at least two, but for the nearest, the farthest first. Returns the nearest.
-inline std::uint32_t push_farther(const BvhView& bvh, const BvhNode& node, unsigned mask, const float* enter,
-                                  Entry** stack) {
+inline std::uint32_t push_farther(const BvhNode& node, unsigned mask, const float* enter, Entry** stack) {
   auto take = [&] {
     int lane = __builtin_ctz(mask);
     mask &= mask - 1;
-    prefetch(bvh, node.child[lane]);
     return make_entry(enter[lane], node.child[lane]);
   };
   Entry a = take(), b = take();
@@ -128,26 +134,36 @@ inline std::uint32_t push_farther(const BvhView& bvh, const BvhNode& node, unsig
 }
 
 template <bool kFiltered>
-void search_closest(const BvhView& bvh, Search* search, TraceStats* stats) {
+inline void search_closest(const BvhView& bvh, const BoxRay& box, Search* search, TraceStats* stats) {
   Counts counts;
   Entry stack[kStackSize], *top = stack;
-  const BoxRay box = search->box;  // a copy stays in registers
-  float limit = box_limit(box, search->t);
-  Entry last = make_entry(limit, ~0u);  // what is worth a visit is not above
+  Float4 limit = Float4::splat(box_limit(box.exponent, search->t));
+  Entry last = make_entry(first(limit), ~0u);  // what is worth a visit is not above
   std::uint32_t child = 0;
   for (;;) {
-    while (!(child & kLeafBit)) {
+    while (__builtin_expect(!(child & kLeafBit), 1)) {
       const BvhNode& node = bvh.nodes[child];
       ++counts.nodes;
-      alignas(16) float enter[4];
-      unsigned mask = enter_boxes(box, node, Float4::splat(limit), enter);
+      Float4 entered;
+      Mask4 miss = miss_boxes(box, node, limit, &entered);
+      unsigned mask = bits(miss) ^ 15;
       if (!mask) goto next;
-      child = mask & (mask - 1) ? push_farther(bvh, node, mask, enter, &top) : node.child[__builtin_ctz(mask)];
+      child = word_outside(miss, node.child);
+      if (mask & (mask - 1)) {
+        alignas(16) float enter[4];
+        store(enter, entered);
+        child = push_farther(node, mask, enter, &top);
+      }
     }
-    counts.triangles += leaf_triangle_count(child);
-    if (search_leaf<kFiltered>(search, leaf_of(bvh, child), lanes_in_use(child))) {
-      limit = box_limit(box, search->t);
-      last = make_entry(limit, ~0u);
+    {
+      counts.triangles += leaf_triangle_count(child);
+      const TriangleBlock& block = leaf_of(bvh, child);
+      LeafLanes lanes = test_leaf<false>(search->leaf, nullptr, block);
+      lanes.pass &= lanes_in_use(child);
+      if (lanes.pass && settle_leaf<kFiltered>(search, block, lanes)) {
+        limit = Float4::splat(box_limit(box.exponent, search->t));
+        last = make_entry(first(limit), ~0u);
+      }
     }
   next:
     do {
@@ -158,46 +174,53 @@ void search_closest(const BvhView& bvh, Search* search, TraceStats* stats) {
 }
 
 template <bool kFiltered>
-bool search_any(const BvhView& bvh, const Search& search, TraceStats* stats) {
+inline bool search_any(const BvhView& bvh, const BoxRay& box, const Search& search, TraceStats* stats) {
   Counts counts;
   std::uint32_t stack[kStackSize], *top = stack, child = 0;
-  const BoxRay box = search.box;  // a copy stays in registers
-  Float4 limit = Float4::splat(box_limit(box, search.t_max));
-  for (bool found = false;;) {
-    if (child & kLeafBit) {
-      counts.triangles += leaf_triangle_count(child);
-      found = any_in_leaf<kFiltered>(search, leaf_of(bvh, child), lanes_in_use(child));
-    } else {
+  SureDepths sure = sure_depths(search.t_max, search.leaf.direction[2]);
+  Float4 limit = Float4::splat(box_limit(box.exponent, search.t_max));
+  bool found = false;
+  for (;;) {
+    while (__builtin_expect(!(child & kLeafBit), 1)) {
       const BvhNode& node = bvh.nodes[child];
       ++counts.nodes;
-      alignas(16) float enter[4];
-      unsigned mask = enter_boxes(box, node, limit, enter);
-      if (mask) {
+      Float4 entered;
+      Mask4 miss = miss_boxes(box, node, limit, &entered);
+      unsigned mask = bits(miss) ^ 15;
+      if (!mask) goto next;
+      if (mask & (mask - 1)) {
         child = node.child[__builtin_ctz(mask)];
-        for (mask &= mask - 1; mask; mask &= mask - 1) {
-          *top = node.child[__builtin_ctz(mask)];
-          ++top;
-        }
-        continue;
+        for (mask &= mask - 1; mask; mask &= mask - 1) *top++ = node.child[__builtin_ctz(mask)];
+      } else {
+        child = word_outside(miss, node.child);
       }
     }
-    if (found || top == stack) {
-      add_counts(counts, stats);
-      return found;
+    {
+      counts.triangles += leaf_triangle_count(child);
+      const TriangleBlock& block = leaf_of(bvh, child);
+      LeafLanes lanes = test_leaf<!kFiltered>(search.leaf, &sure, block);
+      lanes.pass &= lanes_in_use(child);
+      if (lanes.pass)
+        found = (!kFiltered && (lanes.pass & lanes.sure)) || any_crossing<kFiltered>(search, block, lanes);
     }
+  next:
+    if (found || top == stack) break;
     child = *--top;
   }
+  add_counts(counts, stats);
+  return found;
 }
 
 inline void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
   Search search;
+  BoxRay box;
   hit->triangle = kNoTriangle;
-  if (!start_search(accel, ray, filter, &search)) return;
+  if (!start_search(accel, ray, filter, &search, &box)) return;
   if (filter && filter->accept) {
-    search_closest<true>(BvhView(accel.data.data), &search, stats);
+    search_closest<true>(BvhView(accel.data.data), box, &search, stats);
     if (search.triangle != kNoTriangle) *hit = {search.t, search.u, search.v, search.triangle};
   } else {
-    search_closest<false>(BvhView(accel.data.data), &search, stats);
+    search_closest<false>(BvhView(accel.data.data), box, &search, stats);
     if (search.triangle == kNoTriangle) return;
     *hit = {search.t, static_cast<float>(search.b / search.sum), static_cast<float>(search.c / search.sum),
             search.triangle};
@@ -206,9 +229,11 @@ inline void closest(const Accel& accel, const Ray& ray, const HitFilter* filter,
 
 inline bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   Search search;
-  if (!start_search(accel, ray, filter, &search)) return false;
+  BoxRay box;
+  if (!start_search(accel, ray, filter, &search, &box)) return false;
   BvhView bvh(accel.data.data);
-  return filter && filter->accept ? search_any<true>(bvh, search, stats) : search_any<false>(bvh, search, stats);
+  return filter && filter->accept ? search_any<true>(bvh, box, search, stats)
+                                  : search_any<false>(bvh, box, search, stats);
 }
 
 }  // namespace POCKETRAY_ISA

@@ -5,6 +5,12 @@
 // min and max return the second operand where the operands are equal or not ordered. Comparisons give one bit per lane.
 // Pointers of load() and store() are aligned to the size of the vector. repeat() fills the lanes with four values again
 // and again, spread() with lanes/4 values four times each; its pointer is aligned to them.
+//
+// Four floats alone have more. load3() takes three floats, aligned or not, and 0; lane<i>() is one lane in all of them,
+// first() the first as a float, signs() a bit per sign. later() and sooner() are max and min of distances along a ray:
+// where the result is negative, it is either operand that is. is_later() is > where one of both is not negative. No
+// operand of these three may be −0 or NaN. word_outside() is that of four words, aligned to 16, whose lane is not in
+// the mask, where there is just one.
 #pragma once
 #if defined(__SSE2__)
 #include "base/simd_sse2.h"

@@ -14,6 +14,10 @@ struct Float4 {
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {vdupq_n_f32(x)}; }
   static Float4 load(const float* p) { return {vld1q_f32(p)}; }
+  static Float4 load3(const float* p) {
+    const float lanes[4] = {p[0], p[1], p[2], 0};
+    return {vld1q_f32(lanes)};
+  }
   static Float4 repeat(Float4 a) { return a; }
   static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) {
@@ -41,6 +45,26 @@ inline float highest(Float4 a) { return vmaxvq_f32(a.v); }
 inline unsigned bits(Mask4 m) {
   const std::uint32_t weights[4] = {1, 2, 4, 8};
   return vaddvq_u32(vandq_u32(m.v, vld1q_u32(weights)));
+}
+
+inline unsigned signs(Float4 a) { return bits(Mask4{vcltq_s32(vreinterpretq_s32_f32(a.v), vdupq_n_s32(0))}); }
+inline Float4 copy_sign(Float4 a, Float4 sign) { return {vbslq_f32(vdupq_n_u32(1u << 31), sign.v, a.v)}; }
+inline float first(Float4 a) { return vgetq_lane_f32(a.v, 0); }
+template <int kLane>
+Float4 lane(Float4 a) {
+  return {vdupq_laneq_f32(a.v, kLane)};
+}
+inline Float4 later(Float4 a, Float4 b) {
+  return {vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a.v), vreinterpretq_s32_f32(b.v)))};
+}
+inline Float4 sooner(Float4 a, Float4 b) {
+  return {vreinterpretq_f32_s32(vminq_s32(vreinterpretq_s32_f32(a.v), vreinterpretq_s32_f32(b.v)))};
+}
+inline Mask4 is_later(Float4 a, Float4 b) {
+  return {vcgtq_s32(vreinterpretq_s32_f32(a.v), vreinterpretq_s32_f32(b.v))};
+}
+inline std::uint32_t word_outside(Mask4 m, const std::uint32_t* words) {
+  return vmaxvq_u32(vbicq_u32(vld1q_u32(words), m.v));
 }
 
 struct Double4 {
@@ -76,31 +100,6 @@ inline Double4 select(DoubleMask4 m, Double4 a, Double4 b) {
   return {vbslq_f64(m.low, a.low, b.low), vbslq_f64(m.high, a.high, b.high)};
 }
 inline unsigned bits(DoubleMask4 m) { return bits(Mask4{vcombine_u32(vmovn_u64(m.low), vmovn_u64(m.high))}); }
-
-// Two doubles.
-struct DoubleMask2 {
-  uint64x2_t v;
-};
-struct Double2 {
-  float64x2_t v;
-  static Double2 splat(double x) { return {vdupq_n_f64(x)}; }
-  static Double2 widen(const float* p) { return {vcvt_f64_f32(vld1_f32(p))}; }  // p[0], p[1]
-};
-inline void store(double* p, Double2 a) { vst1q_f64(p, a.v); }
-inline Double2 operator+(Double2 a, Double2 b) { return {vaddq_f64(a.v, b.v)}; }
-inline Double2 operator-(Double2 a, Double2 b) { return {vsubq_f64(a.v, b.v)}; }
-inline Double2 operator*(Double2 a, Double2 b) { return {vmulq_f64(a.v, b.v)}; }
-inline Double2 operator/(Double2 a, Double2 b) { return {vdivq_f64(a.v, b.v)}; }
-inline Double2 min(Double2 a, Double2 b) { return {vbslq_f64(vcltq_f64(a.v, b.v), a.v, b.v)}; }
-inline Double2 max(Double2 a, Double2 b) { return {vbslq_f64(vcgtq_f64(a.v, b.v), a.v, b.v)}; }
-inline DoubleMask2 operator<=(Double2 a, Double2 b) { return {vcleq_f64(a.v, b.v)}; }
-inline DoubleMask2 operator<(Double2 a, Double2 b) { return {vcltq_f64(a.v, b.v)}; }
-inline DoubleMask2 operator&(DoubleMask2 a, DoubleMask2 b) { return {vandq_u64(a.v, b.v)}; }
-inline DoubleMask2 operator|(DoubleMask2 a, DoubleMask2 b) { return {vorrq_u64(a.v, b.v)}; }
-inline Double2 select(DoubleMask2 m, Double2 a, Double2 b) { return {vbslq_f64(m.v, a.v, b.v)}; }
-inline unsigned bits(DoubleMask2 m) {
-  return static_cast<unsigned>((vgetq_lane_u64(m.v, 0) & 1) | (vgetq_lane_u64(m.v, 1) & 2));
-}
 
 template <int kLanes>
 struct Lanes;

@@ -1,5 +1,6 @@
 // Lanes one after the other, for CPUs without a vector unit that keeps to IEEE. See simd.h.
 #pragma once
+#include <cstdint>
 
 namespace pocketray {
 
@@ -11,6 +12,7 @@ struct Float4 {
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {{x, x, x, x}}; }
   static Float4 load(const float* p) { return {{p[0], p[1], p[2], p[3]}}; }
+  static Float4 load3(const float* p) { return {{p[0], p[1], p[2], 0}}; }
   static Float4 repeat(Float4 a) { return a; }
   static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) { return {{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0}}; }
@@ -38,6 +40,10 @@ POCKETRAY_LANES(Float4, Float4, operator*, x * y)
 POCKETRAY_LANES(Float4, Float4, operator/, x / y)
 POCKETRAY_LANES(Float4, Float4, min, x < y ? x : y)
 POCKETRAY_LANES(Float4, Float4, max, x > y ? x : y)
+POCKETRAY_LANES(Float4, Float4, copy_sign, __builtin_copysignf(x, y))
+POCKETRAY_LANES(Float4, Float4, later, x > y ? x : y)
+POCKETRAY_LANES(Float4, Float4, sooner, x < y ? x : y)
+POCKETRAY_LANES(Mask4, Float4, is_later, x > y)
 POCKETRAY_LANES(Mask4, Float4, operator<=, x <= y)
 POCKETRAY_LANES(Mask4, Float4, operator<, x < y)
 POCKETRAY_LANES(Mask4, Float4, operator==, x == y)
@@ -68,6 +74,21 @@ inline unsigned bits(const Mask4& m) {
   for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
   return r;
 }
+inline unsigned signs(const Float4& a) {
+  unsigned r = 0;
+  for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(__builtin_signbit(a.v[i]) != 0) << i;
+  return r;
+}
+inline float first(const Float4& a) { return a.v[0]; }
+template <int kLane>
+inline Float4 lane(const Float4& a) {
+  return Float4::splat(a.v[kLane]);
+}
+inline std::uint32_t word_outside(const Mask4& m, const std::uint32_t* words) {
+  int i = 0;
+  while (i < 3 && m.v[i]) ++i;
+  return words[i];
+}
 inline float lowest(const Float4& a) {
   float r = a.v[0];
   for (int i = 1; i < 4; ++i) r = a.v[i] < r ? a.v[i] : r;
@@ -86,38 +107,6 @@ inline Float4 narrow(const Double4& a) {
   Float4 r;
   for (int i = 0; i < 4; ++i) r.v[i] = static_cast<float>(a.v[i]);
   return r;
-}
-
-// Two doubles.
-struct DoubleMask2 {
-  bool v[2];
-};
-struct Double2 {
-  double v[2];
-  static Double2 splat(double x) { return {{x, x}}; }
-  static Double2 widen(const float* p) { return {{p[0], p[1]}}; }
-};
-inline void store(double* p, const Double2& a) { p[0] = a.v[0], p[1] = a.v[1]; }
-// clang-format off
-#define POCKETRAY_PAIRS(Result, A, name, first, second) \
-  inline Result name(const A& a, const A& b) { return {{first, second}}; }
-POCKETRAY_PAIRS(Double2, Double2, operator+, a.v[0] + b.v[0], a.v[1] + b.v[1])
-POCKETRAY_PAIRS(Double2, Double2, operator-, a.v[0] - b.v[0], a.v[1] - b.v[1])
-POCKETRAY_PAIRS(Double2, Double2, operator*, a.v[0] * b.v[0], a.v[1] * b.v[1])
-POCKETRAY_PAIRS(Double2, Double2, operator/, a.v[0] / b.v[0], a.v[1] / b.v[1])
-POCKETRAY_PAIRS(Double2, Double2, min, a.v[0] < b.v[0] ? a.v[0] : b.v[0], a.v[1] < b.v[1] ? a.v[1] : b.v[1])
-POCKETRAY_PAIRS(Double2, Double2, max, a.v[0] > b.v[0] ? a.v[0] : b.v[0], a.v[1] > b.v[1] ? a.v[1] : b.v[1])
-POCKETRAY_PAIRS(DoubleMask2, Double2, operator<=, a.v[0] <= b.v[0], a.v[1] <= b.v[1])
-POCKETRAY_PAIRS(DoubleMask2, Double2, operator<, a.v[0] < b.v[0], a.v[1] < b.v[1])
-POCKETRAY_PAIRS(DoubleMask2, DoubleMask2, operator&, a.v[0] && b.v[0], a.v[1] && b.v[1])
-POCKETRAY_PAIRS(DoubleMask2, DoubleMask2, operator|, a.v[0] || b.v[0], a.v[1] || b.v[1])
-#undef POCKETRAY_PAIRS
-// clang-format on
-inline Double2 select(const DoubleMask2& m, const Double2& a, const Double2& b) {
-  return {{m.v[0] ? a.v[0] : b.v[0], m.v[1] ? a.v[1] : b.v[1]}};
-}
-inline unsigned bits(const DoubleMask2& m) {
-  return static_cast<unsigned>(m.v[0]) | static_cast<unsigned>(m.v[1]) << 1;
 }
 
 template <int kLanes>

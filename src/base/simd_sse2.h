@@ -1,6 +1,11 @@
 // Four lanes in SSE2. See simd.h.
 #pragma once
 #include <emmintrin.h>
+#if defined(__SSE4_1__)
+#include <smmintrin.h>
+#endif
+
+#include <cstdint>
 
 namespace pocketray {
 
@@ -12,6 +17,7 @@ struct Float4 {
   static constexpr int kLanes = 4;
   static Float4 splat(float x) { return {_mm_set1_ps(x)}; }
   static Float4 load(const float* p) { return {_mm_load_ps(p)}; }
+  static Float4 load3(const float* p) { return {_mm_set_ps(0, p[2], p[1], p[0])}; }
   static Float4 repeat(Float4 a) { return a; }
   static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) {
@@ -35,6 +41,38 @@ inline Mask4 operator&(Mask4 a, Mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
 inline Mask4 operator|(Mask4 a, Mask4 b) { return {_mm_or_ps(a.v, b.v)}; }
 inline Float4 select(Mask4 m, Float4 a, Float4 b) { return {_mm_or_ps(_mm_and_ps(m.v, a.v), _mm_andnot_ps(m.v, b.v))}; }
 inline unsigned bits(Mask4 m) { return static_cast<unsigned>(_mm_movemask_ps(m.v)); }
+
+inline unsigned signs(Float4 a) { return static_cast<unsigned>(_mm_movemask_ps(a.v)); }
+inline Float4 copy_sign(Float4 a, Float4 sign) {
+  __m128 mask = _mm_set1_ps(-0.0f);
+  return {_mm_or_ps(_mm_andnot_ps(mask, a.v), _mm_and_ps(mask, sign.v))};
+}
+inline float first(Float4 a) { return _mm_cvtss_f32(a.v); }
+template <int kLane>
+Float4 lane(Float4 a) {
+  return {_mm_shuffle_ps(a.v, a.v, 0x55 * kLane)};
+}
+
+// Words are compared in less time than floats.
+#if defined(__SSE4_1__)
+inline Float4 later(Float4 a, Float4 b) {
+  return {_mm_castsi128_ps(_mm_max_epi32(_mm_castps_si128(a.v), _mm_castps_si128(b.v)))};
+}
+inline Float4 sooner(Float4 a, Float4 b) {
+  return {_mm_castsi128_ps(_mm_min_epi32(_mm_castps_si128(a.v), _mm_castps_si128(b.v)))};
+}
+#else
+inline Float4 later(Float4 a, Float4 b) { return max(a, b); }
+inline Float4 sooner(Float4 a, Float4 b) { return min(a, b); }
+#endif
+inline Mask4 is_later(Float4 a, Float4 b) {
+  return {_mm_castsi128_ps(_mm_cmpgt_epi32(_mm_castps_si128(a.v), _mm_castps_si128(b.v)))};
+}
+inline std::uint32_t word_outside(Mask4 m, const std::uint32_t* words) {
+  __m128i w = _mm_andnot_si128(_mm_castps_si128(m.v), _mm_load_si128(reinterpret_cast<const __m128i*>(words)));
+  w = _mm_or_si128(w, _mm_shuffle_epi32(w, 0x4E));
+  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_or_si128(w, _mm_shuffle_epi32(w, 0xB1))));
+}
 
 // The least and the greatest of the lanes.
 inline float lowest(Float4 a) {
@@ -82,33 +120,6 @@ inline Double4 select(DoubleMask4 m, Double4 a, Double4 b) {
 inline unsigned bits(DoubleMask4 m) {
   return static_cast<unsigned>(_mm_movemask_pd(m.low) | _mm_movemask_pd(m.high) << 2);
 }
-
-// Two doubles.
-struct DoubleMask2 {
-  __m128d v;
-};
-struct Double2 {
-  __m128d v;
-  static Double2 splat(double x) { return {_mm_set1_pd(x)}; }
-  static Double2 widen(const float* p) {  // p[0], p[1]
-    return {_mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))))};
-  }
-};
-inline void store(double* p, Double2 a) { _mm_store_pd(p, a.v); }
-inline Double2 operator+(Double2 a, Double2 b) { return {_mm_add_pd(a.v, b.v)}; }
-inline Double2 operator-(Double2 a, Double2 b) { return {_mm_sub_pd(a.v, b.v)}; }
-inline Double2 operator*(Double2 a, Double2 b) { return {_mm_mul_pd(a.v, b.v)}; }
-inline Double2 operator/(Double2 a, Double2 b) { return {_mm_div_pd(a.v, b.v)}; }
-inline Double2 min(Double2 a, Double2 b) { return {_mm_min_pd(a.v, b.v)}; }
-inline Double2 max(Double2 a, Double2 b) { return {_mm_max_pd(a.v, b.v)}; }
-inline DoubleMask2 operator<=(Double2 a, Double2 b) { return {_mm_cmple_pd(a.v, b.v)}; }
-inline DoubleMask2 operator<(Double2 a, Double2 b) { return {_mm_cmplt_pd(a.v, b.v)}; }
-inline DoubleMask2 operator&(DoubleMask2 a, DoubleMask2 b) { return {_mm_and_pd(a.v, b.v)}; }
-inline DoubleMask2 operator|(DoubleMask2 a, DoubleMask2 b) { return {_mm_or_pd(a.v, b.v)}; }
-inline Double2 select(DoubleMask2 m, Double2 a, Double2 b) {
-  return {_mm_or_pd(_mm_and_pd(m.v, a.v), _mm_andnot_pd(m.v, b.v))};
-}
-inline unsigned bits(DoubleMask2 m) { return static_cast<unsigned>(_mm_movemask_pd(m.v)); }
 
 template <int kLanes>
 struct Lanes;
