@@ -1,0 +1,18 @@
+// Identity of a scene's bytes, wherever they lie: 128 bits, MurmurHash3_x64_128 [Appleby 2011], seed 0. Two scenes do
+// not share one by accident; a hostile peer could make them do so, and gains nothing by it: what it sends is checked as
+// any file, and its pixels were its own choice anyway.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace pocketray {
+
+struct ContentHash {
+  std::uint64_t low = 0, high = 0;
+};
+inline bool operator==(const ContentHash& a, const ContentHash& b) { return a.low == b.low && a.high == b.high; }
+inline bool operator!=(const ContentHash& a, const ContentHash& b) { return !(a == b); }
+
+ContentHash content_hash(const void* bytes, std::size_t byte_count);
+
+}  // namespace pocketray

@@ -1,0 +1,337 @@
+#include "wire/message.h"
+
+#include <zlib.h>
+
+#include <cstring>
+
+#include "base/check.h"
+#include "base/limits.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x59415250;  // "PRAY"
+constexpr std::uint32_t kChecksumAt = 4;
+
+// Reader and Writer go through the fields of a message by the same functions, fields(io, &message), so that both sides
+// agree. The length has been checked before either runs.
+struct Reader {
+  const std::uint8_t* at;
+  const std::uint8_t* end;
+  bool valid = true;
+
+  void integer(std::uint64_t* value, std::uint32_t byte_count) {
+    *value = 0;
+    for (std::uint32_t i = byte_count; i-- > 0;) *value = *value << 8 | at[i];
+    at += byte_count;
+  }
+  void require(bool condition) { valid = valid && condition; }
+  void text(char* text) {
+    std::memcpy(text, at, kNameBytes);
+    at += kNameBytes;
+    std::size_t length = strnlen(text, kNameBytes);
+    for (std::size_t i = length; i < kNameBytes; ++i) require(text[i] == 0);
+    require(length < kNameBytes);
+  }
+  void tail(Array<const std::uint8_t>* bytes) {
+    *bytes = {at, static_cast<std::uint32_t>(end - at)};
+    at = end;
+  }
+};
+
+struct Writer {
+  std::uint8_t* at;
+
+  void integer(std::uint64_t* value, std::uint32_t byte_count) {
+    for (std::uint32_t i = 0; i < byte_count; ++i) at[i] = static_cast<std::uint8_t>(*value >> 8 * i);
+    at += byte_count;
+  }
+  void require(bool condition) { CHECK(condition); }
+  void text(char* text) {
+    require(strnlen(text, kNameBytes) < kNameBytes);
+    std::memset(at, 0, kNameBytes);
+    std::memcpy(at, text, strnlen(text, kNameBytes));
+    at += kNameBytes;
+  }
+  void tail(Array<const std::uint8_t>* bytes) {
+    if (bytes->count) std::memmove(at, bytes->data, bytes->count);
+    at += bytes->count;
+  }
+};
+
+// Integers, bools and enumerations of `byte_count` bytes.
+template <class Io, class T>
+void number(Io& io, T* value, std::uint32_t byte_count = sizeof(T)) {
+  std::uint64_t bits = static_cast<std::uint64_t>(*value);
+  io.integer(&bits, byte_count);
+  *value = static_cast<T>(bits);
+}
+template <class Io, class T>
+void choice(Io& io, T* value, T last) {
+  std::uint64_t bits = static_cast<std::uint64_t>(*value);
+  io.integer(&bits, sizeof(T));
+  io.require(bits <= static_cast<std::uint64_t>(last));
+  *value = static_cast<T>(bits);
+}
+// Finite, and below `max` in magnitude.
+template <class Io>
+void real(Io& io, float* value, float max) {
+  std::uint32_t bits;
+  std::memcpy(&bits, value, sizeof bits);
+  number(io, &bits);
+  std::memcpy(value, &bits, sizeof bits);
+  io.require(*value >= -max && *value <= max);
+}
+template <class Io>
+void real(Io& io, double* value, double max) {
+  std::uint64_t bits;
+  std::memcpy(&bits, value, sizeof bits);
+  number(io, &bits);
+  std::memcpy(value, &bits, sizeof bits);
+  io.require(*value >= -max && *value <= max);
+}
+template <class Io>
+void hash(Io& io, ContentHash* h) {
+  number(io, &h->low), number(io, &h->high);
+}
+template <class Io>
+void point(Io& io, Vec3* v) {
+  real(io, &v->x, kCoordinateMax), real(io, &v->y, kCoordinateMax), real(io, &v->z, kCoordinateMax);
+}
+
+template <class Io>
+void fields(Io& io, Hello* m) {
+  std::uint32_t magic = kMagic;
+  number(io, &magic);
+  io.require(magic == kMagic);
+  number(io, &m->version);
+  number(io, &m->image_side_max), number(io, &m->message_bytes_max), number(io, &m->scene_bytes_max);
+}
+template <class Io>
+void fields(Io& io, SceneList* m) {
+  number(io, &m->index);
+}
+template <class Io>
+void fields(Io& io, SceneQuery* m) {
+  hash(io, &m->hash);
+}
+template <class Io>
+void fields(Io& io, SceneEntry* m) {
+  hash(io, &m->hash);
+  number(io, &m->byte_count), number(io, &m->index), number(io, &m->count);
+  io.text(m->name);
+}
+template <class Io>
+void fields(Io& io, SceneFetch* m) {
+  hash(io, &m->hash);
+  number(io, &m->offset), number(io, &m->byte_count);
+  io.require(m->byte_count <= kPieceBytesMax && m->offset <= ~std::uint64_t(0) - kPieceBytesMax);
+}
+template <class Io>
+void fields(Io& io, ScenePiece* m) {
+  hash(io, &m->hash);
+  number(io, &m->offset);
+  io.require(m->offset <= ~std::uint64_t(0) - kPieceBytesMax);
+  io.tail(&m->bytes);
+}
+
+template <class Io>
+void fields(Io& io, Camera* c) {
+  point(io, &c->eye), point(io, &c->target), point(io, &c->up);
+  real(io, &c->vertical_fov, kCoordinateMax), real(io, &c->vertical_extent, kCoordinateMax);
+  choice(io, &c->projection, Projection::orthographic);
+}
+
+// Those that change pixels.
+template <class Io>
+void fields(Io& io, Settings* s) {
+  number(io, &s->width, 2), number(io, &s->height, 2);
+  io.require(s->width >= 1 && s->width <= kImageSideMax && s->height >= 1 && s->height <= kImageSideMax);
+  number(io, &s->samples_per_pixel, 1), number(io, &s->ray_depth, 1), number(io, &s->points_per_area_light, 2);
+  io.require(s->samples_per_pixel >= 1 && s->samples_per_pixel <= kSampleCountMax);
+  io.require(s->ray_depth <= kRayDepthMax);
+  io.require(s->points_per_area_light >= 1 && s->points_per_area_light <= kPointsPerAreaLightMax);
+  choice(io, &s->cut_off, true);
+  choice(io, &s->texture_filter, TextureFilter::bilinear);
+  choice(io, &s->normals, NormalMode::flat);
+  number(io, &s->forced_on), number(io, &s->forced_off);
+  io.require((s->forced_on & ~kAllEffects) == 0 && (s->forced_off & ~kAllEffects) == 0);
+}
+
+template <class Io>
+void fields(Io& io, FrameRequest* m) {
+  number(io, &m->frame), hash(io, &m->scene), real(io, &m->seconds, 1e9);
+  choice(io, &m->camera_stated, true);
+  number(io, &m->camera_index);
+  fields(io, &m->camera);
+  fields(io, &m->settings);
+  real(io, &m->exposure, kRadianceMax);
+  io.require(m->exposure >= 0);
+  choice(io, &m->dither, true);
+  choice(io, &m->format, WireFormat::rgb888);
+  number(io, &m->row_begin), number(io, &m->row_end), number(io, &m->chunk_rows);
+  io.require(m->row_begin < m->row_end && m->row_end <= m->settings.height);
+  io.require(m->chunk_rows >= 1);
+  number(io, &m->deflate_level);
+  io.require(m->deflate_level <= 9);
+}
+
+template <class Io>
+void fields(Io& io, RowChunk* m) {
+  number(io, &m->frame), number(io, &m->row_begin), number(io, &m->row_count);
+  io.require(m->row_count >= 1 && m->row_count <= kImageSideMax && m->row_begin <= kImageSideMax - m->row_count);
+  number(io, &m->pixel_ps), number(io, &m->encoding);
+  io.tail(&m->bytes);
+}
+template <class Io>
+void fields(Io& io, Cancel* m) {
+  number(io, &m->frame);
+}
+template <class Io>
+void fields(Io& io, ErrorReport* m) {
+  choice(io, &m->code, WireError::closing);
+  io.require(m->code >= WireError::wrong_version);
+  number(io, &m->frame);
+}
+template <class Io>
+void fields(Io& io, Ping* m) {
+  number(io, &m->id), number(io, &m->reply_bytes);
+  io.require(m->reply_bytes <= kPingBytesMax);
+}
+template <class Io>
+void fields(Io& io, Pong* m) {
+  number(io, &m->id), number(io, &m->pixel_ps);
+  io.tail(&m->bytes);
+}
+
+template <class Io>
+void fields_of_type(Io& io, Message* m) {
+  switch (m->type) {
+    case MessageType::hello:
+      return fields(io, &m->hello);
+    case MessageType::scene_list:
+      return fields(io, &m->scene_list);
+    case MessageType::scene_query:
+      return fields(io, &m->scene_query);
+    case MessageType::scene_entry:
+      return fields(io, &m->scene_entry);
+    case MessageType::scene_fetch:
+      return fields(io, &m->scene_fetch);
+    case MessageType::scene_piece:
+      return fields(io, &m->scene_piece);
+    case MessageType::frame_request:
+      return fields(io, &m->frame_request);
+    case MessageType::row_chunk:
+      return fields(io, &m->row_chunk);
+    case MessageType::cancel:
+      return fields(io, &m->cancel);
+    case MessageType::error:
+      return fields(io, &m->error);
+    case MessageType::ping:
+      return fields(io, &m->ping);
+    case MessageType::pong:
+      return fields(io, &m->pong);
+  }
+}
+
+// Bytes after the header: of the fields, and the most that may follow them.
+struct PayloadSize {
+  std::uint32_t fields, tail_max;
+};
+constexpr PayloadSize kPayloadSizes[] = {
+    {0, 0},                // no type
+    {20, 0},               // hello
+    {2, 0},                // scene_list
+    {16, 0},               // scene_query
+    {92, 0},               // scene_entry
+    {28, 0},               // scene_fetch
+    {24, kPieceBytesMax},  // scene_piece
+    {111, 0},              // frame_request
+    {13, kChunkBytesMax},  // row_chunk
+    {4, 0},                // cancel
+    {6, 0},                // error
+    {8, 0},                // ping
+    {8, kPingBytesMax},    // pong
+};
+constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
+static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::pong) + 1, "one for each type");
+
+// A hello of another version ends after magic and version, or goes on as it likes.
+constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
+
+std::uint32_t tail_bytes(const Message& m) {
+  if (m.type == MessageType::scene_piece) return m.scene_piece.bytes.count;
+  if (m.type == MessageType::row_chunk) return m.row_chunk.bytes.count;
+  if (m.type == MessageType::pong) return m.pong.bytes.count;
+  return 0;
+}
+
+bool length_possible(std::uint32_t type, std::uint32_t payload) {
+  if (type == static_cast<std::uint32_t>(MessageType::hello))
+    return payload >= kForeignHelloBytesMin && payload <= kForeignHelloBytesMax;
+  const PayloadSize& size = kPayloadSizes[type];
+  return payload >= size.fields && payload - size.fields <= size.tail_max;
+}
+
+std::uint32_t checksum(const std::uint8_t* bytes, std::uint32_t payload) {
+  uLong crc = crc32(0, bytes, kChecksumAt);
+  return static_cast<std::uint32_t>(crc32(crc, bytes + kHeaderBytes, payload));
+}
+
+bool decode_payload(const std::uint8_t* payload, std::uint32_t byte_count, Message* message) {
+  Reader reader = {payload, payload + byte_count};
+  if (message->type == MessageType::hello) {
+    Reader start = reader;
+    std::uint32_t magic = 0;
+    number(start, &magic), number(start, &message->hello.version);
+    if (magic != kMagic) return false;
+    if (message->hello.version != kWireVersion) return true;
+    if (byte_count != kPayloadSizes[static_cast<std::uint32_t>(MessageType::hello)].fields) return false;
+  }
+  fields_of_type(reader, message);
+  return reader.valid;
+}
+
+}  // namespace
+
+Decoded decode_message(const std::uint8_t* bytes, std::size_t byte_count, std::uint32_t message_bytes_max,
+                       Message* message) {
+  constexpr Decoded malformed = {DecodeState::malformed, 0};
+  if (byte_count >= 1 && (bytes[0] == 0 || bytes[0] >= kTypeCount)) return malformed;
+  if (byte_count < kHeaderBytes) return {DecodeState::need_more, kHeaderBytes};
+  std::uint32_t payload = std::uint32_t(bytes[1]) | std::uint32_t(bytes[2]) << 8 | std::uint32_t(bytes[3]) << 16;
+  if (!length_possible(bytes[0], payload) || kHeaderBytes + payload > message_bytes_max) return malformed;
+  if (byte_count < kHeaderBytes + payload) return {DecodeState::need_more, kHeaderBytes + payload};
+  Reader header = {bytes + kChecksumAt, bytes + kHeaderBytes};
+  std::uint32_t stated = 0;
+  number(header, &stated);
+  if (stated != checksum(bytes, payload)) return malformed;
+  *message = Message();
+  message->type = static_cast<MessageType>(bytes[0]);
+  if (!decode_payload(bytes + kHeaderBytes, payload, message)) return malformed;
+  return {DecodeState::message, kHeaderBytes + payload};
+}
+
+std::uint32_t message_bytes(const Message& message) {
+  return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(message.type)].fields + tail_bytes(message);
+}
+
+void encode_message(const Message& message, std::uint8_t* bytes) {
+  std::uint32_t payload = message_bytes(message) - kHeaderBytes;
+  CHECK_LE(tail_bytes(message), kPayloadSizes[static_cast<std::uint32_t>(message.type)].tail_max);
+  Message copy = message;  // writing reads through the same pointers that reading writes through
+  Writer writer = {bytes + kHeaderBytes};
+  fields_of_type(writer, &copy);
+  CHECK_EQ(writer.at - (bytes + kHeaderBytes), static_cast<std::ptrdiff_t>(payload));
+  writer.at = bytes;
+  std::uint8_t type = static_cast<std::uint8_t>(message.type);
+  number(writer, &type), number(writer, &payload, 3);
+  std::uint32_t sum = checksum(bytes, payload);
+  number(writer, &sum);
+}
+
+std::uint32_t row_chunk_prefix_bytes() {
+  return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::row_chunk)].fields;
+}
+
+}  // namespace pocketray

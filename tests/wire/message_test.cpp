@@ -1,0 +1,307 @@
+// Messages: what is written is read, and what nobody writes is refused.
+#include "wire/message.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "support/effort.h"
+#include "wire/sample_messages.h"
+
+using namespace pocketray;
+
+namespace {
+
+Decoded decode(const std::vector<std::uint8_t>& bytes, Message* message,
+               std::uint32_t message_bytes_max = kMessageBytesMax) {
+  return decode_message(bytes.data(), bytes.size(), message_bytes_max, message);
+}
+
+bool refused(const std::vector<std::uint8_t>& bytes) {
+  Message message;
+  return decode(bytes, &message).state == DecodeState::malformed;
+}
+
+std::vector<std::uint8_t> random_bytes(Rng* rng, std::uint32_t count) {
+  std::vector<std::uint8_t> bytes(count);
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(next_u32(rng));
+  return bytes;
+}
+
+// Calls act(message) for samples of every type.
+template <class Act>
+void for_each_sample(std::uint64_t seed, int rounds, Act act) {
+  Rng rng = make_rng(seed);
+  for (int type = 1; type <= kMessageTypeCount; ++type)
+    for (int round = 0; round < rounds; ++round) {
+      std::vector<std::uint8_t> tail = random_bytes(&rng, next_u32(&rng) % 40);
+      CAPTURE(type);
+      act(sample_message(static_cast<MessageType>(type), &rng, tail), &rng);
+    }
+}
+
+// A message of the fields given, sealed with the right length and checksum whatever they hold.
+std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> message);
+
+std::uint32_t crc_of(const std::vector<std::uint8_t>& message) {
+  std::uint32_t crc = 0xFFFFFFFF;
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    if (i >= 4 && i < 8) continue;
+    crc ^= message[i];
+    for (int bit = 0; bit < 8; ++bit) crc = crc & 1 ? crc >> 1 ^ 0xEDB88320u : crc >> 1;
+  }
+  return ~crc;
+}
+
+std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> message) {
+  std::uint32_t payload = static_cast<std::uint32_t>(message.size() - kHeaderBytes);
+  for (std::uint32_t i = 0; i < 3; ++i) message[1 + i] = static_cast<std::uint8_t>(payload >> 8 * i);
+  std::uint32_t crc = crc_of(message);
+  for (std::uint32_t i = 0; i < 4; ++i) message[4 + i] = static_cast<std::uint8_t>(crc >> 8 * i);
+  return message;
+}
+
+}  // namespace
+
+// Goal: the bytes are PROTOCOL.md's, so that others may write them. Method: three messages byte by byte; the checksum
+// by its definition, bit by bit.
+TEST_CASE("message_bytes_are_the_protocol_s") {
+  Message m;
+  m.type = MessageType::cancel;
+  m.cancel.frame = 0x01020304;
+  std::vector<std::uint8_t> bytes = encoded(m);
+  CHECK(bytes == sealed({9, 0, 0, 0, 0, 0, 0, 0, 4, 3, 2, 1}));
+  m.type = MessageType::hello;
+  m.hello = {1, 320, 0x12345678, 0x1122334455667788};
+  CHECK(encoded(m) == sealed({1,    0,    0,    0,    0,    0,    0,    0,    'P',  'R',  'A',  'Y',  1,    0,
+                              0x40, 0x01, 0x78, 0x56, 0x34, 0x12, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11}));
+  m.type = MessageType::row_chunk;
+  const std::uint8_t data[] = {0xAB, 0xCD};
+  m.row_chunk = {7, 258, 3, 0x00010000, 2, {data, 2}};
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 2, 1, 3, 0, 0, 0, 1, 0, 2, 0xAB, 0xCD}));
+  CHECK(row_chunk_prefix_bytes() == encoded(m).size() - 2);
+}
+
+// Goal: what was written is read, field by field. Method: written again it gives the same bytes, which no field that
+// was lost or mixed up would; the reader consumes the message and no more.
+TEST_CASE("message_round_trip_of_every_type") {
+  for_each_sample(1, effort(400), [](const Message& message, Rng*) {
+    std::vector<std::uint8_t> bytes = encoded(message), stream = bytes;
+    stream.insert(stream.end(), {9, 9, 9});
+    Message read;
+    Decoded decoded = decode(stream, &read);
+    REQUIRE(decoded.state == DecodeState::message);
+    CHECK(decoded.byte_count == bytes.size());
+    CHECK(read.type == message.type);
+    CHECK(encoded(read) == bytes);
+  });
+}
+
+// Goal: two messages that differ in one field differ as bytes: none is left out. Method: a few fields of each type.
+TEST_CASE("message_every_field_travels") {
+  Rng rng = make_rng(5);
+  using Change = std::function<void(Message*)>;
+  const std::pair<MessageType, Change> changes[] = {
+      {MessageType::hello, [](Message* m) { m->hello.image_side_max ^= 1; }},
+      {MessageType::hello, [](Message* m) { m->hello.message_bytes_max ^= 1; }},
+      {MessageType::hello, [](Message* m) { m->hello.scene_bytes_max ^= 1; }},
+      {MessageType::scene_entry, [](Message* m) { m->scene_entry.name[0] = 'S'; }},
+      {MessageType::scene_entry, [](Message* m) { m->scene_entry.count ^= 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.scene.high ^= 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.seconds += 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.camera_stated ^= 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.camera.up.z += 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.camera.vertical_extent += 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.settings.cut_off ^= 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.settings.forced_off ^= 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.exposure += 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.dither ^= 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.chunk_rows += 1; }},
+      {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1; }},
+      {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
+      {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
+  };
+  for (const auto& change : changes) {
+    Message message = sample_message(change.first, &rng, {1, 2, 3});
+    std::vector<std::uint8_t> before = encoded(message);
+    change.second(&message);
+    std::vector<std::uint8_t> after = encoded(message);
+    CHECK(before != after);
+    Message read;
+    REQUIRE(decode(after, &read).state == DecodeState::message);
+    CHECK(encoded(read) == after);
+  }
+}
+
+// Goal: a message cut short at any byte asks for more, and says for how much; never more than the message.
+TEST_CASE("message_every_prefix_needs_more") {
+  for_each_sample(2, effort(20), [](const Message& message, Rng*) {
+    std::vector<std::uint8_t> bytes = encoded(message);
+    for (std::size_t count = 0; count < bytes.size(); ++count) {
+      // A copy of its own, so that a sanitizer sees a read beyond it.
+      std::vector<std::uint8_t> prefix(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
+      Message read;
+      Decoded decoded = decode(prefix, &read);
+      REQUIRE(decoded.state == DecodeState::need_more);
+      CHECK(decoded.byte_count == (count < kHeaderBytes ? kHeaderBytes : bytes.size()));
+    }
+  });
+}
+
+// Goal: no flipped bit yields a message: it is refused, or more bytes are asked for than there are.
+TEST_CASE("message_every_flipped_bit_is_refused_or_waits") {
+  for_each_sample(3, effort(6), [](const Message& message, Rng*) {
+    std::vector<std::uint8_t> bytes = encoded(message);
+    for (std::size_t at = 0; at < bytes.size(); ++at)
+      for (int bit = 0; bit < 8; ++bit) {
+        std::vector<std::uint8_t> flipped = bytes;
+        flipped[at] ^= static_cast<std::uint8_t>(1 << bit);
+        Message read;
+        Decoded decoded = decode(flipped, &read);
+        REQUIRE(decoded.state != DecodeState::message);
+        if (decoded.state == DecodeState::need_more) REQUIRE(decoded.byte_count > bytes.size());
+      }
+  });
+}
+
+// Goal: flipped bits under a right checksum are refused or give values within their limits. Method: what is accepted
+// can be written again, which checks every limit.
+TEST_CASE("message_flipped_bits_under_a_right_checksum_stay_in_range") {
+  int accepted = 0;
+  for_each_sample(4, effort(30), [&](const Message& message, Rng* rng) {
+    std::vector<std::uint8_t> bytes = encoded(message);
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+      std::vector<std::uint8_t> flipped = bytes;
+      flipped[at] ^= static_cast<std::uint8_t>(1 + next_u32(rng) % 255);
+      flipped = sealed(flipped);
+      Message read;
+      if (decode(flipped, &read).state != DecodeState::message) continue;
+      ++accepted;
+      if (read.type == MessageType::hello && read.hello.version != kWireVersion) continue;
+      CHECK(encoded(read) == flipped);
+    }
+  });
+  CHECK(accepted > 100);
+}
+
+// Goal: values outside their limits are refused, each for itself. Method: one field at a time, under a right checksum.
+TEST_CASE("message_values_out_of_range_are_refused") {
+  Rng rng = make_rng(6);
+  struct Edit {
+    MessageType type;
+    std::size_t at;  // in the message
+    std::vector<std::uint8_t> bytes;
+  };
+  const std::vector<std::uint8_t> nan = {0, 0, 0xC0, 0x7F}, infinite = {0, 0, 0x80, 0xFF};
+  const Edit edits[] = {
+      {MessageType::hello, 8, {'p'}},
+      {MessageType::scene_entry, 8 + 91, {'x'}},
+      {MessageType::scene_fetch, 8 + 24, {1, 0, 1, 0}},
+      {MessageType::scene_fetch, 8 + 16, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
+      {MessageType::scene_piece, 8 + 16, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
+      {MessageType::frame_request, 8 + 20, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
+      {MessageType::frame_request, 8 + 28, {2}},                             // camera stated
+      {MessageType::frame_request, 8 + 31, nan},                             // eye.x
+      {MessageType::frame_request, 8 + 67, infinite},                        // fov
+      {MessageType::frame_request, 8 + 75, {2}},                             // projection
+      {MessageType::frame_request, 8 + 79, {0, 0}},                          // width
+      {MessageType::frame_request, 8 + 79, {1, 0x20}},
+      {MessageType::frame_request, 8 + 81, {0, 0}},  // height
+      {MessageType::frame_request, 8 + 83, {0}},     // samples
+      {MessageType::frame_request, 8 + 83, {17}},
+      {MessageType::frame_request, 8 + 84, {17}},    // depth
+      {MessageType::frame_request, 8 + 85, {0, 0}},  // points
+      {MessageType::frame_request, 8 + 85, {1, 1}},
+      {MessageType::frame_request, 8 + 87, {2}},     // cut off
+      {MessageType::frame_request, 8 + 88, {3}},     // filter
+      {MessageType::frame_request, 8 + 89, {2}},     // normals
+      {MessageType::frame_request, 8 + 93, {0xFF}},  // effects
+      {MessageType::frame_request, 8 + 97, {0xFF}},
+      {MessageType::frame_request, 8 + 98, {0, 0, 0x80, 0xBF}},  // exposure −1
+      {MessageType::frame_request, 8 + 102, {2}},                // dither
+      {MessageType::frame_request, 8 + 103, {2}},                // format
+      {MessageType::frame_request, 8 + 104, {5, 0, 5, 0}},       // no rows
+      {MessageType::frame_request, 8 + 106, {0xFF, 0xFF}},       // rows beyond the picture
+      {MessageType::frame_request, 8 + 108, {0, 0}},             // chunk rows
+      {MessageType::frame_request, 8 + 110, {10}},               // level
+      {MessageType::row_chunk, 8 + 6, {0, 0}},
+      {MessageType::row_chunk, 8 + 4, {0xFF, 0x1F, 2, 0}},
+      {MessageType::error, 8, {0, 0}},
+      {MessageType::error, 8, {8, 0}},
+      {MessageType::ping, 8 + 4, {1, 0, 1, 0}},
+  };
+  for (const Edit& edit : edits) {
+    std::vector<std::uint8_t> bytes = encoded(sample_message(edit.type, &rng, {1, 2, 3}));
+    CAPTURE(static_cast<int>(edit.type));
+    CAPTURE(edit.at);
+    CHECK(!refused(bytes));
+    std::copy(edit.bytes.begin(), edit.bytes.end(), bytes.begin() + static_cast<std::ptrdiff_t>(edit.at));
+    CHECK(refused(sealed(bytes)));
+  }
+}
+
+// Goal: lengths are judged by the header alone: too long for the type, for the receiver, or too short.
+TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
+  auto header = [](int type, std::uint32_t payload) {
+    return std::vector<std::uint8_t>{static_cast<std::uint8_t>(type),
+                                     static_cast<std::uint8_t>(payload),
+                                     static_cast<std::uint8_t>(payload >> 8),
+                                     static_cast<std::uint8_t>(payload >> 16),
+                                     0,
+                                     0,
+                                     0,
+                                     0};
+  };
+  Message message;
+  for (int type = 0; type < 256; ++type) {
+    CAPTURE(type);
+    bool known = type >= 1 && type <= kMessageTypeCount;
+    CHECK(refused(header(type, 0xFFFFFF)));
+    CHECK((decode({static_cast<std::uint8_t>(type)}, &message).state == DecodeState::malformed) == !known);
+    if (type == static_cast<int>(MessageType::hello)) continue;
+    if (known) CHECK(refused(header(type, 1)));
+  }
+  CHECK(refused(header(9, 5)));
+  CHECK(refused(header(8, 13 + kChunkBytesMax + 1)));
+  CHECK(!refused(header(8, 13 + kChunkBytesMax)));
+  CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 999).state == DecodeState::malformed);
+  CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 1000).state == DecodeState::need_more);
+}
+
+// Goal: a hello of another version is understood as far as its version, however long it is.
+TEST_CASE("message_hello_of_another_version_tells_its_version") {
+  for (std::size_t extra : {0, 14, 100}) {
+    std::vector<std::uint8_t> bytes = {1, 0, 0, 0, 0, 0, 0, 0, 'P', 'R', 'A', 'Y', 2, 1};
+    bytes.resize(bytes.size() + extra, 0xEE);
+    Message message;
+    REQUIRE(decode(sealed(bytes), &message).state == DecodeState::message);
+    CHECK(message.hello.version == 0x0102);
+    bytes[12] = 1, bytes[13] = 0;
+    CHECK(refused(sealed(bytes)) == (extra != 14));
+  }
+}
+
+// Goal: random bytes are no messages. Method: 200,000 streams; those with a right checksum have been seen to above.
+TEST_CASE("message_random_bytes_are_refused_or_wait") {
+  Rng rng = make_rng(7);
+  for (int round = 0; round < effort(200000); ++round) {
+    std::vector<std::uint8_t> bytes = random_bytes(&rng, next_u32(&rng) % 64);
+    if (!bytes.empty()) bytes[0] %= kMessageTypeCount + 2;
+    Message message;
+    REQUIRE(decode(bytes, &message).state != DecodeState::message);
+  }
+}
+
+// Goal: a chunk's bytes may lie where they go.
+TEST_CASE("message_tail_may_lie_in_place") {
+  std::vector<std::uint8_t> buffer(row_chunk_prefix_bytes() + 5);
+  for (std::uint8_t i = 0; i < 5; ++i) buffer[row_chunk_prefix_bytes() + i] = i;
+  Message m;
+  m.type = MessageType::row_chunk;
+  m.row_chunk = {1, 2, 3, 4, 0, {buffer.data() + row_chunk_prefix_bytes(), 5}};
+  std::vector<std::uint8_t> apart = encoded(m);
+  encode_message(m, buffer.data());
+  CHECK(buffer == apart);
+}

@@ -1,0 +1,68 @@
+// Valid messages of every type, from random numbers.
+#pragma once
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+#include "base/limits.h"
+#include "base/rng.h"
+#include "wire/message.h"
+
+namespace pocketray {
+
+constexpr int kMessageTypeCount = static_cast<int>(MessageType::pong);
+
+// `tail` is what a message's array shows.
+inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
+  auto wide = [&] { return std::uint64_t(next_u32(rng)) << 32 | next_u32(rng); };
+  auto narrow = [&] { return static_cast<std::uint16_t>(next_u32(rng)); };
+  auto real = [&] { return (next_float(rng) - 0.5f) * 200; };
+  Array<const std::uint8_t> bytes = {tail.data(), static_cast<std::uint32_t>(tail.size())};
+  ContentHash hash = {wide(), wide()};
+  Message m;
+  m.type = type;
+  m.hello.image_side_max = narrow(), m.hello.message_bytes_max = next_u32(rng), m.hello.scene_bytes_max = wide();
+  m.scene_list.index = narrow();
+  m.scene_query.hash = m.scene_entry.hash = m.scene_fetch.hash = m.scene_piece.hash = hash;
+  m.scene_entry.byte_count = wide(), m.scene_entry.index = narrow(), m.scene_entry.count = narrow();
+  std::snprintf(m.scene_entry.name, kNameBytes, "scene %u", next_u32(rng));
+  m.scene_fetch.offset = wide() >> 8, m.scene_fetch.byte_count = next_u32(rng) % (kPieceBytesMax + 1);
+  m.scene_piece.offset = wide() >> 8, m.scene_piece.bytes = bytes;
+  FrameRequest* f = &m.frame_request;
+  f->frame = next_u32(rng), f->scene = hash, f->seconds = static_cast<double>(real());
+  f->camera_stated = next_u32(rng) % 2 != 0, f->camera_index = narrow();
+  f->camera.eye = {real(), real(), real()}, f->camera.target = {real(), real(), real()}, f->camera.up = {0, real(), 1};
+  f->camera.vertical_fov = next_float(rng), f->camera.vertical_extent = next_float(rng);
+  f->camera.projection = static_cast<Projection>(next_u32(rng) % 2);
+  f->settings.width = 1 + next_u32(rng) % kImageSideMax, f->settings.height = 1 + next_u32(rng) % kImageSideMax;
+  f->settings.samples_per_pixel = 1 + next_u32(rng) % kSampleCountMax;
+  f->settings.ray_depth = next_u32(rng) % (kRayDepthMax + 1);
+  f->settings.points_per_area_light = 1 + next_u32(rng) % kPointsPerAreaLightMax;
+  f->settings.cut_off = next_u32(rng) % 2 != 0;
+  f->settings.texture_filter = static_cast<TextureFilter>(next_u32(rng) % 3);
+  f->settings.normals = static_cast<NormalMode>(next_u32(rng) % 2);
+  f->settings.forced_on = next_u32(rng) & kAllEffects, f->settings.forced_off = next_u32(rng) & kAllEffects;
+  f->exposure = next_float(rng), f->dither = next_u32(rng) % 2 != 0;
+  f->format = static_cast<WireFormat>(next_u32(rng) % 2);
+  f->row_begin = static_cast<std::uint16_t>(next_u32(rng) % f->settings.height);
+  f->row_end = static_cast<std::uint16_t>(f->row_begin + 1 + next_u32(rng) % (f->settings.height - f->row_begin));
+  f->chunk_rows = static_cast<std::uint16_t>(1 + next_u32(rng) % 64);
+  f->deflate_level = static_cast<std::uint8_t>(next_u32(rng) % 10);
+  m.row_chunk.frame = next_u32(rng), m.row_chunk.row_begin = narrow() % 4000;
+  m.row_chunk.row_count = static_cast<std::uint16_t>(1 + next_u32(rng) % 100);
+  m.row_chunk.pixel_ps = next_u32(rng), m.row_chunk.encoding = static_cast<std::uint8_t>(next_u32(rng));
+  m.row_chunk.bytes = bytes;
+  m.cancel.frame = next_u32(rng);
+  m.error.code = static_cast<WireError>(1 + next_u32(rng) % 7), m.error.frame = next_u32(rng);
+  m.ping.id = next_u32(rng), m.ping.reply_bytes = next_u32(rng) % (kPingBytesMax + 1);
+  m.pong.id = next_u32(rng), m.pong.pixel_ps = next_u32(rng), m.pong.bytes = bytes;
+  return m;
+}
+
+inline std::vector<std::uint8_t> encoded(const Message& message) {
+  std::vector<std::uint8_t> bytes(message_bytes(message));
+  encode_message(message, bytes.data());
+  return bytes;
+}
+
+}  // namespace pocketray
