@@ -13,14 +13,7 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-struct BoxRay {
-  // t = plane · inverse − offset, along each axis, for the planes by which the ray enters and leaves.
-  Float4 inverse[3], near_offset[3], far_offset[3];
-  std::size_t near_row[3], far_row[3];  // of these planes, in BvhNode::bounds
-  int exponent;  // boxes are entered at t · 2^exponent: keeps directions from 1e-45 to 1e38 in range
-};
-
-// Rows by which a ray of these signs enters (bit 0: d.x < 0 …) and leaves.
+// Rows of BvhNode::bounds by which a ray of these signs (bit 0: d.x < 0 …) enters boxes and leaves them.
 struct SlabRows {
   std::size_t near[3], far[3];
 };
@@ -36,6 +29,13 @@ constexpr SlabRows slab_rows(int signs) {
 constexpr SlabRows kSlabRows[8] = {slab_rows(0), slab_rows(1), slab_rows(2), slab_rows(3),
                                    slab_rows(4), slab_rows(5), slab_rows(6), slab_rows(7)};
 
+struct BoxRay {
+  // t = plane · inverse − offset, along each axis, for the planes by which the ray enters and leaves.
+  Float4 inverse[3], near_offset[3], far_offset[3];
+  const SlabRows* rows;
+  int exponent;  // boxes are entered at t · 2^exponent: keeps directions from 1e-45 to 1e38 in range
+};
+
 // `d` is the direction, `size` its greatest component, by amount, in all lanes.
 inline void make_box_ray(Float4 origin, Float4 d, Float4 size, Float4 low, Float4 high, BoxRay* r) {
   // Parallel to a slab, or as good as: the ray stays inside the moved planes or outside. No 0·∞ arises.
@@ -50,8 +50,7 @@ inline void make_box_ray(Float4 origin, Float4 d, Float4 size, Float4 low, Float
   r->inverse[0] = lane<0>(inverse), r->inverse[1] = lane<1>(inverse), r->inverse[2] = lane<2>(inverse);
   r->near_offset[0] = lane<0>(near), r->near_offset[1] = lane<1>(near), r->near_offset[2] = lane<2>(near);
   r->far_offset[0] = lane<0>(far), r->far_offset[1] = lane<1>(far), r->far_offset[2] = lane<2>(far);
-  const SlabRows& rows = kSlabRows[signs(d) & 7];
-  for (int axis = 0; axis < 3; ++axis) r->near_row[axis] = rows.near[axis], r->far_row[axis] = rows.far[axis];
+  r->rows = &kSlabRows[signs(d) & 7];
 }
 
 // The distance up to which boxes have to be entered for hits up to t.
@@ -62,12 +61,13 @@ inline float box_limit(int exponent, float t) {
 // Which children hold no hit up to `limit`; `enter`, none below 0, gets where each is entered.
 inline Mask4 miss_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, Float4* enter) {
   const float* bounds = node.bounds[0];
-  Float4 enter_x = Float4::load(bounds + ray.near_row[0]) * ray.inverse[0] - ray.near_offset[0];
-  Float4 enter_y = Float4::load(bounds + ray.near_row[1]) * ray.inverse[1] - ray.near_offset[1];
-  Float4 enter_z = Float4::load(bounds + ray.near_row[2]) * ray.inverse[2] - ray.near_offset[2];
-  Float4 leave_x = Float4::load(bounds + ray.far_row[0]) * ray.inverse[0] - ray.far_offset[0];
-  Float4 leave_y = Float4::load(bounds + ray.far_row[1]) * ray.inverse[1] - ray.far_offset[1];
-  Float4 leave_z = Float4::load(bounds + ray.far_row[2]) * ray.inverse[2] - ray.far_offset[2];
+  const SlabRows& rows = *ray.rows;
+  Float4 enter_x = Float4::load(bounds + rows.near[0]) * ray.inverse[0] - ray.near_offset[0];
+  Float4 enter_y = Float4::load(bounds + rows.near[1]) * ray.inverse[1] - ray.near_offset[1];
+  Float4 enter_z = Float4::load(bounds + rows.near[2]) * ray.inverse[2] - ray.near_offset[2];
+  Float4 leave_x = Float4::load(bounds + rows.far[0]) * ray.inverse[0] - ray.far_offset[0];
+  Float4 leave_y = Float4::load(bounds + rows.far[1]) * ray.inverse[1] - ray.far_offset[1];
+  Float4 leave_z = Float4::load(bounds + rows.far[2]) * ray.inverse[2] - ray.far_offset[2];
   *enter = later(later(enter_x, enter_y), later(enter_z, Float4::splat(0)));
   return is_later(*enter, sooner(sooner(leave_x, leave_y), sooner(leave_z, limit)));
 }

@@ -37,7 +37,7 @@ inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* fi
                 (amount <= Float4::splat(std::numeric_limits<float>::max()));
   if (bits(valid) != 15 || !(ray.t_max > 0)) return false;
   Float4 size = Float4::splat(highest(amount));
-  const Axes& axes = kAxesBySize[bits(amount == size) & 7];
+  const Axes* axes = &kAxesByGreatest[bits(amount == size) & 7];
   float greatest = first(size);
   box->exponent = 0;
   if (__builtin_expect(!(greatest >= 0x1p-20f && greatest <= 0x1p20f), 0)) {
@@ -63,9 +63,9 @@ inline unsigned lanes_in_use(std::uint32_t leaf_child) { return 15u >> (4 - leaf
 // Of the lanes that pass, takes what is nearer than the best hit so far. Returns whether there was any. A function of
 // its own, to leave the registers to the nodes.
 template <bool kFiltered>
-__attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& block, LeafLanes lanes) {
+__attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& block, unsigned pass, unsigned doubtful) {
   bool better = false;
-  for_each_crossing(search->leaf, block, lanes, [&](int lane, const Crossing& crossing) {
+  for_each_crossing(search->leaf, block, pass, doubtful, [&](int lane, const Crossing& crossing) {
     float t = crossing.t;
     std::uint32_t triangle = block.triangle[lane];
     if (!(t > 0 && (t < search->t || (t == search->t && triangle < search->triangle && t < search->t_max))))
@@ -87,8 +87,8 @@ __attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& 
 
 // Whether any triangle in the lanes that pass is hit in (0, t_max).
 template <bool kFiltered>
-__attribute__((noinline)) bool any_crossing(const Search& search, const TriangleBlock& block, LeafLanes lanes) {
-  return for_each_crossing(search.leaf, block, lanes, [&](int lane, const Crossing& crossing) {
+__attribute__((noinline)) bool any_crossing(const Search& search, const TriangleBlock& block, unsigned pass, unsigned doubtful) {
+  return for_each_crossing(search.leaf, block, pass, doubtful, [&](int lane, const Crossing& crossing) {
     if (!(crossing.t > 0 && crossing.t < search.t_max)) return false;
     if (!kFiltered) return true;
     float u = static_cast<float>(crossing.b / crossing.sum), v = static_cast<float>(crossing.c / crossing.sum);
@@ -160,7 +160,7 @@ inline void search_closest(const BvhView& bvh, const BoxRay& box, Search* search
       const TriangleBlock& block = leaf_of(bvh, child);
       LeafLanes lanes = test_leaf<false>(search->leaf, nullptr, block);
       lanes.pass &= lanes_in_use(child);
-      if (lanes.pass && settle_leaf<kFiltered>(search, block, lanes)) {
+      if (lanes.pass && settle_leaf<kFiltered>(search, block, lanes.pass, lanes.doubtful)) {
         limit = Float4::splat(box_limit(box.exponent, search->t));
         last = make_entry(first(limit), ~0u);
       }
@@ -201,7 +201,7 @@ inline bool search_any(const BvhView& bvh, const BoxRay& box, const Search& sear
       LeafLanes lanes = test_leaf<!kFiltered>(search.leaf, &sure, block);
       lanes.pass &= lanes_in_use(child);
       if (lanes.pass)
-        found = (!kFiltered && (lanes.pass & lanes.sure)) || any_crossing<kFiltered>(search, block, lanes);
+        found = (!kFiltered && (lanes.pass & lanes.sure)) || any_crossing<kFiltered>(search, block, lanes.pass, lanes.doubtful);
     }
   next:
     if (found || top == stack) break;

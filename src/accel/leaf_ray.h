@@ -12,41 +12,39 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// The axes, the dominant one of the direction last.
+// The axes, the dominant one of the direction last, and their offsets in the rows of a vertex.
 struct Axes {
   int x, y, z;
+  std::size_t row_x, row_y, row_z;
 };
-// Of equal components the last one dominates, as in make_sheared_ray(); bit i of the mask: component i is the greatest.
-constexpr Axes kAxesBySize[8] = {{1, 2, 0}, {1, 2, 0}, {2, 0, 1}, {2, 0, 1},
-                                 {0, 1, 2}, {0, 1, 2}, {0, 1, 2}, {0, 1, 2}};
+constexpr Axes kAxesX = {1, 2, 0, 4, 8, 0}, kAxesY = {2, 0, 1, 8, 0, 4}, kAxesZ = {0, 1, 2, 0, 4, 8};
+// By which components are the greatest: the last of them dominates, as in make_sheared_ray().
+constexpr Axes kAxesByGreatest[8] = {kAxesX, kAxesX, kAxesY, kAxesY, kAxesZ, kAxesZ, kAxesZ, kAxesZ};
 
 struct LeafRay {
   Float4 origin_x, origin_y, origin_z, shear_x, shear_y;  // along those axes
   Float4 depth_low, depth_high;                           // what a triangle must overlap to hold a hit that counts
-  std::size_t row_x, row_y, row_z;                        // offsets of the axes in the rows of a vertex
   float origin[3], direction[3];
-  Axes axes;
+  const Axes* axes;
 };
 
 // Hits at depths beyond those for t are farther than t. 2^-20 is more than the rounding of depths, of t and of this.
 inline void bound_depth(LeafRay* ray, float t) {
   constexpr float kSlack = 0x1p-20f;
   float far = (t + std::numeric_limits<float>::denorm_min()) * std::fabs(ray->direction[2]) * (1 + kSlack);
-  (ray->direction[2] < 0 ? ray->depth_low : ray->depth_high) = Float4::splat(std::copysign(far, ray->direction[2]));
+  Float4 end = Float4::splat(std::copysign(far, ray->direction[2])), zero = Float4::splat(0);
+  ray->depth_low = min(end, zero), ray->depth_high = max(end, zero);
 }
 
-inline void make_leaf_ray(const Ray& ray, const Axes& axes, LeafRay* r) {
+inline void make_leaf_ray(const Ray& ray, const Axes* axes, LeafRay* r) {
   const Vec3 &o = ray.origin, &d = ray.direction;
   r->axes = axes;
-  r->row_x = 4 * static_cast<std::size_t>(axes.x), r->row_y = 4 * static_cast<std::size_t>(axes.y);
-  r->row_z = 4 * static_cast<std::size_t>(axes.z);
-  r->origin[0] = o[axes.x], r->origin[1] = o[axes.y], r->origin[2] = o[axes.z];
-  r->direction[0] = d[axes.x], r->direction[1] = d[axes.y], r->direction[2] = d[axes.z];
+  r->origin[0] = o[axes->x], r->origin[1] = o[axes->y], r->origin[2] = o[axes->z];
+  r->direction[0] = d[axes->x], r->direction[1] = d[axes->y], r->direction[2] = d[axes->z];
   r->origin_x = Float4::splat(r->origin[0]), r->origin_y = Float4::splat(r->origin[1]);
   r->origin_z = Float4::splat(r->origin[2]);
   r->shear_x = Float4::splat(r->direction[0] / r->direction[2]);
   r->shear_y = Float4::splat(r->direction[1] / r->direction[2]);
-  r->depth_low = r->depth_high = Float4::splat(0);
   bound_depth(r, ray.t_max);
 }
 
@@ -76,9 +74,9 @@ struct Corner {
   T x, y, z;
 };
 inline Corner<Float4> shear_corner(const LeafRay& ray, const float* vertex) {
-  Float4 z = Float4::load(vertex + ray.row_z) - ray.origin_z;
-  return {(Float4::load(vertex + ray.row_x) - ray.origin_x) - ray.shear_x * z,
-          (Float4::load(vertex + ray.row_y) - ray.origin_y) - ray.shear_y * z, z};
+  Float4 z = Float4::load(vertex + ray.axes->row_z) - ray.origin_z;
+  return {(Float4::load(vertex + ray.axes->row_x) - ray.origin_x) - ray.shear_x * z,
+          (Float4::load(vertex + ray.axes->row_y) - ray.origin_y) - ray.shear_y * z, z};
 }
 
 template <bool kAny>
@@ -107,8 +105,8 @@ inline bool place_in_leaf(const LeafRay& ray, const TriangleBlock& block, int la
   const float* vertex = block.vertex[0][0] + lane;
   auto corner = [&](int i) {
     const float* v = vertex + 12 * i;
-    double z = v[ray.row_z] - oz;
-    return Corner<double>{(v[ray.row_x] - ox) * dz - z * dx, (v[ray.row_y] - oy) * dz - z * dy, z};
+    double z = v[ray.axes->row_z] - oz;
+    return Corner<double>{(v[ray.axes->row_x] - ox) * dz - z * dx, (v[ray.axes->row_y] - oy) * dz - z * dy, z};
   };
   Corner<double> p = corner(0), q = corner(1), r = corner(2);
   EdgeValues<double> w = edge_values<double>(p.x, p.y, q.x, q.y, r.x, r.y);
@@ -123,7 +121,7 @@ inline bool place_in_leaf(const LeafRay& ray, const TriangleBlock& block, int la
 // One triangle by itself: where an edge function is zero or rounding makes decision and weights disagree.
 __attribute__((noinline)) inline bool cross_alone(const LeafRay& ray, const TriangleBlock& block, int lane,
                                                   Crossing* crossing) {
-  const Axes& k = ray.axes;
+  const Axes& k = *ray.axes;
   ShearedRay sheared = {{}, {}, k.x, k.y, k.z, first(ray.shear_x), first(ray.shear_y)};
   sheared.origin[k.x] = ray.origin[0], sheared.origin[k.y] = ray.origin[1], sheared.origin[k.z] = ray.origin[2];
   sheared.direction[k.x] = ray.direction[0], sheared.direction[k.y] = ray.direction[1];
@@ -134,11 +132,11 @@ __attribute__((noinline)) inline bool cross_alone(const LeafRay& ray, const Tria
 
 // Calls visit(lane, crossing) for the lanes of the leaf that the ray crosses, until it returns true.
 template <class Visit>
-inline bool for_each_crossing(const LeafRay& ray, const TriangleBlock& block, const LeafLanes& lanes, Visit visit) {
-  for (unsigned left = lanes.pass; left; left &= left - 1) {
+inline bool for_each_crossing(const LeafRay& ray, const TriangleBlock& block, unsigned pass, unsigned doubtful, Visit visit) {
+  for (unsigned left = pass; left; left &= left - 1) {
     int lane = __builtin_ctz(left);
     Crossing crossing;
-    if ((lanes.doubtful >> lane & 1) || !place_in_leaf(ray, block, lane, &crossing))
+    if ((doubtful >> lane & 1) || !place_in_leaf(ray, block, lane, &crossing))
       if (!cross_alone(ray, block, lane, &crossing)) continue;
     if (visit(lane, crossing)) return true;
   }
