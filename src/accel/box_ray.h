@@ -36,10 +36,10 @@ struct BoxRay {
   int exponent;  // boxes are entered at t · 2^exponent: keeps directions from 1e-45 to 1e38 in range
 };
 
-// `d` is the direction, `size` its greatest component, by amount, in all lanes.
-inline void make_box_ray(Float4 origin, Float4 d, Float4 size, Float4 low, Float4 high, BoxRay* r) {
+// The greatest component of the direction d is between 2^-20 and 2^20, by amount.
+inline void make_box_ray(Float4 origin, Float4 d, Float4 low, Float4 high, BoxRay* r) {
   // Parallel to a slab, or as good as: the ray stays inside the moved planes or outside. No 0·∞ arises.
-  Float4 inverse_size = Float4::splat(1) / max(abs(d), size * Float4::splat(0x1p-40f));
+  Float4 inverse_size = Float4::splat(1) / max(abs(d), Float4::splat(0x1p-60f));
   Float4 inverse = copy_sign(inverse_size, d);
   Float4 reach = max(abs(low - origin), abs(high - origin));
   // 2^-100 covers denormal rounding; it is relative to nothing, but boxes decide no result.

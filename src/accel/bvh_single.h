@@ -45,9 +45,9 @@ inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* fi
     std::frexp(greatest, &box->exponent);
     Vec3 scaled;
     for (int axis = 0; axis < 3; ++axis) scaled[axis] = std::ldexp(ray.direction[axis], -box->exponent);
-    d = Float4::load3(&scaled.x), size = Float4::splat(highest(abs(d)));
+    d = Float4::load3(&scaled.x);
   }
-  make_box_ray(origin, d, size, low, high, box);
+  make_box_ray(origin, d, low, high, box);
   make_leaf_ray(ray, axes, &search->leaf);
   search->filter = filter;
   search->t = search->t_max = ray.t_max;
@@ -63,7 +63,8 @@ inline unsigned lanes_in_use(std::uint32_t leaf_child) { return 15u >> (4 - leaf
 // Of the lanes that pass, takes what is nearer than the best hit so far. Returns whether there was any. A function of
 // its own, to leave the registers to the nodes.
 template <bool kFiltered>
-__attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& block, unsigned pass, unsigned doubtful) {
+__attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& block, unsigned pass,
+                                           unsigned doubtful) {
   bool better = false;
   for_each_crossing(search->leaf, block, pass, doubtful, [&](int lane, const Crossing& crossing) {
     float t = crossing.t;
@@ -87,7 +88,8 @@ __attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& 
 
 // Whether any triangle in the lanes that pass is hit in (0, t_max).
 template <bool kFiltered>
-__attribute__((noinline)) bool any_crossing(const Search& search, const TriangleBlock& block, unsigned pass, unsigned doubtful) {
+__attribute__((noinline)) bool any_crossing(const Search& search, const TriangleBlock& block, unsigned pass,
+                                            unsigned doubtful) {
   return for_each_crossing(search.leaf, block, pass, doubtful, [&](int lane, const Crossing& crossing) {
     if (!(crossing.t > 0 && crossing.t < search.t_max)) return false;
     if (!kFiltered) return true;
@@ -201,7 +203,8 @@ inline bool search_any(const BvhView& bvh, const BoxRay& box, const Search& sear
       LeafLanes lanes = test_leaf<!kFiltered>(search.leaf, &sure, block);
       lanes.pass &= lanes_in_use(child);
       if (lanes.pass)
-        found = (!kFiltered && (lanes.pass & lanes.sure)) || any_crossing<kFiltered>(search, block, lanes.pass, lanes.doubtful);
+        found = (!kFiltered && (lanes.pass & lanes.sure)) ||
+                any_crossing<kFiltered>(search, block, lanes.pass, lanes.doubtful);
     }
   next:
     if (found || top == stack) break;

@@ -132,7 +132,8 @@ __attribute__((noinline)) inline bool cross_alone(const LeafRay& ray, const Tria
 
 // Calls visit(lane, crossing) for the lanes of the leaf that the ray crosses, until it returns true.
 template <class Visit>
-inline bool for_each_crossing(const LeafRay& ray, const TriangleBlock& block, unsigned pass, unsigned doubtful, Visit visit) {
+inline bool for_each_crossing(const LeafRay& ray, const TriangleBlock& block, unsigned pass, unsigned doubtful,
+                              Visit visit) {
   for (unsigned left = pass; left; left &= left - 1) {
     int lane = __builtin_ctz(left);
     Crossing crossing;
