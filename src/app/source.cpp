@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "plan/plan_scene.h"
+#include "platform/memory.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
 
@@ -67,7 +68,11 @@ Status import_model(const std::string& name, const ImportOptions& options, Impor
 }
 #endif
 
-void* take_block(std::size_t bytes) { return std::malloc(bytes); }
+void* take_block(std::size_t bytes) {
+  void* block = std::malloc(bytes);
+  if (block) platform::wish_large_pages(block, bytes);
+  return block;
+}
 void give_block_back(void* block) { std::free(block); }
 
 Status load_scene(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {

@@ -2,6 +2,7 @@
 
 #include "base/isa.h"
 #include "plan/plan_scene.h"
+#include "platform/memory.h"
 
 namespace pocketray {
 namespace {
@@ -41,9 +42,13 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
   std::uint32_t count = scene.scene().triangles.count;
   std::size_t keep_bytes = info->need(count) + kArenaAlignment;
   std::size_t scratch_bytes = info->scratch_need(count) + kArenaAlignment;
-  ours.block.reset(new unsigned char[keep_bytes]);
+  // As the renderer's block, and as Embree's own: in large pages where the system has some.
+  constexpr std::size_t kLargePage = std::size_t(2) << 20;
+  ours.block.reset(new unsigned char[keep_bytes + 2 * kLargePage]);
+  unsigned char* begin = ours.block.get() + (-reinterpret_cast<std::uintptr_t>(ours.block.get()) & (kLargePage - 1));
+  platform::wish_large_pages(begin, (keep_bytes + kLargePage - 1) & ~(kLargePage - 1));
   std::unique_ptr<unsigned char[]> scratch_block(new unsigned char[scratch_bytes]);
-  Arena keep = make_arena("keep", ours.block.get(), keep_bytes);
+  Arena keep = make_arena("keep", begin, keep_bytes);
   Arena scratch = make_arena("scratch", scratch_block.get(), scratch_bytes);
   ours.accel.positions = scene.scene().positions;
   ours.accel.triangles = scene.scene().triangles;

@@ -1,0 +1,57 @@
+#include "platform/memory.h"
+
+#include <doctest/doctest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+using namespace platform;
+
+namespace {
+
+// The flags that /proc/self/smaps gives the mapping of an address; empty where it has none.
+std::string flags_at(const void* address) {
+  std::ifstream maps("/proc/self/smaps");
+  std::string line;
+  bool inside = false;
+  while (std::getline(maps, line)) {
+    unsigned long begin, end;
+    if (std::sscanf(line.c_str(), "%lx-%lx ", &begin, &end) == 2) {
+      unsigned long at = reinterpret_cast<unsigned long>(address);
+      inside = begin <= at && at < end;
+    } else if (inside && line.compare(0, 8, "VmFlags:") == 0) {
+      return line.substr(8) + " ";
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+// Goal: a block may be made of large pages afterwards, all of it that is whole pages and nothing besides, and its
+// content stays. Method: wish them for the middle of a mapping, begun and ended within pages, and read what Linux notes
+// down for it; systems without large pages note nothing.
+TEST_CASE("memory_wishes_large_pages_for_a_block_and_nothing_besides") {
+  const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), bytes = 64 * page;
+  void* mapping = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  REQUIRE(mapping != MAP_FAILED);
+  unsigned char* block = static_cast<unsigned char*>(mapping);
+  std::memset(block, 7, bytes);
+  wish_large_pages(block + 16 * page - 1, 32 * page + 2);
+  wish_large_pages(block, 5);  // less than a page
+  for (std::size_t i = 0; i < bytes; ++i) REQUIRE(block[i] == 7);
+  if (access("/sys/kernel/mm/transparent_hugepage/enabled", F_OK) != 0 || flags_at(block).empty()) {
+    MESSAGE("skipped: this system has no large pages");
+  } else {
+    for (std::size_t i = 0; i < 64; ++i) {
+      bool wished = flags_at(block + i * page).find(" hg ") != std::string::npos;
+      CHECK(wished == (i >= 16 && i < 48));
+    }
+  }
+  munmap(mapping, bytes);
+}
