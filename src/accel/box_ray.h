@@ -62,12 +62,15 @@ inline float box_limit(int exponent, float t) {
 inline Mask4 miss_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, Float4* enter) {
   const float* bounds = node.bounds[0];
   const SlabRows& rows = *ray.rows;
-  Float4 enter_x = Float4::load(bounds + rows.near[0]) * ray.inverse[0] - ray.near_offset[0];
-  Float4 enter_y = Float4::load(bounds + rows.near[1]) * ray.inverse[1] - ray.near_offset[1];
-  Float4 enter_z = Float4::load(bounds + rows.near[2]) * ray.inverse[2] - ray.near_offset[2];
-  Float4 leave_x = Float4::load(bounds + rows.far[0]) * ray.inverse[0] - ray.far_offset[0];
-  Float4 leave_y = Float4::load(bounds + rows.far[1]) * ray.inverse[1] - ray.far_offset[1];
-  Float4 leave_z = Float4::load(bounds + rows.far[2]) * ray.inverse[2] - ray.far_offset[2];
+  auto at = [&](const std::size_t* row, const Float4* offset, int axis) {
+    return product_less(Float4::load(bounds + row[axis]), ray.inverse[axis], offset[axis]);
+  };
+  Float4 enter_x = at(rows.near, ray.near_offset, 0);
+  Float4 enter_y = at(rows.near, ray.near_offset, 1);
+  Float4 enter_z = at(rows.near, ray.near_offset, 2);
+  Float4 leave_x = at(rows.far, ray.far_offset, 0);
+  Float4 leave_y = at(rows.far, ray.far_offset, 1);
+  Float4 leave_z = at(rows.far, ray.far_offset, 2);
   *enter = later(later(enter_x, enter_y), later(enter_z, Float4::splat(0)));
   return is_later(*enter, sooner(sooner(leave_x, leave_y), sooner(leave_z, limit)));
 }

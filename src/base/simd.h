@@ -1,6 +1,6 @@
 // Floats and doubles side by side: the same operations on 4, 8 or 16 lanes, as SSE2, AVX2 or AVX-512 on x86-64, NEON on
-// aarch64, plain scalars elsewhere. Every operation rounds as IEEE says and none is fused, so all give the same bits.
-// NEON of 32-bit ARM flushes denormals and is left out for that.
+// aarch64, plain scalars elsewhere. Every operation but product_less() rounds as IEEE says and none is fused, so all
+// give the same bits. NEON of 32-bit ARM flushes denormals and is left out for that.
 //
 // min and max return the second operand where the operands are equal or not ordered. Comparisons give one bit per lane.
 // Pointers of load() and store() are aligned to the size of the vector. repeat() fills the lanes with four values again
@@ -11,6 +11,8 @@
 // where the result is negative, it is either operand that is. is_later() is > where one of both is not negative. No
 // operand of these three may be −0 or NaN. word_outside() is that of four words, aligned to 16, whose lane is not in
 // the mask, where there is just one.
+// product_less() is a·b − c, rounded once or twice as is fastest: for bounds that are wide enough, never for what
+// becomes an answer.
 #pragma once
 #if defined(__SSE2__)
 #include "base/simd_sse2.h"

@@ -54,6 +54,7 @@ template <int kLane>
 Float4 lane(Float4 a) {
   return {vdupq_laneq_f32(a.v, kLane)};
 }
+inline Float4 product_less(Float4 a, Float4 b, Float4 c) { return a * b - c; }
 inline Float4 later(Float4 a, Float4 b) {
   return {vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a.v), vreinterpretq_s32_f32(b.v)))};
 }

@@ -74,6 +74,7 @@ inline unsigned bits(const Mask4& m) {
   for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
   return r;
 }
+inline Float4 product_less(const Float4& a, const Float4& b, const Float4& c) { return a * b - c; }
 inline unsigned signs(const Float4& a) {
   unsigned r = 0;
   for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(__builtin_signbit(a.v[i]) != 0) << i;

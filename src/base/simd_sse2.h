@@ -4,6 +4,9 @@
 #if defined(__SSE4_1__)
 #include <smmintrin.h>
 #endif
+#if defined(__FMA__)
+#include <immintrin.h>
+#endif
 
 #include <cstdint>
 
@@ -52,6 +55,12 @@ template <int kLane>
 Float4 lane(Float4 a) {
   return {_mm_shuffle_ps(a.v, a.v, 0x55 * kLane)};
 }
+
+#if defined(__FMA__)
+inline Float4 product_less(Float4 a, Float4 b, Float4 c) { return {_mm_fmsub_ps(a.v, b.v, c.v)}; }
+#else
+inline Float4 product_less(Float4 a, Float4 b, Float4 c) { return a * b - c; }
+#endif
 
 // Words are compared in less time than floats.
 #if defined(__SSE4_1__)

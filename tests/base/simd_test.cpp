@@ -125,6 +125,12 @@ TEST_CASE("simd_floats_load_compare_and_reduce_by_lane") {
     wrong +=
         wrong_lanes<K>(lane<2>(x), [=](int) { return a[2]; }) + wrong_lanes<K>(lane<3>(x), [=](int) { return a[3]; });
     wrong += !same(first(x), a[0]);
+    wrong += wrong_lanes<K>(product_less(x, x, y), [=](int i) {
+      float once = std::fma(a[i], a[i], -b[i]), twice = a[i] * a[i] - b[i];
+      float lanes[4];
+      K::unpack(product_less(x, x, y), lanes);
+      return same(lanes[i], once) ? once : twice;
+    });
     for (int i = 0; i < 4; ++i) wrong += (signs(x) >> i & 1) != std::signbit(a[i]);
     float least = a[0], most = a[0];
     bool ordered = a[0] == a[0];

@@ -14,7 +14,10 @@ trap 'rm -rf "$work"' EXIT
 fused='[[:space:]](vfn?m(add|sub|addsub|subadd)[0-9]*[sp][sd]|fn?m(add|sub)|fml[as]|fmlal2?|vfn?m[as](\.[a-z0-9]+)*)[[:space:]]'
 symbols=' U (malloc|calloc|realloc|free|aligned_alloc|posix_memalign|strdup|_Zn[wa].*|_Zd[la].*|__cxa_throw|__cxa_allocate_exception|__cxa_begin_catch|__dynamic_cast|(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|fma)[fl]?)$'
 
-fused_in() { "$objdump" -d --no-show-raw-insn "$@" | grep -E "$fused" | sort | uniq -c | head -n 5 || true; }
+# Box tests of wide kernels may round once: their bounds are wide enough, and no answer is made of them.
+box_test='vfmsub[0-9]*ps[[:space:]].*%xmm'
+
+fused_in() { "$objdump" -d --no-show-raw-insn "$@" | grep -E "$fused" | sort | uniq -c || true; }
 symbols_in() { "$nm" -A --undefined-only "$@" | grep -E "$symbols" || true; }
 constructors_in() { "$objdump" -h "$@" | grep -E '\.(init_array|ctors)' || true; }
 
@@ -39,14 +42,18 @@ expect_found() {  # TEXT FOUND
 mapfile -t all < <(find "$folder" -name '*.o' | sort)
 mapfile -t core < <(find "$folder" -name '*.o' -not -path '*/src/app/*' | sort)
 [ ${#core[@]} -gt 0 ] || { echo "no objects in $folder"; exit 1; }
-expect_nothing "fused multiply-add" "$(fused_in "${all[@]}")"
+mapfile -t wide < <(find "$folder" -name '*_avx2*.o' -o -name '*_avx512*.o' | sort)
+mapfile -t narrow < <(printf '%s\n' "${all[@]}" | grep -vE '_avx(2|512)')
+expect_nothing "fused multiply-add" "$(fused_in "${narrow[@]}" | head -n 5)"
+if [ ${#wide[@]} -gt 0 ]; then
+  expect_nothing "fused multiply-add beyond box tests" "$(fused_in "${wide[@]}" | grep -v "$box_test" | head -n 5 || true)"
+fi
 expect_nothing "heap, exceptions or libm" "$(symbols_in "${core[@]}")"
 expect_nothing "constructors before main()" "$(constructors_in "${core[@]}")"
 optimised=0
 for flag in "$@"; do
   case $flag in -O0) optimised=0 ;; -O*) optimised=1 ;; esac
 done
-mapfile -t wide < <(find "$folder" -name '*_avx2*.o' -o -name '*_avx512*.o' | sort)
 if [ $optimised = 1 ] && [ ${#wide[@]} -gt 0 ]; then
   expect_nothing "weak symbols of wide kernels" "$(weak_in "${wide[@]}")"
 fi
@@ -64,7 +71,7 @@ esac
 if [ "$has_fused" != none ]; then
   # shellcheck disable=SC2086
   plant 'float f(float a, float b, float c) { return a * b + c; }' "$@" -O2 -ffp-contract=fast $has_fused
-  expect_found "fused multiply-add" "$(fused_in "$work/planted.o")"
+  expect_found "fused multiply-add" "$(fused_in "$work/planted.o" | grep -v "$box_test" || true)"
 fi
 plant '#include <cmath>
 float f(float a) { return std::sin(a); }' "$@"
