@@ -14,10 +14,9 @@ struct Pixel565 {
   static void store(std::uint8_t* p, std::uint32_t pixel) {
     p[0] = static_cast<std::uint8_t>(pixel), p[1] = static_cast<std::uint8_t>(pixel >> 8);
   }
-  // A difference of green as one of red and blue, which have half its levels.
+  // A difference of green as one of red and blue, which have half its levels: modulo those, halving needs no sign.
   static std::uint32_t green_share(std::uint32_t difference) {
-    std::uint32_t green = difference >> 5 & 63;
-    std::uint32_t half = (green >> 1 | (green & 32)) & 31;  // halved as a signed number of six bits
+    std::uint32_t half = (difference >> 5 & 63) >> 1;
     return half | half << 11;
   }
 };

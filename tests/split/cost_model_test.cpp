@@ -99,6 +99,32 @@ TEST_CASE("cost_model_tells_a_slow_device_from_a_slow_server") {
   }
 }
 
+// Goal: rows in which nothing changes come to cost next to nothing to send.
+TEST_CASE("cost_model_learns_that_rows_take_no_bytes") {
+  OwnModel own(320, 240, 1);
+  own.model.servers[0].connected = true;
+  observe_overture(&own.model, 0, {1000, 100, 1000}, 1, 1000);
+  std::uint32_t before = own.plan().boundary[0];
+  for (int frame = 0; frame < 4; ++frame) {
+    observe_server_rows(&own.model, 0, 0, 240, 240 * 320 * 100.0, 0);
+    end_frame(&own.model);
+  }
+  CHECK(before > 100);
+  CHECK(own.plan().boundary[0] < 30);
+}
+
+// Goal: a frame's measurements count once. Method: a server that was slow once is not again where it sent nothing.
+TEST_CASE("cost_model_counts_measurements_once") {
+  OwnModel own(320, 240, 1);
+  observe_overture(&own.model, 0, {1000, 100, 10}, 1, 1000);
+  float speed = own.model.servers[0].speed.value, per_byte = own.model.servers[0].ns_per_byte.value;
+  observe_server_rows(&own.model, 0, 0, 240, 240 * 320 * 9000.0, 320 * 240);
+  observe_transfer(&own.model, 0, 1000, 1e6);
+  for (int frame = 0; frame < 5; ++frame) end_frame(&own.model);
+  CHECK(own.model.servers[0].speed.value == speed);
+  CHECK(own.model.servers[0].ns_per_byte.value == per_byte);
+}
+
 // Goal: money and energy move rows: λ, and a cap that is kept wherever it can be.
 TEST_CASE("cost_model_weighs_time_against_cost") {
   OwnModel own(320, 240, 1);

@@ -178,6 +178,7 @@ TEST_CASE("codec_bodies_that_do_not_fit_are_refused") {
       {"a number cut short", {2, 3, 0x81, 0xAA, 0xBB}, 0, 0, 1},
       {"a number of 33 bits", {6, 3, 0x81, 0x80, 0x80, 0x80, 0x10, 0xAA, 0xBB}, 0, 0, 1},
       {"skips beyond the rows", {2, 8, 1, 0xAA, 0xBB}, 0, 0, 1},
+      {"skips past the rows into the next", {2, 9, 1, 0xAA, 0xBB}, 0, 0, 1},
       {"skips far beyond", {6, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 1, 0xAA, 0xBB}, 0, 0, 1},
       {"gives beyond the rows", {2, 7, 2, 0xAA, 0xBB, 0xCC, 0xDD}, 0, 0, 1},
       {"gives nothing", {4, 1, 0, 2, 1, 0xAA, 0xBB}, 0, 0, 1},
