@@ -20,7 +20,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases mutants bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases mutants fuzz bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -64,6 +64,22 @@ hardcases: setup-tests configure
 mutants: setup-tests
 	@JSON=$(JSON) tests/mutation/mutate.sh --jobs $(JOBS) $(MUTANTS)
 
+# What a hostile peer or file can do: libFuzzer from the committed corpus on, each target for FUZZ_SECONDS. What it finds to
+# be worth keeping goes to build-fuzz/corpus; an input that breaks something is left in build-fuzz.
+FUZZ_SECONDS ?= 600
+fuzz:
+	@toolchains/setup.sh desktop clang
+	@mkdir -p build-fuzz && cmake -S . -B build-fuzz -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DPOCKETRAY_IMPORT=OFF \
+	  -DPOCKETRAY_SANITIZE=fuzzer-no-link,address,undefined >build-fuzz/configure.log || { cat build-fuzz/configure.log; exit 1; }
+	cmake --build build-fuzz -j$(JOBS) --target fuzz_message fuzz_pray
+	@for target in message pray; do \
+	  mkdir -p build-fuzz/corpus/$$target; \
+	  build-fuzz/fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -max_len=16384 -timeout=10 -print_final_stats=1 \
+	    -artifact_prefix=build-fuzz/$$target- build-fuzz/corpus/$$target tests/fuzz/corpus/$$target \
+	    >build-fuzz/$$target.log 2>&1 || { tail -n 40 build-fuzz/$$target.log; exit 1; }; \
+	  grep -E '^#[0-9]+.*(DONE)|stat::number_of_executed' build-fuzz/$$target.log | sed "s/^/$$target: /"; \
+	done
+
 bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) bench $(SCENE) --json -
@@ -105,6 +121,7 @@ help:
 	@echo "make hardcases    every hard case in full: case, inputs, wrong answers, bound (JSON=FILE: as a list, too)"
 	@echo "make mutants      deliberate faults in the core, one at a time: how many the tests notice (JSON=FILE: as a list, too;"
 	@echo "                  MUTANTS='--only x': that one, MUTANTS=--list: their names)"
+	@echo "make fuzz         libFuzzer on what comes from peers and files, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"
 	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31' and others ($(BUILD)/bench_embree --help)"

@@ -1,0 +1,90 @@
+// The fuzz targets without a fuzzer: over the committed corpus and the seeds, each whole, cut short and damaged.
+#include <dirent.h>
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "base/rng.h"
+#include "fuzz/fuzz.h"
+#include "support/effort.h"
+
+using namespace pocketray;
+
+namespace {
+
+using Target = void (*)(const std::uint8_t*, std::size_t);
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return Bytes(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+// Runs the target over the files of a folder of the corpus; returns how many.
+int replay(const char* folder, Target target) {
+  std::string path = std::string(POCKETRAY_CORPUS) + "/" + folder + "/";
+  DIR* directory = opendir(path.c_str());
+  REQUIRE(directory != nullptr);
+  int count = 0;
+  while (const dirent* entry = readdir(directory)) {
+    if (entry->d_name[0] == '.') continue;
+    Bytes bytes = read_file(path + entry->d_name);
+    target(bytes.data(), bytes.size());
+    ++count;
+  }
+  closedir(directory);
+  return count;
+}
+
+void damage(const std::vector<FuzzSeed>& seeds, Target target, int rounds) {
+  Rng rng = make_rng(1);
+  for (const FuzzSeed& seed : seeds) {
+    target(seed.bytes.data(), seed.bytes.size());
+    for (int round = 0; round < rounds; ++round) {
+      Bytes bytes = seed.bytes;
+      for (std::uint32_t flips = next_u32(&rng) % 4; flips-- > 0;)
+        bytes[1 + next_u32(&rng) % (bytes.size() - 1)] ^= static_cast<std::uint8_t>(1 + next_u32(&rng) % 255);
+      if (next_u32(&rng) % 4 == 0) bytes.resize(1 + next_u32(&rng) % (bytes.size() - 1));
+      target(bytes.data(), bytes.size());
+    }
+  }
+}
+
+// With POCKETRAY_WRITE_CORPUS=1 the seeds are written to the corpus, which the fuzzer starts from.
+void write_seeds(const char* folder, const std::vector<FuzzSeed>& seeds) {
+  if (!std::getenv("POCKETRAY_WRITE_CORPUS")) return;
+  for (const FuzzSeed& seed : seeds) {
+    std::ofstream file(std::string(POCKETRAY_CORPUS) + "/" + folder + "/" + seed.name, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(seed.bytes.data()), static_cast<std::streamsize>(seed.bytes.size()));
+    REQUIRE(file.good());
+  }
+}
+
+}  // namespace
+
+// Goal: no input of a hostile peer aborts the decoders; the seeds reach all of them.
+TEST_CASE("fuzz_message_corpus_and_damaged_seeds") {
+  write_seeds("message", message_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : message_seeds()) fuzz_message(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.messages == 24);
+  CHECK(fuzz_counts.chunks == 32);
+  CHECK(fuzz_counts.pictures == 12);
+  damage(message_seeds(), fuzz_message, effort(400));
+  CHECK(replay("message", fuzz_message) >= 10);
+}
+
+// Goal: no .pray file makes the program abort; the seeds are opened and rendered, damaged ones at times.
+TEST_CASE("fuzz_pray_corpus_and_damaged_seeds") {
+  write_seeds("pray", pray_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : pray_seeds()) fuzz_pray(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.scenes == 2);
+  CHECK(fuzz_counts.frames == 4);
+  damage(pray_seeds(), fuzz_pray, effort(400));
+  CHECK(fuzz_counts.scenes > 2);
+  CHECK(replay("pray", fuzz_pray) >= 2);
+}
