@@ -39,6 +39,9 @@ struct AccelInfo {
                          TraceStats* stats);
   // Whether anything is hit in (0, ray.t_max).
   bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+  // occluded() for every ray of the packet: bit i for ray i.
+  std::uint64_t (*occluded_packet)(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                   TraceStats* stats);
   // No triangle is nearer to the point than this: their least distance, less its rounding error. Infinity without
   // triangles, 0 for a point that is not finite.
   float (*nearest_distance)(const Accel& accel, const Vec3& point);

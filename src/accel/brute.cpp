@@ -79,6 +79,14 @@ bool brute_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter,
   return any;
 }
 
+std::uint64_t brute_occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                    TraceStats* stats) {
+  std::uint64_t blocked = 0;
+  for (std::uint32_t i = 0; i < rays.count; ++i)
+    blocked |= static_cast<std::uint64_t>(brute_occluded(accel, ray_of(rays, i), filter, stats)) << i;
+  return blocked;
+}
+
 float brute_nearest_distance(const Accel& accel, const Vec3& point) {
   if (!is_finite(point)) return 0;
   double least = std::numeric_limits<double>::infinity();
@@ -95,8 +103,17 @@ float brute_nearest_distance(const Accel& accel, const Vec3& point) {
 }  // namespace
 
 const AccelInfo kBruteAccel = {
-    "brute",     brute_need,    brute_scratch_need,   brute_build,    brute_refit,
-    brute_adopt, brute_closest, brute_closest_packet, brute_occluded, brute_nearest_distance,
+    "brute",
+    brute_need,
+    brute_scratch_need,
+    brute_build,
+    brute_refit,
+    brute_adopt,
+    brute_closest,
+    brute_closest_packet,
+    brute_occluded,
+    brute_occluded_packet,
+    brute_nearest_distance,
 };
 
 }  // namespace pocketray

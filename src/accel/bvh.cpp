@@ -28,10 +28,23 @@ void bvh_closest_packet(const Accel& accel, const RayPacket& rays, const HitFilt
 bool bvh_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   return kernels().occluded(accel, ray, filter, stats);
 }
+std::uint64_t bvh_occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                  TraceStats* stats) {
+  return kernels().occluded_packet(accel, rays, filter, stats);
+}
 
 const AccelInfo kBvhAccel = {
-    "bvh",     bvh_need,    bvh_scratch_need,   bvh_build,    bvh_refit,
-    bvh_adopt, bvh_closest, bvh_closest_packet, bvh_occluded, bvh_nearest_distance,
+    "bvh",
+    bvh_need,
+    bvh_scratch_need,
+    bvh_build,
+    bvh_refit,
+    bvh_adopt,
+    bvh_closest,
+    bvh_closest_packet,
+    bvh_occluded,
+    bvh_occluded_packet,
+    bvh_nearest_distance,
 };
 
 }  // namespace pocketray

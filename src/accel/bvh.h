@@ -98,6 +98,8 @@ void bvh_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hi
 void bvh_closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
                         TraceStats* stats);
 bool bvh_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+std::uint64_t bvh_occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                  TraceStats* stats);
 float bvh_nearest_distance(const Accel& accel, const Vec3& point);
 
 }  // namespace pocketray

@@ -11,6 +11,8 @@ struct BvhKernels {
   void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
                          TraceStats* stats);
   bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+  std::uint64_t (*occluded_packet)(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                   TraceStats* stats);
 };
 
 extern const BvhKernels kBaselineKernels;

@@ -1,18 +1,10 @@
 // Sorts the rays of a packet by dominant axis and walks the BVH with each sort. Part of the kernels: see bvh_packet.h.
 #pragma once
+#include "accel/axis_class.h"
 #include "accel/bvh_packet.h"
 
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
-
-// Dominant axis and sign of a direction, as make_sheared_ray() has them: 2·axis + (1 if negative). −1: hits nothing.
-inline int axis_class(float dx, float dy, float dz) {
-  float x = std::fabs(dx), y = std::fabs(dy), z = std::fabs(dz);
-  constexpr float max = std::numeric_limits<float>::max();
-  if (!(x <= max && y <= max && z <= max) || (x == 0 && y == 0 && z == 0)) return -1;
-  int kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
-  return 2 * kz + ((kz == 0 ? dx : kz == 1 ? dy : dz) < 0);
-}
 
 // Whether all 64 directions are surely of the class; the other axes must be strictly less.
 inline bool all_of_class(const RayPacket& rays, int kx, int ky, int kz, float sign) {
@@ -24,11 +16,6 @@ inline bool all_of_class(const RayPacket& rays, int kx, int ky, int kz, float si
                 (z <= max));
   }
   return all == 15;
-}
-
-inline void set_axes(Packet* p, int axis) {
-  p->kz = axis >> 1, p->kx = p->kz == 2 ? 0 : p->kz + 1, p->ky = p->kx == 2 ? 0 : p->kx + 1;
-  p->sign = axis & 1 ? -1.0f : 1.0f;
 }
 
 // The rays of one sort, where they are not the whole packet.

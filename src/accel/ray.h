@@ -25,6 +25,24 @@ struct RayPacket {
   alignas(64) float direction[3][kPacketMax];
 };
 
+// Rays with origins and ends of their own; fast where they run close to one another, as to one light or along one
+// direction, and neighbours follow one another as in RayPacket.
+struct SegmentPacket {
+  std::uint32_t count;  // up to kPacketMax
+  alignas(64) float origin[3][kPacketMax], direction[3][kPacketMax], t_max[kPacketMax];
+};
+
+inline Ray ray_of(const SegmentPacket& rays, std::uint32_t i) {
+  return {{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
+          {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
+          rays.t_max[i]};
+}
+inline void set_ray(SegmentPacket* rays, std::uint32_t i, const Ray& ray) {
+  for (int axis = 0; axis < 3; ++axis)
+    rays->origin[axis][i] = ray.origin[axis], rays->direction[axis][i] = ray.direction[axis];
+  rays->t_max[i] = ray.t_max;
+}
+
 // Point of the hit: (1−u−v)·v0 + u·v1 + v·v2.
 struct Hit {
   float t, u, v;

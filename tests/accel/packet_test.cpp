@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "accel/accel_world.h"
+#include "accel/variant.h"
 #include "support/effort.h"
 
 using namespace pocketray;
@@ -58,4 +59,58 @@ TEST_CASE("accel_packets_hit_what_their_rays_hit") {
       CHECK(wrong == 0);
     }
   }
+}
+
+namespace {
+
+// Segments from places about a part of the mesh, some of them on triangles, to one light or along one direction.
+SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spread) {
+  Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
+  float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
+  SegmentPacket packet;
+  packet.count = next_u32(rng) % 2 ? kPacketMax : 1 + next_u32(rng) % kPacketMax;
+  Vec3 start = middle + random_vec3(rng, size * 0.5f), light = middle + random_vec3(rng, size * 1.2f);
+  bool parallel = next_u32(rng) % 4 == 0;
+  for (std::uint32_t i = 0; i < packet.count; ++i) {
+    Vec3 origin = start + random_vec3(rng, size * spread);
+    if (!mesh.triangles.empty() && next_u32(rng) % 4 == 0)
+      origin = mesh.positions[mesh.triangles[next_u32(rng) % mesh.triangles.size()].vertex(next_u32(rng) % 3)];
+    Vec3 direction = parallel ? light - start : light - origin;
+    if (next_u32(rng) % 64 == 0) direction = {0, 0, 0};
+    float t_max[] = {1, 1, 1, 0.3f, kInfinity, 0};
+    set_ray(&packet, i, {origin, direction, parallel ? kInfinity : t_max[next_u32(rng) % 6]});
+  }
+  return packet;
+}
+
+}  // namespace
+
+// Goal: a packet of shadow rays finds blocked what its rays find blocked. Method: packets to a light and along a
+// direction, near and wide, with ends before, at and beyond the light, against occluded() of brute force.
+TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
+  HitFilter some = {accept_some, nullptr};
+  for (const Mesh& mesh : generated_meshes()) {
+    auto oracle = make_world(mesh, &kBruteAccel);
+    for (const Variant& variant : all_variants()) {
+      if (!variant.in_packets) continue;
+      auto world = make_world(mesh, variant.accel);
+      select_isa(variant.isa);
+      Rng rng = make_rng(137);
+      int wrong = 0, blocked_count = 0;
+      for (int n = 0; n < effort(120); ++n) {
+        float spread[] = {0.02f, 0.2f, 2.0f};
+        SegmentPacket packet = segments_about(&rng, mesh, oracle->accel.bounds, spread[n % 3]);
+        const HitFilter* filter = n % 4 == 0 ? &some : nullptr;
+        std::uint64_t blocked = variant.accel->occluded_packet(world->accel, packet, filter, nullptr);
+        for (std::uint32_t i = 0; i < packet.count; ++i) {
+          bool expected = kBruteAccel.occluded(oracle->accel, ray_of(packet, i), filter, nullptr);
+          wrong += expected != (blocked >> i & 1), blocked_count += expected;
+        }
+        if (packet.count < kPacketMax) wrong += blocked >> packet.count != 0;
+      }
+      INFO(mesh.name << ", " << name_of(variant) << ", " << blocked_count << " blocked");
+      CHECK(wrong == 0);
+    }
+  }
+  select_isa(best_isa());
 }
