@@ -10,6 +10,7 @@
 #include "shade/media.h"
 #include "shade/shade.h"
 #include "shade/surface.h"
+#include "shade/tile_shadows.h"
 
 namespace pocketray {
 namespace {
@@ -41,6 +42,7 @@ void choose_kernels(Renderer* r) {
   r->frame.mask = r->effects.mask;
   r->frame.surface = find_surface_function(r->effects.mask);
   r->frame.radiance = find_radiance_function(r->effects.mask);
+  r->frame.find_shadows = has(r->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
   make_filters(&r->frame);
 }
 

@@ -9,6 +9,7 @@
 #include "shade/media.h"
 #include "shade/surface.h"
 #include "shade/texture.h"
+#include "shade/tile_shadows.h"
 
 namespace pocketray {
 
@@ -115,14 +116,18 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) 
 
 // The share of a light that arrives: zero or one, or between where something transparent is in the way.
 template <EffectMask mask>
-Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t emitter) {
+Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t light, bool at_first_hit) {
   effect_entered<Effect::shadow>();
   const FrameData& frame = *tracer->frame;
+  std::uint32_t emitter = frame.lights[light].material;
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.accept_opaque, &context};
   bool filtered = frame.filter_every_shadow || emitter != kNone;
   ++tracer->rays[static_cast<int>(RayKind::shadow)];
-  if (frame.accel_info->occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats)) return {0, 0, 0};
+  bool blocked;
+  if (!at_first_hit || !is_known(*tracer, light, &blocked))
+    blocked = frame.accel_info->occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
+  if (blocked) return {0, 0, 0};
   if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend))
     return clear_transmittance<mask>(tracer, ray, context);
   return {1, 1, 1};
@@ -160,7 +165,8 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
       if constexpr (has(mask, Effect::shadow)) {
         if (leave_out(tracer, bound)) continue;
         Vec3 origin = below ? curved_origin(frame, s) : safe_origin(s, 1);
-        light_out *= shadow<mask>(tracer, {origin, sample.to_light, sample.t_max}, light.material);
+        light_out *= shadow<mask>(tracer, {origin, sample.to_light, sample.t_max}, i,
+                                  starts_at_first_hit(*tracer, s.point, origin));
       }
       sum += light_out;
     }

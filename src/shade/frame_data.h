@@ -48,12 +48,15 @@ struct MediumStack {
 
 struct FrameData;
 struct Surface;
+struct TileShadows;
 struct Tracer;
 
 // The instantiated parts of the kernel, chosen once per frame for the plan.
 using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
 // What comes along a ray, given what it hits first.
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const MediumStack& media);
+using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
+                                 TraceStats* stats);
 
 struct FrameData {
   const Scene* scene = nullptr;
@@ -69,7 +72,8 @@ struct FrameData {
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;
   RadianceFunction radiance = nullptr;
-  HitFilter visible_filter;  // accept is null where nothing is cut out; see filters.h
+  ShadowsFunction find_shadows = nullptr;  // null where nothing casts a shadow
+  HitFilter visible_filter;                // accept is null where nothing is cut out; see filters.h
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
   bool filter_every_shadow = false;  // false: only area lights' shadow rays need the filter
   float radiance_bound = 0;          // no ray brings more
@@ -91,8 +95,10 @@ struct alignas(64) Tracer {
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0;
   TraceStats stats;
-  float budget = 0;        // radiance that may still be left out of the current sample
-  float left_out_max = 0;  // largest sum left out of one sample so far
+  const TileShadows* tile_shadows = nullptr;  // of the tile at work; null where there are none
+  std::uint32_t tile_pixel = 0;               // the pixel of it that is shaded
+  float budget = 0;                           // radiance that may still be left out of the current sample
+  float left_out_max = 0;                     // largest sum left out of one sample so far
 };
 
 }  // namespace pocketray

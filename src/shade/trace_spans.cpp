@@ -5,6 +5,7 @@
 #include "shade/camera.h"
 #include "shade/contact.h"
 #include "shade/surface.h"
+#include "shade/tile_shadows.h"
 
 namespace pocketray {
 namespace {
@@ -91,6 +92,7 @@ void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
   std::uint32_t sample_count = frame.settings.samples_per_pixel;
   if (sample_count > 1) effect_entered<Effect::supersampling>();
   Vec3 sum[kPacketMax] = {};
+  TileShadows shadows;
   RayPacket packet;
   packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
@@ -100,11 +102,17 @@ void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
     }
     Hit hits[kPacketMax];
     frame.accel_info->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
+    if (frame.find_shadows) {
+      frame.find_shadows(frame, packet, hits, &shadows, &tracer->stats);
+      tracer->tile_shadows = &shadows;
+    }
     for (std::uint32_t i = 0; i < tile.count; ++i) {
+      tracer->tile_pixel = i;
       Vec3 direction = {packet.direction[0][i], packet.direction[1][i], packet.direction[2][i]};
       sum[i] += sample_radiance(tracer, {packet.origin, direction, packet.t_max}, hits[i]);
     }
   }
+  tracer->tile_shadows = nullptr;
   for (std::uint32_t i = 0; i < tile.count; ++i)
     image[static_cast<std::size_t>(tile.row[i]) * frame.settings.width + tile.column[i]] =
         sum[i] * (1.0f / static_cast<float>(sample_count));

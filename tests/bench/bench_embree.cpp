@@ -36,7 +36,8 @@ const AccelInfo* find_accel(const std::string& name) {
 float lit_share(const OurSide& ours, const RaySet& shadow) {
   OurTask task = make_our_task(ours, shadow);
   trace_ours(&task);
-  std::size_t lit = static_cast<std::size_t>(std::count(task.occluded.begin(), task.occluded.end(), 0));
+  std::vector<bool> occluded = occlusion_of(task);
+  std::size_t lit = static_cast<std::size_t>(std::count(occluded.begin(), occluded.end(), false));
   return static_cast<float>(lit) / static_cast<float>(shadow.rays.empty() ? 1 : shadow.rays.size());
 }
 

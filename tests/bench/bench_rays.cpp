@@ -41,11 +41,12 @@ Vec3 cosine_direction(const Vec3& normal, Rng* rng) {
 template <class MakeRay>
 RaySet make_secondary(RayKindOfBench kind, const BenchScene& scene, const RaySet& primary, const std::vector<Hit>& hits,
                       MakeRay make_ray) {
-  RaySet set = {kind, primary.width, primary.height, {}};
+  RaySet set = {kind, primary.width, primary.height, {}, {0}};
   for (std::size_t i = 0; i < hits.size(); ++i) {
     Start start;
     if (hits[i].triangle != kNoTriangle && start_at(scene, primary.rays[i], hits[i], &start))
       set.rays.push_back(make_ray(start));
+    if (i % kTileSize == kTileSize - 1) set.tile_begin.push_back(set.rays.size());
   }
   return set;
 }
@@ -59,7 +60,7 @@ Status make_primary_rays(const BenchScene& scene, std::uint32_t width, std::uint
   RETURN_IF_ERROR(make_camera_rays(scene.camera, width, height, &camera));
   if (camera.orthographic)
     return failure("%s has an orthographic camera: primary rays must share the eye", scene.name.c_str());
-  *set = {RayKindOfBench::primary, width, height, {}};
+  *set = {RayKindOfBench::primary, width, height, {}, {}};
   set->rays.reserve(static_cast<std::size_t>(width) * height);
   for (std::uint32_t y0 = 0; y0 < height; y0 += kTileSide)
     for (std::uint32_t x0 = 0; x0 < width; x0 += kTileSide)

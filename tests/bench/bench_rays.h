@@ -17,8 +17,9 @@ constexpr std::uint32_t kTileSide = 8, kTileSize = kTileSide * kTileSide;
 
 struct RaySet {
   RayKindOfBench kind;
-  std::uint32_t width, height;  // of the picture; multiples of kTileSide
-  std::vector<Ray> rays;        // primary: one a pixel, in tiles; else in the order of the hits
+  std::uint32_t width, height;          // of the picture; multiples of kTileSide
+  std::vector<Ray> rays;                // primary: one a pixel, in tiles; else in the order of the hits
+  std::vector<std::size_t> tile_begin;  // shadow and bounce: the first ray of each tile, and past the last
   std::string size() const { return std::to_string(width) + "x" + std::to_string(height); }
 };
 

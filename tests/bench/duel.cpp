@@ -15,7 +15,8 @@ bool same_hit(const Hit& a, const Hit& b) {
 double differing_share(const OurTask& ours, const EmbreeTask& task, const RaySet& set) {
   std::size_t differing = 0;
   if (set.kind == RayKindOfBench::shadow) {
-    for (std::size_t i = 0; i < set.rays.size(); ++i) differing += ours.occluded[i] != task.occluded[i];
+    std::vector<bool> occluded = occlusion_of(ours);
+    for (std::size_t i = 0; i < set.rays.size(); ++i) differing += occluded[i] != (task.occluded[i] != 0);
   } else {
     std::vector<Hit> theirs = embree_hits(task);
     for (std::size_t i = 0; i < set.rays.size(); ++i) differing += !same_hit(ours.hits[i], theirs[i]);

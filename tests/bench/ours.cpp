@@ -18,8 +18,8 @@ void trace_bounces(OurTask* task) {
 
 void trace_occlusion(OurTask* task) {
   const OurSide& side = *task->side;
-  for (std::size_t i = 0; i < task->occluded.size(); ++i)
-    task->occluded[i] = side.info->occluded(side.accel, task->set->rays[i], nullptr, nullptr);
+  for (std::size_t i = 0; i < task->segments.size(); ++i)
+    task->blocked[i] = side.info->occluded_packet(side.accel, task->segments[i], nullptr, nullptr);
 }
 
 static_assert(kTileSize == kPacketMax, "a packet is a tile");
@@ -34,7 +34,26 @@ std::vector<RayPacket> lay_out_packets(const RaySet& set) {
   return packets;
 }
 
+// The rays from a tile's hits to the light, where it has any.
+void lay_out_segments(OurTask* task) {
+  const RaySet& set = *task->set;
+  for (std::size_t tile = 0; tile + 1 < set.tile_begin.size(); ++tile) {
+    std::size_t begin = set.tile_begin[tile], end = set.tile_begin[tile + 1];
+    if (begin == end) continue;
+    task->segments.emplace_back();
+    for (std::size_t i = begin; i < end; ++i) set_ray(&task->segments.back(), i - begin, set.rays[i]);
+    task->segments.back().count = end - begin;
+  }
+}
+
 }  // namespace
+
+std::vector<bool> occlusion_of(const OurTask& task) {
+  std::vector<bool> occluded;
+  for (std::size_t i = 0; i < task.segments.size(); ++i)
+    for (std::uint32_t k = 0; k < task.segments[i].count; ++k) occluded.push_back(task.blocked[i] >> k & 1);
+  return occluded;
+}
 
 OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
   OurSide ours;
@@ -60,12 +79,14 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
 void hold_ours(const std::string& isa) { select_isa(isa == "sse2" ? Isa::kBaseline : best_isa()); }
 
 OurTask make_our_task(const OurSide& side, const RaySet& set) {
-  OurTask task = {&side, &set, {}, {}, {}};
+  OurTask task = {&side, &set, {}, {}, {}, {}};
   if (set.kind == RayKindOfBench::primary) task.packets = lay_out_packets(set);
-  if (set.kind == RayKindOfBench::shadow)
-    task.occluded.resize(set.rays.size());
-  else
+  if (set.kind == RayKindOfBench::shadow) {
+    lay_out_segments(&task);
+    task.blocked.resize(task.segments.size());
+  } else {
     task.hits.resize(set.rays.size());
+  }
   return task;
 }
 

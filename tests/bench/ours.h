@@ -20,16 +20,18 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info);
 // "sse2" holds our code to what every x86-64 has, "native" lets it use what this CPU has.
 void hold_ours(const std::string& isa);
 
-// Rays in the layout that we like best, and what answers them, in the order of the ray set: `occluded` for shadow rays,
-// else `hits`. The side and the set must outlive it.
+// Rays in the layout that we like best, and what answers them, in the order of the ray set: occlusion_of() for
+// shadow rays, else `hits`. The side and the set must outlive it.
 struct OurTask {
   const OurSide* side;
   const RaySet* set;
-  std::vector<RayPacket> packets;  // primary rays: a tile each
+  std::vector<RayPacket> packets;       // primary rays: a tile each
+  std::vector<SegmentPacket> segments;  // shadow rays: those of a tile each
   std::vector<Hit> hits;
-  std::vector<unsigned char> occluded;
+  std::vector<std::uint64_t> blocked;  // a bit for each ray of the segments
 };
 
+std::vector<bool> occlusion_of(const OurTask& task);
 OurTask make_our_task(const OurSide& side, const RaySet& set);
 void trace_ours(OurTask* task);
 // The tiles of primary rays from first to first + count − 1.

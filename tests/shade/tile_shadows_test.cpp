@@ -1,0 +1,74 @@
+#include "shade/tile_shadows.h"
+
+#include <doctest/doctest.h>
+
+#include "shade/filters.h"
+#include "shade/shade_helpers.h"
+#include "shade/trace_spans.h"
+#include "support/effort.h"
+
+using namespace pocketray;
+
+namespace {
+
+// The frame that the renderer is ready for, traced by one thread.
+Picture trace_all(const FrameData& frame, Tracer* tracer) {
+  Picture picture(std::size_t(frame.settings.width) * frame.settings.height);
+  std::vector<Span> spans;
+  for (int row = 0; row < static_cast<int>(frame.settings.height); ++row)
+    spans.push_back({static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(frame.settings.width)});
+  *tracer = make_tracer(frame);
+  trace_spans(tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, picture.data());
+  return picture;
+}
+
+}  // namespace
+
+// Goal: shadow rays that a tile traces in packets, before shading asks, change no pixel and no count of rays. Method:
+// generated scenes with every feature by turns, and one with more lights than tiles know of, with packets and without.
+TEST_CASE("tile_shadows_change_no_pixel") {
+  for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(effort(24)); ++seed) {
+    CAPTURE(seed);
+    auto scene = generate_scene(seed % 2 ? ~0u : 1u << seed / 2 % 20 | 1u << seed % 7, seed);
+    if (seed % 4 == 0) {
+      Light light;
+      light.kind = LightKind::point, light.intensity = {0.2f, 0.2f, 0.2f};
+      Rng rng = make_rng(seed);
+      while (scene->lights.size() <= kTileLightMax + 3) {
+        light.position = {4 * next_float(&rng) - 2, 4 * next_float(&rng), 4 * next_float(&rng) - 2};
+        scene->lights.push_back(light);
+      }
+      scene->bind();
+    }
+    Status status;
+    auto test = make_renderer(scene->scene, settings_for(seed, 48, 40), nullptr, &status);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    REQUIRE(render_frame(&test->renderer, 0, Aov::none).ok);
+    FrameData frame = test->renderer.frame;
+    make_filters(&frame);
+    Tracer in_packets, one_by_one;
+    Picture expected = trace_all(frame, &in_packets);
+    frame.find_shadows = nullptr;
+    CHECK(same_picture(expected, trace_all(frame, &one_by_one)));
+    for (int kind = 0; kind < kRayKindCount; ++kind) CHECK(in_packets.rays[kind] == one_by_one.rays[kind]);
+  }
+}
+
+// Goal: what a tile knows is asked for its first hits alone. Method: one pixel's answers, asked about from its point,
+// from elsewhere, and about lights beyond those known.
+TEST_CASE("tile_shadows_are_known_at_first_hits_alone") {
+  TileShadows shadows = {};
+  shadows.point[5] = {1, 2, 3}, shadows.origin[5] = {1, 2, 4};
+  shadows.traced[2] = shadows.blocked[2] = 1u << 5, shadows.traced[3] = 1u << 5;
+  Tracer tracer;
+  CHECK_FALSE(starts_at_first_hit(tracer, {1, 2, 3}, {1, 2, 4}));
+  tracer.tile_shadows = &shadows, tracer.tile_pixel = 5;
+  CHECK(starts_at_first_hit(tracer, {1, 2, 3}, {1, 2, 4}));
+  CHECK_FALSE(starts_at_first_hit(tracer, {1, 2, 3}, {1, 2, 2}));
+  CHECK_FALSE(starts_at_first_hit(tracer, {1, 2, 2}, {1, 2, 4}));
+  bool blocked = false;
+  CHECK((is_known(tracer, 2, &blocked) && blocked));
+  CHECK((is_known(tracer, 3, &blocked) && !blocked));
+  CHECK_FALSE(is_known(tracer, 1, &blocked));
+  CHECK_FALSE(is_known(tracer, kTileLightMax, &blocked));
+}
