@@ -38,7 +38,7 @@ struct BoxRay {
 
 // The greatest component of the direction d is between 2^-20 and 2^20, by amount.
 inline void make_box_ray(Float4 origin, Float4 d, Float4 low, Float4 high, BoxRay* r) {
-  // Parallel to a slab, or as good as: the ray stays inside the moved planes or outside. No 0·∞ arises.
+  // Parallel to a slab, or as good as: within t ≤ 2^20 R such a ray strays by 2^-40 R. No 0·∞ arises.
   Float4 inverse_size = Float4::splat(1) / max(abs(d), Float4::splat(0x1p-60f));
   Float4 inverse = copy_sign(inverse_size, d);
   Float4 reach = max(abs(low - origin), abs(high - origin));
@@ -59,6 +59,7 @@ inline float box_limit(int exponent, float t) {
 }
 
 // Which children hold no hit up to `limit`; `enter`, none below 0, gets where each is entered.
+// Where a distance comes out as −0 it counts as negative, and no hit lies there.
 inline Mask4 miss_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, Float4* enter) {
   const float* bounds = node.bounds[0];
   const SlabRows& rows = *ray.rows;
