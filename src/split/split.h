@@ -69,7 +69,8 @@ void predict_split(const SplitProblem& problem, Split* split);
 // cost. Effort: about 30 · servers · rows steps; kSearchMax · servers · rows at most.
 Split find_split(const SplitProblem& problem, SplitWorkspace* workspace);
 
-// The same with a dead band: stays with `previous` while that is predicted to be less than kDeadBand worse.
+// The same with a dead band: stays with `previous` while that is predicted to be worse by no more than a
+// kDeadBandDivisor-th.
 Split next_split(const SplitProblem& problem, const Split& previous, SplitWorkspace* workspace);
 
 constexpr std::uint32_t kSearchMax = 1024;

@@ -87,7 +87,7 @@ struct FrameRequest {
 struct RowChunk {
   std::uint32_t frame = 0;
   std::uint16_t row_begin = 0, row_count = 0;
-  std::uint32_t pixel_ps = 0;  // what a pixel of these rows cost the server, picoseconds
+  std::uint32_t pixel_ps = 0;  // what a pixel of these rows cost the server, picoseconds; ~0u: that or more
   std::uint8_t encoding = 0;   // see codec.h
   Array<const std::uint8_t> bytes;
 };

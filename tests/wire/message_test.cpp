@@ -123,8 +123,9 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
   };
+  const std::vector<std::uint8_t> tail = {1, 2, 3};
   for (const auto& change : changes) {
-    Message message = sample_message(change.first, &rng, {1, 2, 3});
+    Message message = sample_message(change.first, &rng, tail);
     std::vector<std::uint8_t> before = encoded(message);
     change.second(&message);
     std::vector<std::uint8_t> after = encoded(message);
@@ -232,8 +233,9 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::error, 8, {8, 0}},
       {MessageType::ping, 8 + 4, {1, 0, 1, 0}},
   };
+  const std::vector<std::uint8_t> tail = {1, 2, 3};
   for (const Edit& edit : edits) {
-    std::vector<std::uint8_t> bytes = encoded(sample_message(edit.type, &rng, {1, 2, 3}));
+    std::vector<std::uint8_t> bytes = encoded(sample_message(edit.type, &rng, tail));
     CAPTURE(static_cast<int>(edit.type));
     CAPTURE(edit.at);
     CHECK(!refused(bytes));

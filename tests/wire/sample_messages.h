@@ -12,7 +12,7 @@ namespace pocketray {
 
 constexpr int kMessageTypeCount = static_cast<int>(MessageType::pong);
 
-// `tail` is what a message's array shows.
+// `tail` is what a message's array shows; it has to outlive the message.
 inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
   auto wide = [&] { return std::uint64_t(next_u32(rng)) << 32 | next_u32(rng); };
   auto narrow = [&] { return static_cast<std::uint16_t>(next_u32(rng)); };
