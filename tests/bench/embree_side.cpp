@@ -33,6 +33,8 @@ EmbreeSide::EmbreeSide(const BenchScene& scene, const std::string& isa) : bench_
   rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
   for (const Vec3& p : scene.scene().positions) vertices_.insert(vertices_.end(), {p.x, p.y, p.z});
   vertices_.push_back(0);
+  for (const Triangle& t : scene.scene().triangles)
+    for (std::uint32_t vertex : t.vertices()) indices_.push_back(vertex);
 }
 
 EmbreeSide::~EmbreeSide() {
@@ -52,8 +54,8 @@ RTCScene EmbreeSide::build(const EmbreeMode& mode) {
   rtcSetGeometryBuildQuality(geometry, quality);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_.data(), 0, 12,
                              s.positions.count);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.triangles.data, 0,
-                             sizeof(Triangle), s.triangles.count);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices_.data(), 0, 12,
+                             s.triangles.count);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);

@@ -42,6 +42,7 @@ class EmbreeSide {
  private:
   RTCDevice device_;
   std::vector<float> vertices_;  // padded: Embree reads 16 bytes a vertex
+  std::vector<std::uint32_t> indices_;
   const BenchScene& bench_;
   std::map<std::pair<bool, EmbreeBuild>, RTCScene> scenes_;
   std::size_t bytes_ = 0;
