@@ -20,6 +20,7 @@ struct Accel {
 
 struct AccelInfo {
   const char* name;
+  std::uint32_t magic;  // first word of its data; 0 where there is none
   // Upper bounds of the bytes build() keeps in its arena, and of the scratch that it releases again. build() gives back
   // at once what it does not use of the former, but has to have it while it runs.
   std::size_t (*need)(std::uint32_t triangle_count);

@@ -104,6 +104,7 @@ float brute_nearest_distance(const Accel& accel, const Vec3& point) {
 
 const AccelInfo kBruteAccel = {
     "brute",
+    0,
     brute_need,
     brute_scratch_need,
     brute_build,

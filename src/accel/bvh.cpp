@@ -1,3 +1,4 @@
+// The default accelerator.
 #include "accel/bvh.h"
 
 #include "accel/accel_list.h"
@@ -16,35 +17,32 @@ const BvhKernels& kernels() {
 #endif
 }
 
-}  // namespace
-
-void bvh_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
+std::size_t need(std::uint32_t triangle_count) { return bvh_need(kBlockLeaves, triangle_count); }
+void build(Accel* accel, Arena* keep, Arena* scratch) { bvh_build(kBlockLeaves, accel, keep, scratch); }
+void refit(Accel* accel, Array<std::uint8_t> data) { bvh_refit(kBlockLeaves, accel, data); }
+Status adopt(Accel* accel, Array<const std::uint8_t> data) { return bvh_adopt(kBlockLeaves, accel, data); }
+float nearest_distance(const Accel& accel, const Vec3& point) {
+  return bvh_nearest_distance(kBlockLeaves, accel, point);
+}
+void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
   kernels().closest(accel, ray, filter, hit, stats);
 }
-void bvh_closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
-                        TraceStats* stats) {
+void closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits, TraceStats* stats) {
   kernels().closest_packet(accel, rays, filter, hits, stats);
 }
-bool bvh_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
+bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   return kernels().occluded(accel, ray, filter, stats);
 }
-std::uint64_t bvh_occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
-                                  TraceStats* stats) {
+std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                              TraceStats* stats) {
   return kernels().occluded_packet(accel, rays, filter, stats);
 }
 
+}  // namespace
+
 const AccelInfo kBvhAccel = {
-    "bvh",
-    bvh_need,
-    bvh_scratch_need,
-    bvh_build,
-    bvh_refit,
-    bvh_adopt,
-    bvh_closest,
-    bvh_closest_packet,
-    bvh_occluded,
-    bvh_occluded_packet,
-    bvh_nearest_distance,
+    "bvh", kBvhMagic, need,           bvh_scratch_need, build,           refit,
+    adopt, closest,   closest_packet, occluded,         occluded_packet, nearest_distance,
 };
 
 }  // namespace pocketray

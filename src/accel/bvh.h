@@ -1,7 +1,10 @@
 // The bounding volume hierarchy: nodes of four children whose bounds lie side by side in the node, leaves of four
-// gathered triangles. Its data is one block without pointers, little-endian, used from a file as it lies:
+// triangles. Its data is one block without pointers, little-endian, used from a file as it lies:
 //
-//   BvhHeader | BvhNode[node_count] | TriangleBlock[leaf_count]
+//   BvhHeader | BvhNode[node_count] | leaves[leaf_count]
+//
+// There are two kinds: leaves of `bvh` have the vertices of their triangles (TriangleBlock), those of `compact` only
+// their ids (CompactLeaf), so that a ray has to fetch the vertices from the mesh. The nodes of both are the same.
 //
 // Numbering: node 0 is the root. Nodes are met in depth-first order, last child first; the children that a node has
 // among the nodes take the next free numbers, and so do those among the leaves. So siblings lie together, parents come
@@ -30,7 +33,8 @@ struct alignas(64) BvhHeader {
   std::uint32_t reserved[12];  // 0
 };
 static_assert(sizeof(BvhHeader) == 64, "nodes start on a cache line");
-constexpr std::uint32_t kBvhMagic = 0x34485642;  // "BVH4"
+constexpr std::uint32_t kBvhMagic = 0x34485642;      // "BVH4"
+constexpr std::uint32_t kCompactMagic = 0x34435642;  // "BVC4"
 
 struct alignas(64) BvhNode {
   float bounds[6][4];         // low x, y, z, then high x, y, z, of the four children
@@ -39,7 +43,29 @@ struct alignas(64) BvhNode {
 };
 static_assert(sizeof(BvhNode) == 128, "two cache lines");
 
-// The parts of the data.
+// What is known of four triangles: their ids, with kUnhittableBit where no ray can hit one. Lanes that a leaf has no
+// triangle for repeat the first.
+struct alignas(16) CompactLeaf {
+  std::uint32_t triangle[4];
+};
+constexpr std::uint32_t kUnhittableBit = 1u << 31;
+static_assert(kTriangleCountMax <= kUnhittableBit, "beside every id");
+
+// One kind of leaves, for what is not in a hurry.
+struct LeafKind {
+  std::uint32_t magic;       // of the header
+  std::uint32_t bytes;       // of a leaf
+  std::uint32_t ids_offset;  // in a leaf, of its four ids, perhaps with kUnhittableBit
+  // Fills a leaf with triangles ids[0 .. count) and returns their bounds. What cannot be hit is kept as such: it may
+  // open up when refitted.
+  Box (*fill)(Array<const Vec3> positions, Array<const Triangle> triangles, const std::uint32_t* ids,
+              std::uint32_t count, void* leaf);
+  // The vertices of a leaf, in `scratch` where it has none itself.
+  const TriangleBlock& (*block)(const Accel& accel, const void* leaf, TriangleBlock* scratch);
+};
+extern const LeafKind kBlockLeaves, kCompactLeaves;
+
+// The parts of the data; of `compact` only header and nodes.
 template <class Byte, class Header, class Node, class Block>
 struct BvhParts {
   Header* header;
@@ -54,17 +80,17 @@ struct BvhParts {
 using BvhView = BvhParts<const std::uint8_t, const BvhHeader, const BvhNode, const TriangleBlock>;
 using BvhWritableView = BvhParts<std::uint8_t, BvhHeader, BvhNode, TriangleBlock>;
 
-// Starts to fetch what a child reference stands for.
-inline void prefetch(const BvhView& bvh, std::uint32_t child) {
-  bool leaf = child & kLeafBit;
-  const char* first = leaf ? reinterpret_cast<const char*>(&bvh.leaves[child & kLeafIndexMask])
-                           : reinterpret_cast<const char*>(&bvh.nodes[child]);
-  __builtin_prefetch(first), __builtin_prefetch(first + 64);
-  if (leaf) __builtin_prefetch(first + 128);
+constexpr std::size_t bvh_bytes(std::size_t node_count, std::size_t leaf_count,
+                                std::size_t leaf_bytes = sizeof(TriangleBlock)) {
+  return sizeof(BvhHeader) + sizeof(BvhNode) * node_count + leaf_bytes * leaf_count;
 }
-
-constexpr std::size_t bvh_bytes(std::size_t node_count, std::size_t leaf_count) {
-  return sizeof(BvhHeader) + sizeof(BvhNode) * node_count + sizeof(TriangleBlock) * leaf_count;
+// Leaf of a hierarchy of that kind.
+inline const std::uint8_t* leaf_at(const LeafKind& kind, const std::uint8_t* data, std::size_t index) {
+  std::size_t node_count = reinterpret_cast<const BvhHeader*>(data)->node_count;
+  return data + bvh_bytes(node_count, index, kind.bytes);
+}
+inline const std::uint32_t* leaf_ids(const LeafKind& kind, const std::uint8_t* leaf) {
+  return reinterpret_cast<const std::uint32_t*>(leaf + kind.ids_offset);
 }
 
 inline Box child_box(const BvhNode& node, int lane) {
@@ -84,22 +110,12 @@ inline Box node_box(const BvhNode& node) {
   return merge(merge(child_box(node, 0), child_box(node, 1)), merge(child_box(node, 2), child_box(node, 3)));
 }
 
-// Fills a leaf with copies of the vertices of triangles[0..count) and returns its bounds. Lanes without a triangle and
-// triangles that cannot be hit become points, which no ray hits.
-Box gather_leaf(Array<const Vec3> positions, Array<const Triangle> triangles, const std::uint32_t* ids,
-                std::uint32_t count, TriangleBlock* block);
-
-std::size_t bvh_need(std::uint32_t triangle_count);
+// What AccelInfo asks for, of either kind.
+std::size_t bvh_need(const LeafKind& kind, std::uint32_t triangle_count);
 std::size_t bvh_scratch_need(std::uint32_t triangle_count);
-void bvh_build(Accel* accel, Arena* keep, Arena* scratch);
-void bvh_refit(Accel* accel, Array<std::uint8_t> data);
-Status bvh_adopt(Accel* accel, Array<const std::uint8_t> data);
-void bvh_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
-void bvh_closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
-                        TraceStats* stats);
-bool bvh_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
-std::uint64_t bvh_occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
-                                  TraceStats* stats);
-float bvh_nearest_distance(const Accel& accel, const Vec3& point);
+void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch);
+void bvh_refit(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data);
+Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data);
+float bvh_nearest_distance(const LeafKind& kind, const Accel& accel, const Vec3& point);
 
 }  // namespace pocketray

@@ -13,6 +13,8 @@ struct Visit {
 
 // What the walk has met so far: the next free numbers.
 struct Walk {
+  const LeafKind& kind;
+  const std::uint8_t* data;
   BvhView bvh;
   Array<const Vec3> positions;
   Array<const Triangle> triangles;
@@ -22,13 +24,15 @@ struct Walk {
 bool same_box(const Box& a, const Box& b) { return a.low == b.low && a.high == b.high; }
 
 bool leaf_is_sound(const Walk& walk, std::uint32_t reference, const Box& box) {
-  const TriangleBlock& block = walk.bvh.leaves[reference & kLeafIndexMask];
-  std::uint32_t count = leaf_triangle_count(reference);
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (block.triangle[i] >= walk.triangles.count) return false;
-  TriangleBlock expected;
-  Box bounds = gather_leaf(walk.positions, walk.triangles, block.triangle, count, &expected);
-  return std::memcmp(&expected, &block, sizeof block) == 0 && same_box(bounds, box);
+  const std::uint8_t* leaf = leaf_at(walk.kind, walk.data, reference & kLeafIndexMask);
+  std::uint32_t ids[kBvhLeafSize], count = leaf_triangle_count(reference);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ids[i] = leaf_ids(walk.kind, leaf)[i] & ~kUnhittableBit;
+    if (ids[i] >= walk.triangles.count) return false;
+  }
+  TriangleBlock expected;  // the larger kind
+  Box bounds = walk.kind.fill(walk.positions, walk.triangles, ids, count, &expected);
+  return std::memcmp(&expected, leaf, walk.kind.bytes) == 0 && same_box(bounds, box);
 }
 
 // Checks the children of a node and appends the nodes among them to the stack.
@@ -65,17 +69,17 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
 
 }  // namespace
 
-Status bvh_adopt(Accel* accel, Array<const std::uint8_t> data) {
+Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data) {
   if (reinterpret_cast<std::uintptr_t>(data.data) % alignof(BvhNode) != 0)
     return failure("accelerator: not aligned to %zu bytes", alignof(BvhNode));
   if (data.bytes() < bvh_bytes(1, 0)) return failure("accelerator: cut off; bake the scene again");
-  Walk walk = {BvhView(data.data), accel->positions, accel->triangles, 1, 0, 0};
+  Walk walk = {kind, data.data, BvhView(data.data), accel->positions, accel->triangles, 1, 0, 0};
   const BvhHeader& header = *walk.bvh.header;
   std::uint32_t reserved = 0;
   for (std::uint32_t word : header.reserved) reserved |= word;
-  if (header.magic != kBvhMagic || reserved != 0 || header.triangle_count != accel->triangles.count ||
+  if (header.magic != kind.magic || reserved != 0 || header.triangle_count != accel->triangles.count ||
       header.node_count < 1 || header.node_count > kTriangleCountMax || header.leaf_count > kTriangleCountMax ||
-      data.bytes() != bvh_bytes(header.node_count, header.leaf_count))
+      data.bytes() != bvh_bytes(header.node_count, header.leaf_count, kind.bytes))
     return failure("accelerator: its header does not fit the scene; bake the scene again");
   Visit stack[3 * kBvhDepthMax + 4];
   std::uint32_t stack_count = 0;

@@ -52,10 +52,11 @@ int part_to_split(const BuildPart* parts, int count, bool halve) {
 }
 
 struct Builder {
+  const LeafKind& kind;
   const Accel* accel;
   BuildPrimitive* primitives;
   BvhNode* nodes;
-  TriangleBlock* leaves;
+  std::uint8_t* leaves;
   std::size_t node_max, leaf_max;
   std::uint32_t node_count, leaf_count;
   Treelet treelet;
@@ -79,8 +80,8 @@ std::uint32_t add_node(Builder* builder) {
 void set_leaf(Builder* builder, BvhNode* node, int lane, const std::uint32_t* ids, std::uint32_t count) {
   CHECK_LT(builder->leaf_count, builder->leaf_max);
   node->child[lane] = leaf_reference(builder->leaf_count, count);
-  TriangleBlock* block = &builder->leaves[builder->leaf_count++];
-  set_child_box(node, lane, gather_leaf(builder->accel->positions, builder->accel->triangles, ids, count, block));
+  std::uint8_t* leaf = builder->leaves + std::size_t(builder->kind.bytes) * builder->leaf_count++;
+  set_child_box(node, lane, builder->kind.fill(builder->accel->positions, builder->accel->triangles, ids, count, leaf));
 }
 
 void set_inner(BvhNode* node, int lane, std::uint32_t child, const WideBox& wide) {
@@ -178,13 +179,13 @@ std::uint32_t collect_primitives(const Accel& accel, BuildPrimitive* primitives)
 
 }  // namespace
 
-std::size_t bvh_need(std::uint32_t triangle_count) {
+std::size_t bvh_need(const LeafKind& kind, std::uint32_t triangle_count) {
   std::size_t leaves = leaf_count_max(triangle_count);
-  return arena_need(bvh_bytes(node_count_max(leaves), leaves));
+  return arena_need(bvh_bytes(node_count_max(leaves), leaves, kind.bytes));
 }
 std::size_t bvh_scratch_need(std::uint32_t triangle_count) { return arena_need<BuildPrimitive>(triangle_count); }
 
-void bvh_build(Accel* accel, Arena* keep, Arena* scratch) {
+void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch) {
   std::uint32_t triangle_count = accel->triangles.count;
   CHECK_LE(triangle_count, kTriangleCountMax);
   std::size_t scratch_mark = arena_mark(*scratch), keep_mark = arena_mark(*keep);
@@ -193,11 +194,12 @@ void bvh_build(Accel* accel, Arena* keep, Arena* scratch) {
   std::size_t leaf_max = leaf_count_max(count), node_max = node_count_max(leaf_max);
   BuildPart root = make_part(primitives, 0, count, static_cast<std::uint32_t>(leaf_max));
 
-  std::uint8_t* data = static_cast<std::uint8_t*>(arena_allocate(keep, bvh_bytes(node_max, leaf_max)));
-  Builder builder = {accel,
+  std::uint8_t* data = static_cast<std::uint8_t*>(arena_allocate(keep, bvh_bytes(node_max, leaf_max, kind.bytes)));
+  Builder builder = {kind,
+                     accel,
                      primitives,
                      reinterpret_cast<BvhNode*>(data + bvh_bytes(0, 0)),
-                     reinterpret_cast<TriangleBlock*>(data + bvh_bytes(node_max, 0)),
+                     data + bvh_bytes(node_max, 0),
                      node_max,
                      leaf_max,
                      0,
@@ -205,10 +207,10 @@ void bvh_build(Accel* accel, Arena* keep, Arena* scratch) {
                      {}};
   build_nodes(&builder, root);
 
-  std::size_t bytes = bvh_bytes(builder.node_count, builder.leaf_count);
+  std::size_t bytes = bvh_bytes(builder.node_count, builder.leaf_count, kind.bytes);
   CHECK_LE(bytes, 0xFFFFFFFFu);
-  std::memmove(data + bvh_bytes(builder.node_count, 0), builder.leaves, sizeof(TriangleBlock) * builder.leaf_count);
-  *reinterpret_cast<BvhHeader*>(data) = {kBvhMagic, triangle_count, builder.node_count, builder.leaf_count, {0}};
+  std::memmove(data + bvh_bytes(builder.node_count, 0), builder.leaves, std::size_t(kind.bytes) * builder.leaf_count);
+  *reinterpret_cast<BvhHeader*>(data) = {kind.magic, triangle_count, builder.node_count, builder.leaf_count, {0}};
   arena_release(keep, keep_mark);
   arena_allocate(keep, bytes);
   arena_release(scratch, scratch_mark);

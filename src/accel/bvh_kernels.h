@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-// As the functions of AccelInfo.
+// As the functions of AccelInfo; of `bvh`, and those called Compact of `compact`.
 struct BvhKernels {
   void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
   void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
@@ -15,9 +15,9 @@ struct BvhKernels {
                                    TraceStats* stats);
 };
 
-extern const BvhKernels kBaselineKernels;
+extern const BvhKernels kBaselineKernels, kBaselineCompactKernels;
 #if defined(__x86_64__)
-extern const BvhKernels kAvx2Kernels, kAvx512Kernels;
+extern const BvhKernels kAvx2Kernels, kAvx2CompactKernels, kAvx512Kernels, kAvx512CompactKernels;
 #endif
 
 }  // namespace pocketray

@@ -1,15 +1,12 @@
 // Kernels for AVX2.
 #define POCKETRAY_ISA avx2
-#include "accel/bvh_kernels.h"
-
-#include "accel/bvh_packet_entry.h"
-#include "accel/bvh_shaft.h"
-#include "accel/bvh_single.h"
+#include "accel/bvh_kernels_of.h"
 
 #if defined(__x86_64__)
 namespace pocketray {
 
-const BvhKernels kAvx2Kernels = {avx2::closest, avx2::closest_packet<8>, avx2::occluded, avx2::occluded_packet<8>};
+const BvhKernels kAvx2Kernels = avx2::kernels_of<avx2::BlockTree, 8>();
+const BvhKernels kAvx2CompactKernels = avx2::kernels_of<avx2::CompactTree, 8>();
 
 }  // namespace pocketray
 #endif

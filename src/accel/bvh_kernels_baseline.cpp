@@ -1,13 +1,9 @@
 // Kernels for every CPU of the build.
-#include "accel/bvh_kernels.h"
-
-#include "accel/bvh_packet_entry.h"
-#include "accel/bvh_shaft.h"
-#include "accel/bvh_single.h"
+#include "accel/bvh_kernels_of.h"
 
 namespace pocketray {
 
-const BvhKernels kBaselineKernels = {baseline::closest, baseline::closest_packet<4>, baseline::occluded,
-                                     baseline::occluded_packet<4>};
+const BvhKernels kBaselineKernels = baseline::kernels_of<baseline::BlockTree, 4>();
+const BvhKernels kBaselineCompactKernels = baseline::kernels_of<baseline::CompactTree, 4>();
 
 }  // namespace pocketray

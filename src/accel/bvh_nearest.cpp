@@ -36,7 +36,7 @@ double squared_leaf_distance(const Vec3d& p, const TriangleBlock& block, std::ui
 
 }  // namespace
 
-float bvh_nearest_distance(const Accel& accel, const Vec3& point) {
+float bvh_nearest_distance(const LeafKind& kind, const Accel& accel, const Vec3& point) {
   if (!is_finite(point)) return 0;
   BvhView bvh(accel.data.data);
   Vec3d p = to_double(point);
@@ -48,7 +48,9 @@ float bvh_nearest_distance(const Accel& accel, const Vec3& point) {
     Entry entry = stack[--top];
     if (entry.squared > least) continue;
     if (entry.child & kLeafBit) {
-      double d = squared_leaf_distance(p, bvh.leaves[entry.child & kLeafIndexMask], leaf_triangle_count(entry.child));
+      TriangleBlock scratch;
+      const std::uint8_t* leaf = leaf_at(kind, accel.data.data, entry.child & kLeafIndexMask);
+      double d = squared_leaf_distance(p, kind.block(accel, leaf, &scratch), leaf_triangle_count(entry.child));
       if (d < least) least = d;
       continue;
     }

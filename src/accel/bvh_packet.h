@@ -3,6 +3,7 @@
 #pragma once
 #include <utility>
 
+#include "accel/bvh_tree.h"
 #include "accel/leaf_batch.h"
 
 namespace pocketray {
@@ -33,9 +34,8 @@ struct DepthEntry {
   float depth;
 };
 
-template <int kLanes>
-void search_packet(const Accel& accel, Packet* p, TraceStats* stats) {
-  BvhView bvh(accel.data.data);
+template <int kLanes, class Tree>
+void search_packet(const Tree& bvh, Packet* p, TraceStats* stats) {
   std::uint64_t nodes = 0, triangles = 0;
   DepthEntry stack[3 * kBvhDepthMax + 4];
   LeafBatch batch;
@@ -49,7 +49,7 @@ void search_packet(const Accel& accel, Packet* p, TraceStats* stats) {
     if (entry.child & kLeafBit) {
       std::uint32_t count = leaf_triangle_count(entry.child);
       triangles += count;
-      batch.block[batch.count] = &bvh.leaves[entry.child & kLeafIndexMask];
+      batch.block[batch.count] = &bvh.leaf(entry.child, &batch.scratch[batch.count]);
       batch.in_use[batch.count++] = (1u << count) - 1;
       continue;
     }
@@ -59,7 +59,7 @@ void search_packet(const Accel& accel, Packet* p, TraceStats* stats) {
     int first = top;
     for (unsigned mask = enter_boxes(*p, node, depth); mask; mask &= mask - 1) {
       int lane = __builtin_ctz(mask), place = top++;
-      prefetch(bvh, node.child[lane]);
+      bvh.prefetch(node.child[lane]);
       for (; place > first && stack[place - 1].depth < depth[lane]; --place) stack[place] = stack[place - 1];
       stack[place] = {node.child[lane], depth[lane]};
     }

@@ -35,8 +35,8 @@ inline int gather_rays(const RayPacket& rays, const std::int8_t* classes, int wa
   return n;
 }
 
-template <int kLanes>
-void closest_of_class(const Accel& accel, const RayPacket& rays, const std::int8_t* classes, int wanted, Packet* p,
+template <int kLanes, class Tree>
+void closest_of_class(const Tree& bvh, const RayPacket& rays, const std::int8_t* classes, int wanted, Packet* p,
                       Hit* hits, TraceStats* stats) {
   GatheredRays gathered;
   set_axes(p, wanted);
@@ -48,7 +48,7 @@ void closest_of_class(const Accel& accel, const RayPacket& rays, const std::int8
   p->count = padded;
   prepare_packet(p);
   for (int i = count; i < static_cast<int>(kPacketMax); ++i) p->far[i] = -kInfinity;
-  search_packet<kLanes>(accel, p, stats);
+  search_packet<kLanes>(bvh, p, stats);
   write_hits(*p, count, hits);
 }
 
@@ -61,12 +61,13 @@ constexpr Places own_places() {
   return p;
 }
 
-template <int kLanes>
+template <class Tree, int kLanes>
 void closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits, TraceStats* stats) {
   static constexpr Places kOwnPlaces = own_places();
   for (std::uint32_t i = 0; i < rays.count; ++i) hits[i].triangle = kNoTriangle;
   if (!(rays.t_max > 0) || rays.count == 0 || is_empty(accel.bounds) || !has_valid_origin(rays.origin)) return;
   Packet packet;
+  const Tree bvh(accel);
   packet.origin = rays.origin, packet.t_max = rays.t_max;
   packet.filter = filter && filter->accept ? filter : nullptr;
   int first = axis_class(rays.direction[0][0], rays.direction[1][0], rays.direction[2][0]);
@@ -77,7 +78,7 @@ void closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* 
       packet.direction_z = rays.direction[packet.kz], packet.place = kOwnPlaces.at;
       packet.count = kPacketMax;
       prepare_packet(&packet);
-      search_packet<kLanes>(accel, &packet, stats);
+      search_packet<kLanes>(bvh, &packet, stats);
       write_hits(packet, kPacketMax, hits);
       return;
     }
@@ -88,7 +89,7 @@ void closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* 
     classes[i] = static_cast<std::int8_t>(axis_class(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]));
     if (classes[i] >= 0) met |= 1u << classes[i];
   }
-  for (; met; met &= met - 1) closest_of_class<kLanes>(accel, rays, classes, __builtin_ctz(met), &packet, hits, stats);
+  for (; met; met &= met - 1) closest_of_class<kLanes>(bvh, rays, classes, __builtin_ctz(met), &packet, hits, stats);
 }
 
 }  // namespace POCKETRAY_ISA

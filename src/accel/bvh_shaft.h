@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "accel/axis_class.h"
+#include "accel/bvh_tree.h"
 #include "accel/shaft_leaf.h"
 
 namespace pocketray {
@@ -24,13 +25,12 @@ inline unsigned enter_boxes(const Bundle& b, const BvhNode& node) {
 }
 
 // Clears the bits of b->open whose segments something blocks.
-template <int kLanes>
-void search_shaft(const Accel& accel, Bundle* b, TraceStats* stats) {
+template <int kLanes, class Tree>
+void search_shaft(const Tree& bvh, Bundle* b, TraceStats* stats) {
   struct Place {
     std::uint32_t child, box;  // node · 4 + lane of its box
   };
   static_assert(kTriangleCountMax < 1u << 30, "there are fewer nodes than triangles");
-  BvhView bvh(accel.data.data);
   std::uint64_t nodes = 0, triangles = 0;
   Place stack[3 * kBvhDepthMax + 4];
   ShaftBatch batch;
@@ -43,7 +43,7 @@ void search_shaft(const Accel& accel, Bundle* b, TraceStats* stats) {
     if (place.child & kLeafBit) {
       std::uint32_t count = leaf_triangle_count(place.child);
       triangles += count;
-      batch.block[batch.count] = &bvh.leaves[place.child & kLeafIndexMask];
+      batch.block[batch.count] = &bvh.leaf(place.child, &batch.scratch[batch.count]);
       batch.box[batch.count] = shaft_box(*b, bvh.nodes[place.box >> 2], static_cast<int>(place.box & 3));
       batch.in_use[batch.count++] = (1u << count) - 1;
       continue;
@@ -52,7 +52,7 @@ void search_shaft(const Accel& accel, Bundle* b, TraceStats* stats) {
     ++nodes;
     for (unsigned mask = enter_boxes(*b, node); mask; mask &= mask - 1) {
       int lane = __builtin_ctz(mask);
-      prefetch(bvh, node.child[lane]);
+      bvh.prefetch(node.child[lane]);
       stack[top++] = {node.child[lane], place.child * 4 + static_cast<std::uint32_t>(lane)};
     }
   }
@@ -115,20 +115,20 @@ inline void gather_segments(const SegmentPacket& rays, const std::int8_t* classe
   }
 }
 
-template <int kLanes>
+template <class Tree, int kLanes>
 std::uint64_t blocked_of_class(const Accel& accel, const SegmentPacket& rays, const std::int8_t* classes, int wanted,
                                Bundle* bundle, TraceStats* stats) {
   gather_segments(rays, classes, wanted, bundle);
   prepare_bundle(accel.bounds, bundle);
   std::uint64_t open = bundle->open, blocked = 0;
-  search_shaft<kLanes>(accel, bundle, stats);
+  search_shaft<kLanes>(Tree(accel), bundle, stats);
   if (!classes) return open & ~bundle->open;
   for (std::uint64_t m = open & ~bundle->open; m; m &= m - 1)
     blocked |= std::uint64_t(1) << bundle->place[__builtin_ctzll(m)];
   return blocked;
 }
 
-template <int kLanes>
+template <class Tree, int kLanes>
 std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
                               TraceStats* stats) {
   if (is_empty(accel.bounds) || rays.count == 0) return 0;
@@ -137,13 +137,14 @@ std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, con
   int first = axis_class(ray_of(rays, 0));
   if (first >= 0) {
     set_axes(&bundle, first);
-    if (all_of_class(rays, first, bundle)) return blocked_of_class<kLanes>(accel, rays, nullptr, first, &bundle, stats);
+    if (all_of_class(rays, first, bundle))
+      return blocked_of_class<Tree, kLanes>(accel, rays, nullptr, first, &bundle, stats);
   }
   std::int8_t classes[kPacketMax];
   std::uint64_t blocked = 0;
   for (unsigned met = classify(rays, classes); met; met &= met - 1) {
     set_axes(&bundle, __builtin_ctz(met));
-    blocked |= blocked_of_class<kLanes>(accel, rays, classes, __builtin_ctz(met), &bundle, stats);
+    blocked |= blocked_of_class<Tree, kLanes>(accel, rays, classes, __builtin_ctz(met), &bundle, stats);
   }
   return blocked;
 }

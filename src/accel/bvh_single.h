@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "accel/box_ray.h"
+#include "accel/bvh_tree.h"
 #include "accel/leaf_ray.h"
 
 namespace pocketray {
@@ -55,9 +56,6 @@ inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* fi
   return true;
 }
 
-inline const TriangleBlock& leaf_of(const BvhView& bvh, std::uint32_t child) {
-  return bvh.leaves[child & kLeafIndexMask];
-}
 inline unsigned lanes_in_use(std::uint32_t leaf_child) { return 15u >> (4 - leaf_triangle_count(leaf_child)); }
 
 // Of the lanes that pass, takes what is nearer than the best hit so far. Returns whether there was any. A function of
@@ -135,9 +133,10 @@ inline std::uint32_t push_farther(const BvhNode& node, unsigned mask, const floa
   return child_of(a);
 }
 
-template <bool kFiltered>
-inline void search_closest(const BvhView& bvh, const BoxRay& box, Search* search, TraceStats* stats) {
+template <bool kFiltered, class Tree>
+inline void search_closest(const Tree& bvh, const BoxRay& box, Search* search, TraceStats* stats) {
   Counts counts;
+  TriangleBlock scratch;
   Entry stack[kStackSize], *top = stack;
   Float4 limit = Float4::splat(box_limit(box.exponent, search->t));
   Entry last = make_entry(first(limit), ~0u);  // what is worth a visit is not above
@@ -159,7 +158,7 @@ inline void search_closest(const BvhView& bvh, const BoxRay& box, Search* search
     }
     {
       counts.triangles += leaf_triangle_count(child);
-      const TriangleBlock& block = leaf_of(bvh, child);
+      const TriangleBlock& block = bvh.leaf(child, &scratch);
       LeafLanes lanes = test_leaf<false>(search->leaf, nullptr, block);
       lanes.pass &= lanes_in_use(child);
       if (lanes.pass && settle_leaf<kFiltered>(search, block, lanes.pass, lanes.doubtful)) {
@@ -175,9 +174,10 @@ inline void search_closest(const BvhView& bvh, const BoxRay& box, Search* search
   }
 }
 
-template <bool kFiltered>
-inline bool search_any(const BvhView& bvh, const BoxRay& box, const Search& search, TraceStats* stats) {
+template <bool kFiltered, class Tree>
+inline bool search_any(const Tree& bvh, const BoxRay& box, const Search& search, TraceStats* stats) {
   Counts counts;
+  TriangleBlock scratch;
   std::uint32_t stack[kStackSize], *top = stack, child = 0;
   SureDepths sure = sure_depths(search.t_max, search.leaf.direction[2]);
   Float4 limit = Float4::splat(box_limit(box.exponent, search.t_max));
@@ -199,7 +199,7 @@ inline bool search_any(const BvhView& bvh, const BoxRay& box, const Search& sear
     }
     {
       counts.triangles += leaf_triangle_count(child);
-      const TriangleBlock& block = leaf_of(bvh, child);
+      const TriangleBlock& block = bvh.leaf(child, &scratch);
       LeafLanes lanes = test_leaf<!kFiltered>(search.leaf, &sure, block);
       lanes.pass &= lanes_in_use(child);
       if (lanes.pass)
@@ -214,27 +214,29 @@ inline bool search_any(const BvhView& bvh, const BoxRay& box, const Search& sear
   return found;
 }
 
-inline void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
+template <class Tree>
+void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
   Search search;
   BoxRay box;
   hit->triangle = kNoTriangle;
   if (!start_search(accel, ray, filter, &search, &box)) return;
   if (filter && filter->accept) {
-    search_closest<true>(BvhView(accel.data.data), box, &search, stats);
+    search_closest<true>(Tree(accel), box, &search, stats);
     if (search.triangle != kNoTriangle) *hit = {search.t, search.u, search.v, search.triangle};
   } else {
-    search_closest<false>(BvhView(accel.data.data), box, &search, stats);
+    search_closest<false>(Tree(accel), box, &search, stats);
     if (search.triangle == kNoTriangle) return;
     *hit = {search.t, static_cast<float>(search.b / search.sum), static_cast<float>(search.c / search.sum),
             search.triangle};
   }
 }
 
-inline bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
+template <class Tree>
+bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   Search search;
   BoxRay box;
   if (!start_search(accel, ray, filter, &search, &box)) return false;
-  BvhView bvh(accel.data.data);
+  Tree bvh(accel);
   return filter && filter->accept ? search_any<true>(bvh, box, search, stats)
                                   : search_any<false>(bvh, box, search, stats);
 }

@@ -17,6 +17,7 @@ struct LeafBatch {
   const TriangleBlock* block[kLeavesAtOnce];
   unsigned in_use[kLeavesAtOnce];  // lanes that hold triangles
   LeafProjection projection[kLeavesAtOnce];
+  TriangleBlock scratch[kLeavesAtOnce];  // of leaves whose triangles are fetched
 };
 
 // Rays from `first` on that may hit a leaf; a ray and a lane of a leaf that passed.

@@ -30,6 +30,7 @@ struct ShaftBatch {
   const TriangleBlock* block[kShaftLeaves];
   unsigned in_use[kShaftLeaves];  // lanes that hold triangles
   ShaftBox box[kShaftLeaves];
+  TriangleBlock scratch[kShaftLeaves];  // of leaves whose triangles are fetched
 };
 
 // Mask of the blocks of sixteen whose shaft meets the box.

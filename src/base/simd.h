@@ -13,6 +13,8 @@
 // the mask, where there is just one.
 // product_less() is a·b − c, rounded once or twice as is fastest: for bounds that are wide enough, never for what
 // becomes an answer.
+//
+// load_points() puts four points, three floats each, into vectors of their x, y and z.
 #pragma once
 #if defined(__SSE2__)
 #include "base/simd_sse2.h"

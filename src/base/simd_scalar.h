@@ -100,6 +100,10 @@ inline float highest(const Float4& a) {
   for (int i = 1; i < 4; ++i) r = a.v[i] > r ? a.v[i] : r;
   return r;
 }
+inline void load_points(const float* const (&p)[4], Float4 (&rows)[3]) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 4; ++i) rows[axis].v[i] = p[i][axis];
+}
 inline void store(float* p, const Float4& a) {
   for (int i = 0; i < 4; ++i) p[i] = a.v[i];
 }

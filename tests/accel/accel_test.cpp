@@ -155,7 +155,8 @@ TEST_CASE("accel_nearest_distance_is_a_tight_lower_bound") {
 }
 
 // Goal: build() takes no more than need() says, keeps no more than its data, and returns its scratch; the default stays
-// within 64 bytes a triangle on a mesh. Method: every generated mesh; a sphere of 20,480 triangles.
+// within 53 bytes a triangle on a mesh, the compact one within 16. Method: every generated mesh; a sphere of 20,480
+// triangles.
 TEST_CASE("accel_memory_is_within_its_plan") {
   for (const AccelInfo* info : kAccelList) {
     for (const Mesh& mesh : generated_meshes()) {
@@ -168,6 +169,6 @@ TEST_CASE("accel_memory_is_within_its_plan") {
       CHECK(world->scratch.used == 0);
     }
     auto sphere = make_world(jittered_sphere(5, 1, {0, 0, 0}, 0.01f, 108), info);
-    CHECK(sphere->accel.data.bytes() <= 64 * sphere->triangles.size());
+    CHECK(sphere->accel.data.bytes() <= (info == &kCompactAccel ? 16 : 53) * sphere->triangles.size());
   }
 }

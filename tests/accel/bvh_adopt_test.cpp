@@ -24,11 +24,13 @@ Bytes copy_of(const World& world, std::uint32_t count) {
 }
 
 // Whether the bytes are adopted; then they are `world`'s as long as they live.
-bool adopt(World* world, const Bytes& bytes) { return kBvhAccel.adopt(&world->accel, bytes.data).ok; }
+bool adopt(World* world, const Bytes& bytes) { return world->info->adopt(&world->accel, bytes.data).ok; }
 bool refuses(const World& world, const Bytes& bytes) {
   Accel accel = world.accel;
-  return !kBvhAccel.adopt(&accel, bytes.data).ok;
+  return !world.info->adopt(&accel, bytes.data).ok;
 }
+
+const AccelInfo* const kBaked[] = {&kBvhAccel, &kCompactAccel};
 
 // Traces rays through whatever was adopted: must end and stay in bounds.
 void trace_some(const World& world, int ray_count) {
@@ -42,46 +44,53 @@ void trace_some(const World& world, int ray_count) {
 
 // Goal: what was built is adopted and answers alike, bounds included. Method: all generated meshes.
 TEST_CASE("bvh_adopts_what_it_built") {
-  for (const Mesh& mesh : generated_meshes()) {
-    auto world = make_world(mesh, &kBvhAccel), fresh = make_world(mesh, &kBvhAccel);
-    Bytes bytes = copy_of(*world, world->accel.data.count);
-    fresh->accel.bounds = empty_box(), fresh->accel.data = {};
-    INFO(mesh.name);
-    REQUIRE(adopt(fresh.get(), bytes));
-    CHECK(fresh->accel.bounds.low == world->accel.bounds.low);
-    CHECK(fresh->accel.bounds.high == world->accel.bounds.high);
-    trace_some(*fresh, 20);
-  }
+  for (const AccelInfo* info : kBaked)
+    for (const Mesh& mesh : generated_meshes()) {
+      auto world = make_world(mesh, info), fresh = make_world(mesh, info);
+      Bytes bytes = copy_of(*world, world->accel.data.count);
+      fresh->accel.bounds = empty_box(), fresh->accel.data = {};
+      INFO(mesh.name << ", " << info->name);
+      CHECK(accel_of(bytes.data) == info);
+      REQUIRE(adopt(fresh.get(), bytes));
+      CHECK(fresh->accel.bounds.low == world->accel.bounds.low);
+      CHECK(fresh->accel.bounds.high == world->accel.bounds.high);
+      trace_some(*fresh, 20);
+    }
 }
 
 // Goal: no damaged byte does harm. Method: each byte of a small tree flipped in several ways; adopt() refuses, or the
 // rays traced through it end. (Signs of zeros may flip; nothing else is accepted.)
 TEST_CASE("bvh_refuses_every_flipped_byte_or_traces_it_safely") {
   Mesh mesh = soup("", 60, 1, 0.5f, 112);
-  auto world = make_world(mesh, &kBvhAccel);
-  int accepted = 0;
-  for (std::uint32_t i = 0; i < world->accel.data.count; ++i)
-    for (std::uint8_t flip : {0x01, 0x80, 0xFF, 0x10}) {
-      Bytes bytes = copy_of(*world, world->accel.data.count);
-      bytes.data[i] ^= flip;
-      World damaged;
-      damaged.positions = world->positions, damaged.triangles = world->triangles, damaged.info = &kBvhAccel;
-      damaged.accel = world->accel;
-      if (!adopt(&damaged, bytes)) continue;
-      ++accepted;
-      trace_some(damaged, 100);
-    }
-  CHECK(accepted <= 8);
+  for (const AccelInfo* info : kBaked) {
+    auto world = make_world(mesh, info);
+    int accepted = 0;
+    for (std::uint32_t i = 0; i < world->accel.data.count; ++i)
+      for (std::uint8_t flip : {0x01, 0x80, 0xFF, 0x10}) {
+        Bytes bytes = copy_of(*world, world->accel.data.count);
+        bytes.data[i] ^= flip;
+        World damaged;
+        damaged.positions = world->positions, damaged.triangles = world->triangles, damaged.info = info;
+        damaged.accel = world->accel;
+        if (!adopt(&damaged, bytes)) continue;
+        ++accepted;
+        trace_some(damaged, 100);
+      }
+    INFO(info->name);
+    CHECK(accepted <= 8);
+  }
 }
 
 // Goal: no prefix, no byte too many. Method: every length.
 TEST_CASE("bvh_refuses_every_prefix_and_excess_bytes") {
-  auto world = make_world(soup("", 30, 1, 0.5f, 113), &kBvhAccel);
-  for (std::uint32_t count = 0; count < world->accel.data.count; ++count)
-    CHECK(refuses(*world, copy_of(*world, count)));
-  Bytes longer(world->accel.data.count + 64);
-  std::memcpy(longer.data.data, world->accel.data.data, world->accel.data.count);
-  CHECK(refuses(*world, longer));
+  for (const AccelInfo* info : kBaked) {
+    auto world = make_world(soup("", 30, 1, 0.5f, 113), info);
+    for (std::uint32_t count = 0; count < world->accel.data.count; ++count)
+      CHECK(refuses(*world, copy_of(*world, count)));
+    Bytes longer(world->accel.data.count + 64);
+    std::memcpy(longer.data.data, world->accel.data.data, world->accel.data.count);
+    CHECK(refuses(*world, longer));
+  }
 }
 
 // Goal: crafted trees that would never end or overrun the stack are refused. Method: a child that is its own parent, a
@@ -117,5 +126,25 @@ TEST_CASE("bvh_refuses_cycles_shared_children_deep_chains_and_other_geometry") {
   }
 
   auto other = make_world(soup("", 200, 1, 0.5f, 116), &kBvhAccel);
+  CHECK(refuses(*other, copy_of(*world, world->accel.data.count)));
+}
+
+// Goal: a leaf of ids whose marks lie about what can be hit, or that names a triangle the scene has not, is refused,
+// and so are the bytes of the other kind. Method: one good and one degenerate triangle; each id changed.
+TEST_CASE("compact_refuses_false_marks_foreign_ids_and_the_other_kind") {
+  Mesh mesh;
+  add_triangle(&mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_triangle(&mesh, {0, 0, 0}, {1, 1, 0}, {2, 2, 0});
+  auto world = make_world(mesh, &kCompactAccel), other = make_world(mesh, &kBvhAccel);
+  std::uint32_t leaf_offset = world->accel.data.count - static_cast<std::uint32_t>(sizeof(CompactLeaf));
+  const std::uint32_t good[] = {0, 1 | kUnhittableBit, 0, 0};
+  REQUIRE(std::memcmp(world->accel.data.data + leaf_offset, good, sizeof good) == 0);
+  for (std::uint32_t lane = 0; lane < 4; ++lane)
+    for (std::uint32_t id : {0u, 1u, 2u, 0x7FFFFFFFu, kUnhittableBit, 1 | kUnhittableBit, kNoTriangle}) {
+      Bytes bytes = copy_of(*world, world->accel.data.count);
+      std::memcpy(bytes.data.data + leaf_offset + 4 * lane, &id, sizeof id);
+      CHECK(refuses(*world, bytes) == (id != good[lane]));
+    }
+  CHECK(refuses(*world, copy_of(*other, other->accel.data.count)));
   CHECK(refuses(*other, copy_of(*world, world->accel.data.count)));
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <limits>
+#include <memory>
 
 using namespace pocketray;
 
@@ -142,6 +143,22 @@ TEST_CASE("simd_floats_load_compare_and_reduce_by_lane") {
   });
   CHECK(wrong == 0);
   for (unsigned mask = 0; mask < 16; ++mask) CHECK(bits(Float4::mask_of(mask)) == mask);
+}
+
+// Goal: the coordinates of four points, by axis, read from nowhere else. Method: points of distinct numbers in arrays
+// of exactly their size, so that a sanitizer sees the end.
+TEST_CASE("simd_points_are_loaded_by_axis") {
+  std::unique_ptr<float[]> point[4];
+  const float* pointers[4];
+  for (int i = 0; i < 4; ++i) {
+    point[i].reset(new float[3]{static_cast<float>(i), static_cast<float>(10 + i), static_cast<float>(20 + i)});
+    pointers[i] = point[i].get();
+  }
+  Float4 rows[3];
+  load_points(pointers, rows);
+  for (int axis = 0; axis < 3; ++axis)
+    CHECK(wrong_lanes<Kind<Float4, float, 4>>(rows[axis], [=](int i) { return static_cast<float>(10 * axis + i); }) ==
+          0);
 }
 
 // Goal: later, sooner and is_later are max, min and > of distances: exact unless the result is negative, which then
