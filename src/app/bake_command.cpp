@@ -3,6 +3,7 @@
 
 #include "accel/accel_list.h"
 #include "app/commands.h"
+#include "app/options.h"
 #include "app/report.h"
 #include "app/source.h"
 #include "platform/file.h"
@@ -13,14 +14,13 @@ namespace pocketray {
 namespace {
 
 struct BakeOptions {
-  std::string input, output, json;
+  std::string input, output, json, accel = kBvhAccel.name;
   std::uint32_t texture_side_max = 512;
   float crease_angle = 40;
 };
 
 // Builds the accelerator on the heap: baking is desktop work.
-std::vector<std::uint64_t> build_accel(Scene* scene) {
-  const AccelInfo& info = *kAccelList[0];
+std::vector<std::uint64_t> build_accel(const AccelInfo& info, Scene* scene) {
   std::size_t keep_bytes = info.need(scene->triangles.count) + kArenaAlignment,
               scratch_bytes = info.scratch_need(scene->triangles.count) + kArenaAlignment;
   std::vector<std::uint64_t> memory((keep_bytes + scratch_bytes) / 8 + 2);
@@ -74,7 +74,7 @@ Status bake(const BakeOptions& o) {
   }
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
-  std::vector<std::uint64_t> accel_memory = build_accel(&scene);
+  std::vector<std::uint64_t> accel_memory = build_accel(*find_accel(o.accel), &scene);
   double build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   std::size_t byte_count = 0;
   RETURN_IF_ERROR(write_scene(o.output, scene, &byte_count));
@@ -113,6 +113,11 @@ void add_bake_command(CLI::App* program, int* exit_status) {
                    "degrees: models that come without normals are smooth below it (glTF: flat)")
       ->capture_default_str()
       ->check(CLI::Range(0.0f, 180.0f));
+  command
+      ->add_option("--accel", options->accel,
+                   "accelerator to put into it: bvh, or compact with two fifths of its memory, somewhat slower")
+      ->check(CLI::IsMember({kBvhAccel.name, kCompactAccel.name}))
+      ->capture_default_str();
   command->add_option("--json", options->json, "also write figures as JSON to FILE, or - for standard output");
   command->callback([=] { *exit_status = report(bake(*options)); });
 }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "accel/accel_list.h"
 #include "base/fmath.h"
 #include "plan/plan_effects.h"
 #include "scene/builtin/builtin.h"
@@ -128,6 +129,12 @@ Status parse_camera(const std::string& text, Camera* camera) {
   return success();
 }
 
+const AccelInfo* find_accel(const std::string& name) {
+  for (const AccelInfo* info : kAccelList)
+    if (name == info->name) return info;
+  return nullptr;
+}
+
 void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("SCENE", o->scene, scene_help())->required();
   command->add_option("--size", o->size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
@@ -147,6 +154,15 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("--threads", o->threads, "threads that trace; 0: one per core")->capture_default_str();
   command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
       ->default_str("the best of this CPU");
+  std::vector<std::string> accels = {"auto"};
+  for (const AccelInfo* info : kAccelList) accels.push_back(info->name);
+  command
+      ->add_option(
+          "--accel", o->accel,
+          "what finds a ray's triangles: bvh, compact (two fifths of its memory, somewhat slower), brute (for "
+          "comparisons), or auto: what the scene was baked with, else bvh, else compact where that does not fit")
+      ->check(CLI::IsMember(accels))
+      ->capture_default_str();
   command->add_option("--camera", o->camera,
                       "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up, degrees from top to bottom");
   command->add_option("--camera-index", o->camera_index, "which of the scene's cameras")->capture_default_str();
@@ -173,6 +189,7 @@ Status open_scene(const CommonOptions& o, std::size_t (*output_bytes)(const Sett
   Renderer* r = &opened->renderer;
   start_renderer(opened->block, settings.memory_bytes, settings, r);
   r->camera_index = o.camera_index;
+  r->accel_info = find_accel(o.accel);
   SceneStorage storage;
   RETURN_IF_ERROR(load_scene(o.scene, r, &opened->source, &storage));
   RETURN_IF_ERROR(plan_renderer(r, storage, output_bytes(settings)));
@@ -199,6 +216,9 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
 
 void print_notes(const OpenScene& opened) {
   if (!opened.source.warning.empty()) std::fprintf(stderr, "pocketray: %s\n", opened.source.warning.c_str());
+  if (opened.renderer.accel_is_fallback)
+    std::fprintf(stderr,
+                 "pocketray: the accelerator bvh does not fit --memory: compact takes its place, somewhat slower\n");
   const SceneInfo& info = opened.renderer.scene.info;
   if (info.default_camera != 0 && info.default_lights != 0)
     std::fprintf(

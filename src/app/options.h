@@ -13,7 +13,7 @@ namespace pocketray {
 struct CommonOptions {
   std::string scene;
   std::string size = "320x240", memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene",
-              json, device, isa;
+              json, device, isa, accel = "auto";
   std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
   bool no_cut_off = false;
 };
@@ -42,6 +42,8 @@ Status find_device(const CommonOptions& options, const platform::Device** device
 
 // The instruction set --isa names, the best of this CPU where it names none.
 Status parse_isa(const std::string& text, Isa* isa);
+// The accelerator of that name; null for "auto".
+const AccelInfo* find_accel(const std::string& name);
 // "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
 Status parse_bytes(const std::string& text, std::size_t* bytes);

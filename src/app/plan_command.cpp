@@ -31,9 +31,9 @@ int run(const CommonOptions& options, bool prices) {
   if (r.memory.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);
     if (options.json != "-") {
-      std::printf("%s: %s triangles, %u materials, %u textures, %u lights\n", options.scene.c_str(),
+      std::printf("%s: %s triangles, %u materials, %u textures, %u lights; accelerator %s\n", options.scene.c_str(),
                   grouped(r.scene.triangles.count).c_str(), r.scene.materials.count, r.scene.textures.count,
-                  r.scene.lights.count);
+                  r.scene.lights.count, r.accel_info->name);
       print_effects(r.effects);
       print_memory(r.memory);
     }
@@ -41,6 +41,7 @@ int run(const CommonOptions& options, bool prices) {
       Json json = {{"scene", options.scene},
                    {"triangles", r.scene.triangles.count},
                    {"fits", status.ok},
+                   {"accelerator", r.accel_info->name},
                    {"effects", effects_json(r.effects)},
                    {"memory", memory_json(r.memory)}};
       Status written = write_json(options.json, json);

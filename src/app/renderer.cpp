@@ -56,11 +56,31 @@ Status adopt_or_build(Renderer* r) {
   return r->accel_info->adopt(&r->accel, r->accel_data);
 }
 
+Status plan_with(Renderer* r, const AccelInfo& accel, const SceneStorage& storage, std::size_t output_bytes) {
+  r->accel_info = &accel;
+  return plan_memory(r->scene, r->settings, r->effects, accel, storage, r->light_points.count, output_bytes,
+                     &r->memory);
+}
+
+// Settles the accelerator and plans the memory with it: what was asked for, else what the scene was baked with, else
+// the default, else, where that does not fit, the compact one.
+Status choose_accel(Renderer* r, const SceneStorage& storage, std::size_t output_bytes) {
+  const AccelInfo* baked = accel_of(r->scene.accel);
+  if (r->accel_info) {
+    if (r->accel_info != baked) r->scene.accel = {};
+    return plan_with(r, *r->accel_info, storage, output_bytes);
+  }
+  if (!r->scene.accel.empty()) return plan_with(r, baked ? *baked : kBvhAccel, storage, output_bytes);
+  Status status = plan_with(r, kBvhAccel, storage, output_bytes);
+  if (status.ok) return status;
+  r->accel_is_fallback = true;
+  return plan_with(r, kCompactAccel, storage, output_bytes);
+}
+
 }  // namespace
 
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* r) {
   r->settings = settings;
-  r->accel_info = kAccelList[0];
   r->scene_arena = make_arena("scene", block, block_bytes);
   r->settings.memory_bytes = r->scene_arena.capacity;  // aligning the block's start may have cost a few bytes
 }
@@ -78,7 +98,7 @@ Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t outpu
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(r->scene, r->settings, r->effects.mask, &point_count));
   r->light_points.count = point_count;
-  return plan_memory(r->scene, r->settings, r->effects, *r->accel_info, storage, point_count, output_bytes, &r->memory);
+  return choose_accel(r, storage, output_bytes);
 }
 
 Status build_renderer(Renderer* r) {

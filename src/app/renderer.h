@@ -18,7 +18,8 @@ struct Renderer {
   Scene scene;
   EffectPlan effects;
   MemoryPlan memory;
-  const AccelInfo* accel_info = nullptr;
+  const AccelInfo* accel_info = nullptr;  // null until planned: the plan is to choose
+  bool accel_is_fallback = false;         // the default did not fit
   Accel accel;
   Array<std::uint8_t> accel_data;  // writable where geometry moves
   Pose pose;

@@ -88,6 +88,17 @@ expect render_baked 0 'ns per pixel' render c.pray --size 32x24 -o baked.ppm
 check baked_gives_the_same_picture cmp -s one.ppm baked.ppm
 "${run[@]}" render "$subject" --size 32x24 --effects all -o all.ppm >/dev/null
 check all_effects_give_the_same_picture cmp -s one.ppm all.ppm
+for accel in compact brute; do
+  "${run[@]}" render "$subject" --size 32x24 --accel $accel -o $accel.ppm >/dev/null
+  check "accel_${accel}_gives_the_same_picture" cmp -s one.ppm $accel.ppm
+done
+expect accel_name 2 'brute' render "$subject" --accel octree -o b.ppm
+expect bake_compact 0 'triangles' bake "$subject" --accel compact -o d.pray
+check compact_is_smaller test "$(stat -c %s d.pray)" -lt "$(stat -c %s c.pray)"
+expect render_baked_compact 0 'ns per pixel' render d.pray --size 32x24 -o baked_compact.ppm
+check baked_compact_gives_the_same_picture cmp -s one.ppm baked_compact.ppm
+expect plan_baked_compact 0 'accelerator compact' plan d.pray
+expect plan_other_than_baked 0 'accelerator bvh' plan d.pray --accel bvh
 
 # Goal: a file that lies is refused in one line.
 head -c 5000 c.pray >cut.pray

@@ -27,12 +27,6 @@ bool asks(const std::vector<std::string>& list, const char* name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-const AccelInfo* find_accel(const std::string& name) {
-  for (const AccelInfo* info : kAccelList)
-    if (name == info->name) return info;
-  return nullptr;
-}
-
 float lit_share(const OurSide& ours, const RaySet& shadow) {
   OurTask task = make_our_task(ours, shadow);
   trace_ours(&task);

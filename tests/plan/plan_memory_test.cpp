@@ -103,6 +103,35 @@ TEST_CASE("plan_memory_refusal_names_what_fits") {
   }
 }
 
+// Goal: where the default accelerator does not fit, the compact one takes its place, unless another was asked for.
+// Method: limits about what each needs; what runs then gives the same picture.
+TEST_CASE("plan_memory_takes_the_compact_accelerator_where_the_default_does_not_fit") {
+  auto generated = generate_scene(bit(Feature::point_light), 5);
+  Settings settings = settings_for(0, 16, 12);
+  auto plan_of = [&](const AccelInfo* accel) {
+    return make_renderer(generated->scene, settings, accel)->renderer.memory;
+  };
+  std::size_t bvh = plan_of(&kBvhAccel).total_bytes, compact = plan_of(&kCompactAccel).total_bytes;
+  REQUIRE(compact < bvh - kArenaAlignment);
+  Picture expected = render_picture(generated->scene, settings, 0, &kBvhAccel);
+  Status status;
+  auto try_with = [&](std::size_t bytes, const AccelInfo* accel) {
+    settings.memory_bytes = bytes + kArenaAlignment;  // wherever the block starts
+    return make_renderer(generated->scene, settings, accel, &status);
+  };
+  auto roomy = try_with(bvh, nullptr), tight = try_with(compact, nullptr);
+  REQUIRE(roomy);
+  REQUIRE(tight);
+  CHECK(roomy->renderer.accel_info == &kBvhAccel);
+  CHECK_FALSE(roomy->renderer.accel_is_fallback);
+  CHECK(tight->renderer.accel_info == &kCompactAccel);
+  CHECK(tight->renderer.accel_is_fallback);
+  REQUIRE(render_frame(&tight->renderer, 0).ok);
+  CHECK(std::memcmp(tight->renderer.image.data, expected.data(), tight->renderer.image.bytes()) == 0);
+  CHECK_FALSE(try_with(compact, &kBvhAccel));
+  CHECK_FALSE(try_with(compact / 2, nullptr));
+}
+
 // Goal: a block that just holds the plan is enough, and one byte less is refused rather than overrun, wherever the
 // block starts. Method: exhaustive over the misalignments of a cache line, at the edge.
 TEST_CASE("plan_memory_is_exact_at_the_edge_for_any_alignment") {
@@ -115,6 +144,7 @@ TEST_CASE("plan_memory_is_exact_at_the_edge_for_any_alignment") {
     for (std::size_t less : {0, 1, 63, 64, 128}) {
       Renderer r;
       start_renderer(block.data() + offset, need - less, settings, &r);
+      r.accel_info = &kBvhAccel;
       r.scene = generated->scene;
       if (!plan_renderer(&r, SceneStorage(), 0).ok) {
         ++refused;
