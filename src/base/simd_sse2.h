@@ -30,7 +30,7 @@ struct Float4 {
 };
 inline void store(float* p, Float4 a) { _mm_store_ps(p, a.v); }
 inline void load_points(const float* const (&p)[4], Float4 (&rows)[3]) {
-  auto xy = [&](int i) { return _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(p[i]))); };
+  auto xy = [&](int i) { return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p[i]))); };
   auto z = [&](int i) { return _mm_load_ss(p[i] + 2); };
   __m128 low = _mm_unpacklo_ps(xy(0), xy(1)), high = _mm_unpacklo_ps(xy(2), xy(3));  // x, x, y, y
   rows[0].v = _mm_movelh_ps(low, high), rows[1].v = _mm_movehl_ps(high, low);
