@@ -1,61 +1,46 @@
-// Segments that run close to one another, as those from a few pixels to one light, walk the BVH together, as the shaft
-// that holds them. Like every kernel it is compiled once per instruction set, each time in a namespace of its own.
+// Shadow rays from a few pixels to one light, or along one direction, walk the BVH together, as the shaft that holds
+// them. Like every kernel it is compiled once per instruction set, each time in a namespace of its own.
 #pragma once
 #include <cstring>
-#include <utility>
 
 #include "accel/axis_class.h"
-#include "accel/bvh_tree.h"
+#include "accel/bvh_single.h"
 #include "accel/shaft_leaf.h"
 
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Mask of the children that the shaft of the whole bundle meets.
-inline unsigned enter_boxes(const Bundle& b, const BvhNode& node) {
-  const float *low_z = node.bounds[b.kz], *high_z = node.bounds[3 + b.kz];
-  if (b.sign < 0) std::swap(low_z, high_z);
-  auto relative = [&](const float* row, int k) { return Float4::load(row) - b.reference4[k]; };
-  Float4 near = max(relative(low_z, 2) * b.sign4, b.all_begin), far = min(relative(high_z, 2) * b.sign4, b.all_end);
-  auto at = [&](int row, Float4 z) { return b.at_zero[row] + b.slope[row] * z; };
-  return bits((near <= far) & (min(at(0, near), at(0, far)) <= relative(node.bounds[3 + b.kx], 0)) &
-              (relative(node.bounds[b.kx], 0) <= max(at(1, near), at(1, far))) &
-              (min(at(2, near), at(2, far)) <= relative(node.bounds[3 + b.ky], 1)) &
-              (relative(node.bounds[b.ky], 1) <= max(at(3, near), at(3, far))));
-}
-
-// Clears the bits of b->open whose segments something blocks.
+// Clears the bits of b->open whose rays something blocks.
 template <int kLanes, class Tree>
 void search_shaft(const Tree& bvh, Bundle* b, TraceStats* stats) {
-  struct Place {
-    std::uint32_t child, box;  // node · 4 + lane of its box
-  };
-  static_assert(kTriangleCountMax < 1u << 30, "there are fewer nodes than triangles");
   std::uint64_t nodes = 0, triangles = 0;
-  Place stack[3 * kBvhDepthMax + 4];
+  std::uint32_t stack[3 * kBvhDepthMax + 4];
   ShaftBatch batch;
   int top = 0;
-  stack[top++] = {0, 0};
-  for (;;) {
-    if (batch.count == kShaftLeaves || (top == 0 && batch.count > 0)) search_shaft_leaves<kLanes>(b, &batch);
-    if (top == 0 || !b->open) break;
-    Place place = stack[--top];
-    if (place.child & kLeafBit) {
-      std::uint32_t count = leaf_triangle_count(place.child);
-      triangles += count;
-      batch.block[batch.count] = &bvh.leaf(place.child, &batch.scratch[batch.count]);
-      batch.box[batch.count] = shaft_box(*b, bvh.nodes[place.box >> 2], static_cast<int>(place.box & 3));
-      batch.in_use[batch.count++] = (1u << count) - 1;
-      continue;
-    }
-    const BvhNode& node = bvh.nodes[place.child];
+  stack[top++] = 0;
+  while (top > 0 && b->open) {
+    const BvhNode& node = bvh.nodes[stack[--top]];
     ++nodes;
-    for (unsigned mask = enter_boxes(*b, node); mask; mask &= mask - 1) {
+    Rectangles4 r = project_children(*b, node);
+    Mask4 met = (r.x_low <= b->window[1]) & (b->window[0] <= r.x_high) & (r.y_low <= b->window[3]) &
+                (b->window[2] <= r.y_high) & (r.near <= Float4::splat(b->all_depth)) & (Float4::splat(0) <= r.far);
+    alignas(16) float x_low[4], x_high[4], y_low[4], y_high[4], near[4];
+    store(x_low, r.x_low), store(x_high, r.x_high), store(y_low, r.y_low), store(y_high, r.y_high), store(near, r.near);
+    for (unsigned mask = bits(met); mask; mask &= mask - 1) {
       int lane = __builtin_ctz(mask);
-      bvh.prefetch(node.child[lane]);
-      stack[top++] = {node.child[lane], place.child * 4 + static_cast<std::uint32_t>(lane)};
+      std::uint32_t child = node.child[lane];
+      bvh.prefetch(child);
+      if (!(child & kLeafBit)) {
+        stack[top++] = child;
+        continue;
+      }
+      triangles += leaf_triangle_count(child);
+      batch.child[batch.count] = child, batch.near[batch.count] = near[lane];
+      batch.window[batch.count++] = {x_low[lane], x_high[lane], y_low[lane], y_high[lane]};
+      if (batch.count == kShaftLeaves) search_shaft_leaves<kLanes>(bvh, b, &batch);
     }
   }
+  if (batch.count > 0) search_shaft_leaves<kLanes>(bvh, b, &batch);
   if (stats) stats->nodes += nodes, stats->triangles += triangles;
 }
 
@@ -119,10 +104,16 @@ template <class Tree, int kLanes>
 std::uint64_t blocked_of_class(const Accel& accel, const SegmentPacket& rays, const std::int8_t* classes, int wanted,
                                Bundle* bundle, TraceStats* stats) {
   gather_segments(rays, classes, wanted, bundle);
-  prepare_bundle(accel.bounds, bundle);
-  std::uint64_t open = bundle->open, blocked = 0;
+  std::uint64_t blocked = 0;
+  if (!prepare_bundle(accel.bounds, bundle)) {
+    for (int n = 0; n < bundle->count; ++n)
+      blocked |=
+          static_cast<std::uint64_t>(occluded<Tree>(accel, ray_of(rays, bundle->place[n]), bundle->filter, stats))
+          << bundle->place[n];
+    return blocked;
+  }
+  std::uint64_t open = bundle->open;
   search_shaft<kLanes>(Tree(accel), bundle, stats);
-  if (!classes) return open & ~bundle->open;
   for (std::uint64_t m = open & ~bundle->open; m; m &= m - 1)
     blocked |= std::uint64_t(1) << bundle->place[__builtin_ctzll(m)];
   return blocked;

@@ -1,84 +1,93 @@
-// The segments of a bundle against a few leaves. Part of the kernels: see bvh_shaft.h.
+// The rays of a bundle against a few leaves. Part of the kernels: see bvh_shaft.h.
 //
-// First which segments pass through the box of which leaf, then the float test of cross_triangle() for these, four
-// triangles of a leaf and kLanes/4 segments at once, last what that leaves open, by the book. The loops do not wait for
+// First which rays pass through the box of which leaf, then the float test of cross_triangle() for these, four
+// triangles of a leaf and kLanes/4 rays at once, last what that leaves open, by the book. The loops do not wait for
 // one another's results, as they would leaf by leaf.
 #pragma once
-#include "accel/bvh.h"
+#include "accel/leaf_projection.h"
 #include "accel/shaft.h"
 
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// A box relative to the reference, z along the directions; in x and y widened by the slack.
-struct ShaftBox {
-  float x_low, x_high, y_low, y_high, begin, end;
-};
-inline ShaftBox shaft_box(const Bundle& b, const BvhNode& node, int lane) {
-  auto low = [&](int axis, int k) { return node.bounds[axis][lane] - b.reference[k]; };
-  auto high = [&](int axis, int k) { return node.bounds[3 + axis][lane] - b.reference[k]; };
-  float z_low = low(b.kz, 2), z_high = high(b.kz, 2);
-  bool back = b.sign < 0;
-  return {low(b.kx, 0) - b.slack,  high(b.kx, 0) + b.slack, low(b.ky, 1) - b.slack,
-          high(b.ky, 1) + b.slack, back ? -z_high : z_low,  back ? -z_low : z_high};
-}
-
 constexpr int kShaftLeaves = 8;  // searched at once
+constexpr int kFewTests = 6;     // of a leaf: fewer take less time than meet_window()
 
 struct ShaftBatch {
   int count = 0;
-  const TriangleBlock* block[kShaftLeaves];
-  unsigned in_use[kShaftLeaves];  // lanes that hold triangles
-  ShaftBox box[kShaftLeaves];
-  TriangleBlock scratch[kShaftLeaves];  // of leaves whose triangles are fetched
+  std::uint32_t child[kShaftLeaves];
+  const TriangleBlock* block[kShaftLeaves];  // of the leaves that some rays are tested with
+  unsigned in_use[kShaftLeaves];             // lanes whose triangles they may hit
+  TriangleBlock scratch[kShaftLeaves];
+  Window window[kShaftLeaves];  // of the leaf's box
+  float near[kShaftLeaves];     // its nearest depth
 };
 
-// Mask of the blocks of sixteen whose shaft meets the box.
-inline unsigned meet_box(const Shafts4& shafts, const ShaftBox& box) {
-  Float4 near = max(Float4::load(shafts.begin), Float4::splat(box.begin));
-  Float4 far = min(Float4::load(shafts.end), Float4::splat(box.end));
-  auto at = [&](int row, Float4 z) { return Float4::load(shafts.at_zero[row]) + Float4::load(shafts.slope[row]) * z; };
-  return bits((near <= far) & (min(at(0, near), at(0, far)) <= Float4::splat(box.x_high)) &
-              (Float4::splat(box.x_low) <= max(at(1, near), at(1, far))) &
-              (min(at(2, near), at(2, far)) <= Float4::splat(box.y_high)) &
-              (Float4::splat(box.y_low) <= max(at(3, near), at(3, far))));
-}
-
-// Mask of the kLanes segments from `first` on that pass through the widened box.
-template <class F>
-unsigned pass_box(const Bundle& b, const ShaftBox& box, int first) {
-  F near = max(F::load(b.begin + first), F::splat(box.begin)), far = min(F::load(b.end + first), F::splat(box.end));
-  F x = F::load(b.x + first), y = F::load(b.y + first);
-  F slope_x = F::load(b.slope_x + first), slope_y = F::load(b.slope_y + first);
-  F x0 = x + slope_x * near, x1 = x + slope_x * far, y0 = y + slope_y * near, y1 = y + slope_y * far;
-  return bits((near <= far) & (min(x0, x1) <= F::splat(box.x_high)) & (F::splat(box.x_low) <= max(x0, x1)) &
-              (min(y0, y1) <= F::splat(box.y_high)) & (F::splat(box.y_low) <= max(y0, y1)));
+// Mask of the triangles of a leaf that some ray of the window may cross: edge lines, as in leaf_projection.h, over the
+// whole of it. A vertex counts w in the plane: its depth where the rays converge, else 1.
+inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
+  const Float4 half = Float4::splat(0.5f), slack = Float4::splat(b.slack);
+  Float4 middle_x = (b.window[0] + b.window[1]) * half, middle_y = (b.window[2] + b.window[3]) * half;
+  Float4 half_x = b.window[1] - middle_x, half_y = b.window[3] - middle_y;
+  Float4 x[3], y[3], w[3], aside = Float4::splat(0), along = aside;
+  for (int i = 0; i < 3; ++i) {
+    Float4 depth = (Float4::splat(b.middle[2]) - Float4::load(block.vertex[i][b.kz])) * Float4::splat(b.sign);
+    w[i] = b.converges ? depth : Float4::splat(1);
+    x[i] = (Float4::load(block.vertex[i][b.kx]) - Float4::splat(b.middle[0])) - Float4::splat(b.slope[0]) * depth -
+           middle_x * w[i];
+    y[i] = (Float4::load(block.vertex[i][b.ky]) - Float4::splat(b.middle[1])) - Float4::splat(b.slope[1]) * depth -
+           middle_y * w[i];
+    aside = max(aside, abs(x[i]) + abs(y[i])), along = max(along, max(abs(depth), abs(w[i])));
+  }
+  // The vertices are off by less than the slack, and so the edge functions by its product with what they are made of.
+  Float4 size = aside + along * (half_x + half_y) + slack;
+  Float4 error = size * slack * Float4::splat(4) + size * (aside + along * Float4::splat(4)) * Float4::splat(0x1p-19f) +
+                 Float4::splat(0x1p-140f);
+  Float4 low_max = Float4::splat(-kInfinity), high_min = Float4::splat(kInfinity), zero = Float4::splat(0);
+  for (int i = 0; i < 3; ++i) {
+    int j = i == 2 ? 0 : i + 1;
+    Float4 line_x = y[i] * w[j] - w[i] * y[j], line_y = w[i] * x[j] - x[i] * w[j], line = x[i] * y[j] - y[i] * x[j];
+    Float4 radius = abs(line_x) * half_x + abs(line_y) * half_y + error;
+    low_max = max(low_max, line - radius), high_min = min(high_min, line + radius);
+  }
+  return bits((zero <= high_min) | (low_max <= zero));
 }
 
 struct ShaftTest {
-  std::uint8_t leaf, first;  // segment
+  std::uint8_t leaf, first;  // ray
 };
 
-template <int kLanes>
-int list_shaft_tests(const Bundle& b, const ShaftBatch& batch, ShaftTest* tests) {
-  using F = typename Lanes<kLanes>::Floats;
+template <int kLanes, class Tree>
+int list_shaft_tests(const Tree& bvh, const Bundle& b, ShaftBatch* leaves, ShaftTest* tests) {
   constexpr int kAtOnce = kLanes / 4;
   int count = 0;
-  for (int leaf = 0; leaf < batch.count; ++leaf) {
-    const ShaftBox& box = batch.box[leaf];
-    for (unsigned blocks = meet_box(b.block, batch.box[leaf]); blocks; blocks &= blocks - 1) {
-      int block = __builtin_ctz(blocks) * kBlockRays;
-      unsigned open = static_cast<unsigned>(b.open >> block) & 0xFFFF;
-      for (int first = 0; first < kBlockRays; first += kLanes) {
-        if (!(open >> first & ((1u << kLanes) - 1))) continue;
-        unsigned passing = pass_box<F>(b, box, block + first) & open >> first;
-        while (passing) {
-          int i = __builtin_ctz(passing) & ~(kAtOnce - 1);
-          tests[count++] = {static_cast<std::uint8_t>(leaf), static_cast<std::uint8_t>(block + first + i)};
-          passing &= ~(((1u << kAtOnce) - 1) << i);
+  for (int leaf = 0; leaf < leaves->count; ++leaf) {
+    int begin = count;
+    const Window& w = leaves->window[leaf];
+    Bounds4 bounds = {Float4::splat(w.x_low), Float4::splat(w.x_high), Float4::splat(w.y_low), Float4::splat(w.y_high)};
+    Float4 near = Float4::splat(leaves->near[leaf]);
+    for (unsigned blocks = bits(meets(bounds, b.block)); blocks; blocks &= blocks - 1) {
+      int block = __builtin_ctz(blocks);
+      unsigned groups = bits(meets(bounds, b.group[block]) & (near <= Float4::load(b.group_depth + 4 * block)));
+      for (; groups; groups &= groups - 1) {
+        int first = 16 * block + 4 * __builtin_ctz(groups);
+        Float4 x = Float4::load(b.x + first), y = Float4::load(b.y + first);
+        unsigned rays = bits((bounds.x_low <= x) & (x <= bounds.x_high) & (bounds.y_low <= y) & (y <= bounds.y_high) &
+                             (near <= Float4::load(b.depth + first)));
+        rays &= static_cast<unsigned>(b.open >> first);
+        while (rays) {
+          int i = __builtin_ctz(rays) & ~(kAtOnce - 1);
+          tests[count++] = {static_cast<std::uint8_t>(leaf), static_cast<std::uint8_t>(first + i)};
+          rays &= ~(((1u << kAtOnce) - 1) << i);
         }
       }
     }
+    if (count == begin) continue;
+    leaves->block[leaf] = &bvh.leaf(leaves->child[leaf], &leaves->scratch[leaf]);
+    leaves->in_use[leaf] = (1u << leaf_triangle_count(leaves->child[leaf])) - 1;
+    if (count - begin < kFewTests || !b.cubes_are_finite) continue;
+    leaves->in_use[leaf] &= meet_window(b, *leaves->block[leaf]);
+    if (!leaves->in_use[leaf]) count = begin;
   }
   return count;
 }
@@ -145,11 +154,11 @@ inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int lane
 }
 
 // Searches the leaves of the batch and empties it.
-template <int kLanes>
-void search_shaft_leaves(Bundle* b, ShaftBatch* batch) {
+template <int kLanes, class Tree>
+void search_shaft_leaves(const Tree& bvh, Bundle* b, ShaftBatch* batch) {
   constexpr unsigned kEach = 0x1111;
   ShaftTest tests[kShaftLeaves * kPacketMax];
-  int count = list_shaft_tests<kLanes>(*b, *batch, tests);
+  int count = list_shaft_tests<kLanes>(bvh, *b, batch, tests);
   for (int n = 0; n < count; ++n) {
     const ShaftTest& test = tests[n];
     const TriangleBlock& block = *batch->block[test.leaf];

@@ -77,8 +77,7 @@ RaySet make_shadow_rays(const BenchScene& scene, const RaySet& primary, const st
   Vec3 right = normalize(cross(forward, scene.camera.up)), up = cross(right, forward);
   Vec3 light = scene.camera.eye + (right + up) * (length(extent(scene.bounds)) * light_distance);
   return make_secondary(RayKindOfBench::shadow, scene, primary, hits, [&](const Start& start) {
-    Vec3 to_light = light - start.origin;
-    return Ray{start.origin, normalize(to_light), length(to_light) * 0.999f};
+    return Ray{start.origin, light - start.origin, 0.999f};
   });
 }
 
