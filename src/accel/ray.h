@@ -25,6 +25,10 @@ struct RayPacket {
   alignas(64) float direction[3][kPacketMax];
 };
 
+inline Ray ray_of(const RayPacket& rays, std::uint32_t i) {
+  return {rays.origin, {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]}, rays.t_max};
+}
+
 // Rays with origins and ends of their own; fast where they run close to one another, as to one light or along one
 // direction, and neighbours follow one another as in RayPacket.
 struct SegmentPacket {

@@ -138,9 +138,9 @@ const Face* face_behind_layers(const Scene& scene, const Contact& contact, Effec
   return body ? body : sheet;
 }
 
-// What comes along a ray that was found to hit first what `hit` says.
+// What comes along a ray that was found to hit first what `hit` says; `first` is the surface there, or null.
 template <EffectMask mask>
-Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, Path path) {
+Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path path) {
   const FrameData& frame = *tracer->frame;
   const Scene& scene = *frame.scene;
   const HitFilter* filter = visible_filter(frame);
@@ -149,7 +149,10 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, Path path) {
     if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) return sum + carried * scene.info.background;
     Surface s;
-    frame.surface(frame, ray, hit, &s);
+    if (layer == 0 && first)
+      s = *first;
+    else
+      frame.surface(frame, ray, hit, &s);
     if constexpr (has(mask, Effect::absorption)) {
       if (path.media.depth) {
         effect_entered<Effect::absorption>();
@@ -188,12 +191,13 @@ Vec3 radiance(Tracer* tracer, const Ray& ray, const Path& path) {
   const FrameData& frame = *tracer->frame;
   Hit hit;
   frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
-  return radiance_from<mask>(tracer, ray, hit, path);
+  return radiance_from<mask>(tracer, ray, hit, nullptr, path);
 }
 
 template <EffectMask mask>
-Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const MediumStack& media) {
-  return radiance_from<mask>(tracer, ray, hit, {{1, 1, 1}, 0, media});
+Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface,
+                      const MediumStack& media) {
+  return radiance_from<mask>(tracer, ray, hit, surface, {{1, 1, 1}, 0, media});
 }
 
 struct RadiancePart {

@@ -5,27 +5,18 @@
 namespace pocketray {
 namespace {
 
-// What a first hit asks of the lights.
-struct Receiver {
-  Vec3 point, origin, geometric, normal;
-  const Material* material;
-  std::uint8_t pixel;
-};
-
 bool receives(const Surface& s) { return !s.material->unlit && !(is_zero(s.diffuse) && is_zero(s.material->specular)); }
 
+// The pixels whose first hits light falls on.
 std::uint32_t find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
-                             Receiver* receivers) {
+                             std::uint8_t* receivers) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits[i].triangle == kNoTriangle) continue;
-    Surface s;
-    frame.surface(frame, {rays.origin, {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]}, rays.t_max},
-                  hits[i], &s);
-    Vec3 origin = safe_origin(s, 1);
-    shadows->point[i] = s.point, shadows->origin[i] = origin;
-    if (receives(s))
-      receivers[count++] = {s.point, origin, s.geometric, s.normal, s.material, static_cast<std::uint8_t>(i)};
+    Surface& s = shadows->surface[i];
+    frame.surface(frame, ray_of(rays, i), hits[i], &s);
+    shadows->origin[i] = safe_origin(s, 1);
+    if (receives(s)) receivers[count++] = static_cast<std::uint8_t>(i);
   }
   return count;
 }
@@ -34,10 +25,9 @@ std::uint32_t find_receivers(const FrameData& frame, const RayPacket& rays, cons
 
 void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                        TraceStats* stats) {
-  Receiver receivers[kPacketMax];
+  std::uint8_t receivers[kPacketMax], pixel[kPacketMax];
   std::uint32_t receiver_count = find_receivers(frame, rays, hits, shadows, receivers);
   SegmentPacket packet;
-  std::uint8_t pixel[kPacketMax];
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
     for (std::uint32_t i = run.begin; i < run.end && i < kTileLightMax; ++i) {
@@ -45,13 +35,13 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
       shadows->traced[i] = shadows->blocked[i] = 0;
       packet.count = 0;
       for (std::uint32_t k = 0; k < receiver_count; ++k) {
-        const Receiver& at = receivers[k];
+        const Surface& s = shadows->surface[receivers[k]];
         LightSample sample;
-        if (light.material != kNone && &frame.scene->materials[light.material] == at.material) continue;
-        if (!run.sample(light, at.point, &sample)) continue;
-        if (!(dot(at.normal, sample.direction) > 0 && dot(at.geometric, sample.direction) > 0)) continue;
-        pixel[packet.count] = at.pixel;
-        set_ray(&packet, packet.count++, {at.origin, sample.to_light, sample.t_max});
+        if (light.material != kNone && &frame.scene->materials[light.material] == s.material) continue;
+        if (!run.sample(light, s.point, &sample)) continue;
+        if (!(dot(s.normal, sample.direction) > 0 && dot(s.geometric, sample.direction) > 0)) continue;
+        pixel[packet.count] = receivers[k];
+        set_ray(&packet, packet.count++, {shadows->origin[receivers[k]], sample.to_light, sample.t_max});
       }
       if (packet.count == 0) continue;
       ShadowContext context = {&frame, light.material};

@@ -6,10 +6,11 @@ namespace pocketray {
 
 constexpr std::uint32_t kTileLightMax = 64;  // lights beyond are asked about ray by ray
 
-// For each pixel of a tile where its first hit is, and for each light which of the pixels' shadow rays were traced and
-// which of them something opaque blocks: bit i for pixel i.
+// For each pixel of a tile the surface of its first hit, if any, and for each light which of the pixels' shadow rays
+// were traced and which of them something opaque blocks: bit i for pixel i.
 struct TileShadows {
-  Vec3 point[kPacketMax], origin[kPacketMax];
+  Surface surface[kPacketMax];
+  Vec3 origin[kPacketMax];  // of the shadow rays
   std::uint64_t traced[kTileLightMax], blocked[kTileLightMax];
 };
 
@@ -20,7 +21,7 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
 // Whether a shadow ray starts where the first hit of the tracer's pixel is: then its answer may be known.
 inline bool starts_at_first_hit(const Tracer& tracer, const Vec3& point, const Vec3& origin) {
   const TileShadows* shadows = tracer.tile_shadows;
-  return shadows && shadows->point[tracer.tile_pixel] == point && shadows->origin[tracer.tile_pixel] == origin;
+  return shadows && shadows->surface[tracer.tile_pixel].point == point && shadows->origin[tracer.tile_pixel] == origin;
 }
 // Whether it is known for a light, and what it is.
 inline bool is_known(const Tracer& tracer, std::uint32_t light, bool* blocked) {

@@ -17,12 +17,12 @@ Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t row, s
   return camera_ray(frame.camera, static_cast<float>(column) + offset.x, static_cast<float>(row) + offset.y);
 }
 
-// One sample of a pixel, whose ray hits first what `hit` says.
-Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit) {
+// One sample of a pixel, whose ray hits first what `hit` says; `surface` is there, or null.
+Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
   const FrameData& frame = *tracer->frame;
   tracer->budget = frame.left_out_max;
   ++tracer->rays[static_cast<int>(RayKind::primary)];
-  Vec3 radiance = frame.radiance(tracer, ray, hit, frame.eye_media);
+  Vec3 radiance = frame.radiance(tracer, ray, hit, surface, frame.eye_media);
   float left_out = frame.left_out_max - tracer->budget;
   if (left_out > tracer->left_out_max) tracer->left_out_max = left_out;
   return radiance;
@@ -37,7 +37,7 @@ Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
     Ray ray = pixel_ray(frame, column, row, sample);
     Hit hit;
     frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
-    sum += sample_radiance(tracer, ray, hit);
+    sum += sample_radiance(tracer, ray, hit, nullptr);
   }
   return sum * (1.0f / static_cast<float>(sample_count));
 }
@@ -108,8 +108,7 @@ void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
     }
     for (std::uint32_t i = 0; i < tile.count; ++i) {
       tracer->tile_pixel = i;
-      Vec3 direction = {packet.direction[0][i], packet.direction[1][i], packet.direction[2][i]};
-      sum[i] += sample_radiance(tracer, {packet.origin, direction, packet.t_max}, hits[i]);
+      sum[i] += sample_radiance(tracer, ray_of(packet, i), hits[i], frame.find_shadows ? &shadows.surface[i] : nullptr);
     }
   }
   tracer->tile_shadows = nullptr;

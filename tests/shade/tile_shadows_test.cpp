@@ -58,7 +58,7 @@ TEST_CASE("tile_shadows_change_no_pixel") {
 // from elsewhere, and about lights beyond those known.
 TEST_CASE("tile_shadows_are_known_at_first_hits_alone") {
   TileShadows shadows = {};
-  shadows.point[5] = {1, 2, 3}, shadows.origin[5] = {1, 2, 4};
+  shadows.surface[5].point = {1, 2, 3}, shadows.origin[5] = {1, 2, 4};
   shadows.traced[2] = shadows.blocked[2] = 1u << 5, shadows.traced[3] = 1u << 5;
   Tracer tracer;
   CHECK_FALSE(starts_at_first_hit(tracer, {1, 2, 3}, {1, 2, 4}));
