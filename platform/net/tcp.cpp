@@ -1,0 +1,393 @@
+#include "platform/net/tcp.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "platform/net/resolve.h"
+
+namespace platform {
+namespace {
+
+enum class Phase : std::uint8_t { unused, listening, connecting, connected, broken };
+
+struct Slot {
+  Phase phase;
+  int file;          // -1: none
+  int generation;    // counts the streams that lived here, so that a stale number is known
+  int place;         // while connecting: of the address, which is tried
+  int error_number;  // of the first place that failed; broken: why
+  LinkTimer timer;   // while connecting
+  LinkAddress address;
+  char name[64];
+};
+
+struct TcpLink : Link {
+  std::uint64_t (*now_ns)();
+  int slot_count;
+  Slot* slots;
+  pollfd* files;  // of poll(), as many as slots
+};
+
+constexpr int kGenerations = 1 << 20;
+constexpr int kBacklog = 64;
+constexpr std::uint64_t kPollNsMax = 3'600'000'000'000;
+
+TcpLink* tcp(Link* link) { return static_cast<TcpLink*>(link); }
+
+Slot* slot_of(TcpLink* link, int stream) {
+  if (stream < 0) return nullptr;
+  int index = stream % kLinkStreamsMax;
+  if (index >= link->slot_count) return nullptr;
+  Slot* slot = &link->slots[index];
+  return slot->phase != Phase::unused && slot->generation == stream / kLinkStreamsMax ? slot : nullptr;
+}
+
+int stream_of(const TcpLink* link, const Slot* slot) {
+  return slot->generation * kLinkStreamsMax + static_cast<int>(slot - link->slots);
+}
+
+Slot* take_slot(TcpLink* link, Error* error) {
+  for (int i = 0; i < link->slot_count; ++i)
+    if (link->slots[i].phase == Phase::unused) {
+      Slot* slot = &link->slots[i];
+      int generation = (slot->generation + 1) % kGenerations;
+      *slot = Slot();
+      slot->generation = generation;
+      slot->file = -1;
+      return slot;
+    }
+  snprintf(error->text, sizeof error->text, "all %d connections are in use: close one, or allow more",
+           link->slot_count);
+  return nullptr;
+}
+
+void close_file(Slot* slot) {
+  if (slot->file >= 0) close(slot->file);  // not again after EINTR: the file is closed all the same
+  slot->file = -1;
+}
+
+// What went wrong with a connection, and how to mend it.
+void tell(const char* peer, int number, Error* error) {
+  const char* what = nullptr;
+  switch (number) {
+    case ECONNREFUSED:
+      what = "nothing listens there: start `pocketray serve`, or name another port";
+      break;
+    case ETIMEDOUT:
+      what = "no answer: is it on and in reach, and does its firewall let this port through?";
+      break;
+    case ENETUNREACH:
+    case EHOSTUNREACH:
+    case EADDRNOTAVAIL:
+    case EAFNOSUPPORT:
+    case ENETDOWN:
+      what = "no way leads there: is the network up, and the address right?";
+      break;
+    case ECONNRESET:
+    case ECONNABORTED:
+    case EPIPE:
+      what = "the peer broke the connection off: it was stopped, or did not like what it was sent";
+      break;
+    case EADDRINUSE:
+      what = "another program listens there: stop it, or take another port";
+      break;
+    case EACCES:
+    case EPERM:
+      what = "that is not allowed here: take a port above 1023, or ask whoever runs the firewall";
+      break;
+    case EMFILE:
+    case ENFILE:
+      what = "too many files are open: close some, or raise `ulimit -n`";
+      break;
+    default:
+      break;
+  }
+  if (what) {
+    snprintf(error->text, sizeof error->text, "%.95s: %s", peer, what);
+  } else {
+    snprintf(error->text, sizeof error->text, "%.95s: %s: try again, or name another", peer, strerror(number));
+  }
+}
+
+LinkResult fail(Slot* slot, int number, Error* error) {
+  close_file(slot);
+  slot->phase = Phase::broken;
+  slot->error_number = number;
+  tell(slot->name, number, error);
+  return LinkResult::failed;
+}
+
+LinkResult stale(Error* error) {
+  snprintf(error->text, sizeof error->text, "this is no open connection: connect anew");
+  return LinkResult::failed;
+}
+
+bool prepare(int file) {
+  int flags = fcntl(file, F_GETFL), one = 1;
+  return flags >= 0 && fcntl(file, F_SETFL, flags | O_NONBLOCK) == 0 && fcntl(file, F_SETFD, FD_CLOEXEC) == 0 &&
+         setsockopt(file, IPPROTO_TCP, TCP_NODELAY, &one, sizeof one) == 0;
+}
+
+bool would_wait(int number) { return number == EAGAIN || number == EWOULDBLOCK || number == EINTR; }
+
+std::size_t need(int stream_count_max) {
+  return sizeof(TcpLink) + static_cast<std::size_t>(stream_count_max) * (sizeof(Slot) + sizeof(pollfd));
+}
+
+Link* open(const LinkOptions& options, Error* error) {
+  int count = options.stream_count_max;
+  if (count < 1 || count > kLinkStreamsMax || !options.now_ns || !options.memory ||
+      options.memory_bytes < need(count)) {
+    snprintf(error->text, sizeof error->text,
+             "%d connections of at most %d take %zu bytes and a clock, %zu bytes were given", count, kLinkStreamsMax,
+             need(count), options.memory_bytes);
+    return nullptr;
+  }
+  memset(options.memory, 0, need(count));
+  TcpLink* link = static_cast<TcpLink*>(options.memory);
+  link->backend = &kTcpLink;
+  link->now_ns = options.now_ns;
+  link->slot_count = count;
+  link->slots = reinterpret_cast<Slot*>(link + 1);
+  link->files = reinterpret_cast<pollfd*>(link->slots + count);
+  return link;
+}
+
+// Tries the places of the address, from slot->place on, until one does not fail at once.
+void try_places(Slot* slot) {
+  for (; slot->place < slot->address.place_count; ++slot->place) {
+    SocketAddress at = socket_address(slot->address, slot->place);
+    slot->file = socket(at.any.sa_family, SOCK_STREAM, 0);
+    bool begun = slot->file >= 0 && prepare(slot->file);
+    if (begun) {
+      if (::connect(slot->file, &at.any, socket_address_bytes(at)) == 0) {
+        slot->phase = Phase::connected;
+        return;
+      }
+      if (errno == EINPROGRESS || errno == EINTR) return;
+    }
+    if (slot->error_number == 0) slot->error_number = errno;
+    close_file(slot);
+  }
+}
+
+int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Error* error) {
+  TcpLink* link = tcp(base);
+  Slot* slot = take_slot(link, error);
+  if (!slot) return -1;
+  slot->phase = Phase::connecting;
+  slot->address = address;
+  slot->timer = link_timer(link->now_ns(), timeout_ns);
+  snprintf(slot->name, sizeof slot->name, "%.63s", address.text);
+  try_places(slot);
+  if (slot->file >= 0) return stream_of(link, slot);
+  tell(address.text, slot->error_number ? slot->error_number : EADDRNOTAVAIL, error);
+  slot->phase = Phase::unused;
+  return -1;
+}
+
+// What became of a connection that is being made.
+LinkResult progress(TcpLink* link, Slot* slot, Error* error) {
+  if (slot->phase == Phase::connected) return LinkResult::done;
+  if (slot->phase == Phase::listening) return stale(error);
+  if (slot->phase == Phase::broken) return fail(slot, slot->error_number, error);
+  pollfd file = {slot->file, POLLOUT, 0};
+  if (::poll(&file, 1, 0) > 0) {
+    int number = 0;
+    socklen_t bytes = sizeof number;
+    if (getsockopt(slot->file, SOL_SOCKET, SO_ERROR, &number, &bytes) != 0) number = errno;
+    if (number == 0) {
+      SocketAddress at = socket_address(slot->address, slot->place);
+      socket_address_text(at, slot->name, sizeof slot->name);
+      slot->phase = Phase::connected;
+      return LinkResult::done;
+    }
+    if (slot->error_number == 0) slot->error_number = number;
+    close_file(slot);
+    ++slot->place;
+    try_places(slot);
+    if (slot->file < 0) return fail(slot, slot->error_number, error);
+    if (slot->phase == Phase::connected) return LinkResult::done;
+  }
+  if (link_timer_left(&slot->timer, link->now_ns()) > 0) return LinkResult::later;
+  return fail(slot, ETIMEDOUT, error);
+}
+
+LinkResult connected(Link* base, int stream, Error* error) {
+  Slot* slot = slot_of(tcp(base), stream);
+  return slot ? progress(tcp(base), slot, error) : stale(error);
+}
+
+int listen(Link* base, const LinkAddress& address, Error* error) {
+  TcpLink* link = tcp(base);
+  Slot* slot = take_slot(link, error);
+  if (!slot) return -1;
+  SocketAddress at = socket_address(address, 0);
+  int one = 1;
+  slot->file = socket(at.any.sa_family, SOCK_STREAM, 0);
+  bool ok =
+      slot->file >= 0 && prepare(slot->file) &&
+      setsockopt(slot->file, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one) == 0 &&
+      (at.any.sa_family != AF_INET6 || setsockopt(slot->file, IPPROTO_IPV6, IPV6_V6ONLY, &one, sizeof one) == 0) &&
+      bind(slot->file, &at.any, socket_address_bytes(at)) == 0 && ::listen(slot->file, kBacklog) == 0;
+  socklen_t bytes = sizeof at;
+  ok = ok && getsockname(slot->file, &at.any, &bytes) == 0;
+  if (!ok) {
+    tell(address.text, errno, error);
+    close_file(slot);
+    return -1;
+  }
+  socket_address_text(at, slot->name, sizeof slot->name);
+  slot->phase = Phase::listening;
+  return stream_of(link, slot);
+}
+
+LinkResult accept(Link* base, int listener, int* stream, Error* error) {
+  TcpLink* link = tcp(base);
+  Slot* from = slot_of(link, listener);
+  if (!from || from->phase != Phase::listening) return stale(error);
+  SocketAddress at = {};
+  socklen_t bytes = sizeof at;
+  int file = ::accept(from->file, &at.any, &bytes);
+  if (file < 0) {
+    if (would_wait(errno) || errno == ECONNABORTED) return LinkResult::later;
+    tell(from->name, errno, error);
+    return LinkResult::failed;
+  }
+  // A peer that there is no room for is sent away: left waiting, it would have poll() return for ever.
+  Slot* slot = take_slot(link, error);
+  if (!slot || !prepare(file)) {
+    if (slot) tell(from->name, errno, error);
+    close(file);
+    return LinkResult::failed;
+  }
+  slot->file = file;
+  slot->phase = Phase::connected;
+  socket_address_text(at, slot->name, sizeof slot->name);
+  *stream = stream_of(link, slot);
+  return LinkResult::done;
+}
+
+const char* stream_name(const Link* base, int stream) {
+  const Slot* slot = slot_of(static_cast<TcpLink*>(const_cast<Link*>(base)), stream);
+  return slot ? slot->name : "";
+}
+
+LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max, std::size_t* byte_count,
+                Error* error) {
+  *byte_count = 0;
+  Slot* slot = slot_of(tcp(base), stream);
+  if (!slot) return stale(error);
+  LinkResult state = progress(tcp(base), slot, error);
+  if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
+  ssize_t n = recv(slot->file, bytes, byte_count_max, 0);
+  if (n == 0) return LinkResult::ended;
+  if (n < 0) return would_wait(errno) ? LinkResult::later : fail(slot, errno, error);
+  *byte_count = static_cast<std::size_t>(n);
+  return LinkResult::done;
+}
+
+LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_count_max, std::size_t* byte_count,
+                 Error* error) {
+  *byte_count = 0;
+  Slot* slot = slot_of(tcp(base), stream);
+  if (!slot) return stale(error);
+  LinkResult state = progress(tcp(base), slot, error);
+  if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
+  ssize_t n = send(slot->file, bytes, byte_count_max, MSG_NOSIGNAL);
+  if (n < 0) return would_wait(errno) ? LinkResult::later : fail(slot, errno, error);
+  *byte_count = static_cast<std::size_t>(n);
+  return LinkResult::done;
+}
+
+// One round of poll(): what is ready when the system has waited for at most `wait_ns`. Adds to `waited_ns` what has
+// passed in vain.
+int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait_ns, std::uint64_t* waited_ns) {
+  // 1. What the system is asked. A connection that fails in time is looked at when its time is over.
+  for (int i = 0; i < wait_count; ++i) {
+    Slot* slot = slot_of(link, waits[i].stream);
+    link->files[i] = {-1, 0, 0};
+    waits[i].can_read = waits[i].can_write = false;
+    if (!waits[i].want_read && !waits[i].want_write) continue;
+    if (!slot || slot->phase == Phase::broken) {
+      wait_ns = 0;
+      continue;
+    }
+    bool connecting = slot->phase == Phase::connecting;
+    if (connecting) {
+      std::uint64_t left = link_timer_left(&slot->timer, link->now_ns());
+      if (left < wait_ns) wait_ns = left;
+    }
+    link->files[i].fd = slot->file;
+    if (waits[i].want_read && !connecting) link->files[i].events |= POLLIN;
+    if (waits[i].want_write || connecting) link->files[i].events |= POLLOUT;
+  }
+  timespec time = {static_cast<time_t>(wait_ns / 1'000'000'000), static_cast<long>(wait_ns % 1'000'000'000)};
+  int woken = ppoll(link->files, static_cast<nfds_t>(wait_count), &time, nullptr);
+  if (woken == 0) *waited_ns += wait_ns;
+
+  // 2. What it says.
+  int ready_count = 0;
+  for (int i = 0; i < wait_count; ++i) {
+    LinkWait* wait = &waits[i];
+    Slot* slot = slot_of(link, wait->stream);
+    short events = woken > 0 ? link->files[i].revents : 0;
+    bool failed = !slot || slot->phase == Phase::broken || (events & (POLLERR | POLLHUP | POLLNVAL)) != 0;
+    if (slot && slot->phase == Phase::connecting) {
+      Error error;
+      LinkResult outcome = progress(link, slot, &error);
+      failed = outcome == LinkResult::failed;
+      wait->can_write = wait->want_write && outcome == LinkResult::done;
+    } else {
+      wait->can_write = wait->want_write && (events & POLLOUT) != 0;
+      wait->can_read = wait->want_read && (events & POLLIN) != 0;
+    }
+    if (failed) {
+      wait->can_read = wait->want_read;
+      wait->can_write = wait->want_write;
+    }
+    if (wait->can_read || wait->can_write) ++ready_count;
+  }
+  return ready_count;
+}
+
+// Waits anew after a signal, and where a connection went on to the next place of its address.
+int poll(Link* base, LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
+  TcpLink* link = tcp(base);
+  if (wait_count > link->slot_count) wait_count = link->slot_count;
+  LinkTimer timer = link_timer(link->now_ns(), timeout_ns < kPollNsMax ? timeout_ns : kPollNsMax);
+  std::uint64_t waited_ns = 0;  // ends the wait when the clock stands still
+  for (;;) {
+    std::uint64_t left = link_timer_left(&timer, link->now_ns());
+    int ready_count = poll_once(link, waits, wait_count, left, &waited_ns);
+    if (ready_count > 0 || left == 0 || waited_ns >= timer.timeout_ns) return ready_count;
+  }
+}
+
+std::uint64_t now_ns(Link* link) { return tcp(link)->now_ns(); }
+
+void close_stream(Link* link, int stream) {
+  Slot* slot = slot_of(tcp(link), stream);
+  if (!slot) return;
+  close_file(slot);
+  slot->phase = Phase::unused;
+}
+
+void close_all(Link* base) {
+  TcpLink* link = tcp(base);
+  for (int i = 0; i < link->slot_count; ++i)
+    if (link->slots[i].phase != Phase::unused) close_stream(base, stream_of(link, &link->slots[i]));
+}
+
+}  // namespace
+
+const LinkBackend kTcpLink = {"tcp", need,  open, resolve_address, connect,      connected, listen, accept, stream_name,
+                              read,  write, poll, now_ns,          close_stream, close_all};
+
+}  // namespace platform

@@ -1,0 +1,99 @@
+// What a simulated link consists of, shared by the files that make it: null_connect.cpp lets connections begin and end,
+// null_link.cpp carries their bytes.
+#pragma once
+#include <cstdio>
+
+#include "platform/null/null_link.h"
+#include "platform/null/null_pipe.h"
+
+namespace platform {
+namespace null_link {
+
+enum class Phase : std::uint8_t { unused, listening, connecting, waiting, connected, broken };
+
+// A listener, or an end of a connection. `waiting` is the accepting end until it is accepted.
+struct Slot {
+  Phase phase;
+  bool device;            // the connecting end
+  int generation;         // counts the streams that lived here, so that a stale number is known
+  int other;              // the slot of the other end; -1: closed, or there never was one
+  int listener;           // of a waiting one
+  int port, connection;   // the how manieth of the Link
+  bool refused;           // the outcome, once known
+  std::uint64_t news_ns;  // when the outcome of connecting is known, or a waiting peer is seen
+  std::uint64_t deadline_ns;
+  NullPipe in;
+  const char* broken_text;
+  char name[40];
+};
+
+struct NullLink : Link {
+  NullLinkSettings settings;
+  NullLinkRecord record;
+  std::uint64_t clock_ns, set_back_ns;
+  std::uint64_t line_free_ns[2];  // when the radio has sent what it has; by direction
+  std::uint64_t random;
+  int slot_count, port_last;
+  Slot* slots;
+};
+
+// The clock starts where setting it back cannot make it negative: at most kNullFaultsMax times ten seconds a
+// connection.
+constexpr std::uint64_t kClockStartNs = std::uint64_t{1} << 62;
+constexpr std::uint64_t kSecondNs = 1'000'000'000;
+constexpr int kGenerations = 1 << 20;
+
+std::uint64_t random_u64(std::uint64_t* state);
+
+inline NullLink* null(Link* link) { return static_cast<NullLink*>(link); }
+
+inline Slot* slot_of(NullLink* link, int stream) {
+  if (stream < 0 || stream % kLinkStreamsMax >= link->slot_count) return nullptr;
+  Slot* slot = &link->slots[stream % kLinkStreamsMax];
+  bool known = slot->phase != Phase::unused && slot->phase != Phase::waiting;
+  return known && slot->generation == stream / kLinkStreamsMax ? slot : nullptr;
+}
+
+inline int index_of(const NullLink* link, const Slot* slot) { return static_cast<int>(slot - link->slots); }
+inline int stream_of(const NullLink* link, const Slot* slot) {
+  return slot->generation * kLinkStreamsMax + index_of(link, slot);
+}
+
+inline LinkResult stale(Error* error) {
+  std::snprintf(error->text, sizeof error->text, "this is no open connection: connect anew");
+  return LinkResult::failed;
+}
+
+inline LinkResult fail(Slot* slot, const char* text, Error* error) {
+  slot->phase = Phase::broken;
+  slot->broken_text = text;
+  std::snprintf(error->text, sizeof error->text, "%s: %s", slot->name, text);
+  return LinkResult::failed;
+}
+
+constexpr const char* kRefusedText = "nothing listens there: start `pocketray serve`, or name another port";
+constexpr const char* kSilentText = "no answer: is it on and in reach, and does its firewall let this port through?";
+constexpr const char* kBrokenText =
+    "the peer broke the connection off: it was stopped, or did not like what it was sent";
+
+inline bool meant_for(const NullFault& fault, const Slot& slot) {
+  return fault.connection < 0 || fault.connection == slot.connection;
+}
+inline bool at_start(LinkFault fault) { return fault == LinkFault::refuse || fault == LinkFault::no_answer; }
+
+// What became of a connection that is being made.
+LinkResult progress(NullLink* link, Slot* slot, Error* error);
+// The peer that has waited longest, or null; its news_ns may be yet to come.
+Slot* waiting_at(NullLink* link, const Slot* listener);
+
+// Of kNullLink.
+bool resolve(const char* text, LinkAddress* address, Error* error);
+int listen(Link* base, const LinkAddress& address, Error* error);
+int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Error* error);
+LinkResult connected(Link* base, int stream, Error* error);
+LinkResult accept(Link* base, int listener, int* stream, Error* error);
+void close_stream(Link* base, int stream);
+void close_all(Link* base);
+
+}  // namespace null_link
+}  // namespace platform

@@ -1,0 +1,100 @@
+// A link with a listener, and pairs of connected streams over it: the same for sockets and for the simulation.
+#pragma once
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "platform/link.h"
+#include "platform/net/tcp.h"
+#include "platform/null/null_link.h"
+
+namespace platform {
+
+constexpr std::uint64_t kMs = 1'000'000;
+
+inline std::uint64_t steady_ns() {
+  return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+}
+
+struct LinkRig {
+  std::vector<std::max_align_t> memory;
+  const LinkBackend* net = nullptr;
+  Link* link = nullptr;
+  int listener = -1;
+  LinkAddress address;  // of the listener
+  Error error;
+
+  explicit LinkRig(const LinkBackend& backend, int stream_count_max = 8,
+                   const NullLinkSettings& settings = NullLinkSettings()) {
+    bool simulated = &backend == &kNullLink;
+    LinkOptions options;
+    options.memory_bytes = simulated ? null_link_need(stream_count_max, settings) : backend.need(stream_count_max);
+    memory.resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
+    options.memory = memory.data();
+    options.stream_count_max = stream_count_max;
+    options.now_ns = steady_ns;
+    net = &backend;
+    link = simulated ? null_link_open(options, settings, &error) : backend.open(options, &error);
+    REQUIRE_MESSAGE(link != nullptr, error.text);
+    REQUIRE(net->resolve(":0", &address, &error));
+    listener = net->listen(link, address, &error);
+    REQUIRE_MESSAGE(listener >= 0, error.text);
+    REQUIRE(net->resolve(net->stream_name(link, listener), &address, &error));
+  }
+  ~LinkRig() { net->close_all(link); }
+  LinkRig(const LinkRig&) = delete;
+  LinkRig& operator=(const LinkRig&) = delete;
+
+  bool wait(int stream, bool read, bool write, std::uint64_t timeout_ns = 2000 * kMs) {
+    LinkWait one;
+    one.stream = stream;
+    one.want_read = read;
+    one.want_write = write;
+    return net->poll(link, &one, 1, timeout_ns) == 1;
+  }
+  // Both ends of a new connection; false: `error` says why.
+  bool pair(int* device, int* server) {
+    *device = net->connect(link, address, 2000 * kMs, &error);
+    if (*device < 0 || !wait(listener, true, false)) return false;
+    if (net->accept(link, listener, server, &error) != LinkResult::done) return false;
+    return wait(*device, false, true) && net->connected(link, *device, &error) == LinkResult::done;
+  }
+  // Writes all there is, waiting for room; false when the connection fails or stalls.
+  bool write_all(int stream, const std::string& bytes) {
+    for (std::size_t sent = 0; sent < bytes.size();) {
+      std::size_t count = 0;
+      LinkResult result = net->write(link, stream, bytes.data() + sent, bytes.size() - sent, &count, &error);
+      sent += count;
+      if (result == LinkResult::failed || (result == LinkResult::later && !wait(stream, false, true))) return false;
+    }
+    return true;
+  }
+  // Reads until `byte_count` bytes are there, the end, a failure, or silence for `timeout_ns`; tells which by `result`.
+  std::string read_all(int stream, std::size_t byte_count, LinkResult* result, std::uint64_t timeout_ns = 2000 * kMs) {
+    std::string bytes;
+    char part[4096];
+    *result = LinkResult::done;
+    while (bytes.size() < byte_count) {
+      std::size_t count = 0, most = byte_count - bytes.size();
+      *result = net->read(link, stream, part, most < sizeof part ? most : sizeof part, &count, &error);
+      bytes.append(part, count);
+      if (*result == LinkResult::ended || *result == LinkResult::failed) break;
+      if (*result == LinkResult::later && !wait(stream, true, false, timeout_ns)) break;
+    }
+    return bytes;
+  }
+};
+
+// Bytes that no other offset has in the same order.
+inline std::string counted_bytes(std::size_t byte_count) {
+  std::string bytes(byte_count, 0);
+  for (std::size_t i = 0; i < byte_count; ++i) bytes[i] = static_cast<char>((i * 2654435761u) >> 13);
+  return bytes;
+}
+
+}  // namespace platform

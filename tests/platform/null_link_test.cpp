@@ -1,0 +1,235 @@
+// The simulated link alone: its line takes the time it should, its faults strike where they should, and a seed replays.
+#include "platform/null/null_link.h"
+
+#include <doctest/doctest.h>
+
+#include "link_rig.h"
+#include "support/effort.h"
+
+using namespace platform;
+
+namespace {
+
+NullLinkSettings with_fault(const NullFault& fault) {
+  NullLinkSettings settings;
+  settings.latency_ns = kMs;
+  settings.faults = &fault;
+  settings.fault_count = 1;
+  return settings;
+}
+
+std::uint64_t elapsed_ns(const LinkRig& rig) { return null_link_record(rig.link).elapsed_ns; }
+
+}  // namespace
+
+// Goal: bytes take latency and their share of the bandwidth, and connecting takes a way there and back. Method: closed
+// form, to within the clock's own steps.
+TEST_CASE("null_link_takes_the_time_of_its_line") {
+  NullLinkSettings settings;
+  settings.bytes_per_second = 1'000'000;
+  settings.latency_ns = 5 * kMs;
+  settings.clock_step_ns = 0;
+  LinkRig rig(kNullLink, 6, settings);
+  int device[2] = {-1, -1}, server[2] = {-1, -1};
+  REQUIRE(rig.pair(&device[0], &server[0]));
+  CHECK(elapsed_ns(rig) == 10 * kMs);
+  REQUIRE(rig.pair(&device[1], &server[1]));
+  LinkResult result;
+  std::uint64_t begin_ns = elapsed_ns(rig);
+  REQUIRE(rig.write_all(server[0], counted_bytes(20000)));
+  REQUIRE(rig.write_all(server[1], counted_bytes(10000)));  // shares the device's radio, and so comes after
+  REQUIRE(rig.write_all(device[0], counted_bytes(1000)));   // the other direction does not
+  CHECK(rig.read_all(server[0], 1000, &result).size() == 1000);
+  CHECK(elapsed_ns(rig) - begin_ns == 6 * kMs);
+  CHECK(rig.read_all(device[0], 20000, &result) == counted_bytes(20000));
+  CHECK(elapsed_ns(rig) - begin_ns == 25 * kMs);
+  CHECK(rig.read_all(device[1], 10000, &result).size() == 10000);
+  CHECK(elapsed_ns(rig) - begin_ns == 35 * kMs);
+}
+
+// Goal: jitter delays by at most what is said, and nothing overtakes. Method: single bytes, each timed.
+TEST_CASE("null_link_jitter_keeps_the_order") {
+  NullLinkSettings settings;
+  settings.latency_ns = 2 * kMs;
+  settings.jitter_ns = 3 * kMs;
+  settings.clock_step_ns = 0;
+  LinkRig rig(kNullLink, 4, settings);
+  int device = -1, server = -1;
+  REQUIRE(rig.pair(&device, &server));
+  const std::string bytes = counted_bytes(100);
+  std::uint64_t least_ns = ~std::uint64_t{0}, most_ns = 0;
+  for (char c : bytes) {
+    LinkResult result;
+    std::uint64_t begin_ns = elapsed_ns(rig);
+    REQUIRE(rig.write_all(server, std::string(1, c)));
+    REQUIRE(rig.read_all(device, 1, &result) == std::string(1, c));
+    std::uint64_t passed_ns = elapsed_ns(rig) - begin_ns;
+    least_ns = passed_ns < least_ns ? passed_ns : least_ns;
+    most_ns = passed_ns > most_ns ? passed_ns : most_ns;
+  }
+  CHECK(least_ns >= 2 * kMs);
+  CHECK(most_ns <= 5 * kMs);
+  CHECK(most_ns - least_ns > kMs);
+  for (char c : bytes) REQUIRE(rig.write_all(server, std::string(1, c)));
+  LinkResult result;
+  CHECK(rig.read_all(device, bytes.size(), &result) == bytes);
+}
+
+// Goal: every fault does what its line in the header says, at its byte. Method: 100 bytes are sent, the fault strikes
+// each of several in turn.
+TEST_CASE("null_link_faults_strike_where_they_should") {
+  const std::string bytes = counted_bytes(100);
+  for (int kind = 0; kind < kLinkFaultCount; ++kind)
+    for (std::uint64_t at_byte : {0u, 1u, 42u, 99u}) {
+      NullFault fault;
+      fault.fault = static_cast<LinkFault>(kind);
+      fault.at_byte = at_byte;
+      CAPTURE(std::string(link_fault_name(fault.fault)));
+      CAPTURE(at_byte);
+      LinkRig rig(kNullLink, 4, with_fault(fault));
+      int device = -1, server = -1;
+      if (fault.fault == LinkFault::refuse || fault.fault == LinkFault::no_answer) {
+        bool refused = fault.fault == LinkFault::refuse;
+        device = rig.net->connect(rig.link, rig.address, 70 * kMs, &rig.error);
+        CHECK(rig.wait(device, false, true));
+        CHECK(elapsed_ns(rig) == (refused ? 2 * kMs : 70 * kMs));
+        CHECK(rig.net->connected(rig.link, device, &rig.error) == LinkResult::failed);
+        CHECK(std::strstr(rig.error.text, refused ? "nothing listens" : "no answer") != nullptr);
+        CHECK(null_link_record(rig.link).faults_struck == 1);
+        continue;
+      }
+      REQUIRE(rig.pair(&device, &server));
+      std::uint64_t before_ns = rig.net->now_ns(rig.link), begin_ns = elapsed_ns(rig);
+      std::size_t count = 0;
+      LinkResult result = rig.net->write(rig.link, server, bytes.data(), bytes.size(), &count, &rig.error);
+      CHECK((result == LinkResult::done || (at_byte == 0 && result == LinkResult::failed)));
+      CHECK((rig.net->now_ns(rig.link) < before_ns) == (fault.fault == LinkFault::clock_back));
+      std::string got = rig.read_all(device, 200, &result, 200'000 * kMs), wanted = bytes;
+      std::size_t at = static_cast<std::size_t>(at_byte);
+      switch (fault.fault) {
+        case LinkFault::reset:
+          CHECK(result == LinkResult::failed);
+          wanted = bytes.substr(0, at);
+          break;
+        case LinkFault::truncate:
+          CHECK(result == LinkResult::ended);
+          wanted = bytes.substr(0, at);
+          break;
+        case LinkFault::flip: {
+          REQUIRE(got.size() == 100);
+          unsigned change = static_cast<unsigned char>(got[at] ^ bytes[at]);
+          CHECK((change != 0 && (change & (change - 1)) == 0));
+          wanted[at] = got[at];
+          break;
+        }
+        case LinkFault::duplicate:
+          wanted = bytes + bytes.substr(at);
+          break;
+        case LinkFault::silence:
+          CHECK(result == LinkResult::later);
+          wanted = bytes.substr(0, at);
+          break;
+        case LinkFault::trickle:
+          CHECK(elapsed_ns(rig) - begin_ns >= (100 - at_byte) * 1000 * kMs);
+          break;
+        default:
+          break;
+      }
+      CHECK(got == wanted);
+      CHECK(null_link_record(rig.link).faults_struck == 1);
+    }
+}
+
+// Goal: a fault strikes the connection and the direction it is meant for, no other. Method: the second of three.
+TEST_CASE("null_link_fault_strikes_one_connection") {
+  NullFault fault;
+  fault.fault = LinkFault::truncate;
+  fault.connection = 1;
+  fault.to_device = false;
+  LinkRig rig(kNullLink, 4, with_fault(fault));
+  for (int i = 0; i < 3; ++i) {
+    CAPTURE(i);
+    int device = -1, server = -1;
+    LinkResult result;
+    REQUIRE(rig.pair(&device, &server));
+    REQUIRE(rig.write_all(server, "to the device"));
+    CHECK(rig.read_all(device, 13, &result) == "to the device");
+    CHECK(rig.write_all(device, "x") == (i != 1));
+    CHECK(rig.read_all(server, 1, &result) == (i != 1 ? "x" : ""));
+    rig.net->close(rig.link, device);
+    rig.net->close(rig.link, server);
+  }
+}
+
+namespace {
+
+// A session of both ends, who write and read what they please under four faults; everything that happened, as a number.
+std::uint64_t session(std::uint64_t seed, NullLinkRecord* record) {
+  NullFault faults[4];
+  null_link_draw_faults(seed, 2, 4000, faults, 4);
+  NullLinkSettings settings;
+  settings.bytes_per_second = 500'000;
+  settings.latency_ns = settings.jitter_ns = 2 * kMs;
+  settings.pipe_bytes = 2048;
+  settings.seed = seed;
+  settings.faults = faults;
+  settings.fault_count = 4;
+  LinkRig rig(kNullLink, 3, settings);
+  std::uint64_t course = seed;
+  char part[512];
+  for (int connection = 0; connection < 3; ++connection) {
+    int ends[2] = {-1, -1};
+    bool up = rig.pair(&ends[0], &ends[1]);
+    for (int round = 0; round < 20 && up; ++round) {
+      LinkWait waits[2];
+      for (int i = 0; i < 2; ++i) {
+        waits[i].stream = ends[i];
+        waits[i].want_read = true;
+        std::size_t count = 0;
+        std::memset(part, round, sizeof part);
+        up = rig.net->write(rig.link, ends[i], part, 64 + (seed + static_cast<unsigned>(round)) % 448, &count,
+                            &rig.error) != LinkResult::failed;
+        course = course * 31 + count;
+      }
+      rig.net->poll(rig.link, waits, 2, 50 * kMs);
+      for (int end : ends) {
+        std::size_t count = 0;
+        LinkResult result = rig.net->read(rig.link, end, part, sizeof part, &count, &rig.error);
+        for (std::size_t i = 0; i < count; ++i) course = course * 31 + static_cast<unsigned char>(part[i]);
+        course = course * 31 + static_cast<std::uint64_t>(result);
+      }
+      course = course * 31 + rig.net->now_ns(rig.link);
+    }
+    for (int end : ends) rig.net->close(rig.link, end);
+    // A peer that was never accepted takes a place until the listener takes it.
+    int late = -1;
+    if (ends[1] < 0 && rig.wait(rig.listener, true, false, 10 * kMs) &&
+        rig.net->accept(rig.link, rig.listener, &late, &rig.error) == LinkResult::done)
+      rig.net->close(rig.link, late);
+  }
+  *record = null_link_record(rig.link);
+  CHECK(record->connection_count == 3);  // whatever struck, the next connection had its place
+  return course;
+}
+
+}  // namespace
+
+// Goal: the same seed gives the same course, another one another, and every session comes to an end. Method: sessions
+// by seed, each twice; the simulated time bounds the real one.
+TEST_CASE("null_link_sessions_replay_by_seed") {
+  std::uint64_t last = 0;
+  int struck = 0;
+  for (int seed = 1; seed <= pocketray::effort(2000); ++seed) {
+    CAPTURE(seed);
+    NullLinkRecord first, second;
+    std::uint64_t course = session(static_cast<std::uint64_t>(seed), &first);
+    REQUIRE(course == session(static_cast<std::uint64_t>(seed), &second));
+    REQUIRE(first.elapsed_ns == second.elapsed_ns);
+    CHECK(course != last);
+    CHECK(first.elapsed_ns < 20'000 * kMs);
+    struck += first.faults_struck;
+    last = course;
+  }
+  MESSAGE(pocketray::effort(2000) << " sessions, " << struck << " faults struck");
+  CHECK(struck > pocketray::effort(2000));
+}

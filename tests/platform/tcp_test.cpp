@@ -1,0 +1,219 @@
+// What only sockets do: peers that are processes or speak TCP by hand, names, signals.
+#include <arpa/inet.h>
+#include <doctest/doctest.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "link_rig.h"
+
+using namespace platform;
+
+namespace {
+
+sockaddr_in place_of(const LinkAddress& address) {
+  sockaddr_in at;
+  std::memcpy(&at, address.places[0], sizeof at);
+  return at;
+}
+
+// A socket of the system's own, connected to the rig's listener.
+int raw_connect(const LinkRig& rig) {
+  int file = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in at = place_of(rig.address);
+  REQUIRE(connect(file, reinterpret_cast<sockaddr*>(&at), sizeof at) == 0);
+  return file;
+}
+
+int accepted(LinkRig* rig) {
+  int stream = -1;
+  REQUIRE(rig->wait(rig->listener, true, false));
+  REQUIRE(rig->net->accept(rig->link, rig->listener, &stream, &rig->error) == LinkResult::done);
+  return stream;
+}
+
+std::uint64_t clock_ns = 1'000'000'000'000;
+std::uint64_t backward_ns() { return clock_ns -= 3'000'000; }
+
+}  // namespace
+
+// Goal: what the system says of an address comes as one line that says what to do. Method: a name that no resolver asks
+// for, a group of hosts, another machine's address to listen at.
+TEST_CASE("tcp_says_what_is_wrong_with_an_address") {
+  LinkRig rig(kTcpLink);
+  LinkAddress address;
+  CHECK_FALSE(kTcpLink.resolve("no..host:7474", &address, &rig.error));
+  CHECK(std::strstr(rig.error.text, "'no..host'") != nullptr);
+  CHECK(std::strstr(rig.error.text, "number") != nullptr);
+  REQUIRE(kTcpLink.resolve("224.0.0.1:7474", &address, &rig.error));
+  CHECK(kTcpLink.connect(rig.link, address, kMs, &rig.error) == -1);
+  CHECK(std::string(rig.error.text) == "224.0.0.1:7474: no way leads there: is the network up, and the address right?");
+  REQUIRE(kTcpLink.resolve("192.0.2.1:7474", &address, &rig.error));
+  CHECK(kTcpLink.listen(rig.link, address, &rig.error) == -1);
+  CHECK(std::strstr(rig.error.text, "no way leads there") != nullptr);
+}
+
+// Goal: a connection without an outcome fails at its deadline. Method: a listener whose queue is full drops what knocks.
+TEST_CASE("tcp_connect_fails_at_its_deadline") {
+  LinkRig rig(kTcpLink);
+  int file = socket(AF_INET, SOCK_STREAM, 0), waiting[8];
+  sockaddr_in at = {};
+  socklen_t bytes = sizeof at;
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  REQUIRE(bind(file, reinterpret_cast<sockaddr*>(&at), bytes) == 0);
+  REQUIRE(listen(file, 0) == 0);
+  REQUIRE(getsockname(file, reinterpret_cast<sockaddr*>(&at), &bytes) == 0);
+  LinkAddress address;
+  REQUIRE(kTcpLink.resolve(std::to_string(ntohs(at.sin_port)).c_str(), &address, &rig.error));
+  int full = 0;
+  for (int& stream : waiting) {
+    stream = kTcpLink.connect(rig.link, address, 20 * kMs, &rig.error);
+    if (stream >= 0 && rig.wait(stream, false, true) &&
+        kTcpLink.connected(rig.link, stream, &rig.error) == LinkResult::failed) {
+      CHECK(std::strstr(rig.error.text, "no answer: is it on") != nullptr);
+      ++full;
+      break;
+    }
+  }
+  CHECK(full == 1);
+  close(file);
+}
+
+// Goal: a clock that stands still or is set back keeps poll() from nothing. Method: one that only goes back.
+TEST_CASE("tcp_poll_ends_though_the_clock_runs_backwards") {
+  std::vector<std::max_align_t> memory(kTcpLink.need(2) / sizeof(std::max_align_t) + 1);
+  LinkOptions options;
+  options.memory = memory.data();
+  options.memory_bytes = memory.size() * sizeof(std::max_align_t);
+  options.stream_count_max = 2;
+  options.now_ns = backward_ns;
+  Error error;
+  Link* link = kTcpLink.open(options, &error);
+  REQUIRE(link != nullptr);
+  LinkAddress address;
+  REQUIRE(kTcpLink.resolve(":0", &address, &error));
+  LinkWait wait;
+  wait.stream = kTcpLink.listen(link, address, &error);
+  wait.want_read = true;
+  std::uint64_t begin_ns = steady_ns();
+  CHECK(kTcpLink.poll(link, &wait, 1, 20 * kMs) == 0);
+  CHECK(steady_ns() - begin_ns >= 20 * kMs);
+  CHECK(steady_ns() - begin_ns < 2000 * kMs);
+  kTcpLink.close_all(link);
+}
+
+// Goal: of an address with several places the first that answers counts. Method: "localhost", and a listener on IPv6.
+TEST_CASE("tcp_tries_every_place_of_an_address") {
+  LinkRig rig(kTcpLink);
+  LinkAddress address;
+  REQUIRE(kTcpLink.resolve("[::1]:0", &address, &rig.error));
+  int listener = kTcpLink.listen(rig.link, address, &rig.error);
+  if (listener < 0) {
+    MESSAGE("no IPv6 here: skipped");
+    return;
+  }
+  std::string name = kTcpLink.stream_name(rig.link, listener);
+  REQUIRE(name.substr(0, 6) == "[::1]:");
+  REQUIRE(kTcpLink.resolve(("localhost:" + name.substr(6)).c_str(), &address, &rig.error));
+  REQUIRE(address.place_count == 2);
+  int stream = kTcpLink.connect(rig.link, address, 2000 * kMs, &rig.error);
+  REQUIRE_MESSAGE(stream >= 0, rig.error.text);
+  CHECK(rig.wait(stream, false, true));
+  CHECK(kTcpLink.connected(rig.link, stream, &rig.error) == LinkResult::done);
+  CHECK(kTcpLink.stream_name(rig.link, stream) == name);
+  kTcpLink.close(rig.link, listener);
+  stream = kTcpLink.connect(rig.link, address, 2000 * kMs, &rig.error);
+  if (stream >= 0) {
+    CHECK(rig.wait(stream, false, true));
+    CHECK(kTcpLink.connected(rig.link, stream, &rig.error) == LinkResult::failed);
+  }
+  CHECK(std::strstr(rig.error.text, "nothing listens there") != nullptr);
+}
+
+// Goal: a peer that has finished speaking still listens. Method: one half of a socket is shut.
+TEST_CASE("tcp_half_closed_peer_still_gets_bytes") {
+  LinkRig rig(kTcpLink);
+  int file = raw_connect(rig), stream = accepted(&rig);
+  REQUIRE(send(file, "bye", 3, 0) == 3);
+  REQUIRE(shutdown(file, SHUT_WR) == 0);
+  LinkResult result;
+  CHECK(rig.read_all(stream, 10, &result) == "bye");
+  CHECK(result == LinkResult::ended);
+  CHECK(rig.write_all(stream, "answer"));
+  char bytes[8];
+  CHECK(recv(file, bytes, sizeof bytes, 0) == 6);
+  CHECK(rig.wait(stream, true, false, 0));
+  close(file);
+}
+
+// Goal: a reset in the middle loses the rest and says so. Method: a socket that lingers for no time.
+TEST_CASE("tcp_reset_by_hand_is_told") {
+  LinkRig rig(kTcpLink);
+  int file = raw_connect(rig), stream = accepted(&rig);
+  linger none = {1, 0};
+  REQUIRE(setsockopt(file, SOL_SOCKET, SO_LINGER, &none, sizeof none) == 0);
+  close(file);
+  LinkResult result;
+  CHECK(rig.read_all(stream, 10, &result) == "");
+  CHECK(result == LinkResult::failed);
+  CHECK(std::strstr(rig.error.text, "the peer broke the connection off") != nullptr);
+}
+
+// Goal: a process that is killed in the middle of what it says is a peer that is gone, and the next one is served.
+// Method: SIGKILL after each of several numbers of bytes; the child writes one more only when told to.
+TEST_CASE("tcp_peer_killed_at_each_step") {
+  LinkRig rig(kTcpLink);
+  sockaddr_in at = place_of(rig.address);
+  for (std::size_t sent : {0u, 1u, 7u, 8u, 9u, 4000u}) {
+    CAPTURE(sent);
+    const std::string bytes = counted_bytes(sent);
+    pid_t child = fork();
+    if (child == 0) {
+      int file = socket(AF_INET, SOCK_STREAM, 0);
+      bool ok = connect(file, reinterpret_cast<sockaddr*>(&at), sizeof at) == 0 &&
+                write(file, bytes.data(), sent) == static_cast<ssize_t>(sent);
+      while (ok) pause();
+      _exit(1);
+    }
+    int stream = accepted(&rig);
+    LinkResult result;
+    CHECK(rig.read_all(stream, sent, &result) == bytes);
+    CHECK(kill(child, SIGKILL) == 0);
+    waitpid(child, nullptr, 0);
+    CHECK(rig.read_all(stream, 1, &result) == "");
+    CHECK(result == LinkResult::ended);
+    kTcpLink.close(rig.link, stream);
+  }
+}
+
+// Goal: signals shorten no wait and lose no byte. Method: an alarm every millisecond whose handler does nothing.
+TEST_CASE("tcp_signals_change_nothing") {
+  LinkRig rig(kTcpLink);
+  int device = -1, server = -1;
+  REQUIRE(rig.pair(&device, &server));
+  struct sigaction action = {}, before;
+  action.sa_handler = [](int) {};
+  sigaction(SIGALRM, &action, &before);
+  itimerval often = {{0, 1000}, {0, 1000}}, never = {};
+  setitimer(ITIMER_REAL, &often, nullptr);
+  std::uint64_t begin_ns = steady_ns();
+  bool woken = rig.wait(device, true, false, 30 * kMs);
+  std::uint64_t passed_ns = steady_ns() - begin_ns;
+  const std::string bytes = counted_bytes(50000);
+  bool same = true;
+  for (int i = 0; i < 20; ++i) {
+    LinkResult result;
+    same = same && rig.write_all(server, bytes) && rig.read_all(device, bytes.size(), &result) == bytes;
+  }
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &before, nullptr);
+  CHECK_FALSE(woken);
+  CHECK(passed_ns >= 30 * kMs);
+  CHECK(same);
+}
