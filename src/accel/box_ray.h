@@ -55,7 +55,8 @@ inline void make_box_ray(Float4 origin, Float4 d, Float4 low, Float4 high, BoxRa
 
 // The distance up to which boxes have to be entered for hits up to t.
 inline float box_limit(int exponent, float t) {
-  return __builtin_expect(exponent == 0, 1) ? t : std::ldexp(t, exponent) + std::numeric_limits<float>::min();
+  constexpr float kLeast = std::numeric_limits<float>::denorm_min();  // t may be rounded by half of it
+  return __builtin_expect(exponent == 0, 1) ? t : std::ldexp(t + kLeast, exponent) + std::numeric_limits<float>::min();
 }
 
 // Which children hold no hit up to `limit`; `enter`, none below 0, gets where each is entered.

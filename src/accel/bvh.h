@@ -80,8 +80,9 @@ struct BvhParts {
 using BvhView = BvhParts<const std::uint8_t, const BvhHeader, const BvhNode, const TriangleBlock>;
 using BvhWritableView = BvhParts<std::uint8_t, BvhHeader, BvhNode, TriangleBlock>;
 
-constexpr std::size_t bvh_bytes(std::size_t node_count, std::size_t leaf_count,
-                                std::size_t leaf_bytes = sizeof(TriangleBlock)) {
+// 64 bits, so that no counts of a file that lies wrap around.
+constexpr std::uint64_t bvh_bytes(std::uint64_t node_count, std::uint64_t leaf_count,
+                                  std::uint64_t leaf_bytes = sizeof(TriangleBlock)) {
   return sizeof(BvhHeader) + sizeof(BvhNode) * node_count + leaf_bytes * leaf_count;
 }
 // Leaf of a hierarchy of that kind.

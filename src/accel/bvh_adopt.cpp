@@ -69,6 +69,7 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
 
 }  // namespace
 
+// That every triangle is in some leaf, once, is not asked: a file that leaves one out shows a scene without it.
 Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data) {
   if (reinterpret_cast<std::uintptr_t>(data.data) % alignof(BvhNode) != 0)
     return failure("accelerator: not aligned to %zu bytes", alignof(BvhNode));

@@ -8,9 +8,11 @@
 //
 // How far rectangles are widened: with Z the greatest coordinate of scene and origins as seen from the point, or from
 // the first origin, cross_triangle() takes a ray for a hit that passes the triangle by up to 4u of the depth at which
-// its vertices lie (u = 2^-24), at most 2Z. Rounded directions miss the point by `spread`; differences and slopes here
-// err by less than 8u Z. 32u Z = 2^-19 Z and the spread, seen at the nearest depth of a box, and kPacketSlack for the q
-// themselves cover all.
+// its vertices lie (u = 2^-24), at most 2Z; differences and slopes here err by less than 8u Z. 32u Z = 2^-19 Z covers
+// both. Rays need not meet in the point exactly: each coordinate of their ends may be off by `spread`, at the depth of
+// the point by twice that, as |q| ≤ 1. Rays that begin at depths near the spread are seen at q that err by more; eight
+// times the spread covers both. (Shading moves origins off their surfaces by a few ulp: that is all the spread there.)
+// The q themselves err by less than kPacketSlack.
 #pragma once
 #include "accel/bvh.h"
 #include "accel/packet.h"
@@ -30,7 +32,7 @@ struct Bundle {
   bool converges;         // to a point; else the rays are parallel
   float middle[3];        // the point; else the first origin
   float slope[2];         // parallel: how x and y change with depth
-  float slack;            // 2^-19 Z and the spread
+  float slack;            // 2^-19 Z and eight times the spread
   bool cubes_are_finite;  // of coordinates
   const HitFilter* filter;
   std::uint64_t open;  // rays not found to be blocked
@@ -67,8 +69,10 @@ inline bool find_middle(Bundle* b) {
     longest = max(longest, Float4::load(b->t_max + i));
   }
   b->slope[0] = b->slope[1] = 0;
-  b->converges = highest(longest) <= 1 && highest(spread) <= highest(reach) * 0x1p-12f;
-  b->slack = b->converges ? highest(spread) : 0;
+  // Within that reach, the slack stays below no_child_box(), and more spread would leave little out.
+  b->converges =
+      highest(longest) <= 1 && highest(reach) <= 8 * kCoordinateMax && highest(spread) <= highest(reach) * 0x1p-12f;
+  b->slack = b->converges ? 8 * highest(spread) : 0;
   for (int k = 0; k < 3; ++k) b->middle[k] = b->origin[k][0] + (b->converges ? b->direction[k][0] : 0);
   if (b->converges || highest(turn) > 0) return b->converges;
   for (int k = 0; k < 2; ++k) b->slope[k] = b->direction[k][0] / b->direction[2][0] * -b->sign;

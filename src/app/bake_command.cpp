@@ -92,6 +92,7 @@ Status bake(const BakeOptions& o) {
                              {"materials", scene.materials.count},
                              {"textures", scene.textures.count},
                              {"bytes", byte_count},
+                             {"accelerator", o.accel},
                              {"accel_bytes", scene.accel.bytes()},
                              {"read_ms", read_ms},
                              {"build_ms", build_ms},
@@ -115,7 +116,8 @@ void add_bake_command(CLI::App* program, int* exit_status) {
       ->check(CLI::Range(0.0f, 180.0f));
   command
       ->add_option("--accel", options->accel,
-                   "accelerator to put into it: bvh, or compact with two fifths of its memory, somewhat slower")
+                   "accelerator to put into it: bvh, or compact, which takes 16 bytes a triangle instead of 52, at 0.6 "
+                   "to 0.95 of the speed")
       ->check(CLI::IsMember({kBvhAccel.name, kCompactAccel.name}))
       ->capture_default_str();
   command->add_option("--json", options->json, "also write figures as JSON to FILE, or - for standard output");

@@ -159,7 +159,8 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
   command
       ->add_option(
           "--accel", o->accel,
-          "what finds a ray's triangles: bvh, compact (two fifths of its memory, somewhat slower), brute (for "
+          "what finds a ray's triangles: bvh, compact (16 bytes a triangle instead of 52, at 0.6 to 0.95 of the "
+          "speed), brute (for "
           "comparisons), or auto: what the scene was baked with, else bvh, else compact where that does not fit")
       ->check(CLI::IsMember(accels))
       ->capture_default_str();
@@ -217,8 +218,10 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
 void print_notes(const OpenScene& opened) {
   if (!opened.source.warning.empty()) std::fprintf(stderr, "pocketray: %s\n", opened.source.warning.c_str());
   if (opened.renderer.accel_is_fallback)
-    std::fprintf(stderr,
-                 "pocketray: the accelerator bvh does not fit --memory: compact takes its place, somewhat slower\n");
+    std::fprintf(
+        stderr,
+        "pocketray: the accelerator bvh does not fit --memory: compact takes its place, somewhat slower; a larger "
+        "--memory holds bvh\n");
   const SceneInfo& info = opened.renderer.scene.info;
   if (info.default_camera != 0 && info.default_lights != 0)
     std::fprintf(

@@ -70,11 +70,13 @@ Status choose_accel(Renderer* r, const SceneStorage& storage, std::size_t output
     if (r->accel_info != baked) r->scene.accel = {};
     return plan_with(r, *r->accel_info, storage, output_bytes);
   }
-  if (!r->scene.accel.empty()) return plan_with(r, baked ? *baked : kBvhAccel, storage, output_bytes);
-  Status status = plan_with(r, kBvhAccel, storage, output_bytes);
-  if (status.ok) return status;
-  r->accel_is_fallback = true;
-  return plan_with(r, kCompactAccel, storage, output_bytes);
+  const AccelInfo& first = baked ? *baked : kBvhAccel;
+  Status status = plan_with(r, first, storage, output_bytes);
+  if (status.ok || &first != &kBvhAccel) return status;
+  r->scene.accel = {};
+  status = plan_with(r, kCompactAccel, storage, output_bytes);
+  r->accel_is_fallback = status.ok;
+  return status;
 }
 
 }  // namespace

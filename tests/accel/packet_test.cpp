@@ -63,7 +63,8 @@ TEST_CASE("accel_packets_hit_what_their_rays_hit") {
 
 namespace {
 
-// Segments from places about a part of the mesh, some of them on triangles, to one light or along one direction.
+// Rays from places about a part of the mesh, some of them aimed past a vertex, to one light or along one direction.
+// Ends miss the light by some of the scene's size at times, and a packet in six goes beyond it: it is no bundle then.
 SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spread) {
   Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
   float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
@@ -71,14 +72,18 @@ SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, floa
   packet.count = next_u32(rng) % 2 ? kPacketMax : 1 + next_u32(rng) % kPacketMax;
   Vec3 start = middle + random_vec3(rng, size * 0.5f), light = middle + random_vec3(rng, size * 1.2f);
   bool parallel = next_u32(rng) % 4 == 0;
+  float misses[] = {0, 0, 0x1p-20f, 0x1p-14f}, miss = misses[next_u32(rng) % 4] * size;
+  float ends[] = {1, 1, 1, 1, 0.3f, kInfinity}, end = parallel ? kInfinity : ends[next_u32(rng) % 6];
   for (std::uint32_t i = 0; i < packet.count; ++i) {
     Vec3 origin = start + random_vec3(rng, size * spread);
-    if (!mesh.triangles.empty() && next_u32(rng) % 4 == 0)
-      origin = mesh.positions[mesh.triangles[next_u32(rng) % mesh.triangles.size()].vertex(next_u32(rng) % 3)];
-    Vec3 direction = parallel ? light - start : light - origin;
-    if (next_u32(rng) % 64 == 0) direction = {0, 0, 0};
-    float t_max[] = {1, 1, 1, 0.3f, kInfinity, 0};
-    set_ray(&packet, i, {origin, direction, parallel ? kInfinity : t_max[next_u32(rng) % 6]});
+    if (!mesh.triangles.empty() && next_u32(rng) % 4 == 0) {
+      Vec3 corner = mesh.positions[mesh.triangles[next_u32(rng) % mesh.triangles.size()].vertex(next_u32(rng) % 3)];
+      Vec3 back = parallel ? start - light : corner - light;
+      origin = corner + back * (next_u32(rng) % 2 ? next_float(rng) : 0.0f);
+    }
+    Vec3 direction = parallel ? light - start : light - origin + random_vec3(rng, miss);
+    if (next_u32(rng) % 256 == 0) direction = {0, 0, 0};
+    set_ray(&packet, i, {origin, direction, next_u32(rng) % 16 ? end : 0});
   }
   return packet;
 }
@@ -110,6 +115,49 @@ TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
       }
       INFO(mesh.name << ", " << name_of(variant) << ", " << blocked_count << " blocked");
       CHECK(wrong == 0);
+    }
+  }
+  select_isa(best_isa());
+}
+
+// Goal: what rays miss their point by hides nothing. Method: packets of two, a long ray and one whose end or begin lies
+// off the long one's by as much as a bundle allows, about a small triangle; and ends farther out than any scene.
+TEST_CASE("accel_packets_of_shadow_rays_allow_for_what_misses_the_light") {
+  constexpr float s = 0x1p-12f;
+  struct Case {
+    Vec3 origin, direction, corner[3];
+  };
+  const Case cases[] = {
+      {{0.99f, 0, -1}, {0.9f * s - 0.99f, 0, 0.9f * s + 1}, {{0, -s, 0}, {0.1f * s, -s, 0}, {0.05f * s, s, 0}}},
+      {{2.5f * s, 0, -0.5f * s},
+       {-1.5f * s, 0, 1.5f * s},
+       {{2.35f * s, -s, -0.4f * s}, {2.45f * s, -s, -0.4f * s}, {2.4f * s, s, -0.4f * s}}},
+  };
+  for (int n = 0; n < 3; ++n) {
+    CAPTURE(n);
+    const Case& c = cases[n % 2];
+    Mesh mesh = {"one triangle", {c.corner[0], c.corner[1], c.corner[2]}, {Triangle(0, 1, 2, 0)}};
+    if (n == 0) {  // across the ray where it is at z = -0.1
+      float t = 0.9f / c.direction.z;
+      for (Vec3& p : mesh.positions) p = p + c.origin + c.direction * t - Vec3{0.05f * s, 0, 0};
+    }
+    SegmentPacket packet;
+    packet.count = 2;
+    set_ray(&packet, 0, {{0, 0, -1}, {0, 0, 1}, 1});
+    set_ray(&packet, 1, {c.origin, c.direction, 1});
+    if (n == 2) {
+      packet.count = 4;
+      for (std::uint32_t i = 0; i < 4; ++i)
+        set_ray(&packet, i, {{0.1f * static_cast<float>(i), 0, 0}, {0, 0, 1e30f}, 1});
+    }
+    auto oracle = make_world(mesh, &kBruteAccel);
+    for (const Variant& variant : all_variants()) {
+      if (!variant.in_packets) continue;
+      INFO(name_of(variant));
+      auto world = make_world(mesh, variant.accel);
+      select_isa(variant.isa);
+      CHECK(variant.accel->occluded_packet(world->accel, packet, nullptr, nullptr) ==
+            kBruteAccel.occluded_packet(oracle->accel, packet, nullptr, nullptr));
     }
   }
   select_isa(best_isa());
