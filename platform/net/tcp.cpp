@@ -159,19 +159,25 @@ Link* open(const LinkOptions& options, Error* error) {
   return link;
 }
 
+// A socket that is given the port it knocks at, where nobody listens, is connected to itself [RFC 9293, sec. 3.5,
+// simultaneous open]: the same as refused.
+bool is_own_peer(int file) {
+  SocketAddress own = {}, peer = {};
+  socklen_t own_bytes = sizeof own, peer_bytes = sizeof peer;
+  return getsockname(file, &own.any, &own_bytes) == 0 && getpeername(file, &peer.any, &peer_bytes) == 0 &&
+         own_bytes == peer_bytes && memcmp(&own, &peer, own_bytes) == 0;
+}
+
 // Tries the places of the address, from slot->place on, until one does not fail at once.
 void try_places(Slot* slot) {
   for (; slot->place < slot->address.place_count; ++slot->place) {
     SocketAddress at = socket_address(slot->address, slot->place);
     slot->file = socket(at.any.sa_family, SOCK_STREAM, 0);
     bool begun = slot->file >= 0 && prepare(slot->file);
-    if (begun) {
-      if (::connect(slot->file, &at.any, socket_address_bytes(at)) == 0) {
-        slot->phase = Phase::connected;
-        return;
-      }
-      if (errno == EINPROGRESS || errno == EINTR) return;
-    }
+    // What is connected at once, as on this machine, is told by progress() all the same.
+    if (begun &&
+        (::connect(slot->file, &at.any, socket_address_bytes(at)) == 0 || errno == EINPROGRESS || errno == EINTR))
+      return;
     if (slot->error_number == 0) slot->error_number = errno;
     close_file(slot);
   }
@@ -202,6 +208,7 @@ LinkResult progress(TcpLink* link, Slot* slot, Error* error) {
     int number = 0;
     socklen_t bytes = sizeof number;
     if (getsockopt(slot->file, SOL_SOCKET, SO_ERROR, &number, &bytes) != 0) number = errno;
+    if (number == 0 && is_own_peer(slot->file)) number = ECONNREFUSED;
     if (number == 0) {
       SocketAddress at = socket_address(slot->address, slot->place);
       socket_address_text(at, slot->name, sizeof slot->name);
@@ -213,7 +220,6 @@ LinkResult progress(TcpLink* link, Slot* slot, Error* error) {
     ++slot->place;
     try_places(slot);
     if (slot->file < 0) return fail(slot, slot->error_number, error);
-    if (slot->phase == Phase::connected) return LinkResult::done;
   }
   if (link_timer_left(&slot->timer, link->now_ns()) > 0) return LinkResult::later;
   return fail(slot, ETIMEDOUT, error);

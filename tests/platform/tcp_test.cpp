@@ -11,6 +11,7 @@
 #include <cstdlib>
 
 #include "link_rig.h"
+#include "support/effort.h"
 
 using namespace platform;
 
@@ -58,7 +59,8 @@ TEST_CASE("tcp_says_what_is_wrong_with_an_address") {
   CHECK(std::strstr(rig.error.text, "no way leads there") != nullptr);
 }
 
-// Goal: a connection without an outcome fails at its deadline. Method: a listener whose queue is full drops what knocks.
+// Goal: a connection without an outcome fails at its deadline. Method: a listener whose queue is full drops what
+// knocks.
 TEST_CASE("tcp_connect_fails_at_its_deadline") {
   LinkRig rig(kTcpLink);
   int file = socket(AF_INET, SOCK_STREAM, 0), waiting[8];
@@ -216,4 +218,52 @@ TEST_CASE("tcp_signals_change_nothing") {
   CHECK_FALSE(woken);
   CHECK(passed_ns >= 30 * kMs);
   CHECK(same);
+}
+
+// Goal: a peer for whom there is no room is sent away, and the listener goes on. Method: a link of two streams, one
+// taken.
+TEST_CASE("tcp_sends_away_whom_it_has_no_room_for") {
+  LinkRig rig(kTcpLink, 2);
+  int first = raw_connect(rig), stream = accepted(&rig), second = raw_connect(rig), none = -1;
+  REQUIRE(rig.wait(rig.listener, true, false));
+  CHECK(kTcpLink.accept(rig.link, rig.listener, &none, &rig.error) == LinkResult::failed);
+  CHECK(std::strstr(rig.error.text, "all 2 connections are in use") != nullptr);
+  CHECK(none == -1);
+  char byte;
+  timeval soon = {2, 0};
+  setsockopt(second, SOL_SOCKET, SO_RCVTIMEO, &soon, sizeof soon);
+  CHECK(recv(second, &byte, 1, 0) == 0);
+  CHECK_FALSE(rig.wait(rig.listener, true, false, 0));
+  kTcpLink.close(rig.link, stream);
+  int third = raw_connect(rig);
+  CHECK(accepted(&rig) != stream);
+  for (int file : {first, second, third}) close(file);
+}
+
+// Goal: knocking again and again where nobody listens never ends in a connection to oneself. Method: more tries than
+// there are ports to be given, at one of them.
+TEST_CASE("tcp_never_connects_to_itself") {
+  LinkRig rig(kTcpLink);
+  LinkAddress address;
+  int free = -1;  // an even port: Linux gives those to who connects
+  for (int port = 40000 + getpid() % 1000 * 2; free < 0; port += 2) {
+    REQUIRE(kTcpLink.resolve(std::to_string(port).c_str(), &address, &rig.error));
+    free = kTcpLink.listen(rig.link, address, &rig.error);
+  }
+  kTcpLink.close(rig.link, free);
+  int connected_count = 0, failed_count = 0;
+  for (int i = 0; i < pocketray::effort(33000); ++i) {
+    int stream = kTcpLink.connect(rig.link, address, 2000 * kMs, &rig.error);
+    if (stream < 0) {
+      ++failed_count;
+      continue;
+    }
+    rig.wait(stream, false, true);
+    LinkResult result = kTcpLink.connected(rig.link, stream, &rig.error);
+    connected_count += result == LinkResult::done;
+    failed_count += result == LinkResult::failed;
+    kTcpLink.close(rig.link, stream);
+  }
+  CHECK(connected_count == 0);
+  CHECK(failed_count == pocketray::effort(33000));
 }
