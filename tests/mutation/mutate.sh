@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # mutate.sh [--check | --list] [--only FAULT]... [--jobs N] [--build DIR]
-# Whether the tests notice: applies the faults of faults.txt one at a time to a copy of the sources, builds and runs test
+# Whether the tests notice: applies the faults of faults/*.txt one at a time to a copy of the sources, builds and runs test
 # programs until one fails, and prints a table and the kill rate. Exit status 1 where a fault survives, is not found in
 # the sources or does not compile; 2 for wrong usage.
 #   --check      only sees that every fault's old text is in its file exactly once
@@ -27,7 +27,15 @@ fail() {
   exit 1
 }
 
-# faults.txt: one fault a block, a key and a value a line, blank lines between blocks, lines of # between them.
+# Faults: one a block, a key and a value a line, blank lines between blocks, lines of # between them.
+#   name    of the fault
+#   file    it is applied to
+#   suites  the test programs to ask first; the others follow
+#   why     what the fault is
+#   old     text that the file has exactly once; white space stands for any white space
+#   new     what comes in its place, or nothing
+# Keep the old texts short, so that they outlive changes around them. A fault that nothing can notice (one that only
+# costs time, say) has no place there.
 read_faults() {
   local line key value n=-1 first=1
   local keys=" name file suites why old new "
@@ -38,8 +46,8 @@ read_faults() {
       for key in $keys; do printf -v "${key}[$n]" ''; done
     fi
     key=${line%%:*} value=${line#*:} value=${value# }
-    case $keys in *" $key "*) printf -v "${key}[$n]" %s "$value" ;; *) fail "faults.txt: no key '$key': $line" ;; esac
-  done <"$here/faults.txt"
+    case $keys in *" $key "*) printf -v "${key}[$n]" %s "$value" ;; *) fail "faults: no key '$key': $line" ;; esac
+  done < <(cat "$here"/faults/*.txt)
 }
 
 # A text as a regular expression that takes any white space for white space: clang-format may break its lines anew.
@@ -171,7 +179,7 @@ done
 [[ $jobs =~ ^[1-9][0-9]*$ ]] || usage "--jobs $jobs: needs a number above 0"
 
 read_faults
-check_faults || fail "faults.txt does not fit the sources"
+check_faults || fail "the faults do not fit the sources"
 case $mode in
   check) echo "${#name[@]} faults, each found once" && exit 0 ;;
   list)
