@@ -1,4 +1,4 @@
-// Sorts of rays by dominant axis. Part of the kernels: see bvh_packet.h.
+// Sorts of rays by dominant axis. Part of the kernels: see bvh_packet.h and bvh_shaft.h.
 #pragma once
 #include <cmath>
 #include <limits>

@@ -1,4 +1,5 @@
-// The default accelerator.
+// The two hierarchies of the list: `bvh`, the default, and for scenes that fill the memory `compact`, whose leaves have
+// no vertices.
 #include "accel/bvh.h"
 
 #include "accel/accel_list.h"
@@ -8,41 +9,49 @@
 namespace pocketray {
 namespace {
 
-const BvhKernels& kernels() {
 #if defined(__x86_64__)
-  static constexpr const BvhKernels* kTable[kIsaCount] = {&kBaselineKernels, &kAvx2Kernels, &kAvx512Kernels};
-  return *kTable[static_cast<int>(active_isa())];
+constexpr const BvhKernels* kBlockKernels[kIsaCount] = {&kBaselineKernels, &kAvx2Kernels, &kAvx512Kernels};
+constexpr const BvhKernels* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels, &kAvx2CompactKernels,
+                                                          &kAvx512CompactKernels};
 #else
-  return kBaselineKernels;
+constexpr const BvhKernels* kBlockKernels[] = {&kBaselineKernels};
+constexpr const BvhKernels* kCompactKernels[] = {&kBaselineCompactKernels};
 #endif
-}
 
-std::size_t need(std::uint32_t triangle_count) { return bvh_need(kBlockLeaves, triangle_count); }
-void build(Accel* accel, Arena* keep, Arena* scratch) { bvh_build(kBlockLeaves, accel, keep, scratch); }
-void refit(Accel* accel, Array<std::uint8_t> data) { bvh_refit(kBlockLeaves, accel, data); }
-Status adopt(Accel* accel, Array<const std::uint8_t> data) { return bvh_adopt(kBlockLeaves, accel, data); }
-float nearest_distance(const Accel& accel, const Vec3& point) {
-  return bvh_nearest_distance(kBlockLeaves, accel, point);
-}
-void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
-  kernels().closest(accel, ray, filter, hit, stats);
-}
-void closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits, TraceStats* stats) {
-  kernels().closest_packet(accel, rays, filter, hits, stats);
-}
-bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
-  return kernels().occluded(accel, ray, filter, stats);
-}
-std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
-                              TraceStats* stats) {
-  return kernels().occluded_packet(accel, rays, filter, stats);
-}
+// What AccelInfo wants, for one kind of leaves and the kernels of every instruction set.
+template <const LeafKind& kLeaves, const auto& kKernels>
+struct Hierarchy {
+  static const BvhKernels& kernels() { return *kKernels[static_cast<int>(active_isa())]; }
+  static std::size_t need(std::uint32_t triangle_count) { return bvh_need(kLeaves, triangle_count); }
+  static void build(Accel* accel, Arena* keep, Arena* scratch) { bvh_build(kLeaves, accel, keep, scratch); }
+  static void refit(Accel* accel, Array<std::uint8_t> data) { bvh_refit(kLeaves, accel, data); }
+  static Status adopt(Accel* accel, Array<const std::uint8_t> data) { return bvh_adopt(kLeaves, accel, data); }
+  static void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
+    kernels().closest(accel, ray, filter, hit, stats);
+  }
+  static void closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
+                             TraceStats* stats) {
+    kernels().closest_packet(accel, rays, filter, hits, stats);
+  }
+  static bool occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
+    return kernels().occluded(accel, ray, filter, stats);
+  }
+  static std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                       TraceStats* stats) {
+    return kernels().occluded_packet(accel, rays, filter, stats);
+  }
+  static float nearest_distance(const Accel& accel, const Vec3& point) {
+    return bvh_nearest_distance(kLeaves, accel, point);
+  }
+  static constexpr AccelInfo info(const char* name, std::uint32_t magic) {
+    return {name,  magic,   need,           bvh_scratch_need, build,           refit,
+            adopt, closest, closest_packet, occluded,         occluded_packet, nearest_distance};
+  }
+};
 
 }  // namespace
 
-const AccelInfo kBvhAccel = {
-    "bvh", kBvhMagic, need,           bvh_scratch_need, build,           refit,
-    adopt, closest,   closest_packet, occluded,         occluded_packet, nearest_distance,
-};
+const AccelInfo kBvhAccel = Hierarchy<kBlockLeaves, kBlockKernels>::info("bvh", kBvhMagic);
+const AccelInfo kCompactAccel = Hierarchy<kCompactLeaves, kCompactKernels>::info("compact", kCompactMagic);
 
 }  // namespace pocketray

@@ -28,6 +28,9 @@ constexpr std::uint32_t leaf_reference(std::uint32_t index, std::uint32_t triang
 }
 constexpr std::uint32_t leaf_triangle_count(std::uint32_t reference) { return ((reference >> 29) & 3) + 1; }
 
+// Entries of a stack for walking a hierarchy: on each level at most three siblings wait while the fourth is visited.
+constexpr int kBvhStackSize = 3 * kBvhDepthMax + 4;
+
 struct alignas(64) BvhHeader {
   std::uint32_t magic, triangle_count, node_count, leaf_count;
   std::uint32_t reserved[12];  // 0

@@ -82,7 +82,7 @@ Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> d
       header.node_count < 1 || header.node_count > kTriangleCountMax || header.leaf_count > kTriangleCountMax ||
       data.bytes() != bvh_bytes(header.node_count, header.leaf_count, kind.bytes))
     return failure("accelerator: its header does not fit the scene; bake the scene again");
-  Visit stack[3 * kBvhDepthMax + 4];
+  Visit stack[kBvhStackSize];
   std::uint32_t stack_count = 0;
   stack[stack_count++] = {0, 1};
   while (stack_count > 0) {

@@ -153,7 +153,7 @@ std::uint32_t build_node(Builder* builder, const Task& task, Task* stack, std::u
 }
 
 void build_nodes(Builder* builder, const BuildPart& root) {
-  Task stack[3 * kBvhDepthMax + 4];
+  Task stack[kBvhStackSize];
   std::uint32_t stack_count = 0;
   builder->node_count = 1, builder->leaf_count = 0;
   stack[stack_count++] = {root, 0, 1};

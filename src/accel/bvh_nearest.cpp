@@ -41,7 +41,7 @@ float bvh_nearest_distance(const LeafKind& kind, const Accel& accel, const Vec3&
   BvhView bvh(accel.data.data);
   Vec3d p = to_double(point);
   double least = std::numeric_limits<double>::infinity();
-  Entry stack[3 * kBvhDepthMax + 4];
+  Entry stack[kBvhStackSize];
   int top = 0;
   stack[top++] = {0, 0};
   while (top > 0) {

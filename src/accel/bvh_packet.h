@@ -37,7 +37,7 @@ struct DepthEntry {
 template <int kLanes, class Tree>
 void search_packet(const Tree& bvh, Packet* p, TraceStats* stats) {
   std::uint64_t nodes = 0, triangles = 0;
-  DepthEntry stack[3 * kBvhDepthMax + 4];
+  DepthEntry stack[kBvhStackSize];
   LeafBatch batch;
   int top = 0;
   stack[top++] = {0, 0};

@@ -14,7 +14,7 @@ inline namespace POCKETRAY_ISA {
 template <int kLanes, class Tree>
 void search_shaft(const Tree& bvh, Bundle* b, TraceStats* stats) {
   std::uint64_t nodes = 0, triangles = 0;
-  std::uint32_t stack[3 * kBvhDepthMax + 4];
+  std::uint32_t stack[kBvhStackSize];
   ShaftBatch batch;
   int top = 0;
   stack[top++] = 0;
@@ -44,7 +44,8 @@ void search_shaft(const Tree& bvh, Bundle* b, TraceStats* stats) {
   if (stats) stats->nodes += nodes, stats->triangles += triangles;
 }
 
-inline int axis_class(const Ray& ray) {
+// The class of a shadow ray; −1, too, where its origin is too far out to hit anything.
+inline int segment_class(const Ray& ray) {
   return has_valid_origin(ray.origin) ? axis_class(ray.direction.x, ray.direction.y, ray.direction.z) : -1;
 }
 
@@ -52,7 +53,7 @@ inline int axis_class(const Ray& ray) {
 inline unsigned classify(const SegmentPacket& rays, std::int8_t* classes) {
   unsigned met = 0;
   for (std::uint32_t i = 0; i < rays.count; ++i) {
-    classes[i] = static_cast<std::int8_t>(axis_class(ray_of(rays, i)));
+    classes[i] = static_cast<std::int8_t>(segment_class(ray_of(rays, i)));
     if (classes[i] >= 0) met |= 1u << classes[i];
   }
   return met;
@@ -71,7 +72,7 @@ inline bool all_of_class(const SegmentPacket& rays, int wanted, const Bundle& b)
     if (bits(in_class) != 15) return false;
   }
   for (; i < rays.count; ++i)
-    if (axis_class(ray_of(rays, i)) != wanted) return false;
+    if (segment_class(ray_of(rays, i)) != wanted) return false;
   return true;
 }
 
@@ -89,7 +90,7 @@ inline void gather_segments(const SegmentPacket& rays, const std::int8_t* classe
   b->count = 0;
   for (std::uint32_t i = 0; i < rays.count; ++i)
     if (!classes || classes[i] == wanted) b->place[b->count++] = static_cast<std::uint8_t>(i);
-  int padded = (b->count + 15) & ~15;
+  int padded = padded_count(*b);
   for (int row = 0; row < 7; ++row) {
     if (classes) {
       for (int n = 0; n < b->count; ++n) to[row][n] = from[row][b->place[n]];
@@ -125,7 +126,7 @@ std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, con
   if (is_empty(accel.bounds) || rays.count == 0) return 0;
   Bundle bundle;
   bundle.filter = filter && filter->accept ? filter : nullptr;
-  int first = axis_class(ray_of(rays, 0));
+  int first = segment_class(ray_of(rays, 0));
   if (first >= 0) {
     set_axes(&bundle, first);
     if (all_of_class(rays, first, bundle))

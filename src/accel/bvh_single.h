@@ -10,8 +10,6 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-constexpr int kStackSize = 3 * kBvhDepthMax + 4;
-
 struct Counts {
   std::uint64_t nodes = 0, triangles = 0;
 };
@@ -137,7 +135,7 @@ template <bool kFiltered, class Tree>
 inline void search_closest(const Tree& bvh, const BoxRay& box, Search* search, TraceStats* stats) {
   Counts counts;
   TriangleBlock scratch;
-  Entry stack[kStackSize], *top = stack;
+  Entry stack[kBvhStackSize], *top = stack;
   Float4 limit = Float4::splat(box_limit(box.exponent, search->t));
   Entry last = make_entry(first(limit), ~0u);  // what is worth a visit is not above
   std::uint32_t child = 0;
@@ -178,7 +176,7 @@ template <bool kFiltered, class Tree>
 inline bool search_any(const Tree& bvh, const BoxRay& box, const Search& search, TraceStats* stats) {
   Counts counts;
   TriangleBlock scratch;
-  std::uint32_t stack[kStackSize], *top = stack, child = 0;
+  std::uint32_t stack[kBvhStackSize], *top = stack, child = 0;
   SureDepths sure = sure_depths(search.t_max, search.leaf.direction[2]);
   Float4 limit = Float4::splat(box_limit(box.exponent, search.t_max));
   bool found = false;

@@ -39,11 +39,11 @@ struct Bundle {
   std::uint8_t place[kRays];
   alignas(64) float origin[3][kRays], direction[3][kRays], t_max[kRays];
   alignas(64) float shear_x[kRays], shear_y[kRays];  // as make_sheared_ray() has them
-  alignas(64) float low[kRays],
-      high[kRays];  // differences of coordinates along kz from the origin where a hit counts …
-  alignas(64) float sure_low[kRays], sure_high[kRays];  // … and where a triangle between them surely lies in (0, t_max)
-  alignas(64) float x[kRays], y[kRays];                 // q
-  alignas(64) float depth[kRays];  // where the ray begins; less than all others' where it hits nothing
+  // Differences of coordinates along kz from the origin: where a hit counts, and where a triangle that lies between
+  // them surely is at t in (0, t_max).
+  alignas(64) float hit_low[kRays], hit_high[kRays], sure_low[kRays], sure_high[kRays];
+  alignas(64) float x[kRays], y[kRays];  // q
+  alignas(64) float depth[kRays];        // where the ray begins; less than all others' where it hits nothing
   alignas(64) float group_depth[kGroups];
   Windows4 block, group[4];
   Float4 window[4];  // of all rays, in all lanes: low and high x, low and high y
@@ -89,6 +89,7 @@ inline void set_slack(const Box& bounds, Bundle* b) {
     reach = max(reach, abs(Float4::splat(bounds.high[axes[k]]) - middle));
     for (int i = 0; i < padded_count(*b); i += 4) reach = max(reach, abs(Float4::load(b->origin[k] + i) - middle));
   }
+  // Up to there sums of products of an edge function, below 3e25, with depths stay below 2e38.
   b->cubes_are_finite = highest(reach) < 1e12f;
   b->slack += highest(reach) * 0x1p-19f + std::numeric_limits<float>::min();
 }
@@ -148,7 +149,7 @@ inline bool prepare_bundle(const Box& bounds, Bundle* b) {
     store(b->depth + i, select(open, depth + Float4::splat(b->slack), Float4::splat(-kInfinity)));
     Float4 bound = depth_bound(t_max, dz);
     CertainDepths sure = certain_depths(t_max, dz);
-    store(b->low + i, back ? zero - bound : zero), store(b->high + i, back ? zero : bound);
+    store(b->hit_low + i, back ? zero - bound : zero), store(b->hit_high + i, back ? zero : bound);
     store(b->sure_low + i, back ? zero - sure.far : sure.near);
     store(b->sure_high + i, back ? zero - sure.near : sure.far);
   }

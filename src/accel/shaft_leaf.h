@@ -128,8 +128,8 @@ ShaftPassing test_segments(const Bundle& b, const TriangleBlock& block, int firs
   EdgeValues<F> e = edge_values<F>(x[0], y[0], x[1], y[1], x[2], y[2]);
   F zero = F::splat(0), low = min(min(e.a, e.b), e.c), high = max(max(e.a, e.b), e.c);
   F nearest = min(min(z[0], z[1]), z[2]), farthest = max(max(z[0], z[1]), z[2]);
-  unsigned pass = bits(((zero <= low) | (high <= zero)) & (nearest <= F::spread(b.high + first)) &
-                       (F::spread(b.low + first) <= farthest));
+  unsigned pass = bits(((zero <= low) | (high <= zero)) & (nearest <= F::spread(b.hit_high + first)) &
+                       (F::spread(b.hit_low + first) <= farthest));
   if (!pass) return {0, 0};
   unsigned sure = bits(((zero < low) | (high < zero)) & (F::spread(b.sure_low + first) <= nearest) &
                        (farthest <= F::spread(b.sure_high + first)));
