@@ -6,6 +6,7 @@
 #include "shade/contact.h"
 #include "shade/dielectric.h"
 #include "shade/filters.h"
+#include "shade/lights.h"
 #include "shade/media.h"
 #include "shade/surface.h"
 #include "shade/texture.h"
@@ -146,10 +147,8 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const LightPoint& light = frame.lights[i];
       LightSample sample;
-      if (light.material != kNone && &frame.scene->materials[light.material] == s.material) continue;
-      if (!run.sample(light, s.point, &sample)) continue;
+      if (!lights_up(frame, s, run, light, &sample)) continue;
       float cosine = dot(s.normal, sample.direction);
-      if (!(cosine > 0)) continue;
       bool below = !(dot(s.geometric, sample.direction) > 0);
       if (below && !has(mask, Effect::shadow)) continue;
       Vec3 f = diffuse;

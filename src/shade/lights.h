@@ -1,8 +1,15 @@
 // How each kind of light reaches a point.
 #pragma once
-#include "shade/frame_data.h"
+#include "shade/surface.h"
 
 namespace pocketray {
+
+// Whether a light gives the surface anything, should nothing be in the way. An emitter does not light itself.
+inline bool lights_up(const FrameData& frame, const Surface& s, const LightRun& run, const LightPoint& light,
+                      LightSample* sample) {
+  if (light.material != kNone && &frame.scene->materials[light.material] == s.material) return false;
+  return run.sample(light, s.point, sample) && dot(s.normal, sample->direction) > 0;
+}
 
 LightSampler find_light_sampler(Effect kind);  // point_light, spot_light, directional_light or area_light
 

@@ -1,11 +1,20 @@
 #include "shade/tile_shadows.h"
 
+#include "base/fmath.h"
 #include "shade/filters.h"
+#include "shade/lights.h"
 
 namespace pocketray {
 namespace {
 
 bool receives(const Surface& s) { return !s.material->unlit && !(is_zero(s.diffuse) && is_zero(s.material->specular)); }
+
+// Whether direct_light() is likely to leave the ray out; highlights are not estimated.
+bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& sample) {
+  if (!is_zero(s.material->specular)) return false;
+  Vec3 most = s.diffuse * (1 / kPiF) * sample.irradiance * dot(s.normal, sample.direction);
+  return max_component(most) <= frame.left_out_max;
+}
 
 // The pixels whose first hits light falls on.
 std::uint32_t find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
@@ -37,9 +46,8 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
       for (std::uint32_t k = 0; k < receiver_count; ++k) {
         const Surface& s = shadows->surface[receivers[k]];
         LightSample sample;
-        if (light.material != kNone && &frame.scene->materials[light.material] == s.material) continue;
-        if (!run.sample(light, s.point, &sample)) continue;
-        if (!(dot(s.normal, sample.direction) > 0 && dot(s.geometric, sample.direction) > 0)) continue;
+        if (!lights_up(frame, s, run, light, &sample) || !(dot(s.geometric, sample.direction) > 0)) continue;
+        if (cannot_matter(frame, s, sample)) continue;
         pixel[packet.count] = receivers[k];
         set_ray(&packet, packet.count++, {shadows->origin[receivers[k]], sample.to_light, sample.t_max});
       }

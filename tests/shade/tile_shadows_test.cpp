@@ -24,7 +24,7 @@ Picture trace_all(const FrameData& frame, Tracer* tracer) {
 
 }  // namespace
 
-// Goal: shadow rays that a tile traces in packets, before shading asks, change no pixel and no count of rays. Method:
+// Goal: shadow rays that a tile traces in packets, before shading asks, change no pixel, nor how many rays are asked for. Method:
 // generated scenes with every feature by turns, and one with more lights than tiles know of, with packets and without.
 TEST_CASE("tile_shadows_change_no_pixel") {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(effort(24)); ++seed) {
