@@ -9,6 +9,10 @@ TESTS ?= .
 SCENE ?= cornell
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
+# A compiler cache serves clones in other folders, too.
+export CCACHE_BASEDIR := $(CURDIR)
+export CCACHE_NOHASHDIR := true
+
 CLASS :=
 ifneq ($(DEVICE),)
   CLASS := $(shell toolchains/device.sh $(DEVICE))
