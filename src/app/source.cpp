@@ -28,7 +28,8 @@ Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneStorage* stor
 Status load_baked(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
   platform::FileError error;
   if (!platform::map_file(name.c_str(), &source->mapped, &error)) return failure("%s %s", name.c_str(), error.text);
-  storage->mapped_bytes = source->mapped.byte_count;
+  source->baked = source->mapped.bytes;
+  source->baked_bytes = storage->mapped_bytes = source->mapped.byte_count;
   if (storage->mapped_bytes > r->settings.memory_bytes)
     return too_large(name, storage->mapped_bytes, r->settings.memory_bytes);
   Status status = baked_open(source->mapped.bytes, source->mapped.byte_count, &r->scene);
@@ -45,6 +46,8 @@ Status load_imported(const std::string& name, Renderer* r, SceneSource* source, 
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, size));
   if (!bytes) return too_large(name, size, r->settings.memory_bytes);
   baked_write(imported.scene, bytes);
+  source->baked = bytes;
+  source->baked_bytes = size;
   storage->arena_bytes = r->scene_arena.used;
   Status status = baked_open(bytes, size, &r->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);

@@ -11,8 +11,10 @@
 namespace pocketray {
 
 struct SceneSource {
-  platform::MappedFile mapped;  // of a .pray file
-  std::string warning;          // one line, empty if there is nothing to say
+  platform::MappedFile mapped;          // of a .pray file
+  const std::uint8_t* baked = nullptr;  // the .pray file, or what a model became, that the scene is a view of; null: a
+  std::size_t baked_bytes = 0;          // built-in scene
+  std::string warning;                  // one line, empty if there is nothing to say
 };
 
 // The one block, taken at start and kept as long as its scene is open. Null when it cannot be had.
