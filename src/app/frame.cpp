@@ -31,6 +31,7 @@ void accelerate(Renderer* r) {
     r->accel.positions = r->frame.positions;
     r->accel_info->refit(&r->accel, r->accel_data);
   }
+  wait_for_pace(&r->pace, 0, start);
   r->timings.refit_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   r->frame.accel = r->accel;
 }
@@ -66,8 +67,8 @@ Status aim_camera(Renderer* r) {
 std::uint32_t trace(Renderer* r, Aov aov, const std::atomic<bool>* stop) {
   for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
   std::uint64_t start = clock_ns();
-  std::uint32_t rows = trace_with(
-      r->workers, {r->spans.data, r->spans.count, aov, r->image.data, r->tracers.data, r->row_ns.data, stop});
+  std::uint32_t rows = trace_paced(
+      &r->pace, r->workers, {r->spans.data, r->spans.count, aov, r->image.data, r->tracers.data, r->row_ns.data, stop});
   r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return rows;
 }
@@ -75,8 +76,10 @@ std::uint32_t trace(Renderer* r, Aov aov, const std::atomic<bool>* stop) {
 }  // namespace
 
 Status prepare_frame(Renderer* r, double seconds) {
+  r->pace.owed_ns = 0;
   std::uint64_t start = clock_ns();
   pose_scene(r, seconds);
+  wait_for_pace(&r->pace, 0, start);
   r->timings.pose_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   accelerate(r);
   choose_kernels(r);

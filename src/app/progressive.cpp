@@ -50,7 +50,8 @@ bool advance_progressive(Renderer* r, Array<Span> row_spans, std::uint64_t deadl
   while (p->step > 0) {
     std::uint64_t start = clock_ns();
     std::uint32_t count = list_row(r->settings, p->row, p->step, row_spans);
-    trace_with(r->workers, {row_spans.data, count, Aov::none, r->image.data, r->tracers.data, nullptr, nullptr});
+    trace_paced(&r->pace, r->workers,
+                {row_spans.data, count, Aov::none, r->image.data, r->tracers.data, nullptr, nullptr});
     if (p->step > 1) fill_cells(r, row_spans, count, p->step);
     for (std::uint32_t i = 0; i < count; ++i) p->pixels_traced += row_spans[i].column_end - row_spans[i].column_begin;
     if (p->dirty_begin == p->dirty_end) p->dirty_begin = p->row;

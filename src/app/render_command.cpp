@@ -102,8 +102,9 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
   *complete = true;
   for (std::uint32_t row = 0; row < r->settings.height && *complete; row += band) {
     std::uint32_t rows = r->settings.height - row < band ? r->settings.height - row : band;
-    std::uint32_t done = trace_with(r->workers, {r->spans.data + row, rows, job.aov, r->image.data, r->tracers.data,
-                                                 r->row_ns.data + row, &interrupted});
+    std::uint32_t done = trace_paced(
+        &r->pace, r->workers,
+        {r->spans.data + row, rows, job.aov, r->image.data, r->tracers.data, r->row_ns.data + row, &interrupted});
     *complete = done == rows;
     show_progress(progress, std::uint64_t(frame - job.sequence.first) * r->settings.height + row + rows);
   }

@@ -1,7 +1,7 @@
 // Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. Allocates nothing
 // itself.
 #pragma once
-#include "app/workers.h"
+#include "app/pace.h"
 #include "plan/plan_memory.h"
 #include "scene/animate.h"
 #include "shade/trace_spans.h"
@@ -34,6 +34,7 @@ struct Renderer {
   std::uint32_t camera_index = 0;
   float exposure = 1;
   Timings timings;
+  Pace pace;                   // of an emulated device; as it stands: none
   Workers* workers = nullptr;  // null: the caller's thread alone
   Light default_lights[2];
 };

@@ -61,7 +61,7 @@ void run_worker(Workers* w, std::uint32_t thread) {
     seen = w->generation;
     TraceJob job = w->job;
     lock.unlock();
-    take_spans(job, thread, static_cast<std::uint32_t>(w->threads.size()) + 1, &w->next_span, &w->done_count);
+    take_spans(job, thread, worker_thread_count(w), &w->next_span, &w->done_count);
     lock.lock();
     if (--w->busy == 0) w->end.notify_one();
   }
@@ -87,6 +87,10 @@ void stop_workers(Workers* workers) {
   delete workers;
 }
 
+std::uint32_t worker_thread_count(const Workers* workers) {
+  return workers ? static_cast<std::uint32_t>(workers->threads.size()) + 1 : 1;
+}
+
 std::uint32_t trace_with(Workers* w, const TraceJob& job) {
   std::atomic<std::uint32_t> next_span{0}, done_count{0};
   if (!w) {
@@ -102,7 +106,7 @@ std::uint32_t trace_with(Workers* w, const TraceJob& job) {
     ++w->generation;
   }
   w->begin.notify_all();
-  take_spans(job, 0, static_cast<std::uint32_t>(w->threads.size()) + 1, &w->next_span, &w->done_count);
+  take_spans(job, 0, worker_thread_count(w), &w->next_span, &w->done_count);
   std::unique_lock<std::mutex> lock(w->mutex);
   w->end.wait(lock, [&] { return w->busy == 0; });
   return w->done_count;

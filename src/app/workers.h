@@ -12,6 +12,8 @@ struct Workers;
 // Starts thread_count − 1 threads beside the caller's.
 Workers* start_workers(std::uint32_t thread_count);
 void stop_workers(Workers* workers);
+// The caller's included.
+std::uint32_t worker_thread_count(const Workers* workers);
 
 struct TraceJob {
   const Span* spans;

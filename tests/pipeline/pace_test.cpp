@@ -1,0 +1,149 @@
+// The emulated CPU: frames take its time and are the same frames.
+#include "app/pace.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "app/frame.h"
+#include "app/progressive.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+struct Subject {
+  static constexpr std::uint32_t kFeatures = bit(Feature::point_light) | bit(Feature::mirror);
+  std::unique_ptr<GeneratedScene> generated = generate_scene(kFeatures, 7);
+  std::unique_ptr<TestRenderer> test;
+  Renderer* r = nullptr;
+
+  explicit Subject(std::uint32_t threads = 1) {
+    Settings settings = settings_for(kFeatures, 96, 72);
+    settings.threads = threads;
+    test = make_renderer(generated->scene, settings);
+    r = &test->renderer;
+  }
+
+  double trace_ms() {
+    Status status = render_frame(r, 0);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    return r->timings.trace_ms;
+  }
+  Picture picture() const { return Picture(r->image.begin(), r->image.end()); }
+  // Of several frames, as what else runs on this machine only adds.
+  double least_trace_ms(int frame_count) {
+    double least = trace_ms();
+    for (int i = 1; i < frame_count; ++i) least = std::min(least, trace_ms());
+    return least;
+  }
+};
+
+}  // namespace
+
+// Goal: the arithmetic of the pace. Method: by hand, at its edges too.
+TEST_CASE("pace_arithmetic") {
+  Pace none, slow, fixed;
+  slow.slowdown = 12.5;
+  fixed.ns_per_pixel = 8841;
+  CHECK_FALSE(is_paced(none));
+  CHECK(is_paced(slow));
+  CHECK(is_paced(fixed));
+  CHECK(paced_ns(none, 100, 1234) == 1234);
+  CHECK(paced_ns(slow, 100, 1000) == 12500);
+  CHECK(paced_ns(fixed, 100, 1000) == 884100);
+  CHECK(paced_ns(fixed, 0, 1000) == 0);
+  CHECK(paced_ns(slow, 0, ~std::uint64_t{0}) == 3'600'000'000'000);
+  const Span spans[] = {{0, 0, 320}, {1, 10, 20}};
+  CHECK(span_pixel_count(spans, 2) == 330);
+  std::uint64_t span_ns[] = {1000, 50};
+  pace_spans(slow, spans, 2, 2, span_ns);
+  CHECK(span_ns[0] == 12500);
+  CHECK(span_ns[1] == 625);
+  pace_spans(fixed, spans, 2, 2, span_ns);  // two threads that share a pixel's time each take twice as long for one
+  CHECK(span_ns[0] == 2 * 320 * 8841);
+  CHECK(span_ns[1] == 2 * 10 * 8841);
+}
+
+// Goal: a paced frame takes slowdown times as long as one that is not, and so do its rows. Method: the least of several
+// frames each, in turn, as what else this machine does only adds; as many as it takes to agree, within a bound.
+TEST_CASE("pace_slows_a_frame_by_its_factor") {
+  Subject subject;
+  Renderer* r = subject.r;
+  constexpr double kSlowdown = 6;
+  double plain_ms = 1e300, paced_ms = 1e300, rows_ms = 0;
+  auto agree = [&] { return std::fabs(paced_ms / (kSlowdown * plain_ms) - 1) < 0.05; };
+  for (int round = 0; round < 100 && (round < 5 || !agree()); ++round) {
+    r->pace.slowdown = 1;
+    plain_ms = std::min(plain_ms, subject.least_trace_ms(3));
+    r->pace.slowdown = kSlowdown;
+    double ms = subject.trace_ms();
+    if (ms >= paced_ms) continue;
+    paced_ms = ms;
+    rows_ms = 0;
+    for (std::uint64_t ns : r->row_ns) rows_ms += static_cast<double>(ns) * 1e-6;
+  }
+  MESSAGE("a frame of " << plain_ms << " ms took " << paced_ms << " ms at a " << kSlowdown << "th of the speed");
+  CHECK(agree());
+  CHECK(rows_ms == doctest::Approx(paced_ms).epsilon(0.05));
+}
+
+// Goal: the picture is the same at any pace. Method: whole frames by one and by two threads, bit by bit.
+TEST_CASE("pace_leaves_the_picture_as_it_is") {
+  Subject plain;
+  plain.trace_ms();
+  for (std::uint32_t threads : {1u, 2u}) {
+    Subject paced(threads);
+    paced.r->pace.slowdown = 3;
+    paced.trace_ms();
+    CHECK(same_picture(plain.picture(), paced.picture()));
+  }
+}
+
+// Goal: a fixed time per pixel is kept to within half a percent, whatever the CPU here does, by whole frames and by
+// progressive ones; what rows cost adds up to the frame. Method: the least of several, as before.
+TEST_CASE("pace_keeps_a_fixed_time_per_pixel") {
+  Subject subject;
+  Renderer* r = subject.r;
+  constexpr double kNsPerPixel = 8000;
+  double pixels = static_cast<double>(r->settings.width) * r->settings.height;
+  r->pace.ns_per_pixel = kNsPerPixel;
+  double wanted_ms = pixels * kNsPerPixel * 1e-6, least_ms = subject.trace_ms();
+  for (int frame = 0; frame < 20 && least_ms > wanted_ms * 1.005; ++frame)
+    least_ms = std::min(least_ms, subject.trace_ms());
+  CHECK(least_ms == doctest::Approx(wanted_ms).epsilon(0.005));
+  std::uint64_t sum = 0;
+  for (std::uint64_t ns : r->row_ns) sum += ns;
+  CHECK(static_cast<double>(sum) == doctest::Approx(pixels * kNsPerPixel));
+  std::vector<Span> spans(r->settings.width);
+  std::uint64_t least = ~std::uint64_t{0};
+  for (int round = 0; round < 3; ++round) {
+    Progressive progressive;
+    start_progressive(r, &progressive);
+    while (!advance_progressive(r, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive)) {
+    }
+    least = std::min(least, progressive.trace_ns);
+  }
+  CHECK(static_cast<double>(least) == doctest::Approx(pixels * kNsPerPixel).epsilon(0.02));
+}
+
+// Goal: who wants to leave does not wait for the emulated CPU. Method: a pace of hours, stopped from
+// another thread.
+TEST_CASE("pace_wait_ends_when_stopped") {
+  Subject subject;
+  subject.r->pace.ns_per_pixel = 1e9;
+  std::atomic<bool> stop{false};
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    stop = true;
+  });
+  std::uint64_t start = clock_ns();
+  Status status = render_frame(subject.r, 0, Aov::none, &stop);
+  other.join();
+  CHECK(status.ok);
+  CHECK(clock_ns() - start < 5'000'000'000);
+}
