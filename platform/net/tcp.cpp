@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "platform/link_slots.h"
 #include "platform/net/resolve.h"
 
 namespace platform {
@@ -34,37 +35,22 @@ struct TcpLink : Link {
   pollfd* files;  // of poll(), as many as slots
 };
 
-constexpr int kGenerations = 1 << 20;
 constexpr int kBacklog = 64;
 constexpr std::uint64_t kPollNsMax = 3'600'000'000'000;
 
 TcpLink* tcp(Link* link) { return static_cast<TcpLink*>(link); }
 
-Slot* slot_of(TcpLink* link, int stream) {
-  if (stream < 0) return nullptr;
-  int index = stream % kLinkStreamsMax;
-  if (index >= link->slot_count) return nullptr;
-  Slot* slot = &link->slots[index];
-  return slot->phase != Phase::unused && slot->generation == stream / kLinkStreamsMax ? slot : nullptr;
-}
-
-int stream_of(const TcpLink* link, const Slot* slot) {
-  return slot->generation * kLinkStreamsMax + static_cast<int>(slot - link->slots);
-}
+Slot* slot_of(TcpLink* link, int stream) { return slot_at(link->slots, link->slot_count, stream); }
+int stream_of(const TcpLink* link, const Slot* slot) { return stream_number(link->slots, slot); }
 
 Slot* take_slot(TcpLink* link, Error* error) {
-  for (int i = 0; i < link->slot_count; ++i)
-    if (link->slots[i].phase == Phase::unused) {
-      Slot* slot = &link->slots[i];
-      int generation = (slot->generation + 1) % kGenerations;
-      *slot = Slot();
-      slot->generation = generation;
-      slot->file = -1;
-      return slot;
-    }
-  snprintf(error->text, sizeof error->text, "all %d connections are in use: close one, or allow more",
-           link->slot_count);
-  return nullptr;
+  Slot* slot = free_slot(link->slots, link->slot_count, error);
+  if (!slot) return nullptr;
+  int generation = slot->generation;
+  *slot = Slot();
+  slot->generation = generation;
+  slot->file = -1;
+  return slot;
 }
 
 void close_file(Slot* slot) {
@@ -120,11 +106,6 @@ LinkResult fail(Slot* slot, int number, Error* error) {
   slot->phase = Phase::broken;
   slot->error_number = number;
   tell(slot->name, number, error);
-  return LinkResult::failed;
-}
-
-LinkResult stale(Error* error) {
-  snprintf(error->text, sizeof error->text, "this is no open connection: connect anew");
   return LinkResult::failed;
 }
 
@@ -201,7 +182,7 @@ int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Er
 // What became of a connection that is being made.
 LinkResult progress(TcpLink* link, Slot* slot, Error* error) {
   if (slot->phase == Phase::connected) return LinkResult::done;
-  if (slot->phase == Phase::listening) return stale(error);
+  if (slot->phase == Phase::listening) return stale_stream(error);
   if (slot->phase == Phase::broken) return fail(slot, slot->error_number, error);
   pollfd file = {slot->file, POLLOUT, 0};
   if (::poll(&file, 1, 0) > 0) {
@@ -227,7 +208,7 @@ LinkResult progress(TcpLink* link, Slot* slot, Error* error) {
 
 LinkResult connected(Link* base, int stream, Error* error) {
   Slot* slot = slot_of(tcp(base), stream);
-  return slot ? progress(tcp(base), slot, error) : stale(error);
+  return slot ? progress(tcp(base), slot, error) : stale_stream(error);
 }
 
 int listen(Link* base, const LinkAddress& address, Error* error) {
@@ -257,7 +238,7 @@ int listen(Link* base, const LinkAddress& address, Error* error) {
 LinkResult accept(Link* base, int listener, int* stream, Error* error) {
   TcpLink* link = tcp(base);
   Slot* from = slot_of(link, listener);
-  if (!from || from->phase != Phase::listening) return stale(error);
+  if (!from || from->phase != Phase::listening) return stale_stream(error);
   SocketAddress at = {};
   socklen_t bytes = sizeof at;
   int file = ::accept(from->file, &at.any, &bytes);
@@ -289,7 +270,7 @@ LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max,
                 Error* error) {
   *byte_count = 0;
   Slot* slot = slot_of(tcp(base), stream);
-  if (!slot) return stale(error);
+  if (!slot) return stale_stream(error);
   LinkResult state = progress(tcp(base), slot, error);
   if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
   ssize_t n = recv(slot->file, bytes, byte_count_max, 0);
@@ -303,7 +284,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
                  Error* error) {
   *byte_count = 0;
   Slot* slot = slot_of(tcp(base), stream);
-  if (!slot) return stale(error);
+  if (!slot) return stale_stream(error);
   LinkResult state = progress(tcp(base), slot, error);
   if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
   ssize_t n = send(slot->file, bytes, byte_count_max, MSG_NOSIGNAL);

@@ -8,21 +8,17 @@ namespace null_link {
 namespace {
 
 Slot* take_slot(NullLink* link, Phase phase, Error* error) {
-  for (int i = 0; i < link->slot_count; ++i)
-    if (link->slots[i].phase == Phase::unused) {
-      Slot *slot = &link->slots[i], fresh = {};
-      fresh.generation = (slot->generation + 1) % kGenerations;
-      fresh.in = slot->in;
-      *slot = fresh;
-      slot->phase = phase;
-      slot->other = slot->listener = -1;
-      slot->news_ns = slot->deadline_ns = kNever;
-      reset_pipe(&slot->in);
-      return slot;
-    }
-  std::snprintf(error->text, sizeof error->text, "all %d connections are in use: close one, or allow more",
-                link->slot_count);
-  return nullptr;
+  Slot* slot = free_slot(link->slots, link->slot_count, error);
+  if (!slot) return nullptr;
+  Slot fresh = {};
+  fresh.generation = slot->generation;
+  fresh.in = slot->in;
+  *slot = fresh;
+  slot->phase = phase;
+  slot->other = slot->listener = -1;
+  slot->news_ns = slot->deadline_ns = kNever;
+  reset_pipe(&slot->in);
+  return slot;
 }
 
 int port_of(const LinkAddress& address) {
@@ -121,7 +117,7 @@ int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Er
 
 LinkResult progress(NullLink* link, Slot* slot, Error* error) {
   if (slot->phase == Phase::connected) return LinkResult::done;
-  if (slot->phase == Phase::listening) return stale(error);
+  if (slot->phase == Phase::listening) return stale_stream(error);
   if (slot->phase == Phase::broken) return fail(slot, slot->broken_text, error);
   if (slot->news_ns <= link->clock_ns && slot->news_ns <= slot->deadline_ns) {
     if (slot->refused) return fail(slot, kRefusedText, error);
@@ -133,7 +129,7 @@ LinkResult progress(NullLink* link, Slot* slot, Error* error) {
 
 LinkResult connected(Link* base, int stream, Error* error) {
   Slot* slot = slot_of(null(base), stream);
-  return slot ? progress(null(base), slot, error) : stale(error);
+  return slot ? progress(null(base), slot, error) : stale_stream(error);
 }
 
 Slot* waiting_at(NullLink* link, const Slot* listener) {
@@ -149,7 +145,7 @@ Slot* waiting_at(NullLink* link, const Slot* listener) {
 LinkResult accept(Link* base, int listener, int* stream, Error* error) {
   NullLink* link = null(base);
   Slot* from = slot_of(link, listener);
-  if (!from || from->phase != Phase::listening) return stale(error);
+  if (!from || from->phase != Phase::listening) return stale_stream(error);
   Slot* slot = waiting_at(link, from);
   if (!slot || slot->news_ns > link->clock_ns) return LinkResult::later;
   slot->phase = Phase::connected;

@@ -19,7 +19,7 @@ LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max,
   *byte_count = 0;
   NullLink* link = null(base);
   Slot* slot = slot_of(link, stream);
-  if (!slot) return stale(error);
+  if (!slot) return stale_stream(error);
   LinkResult state = progress(link, slot, error);
   if (state == LinkResult::failed) return state;
   if (state == LinkResult::later || byte_count_max == 0) return LinkResult::later;
@@ -52,13 +52,10 @@ const NullFault* fault_at(NullLink* link, Slot* to, std::size_t* byte_count) {
 // Sends one piece on its way: the line is taken for its bytes, then latency and jitter pass.
 void send_piece(NullLink* link, Slot* to, const unsigned char* bytes, std::size_t byte_count, unsigned char flip) {
   const NullLinkSettings& settings = link->settings;
-  NullPipe* pipe = &to->in;
-  std::uint64_t* line_free_ns = pipe->trickles ? &pipe->trickle_free_ns : &link->line_free_ns[to->device];
-  if (*line_free_ns < link->clock_ns) *line_free_ns = link->clock_ns;
-  std::uint64_t rate = pipe->trickles ? 1 : settings.bytes_per_second;
-  if (rate > 0) *line_free_ns += (byte_count * kSecondNs + rate - 1) / rate;
-  std::uint64_t arrival_ns = *line_free_ns + settings.latency_ns;
-  if (settings.jitter_ns > 0) arrival_ns += random_u64(&link->random) % (settings.jitter_ns + 1);
+  LinkPipe* pipe = &to->in;
+  std::uint64_t* free_ns = pipe->trickles ? &pipe->trickle_free_ns : &link->line_free_ns[to->device];
+  LinkLine line = {pipe->trickles ? 1 : settings.bytes_per_second, settings.latency_ns, settings.jitter_ns};
+  std::uint64_t arrival_ns = line_arrival_ns(line, byte_count, link->clock_ns, free_ns, &link->random);
   push_piece(pipe, bytes, byte_count, flip, pipe->silent ? kNever : arrival_ns);
 }
 
@@ -101,7 +98,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   *byte_count = 0;
   NullLink* link = null(base);
   Slot* slot = slot_of(link, stream);
-  if (!slot) return stale(error);
+  if (!slot) return stale_stream(error);
   LinkResult state = progress(link, slot, error);
   if (state != LinkResult::done) return state;
   if (slot->in.reset_ns <= link->clock_ns) return fail(slot, kBrokenText, error);
@@ -194,8 +191,8 @@ const LinkBackend kNullLink = {"null",      need, open,  resolve, connect, conne
                                stream_name, read, write, poll,    now_ns,  close_stream, close_all};
 
 std::size_t null_link_need(int stream_count_max, const NullLinkSettings& settings) {
-  std::size_t pipe_bytes = kPiecesMax * sizeof(NullPiece) + (settings.pipe_bytes + 15) / 16 * 16;
-  return sizeof(NullLink) + static_cast<std::size_t>(stream_count_max) * (sizeof(Slot) + pipe_bytes);
+  return sizeof(NullLink) +
+         static_cast<std::size_t>(stream_count_max) * (sizeof(Slot) + pipe_need(settings.pipe_bytes));
 }
 
 Link* null_link_open(const LinkOptions& options, const NullLinkSettings& settings, Error* error) {
@@ -216,13 +213,8 @@ Link* null_link_open(const LinkOptions& options, const NullLinkSettings& setting
   link->slot_count = count;
   link->port_last = 49151;
   link->slots = reinterpret_cast<Slot*>(link + 1);
-  NullPiece* pieces = reinterpret_cast<NullPiece*>(link->slots + count);
-  unsigned char* bytes = reinterpret_cast<unsigned char*>(pieces + count * kPiecesMax);
-  for (int i = 0; i < count; ++i) {
-    link->slots[i].in.pieces = pieces + i * kPiecesMax;
-    link->slots[i].in.bytes = bytes + static_cast<std::size_t>(i) * settings.pipe_bytes;
-    link->slots[i].in.capacity = settings.pipe_bytes;
-  }
+  unsigned char* memory = reinterpret_cast<unsigned char*>(link->slots + count);
+  for (int i = 0; i < count; ++i) place_pipe(&link->slots[i].in, settings.pipe_bytes, &memory);
   return link;
 }
 

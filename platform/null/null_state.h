@@ -3,8 +3,9 @@
 #pragma once
 #include <cstdio>
 
+#include "platform/link_pipe.h"
+#include "platform/link_slots.h"
 #include "platform/null/null_link.h"
-#include "platform/null/null_pipe.h"
 
 namespace platform {
 namespace null_link {
@@ -22,7 +23,7 @@ struct Slot {
   bool refused;           // the outcome, once known
   std::uint64_t news_ns;  // when the outcome of connecting is known, or a waiting peer is seen
   std::uint64_t deadline_ns;
-  NullPipe in;
+  LinkPipe in;
   const char* broken_text;
   char name[40];
 };
@@ -40,29 +41,16 @@ struct NullLink : Link {
 // The clock starts where setting it back cannot make it negative: at most kNullFaultsMax times ten seconds a
 // connection.
 constexpr std::uint64_t kClockStartNs = std::uint64_t{1} << 62;
-constexpr std::uint64_t kSecondNs = 1'000'000'000;
-constexpr int kGenerations = 1 << 20;
-
-std::uint64_t random_u64(std::uint64_t* state);
 
 inline NullLink* null(Link* link) { return static_cast<NullLink*>(link); }
 
 inline Slot* slot_of(NullLink* link, int stream) {
-  if (stream < 0 || stream % kLinkStreamsMax >= link->slot_count) return nullptr;
-  Slot* slot = &link->slots[stream % kLinkStreamsMax];
-  bool known = slot->phase != Phase::unused && slot->phase != Phase::waiting;
-  return known && slot->generation == stream / kLinkStreamsMax ? slot : nullptr;
+  Slot* slot = slot_at(link->slots, link->slot_count, stream);
+  return slot && slot->phase != Phase::waiting ? slot : nullptr;
 }
 
 inline int index_of(const NullLink* link, const Slot* slot) { return static_cast<int>(slot - link->slots); }
-inline int stream_of(const NullLink* link, const Slot* slot) {
-  return slot->generation * kLinkStreamsMax + index_of(link, slot);
-}
-
-inline LinkResult stale(Error* error) {
-  std::snprintf(error->text, sizeof error->text, "this is no open connection: connect anew");
-  return LinkResult::failed;
-}
+inline int stream_of(const NullLink* link, const Slot* slot) { return stream_number(link->slots, slot); }
 
 inline LinkResult fail(Slot* slot, const char* text, Error* error) {
   slot->phase = Phase::broken;

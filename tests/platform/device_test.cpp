@@ -12,7 +12,7 @@ using namespace platform;
 TEST_CASE("device_list_has_plausible_and_distinct_entries") {
   std::set<std::string> names;
   for (const Device& device : kDevices) {
-    CAPTURE(device.name);
+    CAPTURE(std::string(device.name));
     names.insert(device.name);
     CHECK(find_device(device.name) == &device);
     CHECK(std::strlen(device.description) > 10);
@@ -26,11 +26,17 @@ TEST_CASE("device_list_has_plausible_and_distinct_entries") {
     CHECK((!std::strcmp(device.channel_order, "rgb") || !std::strcmp(device.channel_order, "bgr")));
     CHECK((device.rotation >= 0 && device.rotation < 360 && device.rotation % 90 == 0));
     CHECK((device.memory_bytes >= mebibytes(12) && device.memory_bytes <= mebibytes(512)));
+    CHECK((device.core_count >= 0 && device.core_count <= 8));
+    CHECK((device.slowdown >= 1 && device.slowdown < 10'000));
+    CHECK((device.link_bytes_per_second >= 100'000 && device.link_bytes_per_second <= 125'000'000));
+    CHECK((device.link_latency_ns >= 50'000 && device.link_latency_ns <= 50'000'000));
+    CHECK(device.link_jitter_ns <= 2 * device.link_latency_ns);
     std::set<int> keys;
     for (int i = 0; device.keys && i < 12; ++i) keys.insert(device.keys[i]);
     CHECK((!device.keys || keys.size() == 12));
   }
   CHECK(names.size() == kDeviceCount);
+  CHECK(find_device("desktop")->slowdown <= 1);  // what the others are compared with
   CHECK(find_device("miyoo-") == nullptr);
   CHECK(find_device("miyoo-mini-plus") == nullptr);
   CHECK(find_device("") == nullptr);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "platform/link.h"
+#include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
 #include "platform/null/null_link.h"
 
@@ -21,32 +22,58 @@ inline std::uint64_t steady_ns() {
   return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 }
 
+// Shaped links over the other two, as fast as the tests that ask the same of all links have time for.
+inline const LinkBackend kShapedTcp = shaped_link_backend(kTcpLink);
+inline const LinkBackend kShapedNull = shaped_link_backend(kNullLink);
+inline ShapedLinkSettings fast_radio() {
+  ShapedLinkSettings settings;
+  settings.line = {50'000'000, 100'000, 100'000};
+  return settings;
+}
+
 struct LinkRig {
-  std::vector<std::max_align_t> memory;
+  std::vector<std::max_align_t> memory, radio_memory;
   const LinkBackend* net = nullptr;
-  Link* link = nullptr;
+  Link *link = nullptr, *inner = nullptr;  // inner: below a shaped one
   int listener = -1;
   LinkAddress address;  // of the listener
   Error error;
 
   explicit LinkRig(const LinkBackend& backend, int stream_count_max = 8,
-                   const NullLinkSettings& settings = NullLinkSettings()) {
-    bool simulated = &backend == &kNullLink;
+                   const NullLinkSettings& settings = NullLinkSettings(),
+                   const ShapedLinkSettings& radio = fast_radio()) {
+    bool shaped = &backend == &kShapedTcp || &backend == &kShapedNull;
+    const LinkBackend& below = &backend == &kShapedTcp ? kTcpLink : &backend == &kShapedNull ? kNullLink : backend;
+    bool simulated = &below == &kNullLink;
     LinkOptions options;
-    options.memory_bytes = simulated ? null_link_need(stream_count_max, settings) : backend.need(stream_count_max);
+    options.memory_bytes = simulated ? null_link_need(stream_count_max, settings) : below.need(stream_count_max);
     memory.resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
     options.memory = memory.data();
     options.stream_count_max = stream_count_max;
     options.now_ns = steady_ns;
     net = &backend;
-    link = simulated ? null_link_open(options, settings, &error) : backend.open(options, &error);
+    link = simulated ? null_link_open(options, settings, &error) : below.open(options, &error);
+    REQUIRE_MESSAGE(link != nullptr, error.text);
+    if (shaped) open_radio(stream_count_max, radio);
     REQUIRE_MESSAGE(link != nullptr, error.text);
     REQUIRE(net->resolve(":0", &address, &error));
     listener = net->listen(link, address, &error);
     REQUIRE_MESSAGE(listener >= 0, error.text);
     REQUIRE(net->resolve(net->stream_name(link, listener), &address, &error));
   }
-  ~LinkRig() { net->close_all(link); }
+  void open_radio(int stream_count_max, const ShapedLinkSettings& radio) {
+    LinkOptions options;
+    options.memory_bytes = shaped_link_need(stream_count_max, radio);
+    radio_memory.resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
+    options.memory = radio_memory.data();
+    options.stream_count_max = stream_count_max;
+    inner = link;
+    link = shaped_link_open(inner, options, radio, &error);
+  }
+  ~LinkRig() {
+    net->close_all(link);
+    if (inner) inner->backend->close_all(inner);
+  }
   LinkRig(const LinkRig&) = delete;
   LinkRig& operator=(const LinkRig&) = delete;
 

@@ -1,0 +1,44 @@
+// How the backends number their streams: a place in an array of slots, and the how manieth stream lives there, so that
+// a stale one is known. A slot has a `phase`, which is `unused` where the place is free, and a `generation`.
+#pragma once
+#include <cstdio>
+
+#include "platform/link.h"
+
+namespace platform {
+
+constexpr int kLinkGenerations = 1 << 20;
+
+template <typename Slot>
+int stream_number(const Slot* slots, const Slot* slot) {
+  return slot->generation * kLinkStreamsMax + static_cast<int>(slot - slots);
+}
+
+// Null: stale, or never given out.
+template <typename Slot>
+Slot* slot_at(Slot* slots, int slot_count, int stream) {
+  if (stream < 0 || stream % kLinkStreamsMax >= slot_count) return nullptr;
+  Slot* slot = &slots[stream % kLinkStreamsMax];
+  bool used = slot->phase != decltype(slot->phase)::unused;
+  return used && slot->generation == stream / kLinkStreamsMax ? slot : nullptr;
+}
+
+// A free place, its generation counted on; null: `error` says that there is none.
+template <typename Slot>
+Slot* free_slot(Slot* slots, int slot_count, Error* error) {
+  for (int i = 0; i < slot_count; ++i)
+    if (slots[i].phase == decltype(slots[i].phase)::unused) {
+      slots[i].generation = (slots[i].generation + 1) % kLinkGenerations;
+      return &slots[i];
+    }
+  std::snprintf(error->text, sizeof error->text, "all %d connections are in use: close one, or allow more", slot_count);
+  return nullptr;
+}
+
+// What a call with a stale stream says.
+inline LinkResult stale_stream(Error* error) {
+  std::snprintf(error->text, sizeof error->text, "this is no open connection: connect anew");
+  return LinkResult::failed;
+}
+
+}  // namespace platform
