@@ -18,6 +18,10 @@ struct MappedFile {
 bool map_file(const char* path, MappedFile* file, FileError* error);
 void unmap_file(MappedFile* file);
 
+// Calls found() with the name of everything in a folder but what begins with a dot, in no order. At the start only: the
+// system takes memory for it.
+bool list_folder(const char* path, void (*found)(void* context, const char* name), void* context, FileError* error);
+
 // Changes whenever the file's content was replaced; 0 where there is no such file.
 std::uint64_t file_stamp(const char* path);
 

@@ -1,5 +1,6 @@
 #include "platform/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -52,6 +53,19 @@ bool map_file(const char* path, MappedFile* file, FileError* error) {
 void unmap_file(MappedFile* file) {
   if (file->bytes) munmap(const_cast<std::uint8_t*>(file->bytes), file->byte_count);
   *file = MappedFile();
+}
+
+bool list_folder(const char* path, void (*found)(void* context, const char* name), void* context, FileError* error) {
+  DIR* folder = opendir(path);
+  if (!folder) return fail(error, "cannot be opened as a folder", errno);
+  errno = 0;
+  while (const dirent* entry = readdir(folder)) {
+    if (entry->d_name[0] != '.') found(context, entry->d_name);
+    errno = 0;
+  }
+  bool ok = errno == 0 || fail(error, "cannot be read", errno);
+  closedir(folder);
+  return ok;
 }
 
 std::uint64_t file_stamp(const char* path) {

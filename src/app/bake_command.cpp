@@ -1,39 +1,20 @@
 // pocketray bake: any format → one .pray file that a device maps as it is, accelerator included.
 #include <vector>
 
-#include "accel/accel_list.h"
 #include "app/commands.h"
+#include "app/heap_scene.h"
 #include "app/options.h"
 #include "app/report.h"
-#include "app/source.h"
 #include "platform/file.h"
 #include "scene/baked.h"
-#include "scene/builtin/builtin.h"
 
 namespace pocketray {
 namespace {
 
 struct BakeOptions {
   std::string input, output, json, accel = kBvhAccel.name;
-  std::uint32_t texture_side_max = 512;
-  float crease_angle = 40;
+  ModelOptions model;
 };
-
-// Builds the accelerator on the heap: baking is desktop work.
-std::vector<std::uint64_t> build_accel(const AccelInfo& info, Scene* scene) {
-  std::size_t keep_bytes = info.need(scene->triangles.count) + kArenaAlignment,
-              scratch_bytes = info.scratch_need(scene->triangles.count) + kArenaAlignment;
-  std::vector<std::uint64_t> memory((keep_bytes + scratch_bytes) / 8 + 2);
-  auto* bytes = reinterpret_cast<std::uint8_t*>(memory.data());
-  Arena keep = make_arena("accelerator", bytes, keep_bytes),
-        scratch = make_arena("scratch", bytes + keep_bytes, scratch_bytes);
-  Accel accel;
-  accel.positions = scene->positions;
-  accel.triangles = scene->triangles;
-  info.build(&accel, &keep, &scratch);
-  scene->accel = accel.data;
-  return memory;
-}
 
 Status write_scene(const std::string& path, const Scene& scene, std::size_t* byte_count) {
   std::vector<std::uint8_t> bytes(baked_size(scene));
@@ -48,44 +29,27 @@ Status write_scene(const std::string& path, const Scene& scene, std::size_t* byt
 }
 
 Status bake(const BakeOptions& o) {
-  Scene scene;
-  std::vector<std::uint8_t> memory;
-  std::string warning;
   std::uint64_t start = clock_ns();
-#ifdef POCKETRAY_HAVE_IMPORT
-  ImportedScene imported;
-#endif
-  if (const BuiltinScene* builtin = find_builtin(o.input.c_str())) {
-    memory.resize(builtin->need() + kArenaAlignment);
-    Arena arena = make_arena("scene", memory.data(), memory.size());
-    builtin->build(&arena, &scene);
-  } else {
-#ifdef POCKETRAY_HAVE_IMPORT
-    ImportOptions import_options;
-    import_options.texture_side_max = o.texture_side_max;
-    import_options.crease_angle = o.crease_angle;
-    RETURN_IF_ERROR(import_model(o.input, import_options, &imported));
-    scene = imported.scene;
-    warning = imported.warning;
-#else
-    return failure("%s cannot be read: this program was built without the importers; bake on a desktop",
-                   o.input.c_str());
-#endif
-  }
+  HeapScene heap;
+  RETURN_IF_ERROR(read_heap_scene(o.input, o.model, &heap));
+  Scene& scene = heap.scene;
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
-  std::vector<std::uint64_t> accel_memory = build_accel(*find_accel(o.accel), &scene);
+  void* accel_block = build_heap_accel(*find_accel(o.accel), scene, &scene.accel);
+  if (!accel_block) return failure("the accelerator needs more memory than can be had: bake a smaller model");
   double build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   std::size_t byte_count = 0;
-  RETURN_IF_ERROR(write_scene(o.output, scene, &byte_count));
-  if (!warning.empty()) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
+  Status status = write_scene(o.output, scene, &byte_count);
+  std::size_t accel_bytes = scene.accel.bytes();
+  give_block_back(accel_block);
+  RETURN_IF_ERROR(status);
+  if (!heap.warning.empty()) std::fprintf(stderr, "pocketray: %s\n", heap.warning.c_str());
   if (o.json != "-" && o.output != "-")
     std::printf(
         "%s: %s triangles, %u materials, %u textures, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f "
         "ms\n",
         o.output.c_str(), grouped(scene.triangles.count).c_str(), scene.materials.count, scene.textures.count,
-        static_cast<double>(byte_count) / (1 << 20), static_cast<double>(scene.accel.bytes()) / (1 << 20), read_ms,
-        build_ms);
+        static_cast<double>(byte_count) / (1 << 20), static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);
   if (o.json.empty()) return success();
   return write_json(o.json, {{"output", o.output},
                              {"triangles", scene.triangles.count},
@@ -93,10 +57,10 @@ Status bake(const BakeOptions& o) {
                              {"textures", scene.textures.count},
                              {"bytes", byte_count},
                              {"accelerator", o.accel},
-                             {"accel_bytes", scene.accel.bytes()},
+                             {"accel_bytes", accel_bytes},
                              {"read_ms", read_ms},
                              {"build_ms", build_ms},
-                             {"warning", warning}});
+                             {"warning", heap.warning}});
 }
 
 }  // namespace
@@ -106,11 +70,13 @@ void add_bake_command(CLI::App* program, int* exit_status) {
   CLI::App* command = program->add_subcommand("bake", "turn a model into one .pray file that a device maps as it is");
   command->add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene")->required();
   command->add_option("-o,--output", options->output, "the .pray file")->required();
-  command->add_option("--texture-max", options->texture_side_max, "halve textures until no side is longer, in texels")
+  command
+      ->add_option("--texture-max", options->model.texture_side_max,
+                   "halve textures until no side is longer, in texels")
       ->capture_default_str()
       ->check(CLI::Range(1u, kTextureSideMax));
   command
-      ->add_option("--crease-angle", options->crease_angle,
+      ->add_option("--crease-angle", options->model.crease_angle,
                    "degrees: models that come without normals are smooth below it (glTF: flat)")
       ->capture_default_str()
       ->check(CLI::Range(0.0f, 180.0f));

@@ -12,5 +12,8 @@ void add_view_command(CLI::App* program, int* exit_status);
 void add_bake_command(CLI::App* program, int* exit_status);
 void add_plan_command(CLI::App* program, int* exit_status);
 void add_bench_command(CLI::App* program, int* exit_status);
+#ifdef POCKETRAY_HAVE_NETWORK
+void add_serve_command(CLI::App* program, int* exit_status);
+#endif
 
 }  // namespace pocketray

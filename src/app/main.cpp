@@ -18,6 +18,9 @@ int main(int argument_count, char** arguments) {
   add_bake_command(&program, &exit_status);
   add_plan_command(&program, &exit_status);
   add_bench_command(&program, &exit_status);
+#ifdef POCKETRAY_HAVE_NETWORK
+  add_serve_command(&program, &exit_status);
+#endif
   catch_interrupts();
   try {
     program.parse(argument_count, arguments);

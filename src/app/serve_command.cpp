@@ -1,0 +1,157 @@
+// pocketray serve: renders for devices that share their frames with it.
+#include <cinttypes>
+#include <thread>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/options.h"
+#include "app/report.h"
+#include "app/server.h"
+#include "base/isa.h"
+#include "base/seal.h"
+#include "platform/net/tcp.h"
+
+namespace pocketray {
+namespace {
+
+struct ServeOptions {
+  std::string listen = "127.0.0.1:7411", scenes, memory = "64M", scene_memory = "1G", isa;
+  int clients = 8;
+  std::uint32_t threads = 0, image_side_max = 2048;
+  double idle_seconds = 300;
+  bool insecure_lan = false;
+};
+
+struct Serving {
+  SceneStore store;
+  std::vector<std::max_align_t> link_memory;
+  platform::Link* link = nullptr;
+  Server* server = nullptr;
+  Serving() = default;
+  Serving(const Serving&) = delete;
+  Serving& operator=(const Serving&) = delete;
+  ~Serving() {
+    unseal_memory();
+    close_server(server);
+    if (link) link->backend->close_all(link);
+  }
+};
+
+void print_line(void*, const char* line) {
+  std::printf("%s\n", line);
+  std::fflush(stdout);
+}
+
+Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
+  platform::Error error;
+  if (!platform::kTcpLink.resolve(o.listen.c_str(), address, &error)) return failure("--listen: %s", error.text);
+  if (address->loopback || o.insecure_lan) return success();
+  return failure(
+      "--listen %s is open to other machines, and this server asks nobody who they are: whoever reaches the port can "
+      "use "
+      "its CPU and see its scenes. Listen at 127.0.0.1:7411 and come through an SSH tunnel, or trust the network with "
+      "--insecure-lan",
+      o.listen.c_str());
+}
+
+Status read_options(const ServeOptions& o, ServerOptions* options) {
+  RETURN_IF_ERROR(parse_bytes(o.memory, &options->client_memory_bytes));
+  unsigned cores = std::thread::hardware_concurrency();
+  options->thread_count = o.threads ? o.threads : cores < 1 ? 1 : cores > kThreadCountMax ? kThreadCountMax : cores;
+  options->client_count_max = o.clients;
+  options->image_side_max = o.image_side_max;
+  options->idle_timeout_ns = static_cast<std::uint64_t>(o.idle_seconds * 1e9);
+  options->log = print_line;
+  Isa isa;
+  RETURN_IF_ERROR(parse_isa(o.isa, &isa));
+  select_isa(isa);
+  return success();
+}
+
+Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
+  platform::LinkAddress address;
+  RETURN_IF_ERROR(find_address(o, &address));
+  RETURN_IF_ERROR(read_options(o, options));
+  SceneStoreOptions store_options;
+  store_options.folder = o.scenes;
+  std::size_t scene_bytes;
+  RETURN_IF_ERROR(parse_bytes(o.scene_memory, &scene_bytes));
+  store_options.bytes_max = scene_bytes;
+  RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
+  for (const std::string& warning : serving->store.warnings) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
+
+  platform::LinkOptions link_options;
+  link_options.stream_count_max = server_stream_count(*options);
+  link_options.memory_bytes = platform::kTcpLink.need(link_options.stream_count_max);
+  serving->link_memory.resize(link_options.memory_bytes / sizeof(std::max_align_t) + 1);
+  link_options.memory = serving->link_memory.data();
+  link_options.now_ns = clock_ns;
+  platform::Error error;
+  serving->link = platform::kTcpLink.open(link_options, &error);
+  if (!serving->link) return failure("%s", error.text);
+  return open_server(*options, serving->store, serving->link, address, &serving->server);
+}
+
+void print_start(const Serving& serving, const ServerOptions& options) {
+  for (const StoredScene& scene : serving.store.scenes)
+    std::printf("  %-24s %9s triangles %8.1f MiB\n", scene.name, grouped(scene.scene.triangles.count).c_str(),
+                static_cast<double>(scene.byte_count) / (1 << 20));
+  std::printf("listening at %s: %zu scenes, %u thread%s, %d clients of %.0f MiB each; Ctrl-C ends it\n",
+              server_address(*serving.server), serving.store.scenes.size(), options.thread_count,
+              options.thread_count == 1 ? "" : "s", options.client_count_max,
+              static_cast<double>(options.client_memory_bytes) / (1 << 20));
+  std::fflush(stdout);
+}
+
+int run(const ServeOptions& o) {
+  constexpr std::uint64_t kStepNs = 100'000'000;  // till an interrupt is noticed
+  Serving serving;
+  ServerOptions options;
+  Status status = start(o, &serving, &options);
+  if (!status.ok) return report(status);
+  print_start(serving, options);
+  seal_memory();
+  while (!interrupted) step_server(serving.server, kStepNs);
+  unseal_memory();
+  ServerTotals totals = server_totals(*serving.server);
+  std::printf("%" PRIu64 " clients, %s frames, %s rows, %.1f MiB sent\n", totals.client_count,
+              grouped(totals.frame_count).c_str(), grouped(totals.row_count).c_str(),
+              static_cast<double>(totals.byte_count) / (1 << 20));
+  return kExitInterrupted;
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App* program, int* exit_status) {
+  auto o = std::make_shared<ServeOptions>();
+  CLI::App* command = program->add_subcommand("serve", "render for devices that share their frames with this machine");
+  command
+      ->add_option("--listen", o->listen,
+                   "HOST:PORT to wait at, port 0 for any that is free; one that other machines reach needs "
+                   "--insecure-lan")
+      ->capture_default_str();
+  command->add_flag("--insecure-lan", o->insecure_lan,
+                    "listen also where other machines reach it; nobody is asked who they are");
+  command->add_option("--scenes", o->scenes,
+                      "a folder of scenes to offer beside the built-in ones: .pray files and, on a desktop, models");
+  command->add_option("--threads", o->threads, "threads that trace, shared by all clients; 0: one per core")
+      ->capture_default_str();
+  command->add_option("--clients", o->clients, "most clients at once; one more is told that the server is busy")
+      ->check(CLI::Range(1, kServerClientsMax))
+      ->capture_default_str();
+  command->add_option("--memory", o->memory, "block of each client: its picture and what rendering takes, as 64M")
+      ->capture_default_str();
+  command->add_option("--scene-memory", o->scene_memory, "most that all scenes may take together, as 1G")
+      ->capture_default_str();
+  command->add_option("--size-max", o->image_side_max, "longest side of a picture in pixels")
+      ->check(CLI::Range(1u, kImageSideMax))
+      ->capture_default_str();
+  command->add_option("--idle", o->idle_seconds, "seconds after which a silent client is closed")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
+      ->default_str("the best of this CPU");
+  command->callback([=] { *exit_status = run(*o); });
+}
+
+}  // namespace pocketray

@@ -1,0 +1,181 @@
+#include <cstring>
+
+#include "app/server_state.h"
+
+namespace pocketray {
+namespace {
+
+constexpr int kMessagesAtOnce = 32;  // of one client, before the others have their turn
+
+void send_scene_entry(Session* session, const SceneStore& store, const ContentHash& hash, const StoredScene* scene) {
+  Message reply;
+  reply.type = MessageType::scene_entry;
+  SceneEntry* entry = &reply.scene_entry;
+  entry->hash = hash;
+  entry->count = static_cast<std::uint16_t>(store.scenes.size());
+  if (scene) {
+    entry->hash = scene->hash;
+    entry->byte_count = scene->byte_count;
+    entry->index = static_cast<std::uint16_t>(scene - store.scenes.data());
+    std::memcpy(entry->name, scene->name, sizeof entry->name);
+  }
+  send_message(session, reply);
+}
+
+void send_scene_piece(Session* session, const SceneFetch& fetch, const StoredScene* scene) {
+  if (!scene) return send_error(session, WireError::unknown_scene, 0);
+  Message reply;
+  reply.type = MessageType::scene_piece;
+  reply.scene_piece.hash = fetch.hash;
+  reply.scene_piece.offset = fetch.offset;
+  std::uint64_t left = fetch.offset < scene->byte_count ? scene->byte_count - fetch.offset : 0;
+  std::uint32_t count = left < fetch.byte_count ? static_cast<std::uint32_t>(left) : fetch.byte_count;
+  reply.scene_piece.bytes = {count ? scene->bytes + fetch.offset : nullptr, count};
+  send_message(session, reply);
+}
+
+void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
+  Message reply;
+  reply.type = MessageType::pong;
+  reply.pong.id = ping.id;
+  reply.pong.pixel_ps = pixel_ps;
+  reply.pong.bytes.count = ping.reply_bytes;
+  std::uint32_t byte_count = message_bytes(reply);
+  std::uint8_t* at = reserve_output(session, byte_count);
+  std::memset(at, 0, byte_count);
+  reply.pong.bytes.data = at + byte_count - ping.reply_bytes;
+  send_message(session, reply);
+}
+
+// The request takes the place of what is left of the one before, whatever becomes of it.
+void take_request(Server* server, Session* s, const FrameRequest& request) {
+  const Settings& settings = request.settings;
+  bool is_late = request.frame <= s->frame_last;
+  if (is_late) return refuse(server, s, WireError::bad_request, request.frame, "its number has been used");
+  drop_job(s);
+  ++s->job_number;
+  s->frame_last = request.frame;
+  if (settings.width != s->shape.width || settings.height != s->shape.height || request.format != s->shape.format) {
+    s->shape = {settings.width, settings.height, 1, request.format};
+    s->encoder = nullptr;  // both ends begin anew
+  }
+  if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
+    return refuse(server, s, WireError::too_large, request.frame, "the picture is larger than this server allows");
+  const StoredScene* scene = find_scene(*server->store, request.scene);
+  if (!scene) return refuse(server, s, WireError::unknown_scene, request.frame, "its scene is not known here");
+  s->job = FrameJob();
+  s->job.scene = scene;
+  s->job.request = request;
+  s->job.traced_begin = s->job.sent_begin = request.row_end;
+  if (s->used_ns < server->used_floor_ns) s->used_ns = server->used_floor_ns;
+}
+
+bool take_hello(Server* server, Session* session, const Message& message) {
+  constexpr WireError kMalformed = WireError::malformed, kWrongVersion = WireError::wrong_version;
+  if (message.type != MessageType::hello) {
+    leave(server, session, &kMalformed, "it did not begin with a hello");
+    return false;
+  }
+  if (message.hello.version != kWireVersion) {
+    leave(server, session, &kWrongVersion, "it speaks another version of the protocol");
+    return false;
+  }
+  session->phase = SessionPhase::serving;
+  session->message_bytes_max = message.hello.message_bytes_max;
+  ++server->totals.client_count;
+  log_line(&server->log, now_ns(server), "%s came", session->name);
+  return true;
+}
+
+// False: the session is at its end.
+bool take_message(Server* server, Session* session, const Message& message) {
+  constexpr WireError kMalformed = WireError::malformed;
+  const SceneStore& store = *server->store;
+  if (session->phase == SessionPhase::greeting) return take_hello(server, session, message);
+  switch (message.type) {
+    case MessageType::scene_list: {
+      std::size_t index = message.scene_list.index;
+      send_scene_entry(session, store, ContentHash(), index < store.scenes.size() ? &store.scenes[index] : nullptr);
+      return true;
+    }
+    case MessageType::scene_query:
+      send_scene_entry(session, store, message.scene_query.hash, find_scene(store, message.scene_query.hash));
+      return true;
+    case MessageType::scene_fetch:
+      send_scene_piece(session, message.scene_fetch, find_scene(store, message.scene_fetch.hash));
+      return true;
+    case MessageType::frame_request:
+      take_request(server, session, message.frame_request);
+      return true;
+    case MessageType::cancel:
+      if (has_job(*session) && session->job.request.frame <= message.cancel.frame) drop_job(session);
+      return true;
+    case MessageType::ping:
+      send_pong(session, message.ping, session->pixel_ps ? session->pixel_ps : server->pixel_ps);
+      return true;
+    case MessageType::error:
+      end_session(server, session, message.error.code == WireError::closing ? "it ended" : "it reported an error");
+      return false;
+    case MessageType::hello:
+    case MessageType::scene_entry:
+    case MessageType::scene_piece:
+    case MessageType::row_chunk:
+    case MessageType::pong:
+      break;
+  }
+  leave(server, session, &kMalformed, "it sent what only servers send");
+  return false;
+}
+
+// Decodes what is there, as long as every answer has room. False: the session is at its end.
+bool take_messages(Server* server, Session* s) {
+  constexpr WireError kMalformed = WireError::malformed;
+  std::size_t begin = 0;
+  bool goes_on = true;
+  s->more_to_take = false;
+  for (int i = 0; goes_on && output_room(*s) >= 2 * kReplyBytesMax; ++i) {
+    s->more_to_take = i == kMessagesAtOnce;
+    if (s->more_to_take) break;
+    Message message;
+    Decoded decoded = decode_message(s->input.data + begin, s->input_count - begin, kRequestBytesMax, &message);
+    if (decoded.state == DecodeState::need_more) break;
+    if (decoded.state == DecodeState::malformed) {
+      leave(server, s, &kMalformed, "it sent what is no message");
+      return false;
+    }
+    begin += decoded.byte_count;
+    s->idle_timer = platform::link_timer(now_ns(server), server->options.idle_timeout_ns);
+    s->message_timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
+    goes_on = take_message(server, s, message);
+  }
+  if (!goes_on) return false;
+  s->input_count -= begin;
+  std::memmove(s->input.data, s->input.data + begin, s->input_count);
+  return true;
+}
+
+}  // namespace
+
+Message server_hello(const Server& server) {
+  Message message;
+  message.type = MessageType::hello;
+  message.hello.image_side_max = static_cast<std::uint16_t>(server.options.image_side_max);
+  message.hello.message_bytes_max = kRequestBytesMax;
+  return message;
+}
+
+void read_session(Server* server, Session* s) {
+  bool leaving = s->phase == SessionPhase::leaving;
+  if (leaving) s->input_count = 0;
+  if (s->input_count == 0) s->message_timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
+  std::size_t count = 0;
+  platform::Error error;
+  platform::LinkResult result = server->net->read(server->link, s->stream, s->input.data + s->input_count,
+                                                  s->input.count - s->input_count, &count, &error);
+  s->input_count += count;
+  if (result == platform::LinkResult::failed) return end_session(server, s, error.text);
+  if (!leaving && !take_messages(server, s)) return;
+  if (result == platform::LinkResult::ended) end_session(server, s, "it closed the connection");
+}
+
+}  // namespace pocketray

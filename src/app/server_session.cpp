@@ -1,0 +1,222 @@
+#include "app/server_session.h"
+
+#include <cstring>
+
+#include "app/frame.h"
+#include "base/check.h"
+#include "plan/plan_effects.h"
+#include "present/pack.h"
+
+namespace pocketray {
+namespace {
+
+PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
+
+// As many rows as a chunk of pictures of that shape can have.
+std::uint32_t chunk_rows_max(CodecShape shape) {
+  shape.chunk_rows_max = shape.height < kChunkPixelsMax / shape.width ? shape.height : kChunkPixelsMax / shape.width;
+  while (shape.chunk_rows_max > 1 && !codec_shape_valid(shape)) shape.chunk_rows_max -= shape.chunk_rows_max / 8 + 1;
+  return shape.chunk_rows_max;
+}
+
+Status make_codec(Session* s) {
+  arena_release(&s->block, s->frame_mark);
+  s->built_scene = nullptr;  // its renderer lay behind
+  std::size_t pixels = std::size_t(s->shape.width) * s->shape.height * pixel_bytes(s->shape.format);
+  if (arena_need(pixels) + row_encoder_need(s->shape) > arena_free(s->block))
+    return failure("%ux%u pixels take more than the memory of a client", s->shape.width, s->shape.height);
+  s->pixels = arena_array<std::uint8_t>(&s->block, pixels);
+  Status status = make_row_encoder(s->shape, &s->block, &s->encoder);
+  if (!status.ok) s->encoder = nullptr;
+  return status;
+}
+
+bool same_pixels(const Settings& a, const Settings& b) {
+  return a.width == b.width && a.height == b.height && a.samples_per_pixel == b.samples_per_pixel &&
+         a.ray_depth == b.ray_depth && a.points_per_area_light == b.points_per_area_light && a.cut_off == b.cut_off &&
+         a.texture_filter == b.texture_filter && a.normals == b.normals && a.forced_on == b.forced_on &&
+         a.forced_off == b.forced_off;
+}
+
+bool is_built_for(const Session& s) {
+  const FrameRequest& request = s.job.request;
+  return s.built_scene == s.job.scene && same_pixels(s.renderer.settings, request.settings) &&
+         s.renderer.camera_index == request.camera_index;
+}
+
+Status build(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
+  s->built_scene = nullptr;
+  s->trace_ns = 0;
+  Renderer* r = &s->renderer;
+  *r = Renderer();
+  Settings settings = s->job.request.settings;
+  settings.threads = thread_count;
+  *code = WireError::bad_request;
+  RETURN_IF_ERROR(validate_settings(settings));
+  const Scene& scene = s->job.scene->scene;
+  r->camera_index = s->job.request.camera_index;
+  if (r->camera_index > 0 && r->camera_index >= scene.cameras.count)
+    return failure("there is no camera %u: the scene has %u", r->camera_index, scene.cameras.count);
+  start_renderer(s->block.base + s->block.used, arena_free(s->block), settings, r);
+  r->scene = scene;
+  *code = WireError::too_large;
+  RETURN_IF_ERROR(plan_renderer(r, SceneStorage(), 0));
+  s->own_camera = r->camera;
+  r->workers = workers;
+  *code = WireError::bad_request;
+  RETURN_IF_ERROR(build_renderer(r));
+  s->own_exposure = r->exposure;
+  s->built_scene = s->job.scene;
+  return success();
+}
+
+// Chunks as large as asked for, but no larger than the codec makes them and the client takes them.
+std::uint32_t chunk_rows_of(const Session& s) {
+  std::uint32_t rows = s.job.request.chunk_rows;
+  if (rows > s.shape.chunk_rows_max) rows = s.shape.chunk_rows_max;
+  while (rows > 0 && row_chunk_prefix_bytes() + encoded_bytes_max(s.shape, rows) > s.message_bytes_max) --rows;
+  return rows;
+}
+
+std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
+  double ps = static_cast<double>(ns) * 1000 / static_cast<double>(pixel_count);
+  return ps < 4294967295.0 ? static_cast<std::uint32_t>(ps) : ~0u;
+}
+
+void send_chunk(Session* s, std::uint32_t row_begin, std::uint32_t row_end) {
+  const FrameRequest& request = s->job.request;
+  const Renderer& r = s->renderer;
+  int width = static_cast<int>(r.settings.width), line_bytes = width * static_cast<int>(pixel_bytes(request.format));
+  pack_rows(r.image.data, width, static_cast<int>(r.settings.height), static_cast<int>(row_begin),
+            static_cast<int>(row_end), r.exposure, pack_format(request.format), Rotation::none, request.dither,
+            s->pixels.data, line_bytes);
+  std::uint32_t prefix = row_chunk_prefix_bytes(), row_count = row_end - row_begin;
+  std::uint8_t* at = reserve_output(s, prefix + encoded_bytes_max(s->shape, row_count));
+  Message message;
+  message.type = MessageType::row_chunk;
+  RowChunk* chunk = &message.row_chunk;
+  chunk->frame = request.frame;
+  chunk->row_begin = static_cast<std::uint16_t>(row_begin);
+  chunk->row_count = static_cast<std::uint16_t>(row_count);
+  chunk->pixel_ps = s->pixel_ps = picoseconds(s->job.wall_ns, s->job.pixel_count);
+  std::uint32_t byte_count =
+      encode_rows(s->encoder, row_begin, row_count, s->pixels.data + std::size_t(row_begin) * line_bytes,
+                  request.deflate_level, at + prefix, &chunk->encoding);
+  chunk->bytes = {at + prefix, byte_count};
+  send_message(s, message);
+  s->row_count += row_count;
+}
+
+}  // namespace
+
+void make_session(void* memory, std::size_t byte_count, Session* s) {
+  s->block = make_arena("client", memory, byte_count);
+  s->input = arena_array<std::uint8_t>(&s->block, kInputBytes);
+  s->output.bytes = arena_array<std::uint8_t>(&s->block, kMessageBytesMax + kReplyBytesMax + kAheadBytes);
+  s->frame_mark = arena_mark(s->block);
+}
+
+void restart_session(Session* s) {
+  Arena block = s->block;
+  Array<std::uint8_t> input = s->input, output = s->output.bytes;
+  std::size_t frame_mark = s->frame_mark;
+  std::uint64_t job_number = s->job_number;
+  *s = Session();
+  s->job_number = job_number;
+  s->block = block;
+  s->input = input;
+  s->output.bytes = output;
+  s->frame_mark = frame_mark;
+}
+
+std::uint8_t* reserve_output(Session* s, std::size_t byte_count) {
+  OutputQueue* q = &s->output;
+  CHECK_LE(byte_count, output_room(*s));
+  if (q->bytes.count - q->end < byte_count) {
+    std::memmove(q->bytes.data, q->bytes.data + q->begin, q->end - q->begin);
+    q->end -= q->begin;
+    q->begin = 0;
+  }
+  return q->bytes.data + q->end;
+}
+
+void send_message(Session* s, const Message& message) {
+  std::uint32_t byte_count = message_bytes(message);
+  encode_message(message, reserve_output(s, byte_count));
+  s->output.end += byte_count;
+}
+
+void send_error(Session* s, WireError code, std::uint32_t frame) {
+  Message message;
+  message.type = MessageType::error;
+  message.error = {code, frame};
+  send_message(s, message);
+}
+
+bool can_work(const Session& s) {
+  if (!has_job(s) || queued_bytes(s) > kAheadBytes) return false;
+  std::uint32_t unsent = s.job.sent_begin - s.job.traced_begin;
+  return !s.job.prepared || (s.job.traced_begin > s.job.request.row_begin && unsent < s.job.chunk_rows);
+}
+
+Status prepare_job(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
+  FrameJob* job = &s->job;
+  *code = WireError::too_large;
+  if (!s->encoder) {
+    s->shape.chunk_rows_max = chunk_rows_max(s->shape);
+    if (!codec_shape_valid(s->shape)) return failure("no message can hold a row of it");
+    RETURN_IF_ERROR(make_codec(s));
+  }
+  job->chunk_rows = chunk_rows_of(*s);
+  if (job->chunk_rows == 0) return failure("the client takes no message that could hold a row");
+  if (!is_built_for(*s)) RETURN_IF_ERROR(build(s, thread_count, workers, code));
+  *code = WireError::bad_request;
+  Renderer* r = &s->renderer;
+  r->camera = s->own_camera;
+  r->camera_overridden = false;
+  if (job->request.camera_stated) RETURN_IF_ERROR(set_camera(r, job->request.camera));
+  r->exposure = job->request.exposure > 0 ? job->request.exposure : s->own_exposure;
+  RETURN_IF_ERROR(prepare_frame(r, job->request.seconds));
+  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
+  job->prepared = true;
+  return success();
+}
+
+std::uint32_t trace_slice(Session* s, std::uint64_t slice_ns) {
+  FrameJob* job = &s->job;
+  Renderer* r = &s->renderer;
+  std::uint32_t width = r->settings.width, threads = r->settings.threads;
+  // Enough rows for all threads to be busy to the end, in whole chunks; where that would take long, a part of a chunk.
+  std::uint32_t chunks = (2 * threads + job->chunk_rows - 1) / job->chunk_rows;
+  std::uint32_t whole = job->chunk_rows * (threads > 1 ? chunks : 1);
+  std::uint32_t done = job->request.row_end - job->traced_begin, left = job->traced_begin - job->request.row_begin;
+  std::uint32_t rows = whole - done % whole;
+  double row_ns = s->trace_ns * width;
+  if (row_ns > 0 && rows * row_ns > static_cast<double>(slice_ns)) rows = static_cast<std::uint32_t>(slice_ns / row_ns);
+  if (!(row_ns > 0) && rows > threads) rows = threads;  // nothing is known yet: feel the way
+  if (rows < 1) rows = 1;
+  if (rows > left) rows = left;
+
+  std::uint32_t begin = job->traced_begin - rows;
+  trace_with(r->workers,
+             {r->spans.data + begin, rows, Aov::none, r->image.data, r->tracers.data, r->row_ns.data + begin});
+  return rows;
+}
+
+void send_chunks(Session* s) {
+  FrameJob* job = &s->job;
+  while (has_job(*s) && job->prepared && queued_bytes(*s) <= kAheadBytes) {
+    std::uint32_t left = job->sent_begin - job->request.row_begin,
+                  rows = left < job->chunk_rows ? left : job->chunk_rows;
+    if (job->sent_begin - job->traced_begin < rows) return;
+    send_chunk(s, job->sent_begin - rows, job->sent_begin);
+    job->sent_begin -= rows;
+    if (job->sent_begin == job->traced_begin) job->wall_ns = job->pixel_count = 0;
+    if (job->sent_begin == job->request.row_begin) {
+      ++s->frame_count;
+      drop_job(s);
+    }
+  }
+}
+
+}  // namespace pocketray

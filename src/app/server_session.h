@@ -1,0 +1,102 @@
+// One client of the render server: its buffers, its messages, its frame. Everything lies in the session's own block,
+// so whatever a client asks for is at its own expense.
+#pragma once
+#include "app/renderer.h"
+#include "app/scene_store.h"
+#include "platform/link.h"
+#include "wire/codec.h"
+
+namespace pocketray {
+
+constexpr std::uint32_t kRequestBytesMax = 512;               // of any message that a device sends
+constexpr std::size_t kInputBytes = 4096;                     // what a client can have on its way into the server
+constexpr std::size_t kReplyBytesMax = kPieceBytesMax + 128;  // of any message but a row_chunk
+constexpr std::size_t kAheadBytes = 16384;  // rows are made while no more than this waits to be sent; derived: what a
+                                            // radio of 2 MB/s sends while a thread renders a chunk or two, 8 ms
+
+// The least block of a session: what its buffers take, and a small picture of a small scene.
+constexpr std::size_t kSessionBytesMin = 4u << 20;
+
+enum class SessionPhase : std::uint8_t {
+  unused,
+  greeting,  // connected, has not said hello
+  serving,
+  leaving,  // is told why, and what it still sends is read and dropped
+};
+
+// Bytes [begin, end) are to be sent.
+struct OutputQueue {
+  Array<std::uint8_t> bytes;
+  std::size_t begin, end;
+};
+
+// The frame that a client waits for. Rows from traced_begin on are in the image, those from sent_begin on are sent.
+struct FrameJob {
+  const StoredScene* scene;  // null: there is nothing to do
+  FrameRequest request;
+  bool prepared;
+  std::uint32_t chunk_rows, traced_begin, sent_begin;
+  std::uint64_t wall_ns, pixel_count;  // of the rows that are traced and not all sent
+};
+
+struct Session {
+  SessionPhase phase = SessionPhase::unused;
+  int stream = -1;
+  char name[64] = {0};                  // the peer's address
+  char reason[160] = {0};               // why it is to leave
+  std::uint32_t message_bytes_max = 0;  // that the client takes
+
+  Arena block;
+  std::size_t frame_mark = 0;  // of the block, behind the buffers
+  Array<std::uint8_t> input;
+  std::size_t input_count = 0;
+  bool more_to_take = false;  // whole messages wait in the input, the other clients have their turn first
+  OutputQueue output = {};
+
+  CodecShape shape;               // of the last request
+  RowEncoder* encoder = nullptr;  // null: to be made for the shape
+  Array<std::uint8_t> pixels;     // the picture as the wire has it
+  Renderer renderer;
+  const StoredScene* built_scene = nullptr;  // that the renderer is built for; null: none
+  Camera own_camera;                         // the scene's own of the renderer's index
+  float own_exposure = 1;
+
+  FrameJob job = {};
+  std::uint64_t job_number = 0;        // counts jobs, of clients before this one too
+  std::uint32_t frame_last = 0;        // number of the last request
+  double trace_ns = 0;                 // what a pixel took all threads, of late, the caller's to set; 0: unknown
+  std::uint32_t pixel_ps = 0;          // what a pixel cost the client, of late: time it had to wait included
+  std::uint64_t waiting_since_ns = 0;  // for its turn; 0: it does not wait
+  std::uint64_t used_ns = 0;           // share of the CPU so far
+
+  platform::LinkTimer message_timer, idle_timer, stall_timer, leave_timer;
+  std::uint64_t frame_count = 0, row_count = 0, byte_count = 0;  // sent
+};
+
+// Takes the buffers out of the block.
+void make_session(void* memory, std::size_t byte_count, Session* session);
+// Another client comes.
+void restart_session(Session* session);
+
+inline std::size_t queued_bytes(const Session& session) { return session.output.end - session.output.begin; }
+inline std::size_t output_room(const Session& session) { return session.output.bytes.count - queued_bytes(session); }
+// Room for `byte_count` bytes in a row at the end of the queue, of which there must be as many.
+std::uint8_t* reserve_output(Session* session, std::size_t byte_count);
+// Queues a message; there must be room.
+void send_message(Session* session, const Message& message);
+void send_error(Session* session, WireError code, std::uint32_t frame);
+
+// Whether all rows of the job are traced or, `sent`, sent.
+inline bool has_job(const Session& session) { return session.job.scene != nullptr; }
+inline void drop_job(Session* session) { session->job.scene = nullptr; }
+// Whether a part of the frame can be made now: there is one, and the client keeps up with what it gets.
+bool can_work(const Session& session);
+
+// Makes the renderer and the codec ready for the job. Fails where the request cannot be met; *code says why.
+Status prepare_job(Session* session, std::uint32_t thread_count, Workers* workers, WireError* code);
+// Traces the next rows of the job, for about `slice_ns`; returns how many. They count when the caller lowers traced_begin.
+std::uint32_t trace_slice(Session* session, std::uint64_t slice_ns);
+// Queues the chunks that are traced as a whole, as far as the queue may take them; the last one ends the job.
+void send_chunks(Session* session);
+
+}  // namespace pocketray

@@ -1,0 +1,296 @@
+// Clients that make mistakes, mean harm or are in trouble: each costs itself, and the others nothing.
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "base/rng.h"
+#include "support/scripted_client.h"
+
+using namespace pocketray;
+
+namespace {
+
+void check_serves(ServerRig* rig) {
+  ScriptedClient client(rig);
+  FrameRequest request = frame_request("cube", 1, 16, 12);
+  client.request(request);
+  client.wait_for_rows(12);
+  CHECK(client.picture() == rendered_here(request));
+}
+
+std::vector<std::uint8_t> hello_bytes() { return bytes_of(hello_message()); }
+
+std::vector<std::uint8_t> request_bytes(const FrameRequest& request) {
+  Message message;
+  message.type = MessageType::frame_request;
+  message.frame_request = request;
+  return bytes_of(message);
+}
+
+// Sends the bytes and expects to be told that they are malformed, and to be closed.
+void check_malformed(ServerRig* rig, const std::vector<std::uint8_t>& bytes, WireError code = WireError::malformed) {
+  ScriptedClient client(rig, false);
+  client.send_bytes(bytes);
+  rig->run_until([&] { return client.poll(), client.closed; });
+  CHECK(client.has_error(code));
+  CHECK(server_client_count(*rig->server) == 0);
+}
+
+}  // namespace
+
+// Goal: whoever sends what is no message is told so and closed. Method: noise; noise behind a hello; every message with
+// a byte flipped behind a hello; messages that only servers send; a request before the hello; rows out of range, made
+// by changing a valid request without its checksum, and with it.
+TEST_CASE("server_ends_whoever_sends_what_is_no_message") {
+  ServerRig rig;
+  Rng rng = make_rng(11);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<std::uint8_t> bytes = round % 2 ? hello_bytes() : std::vector<std::uint8_t>();
+    bytes.push_back(0xee);
+    for (int i = 0; i < 300; ++i) bytes.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
+    check_malformed(&rig, bytes);
+  }
+  FrameRequest request = frame_request("cube", 1, 16, 12);
+  check_malformed(&rig, request_bytes(request));
+  for (std::size_t at = 4; at < request_bytes(request).size(); at += 7) {
+    std::vector<std::uint8_t> bytes = hello_bytes(), damaged = request_bytes(request);
+    damaged[at] ^= 0x10;
+    bytes.insert(bytes.end(), damaged.begin(), damaged.end());
+    check_malformed(&rig, bytes);
+  }
+  for (MessageType type : {MessageType::hello, MessageType::scene_entry, MessageType::scene_piece, MessageType::pong}) {
+    Message message;
+    message.type = type;
+    std::vector<std::uint8_t> bytes = hello_bytes(), more = bytes_of(message);
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    check_malformed(&rig, bytes);
+  }
+  check_serves(&rig);
+}
+
+// Goal: another version is told apart from noise. Method: a hello with its version changed and its checksum made anew,
+// as message.h decodes it.
+TEST_CASE("server_tells_another_version_why_it_is_closed") {
+  ServerRig rig;
+  Message hello = hello_message();
+  hello.hello.version = kWireVersion + 1;
+  check_malformed(&rig, bytes_of(hello), WireError::wrong_version);
+  CHECK(rig.logged("another version"));
+}
+
+// Goal: what cannot be rendered is refused by its reason, and the connection goes on. Method: one request of each kind,
+// and a good frame behind each.
+TEST_CASE("server_refuses_requests_that_it_cannot_meet") {
+  ServerOptions options;
+  options.client_memory_bytes = 8u << 20;
+  ServerRig rig(options);
+  ScriptedClient client(&rig);
+  std::uint32_t frame = 0;
+  auto check_refused = [&](FrameRequest request, WireError code) {
+    CAPTURE(static_cast<int>(code));
+    request.frame = ++frame;
+    client.send_bytes(request_bytes(request));
+    auto error = client.wait_for(MessageType::error);
+    CHECK(error->message.error.code == code);
+    CHECK(error->message.error.frame == frame);
+    FrameRequest good = frame_request("cube", ++frame, 16, 12);
+    client.decoder = nullptr;  // another shape went before: the codec begins anew
+    client.request(good);
+    client.wait_for_rows(12);
+    CHECK(client.picture() == rendered_here(good));
+  };
+  FrameRequest request = frame_request("cube", 0, 8192, 8192);
+  check_refused(request, WireError::too_large);
+  request = frame_request("cube", 0, 2048, 2048);  // within the sides, not within the memory
+  check_refused(request, WireError::too_large);
+  request = frame_request("cube", 0, 20, 12);
+  request.scene.low ^= 1;
+  check_refused(request, WireError::unknown_scene);
+  request = frame_request("cube", 0, 20, 12);
+  request.camera_index = 9;
+  check_refused(request, WireError::bad_request);
+  request = frame_request("cube", 0, 20, 12);
+  request.camera_stated = true;
+  request.camera.eye = request.camera.target = {1, 2, 3};
+  check_refused(request, WireError::bad_request);
+  CHECK(server_client_count(*rig.server) == 1);
+}
+
+// Goal: frame numbers count up; an old or a used one is refused and disturbs nothing. Method: number 5 twice, then 3,
+// while frame 5 is rendered.
+TEST_CASE("server_refuses_frame_numbers_that_were_used") {
+  ServerOptions options;
+  options.pace.ns_per_pixel = 1000;
+  ServerRig rig(options);
+  ScriptedClient client(&rig);
+  FrameRequest request = frame_request("cube", 5), old = frame_request("cornell", 3);
+  client.request(request);
+  client.send_bytes(request_bytes(request));
+  client.send_bytes(request_bytes(old));
+  rig.run_until([&] { return client.poll(), client.rows_come == 48 && client.received.size() == 3; });
+  CHECK(client.received[1]->message.error.code == WireError::bad_request);
+  CHECK(client.received[2]->message.error.frame == 3);
+  CHECK(client.picture() == rendered_here(request));
+}
+
+// Goal: a client that never reads costs its own buffer and is closed in time; the others go on as if it were not there.
+// Method: it asks for frames whose rows do not fit its pipe; the frames of another take as long as without it.
+TEST_CASE("server_ends_a_client_that_never_reads") {
+  ServerOptions options;
+  options.stall_timeout_ns = 3000 * kMs;
+  options.pace.ns_per_pixel = 10'000;
+  ServerRig rig(options);
+  ScriptedClient deaf(&rig), other(&rig);
+  deaf.wait_for(MessageType::hello);
+  other.wait_for(MessageType::hello);
+  deaf.reads = false;
+  FrameRequest large = frame_request("cornell", 1, 320, 240);
+  large.format = WireFormat::rgb888, large.deflate_level = 0;
+  deaf.send_bytes(request_bytes(large));
+  FrameRequest request = frame_request("cube", 1);
+  std::uint64_t start = rig.now(), last_ns = 0;
+  while (server_client_count(*rig.server) == 2) {
+    std::uint64_t before = rig.now();
+    other.request(request);
+    other.wait_for_rows(48);
+    ++request.frame;
+    last_ns = rig.now() - before;
+    REQUIRE(before - start < 10'000 * kMs);
+  }
+  CHECK(last_ns < 64ull * 48 * 10'000 * 3 / 2);
+  double waited = static_cast<double>(rig.now() - start);
+  CHECK(waited > 2.9e9);
+  CHECK(waited < 4.5e9);
+  CHECK(rig.logged("takes nothing"));
+  check_serves(&rig);
+}
+
+// Goal: half a message is not waited for, for ever; silence alone is allowed for longer. Method: half a hello, half a
+// request, one byte a second of a request, and nothing at all, with the times that they are closed at.
+TEST_CASE("server_ends_who_stops_in_a_message_or_is_silent_for_too_long") {
+  ServerOptions options;
+  options.message_timeout_ns = 2000 * kMs;
+  options.idle_timeout_ns = 5000 * kMs;
+  ServerRig rig(options);
+  std::vector<std::uint8_t> hello = hello_bytes(), request = request_bytes(frame_request("cube", 1));
+  ScriptedClient half_hello(&rig, false), half_request(&rig), trickling(&rig), silent(&rig);
+  half_hello.send_bytes({hello.begin(), hello.begin() + 10});
+  half_request.send_bytes({request.begin(), request.begin() + 50});
+  ScriptedClient* clients[] = {&half_hello, &half_request, &trickling, &silent};
+  double seconds[4] = {0, 0, 0, 0};
+  std::uint64_t start = rig.now();
+  std::size_t trickled = 0;
+  rig.run_until([&] {
+    std::uint64_t now = rig.now();
+    if (!trickling.closed && (now - start) / (1000 * kMs) >= trickled) trickling.send_bytes({request[trickled++]});
+    for (int i = 0; i < 4; ++i) {
+      clients[i]->poll();
+      if (clients[i]->closed && seconds[i] == 0) seconds[i] = static_cast<double>(now - start) * 1e-9;
+    }
+    return silent.closed;
+  });
+  const double expected[4] = {2, 2, 2, 5};
+  for (int i = 0; i < 4; ++i) {
+    CAPTURE(i);
+    CHECK(seconds[i] == doctest::Approx(expected[i]).epsilon(0.1));
+  }
+  CHECK(server_client_count(*rig.server) == 0);
+  check_serves(&rig);
+}
+
+// Goal: one client too many is told so at once, and is let in when there is a place. Method: eight, a ninth and twenty
+// more, then one of the eight goes.
+TEST_CASE("server_tells_one_client_too_many_that_it_is_busy") {
+  ServerRig rig;
+  std::vector<std::unique_ptr<ScriptedClient>> clients;
+  for (int i = 0; i < 8; ++i) clients.push_back(std::make_unique<ScriptedClient>(&rig));
+  for (auto& client : clients) client->wait_for(MessageType::hello);
+  for (int i = 0; i < 20; ++i) {
+    ScriptedClient ninth(&rig);
+    ninth.wait_for(MessageType::hello);
+    CHECK(ninth.wait_for(MessageType::error)->message.error.code == WireError::busy);
+    if (i < 3) rig.run_until([&] { return ninth.poll(), ninth.closed; });
+  }
+  CHECK(server_client_count(*rig.server) == 8);
+  clients.pop_back();
+  rig.run_until([&] { return server_client_count(*rig.server) == 7; });
+  check_serves(&rig);
+}
+
+// Goal: a thousand connections leave nothing behind. Method: each does one of five things: goes at once, in its hello,
+// in the middle of a frame, behind a frame, or is malformed; then the server still renders, with all its places free.
+TEST_CASE("server_state_stays_bounded_over_a_thousand_connections") {
+  ServerRig rig;
+  Rng rng = make_rng(5);
+  for (int i = 0; i < 1000; ++i) {
+    rig.step();  // lets in who came last
+    rig.run_until([&] { return server_client_count(*rig.server) < 4; });
+    ScriptedClient client(&rig, false);
+    std::vector<std::uint8_t> hello = hello_bytes();
+    FrameRequest request = frame_request("cube", 1, 16, 12);
+    switch (next_u32(&rng) % 5) {
+      case 0:
+        break;
+      case 1:
+        client.send_bytes({hello.begin(), hello.begin() + 9});
+        break;
+      case 2:
+        client.send_bytes(hello);
+        client.request(request);
+        rig.step();
+        break;
+      case 3:
+        client.send_bytes(hello);
+        client.request(request);
+        client.wait_for_rows(12);
+        break;
+      case 4:
+        client.send_bytes({0xff, 0xff});
+        break;
+    }
+    CHECK(server_client_count(*rig.server) <= 8);
+  }
+  rig.run_until([&] { return server_client_count(*rig.server) == 0; });
+  std::uint64_t later = rig.now() + 2000 * kMs;
+  rig.run_until([&] { return rig.now() >= later; });
+  check_serves(&rig);
+  double seconds = static_cast<double>(platform::null_link_record(rig.link).elapsed_ns) * 1e-9;
+  CHECK(static_cast<double>(rig.log.size()) < 45 + seconds);  // a flood does not fill a disk
+  CHECK(rig.logged("left out"));
+}
+
+// Goal: a client that asks and asks without reading the answers is not answered without bound. Method: pings of 64 KiB,
+// each message valid, for as long as they are taken.
+TEST_CASE("server_reads_no_more_than_it_can_answer") {
+  ServerOptions options;
+  options.stall_timeout_ns = 1000 * kMs;
+  ServerRig rig(options);
+  ScriptedClient client(&rig);
+  client.reads = false;
+  Message ping;
+  ping.type = MessageType::ping;
+  ping.ping = {1, kPingBytesMax};
+  std::vector<std::uint8_t> many, one = bytes_of(ping);
+  for (int i = 0; i < 5000; ++i) many.insert(many.end(), one.begin(), one.end());
+  client.send_bytes(many);
+  rig.run_until([&] { return server_client_count(*rig.server) == 0; });
+  CHECK(rig.logged("takes nothing"));
+  check_serves(&rig);
+}
+
+// Goal: clients are told that the server ends. Method: close it while one waits for a frame.
+TEST_CASE("server_says_that_it_ends") {
+  ServerOptions options;
+  options.pace.ns_per_pixel = 1000;
+  ServerRig rig(options);
+  ScriptedClient client(&rig);
+  client.request(frame_request("cornell", 1));
+  rig.run_until([&] { return client.poll(), client.rows_come >= 8; });
+  rig.close();
+  for (int i = 0; i < 100 && !client.closed; ++i) {
+    client.poll();
+    rig.net->poll(rig.link, nullptr, 0, kMs);
+  }
+  CHECK(client.closed);
+  CHECK(client.has_error(WireError::closing));
+}
