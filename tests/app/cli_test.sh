@@ -127,5 +127,29 @@ export SDL_VIDEODRIVER=dummy  # the emulator, where it is built in
 unset SDL_VIDEODRIVER
 expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
 
+# Goal: the render server says where it listens, what it offers and why it does not start; it ends when it is told to.
+# Method: any free port; an address that others reach; a port that is taken; an interrupt.
+if "${run[@]}" --help | grep -q '^ *serve '; then
+  expect serve_help 0 'insecure-lan' serve --help
+  expect serve_to_others 1 'asks nobody who they are.*--insecure-lan' serve --listen 0.0.0.0:0
+  expect serve_without_port 1 'HOST:PORT' serve --listen 127.0.0.1:
+  expect serve_without_folder 1 'no/such/folder' serve --listen :0 --scenes no/such/folder
+  expect serve_memory 1 'memory' serve --listen :0 --memory 1M
+  expect serve_clients 2 'clients' serve --clients 0
+  mkdir scenes && cp d.pray scenes/ && head -c 5000 c.pray >scenes/cut.pray
+  "${run[@]}" serve --listen 127.0.0.1:0 --scenes scenes --threads 2 >serve.out 2>serve.err &
+  server=$!
+  for _ in $(seq 100); do grep -q '^listening' serve.out && break || sleep 0.1; done
+  check serve_lists_its_scenes grep -q '^ *d.pray ' serve.out
+  check serve_leaves_out_what_is_broken test "$(grep -c '^pocketray: cut.pray is left out: ' serve.err)" = 1
+  address=$(sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' serve.out)
+  check serve_says_where_it_listens grep -qE '^127\.0\.0\.1:[0-9]+$' <<<"$address"
+  expect serve_port_is_taken 1 'another program listens' serve --listen "$address"
+  kill -INT $server
+  wait $server
+  check serve_is_interrupted test $? -eq 3
+  check serve_prints_totals grep -q '^0 clients, 0 frames' serve.out
+fi
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
