@@ -35,6 +35,16 @@ const Backend* platform_default() {
   return &kNullBackend;
 }
 
+ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_first) {
+  ScreenFormat format = {width, height, 32, {16, 8}, {8, 8}, {0, 8}, {}};
+  if (bits_per_pixel == 16) format = {width, height, 16, {11, 5}, {5, 6}, {0, 5}, {}};
+  if (!blue_first) return format;
+  Channel red = format.red;
+  format.red = format.blue;
+  format.blue = red;
+  return format;
+}
+
 const char* button_name(Button button) {
   static const char* const kNames[kButtonCount] = {"up", "down", "left",  "right",  "a",   "b",          "x",     "y",
                                                    "l",  "r",    "start", "select", "hud", "screenshot", "reload"};

@@ -46,15 +46,21 @@ struct Page {
 
 struct ScreenOptions {
   int width = 320,
-      height = 240;        // picture wanted, before rotation; a smaller screen gives less, a larger one centres it
-  int rotation = 0;        // 0, 90, 180, 270: degrees clockwise by which the caller turns the picture on the screen
-  int scale = 0;           // of a window: screen pixels per pixel; 0: as large as fits comfortably
-  const char* title = "";  // of a window
+      height = 240;         // picture wanted, before rotation; a smaller screen gives less, a larger one centres it
+  int rotation = 0;         // 0, 90, 180, 270: degrees clockwise by which the caller turns the picture on the screen
+  int scale = 0;            // of a window: screen pixels per pixel; 0: as large as fits comfortably
+  const char* title = "";   // of a window
+  int bits_per_pixel = 0;   // of a window or of none: 16 or 32, as the screen it stands for has; 0: 32
+  bool blue_first = false;  //   blue in the highest bits, not red
+  bool upright = false;     // of a window: turns the screen back, as one would hold the device
   const char* device = nullptr;         // of a framebuffer; null: the usual one
   const std::uint16_t* keys = nullptr;  // of evdev: kPadButtonCount key codes, up … select; null: a keyboard's
   void* memory = nullptr;        // back page, the caller's, kept until close(): at least page_bytes_max(width, height)
   std::size_t memory_bytes = 0;  //   bytes, aligned to 4
 };
+
+// A screen of those pixels: 32 bits as 8-8-8, 16 as 5-6-5.
+ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_first);
 
 // What a back page can take at most.
 constexpr std::size_t page_bytes_max(int width, int height) {

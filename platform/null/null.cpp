@@ -29,7 +29,7 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
 
   // 1. The screen: what is wanted, or what this screen has of it.
   ScreenFormat screen = settings.format;
-  if (screen.bits_per_pixel == 0) screen = {width, height, 32, {16, 8}, {8, 8}, {0, 8}, {}};
+  if (screen.bits_per_pixel == 0) screen = screen_format(width, height, options.bits_per_pixel, options.blue_first);
   if (screen.width > width) screen.width = width;
   if (screen.height > height) screen.height = height;
 

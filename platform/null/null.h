@@ -8,7 +8,7 @@ namespace platform {
 extern const Backend kNullBackend;
 
 struct NullSettings {
-  ScreenFormat format;         // bits_per_pixel 0: 32-bit XRGB of the size that is wanted
+  ScreenFormat format;         // bits_per_pixel 0: what is wanted
   int line_padding_bytes = 0;  // after each row of the page
   void* screen = nullptr;      // what is shown is copied here, rows of line_bytes; null: nowhere
   std::size_t screen_bytes = 0;

@@ -57,9 +57,11 @@ struct State {
   SDL_GameController* controllers[kControllerCountMax] = {};
   int stick[2] = {};  // −1, 0, 1
   unsigned char* page = nullptr;
-  int width = 0, height = 0;
-  bool shown = false;      // a frame was
-  std::uint32_t held = 0;  // a bit per button
+  ScreenFormat format;
+  int view_width = 0, view_height = 0;  // what the window shows: the screen, or the screen turned back
+  int turn = 0;                         // degrees clockwise by which it is
+  bool shown = false;                   // a frame was
+  std::uint32_t held = 0;               // a bit per button
   Event queue[kQueueCapacity];
   int first = 0, count = 0;
   char dropped_path[1024] = {};
@@ -105,39 +107,46 @@ bool open_window(const ScreenOptions& options, const char** what) {
   *what = "start SDL";
   if (SDL_Init(SDL_INIT_VIDEO) != 0) return false;
   SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER);  // without controllers there is still the keyboard
-  int scale = options.scale > 0 ? options.scale : comfortable_scale(state.width, state.height);
+  int scale = options.scale > 0 ? options.scale : comfortable_scale(state.view_width, state.view_height);
   *what = "open a window";
-  state.window = SDL_CreateWindow(options.title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, state.width * scale,
-                                  state.height * scale, SDL_WINDOW_RESIZABLE);
+  state.window = SDL_CreateWindow(options.title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+                                  state.view_width * scale, state.view_height * scale, SDL_WINDOW_RESIZABLE);
   if (!state.window) return false;
-  SDL_SetWindowMinimumSize(state.window, state.width, state.height);
+  SDL_SetWindowMinimumSize(state.window, state.view_width, state.view_height);
   // Without waiting for the vertical blank: a hidden window would wait for ever.
   *what = "draw in the window";
   state.renderer = SDL_CreateRenderer(state.window, -1, 0);
   if (!state.renderer) return false;
-  if (SDL_RenderSetLogicalSize(state.renderer, state.width, state.height) != 0) return false;
+  if (SDL_RenderSetLogicalSize(state.renderer, state.view_width, state.view_height) != 0) return false;
   if (SDL_RenderSetIntegerScale(state.renderer, SDL_TRUE) != 0) return false;
-  state.texture =
-      SDL_CreateTexture(state.renderer, SDL_PIXELFORMAT_RGB888, SDL_TEXTUREACCESS_STREAMING, state.width, state.height);
+  const ScreenFormat& format = state.format;
+  bool blue_first = format.blue.offset > format.red.offset;
+  Uint32 pixels = format.bits_per_pixel == 16 ? (blue_first ? SDL_PIXELFORMAT_BGR565 : SDL_PIXELFORMAT_RGB565)
+                                              : (blue_first ? SDL_PIXELFORMAT_BGR888 : SDL_PIXELFORMAT_RGB888);
+  state.texture = SDL_CreateTexture(state.renderer, pixels, SDL_TEXTUREACCESS_STREAMING, format.width, format.height);
   return state.texture != nullptr;
 }
 
 void show() {
   SDL_SetRenderDrawColor(state.renderer, 0, 0, 0, 255);
   SDL_RenderClear(state.renderer);
-  SDL_RenderCopy(state.renderer, state.texture, nullptr, nullptr);
+  SDL_Rect screen = {(state.view_width - state.format.width) / 2, (state.view_height - state.format.height) / 2,
+                     state.format.width, state.format.height};
+  SDL_RenderCopyEx(state.renderer, state.texture, nullptr, &screen, state.turn, nullptr, SDL_FLIP_NONE);
   SDL_RenderPresent(state.renderer);
 }
 
-Page begin_frame() { return {state.page, state.width * 4, state.shown ? 1 : 0}; }
+int line_bytes() { return state.format.width * (state.format.bits_per_pixel / 8); }
+
+Page begin_frame() { return {state.page, line_bytes(), state.shown ? 1 : 0}; }
 
 void end_frame(int row_begin, int row_end) {
   if (row_begin < 0) row_begin = 0;
-  if (row_end > state.height) row_end = state.height;
+  if (row_end > state.format.height) row_end = state.format.height;
   if (row_begin < row_end) {
-    SDL_Rect rows = {0, row_begin, state.width, row_end - row_begin};
-    SDL_UpdateTexture(state.texture, &rows, state.page + static_cast<std::ptrdiff_t>(row_begin) * state.width * 4,
-                      state.width * 4);
+    SDL_Rect rows = {0, row_begin, state.format.width, row_end - row_begin};
+    SDL_UpdateTexture(state.texture, &rows, state.page + static_cast<std::ptrdiff_t>(row_begin) * line_bytes(),
+                      line_bytes());
   }
   state.shown = true;
   show();
@@ -250,9 +259,12 @@ void pump() {
 bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   close();
   bool turned = options.rotation == 90 || options.rotation == 270;
-  state.width = turned ? options.height : options.width;
-  state.height = turned ? options.width : options.height;
-  std::size_t bytes = page_bytes_max(state.width, state.height);
+  int width = turned ? options.height : options.width, height = turned ? options.width : options.height;
+  state.format = screen_format(width, height, options.bits_per_pixel, options.blue_first);
+  state.view_width = options.upright ? options.width : width;
+  state.view_height = options.upright ? options.height : height;
+  state.turn = options.upright ? (360 - options.rotation) % 360 : 0;
+  std::size_t bytes = page_bytes_max(width, height);
   if (!options.memory || options.memory_bytes < bytes) {
     std::snprintf(error->text, sizeof error->text, "the back page takes %zu bytes, %zu were given", bytes,
                   options.memory_bytes);
@@ -268,10 +280,10 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   }
   // A first frame, black, and a first look at the events: what memory SDL takes for them, it takes now.
   std::memset(state.page, 0, bytes);
-  SDL_UpdateTexture(state.texture, nullptr, state.page, state.width * 4);
+  SDL_UpdateTexture(state.texture, nullptr, state.page, line_bytes());
   show();
   pump();
-  *format = {state.width, state.height, 32, {16, 8}, {8, 8}, {0, 8}, {}};
+  *format = state.format;
   return true;
 }
 

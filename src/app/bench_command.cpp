@@ -30,6 +30,7 @@ Json to_json(const CommonOptions& options, const Renderer& r, Measurement* m) {
           {"height", r.settings.height},
           {"threads", r.settings.threads},
           {"isa", isa_name(active_isa())},
+          {"emulated", r.pace.device ? Json(r.pace.device) : Json()},
           {"frames", m->frame_count},
           {"ns_per_pixel", {{"min", pixel.min}, {"median", pixel.median}, {"max", pixel.max}}},
           {"scanline_ns_per_pixel", rows},
@@ -48,10 +49,10 @@ Json to_json(const CommonOptions& options, const Renderer& r, Measurement* m) {
 
 void print_table(const CommonOptions& options, const Renderer& r, Measurement* m) {
   Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
-  std::printf("%s: %s triangles, %u×%u, %u thread%s, %s, %u frame%s\n", options.scene.c_str(),
+  std::printf("%s: %s triangles, %u×%u, %u thread%s, %s, %u frame%s%s\n", options.scene.c_str(),
               grouped(r.scene.triangles.count).c_str(), r.settings.width, r.settings.height, r.settings.threads,
               r.settings.threads == 1 ? "" : "s", isa_name(active_isa()), m->frame_count,
-              m->frame_count == 1 ? "" : "s");
+              m->frame_count == 1 ? "" : "s", emulation_text(r.pace).c_str());
   std::printf("  %-22s %10.0f ns   (%.0f … %.0f)\n", "per pixel", pixel.median, pixel.min, pixel.max);
   std::printf("  %-22s %10.1f ms   (%.1f frames per second)\n", "per frame", pixel.median * pixel_count(r) * 1e-6,
               1e9 / (pixel.median * pixel_count(r)));

@@ -12,7 +12,7 @@ namespace {
 
 Status render_once(Renderer* r, std::uint32_t frame, double* ns_per_pixel) {
   double seconds = frame / static_cast<double>(r->scene.info.frames_per_second);
-  RETURN_IF_ERROR(render_frame(r, seconds));
+  RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
   *ns_per_pixel = r->timings.trace_ms * 1e6 / pixel_count(*r);
   return success();
 }
@@ -30,6 +30,7 @@ Status measure_price(Renderer* r, Effect effect, double* price) {
     r->effects.mask = mask;
     r->settings.samples_per_pixel = samples;
     RETURN_IF_ERROR(status);
+    if (interrupted) return success();
   }
   *price = range_of(with, kRounds).median - range_of(without, kRounds).median;
   return success();
@@ -60,6 +61,7 @@ Status measure_frames(Renderer* r, Measurement* m) {
   RETURN_IF_ERROR(render_once(r, 0, &warm_up));
   for (std::uint32_t frame = 0; frame < m->frame_count_max && !interrupted; ++frame) {
     RETURN_IF_ERROR(render_once(r, frame, &m->ns_per_pixel[frame]));
+    if (interrupted) break;
     for (std::uint32_t row = 0; row < r->settings.height; ++row)
       m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max + frame] = static_cast<double>(r->row_ns[row]);
     m->trace_ns += r->timings.trace_ms * 1e6;

@@ -37,7 +37,7 @@ Status parse_texture_filter(const std::string& text, TextureFilter* filter) {
 }
 
 Status parse_settings(const CommonOptions& o, Settings* s) {
-  RETURN_IF_ERROR(parse_size(o.size, &s->width, &s->height));
+  RETURN_IF_ERROR(picture_size(o, &s->width, &s->height));
   const platform::Device* device;
   RETURN_IF_ERROR(find_device(o, &device));
   if (device) s->memory_bytes = device->memory_bytes;
@@ -52,6 +52,7 @@ Status parse_settings(const CommonOptions& o, Settings* s) {
   s->points_per_area_light = o.area_lights;
   s->cut_off = !o.no_cut_off;
   unsigned cores = std::thread::hardware_concurrency();
+  if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
   s->threads = o.threads ? o.threads : cores < 1 ? 1 : cores > kThreadCountMax ? kThreadCountMax : cores;
   return validate_settings(*s);
 }
@@ -70,16 +71,42 @@ bool read_numbers(const std::string& text, float* values, int count) {
   return *at == 0;
 }
 
+Status set_pace(const CommonOptions& o, Renderer* r) {
+  const platform::Device* device;
+  RETURN_IF_ERROR(find_device(o, &device));
+  if (o.emulate.empty()) return success();
+  r->pace.slowdown = device->slowdown;
+  r->pace.device = device->name;
+  return success();
+}
+
 }  // namespace
 
 Status find_device(const CommonOptions& o, const platform::Device** device) {
   *device = nullptr;
-  if (o.device.empty()) return success();
-  *device = platform::find_device(o.device.c_str());
+  if (!o.emulate.empty() && !o.device.empty() && o.emulate != o.device)
+    return failure("--emulate is '%s' and --device '%s': name one of them", o.emulate.c_str(), o.device.c_str());
+  const std::string& name = o.emulate.empty() ? o.device : o.emulate;
+  if (name.empty()) return success();
+  *device = platform::find_device(name.c_str());
   if (*device) return success();
   std::string names;
   for (const platform::Device& d : platform::kDevices) names += std::string(names.empty() ? "" : ", ") + d.name;
-  return failure("--device is '%s': it must be one of %s", o.device.c_str(), names.c_str());
+  return failure("--%s is '%s': it must be one of %s", o.emulate.empty() ? "device" : "emulate", name.c_str(),
+                 names.c_str());
+}
+
+Status picture_size(const CommonOptions& o, std::uint32_t* width, std::uint32_t* height) {
+  const platform::Device* device;
+  RETURN_IF_ERROR(find_device(o, &device));
+  *width = 320;
+  *height = 240;
+  if (!o.size.empty()) return parse_size(o.size, width, height);
+  if (o.emulate.empty()) return success();
+  bool turned = device->rotation % 180 != 0;
+  *width = static_cast<std::uint32_t>(turned ? device->screen_height : device->screen_width);
+  *height = static_cast<std::uint32_t>(turned ? device->screen_width : device->screen_height);
+  return success();
 }
 
 Status parse_isa(const std::string& text, Isa* isa) {
@@ -137,7 +164,8 @@ const AccelInfo* find_accel(const std::string& name) {
 
 void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("SCENE", o->scene, scene_help())->required();
-  command->add_option("--size", o->size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--size", o->size, "picture size in pixels, WIDTHxHEIGHT")
+      ->default_str("320x240, or the emulated device's");
   command->add_option("--samples", o->samples, "rays through each pixel, 1 … 16")->capture_default_str();
   command->add_option("--depth", o->depth, "reflections and refractions along a path, 0 … 16")->capture_default_str();
   command->add_option("--area-lights", o->area_lights, "points that each area light is taken as, 1 … 256")
@@ -151,6 +179,8 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option(
       "--device", o->device,
       "take memory, and in view rotation and buttons, from a handheld's profile: gp2x, miyoo, miyoo-mini, pi-zero, …");
+  command->add_option("--emulate", o->emulate,
+                      "trace as slowly as a handheld would, with its memory, cores and screen: see --device");
   command->add_option("--threads", o->threads, "threads that trace; 0: one per core")->capture_default_str();
   command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
       ->default_str("the best of this CPU");
@@ -189,6 +219,7 @@ Status open_scene(const CommonOptions& o, std::size_t (*output_bytes)(const Sett
   if (!opened->block) return failure("%zu bytes of memory cannot be had: lower --memory", settings.memory_bytes);
   Renderer* r = &opened->renderer;
   start_renderer(opened->block, settings.memory_bytes, settings, r);
+  RETURN_IF_ERROR(set_pace(o, r));
   r->camera_index = o.camera_index;
   r->accel_info = find_accel(o.accel);
   SceneStorage storage;

@@ -12,8 +12,8 @@ namespace pocketray {
 
 struct CommonOptions {
   std::string scene;
-  std::string size = "320x240", memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene",
-              json, device, isa, accel = "auto";
+  std::string size, memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene", json,
+                            device, emulate, isa, accel = "auto";
   std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
   bool no_cut_off = false;
 };
@@ -37,7 +37,9 @@ Status open_scene(const CommonOptions& options, std::size_t (*output_bytes)(cons
 // Builds it and starts the threads: ready for render_frame().
 Status start_scene(OpenScene* opened, const CommonOptions& options);
 
-// The profile --device names; null with success() where none was named.
+// The picture's size: what --size says, else the screen of the emulated device as one holds it, else 320 × 240.
+Status picture_size(const CommonOptions& options, std::uint32_t* width, std::uint32_t* height);
+// The profile --device or --emulate names; null with success() where none was named.
 Status find_device(const CommonOptions& options, const platform::Device** device);
 
 // The instruction set --isa names, the best of this CPU where it names none.

@@ -124,6 +124,7 @@ Json to_json(const Job& job, const Renderer& r, const std::vector<std::string>& 
           {"width", r.settings.width},
           {"height", r.settings.height},
           {"ns_per_pixel", trace_ms * 1e6 / pixels},
+          {"emulated", r.pace.device ? Json(r.pace.device) : Json()},
           {"rays", rays},
           {"rays_left_out", counts.rays_left_out},
           {"left_out_radiance_max", counts.left_out_max},
@@ -139,10 +140,10 @@ void print_summary(const Job& job, const Renderer& r, std::size_t file_count, co
     print_effects(r.effects);
     print_memory(r.memory);
   }
-  std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s\n", last.c_str(), r.settings.width,
+  std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s%s\n", last.c_str(), r.settings.width,
               r.settings.height, grouped(r.scene.triangles.count).c_str(), trace_ms / static_cast<double>(file_count),
               file_count > 1 ? " a frame" : "", trace_ms * 1e6 / pixels, r.settings.threads,
-              r.settings.threads == 1 ? "" : "s");
+              r.settings.threads == 1 ? "" : "s", emulation_text(r.pace).c_str());
   Tracer counts = total_counts(r);
   if (counts.rays_left_out)
     std::printf("  %s rays left out; what they could have added stays below %.2g of a displayed level\n",

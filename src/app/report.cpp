@@ -58,6 +58,13 @@ Json memory_json(const MemoryPlan& plan) {
   return {{"parts", parts}, {"total_bytes", plan.total_bytes}, {"limit_bytes", plan.limit_bytes}};
 }
 
+std::string emulation_text(const Pace& pace) {
+  if (!pace.device) return "";
+  char text[80];
+  std::snprintf(text, sizeof text, ", emulating %.40s: %.3g times slower", pace.device, pace.slowdown);
+  return text;
+}
+
 std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");

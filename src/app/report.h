@@ -20,6 +20,9 @@ void print_memory(const MemoryPlan& plan);
 Json effects_json(const EffectPlan& plan);
 Json memory_json(const MemoryPlan& plan);
 
+// ", emulating pi-zero: 550 times slower", or nothing.
+std::string emulation_text(const Pace& pace);
+
 // "12 345 678" grouping for people.
 std::string grouped(std::uint64_t value);
 

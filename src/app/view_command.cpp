@@ -43,7 +43,8 @@ int run(CommonOptions common, ViewOptions view) {
   Status status = find_device(common, &device);
   if (view.rotation < 0) view.rotation = device ? device->rotation : 0;
   if (device) view.keys = device->keys;
-  if (status.ok) status = parse_size(common.size, &size.width, &size.height);
+  if (!common.emulate.empty()) view.emulated = device;
+  if (status.ok) status = picture_size(common, &size.width, &size.height);
   if (status.ok)
     status =
         open_viewer(view, common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height), &viewer);

@@ -202,6 +202,12 @@ Status open_viewer(const ViewOptions& options, const char* scene, int width, int
   screen.keys = options.keys;
   screen.scale = options.scale;
   screen.title = "pocketray";
+  if (const platform::Device* device = options.emulated) {
+    screen.bits_per_pixel = device->bits_per_pixel;
+    screen.blue_first = device->channel_order[0] == 'b';
+    screen.upright = true;
+    screen.title = device->name;
+  }
   screen.device = options.device.empty() ? nullptr : options.device.c_str();
   screen.memory = v->page_memory;
   screen.memory_bytes = page_bytes;

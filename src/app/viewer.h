@@ -5,6 +5,7 @@
 #include "app/camera_control.h"
 #include "app/progressive.h"
 #include "base/status.h"
+#include "platform/devices/device.h"
 #include "platform/platform.h"
 #include "present/pack.h"
 
@@ -15,6 +16,7 @@ struct ViewOptions {
   int rotation = -1, scale = 0;         // degrees clockwise; −1: the device's
   const std::uint16_t* keys = nullptr;  // of the device's buttons; null: a keyboard's
   bool dither = false;
+  const platform::Device* emulated = nullptr;  // whose pixels to show, upright; null: the screen's own
   std::uint32_t frame_count = 0;
 };
 

@@ -43,8 +43,12 @@ void write_hud(const Renderer& r, const Progressive& p, CameraMode mode, HudText
   for (std::uint64_t n : counts.rays) rays += n;
   double ns_per_pixel = p.pixels_traced ? static_cast<double>(p.trace_ns) / static_cast<double>(p.pixels_traced) : 0;
   double frame_ms = ns_per_pixel * static_cast<double>(r.settings.width) * r.settings.height * 1e-6;
-  add_line(text, "%.1f ms/frame  %.0f ns/pixel  %u thread%s", frame_ms, ns_per_pixel, r.settings.threads,
-           r.settings.threads == 1 ? "" : "s");
+  const char* plural = r.settings.threads == 1 ? "" : "s";
+  if (r.pace.device)
+    add_line(text, "%s  %.0f ms/frame  %.0f ns/pixel  %u thread%s", r.pace.device, frame_ms, ns_per_pixel,
+             r.settings.threads, plural);
+  else
+    add_line(text, "%.1f ms/frame  %.0f ns/pixel  %u thread%s", frame_ms, ns_per_pixel, r.settings.threads, plural);
   add_line(text, "%.0fk rays  %.2f M/s  %.0fk left out", static_cast<double>(rays) * 1e-3,
            p.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(p.trace_ns) : 0.0,
            static_cast<double>(counts.rays_left_out) * 1e-3);

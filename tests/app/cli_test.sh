@@ -57,6 +57,9 @@ expect too_little_memory 1 'memory .*would' render statue --memory 1M -o a.ppm
 expect aov_name 1 'depth, normal' render cube "${small[@]}" --aov colour -o a.ppm
 expect unknown_device 1 'gp2x' render cube "${small[@]}" --device toaster -o a.ppm
 expect device_memory 0 'of 16.0 MiB' plan cornell --device gp2x
+expect emulate_unknown 1 "emulate.*gp2x, miyoo" render cube "${small[@]}" --emulate toaster -o a.ppm
+expect emulate_and_another_device 1 'name one of them' render cube "${small[@]}" --emulate tablet --device gp2x -o a.ppm
+expect emulate_memory 0 'of 16.0 MiB' plan cube --emulate gp2x
 expect isa_name 1 'this CPU has baseline' render cube "${small[@]}" --isa sse9 -o a.ppm
 expect isa_in_report 0 '2 threads, baseline' bench cube "${small[@]}" --frames 1 --no-prices --isa baseline
 expect frames_format 1 'first:last' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
@@ -100,6 +103,15 @@ check baked_compact_gives_the_same_picture cmp -s one.ppm baked_compact.ppm
 expect plan_baked_compact 0 'accelerator compact' plan d.pray
 expect plan_other_than_baked 0 'accelerator bvh' plan d.pray --accel bvh
 
+# Goal: an emulated handheld is slower, has its own screen and cores, and the same picture.
+expect emulate 0 '32×24.*1 thread, emulating tablet: 4.47 times slower' render "$subject" --size 32x24 \
+  --emulate tablet -o emulated.ppm
+check emulated_gives_the_same_picture cmp -s one.ppm emulated.ppm
+[ $# -gt 0 ] || expect emulate_screen_and_cores 0 '640×480.*2 threads, emulating miyoo-mini' \
+  render cube --emulate miyoo-mini -o large.ppm
+expect emulate_in_bench 0 '"emulated": "tablet"' bench cube "${small[@]}" --frames 1 --emulate tablet --json -
+expect emulate_in_view 0 '' view cube --size 32x24 --screen null --frames 2 --emulate tablet
+
 # Goal: a file that lies is refused in one line.
 head -c 5000 c.pray >cut.pray
 expect truncated_scene 1 'cut.pray' render cut.pray -o b.ppm
@@ -123,7 +135,10 @@ expect view_null 0 '' view seesaw "${small[@]}" --screen null --frames 3
 expect view_still_frames 0 '' view cube "${small[@]}" --screen null --frames 3
 export SDL_VIDEODRIVER=dummy  # the emulator, where it is built in
 "${run[@]}" view cube "${small[@]}" --screen sdl2 --frames 1 >/dev/null 2>&1
-[ $? -eq 1 ] || expect view_window 0 '' view seesaw "${small[@]}" --screen sdl2 --frames 3
+if [ $? -ne 1 ]; then
+  expect view_window 0 '' view seesaw "${small[@]}" --screen sdl2 --frames 3
+  expect view_emulated 0 '' view cube "${small[@]}" --screen sdl2 --frames 2 --emulate tablet
+fi
 unset SDL_VIDEODRIVER
 expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
 

@@ -89,6 +89,53 @@ TEST_CASE("sdl2_window_shows_the_picture_by_whole_numbers") {
   CHECK(wrong == 0);
 }
 
+// Goal: the window of an emulated device shows 16-bit pixels in its order, and a screen that is mounted turned upright.
+// Method: as before, with each order and rotation; a picture of levels that both formats have, turned by its position.
+TEST_CASE("sdl2_window_shows_an_emulated_screen_upright") {
+  for (bool blue_first : {false, true})
+    for (int rotation : {0, 90, 180, 270}) {
+      CAPTURE(blue_first);
+      CAPTURE(rotation);
+      Window screen;
+      screen.options.width = 64;
+      screen.options.height = 48;
+      screen.options.rotation = rotation;
+      screen.options.bits_per_pixel = 16;
+      screen.options.blue_first = blue_first;
+      screen.options.upright = true;
+      REQUIRE_MESSAGE(screen.open(), screen.error.text);
+      CHECK(screen.format.bits_per_pixel == 16);
+      CHECK(screen.format.red.offset == (blue_first ? 0 : 11));
+      CHECK(screen.format.width == (rotation % 180 == 0 ? 64 : 48));
+      Page page = kSdl2Backend.begin_frame();
+      CHECK(page.line_bytes == 2 * screen.format.width);
+      for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x) {
+          int to_x = x, to_y = y;  // clockwise
+          if (rotation == 90) to_x = 47 - y, to_y = x;
+          if (rotation == 180) to_x = 63 - x, to_y = 47 - y;
+          if (rotation == 270) to_x = y, to_y = 63 - x;
+          int value = x / 2 << screen.format.red.offset | y / 2 << screen.format.blue.offset;
+          static_cast<std::uint16_t*>(page.pixels)[to_y * screen.format.width + to_x] =
+              static_cast<std::uint16_t>(value);
+        }
+      kSdl2Backend.end_frame(0, screen.format.height);
+      SDL_Renderer* renderer = SDL_GetRenderer(window());
+      REQUIRE(renderer != nullptr);
+      std::vector<std::uint32_t> shown(128 * 96);
+      SDL_Rect whole = {0, 0, 128, 96};
+      SDL_RenderSetLogicalSize(renderer, 0, 0);
+      REQUIRE(SDL_RenderReadPixels(renderer, &whole, SDL_PIXELFORMAT_RGB888, shown.data(), 128 * 4) == 0);
+      int wrong = 0;
+      for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 128; ++x) {
+          std::uint32_t pixel = shown[static_cast<std::size_t>(y * 128 + x)];
+          wrong += static_cast<int>(pixel >> 19 & 31) != x / 4 || static_cast<int>(pixel >> 3 & 31) != y / 4;
+        }
+      CHECK(wrong == 0);
+    }
+}
+
 // Goal: keys are the handheld's buttons, once each. Method: pushed events.
 TEST_CASE("sdl2_keys_are_the_handhelds_buttons") {
   Window screen;
