@@ -115,12 +115,15 @@ void write_session(Server* server, Session* s) {
   q->begin = q->end = 0;
 }
 
-// Sends what there is; rows that waited for room take it.
+// Sends what there is, and rows that waited for room.
 void send_session(Server* server, Session* s) {
-  write_session(server, s);
-  if (s->phase != SessionPhase::serving || !has_job(*s)) return;
-  send_chunks(s);
-  write_session(server, s);
+  for (;;) {
+    write_session(server, s);
+    if (s->phase != SessionPhase::serving) return;
+    std::size_t queued = queued_bytes(*s);
+    send_chunks(s);
+    if (queued_bytes(*s) == queued) return;
+  }
 }
 
 // Whether it waits for the rest of a message; for the client to take what it is sent; for nothing.

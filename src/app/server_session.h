@@ -11,8 +11,9 @@ namespace pocketray {
 constexpr std::uint32_t kRequestBytesMax = 512;               // of any message that a device sends
 constexpr std::size_t kInputBytes = 4096;                     // what a client can have on its way into the server
 constexpr std::size_t kReplyBytesMax = kPieceBytesMax + 128;  // of any message but a row_chunk
-constexpr std::size_t kAheadBytes = 16384;  // rows are made while no more than this waits to be sent; derived: what a
-                                            // radio of 2 MB/s sends while a thread renders a chunk or two, 8 ms
+// Rows are made while no more than this waits to be sent: what the system has buffered keeps the line busy meanwhile,
+// and what is sent too early cannot be cancelled.
+constexpr std::size_t kAheadBytes = 4096;
 
 // The least block of a session: what its buffers take, and a small picture of a small scene.
 constexpr std::size_t kSessionBytesMin = 4u << 20;
@@ -94,7 +95,8 @@ bool can_work(const Session& session);
 
 // Makes the renderer and the codec ready for the job. Fails where the request cannot be met; *code says why.
 Status prepare_job(Session* session, std::uint32_t thread_count, Workers* workers, WireError* code);
-// Traces the next rows of the job, for about `slice_ns`; returns how many. They count when the caller lowers traced_begin.
+// Traces the next rows of the job, for about `slice_ns`; returns how many. They count when the caller lowers
+// traced_begin.
 std::uint32_t trace_slice(Session* session, std::uint64_t slice_ns);
 // Queues the chunks that are traced as a whole, as far as the queue may take them; the last one ends the job.
 void send_chunks(Session* session);

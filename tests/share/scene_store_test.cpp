@@ -100,6 +100,11 @@ TEST_CASE("scene_store_keeps_to_its_limit") {
   std::size_t bytes = 0;
   for (const StoredScene& stored : store.scenes) bytes += stored.byte_count + stored.accel_bytes;
   CHECK(bytes <= options.bytes_max);
+  const StoredScene* cornell = named(builtin_store(), "cornell");
+  options.bytes_max = cornell->byte_count + cornell->accel_bytes - 1;  // its file would fit
+  SceneStore less;
+  REQUIRE(open_scene_store(options, &less).ok);
+  CHECK(named(less, "cornell") == nullptr);
   options.folder = "no/such/folder";
   SceneStore none;
   CHECK_FALSE(open_scene_store(options, &none).ok);

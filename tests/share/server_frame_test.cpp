@@ -1,7 +1,10 @@
 // What clients get: the pixels they would have rendered themselves, in fair turns.
 #include <doctest/doctest.h>
 
+#include "app/server_session.h"
 #include "platform/net/tcp.h"
+#include "scene/baked.h"
+#include "support/generated_scene.h"
 #include "support/scripted_client.h"
 
 using namespace pocketray;
@@ -51,6 +54,89 @@ TEST_CASE("server_frames_equal_local_ones") {
   check_frame(&client, request);
   CHECK(server_totals(*rig.server).frame_count == 8);
   CHECK(server_totals(*rig.server).row_count == 7 * 48 + 30);
+}
+
+// Goal: every setting that changes pixels has its effect, and so has the choice of a camera, whichever came before.
+// Method: a scene with all features, which are chosen one after the other on one connection; three cameras, of which
+// one moves.
+TEST_CASE("server_frames_follow_every_setting") {
+  auto generated = generate_scene(kAllFeatures, 3);
+  generated->cameras.assign(3, generated->cameras[0]);
+  generated->cameras[1].eye = {-2, 2.5f, 3};
+  generated->cameras[2].node = 0;
+  generated->bind();
+  std::vector<std::uint8_t> bytes(baked_size(generated->scene));
+  baked_write(generated->scene, bytes.data());
+  SceneStore store;
+  store.scenes.resize(1);
+  StoredScene* stored = &store.scenes[0];
+  stored->bytes = bytes.data(), stored->byte_count = bytes.size();
+  stored->hash = content_hash(bytes.data(), bytes.size());
+  stored->scene = generated->scene;
+  ServerRig rig(ServerOptions(), platform::NullLinkSettings(), platform::kNullLink, store);
+  ScriptedClient client(&rig);
+  FrameRequest plain = frame_request("cube", 0, 40, 30), request;
+  plain.scene = stored->hash;
+  std::uint32_t frame = 0;
+  std::vector<std::uint8_t> before;
+  auto check = [&](const FrameRequest& asked, bool differs) {
+    CAPTURE(frame);
+    FrameRequest numbered = asked;
+    numbered.frame = ++frame;
+    client.request(numbered);
+    client.wait_for_rows(30);
+    std::vector<std::uint8_t> picture = client.picture();
+    CHECK(picture == rendered_here(numbered, store));
+    if (differs) CHECK(picture != before);
+    before = picture;
+  };
+  auto check_and_back = [&](void (*change)(FrameRequest*)) {
+    request = plain;
+    change(&request);
+    check(request, true);
+    check(plain, true);
+  };
+  check(plain, false);
+  check_and_back([](FrameRequest* r) { r->settings.samples_per_pixel = 4; });
+  check_and_back([](FrameRequest* r) { r->settings.ray_depth = 0; });
+  check_and_back([](FrameRequest* r) { r->settings.points_per_area_light = 1; });
+  check_and_back([](FrameRequest* r) { r->settings.texture_filter = TextureFilter::nearest; });
+  check_and_back([](FrameRequest* r) { r->settings.normals = NormalMode::flat; });
+  check_and_back([](FrameRequest* r) { r->settings.forced_off = bit(Effect::shadow); });
+  check_and_back([](FrameRequest* r) { r->camera_index = 1; });
+  check_and_back([](FrameRequest* r) { r->camera_index = 2, r->seconds = 0.6; });
+  check_and_back([](FrameRequest* r) { r->camera_index = 2, r->seconds = 0.9; });
+  check_and_back([](FrameRequest* r) { r->camera_stated = true, r->camera.eye = {0, 3, 5}; });
+  check_and_back([](FrameRequest* r) { r->exposure = 0.2f; });
+  request = plain;
+  request.camera_index = 2, request.camera_stated = true, request.camera.eye = {0, 3, 5};
+  check(request, true);
+  request.camera_stated = false, request.seconds = 0.6;  // the moving camera is back
+  check(request, true);
+  request.settings.cut_off = false;
+  check(request, false);
+}
+
+// Goal: rows are not made long before they can be sent, so that cancelling saves their time and their bytes. Method: a
+// slow line that holds 2 KiB; the rows that the server has made are ahead of those that have come by what it, the queue
+// and a chunk hold.
+TEST_CASE("server_makes_rows_no_earlier_than_they_can_be_sent") {
+  platform::NullLinkSettings settings;
+  settings.bytes_per_second = 100'000;
+  settings.pipe_bytes = 2048;
+  ServerRig rig(ServerOptions(), settings);
+  ScriptedClient client(&rig);
+  FrameRequest request = frame_request("cube", 1, 320, 240);
+  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = 4;
+  client.request(request);
+  std::uint64_t ahead_max = 0;
+  rig.run_until([&] {
+    client.poll();
+    std::uint64_t ahead = server_totals(*rig.server).row_count - client.rows_come;
+    if (ahead > ahead_max) ahead_max = ahead;
+    return client.rows_come == 240;
+  });
+  CHECK(ahead_max * 960 <= 2048 + kAheadBytes + 2 * 4 * 960);
 }
 
 // Goal: the same over sockets. Method: two clients at once, by loopback.
@@ -106,6 +192,25 @@ TEST_CASE("server_cuts_chunks_to_the_size_that_the_client_takes") {
   small.send(hello);
   small.request(request);
   CHECK(small.wait_for(MessageType::error)->message.error.code == WireError::too_large);
+}
+
+// Goal: chunks that wait for room go out as soon as there is some. Method: 16 threads trace 32 rows at once, which make
+// more bytes than may wait; the server may sleep for a second in every step, but the frame takes less than that.
+TEST_CASE("server_sends_chunks_that_waited_without_delay") {
+  ServerOptions options;
+  options.thread_count = 16;
+  ServerRig rig(options);
+  ScriptedClient client(&rig);
+  FrameRequest request = frame_request("cube", 1, 320, 240);
+  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = 4;
+  std::uint64_t start = rig.now();
+  client.request(request);
+  while (client.rows_come < 240 && rig.now() - start < 5000 * kMs) {
+    rig.step(1000 * kMs);
+    client.poll();
+  }
+  CHECK(rig.now() - start < 100 * kMs);
+  CHECK(client.picture() == rendered_here(request));
 }
 
 // Goal: a request takes the place of the one before; cancelling ends it. Method: an emulated CPU of 1 µs a pixel; after
@@ -166,6 +271,23 @@ TEST_CASE("server_keeps_the_pace_of_the_emulated_cpu") {
   CHECK(pong->message.pong.id == 77);
   CHECK(pong->message.pong.bytes.count == 5000);
   CHECK(pong->message.pong.pixel_ps == doctest::Approx(2e6).epsilon(0.02));
+}
+
+// Goal: a client is told at once what another one costs it. Method: at 20 µs a pixel the other comes in the middle of a
+// frame; the frame's last chunks say 40 µs.
+TEST_CASE("server_tells_what_a_pixel_costs_now") {
+  ServerOptions options;
+  options.pace.ns_per_pixel = 20'000;
+  ServerRig rig(options);
+  ScriptedClient first(&rig), second(&rig);
+  second.wait_for(MessageType::hello);
+  FrameRequest request = frame_request("cube", 1, 64, 96);
+  first.request(request);
+  rig.run_until([&] { return first.poll(), first.rows_come >= 48; });
+  second.request(request);
+  first.wait_for_rows(96);
+  CHECK(first.chunks[3].pixel_ps == doctest::Approx(2e7).epsilon(0.05));
+  CHECK(first.chunks.back().pixel_ps == doctest::Approx(4e7).epsilon(0.1));
 }
 
 // Goal: clients get equal shares of the CPU, whatever they ask for, and are told what that makes of a pixel. Method:

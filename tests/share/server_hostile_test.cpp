@@ -278,6 +278,29 @@ TEST_CASE("server_reads_no_more_than_it_can_answer") {
   check_serves(&rig);
 }
 
+// Goal: who reads late gets everything all the same, whole and in order. Method: 150 pings of 60 000 bytes, more than
+// eight times what the server queues, over a line whose other end is read a little at a time.
+TEST_CASE("server_answers_in_order_however_slowly_it_is_read") {
+  ServerRig rig;
+  ScriptedClient client(&rig);
+  Message ping;
+  ping.type = MessageType::ping;
+  std::vector<std::uint8_t> many;
+  constexpr std::uint32_t kCount = 150;
+  for (std::uint32_t i = 1; i <= kCount; ++i) {
+    ping.ping = {i, 60'000};
+    std::vector<std::uint8_t> one = bytes_of(ping);
+    many.insert(many.end(), one.begin(), one.end());
+  }
+  client.send_bytes(many);
+  for (int i = 0; i < 100; ++i) rig.step();
+  rig.run_until([&] { return client.poll(), client.received.size() > kCount; });
+  for (std::uint32_t i = 1; i <= kCount; ++i) {
+    CHECK(client.received[i]->message.pong.id == i);
+    CHECK(client.received[i]->message.pong.bytes.count == 60'000);
+  }
+}
+
 // Goal: clients are told that the server ends. Method: close it while one waits for a frame.
 TEST_CASE("server_says_that_it_ends") {
   ServerOptions options;

@@ -6,7 +6,6 @@
 #include "app/frame.h"
 #include "base/seal.h"
 #include "present/pack.h"
-#include "support/generated_scene.h"
 
 namespace pocketray {
 namespace {
@@ -222,14 +221,18 @@ FrameRequest frame_request(const std::string& scene, std::uint32_t frame, std::u
   return request;
 }
 
-std::vector<std::uint8_t> rendered_here(const FrameRequest& request) {
-  const StoredScene* stored = find_scene(builtin_store(), request.scene);
+std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const SceneStore& store) {
+  const StoredScene* stored = find_scene(store, request.scene);
   REQUIRE(stored != nullptr);
-  Scene scene;
-  scene = stored->scene;
+  Scene scene = stored->scene;
   scene.accel = {};
-  auto test = make_renderer(scene, request.settings);
-  Renderer* r = &test->renderer;
+  std::vector<std::uint8_t> block(request.settings.memory_bytes);
+  Renderer renderer, *r = &renderer;
+  start_renderer(block.data(), block.size(), request.settings, r);
+  r->scene = scene;
+  r->camera_index = request.camera_index;
+  REQUIRE(plan_renderer(r, SceneStorage(), 0).ok);
+  REQUIRE(build_renderer(r).ok);
   if (request.camera_stated) REQUIRE(set_camera(r, request.camera).ok);
   if (request.exposure > 0) r->exposure = request.exposure;
   REQUIRE(render_frame(r, request.seconds).ok);

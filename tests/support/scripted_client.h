@@ -94,7 +94,7 @@ Message hello_message();
 FrameRequest frame_request(const std::string& scene, std::uint32_t frame, std::uint32_t width = 64,
                            std::uint32_t height = 48);
 // The same frame by render_frame() and pack_rows().
-std::vector<std::uint8_t> rendered_here(const FrameRequest& request);
+std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const SceneStore& store = builtin_store());
 std::vector<std::uint8_t> bytes_of(const Message& message);
 
 }  // namespace pocketray
