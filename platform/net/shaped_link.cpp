@@ -223,8 +223,7 @@ LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max,
   *byte_count = pull_bytes(&slot->in, static_cast<unsigned char*>(bytes), byte_count_max, link->clock_ns);
   if (*byte_count > 0) return LinkResult::done;
   if (slot->in.reset_ns <= link->clock_ns) return fail(link, slot, error);
-  bool ended = slot->in.end_ns <= link->clock_ns && slot->in.used == 0;
-  return ended ? LinkResult::ended : LinkResult::later;
+  return slot->in.end_ns <= link->clock_ns ? LinkResult::ended : LinkResult::later;
 }
 
 LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_count_max, std::size_t* byte_count,
@@ -243,12 +242,9 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   while (*byte_count < byte_count_max) {
     std::size_t room = pipe_room(slot->out), take = byte_count_max - *byte_count;
     if (take > room) take = room;
-    if (slot->lost)
-      take = byte_count_max - *byte_count;  // its news are underway, until then the bytes are lost quietly
     if (take == 0) break;
-    if (!slot->lost)
-      push_piece(&slot->out, static_cast<const unsigned char*>(bytes) + *byte_count, take, 0,
-                 line_arrival_ns(link->settings.line, take, link->clock_ns, &link->line_free_ns[1], &link->random));
+    push_piece(&slot->out, static_cast<const unsigned char*>(bytes) + *byte_count, take, 0,
+               line_arrival_ns(link->settings.line, take, link->clock_ns, &link->line_free_ns[1], &link->random));
     *byte_count += take;
   }
   move(link, slot);
@@ -262,7 +258,7 @@ std::uint64_t look(ShapedLink* link, Slot* slot, LinkWait* wait) {
   if (state == LinkResult::later) return slot->news_ns > link->clock_ns ? slot->news_ns : kNever;
   bool failed = state == LinkResult::failed || slot->in.reset_ns <= link->clock_ns;
   std::uint64_t news_ns = failed ? 0 : pipe_news_ns(slot->in);
-  wait->can_write = wait->want_write && (failed || slot->lost || pipe_room(slot->out) > 0);
+  wait->can_write = wait->want_write && (failed || pipe_room(slot->out) > 0);
   wait->can_read = wait->want_read && news_ns <= link->clock_ns;
   return wait->want_read ? news_ns : failed ? kNever : slot->in.reset_ns;
 }

@@ -41,7 +41,7 @@ struct LinkRig {
 
   explicit LinkRig(const LinkBackend& backend, int stream_count_max = 8,
                    const NullLinkSettings& settings = NullLinkSettings(),
-                   const ShapedLinkSettings& radio = fast_radio()) {
+                   const ShapedLinkSettings& radio = fast_radio(), std::uint64_t (*clock)() = steady_ns) {
     bool shaped = &backend == &kShapedTcp || &backend == &kShapedNull;
     const LinkBackend& below = &backend == &kShapedTcp ? kTcpLink : &backend == &kShapedNull ? kNullLink : backend;
     bool simulated = &below == &kNullLink;
@@ -50,7 +50,7 @@ struct LinkRig {
     memory.resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
     options.memory = memory.data();
     options.stream_count_max = stream_count_max;
-    options.now_ns = steady_ns;
+    options.now_ns = clock;
     net = &backend;
     link = simulated ? null_link_open(options, settings, &error) : below.open(options, &error);
     REQUIRE_MESSAGE(link != nullptr, error.text);

@@ -173,6 +173,21 @@ TEST_CASE("shaped_link_close_lets_travel_what_was_written") {
   }
 }
 
+// Goal: a stream that is closing gives its place to a new one, and loses nothing. Method: a link of three places, over
+// sockets, whose line would take ten seconds.
+TEST_CASE("shaped_link_closing_gives_way_to_a_new_connection") {
+  LinkRig rig(kShapedTcp, 3, NullLinkSettings(), radio(1000, kMs));
+  int device = -1, server = -1;
+  REQUIRE_MESSAGE(rig.pair(&device, &server), rig.error.text);
+  REQUIRE(rig.write_all(device, counted_bytes(10'000)));
+  rig.net->close(rig.link, device);
+  device = rig.net->connect(rig.link, rig.address, 2000 * kMs, &rig.error);
+  CHECK_MESSAGE(device >= 0, rig.error.text);
+  LinkResult result;
+  CHECK(rig.read_all(server, 20'000, &result) == counted_bytes(10'000));
+  CHECK(result == LinkResult::ended);
+}
+
 // Goal: a radio too slow for the time that connecting is given says so then; a refusal takes a way there and back.
 // Method: a latency of 50 ms.
 TEST_CASE("shaped_link_connecting_takes_a_round_trip_at_least") {
@@ -229,6 +244,17 @@ TEST_CASE("shaped_link_refuses_what_it_has_no_memory_for") {
   CHECK(shaped_link_open(rig.link, options, settings, &rig.error) == nullptr);
   CHECK(kShapedTcp.open(options, &rig.error) == nullptr);
   CHECK(std::strstr(rig.error.text, "shaped_link_open") != nullptr);
+}
+
+// Goal: what is underway arrives even where the clock stands still, as time that was waited for has passed. Method:
+// sockets with such a clock.
+TEST_CASE("shaped_link_delivers_by_a_clock_that_stands_still") {
+  LinkRig rig(kShapedTcp, 4, NullLinkSettings(), radio(1'000'000, 5 * kMs), [] { return std::uint64_t{1}; });
+  int device = -1, server = -1;
+  REQUIRE(rig.pair(&device, &server));
+  REQUIRE(rig.write_all(server, counted_bytes(5000)));
+  LinkResult result;
+  CHECK(rig.read_all(device, 5000, &result) == counted_bytes(5000));
 }
 
 // Goal: over sockets the line takes its time, too. Method: the wall clock, whose bound above is generous as this
