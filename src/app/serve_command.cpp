@@ -114,6 +114,8 @@ int run(const ServeOptions& o) {
   while (!interrupted) step_server(serving.server, kStepNs);
   unseal_memory();
   ServerTotals totals = server_totals(*serving.server);
+  close_server(serving.server);
+  serving.server = nullptr;
   std::printf("%" PRIu64 " clients, %s frames, %s rows, %.1f MiB sent\n", totals.client_count,
               grouped(totals.frame_count).c_str(), grouped(totals.row_count).c_str(),
               static_cast<double>(totals.byte_count) / (1 << 20));

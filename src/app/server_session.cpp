@@ -1,5 +1,6 @@
 #include "app/server_session.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "app/frame.h"
@@ -9,6 +10,9 @@
 
 namespace pocketray {
 namespace {
+
+constexpr std::uint32_t kFirstPixels = 64;  // for a thread, while nothing is known of what they cost
+constexpr std::uint32_t kPartPixels = 8;    // of a row at once, at least
 
 PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 
@@ -107,6 +111,27 @@ void send_chunk(Session* s, std::uint32_t row_begin, std::uint32_t row_end) {
   s->row_count += row_count;
 }
 
+void trace(Session* s, const Span* spans, std::uint32_t span_count) {
+  Renderer* r = &s->renderer;
+  trace_with(r->workers, {spans, span_count, Aov::none, r->image.data, r->tracers.data, nullptr});
+}
+
+// The next pixels of a row, about as many for each thread.
+Slice trace_part(Session* s, std::uint32_t pixels_max) {
+  const FrameJob& job = s->job;
+  const Settings& settings = s->renderer.settings;
+  std::uint32_t begin = job.traced_columns, left = settings.width - begin;
+  std::uint32_t count = std::min(std::max(pixels_max, kPartPixels), left);
+  std::uint32_t parts = std::min(settings.threads, (count + kPartPixels - 1) / kPartPixels);
+  Span spans[kThreadCountMax];
+  for (std::uint32_t i = 0; i < parts; ++i)
+    spans[i] = {static_cast<std::uint16_t>(job.traced_begin - 1), static_cast<std::uint16_t>(begin + count * i / parts),
+                static_cast<std::uint16_t>(begin + count * (i + 1) / parts)};
+  trace(s, spans, parts);
+  if (count == left) return {1, 0, count};
+  return {0, begin + count, count};
+}
+
 }  // namespace
 
 void make_session(void* memory, std::size_t byte_count, Session* s) {
@@ -137,6 +162,7 @@ std::uint8_t* reserve_output(Session* s, std::size_t byte_count) {
     q->end -= q->begin;
     q->begin = 0;
   }
+  CHECK_LE(q->end + byte_count, q->bytes.count);
   return q->bytes.data + q->end;
 }
 
@@ -182,25 +208,31 @@ Status prepare_job(Session* s, std::uint32_t thread_count, Workers* workers, Wir
   return success();
 }
 
-std::uint32_t trace_slice(Session* s, std::uint64_t slice_ns) {
-  FrameJob* job = &s->job;
-  Renderer* r = &s->renderer;
-  std::uint32_t width = r->settings.width, threads = r->settings.threads;
-  // Enough rows for all threads to be busy to the end, in whole chunks; where that would take long, a part of a chunk.
-  std::uint32_t chunks = (2 * threads + job->chunk_rows - 1) / job->chunk_rows;
-  std::uint32_t whole = job->chunk_rows * (threads > 1 ? chunks : 1);
-  std::uint32_t done = job->request.row_end - job->traced_begin, left = job->traced_begin - job->request.row_begin;
-  std::uint32_t rows = whole - done % whole;
-  double row_ns = s->trace_ns * width;
-  if (row_ns > 0 && rows * row_ns > static_cast<double>(slice_ns)) rows = static_cast<std::uint32_t>(slice_ns / row_ns);
-  if (!(row_ns > 0) && rows > threads) rows = threads;  // nothing is known yet: feel the way
-  if (rows < 1) rows = 1;
-  if (rows > left) rows = left;
+Slice trace_slice(Session* s, std::uint64_t slice_ns) {
+  const FrameJob& job = s->job;
+  const Settings& settings = s->renderer.settings;
+  std::uint32_t pixels_max = kFirstPixels * settings.threads;
+  if (s->trace_ns > 0) {
+    double pixels = static_cast<double>(slice_ns) / s->trace_ns;
+    pixels_max = pixels < kChunkPixelsMax ? static_cast<std::uint32_t>(pixels) : kChunkPixelsMax;
+  }
+  if (job.traced_columns > 0 || pixels_max < settings.width) return trace_part(s, pixels_max);
+  // Enough rows for all threads to be busy to the end, in whole chunks.
+  std::uint32_t chunks = (2 * settings.threads + job.chunk_rows - 1) / job.chunk_rows;
+  std::uint32_t whole = job.chunk_rows * (settings.threads > 1 ? chunks : 1);
+  std::uint32_t done = job.request.row_end - job.traced_begin, left = job.traced_begin - job.request.row_begin;
+  std::uint32_t rows = std::min({whole - done % whole, pixels_max / settings.width, left});
+  trace(s, s->renderer.spans.data + job.traced_begin - rows, rows);
+  return {rows, 0, rows * settings.width};
+}
 
-  std::uint32_t begin = job->traced_begin - rows;
-  trace_with(r->workers,
-             {r->spans.data + begin, rows, Aov::none, r->image.data, r->tracers.data, r->row_ns.data + begin});
-  return rows;
+void end_slice(Session* s, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns) {
+  FrameJob* job = &s->job;
+  job->traced_begin -= slice.row_count;
+  job->traced_columns = slice.column_end;
+  job->wall_ns += wall_ns;
+  job->pixel_count += slice.pixel_count;
+  s->trace_ns = static_cast<double>(took_ns + 1) / slice.pixel_count;
 }
 
 void send_chunks(Session* s) {

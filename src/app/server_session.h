@@ -31,13 +31,19 @@ struct OutputQueue {
   std::size_t begin, end;
 };
 
-// The frame that a client waits for. Rows from traced_begin on are in the image, those from sent_begin on are sent.
+// The frame that a client waits for. Rows from traced_begin on are in the image, and of the one above the first
+// traced_columns pixels; rows from sent_begin on are sent.
 struct FrameJob {
   const StoredScene* scene;  // null: there is nothing to do
   FrameRequest request;
   bool prepared;
-  std::uint32_t chunk_rows, traced_begin, sent_begin;
+  std::uint32_t chunk_rows, traced_begin, traced_columns, sent_begin;
   std::uint64_t wall_ns, pixel_count;  // of the rows that are traced and not all sent
+};
+
+// What is traced in one go: whole rows, or pixels of one where a row takes long.
+struct Slice {
+  std::uint32_t row_count, column_end, pixel_count;  // column_end: the job's next traced_columns
 };
 
 struct Session {
@@ -65,7 +71,7 @@ struct Session {
   FrameJob job = {};
   std::uint64_t job_number = 0;        // counts jobs, of clients before this one too
   std::uint32_t frame_last = 0;        // number of the last request
-  double trace_ns = 0;                 // what a pixel took all threads, of late, the caller's to set; 0: unknown
+  double trace_ns = 0;                 // what a pixel took all threads, of late; 0: unknown
   std::uint32_t pixel_ps = 0;          // what a pixel cost the client, of late: time it had to wait included
   std::uint64_t waiting_since_ns = 0;  // for its turn; 0: it does not wait
   std::uint64_t used_ns = 0;           // share of the CPU so far
@@ -95,9 +101,10 @@ bool can_work(const Session& session);
 
 // Makes the renderer and the codec ready for the job. Fails where the request cannot be met; *code says why.
 Status prepare_job(Session* session, std::uint32_t thread_count, Workers* workers, WireError* code);
-// Traces the next rows of the job, for about `slice_ns`; returns how many. They count when the caller lowers
-// traced_begin.
-std::uint32_t trace_slice(Session* session, std::uint64_t slice_ns);
+// Traces the next pixels of the job, for about `slice_ns`.
+Slice trace_slice(Session* session, std::uint64_t slice_ns);
+// Counts them: they took the threads `took_ns`, and the client `wall_ns`.
+void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns);
 // Queues the chunks that are traced as a whole, as far as the queue may take them; the last one ends the job.
 void send_chunks(Session* session);
 

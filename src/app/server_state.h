@@ -22,8 +22,8 @@ struct Guest {
 struct Work {
   int session = -1;  // -1: none
   std::uint64_t job_number = 0;
-  std::uint32_t row_count = 0;  // 0: a frame is prepared
-  std::uint64_t begin_ns = 0, end_ns = 0, pixel_count = 0;
+  Slice slice = {};  // without pixels: a frame is prepared
+  std::uint64_t begin_ns = 0, end_ns = 0;
   platform::LinkTimer timer;  // till the emulated CPU has done it
 };
 

@@ -34,12 +34,11 @@ void begin_work(Server* server, int index) {
   std::uint64_t start = now_ns(server);
   WireError code;
   Status status;
-  work->row_count = 0;
+  work->slice = {};
   if (s->job.prepared)
-    work->row_count = trace_slice(s, kSliceNs);
+    work->slice = trace_slice(s, kSliceNs);
   else
     status = prepare_job(s, server->options.thread_count, server->workers, &code);
-  work->pixel_count = std::uint64_t(work->row_count) * s->job.request.settings.width;
   std::uint64_t now = now_ns(server), took = elapsed(start, now);
   if (!status.ok) {
     drop_job(s);
@@ -49,7 +48,7 @@ void begin_work(Server* server, int index) {
   work->begin_ns = start;
   work->end_ns = now;
   if (is_paced(server->options.pace)) {
-    took = paced_ns(server->options.pace, work->pixel_count, took);
+    took = paced_ns(server->options.pace, work->slice.pixel_count, took);
     // Who waited already when the CPU became free was begun with at that moment.
     if (s->waiting_since_ns < server->cpu_free_ns && server->cpu_free_ns < start) work->begin_ns = server->cpu_free_ns;
     if (work->begin_ns + took > now) work->end_ns = work->begin_ns + took;
@@ -65,12 +64,7 @@ void end_work(Server* server) {
   std::uint64_t took = elapsed(work->begin_ns, work->end_ns);
   s->used_ns += took;
   if (!has_job(*s) || s->job_number != work->job_number) return;
-  if (work->row_count > 0) {
-    s->job.traced_begin -= work->row_count;
-    s->trace_ns = static_cast<double>(took) / static_cast<double>(work->pixel_count);
-    s->job.wall_ns += elapsed(s->waiting_since_ns, work->end_ns);
-    s->job.pixel_count += work->pixel_count;
-  }
+  if (work->slice.pixel_count > 0) end_slice(s, work->slice, took, elapsed(s->waiting_since_ns, work->end_ns));
   s->waiting_since_ns = work->end_ns;
   send_chunks(s);
   if (s->pixel_ps) server->pixel_ps = s->pixel_ps;

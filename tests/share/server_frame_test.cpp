@@ -223,7 +223,8 @@ TEST_CASE("server_drops_what_is_replaced_or_cancelled") {
   FrameRequest request = frame_request("cornell", 1);
   client.request(request);
   rig.run_until([&] { return client.poll(), client.rows_come >= 8; });
-  request.frame = 2, request.seconds = 1;
+  request.frame = 2, request.camera_stated = true;
+  request.camera.eye = {0.3f, 1.2f, 2.5f}, request.camera.target = {0, 1, 0};
   client.request(request);
   client.wait_for_rows(48);
   CHECK(client.picture() == rendered_here(request));
@@ -288,6 +289,27 @@ TEST_CASE("server_tells_what_a_pixel_costs_now") {
   first.wait_for_rows(96);
   CHECK(first.chunks[3].pixel_ps == doctest::Approx(2e7).epsilon(0.05));
   CHECK(first.chunks.back().pixel_ps == doctest::Approx(4e7).epsilon(0.1));
+}
+
+// Goal: a small frame does not wait for a row of a large one that takes long. Method: 1 ms a pixel, rows of 1.28 s; the
+// small frame has the CPU half of the time, and the large one is whole in the end.
+TEST_CASE("server_interrupts_rows_that_take_long") {
+  ServerOptions options;
+  options.pace.ns_per_pixel = 1'000'000;
+  ServerRig rig(options);
+  ScriptedClient first(&rig), second(&rig);
+  FrameRequest large = frame_request("cube", 1, 1280, 16), small = frame_request("cube", 1, 16, 12);
+  large.chunk_rows = 3;
+  first.request(large);
+  std::uint64_t start = rig.now();
+  rig.run_until([&] { return rig.now() - start > 500 * kMs; });
+  second.request(small);
+  start = rig.now();
+  second.wait_for_rows(12);
+  CHECK(rig.now() - start < 450 * kMs);
+  CHECK(second.picture() == rendered_here(small));
+  rig.run_until([&] { return first.poll(), first.rows_come == 16; }, 30'000 * kMs);
+  CHECK(first.picture() == rendered_here(large));
 }
 
 // Goal: clients get equal shares of the CPU, whatever they ask for, and are told what that makes of a pixel. Method:
