@@ -10,6 +10,8 @@
 
 #include "app/frame.h"
 #include "app/progressive.h"
+#include "app/report.h"
+#include "app/viewer_hud.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
@@ -116,6 +118,8 @@ TEST_CASE("pace_keeps_a_fixed_time_per_pixel") {
   for (int frame = 0; frame < 20 && least_ms > wanted_ms * 1.005; ++frame)
     least_ms = std::min(least_ms, subject.trace_ms());
   CHECK(least_ms == doctest::Approx(wanted_ms).epsilon(0.005));
+  r->pace.owed_ns = -30'000'000;  // by the frame before: no matter of this one
+  CHECK(subject.trace_ms() > 0.98 * wanted_ms);
   std::uint64_t sum = 0;
   for (std::uint64_t ns : r->row_ns) sum += ns;
   CHECK(static_cast<double>(sum) == doctest::Approx(pixels * kNsPerPixel));
@@ -129,6 +133,23 @@ TEST_CASE("pace_keeps_a_fixed_time_per_pixel") {
     least = std::min(least, progressive.trace_ns);
   }
   CHECK(static_cast<double>(least) == doctest::Approx(pixels * kNsPerPixel).epsilon(0.02));
+}
+
+// Goal: the display says first what is emulated, whole. Method: the longest name, slow frames, two threads.
+TEST_CASE("pace_is_shown_in_the_first_line_of_the_display") {
+  Subject subject(2);
+  subject.r->pace.device = "miyoo-mini";
+  Progressive progressive;
+  progressive.pixels_traced = 10;
+  progressive.trace_ns = 456'780;
+  HudText text;
+  write_hud(*subject.r, progressive, CameraMode::orbit, &text);
+  CHECK(std::string(text.lines[0]) == "miyoo-mini  316 ms/frame  45678 ns/pixel  2 threads");
+  CHECK(emulation_text(subject.r->pace) == ", emulating miyoo-mini: 1 times slower");
+  subject.r->pace.device = nullptr;
+  write_hud(*subject.r, progressive, CameraMode::orbit, &text);
+  CHECK(std::string(text.lines[0]) == "315.7 ms/frame  45678 ns/pixel  2 threads");
+  CHECK(emulation_text(subject.r->pace).empty());
 }
 
 // Goal: who wants to leave does not wait for the emulated CPU. Method: a pace of hours, stopped from
