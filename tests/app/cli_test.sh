@@ -150,6 +150,7 @@ if "${run[@]}" --help | grep -q '^ *serve '; then
   expect serve_without_port 1 'HOST:PORT' serve --listen 127.0.0.1:
   expect serve_without_folder 1 'no/such/folder' serve --listen :0 --scenes no/such/folder
   expect serve_memory 1 'memory' serve --listen :0 --memory 1M
+  expect serve_scene_memory 1 '--scene-memory is' serve --listen :0 --scene-memory much
   expect serve_clients 2 'clients' serve --clients 0
   mkdir scenes && cp d.pray scenes/ && head -c 5000 c.pray >scenes/cut.pray
   "${run[@]}" serve --listen 127.0.0.1:0 --scenes scenes --threads 2 >serve.out 2>serve.err &

@@ -223,6 +223,7 @@ TEST_CASE("server_drops_what_is_replaced_or_cancelled") {
   FrameRequest request = frame_request("cornell", 1);
   client.request(request);
   rig.run_until([&] { return client.poll(), client.rows_come >= 8; });
+  rig.step();  // begins another chunk
   request.frame = 2, request.camera_stated = true;
   request.camera.eye = {0.3f, 1.2f, 2.5f}, request.camera.target = {0, 1, 0};
   client.request(request);
@@ -289,6 +290,17 @@ TEST_CASE("server_tells_what_a_pixel_costs_now") {
   first.wait_for_rows(96);
   CHECK(first.chunks[3].pixel_ps == doctest::Approx(2e7).epsilon(0.05));
   CHECK(first.chunks.back().pixel_ps == doctest::Approx(4e7).epsilon(0.1));
+  second.wait_for_rows(96);
+  CHECK(second.chunks.back().pixel_ps == doctest::Approx(2e7).epsilon(0.1));
+  ScriptedClient third(&rig);
+  const double expected[] = {4e7, 2e7, 2e7};  // its own last one; that of another where it has none
+  ScriptedClient* clients[] = {&first, &second, &third};
+  Message ping;
+  ping.type = MessageType::ping;
+  for (int i = 0; i < 3; ++i) {
+    clients[i]->send(ping);
+    CHECK(clients[i]->wait_for(MessageType::pong)->message.pong.pixel_ps == doctest::Approx(expected[i]).epsilon(0.1));
+  }
 }
 
 // Goal: a small frame does not wait for a row of a large one that takes long. Method: 1 ms a pixel, rows of 1.28 s; the

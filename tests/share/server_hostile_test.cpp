@@ -212,6 +212,20 @@ TEST_CASE("server_tells_one_client_too_many_that_it_is_busy") {
     if (i < 3) rig.run_until([&] { return ninth.poll(), ninth.closed; });
   }
   CHECK(server_client_count(*rig.server) == 8);
+  // Those that do not go by themselves are closed in time, the first ones at once where there are many.
+  std::vector<std::unique_ptr<ScriptedClient>> late;
+  for (int i = 0; i < 20; ++i) {
+    late.push_back(std::make_unique<ScriptedClient>(&rig));
+    late.back()->wait_for(MessageType::error);
+  }
+  auto poll_late = [&] {
+    for (auto& client : late) client->poll();
+    return late[19]->closed;
+  };
+  poll_late();
+  CHECK(late[11]->closed);
+  CHECK_FALSE(late[19]->closed);
+  rig.run_until(poll_late, 3000 * kMs);
   clients.pop_back();
   rig.run_until([&] { return server_client_count(*rig.server) == 7; });
   check_serves(&rig);
@@ -299,6 +313,25 @@ TEST_CASE("server_answers_in_order_however_slowly_it_is_read") {
     CHECK(client.received[i]->message.pong.id == i);
     CHECK(client.received[i]->message.pong.bytes.count == 60'000);
   }
+}
+
+// Goal: many messages that come at once are all answered at once, though no client has the server for longer than a few
+// of them take. Method: 200 pings in one write; the server may sleep for a second in every step.
+TEST_CASE("server_answers_many_messages_without_delay") {
+  ServerRig rig;
+  ScriptedClient client(&rig);
+  client.wait_for(MessageType::hello);
+  Message ping;
+  ping.type = MessageType::ping;
+  std::vector<std::uint8_t> many, one = bytes_of(ping);
+  for (int i = 0; i < 200; ++i) many.insert(many.end(), one.begin(), one.end());
+  std::uint64_t start = rig.now();
+  client.send_bytes(many);
+  while (client.received.size() < 200 && rig.now() - start < 5000 * kMs) {
+    rig.step(1000 * kMs);
+    client.poll();
+  }
+  CHECK(rig.now() - start < 100 * kMs);
 }
 
 // Goal: clients are told that the server ends. Method: close it while one waits for a frame.
