@@ -53,7 +53,7 @@ Status parse_settings(const CommonOptions& o, Settings* s) {
   s->cut_off = !o.no_cut_off;
   unsigned cores = std::thread::hardware_concurrency();
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
-  s->threads = o.threads ? o.threads : cores < 1 ? 1 : cores > kThreadCountMax ? kThreadCountMax : cores;
+  s->threads = choose_thread_count(o.threads, cores);
   return validate_settings(*s);
 }
 
@@ -109,6 +109,11 @@ Status picture_size(const CommonOptions& o, std::uint32_t* width, std::uint32_t*
   return success();
 }
 
+std::uint32_t choose_thread_count(std::uint32_t asked, unsigned core_count) {
+  if (asked > 0) return asked;
+  return core_count < 1 ? 1 : core_count > kThreadCountMax ? kThreadCountMax : core_count;
+}
+
 Status parse_isa(const std::string& text, Isa* isa) {
   *isa = best_isa();
   if (text.empty()) return success();
@@ -129,7 +134,7 @@ Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* 
   return success();
 }
 
-Status parse_bytes(const std::string& text, std::size_t* bytes) {
+Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option) {
   char* end;
   double value = std::strtod(text.c_str(), &end);
   double unit = *end == 'K' || *end == 'k'   ? 1 << 10
@@ -138,7 +143,7 @@ Status parse_bytes(const std::string& text, std::size_t* bytes) {
                                              : 1;
   if (unit > 1) ++end;
   if (end == text.c_str() || *end || !(value * unit >= 65536) || !(value * unit <= 0x1p36))
-    return failure("--memory is '%s': write it as 24M (64K … 64G)", text.c_str());
+    return failure("%s is '%s': write it as 24M (64K … 64G)", option, text.c_str());
   *bytes = static_cast<std::size_t>(value * unit);
   return success();
 }

@@ -42,13 +42,16 @@ Status picture_size(const CommonOptions& options, std::uint32_t* width, std::uin
 // The profile --device or --emulate names; null with success() where none was named.
 Status find_device(const CommonOptions& options, const platform::Device** device);
 
+// Threads to trace with: as many as are asked for, 0: one for each of so many cores.
+std::uint32_t choose_thread_count(std::uint32_t asked, unsigned core_count);
+
 // The instruction set --isa names, the best of this CPU where it names none.
 Status parse_isa(const std::string& text, Isa* isa);
 // The accelerator of that name; null for "auto".
 const AccelInfo* find_accel(const std::string& name);
 // "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
-Status parse_bytes(const std::string& text, std::size_t* bytes);
+Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option = "--memory");
 Status parse_camera(const std::string& text, Camera* camera);
 
 // Prints the warning of a scene and what it was given, one line each, on stderr.

@@ -56,8 +56,7 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
 
 Status read_options(const ServeOptions& o, ServerOptions* options) {
   RETURN_IF_ERROR(parse_bytes(o.memory, &options->client_memory_bytes));
-  unsigned cores = std::thread::hardware_concurrency();
-  options->thread_count = o.threads ? o.threads : cores < 1 ? 1 : cores > kThreadCountMax ? kThreadCountMax : cores;
+  options->thread_count = choose_thread_count(o.threads, std::thread::hardware_concurrency());
   options->client_count_max = o.clients;
   options->image_side_max = o.image_side_max;
   options->idle_timeout_ns = static_cast<std::uint64_t>(o.idle_seconds * 1e9);
@@ -75,7 +74,7 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   SceneStoreOptions store_options;
   store_options.folder = o.scenes;
   std::size_t scene_bytes;
-  RETURN_IF_ERROR(parse_bytes(o.scene_memory, &scene_bytes));
+  RETURN_IF_ERROR(parse_bytes(o.scene_memory, &scene_bytes, "--scene-memory"));
   store_options.bytes_max = scene_bytes;
   RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
   for (const std::string& warning : serving->store.warnings) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
