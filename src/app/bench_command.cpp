@@ -77,8 +77,7 @@ void print_table(const CommonOptions& options, const Renderer& r, Measurement* m
 
 int run(const CommonOptions& options, std::uint32_t frame_count, bool prices) {
   OpenScene opened;
-  Status status = open_scene(
-      options, [](const Settings&) -> std::size_t { return 0; }, &opened);
+  Status status = open_scene(options, {[](const Settings&) -> std::size_t { return 0; }}, &opened);
   if (status.ok) status = start_scene(&opened, options);
   if (!status.ok) return report(status);
   print_notes(opened);

@@ -214,7 +214,7 @@ OpenScene::~OpenScene() {
   give_block_back(block);
 }
 
-Status open_scene(const CommonOptions& o, std::size_t (*output_bytes)(const Settings&), OpenScene* opened) {
+Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* opened) {
   Settings settings;
   RETURN_IF_ERROR(parse_settings(o, &settings));
   Isa isa;
@@ -229,7 +229,8 @@ Status open_scene(const CommonOptions& o, std::size_t (*output_bytes)(const Sett
   r->accel_info = find_accel(o.accel);
   SceneStorage storage;
   RETURN_IF_ERROR(load_scene(o.scene, r, &opened->source, &storage));
-  RETURN_IF_ERROR(plan_renderer(r, storage, output_bytes(settings)));
+  if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, r));
+  RETURN_IF_ERROR(plan_renderer(r, storage, hooks.output_bytes(settings)));
   if (!o.camera.empty()) {
     Camera camera;
     RETURN_IF_ERROR(parse_camera(o.camera, &camera));

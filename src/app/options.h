@@ -1,6 +1,7 @@
 // Options that several commands share, and how they become a Renderer.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -32,8 +33,14 @@ struct OpenScene {
   ~OpenScene();
 };
 
-// Reads the options, loads the scene and plans it. `output_bytes` as plan_memory() takes it, given the settings.
-Status open_scene(const CommonOptions& options, std::size_t (*output_bytes)(const Settings&), OpenScene* opened);
+// What a command adds to opening a scene.
+struct OpenHooks {
+  std::function<std::size_t(const Settings&)> output_bytes;          // as plan_memory() takes it
+  std::function<Status(const SceneSource&, Renderer*)> loaded = {};  // between loading and planning
+};
+
+// Reads the options, loads the scene and plans it.
+Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScene* opened);
 // Builds it and starts the threads: ready for render_frame().
 Status start_scene(OpenScene* opened, const CommonOptions& options);
 

@@ -6,6 +6,7 @@
 #include "platform/file.h"
 #include "present/image_file.h"
 #include "present/png_file.h"
+#include "present/repack.h"
 
 namespace pocketray {
 namespace {
@@ -40,8 +41,13 @@ Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& s
   int row_bytes = (turned ? height : width) * format.bits_per_pixel / 8, rows = turned ? width : height;
   auto pixels =
       arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
-  pack_rows(r->image.data, width, height, 0, height, r->exposure, format, raw ? o.rotation : Rotation::none,
-            raw && o.dither, pixels.data, row_bytes);
+  Rotation rotation = raw ? o.rotation : Rotation::none;
+  if (o.packed)
+    repack_rows(o.packed_format, o.packed, o.packed_line_bytes, width, height, 0, height, format, rotation, pixels.data,
+                row_bytes);
+  else
+    pack_rows(r->image.data, width, height, 0, height, r->exposure, format, rotation, raw && o.dither, pixels.data,
+              row_bytes);
   if (raw) encode_raw(pixels.data, row_bytes, row_bytes, rows, sink);
   if (kind == Kind::ppm) encode_ppm(pixels.data, width, height, sink);
   return kind == Kind::png ? encode_png(pixels.data, width, height, &r->frame_arena, sink) : success();

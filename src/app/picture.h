@@ -11,6 +11,10 @@ struct PictureOptions {
   PixelFormat raw_format = kRgb565;  // of .raw files
   Rotation rotation = Rotation::none;
   bool dither = false;
+  // Packed already, for all kinds but .pfm: rows of so many bytes. Null: packed from renderer->image.
+  const std::uint8_t* packed = nullptr;
+  int packed_line_bytes = 0;
+  PixelFormat packed_format;
 };
 
 // What the frame arena must hold to write any of them.

@@ -26,7 +26,7 @@ Status print_prices(const CommonOptions& options, OpenScene* opened) {
 
 int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
-  Status status = open_scene(options, picture_bytes, &opened);
+  Status status = open_scene(options, {picture_bytes}, &opened);
   const Renderer& r = opened.renderer;
   if (r.memory.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);

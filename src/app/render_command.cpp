@@ -8,6 +8,7 @@
 #include "app/picture.h"
 #include "app/progress.h"
 #include "app/report.h"
+#include "app/sharing.h"
 #include "base/seal.h"
 
 namespace pocketray {
@@ -19,6 +20,7 @@ struct RenderOptions {
   double seconds = 0;
   int rotation = 0;
   bool dither = false, plan = false;
+  SharingOptions sharing;
 };
 
 struct Sequence {
@@ -89,12 +91,29 @@ struct Job {
   Sequence sequence;
   Aov aov;
   PictureOptions picture;
+  Sharing* sharing = nullptr;
 };
+
+constexpr std::uint64_t kProgressNs = 100'000'000;
+
+Status render_shared_with_progress(Renderer* r, const Job& job, double seconds, std::uint64_t rows_before,
+                                   Progress* progress, bool* complete) {
+  std::uint64_t start = clock_ns();
+  RETURN_IF_ERROR(begin_shared(job.sharing, r, seconds));
+  do {
+    *complete = advance_shared(job.sharing, r, clock_ns() + kProgressNs, &interrupted);
+    show_progress(progress, rows_before + shared_rows_done(*job.sharing));
+  } while (!*complete && !interrupted);
+  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  return success();
+}
 
 // Renders row by row bands, so that progress can be shown and an interrupt loses no more than a frame.
 Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
   double seconds =
       job.sequence.numbered ? frame / static_cast<double>(r->scene.info.frames_per_second) : job.options.seconds;
+  std::uint64_t rows_before = std::uint64_t(frame - job.sequence.first) * r->settings.height;
+  if (job.sharing) return render_shared_with_progress(r, job, seconds, rows_before, progress, complete);
   RETURN_IF_ERROR(prepare_frame(r, seconds));
   for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
   const std::uint32_t band = 4 * kTileRows * r->settings.threads;
@@ -106,7 +125,7 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
         &r->pace, r->workers,
         {r->spans.data + row, rows, job.aov, r->image.data, r->tracers.data, r->row_ns.data + row, &interrupted});
     *complete = done == rows;
-    show_progress(progress, std::uint64_t(frame - job.sequence.first) * r->settings.height + row + rows);
+    show_progress(progress, rows_before + row + rows);
   }
   r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
@@ -151,6 +170,36 @@ void print_summary(const Job& job, const Renderer& r, std::size_t file_count, co
                 static_cast<double>(counts.left_out_max * r.exposure) * 255 * 12.92);
 }
 
+void print_share(const Sharing& sharing) {
+  ShareTotals t = share_totals(sharing);
+  if (t.frames == 0) return;
+  double rows = static_cast<double>(t.device_rows + t.server_rows), frames = static_cast<double>(t.frames);
+  std::printf("  shared: the device rendered %.0f %% of the rows, servers sent %.1f kB a frame",
+              100 * static_cast<double>(t.device_rows) / rows, static_cast<double>(t.bytes_in) * 1e-3 / frames);
+  if (t.local_ns > 0) std::printf("; %.2f times as fast as alone, as predicted", t.local_ns / t.known_ns);
+  std::printf("\n");
+}
+
+// Pictures that servers cannot send are for the device alone.
+Status check_shareable(const RenderOptions& o, Aov aov) {
+  if (o.sharing.servers.empty()) return success();
+  if (aov != Aov::none) return failure("--server sends colours alone: leave it out, or --aov");
+  if (o.output.rfind(".pfm") == o.output.size() - 4)
+    return failure("--server sends displayed levels and .pfm takes radiance: leave it out, or write .png or .ppm");
+  return success();
+}
+
+Status start_sharing_for(const RenderOptions& o, Renderer* r, Job* job) {
+  if (!job->sharing) return success();
+  bool raw = o.output.rfind(".raw") == o.output.size() - 4;
+  RETURN_IF_ERROR(start_sharing(job->sharing, r, raw && job->picture.raw_format.bits_per_pixel == 16, raw && o.dither));
+  SharedPicture shared = shared_picture(*job->sharing);
+  job->picture.packed = shared.pixels;
+  job->picture.packed_line_bytes = shared.line_bytes;
+  job->picture.packed_format = shared.format;
+  return success();
+}
+
 Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files, double* trace_ms, bool* stopped) {
   const Sequence& s = job.sequence;
   files->reserve(s.last - s.first + 1);
@@ -191,9 +240,19 @@ int run(const RenderOptions& options) {
   if (status.ok && !rotation_from_degrees(options.rotation, &job.picture.rotation))
     status = failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
   job.picture.dither = options.dither;
+  if (status.ok) status = check_shareable(options, job.aov);
+  const platform::Device* device = nullptr;
+  if (status.ok) status = find_device(options.common, &device);
+  if (status.ok)
+    status = open_sharing(options.sharing, options.common.emulate.empty() ? nullptr : device, &job.sharing);
+  std::unique_ptr<Sharing, void (*)(Sharing*)> closing(job.sharing, close_sharing);
   OpenScene opened;
-  if (status.ok) status = open_scene(options.common, picture_bytes, &opened);
+  OpenHooks hooks;
+  hooks.output_bytes = [&](const Settings& s) { return picture_bytes(s) + sharing_bytes(job.sharing, s); };
+  hooks.loaded = [&](const SceneSource& source, Renderer* r) { return name_shared_scene(job.sharing, source, r); };
+  if (status.ok) status = open_scene(options.common, hooks, &opened);
   if (status.ok) status = start_scene(&opened, options.common);
+  if (status.ok) status = start_sharing_for(options, &opened.renderer, &job);
   if (!status.ok) return report(status);
   print_notes(opened);
   std::vector<std::string> files;
@@ -202,6 +261,7 @@ int run(const RenderOptions& options) {
   status = render_files(&opened.renderer, job, &files, &trace_ms, &stopped);
   if (!files.empty() && options.common.json != "-")
     print_summary(job, opened.renderer, files.size(), files.back(), trace_ms);
+  if (!files.empty() && options.common.json != "-" && job.sharing) print_share(*job.sharing);
   if (status.ok && !options.common.json.empty())
     status = write_json(options.common.json, to_json(job, opened.renderer, files, trace_ms));
   if (status.ok && stopped) {
@@ -218,6 +278,7 @@ void add_render_command(CLI::App* program, int* exit_status) {
   auto o = std::make_shared<RenderOptions>();
   CLI::App* command = program->add_subcommand("render", "render a frame or a sequence into files");
   add_scene_options(command, &o->common);
+  add_sharing_options(command, &o->sharing);
   command
       ->add_option("-o,--output", o->output,
                    "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")

@@ -50,8 +50,8 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
 // The request takes the place of what is left of the one before, whatever becomes of it.
 void take_request(Server* server, Session* s, const FrameRequest& request) {
   const Settings& settings = request.settings;
-  bool is_late = request.frame <= s->frame_last;
-  if (is_late) return refuse(server, s, WireError::bad_request, request.frame, "its number has been used");
+  bool is_late = request.frame < s->frame_last;  // further rows of the same frame may be asked for
+  if (is_late) return refuse(server, s, WireError::bad_request, request.frame, "a later frame was asked for before");
   drop_job(s);
   ++s->job_number;
   s->frame_last = request.frame;

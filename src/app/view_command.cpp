@@ -6,6 +6,7 @@
 #include "app/interrupt.h"
 #include "app/options.h"
 #include "app/report.h"
+#include "app/sharing.h"
 #include "app/viewer.h"
 #include "base/seal.h"
 
@@ -19,10 +20,17 @@ struct Loading {
   std::atomic<bool> done{false};
   std::thread thread;
 
-  explicit Loading(const CommonOptions& options)
-      : thread([this, &options] {
-          status = open_scene(options, viewer_bytes, opened.get());
+  Loading(const CommonOptions& options, Viewer* viewer)
+      : thread([this, &options, viewer] {
+          Sharing* sharing = viewer->sharing;
+          OpenHooks hooks;
+          hooks.output_bytes = [=](const Settings& s) { return viewer_bytes(s) + sharing_bytes(sharing, s); };
+          hooks.loaded = [=](const SceneSource& source, Renderer* r) { return name_shared_scene(sharing, source, r); };
+          status = open_scene(options, hooks, opened.get());
           if (status.ok) status = start_scene(opened.get(), options);
+          if (status.ok && sharing)
+            status =
+                start_sharing(sharing, &opened->renderer, viewer->format.bits_per_pixel == 16, viewer->options.dither);
           done = true;
         }) {}
   ~Loading() { thread.join(); }
@@ -36,7 +44,7 @@ bool wait_for(Viewer* viewer, Loading* loading) {
   return true;
 }
 
-int run(CommonOptions common, ViewOptions view) {
+int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing) {
   Viewer viewer;
   Settings size;
   const platform::Device* device;
@@ -48,10 +56,12 @@ int run(CommonOptions common, ViewOptions view) {
   if (status.ok)
     status =
         open_viewer(view, common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height), &viewer);
+  if (status.ok) status = open_sharing(sharing, view.emulated, &viewer.sharing);
+  std::unique_ptr<Sharing, void (*)(Sharing*)> closing(viewer.sharing, close_sharing);
   if (!status.ok) return report(status);
   for (bool again = true; again && status.ok;) {
     again = false;
-    Loading loading(common);
+    Loading loading(common, &viewer);
     if (!wait_for(&viewer, &loading)) break;
     status = loading.status;
     if (!status.ok) break;
@@ -76,7 +86,9 @@ void add_view_command(CLI::App* program, int* exit_status) {
   auto view = std::make_shared<ViewOptions>();
   CLI::App* command =
       program->add_subcommand("view", "show a scene in the emulator's window, or on the framebuffer of a device");
+  auto sharing = std::make_shared<SharingOptions>();
   add_scene_options(command, common.get());
+  add_sharing_options(command, sharing.get());
   command
       ->add_option("--screen", view->backend,
                    "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")
@@ -93,7 +105,7 @@ void add_view_command(CLI::App* program, int* exit_status) {
       "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and fly,\n"
       "start goes back to the scene's camera, X pauses, Y or F1 shows the display, F2 saves a screenshot, F5 reloads, "
       "Esc leaves.");
-  command->callback([=] { *exit_status = run(*common, *view); });
+  command->callback([=] { *exit_status = run(*common, *view, *sharing); });
 }
 
 }  // namespace pocketray

@@ -11,6 +11,7 @@
 #include "base/seal.h"
 #include "plan/plan_scene.h"
 #include "platform/file.h"
+#include "present/repack.h"
 
 namespace pocketray {
 namespace {
@@ -84,6 +85,17 @@ CameraInput read_input(const Viewer& v) {
   return in;
 }
 
+void pack_page(const Viewer& v, const Renderer& r, int row_begin, int row_end, const platform::Page& page) {
+  if (!v.sharing) {
+    pack_rows(r.image.data, v.width, v.height, row_begin, row_end, r.exposure, v.format, v.rotation, v.options.dither,
+              page.pixels, page.line_bytes);
+    return;
+  }
+  SharedPicture shared = shared_picture(*v.sharing);
+  repack_rows(shared.format, shared.pixels, shared.line_bytes, v.width, v.height, row_begin, row_end, v.format,
+              v.rotation, page.pixels, page.line_bytes);
+}
+
 // Packs the rows that changed and shows them.
 void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t row_begin, std::uint32_t row_end) {
   WindowCall call(*v);
@@ -92,8 +104,7 @@ void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t 
   if (page.age != 1 || quarter_turned(*v)) row_begin = 0, row_end = r.settings.height;
   if (v->hud || v->hud_shown)
     row_begin = 0, row_end = std::max(row_end, std::min<std::uint32_t>(hud_rows(text), r.settings.height));
-  pack_rows(r.image.data, v->width, v->height, static_cast<int>(row_begin), static_cast<int>(row_end), r.exposure,
-            v->format, v->rotation, v->options.dither, page.pixels, page.line_bytes);
+  pack_page(*v, r, static_cast<int>(row_begin), static_cast<int>(row_end), page);
   if (v->hud) draw_hud_text(text, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);
   v->hud_shown = v->hud;
   bool whole = quarter_turned(*v) || page.age != 1;
@@ -112,7 +123,13 @@ Status save_screenshot(Viewer* v, Renderer* r) {
     std::snprintf(path, sizeof path, "%.500s/pocketray-%04u.png", v->options.screenshot_folder.c_str(),
                   ++v->screenshot_count);
   } while (platform::file_stamp(path) != 0 && v->screenshot_count < 9999);
-  RETURN_IF_ERROR(write_picture(path, PictureOptions(), r));
+  PictureOptions picture;
+  if (v->sharing) {
+    SharedPicture shared = shared_picture(*v->sharing);
+    picture.packed = shared.pixels, picture.packed_line_bytes = shared.line_bytes;
+    picture.packed_format = shared.format;
+  }
+  RETURN_IF_ERROR(write_picture(path, picture, r));
   std::fprintf(stderr, "pocketray: saved %s\n", path);
   return success();
 }
@@ -146,6 +163,29 @@ Status step_scene(Viewer* v, Renderer* r, Loop* loop) {
     loop->seconds += static_cast<double>(elapsed);
     loop->passed = true;
   }
+  return success();
+}
+
+// The same for a frame that servers share: it shows as it comes, from both ends.
+Status step_shared(Viewer* v, Renderer* r, Loop* loop) {
+  if (loop->finished && (loop->moved || loop->passed)) {
+    RETURN_IF_ERROR(begin_shared(v->sharing, r, loop->seconds));
+    loop->moved = loop->passed = loop->finished = false;
+  }
+  if (loop->finished && v->hud == v->hud_shown) {
+    v->backend->sleep_ns(kIdleNs);
+    return success();
+  }
+  if (!loop->finished && advance_shared(v->sharing, r, clock_ns() + kSliceNs, nullptr)) {
+    loop->finished = true;
+    ++v->frames_finished;
+    if (v->options.frame_count > 0) loop->passed = true;
+  }
+  loop->hud.line_count = 0;
+  write_share_lines(*v->sharing, &loop->hud);
+  std::uint32_t begin = 0, end = 0;
+  take_shared_rows(v->sharing, &begin, &end);
+  show_rows(v, *r, loop->hud, begin, end);
   return success();
 }
 
@@ -274,7 +314,7 @@ Status run_viewer(Viewer* v, Renderer* r, bool* again) {
       if (!saved.ok) std::fprintf(stderr, "pocketray: %s\n", saved.message);
     }
     status = step_scene(v, r, &loop);
-    if (status.ok) status = step_picture(v, r, &loop);
+    if (status.ok) status = v->sharing ? step_shared(v, r, &loop) : step_picture(v, r, &loop);
   }
   arena_release(&r->frame_arena, mark);
   return status;

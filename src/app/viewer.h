@@ -4,6 +4,7 @@
 
 #include "app/camera_control.h"
 #include "app/progressive.h"
+#include "app/sharing.h"
 #include "base/status.h"
 #include "platform/devices/device.h"
 #include "platform/platform.h"
@@ -27,6 +28,7 @@ struct Viewer {
   int width = 0, height = 0;
   Rotation rotation = Rotation::none;
   PixelFormat format;
+  Sharing* sharing = nullptr;  // null: the device renders alone
   void* page_memory = nullptr;
   char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
   bool held[platform::kButtonCount] = {};

@@ -10,31 +10,30 @@
 namespace pocketray {
 namespace {
 
-void add_line(HudText* text, const char* format, ...) __attribute__((format(printf, 2, 3)));
-void add_line(HudText* text, const char* format, ...) {
-  if (text->line_count == kHudLineMax) return;
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text->lines[text->line_count++], kHudColumnMax + 1, format, arguments);
-  va_end(arguments);
-}
-
 // The names of what is on, wrapped.
 void add_effects(const EffectPlan& plan, HudText* text) {
   char line[kHudColumnMax + 1] = "";
   for (const EffectRow& row : kEffectList) {
     if (!plan.decisions[static_cast<int>(row.effect)].on) continue;
     if (std::strlen(line) + std::strlen(row.name) + 1 > static_cast<std::size_t>(kHudColumnMax)) {
-      add_line(text, "%s", line);
+      add_hud_line(text, "%s", line);
       line[0] = 0;
     }
     if (line[0]) std::strcat(line, " ");
     std::strcat(line, row.name);
   }
-  if (line[0]) add_line(text, "%s", line);
+  if (line[0]) add_hud_line(text, "%s", line);
 }
 
 }  // namespace
+
+void add_hud_line(HudText* text, const char* format, ...) {
+  if (text->line_count == kHudLineMax) return;
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text->lines[text->line_count++], kHudColumnMax + 1, format, arguments);
+  va_end(arguments);
+}
 
 void write_hud(const Renderer& r, const Progressive& p, CameraMode mode, HudText* text) {
   text->line_count = 0;
@@ -45,22 +44,22 @@ void write_hud(const Renderer& r, const Progressive& p, CameraMode mode, HudText
   double frame_ms = ns_per_pixel * static_cast<double>(r.settings.width) * r.settings.height * 1e-6;
   const char* plural = r.settings.threads == 1 ? "" : "s";
   if (r.pace.device)
-    add_line(text, "%s  %.0f ms/frame  %.0f ns/pixel  %u thread%s", r.pace.device, frame_ms, ns_per_pixel,
-             r.settings.threads, plural);
+    add_hud_line(text, "%s  %.0f ms/frame  %.0f ns/pixel  %u thread%s", r.pace.device, frame_ms, ns_per_pixel,
+                 r.settings.threads, plural);
   else
-    add_line(text, "%.1f ms/frame  %.0f ns/pixel  %u thread%s", frame_ms, ns_per_pixel, r.settings.threads, plural);
-  add_line(text, "%.0fk rays  %.2f M/s  %.0fk left out", static_cast<double>(rays) * 1e-3,
-           p.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(p.trace_ns) : 0.0,
-           static_cast<double>(counts.rays_left_out) * 1e-3);
-  add_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(r.memory.total_bytes) / (1 << 20),
-           static_cast<double>(r.memory.limit_bytes) / (1 << 20), mode == CameraMode::orbit ? "orbit" : "fly",
-           p.step > 0 ? "  refining" : "");
+    add_hud_line(text, "%.1f ms/frame  %.0f ns/pixel  %u thread%s", frame_ms, ns_per_pixel, r.settings.threads, plural);
+  add_hud_line(text, "%.0fk rays  %.2f M/s  %.0fk left out", static_cast<double>(rays) * 1e-3,
+               p.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(p.trace_ns) : 0.0,
+               static_cast<double>(counts.rays_left_out) * 1e-3);
+  add_hud_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(r.memory.total_bytes) / (1 << 20),
+               static_cast<double>(r.memory.limit_bytes) / (1 << 20), mode == CameraMode::orbit ? "orbit" : "fly",
+               p.step > 0 ? "  refining" : "");
   add_effects(r.effects, text);
 }
 
 void write_waiting(const char* what, double seconds, HudText* text) {
   text->line_count = 0;
-  add_line(text, "%s, %.1f s", what, seconds);
+  add_hud_line(text, "%s, %.1f s", what, seconds);
 }
 
 std::uint32_t hud_rows(const HudText& text) { return static_cast<std::uint32_t>(text_box_height(text.line_count, 1)); }

@@ -13,6 +13,9 @@ struct HudText {
   int line_count = 0;
 };
 
+// Adds a line, cut to the display's width, where there is room for one.
+void add_hud_line(HudText* text, const char* format, ...) __attribute__((format(printf, 2, 3)));
+
 // Milliseconds per frame, nanoseconds per pixel, rays, memory, effects on.
 void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text);
 void write_waiting(const char* what, double seconds, HudText* text);

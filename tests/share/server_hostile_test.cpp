@@ -116,21 +116,23 @@ TEST_CASE("server_refuses_requests_that_it_cannot_meet") {
   CHECK(server_client_count(*rig.server) == 1);
 }
 
-// Goal: frame numbers count up; an old or a used one is refused and disturbs nothing. Method: number 5 twice, then 3,
-// while frame 5 is rendered.
-TEST_CASE("server_refuses_frame_numbers_that_were_used") {
+// Goal: frame numbers count up; an old one is refused and disturbs nothing, the same one asks for further rows. Method:
+// number 3 while the upper half of frame 5 is rendered, then its lower half.
+TEST_CASE("server_refuses_old_frame_numbers") {
   ServerOptions options;
   options.pace.ns_per_pixel = 1000;
   ServerRig rig(options);
   ScriptedClient client(&rig);
-  FrameRequest request = frame_request("cube", 5), old = frame_request("cornell", 3);
-  client.request(request);
-  client.send_bytes(request_bytes(request));
+  FrameRequest whole = frame_request("cube", 5), upper = whole, lower = whole, old = frame_request("cornell", 3);
+  upper.row_end = lower.row_begin = 24;
+  client.request(upper);
   client.send_bytes(request_bytes(old));
-  rig.run_until([&] { return client.poll(), client.rows_come == 48 && client.received.size() == 3; });
+  rig.run_until([&] { return client.poll(), client.rows_come == 24 && client.received.size() == 2; });
   CHECK(client.received[1]->message.error.code == WireError::bad_request);
-  CHECK(client.received[2]->message.error.frame == 3);
-  CHECK(client.picture() == rendered_here(request));
+  CHECK(client.received[1]->message.error.frame == 3);
+  client.send_bytes(request_bytes(lower));
+  rig.run_until([&] { return client.poll(), client.rows_come == 48; });
+  CHECK(client.picture() == rendered_here(whole));
 }
 
 // Goal: a client that never reads costs its own buffer and is closed in time; the others go on as if it were not there.

@@ -1,0 +1,148 @@
+// Client: the device's side of the split ([Aranha07] sec. 3.2-3.3). It keeps a connection to each render server, learns
+// in an overture what they and the link can do, asks them for their rows of each frame and merges what comes with the
+// device's own. Pixels are the same from anyone, so a server that is late, wrong or gone costs time and never a pixel.
+// Everything lies in one arena; time is the link's, and nothing waits but where the link is polled.
+#pragma once
+#include "app/message_stream.h"
+#include "app/pace.h"
+#include "app/renderer.h"
+#include "split/cost_model.h"
+#include "split/merge.h"
+#include "wire/codec.h"
+
+namespace pocketray {
+
+constexpr std::uint32_t kChunkRows = kTileRows;  // rows that a server sends at once
+
+struct ClientOptions {
+  WireFormat format = WireFormat::rgb888;
+  bool dither = false;
+  SplitWish wish;
+  double cost_per_device_pixel = 0, cost_per_byte = 0;  // energy, in the unit of the wish
+  double cost_per_megabyte = 0;                         // price of 10⁶ bytes
+  double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; below 0: the best
+  bool device_goes_on = true;                           // into rows that have not come; false: for comparisons
+  Pace pace;                                            // the CPU to emulate
+  std::uint64_t connect_timeout_ns = 3'000'000'000;
+  std::uint64_t silence_timeout_ns = 3'000'000'000;  // without an answer, half a message included
+  std::uint64_t retry_ns_min = 500'000'000, retry_ns_max = 30'000'000'000;
+  void (*log)(void* context, const char* line) = nullptr;  // one line when a server is lost and when it is back
+  void* log_context = nullptr;
+};
+
+enum class ServerPhase : std::uint8_t {
+  waiting,  // for the next try to connect
+  connecting,
+  greeting,   // hello
+  asking,     // for the scene
+  measuring,  // the link: pings
+  probing,    // the server: its first rows
+  ready,
+};
+
+const char* phase_text(ServerPhase phase);
+
+// What became of a server's rows in a frame.
+struct ServerFrame {
+  std::uint32_t row_begin = 0, row_end = 0;  // asked for
+  std::uint32_t rows_come = 0;               // of them, also those that the device had already done
+  std::uint64_t asked_ns = 0, bytes = 0;
+  double render_ns = 0;  // of the rows that have come, by the server's word
+  bool open = false;     // rows are still to come
+};
+
+struct RemoteServer {
+  platform::LinkAddress address;
+  ServerPhase phase = ServerPhase::waiting;
+  MessageStream messages;
+  RowDecoder* decoder = nullptr;
+  platform::LinkTimer timer;   // of the phase: the next try, or when it counts as lost
+  std::uint64_t retry_ns = 0;  // till the next try
+  bool told = false;           // why it is not in use
+  std::uint32_t ping_id = 0;   // that an answer is awaited to; 0: none
+  std::uint32_t pings_answered = 0;
+  std::uint64_t ping_ns = 0, ping_due_ns = 0;
+  double round_trip_ns = 0, ns_per_byte = 0;
+  double probe_ns_per_pixel = 0;
+  ServerFrame frame;
+};
+
+// A frame as it went, for people and for the report.
+struct FrameShare {
+  std::uint32_t frame = 0;
+  double predicted_ns = 0;                           // by the split that was chosen; 0: nothing was known yet
+  double measured_ns = 0;                            // from begin to completion
+  double local_ns = 0;                               // predicted for the device alone; 0: not known
+  std::uint32_t device_rows = 0;                     // rendered by the device
+  std::uint32_t server_rows[kServerCountMax] = {};   // that were a server's
+  std::uint64_t server_bytes[kServerCountMax] = {};  // received for it
+  std::uint64_t bytes_in = 0, bytes_out = 0;         // on the wire, of all connections
+};
+
+// The time in which rows of a frame came in: from the first chunk, which began nobody knows when, to the last.
+struct Arrivals {
+  std::uint64_t first_ns = 0, last_ns = 0, bytes = 0;  // bytes: of the chunks behind the first
+  std::uint64_t gap_ns_max = 0;                        // between two looks at the link
+};
+
+struct Client {
+  ClientOptions options;
+  platform::Link* link = nullptr;
+  Settings settings;
+  ContentHash scene;
+  std::uint32_t server_count = 0;
+  RemoteServer servers[kServerCountMax];
+  CostModel model;
+  SplitWorkspace workspace;
+  Split split;
+  Merge merge;
+  Array<std::uint8_t> pixels;  // the merged frame in the wire's format, rows without padding
+  // The current frame.
+  FrameRequest request;
+  bool complete = true, joined = false;
+  std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
+  Arrivals arrivals;
+  double device_ns = 0;  // that its rows took, in this frame
+  std::uint32_t device_rows = 0;
+  std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_shared_rows()
+  std::uint64_t frames_shared = 0;  // since a server came into use
+  std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
+  FrameShare share;  // of the last complete frame
+};
+
+// Bytes of an arena for pictures of that size. The number of streams of the link that it takes is server_count.
+std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count);
+// The addresses are resolved; nothing has connected yet. The client stays where it has been made.
+Status make_client(const ClientOptions& options, const Settings& settings, const ContentHash& scene,
+                   platform::Link* link, const platform::LinkAddress* servers, std::uint32_t server_count, Arena* arena,
+                   Client* client);
+// Says goodbye and closes the connections.
+void close_client(Client* client);
+
+// Lets connections, overtures and arriving rows go on; waits `timeout_ns` at most for something to come.
+void advance_client(Client* client, std::uint64_t timeout_ns);
+
+// Begins a frame that the renderer is prepared for, `prepare_ns` of work ago: plans the split and asks for the servers'
+// rows. `seconds` is the time of the animation. A frame that was not finished is given up.
+void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns);
+// Rows that the device is to render next, at most `row_count_max`; false: there are none left.
+bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
+// The device has rendered them, which took it so long by the wall clock, and their pixels are in client->pixels.
+void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns);
+// Takes over what the frame told, and lets servers drop what is left of it. Called once, when all rows are there.
+void end_client_frame(Client* client);
+
+// Whether the frame has all its rows.
+inline bool has_all_rows(const Client& client) { return is_complete(client.merge); }
+// Whether all servers are in use, or given up for now: what can be known of them is known.
+bool is_settled(const Client& client);
+// Rows changed since the last call.
+bool take_shared_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
+
+std::uint64_t client_now_ns(const Client& client);
+// Where a row begins in client->pixels.
+inline std::uint8_t* shared_row(const Client& client, std::uint32_t row) {
+  return client.pixels.data + std::size_t(row) * client.settings.width * pixel_bytes(client.options.format);
+}
+
+}  // namespace pocketray

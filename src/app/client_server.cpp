@@ -1,0 +1,286 @@
+// One server as the device sees it: connection, overture, rows that come, failures.
+#include <cinttypes>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+#include "app/client_parts.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kPings = 3;                 // without a payload: the least of them is the round trip
+constexpr std::uint32_t kPingBytes = 16384;         // of the one that measures the bandwidth
+constexpr std::uint64_t kPingWaitNs = 20'000'000;   // that the device waits for an answer and does nothing else
+constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between two looks at a server that gets no rows
+constexpr double kNsPerByteMin = 1e-3;  // a link faster than a terabyte a second is one that was not measured
+
+void tell(Client* c, const char* format, ...) __attribute__((format(printf, 2, 3)));
+void tell(Client* c, const char* format, ...) {
+  if (!c->options.log) return;
+  char line[400];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  c->options.log(c->options.log_context, line);
+}
+
+void enter(Client* c, RemoteServer* s, ServerPhase phase) {
+  s->phase = phase;
+  std::uint64_t limit =
+      phase == ServerPhase::connecting ? c->options.connect_timeout_ns : c->options.silence_timeout_ns;
+  s->timer = platform::link_timer(client_now_ns(*c), limit);
+}
+
+std::uint32_t index_of(const Client& c, const RemoteServer* s) { return static_cast<std::uint32_t>(s - c.servers); }
+
+void send(Client* c, RemoteServer* s, const Message& message) {
+  if (!send_message(&s->messages, message)) lose_server(c, s, "it does not read what it is sent");
+}
+
+void send_ping(Client* c, RemoteServer* s, std::uint32_t reply_bytes) {
+  Message message;
+  message.type = MessageType::ping;
+  if (++s->ping_id == 0) ++s->ping_id;
+  message.ping = {s->ping_id, reply_bytes};
+  s->ping_ns = client_now_ns(*c);
+  send(c, s, message);
+}
+
+std::uint32_t ping_bytes(const RemoteServer& s) {
+  std::size_t room = s.messages.in.count - 64;
+  return room < kPingBytes ? static_cast<std::uint32_t>(room) : kPingBytes;
+}
+
+void connect_server(Client* c, RemoteServer* s) {
+  platform::Error error;
+  int stream = c->link->backend->connect(c->link, s->address, c->options.connect_timeout_ns, &error);
+  if (stream < 0) {
+    lose_server(c, s, error.text);
+    return;
+  }
+  start_message_stream(&s->messages, c->link, stream);
+  enter(c, s, ServerPhase::connecting);
+}
+
+void greet_server(Client* c, RemoteServer* s) {
+  restart_row_decoder(s->decoder);
+  s->pings_answered = 0, s->ping_id = 0, s->round_trip_ns = 0;
+  s->frame = ServerFrame();
+  enter(c, s, ServerPhase::greeting);
+  Message message;
+  message.type = MessageType::hello;
+  message.hello.image_side_max = static_cast<std::uint16_t>(kImageSideMax);
+  message.hello.message_bytes_max = s->messages.in.count;
+  send(c, s, message);
+}
+
+void take_hello(Client* c, RemoteServer* s, const Hello& hello) {
+  if (hello.version != kWireVersion) {
+    char reason[120];
+    std::snprintf(reason, sizeof reason, "it speaks version %u of the protocol and this program version %u: update one",
+                  hello.version, kWireVersion);
+    return lose_server(c, s, reason);
+  }
+  if (c->settings.width > hello.image_side_max || c->settings.height > hello.image_side_max)
+    return lose_server(c, s, "it does not render pictures of that size: use a smaller --size");
+  enter(c, s, ServerPhase::asking);
+  Message message;
+  message.type = MessageType::scene_query;
+  message.scene_query.hash = c->scene;
+  send(c, s, message);
+}
+
+void take_scene_entry(Client* c, RemoteServer* s, const SceneEntry& entry) {
+  if (entry.byte_count == 0)
+    return lose_server(c, s, "it does not have this scene: put the same file into the folder it serves (--scenes)");
+  enter(c, s, ServerPhase::measuring);
+  send_ping(c, s, 0);
+}
+
+// The overture's answers: first without a payload, then with one.
+void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::size_t byte_count) {
+  ++s->pings_answered;
+  if (s->pings_answered <= kPings) {
+    if (s->round_trip_ns == 0 || ns < s->round_trip_ns) s->round_trip_ns = ns;
+    return send_ping(c, s, s->pings_answered == kPings ? ping_bytes(*s) : 0);
+  }
+  double per_byte = (ns - s->round_trip_ns) / static_cast<double>(byte_count);
+  s->ns_per_byte = per_byte > kNsPerByteMin ? per_byte : kNsPerByteMin;
+  enter(c, s, ServerPhase::probing);
+}
+
+void take_pong(Client* c, RemoteServer* s, const Pong& pong) {
+  if (pong.id != s->ping_id) return;
+  double ns = static_cast<double>(client_now_ns(*c) - s->ping_ns);
+  s->ping_id = 0;
+  if (s->phase == ServerPhase::measuring) return take_measuring_pong(c, s, ns, pong.bytes.count);
+  if (s->phase != ServerPhase::ready) return;
+  observe_start(&c->model, index_of(*c, s), ns);
+  if (pong.pixel_ps > 0) observe_server_price(&c->model, index_of(*c, s), 1e-3 * pong.pixel_ps);
+}
+
+const char* error_text(WireError code) {
+  switch (code) {
+    case WireError::wrong_version:
+      return "it speaks another version of the protocol: update one of the two";
+    case WireError::malformed:
+      return "it could not read what it was sent";
+    case WireError::unknown_scene:
+      return "it does not have this scene: put the same file into the folder it serves (--scenes)";
+    case WireError::too_large:
+      return "the picture is too large for it: use a smaller --size, or serve with more --memory";
+    case WireError::bad_request:
+      return "it cannot render with these settings";
+    case WireError::busy:
+      return "it has as many clients as it takes: serve with more --clients";
+    case WireError::closing:
+      return "it was ended";
+  }
+  return "it reports an error";
+}
+
+void take_chunk(Client* c, RemoteServer* s, const RowChunk& chunk) {
+  std::uint64_t begin_ns = client_now_ns(*c);
+  if (!decode_rows(s->decoder, chunk)) return lose_server(c, s, "it sends rows that cannot be decoded");
+  std::uint64_t unpacked_ns = client_now_ns(*c) - begin_ns;
+  if (c->options.pace.slowdown > 1) {
+    std::uint64_t paced = static_cast<std::uint64_t>(static_cast<double>(unpacked_ns) * c->options.pace.slowdown);
+    work_until(c, begin_ns + paced);
+    unpacked_ns = paced;
+  }
+  std::uint32_t bytes = row_chunk_prefix_bytes() + chunk.bytes.count;
+  observe_unpack(&c->model, bytes, static_cast<double>(unpacked_ns));
+  accept_chunk(c, s, chunk, bytes);
+}
+
+void take(Client* c, RemoteServer* s, const Message& message) {
+  bool greeted = s->phase != ServerPhase::greeting;
+  if (message.type == MessageType::hello && !greeted) return take_hello(c, s, message.hello);
+  if (message.type == MessageType::scene_entry && s->phase == ServerPhase::asking)
+    return take_scene_entry(c, s, message.scene_entry);
+  if (message.type == MessageType::pong && greeted) return take_pong(c, s, message.pong);
+  if (message.type == MessageType::row_chunk && s->phase >= ServerPhase::probing)
+    return take_chunk(c, s, message.row_chunk);
+  if (message.type == MessageType::error) return lose_server(c, s, error_text(message.error.code));
+  lose_server(c, s, "it sends what it was not asked for");
+}
+
+// Whether an answer or rows are awaited.
+bool is_awaited(const Client& c, const RemoteServer& s) {
+  if (s.phase == ServerPhase::ready || s.phase == ServerPhase::probing) return s.frame.open || s.ping_id != 0;
+  (void)c;
+  return s.phase != ServerPhase::waiting;
+}
+
+void read_server(Client* c, RemoteServer* s) {
+  platform::Error error;
+  for (;;) {
+    if (!pump_message_stream(&s->messages, &error)) return lose_server(c, s, error.text);
+    bool took = false;
+    for (;;) {
+      Message message;
+      DecodeState state = take_message(&s->messages, &message);
+      if (state == DecodeState::malformed) return lose_server(c, s, "what it sends is no message of the protocol");
+      if (state == DecodeState::need_more) break;
+      took = true;
+      s->timer = platform::link_timer(client_now_ns(*c), c->options.silence_timeout_ns);
+      take(c, s, message);
+      if (s->phase == ServerPhase::waiting) return;
+    }
+    if (!took) return;
+  }
+}
+
+}  // namespace
+
+const char* phase_text(ServerPhase phase) {
+  switch (phase) {
+    case ServerPhase::waiting:
+      return "not in reach";
+    case ServerPhase::connecting:
+      return "connecting";
+    case ServerPhase::greeting:
+    case ServerPhase::asking:
+    case ServerPhase::measuring:
+    case ServerPhase::probing:
+      return "measuring";
+    case ServerPhase::ready:
+      break;
+  }
+  return "ready";
+}
+
+void lose_server(Client* c, RemoteServer* s, const char* reason) {
+  close_message_stream(&s->messages);
+  std::uint32_t i = index_of(*c, s);
+  c->model.servers[i].connected = false;
+  s->frame.open = false;
+  s->phase = ServerPhase::waiting;
+  std::uint64_t next = 2 * s->retry_ns;
+  s->retry_ns = next < c->options.retry_ns_min   ? c->options.retry_ns_min
+                : next > c->options.retry_ns_max ? c->options.retry_ns_max
+                                                 : next;
+  s->timer = platform::link_timer(client_now_ns(*c), s->retry_ns);
+  const char* name = s->address.text;
+  bool named = std::strncmp(reason, name, std::strlen(name)) == 0;  // the link's errors begin with it
+  if (!s->told)
+    tell(c, "server %s%s%s; going on without it, and trying again", named ? "" : name, named ? "" : ": ", reason);
+  s->told = true;
+}
+
+void flush_server(Client* c, RemoteServer* s) {
+  platform::Error error;
+  if (s->phase != ServerPhase::waiting && !flush_message_stream(&s->messages, &error)) lose_server(c, s, error.text);
+}
+
+void server_is_ready(Client* c, RemoteServer* s) {
+  s->phase = ServerPhase::ready;
+  s->ping_due_ns = client_now_ns(*c) + kIdlePingNs;
+  c->model.servers[index_of(*c, s)].connected = true;
+  if (s->told) tell(c, "server %s is in use again", s->address.text);
+  s->told = false;
+  s->retry_ns = 0;
+}
+
+void advance_server(Client* c, RemoteServer* s) {
+  std::uint64_t now = client_now_ns(*c);
+  if (s->phase == ServerPhase::waiting) {
+    if (platform::link_timer_left(&s->timer, now) == 0) connect_server(c, s);
+    return;
+  }
+  if (s->phase == ServerPhase::connecting) {
+    platform::Error error;
+    platform::LinkResult result = c->link->backend->connected(c->link, s->messages.stream, &error);
+    if (result == platform::LinkResult::failed) return lose_server(c, s, error.text);
+    if (result != platform::LinkResult::done) return;
+    greet_server(c, s);
+  }
+  read_server(c, s);
+  if (s->phase == ServerPhase::waiting) return;
+  if (!is_awaited(*c, *s)) {
+    s->timer = platform::link_timer(now, c->options.silence_timeout_ns);
+    if (s->phase == ServerPhase::ready && now >= s->ping_due_ns) {
+      s->ping_due_ns = now + kIdlePingNs;
+      send_ping(c, s, 0);
+    }
+  } else if (platform::link_timer_left(&s->timer, client_now_ns(*c)) == 0) {
+    return lose_server(c, s, "it does not answer");
+  }
+  flush_server(c, s);
+}
+
+std::uint64_t wait_wanted_ns(const Client& c) {
+  std::uint64_t wanted = 0;
+  for (std::uint32_t i = 0; i < c.server_count; ++i) {
+    const RemoteServer& s = c.servers[i];
+    if (s.phase == ServerPhase::measuring && s.ping_id != 0) {
+      std::uint64_t since = client_now_ns(c) - s.ping_ns;
+      if (since < kPingWaitNs && kPingWaitNs - since > wanted) wanted = kPingWaitNs - since;
+    }
+  }
+  return wanted;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,23 @@
+// sharing.h for builds without a network: there are no options that would ask for it.
+#include "app/sharing.h"
+
+namespace pocketray {
+
+void add_sharing_options(CLI::App*, SharingOptions*) {}
+Status open_sharing(const SharingOptions&, const platform::Device*, Sharing** sharing) {
+  *sharing = nullptr;
+  return success();
+}
+void close_sharing(Sharing*) {}
+std::size_t sharing_bytes(const Sharing*, const Settings&) { return 0; }
+Status name_shared_scene(Sharing*, const SceneSource&, Renderer*) { return success(); }
+Status start_sharing(Sharing*, Renderer*, bool, bool) { return success(); }
+Status begin_shared(Sharing*, Renderer*, double) { return success(); }
+bool advance_shared(Sharing*, Renderer*, std::uint64_t, const std::atomic<bool>*) { return true; }
+SharedPicture shared_picture(const Sharing&) { return {}; }
+bool take_shared_rows(Sharing*, std::uint32_t*, std::uint32_t*) { return false; }
+std::uint32_t shared_rows_done(const Sharing&) { return 0; }
+void write_share_lines(const Sharing&, HudText*) {}
+ShareTotals share_totals(const Sharing&) { return {}; }
+
+}  // namespace pocketray

@@ -1,0 +1,198 @@
+#include "app/sharing.h"
+
+#include <cstdlib>
+#include <new>
+
+#include "app/scene_identity.h"
+#include "app/shared_frame.h"
+#include "platform/net/shaped_link.h"
+#include "platform/net/tcp.h"
+
+namespace pocketray {
+
+struct Sharing {
+  SharingOptions options;
+  std::vector<platform::LinkAddress> addresses;
+  std::vector<std::max_align_t> tcp_memory, radio_memory;
+  platform::Link* tcp = nullptr;
+  platform::Link* link = nullptr;  // tcp, or the emulated radio over it
+  ContentHash scene;
+  Client client;
+  bool started = false;
+  ShareTotals totals;
+};
+
+namespace {
+
+constexpr platform::LinkBackend const& kNet = platform::kTcpLink;
+
+platform::LinkOptions link_options(int stream_count_max, std::size_t byte_count,
+                                   std::vector<std::max_align_t>* memory) {
+  memory->resize(byte_count / sizeof(std::max_align_t) + 1);
+  platform::LinkOptions options;
+  options.memory = memory->data();
+  options.memory_bytes = memory->size() * sizeof(std::max_align_t);
+  options.stream_count_max = stream_count_max;
+  options.now_ns = clock_ns;
+  return options;
+}
+
+Status open_link(const platform::Device* emulated, Sharing* s) {
+  int streams = static_cast<int>(s->addresses.size());
+  platform::Error error;
+  s->tcp = s->link = kNet.open(link_options(streams, kNet.need(streams), &s->tcp_memory), &error);
+  if (s->tcp && emulated) {
+    platform::ShapedLinkSettings radio = platform::shaped_link_settings(*emulated);
+    std::size_t need = platform::shaped_link_need(streams, radio);
+    s->link = platform::shaped_link_open(s->tcp, link_options(streams, need, &s->radio_memory), radio, &error);
+  }
+  return s->link ? success() : failure("%s", error.text);
+}
+
+void print_line(void*, const char* line) { std::fprintf(stderr, "pocketray: %s\n", line); }
+
+WireFormat wire_format(bool small_pixels) { return small_pixels ? WireFormat::rgb565 : WireFormat::rgb888; }
+
+Status check(const SharingOptions& o) {
+  if (o.servers.size() > kServerCountMax)
+    return failure("--server is given %zu times: at most %u servers take part", o.servers.size(), kServerCountMax);
+  if (o.device_share > 1) return failure("--share is %g: it must lie in 0 … 1", o.device_share);
+  for (double x : {o.price, o.energy_pixel, o.energy_byte, o.cost_weight_ms, o.cost_cap})
+    if (!(x >= 0 && x < 1e30)) return failure("prices, energies and their weights must not be negative");
+  if (o.cost_weight_ms > 0 && o.cost_cap > 0)
+    return failure("--cost-weight and --cost-cap exclude each other: give one of them");
+  return success();
+}
+
+SplitWish wish_of(const SharingOptions& o) {
+  SplitWish wish;
+  if (o.cost_weight_ms > 0) wish.goal = SplitGoal::time_and_cost, wish.ns_per_cost = o.cost_weight_ms * 1e6;
+  if (o.cost_cap > 0) wish.goal = SplitGoal::time_under_cap, wish.cap = o.cost_cap;
+  return wish;
+}
+
+}  // namespace
+
+void add_sharing_options(CLI::App* command, SharingOptions* o) {
+  const char* group = "Sharing frames with render servers";
+  command
+      ->add_option("--server", o->servers,
+                   "HOST:PORT of a `pocketray serve` that takes a share of every frame; may be given several times")
+      ->allow_extra_args(false)
+      ->group(group);
+  command->add_option("--share", o->device_share, "the device's share of the rows, 0 … 1, instead of the best")
+      ->group(group);
+  command->add_option("--price", o->price, "what 10^6 bytes from a server cost, in any unit")->group(group);
+  command->add_option("--energy-pixel", o->energy_pixel, "what rendering a pixel costs the device, in that unit")
+      ->group(group);
+  command->add_option("--energy-byte", o->energy_byte, "what receiving a byte costs the device, in that unit")
+      ->group(group);
+  command->add_option("--cost-weight", o->cost_weight_ms, "milliseconds that a unit of cost is worth: weigh both")
+      ->group(group);
+  command->add_option("--cost-cap", o->cost_cap, "cost that a frame may have: the fastest that keeps to it")
+      ->group(group);
+}
+
+Status open_sharing(const SharingOptions& options, const platform::Device* emulated, Sharing** sharing) {
+  *sharing = nullptr;
+  if (options.servers.empty()) return success();
+  RETURN_IF_ERROR(check(options));
+  auto s = std::make_unique<Sharing>();
+  s->options = options;
+  for (const std::string& server : options.servers) {
+    platform::LinkAddress address;
+    platform::Error error;
+    if (!kNet.resolve(server.c_str(), &address, &error)) return failure("--server %s", error.text);
+    s->addresses.push_back(address);
+  }
+  RETURN_IF_ERROR(open_link(emulated, s.get()));
+  *sharing = s.release();
+  return success();
+}
+
+void close_sharing(Sharing* s) {
+  if (!s) return;
+  if (s->started) close_client(&s->client);
+  if (s->link != s->tcp) s->link->backend->close_all(s->link);
+  kNet.close_all(s->tcp);
+  delete s;
+}
+
+std::size_t sharing_bytes(const Sharing* s, const Settings& settings) {
+  if (!s) return 0;
+  return client_need(settings, WireFormat::rgb888, static_cast<std::uint32_t>(s->addresses.size()));
+}
+
+Status name_shared_scene(Sharing* s, const SceneSource& source, Renderer* renderer) {
+  return s ? identify_scene(source, renderer, &s->scene) : success();
+}
+
+Status start_sharing(Sharing* s, Renderer* r, bool small_pixels, bool dither) {
+  if (s->started) close_client(&s->client);
+  ClientOptions options;
+  options.format = wire_format(small_pixels);
+  options.dither = dither;
+  options.wish = wish_of(s->options);
+  options.cost_per_device_pixel = s->options.energy_pixel;
+  options.cost_per_byte = s->options.energy_byte;
+  options.cost_per_megabyte = s->options.price;
+  options.device_share = s->options.device_share;
+  options.pace = r->pace;
+  options.log = print_line;
+  s->totals = ShareTotals();
+  s->started = true;
+  return make_client(options, r->settings, s->scene, s->link, s->addresses.data(),
+                     static_cast<std::uint32_t>(s->addresses.size()), &r->frame_arena, &s->client);
+}
+
+Status begin_shared(Sharing* s, Renderer* r, double seconds) { return begin_shared_frame(r, &s->client, seconds); }
+
+bool advance_shared(Sharing* s, Renderer* r, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
+  if (!advance_shared_frame(r, &s->client, deadline_ns, stop)) return false;
+  const FrameShare& share = s->client.share;
+  ShareTotals* t = &s->totals;
+  ++t->frames;
+  t->device_rows += share.device_rows;
+  for (std::uint32_t rows : share.server_rows) t->server_rows += rows;
+  t->bytes_in += share.bytes_in, t->bytes_out += share.bytes_out;
+  if (share.local_ns > 0) t->local_ns += share.local_ns, t->known_ns += share.measured_ns;
+  return true;
+}
+
+SharedPicture shared_picture(const Sharing& s) {
+  WireFormat format = s.client.options.format;
+  return {s.client.pixels.data, static_cast<int>(s.client.settings.width * pixel_bytes(format)),
+          format == WireFormat::rgb565 ? kRgb565 : kRgb888};
+}
+
+bool take_shared_rows(Sharing* s, std::uint32_t* row_begin, std::uint32_t* row_end) {
+  return take_shared_rows(&s->client, row_begin, row_end);
+}
+
+std::uint32_t shared_rows_done(const Sharing& s) { return s.client.merge.row_count_done; }
+
+void write_share_lines(const Sharing& s, HudText* text) {
+  const Client& c = s.client;
+  const FrameShare& f = c.share;
+  if (f.measured_ns > 0) {
+    if (f.local_ns > 0)
+      add_hud_line(text, "%.1f ms, predicted %.1f, alone %.1f: %.1f times", f.measured_ns * 1e-6, f.predicted_ns * 1e-6,
+                   f.local_ns * 1e-6, f.local_ns / f.measured_ns);
+    else
+      add_hud_line(text, "%.1f ms  device alone so far", f.measured_ns * 1e-6);
+    add_hud_line(text, "device %u rows  %.1f kB in  %.1f kB out", f.device_rows, static_cast<double>(f.bytes_in) * 1e-3,
+                 static_cast<double>(f.bytes_out) * 1e-3);
+  }
+  for (std::uint32_t i = 0; i < c.server_count; ++i) {
+    const RemoteServer& server = c.servers[i];
+    if (server.phase == ServerPhase::ready)
+      add_hud_line(text, "%s %u rows  %.1f kB", server.address.text, f.server_rows[i],
+                   static_cast<double>(f.server_bytes[i]) * 1e-3);
+    else
+      add_hud_line(text, "%s %s", server.address.text, phase_text(server.phase));
+  }
+}
+
+ShareTotals share_totals(const Sharing& s) { return s.totals; }
+
+}  // namespace pocketray

@@ -1,0 +1,61 @@
+// Frames shared with render servers, as the commands use it. A build without a network has no_sharing.cpp in its place.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "app/renderer.h"
+#include "app/source.h"
+#include "app/viewer_hud.h"
+#include "platform/devices/device.h"
+#include "present/pack.h"
+
+namespace pocketray {
+
+struct SharingOptions {
+  std::vector<std::string> servers;
+  double device_share = -1;  // fixed; below 0: the best
+  double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
+};
+void add_sharing_options(CLI::App* command, SharingOptions* options);
+
+struct Sharing;
+
+// Finds the servers' addresses, which may take the system a while; *sharing is null where none was named. `emulated`:
+// the device whose radio is to be emulated, or null.
+Status open_sharing(const SharingOptions& options, const platform::Device* emulated, Sharing** sharing);
+// Null is allowed, here and below where it says so.
+void close_sharing(Sharing* sharing);
+
+// What the frame arena must hold for it. Null: nothing.
+std::size_t sharing_bytes(const Sharing* sharing, const Settings& settings);
+// Between loading and planning a scene: which one it is. Null: nothing happens.
+Status name_shared_scene(Sharing* sharing, const SceneSource& source, Renderer* renderer);
+// With the renderer built: ready for frames, which come as pixels of 24 bits, or of 16 where `small_pixels`.
+Status start_sharing(Sharing* sharing, Renderer* renderer, bool small_pixels, bool dither);
+
+// A frame: begin, then advance until about `deadline_ns` by clock_ns() until it is complete. A frame that was begun and
+// not completed is given up by the next.
+Status begin_shared(Sharing* sharing, Renderer* renderer, double seconds);
+bool advance_shared(Sharing* sharing, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop);
+
+// The merged picture: rows without padding, the formats above. Its rows that changed since the last call.
+struct SharedPicture {
+  const std::uint8_t* pixels;
+  int line_bytes;
+  PixelFormat format;
+};
+SharedPicture shared_picture(const Sharing& sharing);
+bool take_shared_rows(Sharing* sharing, std::uint32_t* row_begin, std::uint32_t* row_end);
+std::uint32_t shared_rows_done(const Sharing& sharing);
+
+// Who rendered what in the last complete frame, for people: rows, times, bytes, gain. No memory is taken.
+void write_share_lines(const Sharing& sharing, HudText* text);
+
+struct ShareTotals {
+  std::uint64_t frames = 0, device_rows = 0, server_rows = 0, bytes_in = 0, bytes_out = 0;
+  double local_ns = 0, known_ns = 0;  // predicted for the device alone, and measured, of frames that had a prediction
+};
+ShareTotals share_totals(const Sharing& sharing);
+
+}  // namespace pocketray

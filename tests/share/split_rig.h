@@ -1,0 +1,65 @@
+// A device and its servers in one simulated world: one link, one clock, emulated CPUs. What the device waits for lets
+// the servers work, so that a frame takes the same course every time.
+#pragma once
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/server.h"
+#include "app/shared_frame.h"
+#include "platform/null/null_link.h"
+#include "scene/builtin_helpers.h"
+#include "support/generated_scene.h"
+#include "support/scripted_client.h"
+
+namespace pocketray {
+
+inline platform::NullLinkSettings fine_clock() {
+  platform::NullLinkSettings line;
+  line.clock_step_ns = 50;
+  return line;
+}
+
+struct SplitRigOptions {
+  const char* scene = "cornell";
+  std::uint32_t width = 64, height = 48;
+  std::uint32_t server_count = 1;
+  double device_ns = 1000;             // per pixel
+  std::vector<double> server_ns = {};  // per pixel; fewer than servers: the last one's, none: 100
+  platform::NullLinkSettings line = fine_clock();
+  ClientOptions client;
+};
+
+struct SplitRig {
+  SplitRigOptions options;
+  std::vector<std::max_align_t> memory;
+  std::vector<unsigned char> client_memory;
+  platform::Link* link = nullptr;
+  std::vector<Server*> servers;
+  std::vector<platform::LinkAddress> addresses;
+  std::unique_ptr<BuiltScene> built;
+  std::unique_ptr<TestRenderer> device;
+  Client client;
+  std::vector<std::string> log;
+  bool stepping = false;
+
+  explicit SplitRig(const SplitRigOptions& options);
+  ~SplitRig();
+  SplitRig(const SplitRig&) = delete;
+  SplitRig& operator=(const SplitRig&) = delete;
+
+  std::uint64_t now() { return platform::kNullLink.now_ns(link); }
+  void stop_server(std::uint32_t index);
+  void start_server(std::uint32_t index);
+  // A frame by client and servers; it is compared with the device's own.
+  const FrameShare& frame(double seconds);
+  // Lets time pass without a frame.
+  void idle(std::uint64_t ns);
+  bool logged(const std::string& text) const;
+  // The frame as the device alone renders it.
+  std::vector<std::uint8_t> local_pixels();
+};
+
+}  // namespace pocketray
