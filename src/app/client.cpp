@@ -53,10 +53,6 @@ double device_pixel_ns(const Client& c) {
   return count ? sum / (width * count) : 0;
 }
 
-std::uint8_t deflate_level(double ns_per_byte) {
-  return ns_per_byte < kDeflateNsPerByte ? 0 : ns_per_byte < kDeflateMoreNsPerByte ? 1 : 6;
-}
-
 // Asks a server for rows; those at the end that are done are left out.
 void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint32_t row_end) {
   auto is_done = [&](std::uint32_t row) {
@@ -72,8 +68,8 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
   message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(kChunkRows, c->settings.height));
   message.frame_request.deflate_level = deflate_level(s->ns_per_byte);
   if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
-  std::uint64_t bytes = s->frame.bytes;
-  s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, 0, true};
+  std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
+  s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};
   s->timer = platform::link_timer(s->frame.asked_ns, c->options.silence_timeout_ns);
   flush_server(c, s);
 }
@@ -230,6 +226,10 @@ void cancel_rest(Client* c) {
 
 std::uint64_t client_now_ns(const Client& c) { return c.link->backend->now_ns(c.link); }
 
+std::uint8_t deflate_level(double ns_per_byte) {
+  return ns_per_byte < kDeflateNsPerByte ? 0 : ns_per_byte < kDeflateMoreNsPerByte ? 1 : 6;
+}
+
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count) {
   CodecShape shape = codec_shape(settings, format);
   std::size_t each = message_stream_need(in_bytes(shape), kOutBytes) + row_decoder_need(shape);
@@ -313,6 +313,7 @@ void advance_client(Client* c, std::uint64_t timeout_ns) {
 void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32_t byte_count) {
   std::uint32_t begin = chunk.row_begin, end = begin + chunk.row_count, server = index_of(*c, s);
   s->frame.bytes += byte_count;
+  s->frame.row_bytes += chunk.bytes.count;
   bool current = chunk.frame == c->request.frame && !c->complete;
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
@@ -407,6 +408,7 @@ void end_client_frame(Client* c) {
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     share->server_rows[i] = count_rows(c->merge, i);
     share->server_bytes[i] = c->servers[i].frame.bytes;
+    share->row_bytes += c->servers[i].frame.row_bytes;
     share->bytes_in += c->servers[i].messages.bytes_in, share->bytes_out += c->servers[i].messages.bytes_out;
   }
   auto since = [](std::uint64_t now, std::uint64_t before) { return now > before ? now - before : 0; };

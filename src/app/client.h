@@ -47,8 +47,9 @@ struct ServerFrame {
   std::uint32_t row_begin = 0, row_end = 0;  // asked for
   std::uint32_t rows_come = 0;               // of them, also those that the device had already done
   std::uint64_t asked_ns = 0, bytes = 0;
-  double render_ns = 0;  // of the rows that have come, by the server's word
-  bool open = false;     // rows are still to come
+  std::uint64_t row_bytes = 0;  // of them, what the rows take without their messages
+  double render_ns = 0;         // of the rows that have come, by the server's word
+  bool open = false;            // rows are still to come
 };
 
 struct RemoteServer {
@@ -76,6 +77,7 @@ struct FrameShare {
   std::uint32_t device_rows = 0;                     // rendered by the device
   std::uint32_t server_rows[kServerCountMax] = {};   // that were a server's
   std::uint64_t server_bytes[kServerCountMax] = {};  // received for it
+  std::uint64_t row_bytes = 0;                       // received, of the rows alone, without their messages
   std::uint64_t bytes_in = 0, bytes_out = 0;         // on the wire, of all connections
 };
 
@@ -105,10 +107,13 @@ struct Client {
   double device_ns = 0;  // that its rows took, in this frame
   std::uint32_t device_rows = 0;
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_shared_rows()
-  std::uint64_t frames_shared = 0;  // since a server came into use
+  std::uint64_t frames_shared = 0;               // since a server came into use
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
   FrameShare share;  // of the last complete frame
 };
+
+// The level at which rows are asked for from a link of that speed, as zlib counts.
+std::uint8_t deflate_level(double ns_per_byte);
 
 // Bytes of an arena for pictures of that size. The number of streams of the link that it takes is server_count.
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count);

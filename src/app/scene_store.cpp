@@ -90,10 +90,29 @@ void set_name(const std::string& name, StoredScene* stored) {
   std::memcpy(stored->name, name.data(), length);
 }
 
+std::uint64_t stored_bytes(const SceneStore& store) {
+  std::uint64_t sum = 0;
+  for (const StoredScene& stored : store.scenes) sum += stored.byte_count + stored.accel_bytes;
+  return sum;
+}
+
 }  // namespace
 
 SceneStore::~SceneStore() {
   for (StoredScene& stored : scenes) release(&stored);
+}
+
+Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store) {
+  StoredScene stored;
+  Status status = read_scene(path, bytes_left, &stored);
+  if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server has no more than 65535 scenes");
+  if (status.ok && !find_scene(*store, stored.hash)) {
+    set_name(name, &stored);
+    store->scenes.push_back(stored);
+  } else {
+    release(&stored);
+  }
+  return status;
 }
 
 Status open_scene_store(const SceneStoreOptions& options, SceneStore* store) {
@@ -120,17 +139,9 @@ Status open_scene_store(const SceneStoreOptions& options, SceneStore* store) {
   std::uint64_t bytes_left = options.bytes_max;
   Progress progress = start_progress("reading scenes", sources.size());
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    StoredScene stored;
-    Status status = read_scene(sources[i].path, bytes_left, &stored);
-    if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server has no more than 65535 scenes");
-    if (status.ok && !find_scene(*store, stored.hash)) {
-      set_name(sources[i].name, &stored);
-      bytes_left -= stored.byte_count + stored.accel_bytes;
-      store->scenes.push_back(stored);
-    } else {
-      if (!status.ok) store->warnings.push_back(sources[i].name + " is left out: " + status.message);
-      release(&stored);
-    }
+    Status status = store_scene(sources[i].name, sources[i].path, bytes_left, store);
+    if (!status.ok) store->warnings.push_back(sources[i].name + " is left out: " + status.message);
+    bytes_left = options.bytes_max - stored_bytes(*store);
     show_progress(&progress, i + 1);
   }
   end_progress(&progress);

@@ -42,6 +42,10 @@ struct SceneStoreOptions {
 // file that is no scene is passed over; one that cannot be read is left out with a warning.
 Status open_scene_store(const SceneStoreOptions& options, SceneStore* store);
 
+// Adds one scene, called `name`: a built-in one's name or a file at `path`, of `bytes_left` at most with its
+// accelerator. One that the store has already is added no second time.
+Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store);
+
 // Null: there is none.
 const StoredScene* find_scene(const SceneStore& store, const ContentHash& hash);
 

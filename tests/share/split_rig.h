@@ -1,5 +1,4 @@
-// A device and its servers in one simulated world: one link, one clock, emulated CPUs. What the device waits for lets
-// the servers work, so that a frame takes the same course every time.
+// A device and its servers in one simulated world, so that a frame takes the same course every time.
 #pragma once
 #include <doctest/doctest.h>
 
@@ -7,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/server.h"
 #include "app/shared_frame.h"
-#include "platform/null/null_link.h"
+#include "app/virtual_world.h"
 #include "scene/builtin_helpers.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
@@ -34,23 +32,19 @@ struct SplitRigOptions {
 
 struct SplitRig {
   SplitRigOptions options;
-  std::vector<std::max_align_t> memory;
+  VirtualWorld world;
   std::vector<unsigned char> client_memory;
-  platform::Link* link = nullptr;
-  std::vector<Server*> servers;
-  std::vector<platform::LinkAddress> addresses;
   std::unique_ptr<BuiltScene> built;
   std::unique_ptr<TestRenderer> device;
   Client client;
   std::vector<std::string> log;
-  bool stepping = false;
 
   explicit SplitRig(const SplitRigOptions& options);
   ~SplitRig();
   SplitRig(const SplitRig&) = delete;
   SplitRig& operator=(const SplitRig&) = delete;
 
-  std::uint64_t now() { return platform::kNullLink.now_ns(link); }
+  std::uint64_t now() { return world_now_ns(world); }
   void stop_server(std::uint32_t index);
   void start_server(std::uint32_t index);
   // A frame by client and servers; it is compared with the device's own.

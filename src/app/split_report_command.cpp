@@ -1,0 +1,252 @@
+// pocketray split-report: what sharing a scene's frames gains a device, over the share, and beside the paper's table.
+#include "app/commands.h"
+#include "app/frame.h"
+#include "app/interrupt.h"
+#include "app/measure.h"
+#include "app/options.h"
+#include "app/report.h"
+#include "app/scene_identity.h"
+#include "app/split_report_plot.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint64_t kClockStepNs = 50;  // by each look at the simulated clock
+constexpr std::uint64_t kSceneBytesMax = std::uint64_t(1) << 36;
+
+struct ReportOptions {
+  CommonOptions common;
+  std::string folder;
+  std::uint32_t server_count = 1, step_count = 21, frame_count = 8;
+  float orbit_degrees = 0.5f;
+  double device_ns = 0, server_ns = 0;
+  bool no_paper = false;
+};
+
+// What a pixel costs one thread of this machine: the median of a few frames.
+Status measure_pixel_ns(Renderer* r, double* ns) {
+  constexpr std::uint32_t kFrames = 3;
+  Workers* workers = r->workers;
+  Pace pace = r->pace;
+  r->workers = nullptr, r->pace = Pace();
+  double times[kFrames];
+  Status status;
+  for (double& time : times) {
+    if (status.ok) status = render_frame(r, 0, Aov::none, &interrupted);
+    time = r->timings.trace_ms * 1e6 / pixel_count(*r);
+  }
+  r->workers = workers, r->pace = pace;
+  *ns = range_of(times, kFrames).median;
+  return status;
+}
+
+Status make_setup(const ReportOptions& o, const platform::Device& device, Renderer* r, SplitSetup* setup) {
+  double here_ns = 0;
+  if (o.device_ns <= 0 || o.server_ns <= 0) RETURN_IF_ERROR(measure_pixel_ns(r, &here_ns));
+  setup->device = r;
+  setup->format = device.bits_per_pixel == 16 ? WireFormat::rgb565 : WireFormat::rgb888;
+  setup->line.bytes_per_second = device.link_bytes_per_second;
+  setup->line.latency_ns = device.link_latency_ns;
+  setup->line.jitter_ns = device.link_jitter_ns;
+  setup->line.clock_step_ns = kClockStepNs;
+  setup->server_count = o.server_count;
+  setup->device_ns = o.device_ns > 0 ? o.device_ns : here_ns * device.slowdown / r->settings.threads;
+  setup->server_ns = o.server_ns > 0 ? o.server_ns : here_ns;
+  setup->orbit_degrees = o.orbit_degrees;
+  setup->frame_count = o.frame_count;
+  return success();
+}
+
+std::string title_of(const ReportOptions& o, const SplitSetup& s) {
+  const Settings& settings = s.device->settings;
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "%.200s, %ux%u, on %s with %u server%s: a pixel costs %.4g ns on the device, %.4g ns on a server; link "
+                "%.3g MB/s, %.3g ms",
+                o.common.scene.c_str(), settings.width, settings.height, o.common.emulate.c_str(), s.server_count,
+                s.server_count == 1 ? "" : "s", s.device_ns, s.server_ns,
+                static_cast<double>(s.line.bytes_per_second) * 1e-6, static_cast<double>(s.line.latency_ns) * 1e-6);
+  return text;
+}
+
+Json point_json(const SplitPoint& p) { return {{"m", p.m}, {"ns_per_pixel", p.ns_per_pixel}}; }
+
+Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& s) {
+  const Settings& settings = setup.device->settings;
+  Json sweep = Json::array(), paper = Json::array();
+  for (const SplitPoint& p : s.sweep) sweep.push_back(point_json(p));
+  for (const PaperRow& row : s.paper)
+    paper.push_back({{"scene", row.scene},
+                     {"processors", row.processors},
+                     {"share", row.share},
+                     {"ns_per_pixel", row.ns_per_pixel},
+                     {"our_share", row.our_share},
+                     {"our_ns_per_pixel", row.our_ns},
+                     {"bound_ns_per_pixel", row.bound_ns},
+                     {"bytes_per_pixel", row.bytes_per_pixel}});
+  return {{"sweep", sweep},
+          {"chosen", point_json(s.chosen)},
+          {"best", point_json(s.best)},
+          {"local_ns_per_pixel", s.local.ns_per_pixel},
+          {"paper", paper},
+          {"scene", o.common.scene},
+          {"emulated", o.common.emulate},
+          {"servers", setup.server_count},
+          {"width", settings.width},
+          {"height", settings.height},
+          {"device_ns_per_pixel", setup.device_ns},
+          {"server_ns_per_pixel", setup.server_ns},
+          {"link_bytes_per_second", setup.line.bytes_per_second},
+          {"bytes_per_frame", s.chosen.bytes},
+          {"row_bytes_per_frame", s.chosen.row_bytes},
+          {"whole_bytes_per_frame", s.whole_bytes},
+          {"raw_bytes_per_frame", pixel_count(*setup.device) * pixel_bytes(setup.format)}};
+}
+
+void print_sweep(const SplitSetup& setup, const SplitFigures& s) {
+  double pixels = pixel_count(*setup.device);
+  auto print = [&](const char* what, const SplitPoint& p) {
+    if (p.ns_per_pixel > 0)
+      std::printf("  %-14s %6.3f %14.1f %12.2f %12.1f\n", what, p.m, p.ns_per_pixel, p.ns_per_pixel * pixels * 1e-6,
+                  p.bytes * 1e-3);
+  };
+  std::printf("  %-14s %6s %14s %12s %12s\n", "", "m", "ns per pixel", "ms a frame", "kB a frame");
+  for (const SplitPoint& p : s.sweep) print("m fixed", p);
+  print("best of these", s.best);
+  print("chosen", s.chosen);
+  if (s.sweep.empty()) return;
+  std::printf("  chosen: %.3f of the best's time, %.4g times as fast as the device alone\n",
+              s.chosen.ns_per_pixel / s.best.ns_per_pixel, s.local.ns_per_pixel / s.chosen.ns_per_pixel);
+}
+
+void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
+  double raw = pixel_count(*setup.device) * pixel_bytes(setup.format);
+  double sent = s.chosen.row_count / setup.device->settings.height;
+  std::printf(
+      "bytes a frame, chosen m: %.0f, of which %.0f are messages around the rows; the rows sent whole: %.0f "
+      "compressed, %.0f raw\n",
+      s.chosen.bytes, s.chosen.bytes - s.chosen.row_bytes, s.whole_bytes * sent, raw * sent);
+}
+
+void print_paper(const SplitFigures& s) {
+  if (s.paper.empty()) return;
+  std::printf(
+      "Aranha et al. 2007, Table 1: T_m and T_s as printed, T_t = 400 ns a pixel as this scene's rows compress\n");
+  std::printf("  %-12s %10s %15s %15s %17s %12s\n", "scene", "processors", "share, paper", "ns per pixel",
+              "full overlap, ns", "bytes/pixel");
+  for (const PaperRow& row : s.paper)
+    std::printf("  %-12s %10d %6.2f%% %6.2f%% %7.0f %7.0f %8.0f (%+.1f%%) %10.3f\n", row.scene, row.processors,
+                100 * row.our_share, 100 * row.share, row.our_ns, row.ns_per_pixel, row.bound_ns,
+                100 * (row.our_ns / row.bound_ns - 1), row.bytes_per_pixel);
+  std::printf("  (of each pair the first is ours)\n");
+}
+
+Status write_files(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& figures) {
+  if (o.folder.empty() || figures.sweep.empty()) return success();
+  std::uint32_t pixels = setup.device->settings.width * setup.device->settings.height;
+  RETURN_IF_ERROR(write_split_csv(o.folder, figures, pixels));
+  bool drawn;
+  RETURN_IF_ERROR(draw_split(o.folder, {title_of(o, setup), pixels}, figures, &drawn));
+  if (!drawn)
+    std::fprintf(stderr,
+                 "pocketray: split.png is left out: gnuplot is not installed or failed; install it (Debian: gnuplot), "
+                 "then: gnuplot '%s/split.gnuplot'\n",
+                 o.folder.c_str());
+  return success();
+}
+
+Status measure(const ReportOptions& o, const SplitSetup& setup, SplitFigures* figures) {
+  Progress progress = start_progress("split", split_frame_count(setup, o.step_count));
+  Status status = measure_split(setup, o.step_count, &progress, figures);
+  end_progress(&progress);
+  if (!status.ok || interrupted || o.no_paper) return status;
+  progress = start_progress("the paper's table", paper_frame_count(setup));
+  status = measure_paper(setup, &progress, figures);
+  end_progress(&progress);
+  return status;
+}
+
+int run(const ReportOptions& o) {
+  const platform::Device* device;
+  Status status = find_device(o.common, &device);
+  OpenScene opened;
+  SceneStore store;
+  SplitSetup setup;
+  OpenHooks hooks;
+  hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
+  hooks.loaded = [&](const SceneSource& source, Renderer* r) { return identify_scene(source, r, &setup.scene); };
+  if (status.ok) status = open_scene(o.common, hooks, &opened);
+  if (status.ok) status = start_scene(&opened, o.common);
+  if (status.ok) status = store_scene(o.common.scene, o.common.scene, kSceneBytesMax, &store);
+  if (status.ok) status = make_setup(o, *device, &opened.renderer, &setup);
+  if (!status.ok) return report(status);
+  print_notes(opened);
+  setup.store = &store;
+  SplitFigures figures;
+  status = measure(o, setup, &figures);
+  if (!status.ok) return report(status);
+  if (figures.chosen.ns_per_pixel <= 0) return kExitInterrupted;
+  if (o.common.json != "-") {
+    std::printf(
+        "real pixels, rows and messages; time is a virtual clock's, by which pixels and bytes take what follows\n");
+    std::printf("%s\n", title_of(o, setup).c_str());
+    print_sweep(setup, figures);
+    print_bytes(setup, figures);
+    print_paper(figures);
+  }
+  status = write_files(o, setup, figures);
+  if (status.ok && !o.common.json.empty()) status = write_json(o.common.json, to_json(o, setup, figures));
+  if (status.ok && interrupted) {
+    std::fprintf(stderr, "pocketray: interrupted; %zu points of the sweep and %zu rows of the table are kept\n",
+                 figures.sweep.size(), figures.paper.size());
+    return kExitInterrupted;
+  }
+  return report(status);
+}
+
+}  // namespace
+
+void add_split_report_command(CLI::App* program, int* exit_status) {
+  auto o = std::make_shared<ReportOptions>();
+  o->common.emulate = "tablet";
+  CLI::App* command = program->add_subcommand(
+      "split-report", "show what sharing frames with servers gains a device, over the share that it renders itself");
+  command->footer(
+      "Device, link and servers are emulated in this program by a virtual clock: nothing has to be started, and a "
+      "busy\n"
+      "machine changes no figure but the cost of a pixel, which --device-ns and --server-ns fix.\n"
+      "Try:  pocketray split-report cornell --emulate pi-zero -o .\n"
+      "      pocketray split-report statue --emulate tablet --servers 3 --json -");
+  add_scene_options(command, &o->common);
+  command->add_option("--servers", o->server_count, "servers that take part")
+      ->check(CLI::Range(1u, kServerCountMax))
+      ->capture_default_str();
+  command->add_option("-o,--output", o->folder, "folder for split.csv and, where gnuplot is installed, split.png");
+  command
+      ->add_option("--steps", o->step_count,
+                   "shares to measure from 0 to 1; a few more are added around the fastest of them")
+      ->check(CLI::Range(2u, 1000u))
+      ->capture_default_str();
+  command->add_option("--frames", o->frame_count, "frames of each share; the median counts")
+      ->check(CLI::Range(2u, 1000u))
+      ->capture_default_str();
+  command
+      ->add_option("--orbit", o->orbit_degrees,
+                   "degrees that the camera turns about its target from frame to frame, there and back; 0: it stands, "
+                   "and only what the scene itself moves is sent")
+      ->check(CLI::Range(-90.0f, 90.0f))
+      ->capture_default_str();
+  command
+      ->add_option("--device-ns", o->device_ns,
+                   "nanoseconds that a pixel costs the device, instead of what it costs here times its slowdown")
+      ->check(CLI::Range(1.0, 1e9));
+  command
+      ->add_option("--server-ns", o->server_ns,
+                   "nanoseconds that a pixel costs a server, instead of what it costs one core here")
+      ->check(CLI::Range(1.0, 1e9));
+  command->add_flag("--no-paper", o->no_paper, "leave out the paper's table");
+  command->add_option("--json", o->common.json, "also write figures as JSON to FILE, or - for standard output");
+  command->callback([=] { *exit_status = run(*o); });
+}
+
+}  // namespace pocketray
