@@ -24,7 +24,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases mutants fuzz bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases mutants faults fuzz bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -67,6 +67,17 @@ hardcases: setup-tests configure
 # Deliberate faults, one at a time: does some test fail? MUTANTS= takes options: see tests/mutation/mutate.sh.
 mutants: setup-tests
 	@JSON=$(JSON) tests/mutation/mutate.sh --jobs $(JOBS) $(MUTANTS)
+
+# Sessions of a device and its servers in which something goes wrong, in JOBS shares. SEED= begins with that one; a failing
+# session is printed with its own: make faults SESSIONS=1 SEED=n.
+SESSIONS ?= 100000
+SEED ?= 1
+faults: setup-tests configure
+	cmake --build $(BUILD) -j$(JOBS) --target test_share
+	@share=$$((($(SESSIONS) + $(JOBS) - 1) / $(JOBS))); [ $$share -gt 0 ] || exit 2; \
+	for first in $$(seq $(SEED) $$share $$(($(SEED) + $(SESSIONS) - 1))); do echo $$first; done | \
+	xargs -P $(JOBS) -I {} sh -c 'POCKETRAY_FAULT_SEED={} POCKETRAY_FAULT_SESSIONS='$$share' \
+	  $(BUILD)/test_share --no-intro --test-case="faults_simulated*"'
 
 # What a hostile peer or file can do: libFuzzer from the committed corpus on, each target for FUZZ_SECONDS. What it finds to
 # be worth keeping goes to build-fuzz/corpus; an input that breaks something is left in build-fuzz.
@@ -125,6 +136,7 @@ help:
 	@echo "make hardcases    every hard case in full: case, inputs, wrong answers, bound (JSON=FILE: as a list, too)"
 	@echo "make mutants      deliberate faults in the core, one at a time: how many the tests notice (JSON=FILE: as a list, too;"
 	@echo "                  MUTANTS='--only x': that one, MUTANTS=--list: their names)"
+	@echo "make faults       SESSIONS=$(SESSIONS) simulated sessions in which lines and servers fail (SEED=n: from that one on)"
 	@echo "make fuzz         libFuzzer on what comes from peers and files, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"

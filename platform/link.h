@@ -104,4 +104,14 @@ inline std::uint64_t link_timer_left(LinkTimer* timer, std::uint64_t now_ns) {
   return timer->passed_ns < timer->timeout_ns ? timer->timeout_ns - timer->passed_ns : 0;
 }
 
+// Time by a clock that may be set back, which counts as if it had stood still. The same until it is.
+struct LinkClock {
+  std::uint64_t last_ns = 0, lost_ns = 0;
+};
+inline std::uint64_t link_clock_ns(LinkClock* clock, std::uint64_t now_ns) {
+  if (now_ns < clock->last_ns) clock->lost_ns += clock->last_ns - now_ns;
+  clock->last_ns = now_ns;
+  return now_ns + clock->lost_ns;
+}
+
 }  // namespace platform

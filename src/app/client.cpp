@@ -217,14 +217,18 @@ void cancel_rest(Client* c) {
     if (s->frame.rows_come == 0 && s->phase == ServerPhase::ready)
       observe_start(&c->model, i, static_cast<double>(client_now_ns(*c) - s->frame.asked_ns));
     s->frame.open = false;
-    if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
-    flush_server(c, s);
+    if (send_message(&s->messages, message))
+      flush_server(c, s);
+    else
+      lose_server(c, s, "it does not read what it is sent");
   }
 }
 
 }  // namespace
 
-std::uint64_t client_now_ns(const Client& c) { return c.link->backend->now_ns(c.link); }
+std::uint64_t client_now_ns(const Client& c) {
+  return platform::link_clock_ns(&c.clock, c.link->backend->now_ns(c.link));
+}
 
 std::uint8_t deflate_level(double ns_per_byte) {
   return ns_per_byte < kDeflateNsPerByte ? 0 : ns_per_byte < kDeflateMoreNsPerByte ? 1 : 6;

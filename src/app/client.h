@@ -103,6 +103,7 @@ struct Client {
   FrameRequest request;
   bool complete = true, joined = false;
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
+  mutable platform::LinkClock clock;
   Arrivals arrivals;
   double device_ns = 0;  // that its rows took, in this frame
   std::uint32_t device_rows = 0;
@@ -144,6 +145,7 @@ bool is_settled(const Client& client);
 // Rows changed since the last call.
 bool take_shared_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
 
+// By the link's clock, but never less than before.
 std::uint64_t client_now_ns(const Client& client);
 // Where a row begins in client->pixels.
 inline std::uint8_t* shared_row(const Client& client, std::uint32_t row) {
