@@ -189,10 +189,12 @@ void measure_link(Client* c) {
 // later.
 bool is_watched(const Client& c) { return c.frames_shared < kWatchedFirst || c.frames_shared % kWatchedEvery == 0; }
 
-// Whether the servers' rows are due before the device could render one of them.
+// Whether the servers' rows are due before the device could render one of them. Late ones are worth as long a wait as a
+// row would take: at most that is lost, once, and mostly the row that nobody needs any more is saved.
 bool is_worth_waiting(const Client& c) {
   double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns), due = c.share.predicted_ns;
-  return c.joined && elapsed + device_pixel_ns(c) * c.settings.width > due && elapsed < kLateFactor * due;
+  double row_ns = device_pixel_ns(c) * c.settings.width;
+  return c.joined && elapsed + row_ns > due && elapsed < std::max(kLateFactor * due, due + row_ns);
 }
 
 // Rows that the device may render without a look at the link: while somebody is there to look for, not for long.
@@ -204,6 +206,28 @@ std::uint32_t rows_between_looks(const Client& c) {
   if (c.joined && is_watched(c)) look_ns = std::min(look_ns, c.share.predicted_ns / kLooksWatched);
   if (!any || !(row_ns * c.settings.height > look_ns)) return c.settings.height;
   return row_ns < look_ns ? static_cast<std::uint32_t>(look_ns / row_ns) : 1;
+}
+
+// Takes what has come, after waiting `timeout_ns` at most for something.
+void look_at_servers(Client* c, std::uint64_t timeout_ns) {
+  platform::LinkWait waits[kServerCountMax];
+  int wait_count = 0;
+  for (std::uint32_t i = 0; i < c->server_count; ++i) {
+    const RemoteServer& s = c->servers[i];
+    if (s.phase == ServerPhase::waiting) continue;
+    bool connecting = s.phase == ServerPhase::connecting;
+    waits[wait_count].stream = s.messages.stream;
+    waits[wait_count].want_read = !connecting;
+    waits[wait_count++].want_write = connecting || has_output(s.messages);
+  }
+  std::uint64_t begin = client_now_ns(*c);
+  c->unwatched_ns = begin > c->looked_ns ? begin - c->looked_ns : 0;
+  c->link->backend->poll(c->link, waits, wait_count, timeout_ns);
+  std::uint64_t now = client_now_ns(*c);
+  c->arrivals.gap_ns_max = std::max(c->arrivals.gap_ns_max, now > c->looked_ns ? now - c->looked_ns : 0);
+  c->looked_ns = now;
+  for (std::uint32_t i = 0; i < c->server_count; ++i) advance_server(c, &c->servers[i]);
+  let_join(c);
 }
 
 void cancel_rest(Client* c) {
@@ -286,30 +310,15 @@ void work_until(Client* c, std::uint64_t due_ns) {
 }
 
 void advance_client(Client* c, std::uint64_t timeout_ns) {
-  platform::LinkWait waits[kServerCountMax];
-  int wait_count = 0;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    const RemoteServer& s = c->servers[i];
-    if (s.phase == ServerPhase::waiting) continue;
-    bool connecting = s.phase == ServerPhase::connecting;
-    waits[wait_count].stream = s.messages.stream;
-    waits[wait_count].want_read = !connecting;
-    waits[wait_count++].want_write = connecting || has_output(s.messages);
-  }
-  c->link->backend->poll(c->link, waits, wait_count, timeout_ns);
-  std::uint64_t now = client_now_ns(*c);
-  c->arrivals.gap_ns_max = std::max(c->arrivals.gap_ns_max, now > c->looked_ns ? now - c->looked_ns : 0);
-  c->looked_ns = now;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) advance_server(c, &c->servers[i]);
-  let_join(c);
+  look_at_servers(c, timeout_ns);
   // A while of doing nothing but waiting for the answers of the overture, within what a network may cost.
-  std::uint64_t wanted = c->complete ? 0 : wait_wanted_ns(*c);
-  double elapsed = static_cast<double>(client_now_ns(*c) - c->begin_ns),
-         frame = std::max(elapsed, c->share.measured_ns);
-  if (wanted > 0 && timeout_ns == 0 && static_cast<double>(c->waited_ns) < kWaitShare * frame) {
-    std::uint64_t begin = client_now_ns(*c);
-    double left = kWaitShare * frame - static_cast<double>(c->waited_ns);
-    advance_client(c, std::min(wanted, static_cast<std::uint64_t>(left) + 1));
+  while (timeout_ns == 0 && !c->complete) {
+    double elapsed = static_cast<double>(client_now_ns(*c) - c->begin_ns);
+    double alone = device_pixel_ns(*c) * c->settings.width * c->settings.height;
+    double left = kWaitShare * std::max({elapsed, c->share.measured_ns, alone}) - static_cast<double>(c->waited_ns);
+    std::uint64_t wanted = wait_wanted_ns(*c), begin = client_now_ns(*c);
+    if (wanted == 0 || left <= 0) return;
+    look_at_servers(c, std::min(wanted, static_cast<std::uint64_t>(left) + 1));
     c->waited_ns += client_now_ns(*c) - begin;
   }
 }

@@ -57,11 +57,11 @@ struct RemoteServer {
   ServerPhase phase = ServerPhase::waiting;
   MessageStream messages;
   RowDecoder* decoder = nullptr;
-  platform::LinkTimer timer;   // of the phase: the next try, or when it counts as lost
-  std::uint64_t retry_ns = 0;  // till the next try
-  bool told = false;           // why it is not in use
-  std::uint32_t ping_id = 0;   // that an answer is awaited to; 0: none
-  std::uint32_t pings_answered = 0;
+  platform::LinkTimer timer;                           // of the phase: the next try, or when it counts as lost
+  std::uint64_t retry_ns = 0;                          // till the next try
+  bool told = false;                                   // why it is not in use
+  std::uint32_t ping_id = 0;                           // that an answer is awaited to; 0: none
+  std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the answer came unwatched
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
   double round_trip_ns = 0, ns_per_byte = 0;
   double probe_ns_per_pixel = 0;
@@ -104,6 +104,7 @@ struct Client {
   bool complete = true, joined = false;
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
   mutable platform::LinkClock clock;
+  std::uint64_t unwatched_ns = 0;  // before the latest look: by so much what came may have come earlier
   Arrivals arrivals;
   double device_ns = 0;  // that its rows took, in this frame
   std::uint32_t device_rows = 0;

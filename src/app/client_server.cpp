@@ -10,6 +10,8 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kPings = 3;                 // without a payload: the least of them is the round trip
+constexpr std::uint32_t kPingsMissedMax = 24;       // after which answers that came unwatched have to do
+constexpr double kUnwatchedShareInverse = 8;        // of an answer's time that the device may not have looked
 constexpr std::uint32_t kPingBytes = 16384;         // of the one that measures the bandwidth
 constexpr std::uint64_t kPingWaitNs = 20'000'000;   // that the device waits for an answer and does nothing else
 constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between two looks at a server that gets no rows
@@ -66,7 +68,7 @@ void connect_server(Client* c, RemoteServer* s) {
 
 void greet_server(Client* c, RemoteServer* s) {
   restart_row_decoder(s->decoder);
-  s->pings_answered = 0, s->ping_id = 0, s->round_trip_ns = 0;
+  s->pings_answered = s->pings_missed = 0, s->ping_id = 0, s->round_trip_ns = 0;
   s->frame = ServerFrame();
   enter(c, s, ServerPhase::greeting);
   Message message;
@@ -99,8 +101,15 @@ void take_scene_entry(Client* c, RemoteServer* s, const SceneEntry& entry) {
   send_ping(c, s, 0);
 }
 
+// Whether an answer was awaited when it came, so that its time means something.
+bool is_watched(const Client& c, double ns) {
+  return kUnwatchedShareInverse * static_cast<double>(c.unwatched_ns) < ns;
+}
+
 // The overture's answers: first without a payload, then with one.
 void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::size_t byte_count) {
+  if (!is_watched(*c, ns) && ++s->pings_missed < kPingsMissedMax)
+    return send_ping(c, s, s->pings_answered == kPings ? ping_bytes(*s) : 0);
   ++s->pings_answered;
   if (s->pings_answered <= kPings) {
     if (s->round_trip_ns == 0 || ns < s->round_trip_ns) s->round_trip_ns = ns;
@@ -117,7 +126,8 @@ void take_pong(Client* c, RemoteServer* s, const Pong& pong) {
   s->ping_id = 0;
   if (s->phase == ServerPhase::measuring) return take_measuring_pong(c, s, ns, pong.bytes.count);
   if (s->phase != ServerPhase::ready) return;
-  observe_start(&c->model, index_of(*c, s), ns);
+  const Smoothed& start = c->model.servers[index_of(*c, s)].start_ns;
+  if (is_watched(*c, ns) || ns < static_cast<double>(start.value)) observe_start(&c->model, index_of(*c, s), ns);
   if (pong.pixel_ps > 0) observe_server_price(&c->model, index_of(*c, s), 1e-3 * pong.pixel_ps);
 }
 
