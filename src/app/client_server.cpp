@@ -69,6 +69,7 @@ void connect_server(Client* c, RemoteServer* s) {
 void greet_server(Client* c, RemoteServer* s) {
   restart_row_decoder(s->decoder);
   s->pings_answered = s->pings_missed = 0, s->ping_id = 0, s->round_trip_ns = 0;
+  s->chunk_count = 0, s->unanswered = false;
   s->frame = ServerFrame();
   enter(c, s, ServerPhase::greeting);
   Message message;
@@ -151,7 +152,9 @@ const char* error_text(WireError code) {
   return "it reports an error";
 }
 
-void take_chunk(Client* c, RemoteServer* s, const RowChunk& chunk) {
+void take_chunk(Client* c, RemoteServer* s, RowChunk chunk) {
+  // Decoded twice or in another order, rows would spoil the picture that the decoder keeps.
+  if (!take_chunk_number(&chunk, s->chunk_count++)) return lose_server(c, s, "it sends rows out of turn");
   std::uint64_t begin_ns = client_now_ns(*c);
   if (!decode_rows(s->decoder, chunk)) return lose_server(c, s, "it sends rows that cannot be decoded");
   std::uint64_t unpacked_ns = client_now_ns(*c) - begin_ns;
@@ -179,7 +182,8 @@ void take(Client* c, RemoteServer* s, const Message& message) {
 
 // Whether an answer or rows are awaited.
 bool is_awaited(const Client& c, const RemoteServer& s) {
-  if (s.phase == ServerPhase::ready || s.phase == ServerPhase::probing) return s.frame.open || s.ping_id != 0;
+  if (s.phase == ServerPhase::ready || s.phase == ServerPhase::probing)
+    return s.frame.open || s.ping_id != 0 || s.unanswered;
   (void)c;
   return s.phase != ServerPhase::waiting;
 }
@@ -195,6 +199,7 @@ void read_server(Client* c, RemoteServer* s) {
       if (state == DecodeState::malformed) return lose_server(c, s, "what it sends is no message of the protocol");
       if (state == DecodeState::need_more) break;
       took = true;
+      s->unanswered = false;
       s->timer = platform::link_timer(client_now_ns(*c), c->options.silence_timeout_ns);
       take(c, s, message);
       if (s->phase == ServerPhase::waiting) return;
@@ -275,8 +280,12 @@ void advance_server(Client* c, RemoteServer* s) {
       s->ping_due_ns = now + kIdlePingNs;
       send_ping(c, s, 0);
     }
-  } else if (platform::link_timer_left(&s->timer, client_now_ns(*c)) == 0) {
-    return lose_server(c, s, "it does not answer");
+  } else {
+    std::uint64_t left = platform::link_timer_left(&s->timer, client_now_ns(*c));
+    if (left == 0) return lose_server(c, s, "it does not answer");
+    // It may have no time for rows, and yet be there.
+    if (s->phase >= ServerPhase::probing && s->ping_id == 0 && left < c->options.silence_timeout_ns / 2)
+      send_ping(c, s, 0);
   }
   flush_server(c, s);
 }

@@ -106,6 +106,7 @@ void send_chunk(Session* s, std::uint32_t row_begin, std::uint32_t row_end) {
   std::uint32_t byte_count =
       encode_rows(s->encoder, row_begin, row_count, s->pixels.data + std::size_t(row_begin) * line_bytes,
                   request.deflate_level, at + prefix, &chunk->encoding);
+  add_chunk_number(chunk, s->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};
   send_message(s, message);
   s->row_count += row_count;

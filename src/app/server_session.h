@@ -52,6 +52,7 @@ struct Session {
   char name[64] = {0};                  // the peer's address
   char reason[160] = {0};               // why it is to leave
   std::uint32_t message_bytes_max = 0;  // that the client takes
+  std::uint32_t chunk_count = 0;        // sent to it
 
   Arena block;
   std::size_t frame_mark = 0;  // of the block, behind the buffers

@@ -13,6 +13,18 @@ namespace pocketray {
 
 // Bits of RowChunk::encoding.
 constexpr std::uint8_t kEncodingPredicted = 1, kEncodingDeflated = 2;
+// The bits above count the chunks of a connection, so that one that comes twice or out of turn is known. The sender
+// adds them to what encode_rows() gives; the receiver takes them off before decode_rows(): false where `count`, of
+// those before, is another.
+constexpr int kChunkNumberShift = 2;
+inline void add_chunk_number(RowChunk* chunk, std::uint32_t count) {
+  chunk->encoding = static_cast<std::uint8_t>(chunk->encoding | count << kChunkNumberShift);
+}
+[[nodiscard]] inline bool take_chunk_number(RowChunk* chunk, std::uint32_t count) {
+  std::uint8_t number = chunk->encoding >> kChunkNumberShift;
+  chunk->encoding &= kEncodingPredicted | kEncodingDeflated;
+  return number == (count & 0xFFu >> kChunkNumberShift);
+}
 
 struct CodecShape {
   std::uint32_t width = 0, height = 0;  // pixels

@@ -151,7 +151,8 @@ void ScriptedClient::poll() {
     REQUIRE(decoded.state != DecodeState::malformed);
     if (decoded.state == DecodeState::need_more) break;
     if (come->message.type == MessageType::row_chunk) {
-      const RowChunk& chunk = come->message.row_chunk;
+      RowChunk chunk = come->message.row_chunk;
+      REQUIRE(take_chunk_number(&chunk, chunk_count++));
       REQUIRE(decode_rows(decoder, chunk));
       if (chunk.frame == frame) {
         chunks.push_back(chunk);

@@ -66,7 +66,7 @@ struct ScriptedClient {
   Arena arena;
   RowDecoder* decoder = nullptr;
   std::vector<RowChunk> chunks;  // of that frame, without their bytes
-  std::uint32_t frame = 0, rows_come = 0;
+  std::uint32_t frame = 0, rows_come = 0, chunk_count = 0;
 
   // Connects; says hello where that is wanted.
   explicit ScriptedClient(ServerRig* rig, bool says_hello = true);
