@@ -243,10 +243,8 @@ void cancel_rest(Client* c) {
     if (s->frame.rows_come == 0 && s->phase == ServerPhase::ready)
       observe_start(&c->model, i, static_cast<double>(client_now_ns(*c) - s->frame.asked_ns));
     s->frame.open = false;
-    if (send_message(&s->messages, message))
-      flush_server(c, s);
-    else
-      lose_server(c, s, "it does not read what it is sent");
+    bool sent = send_message(&s->messages, message);
+    sent ? flush_server(c, s) : lose_server(c, s, "it does not read what it is sent");
   }
 }
 
