@@ -95,6 +95,11 @@ fuzz:
 	  grep -E '^#[0-9]+.*(DONE)|stat::number_of_executed' build-fuzz/$$target.log | sed "s/^/$$target: /"; \
 	done
 
+# The chosen split against a sweep of fixed ones: every device, one to three servers, three scenes.
+split-table: setup-tests configure
+	cmake --build $(BUILD) -j$(JOBS) --target test_share
+	$(BUILD)/test_share --no-skip --test-case=split_report_table
+
 bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) bench $(SCENE) --json -
@@ -138,6 +143,7 @@ help:
 	@echo "                  MUTANTS='--only x': that one, MUTANTS=--list: their names)"
 	@echo "make faults       SESSIONS=$(SESSIONS) simulated sessions in which lines and servers fail (SEED=n: from that one on)"
 	@echo "make fuzz         libFuzzer on what comes from peers and files, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
+	@echo "make split-table  the split that is chosen beside the best of a sweep, for every device"
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"
 	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31' and others ($(BUILD)/bench_embree --help)"

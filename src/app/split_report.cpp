@@ -13,8 +13,9 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kSettleFrames = 40;  // in which all servers have to come into use
-constexpr std::uint32_t kSkippedFrames = 2;  // after a change of the share
-constexpr double kPaperTransferNs = 400;     // T_t of [Aranha07] sec. 4
+constexpr std::uint32_t kSkippedFrames = 2;  // of a lap
+constexpr std::uint32_t kChosenLaps = 2;
+constexpr double kPaperTransferNs = 400;  // T_t of [Aranha07] sec. 4
 constexpr int kRefinements = 2, kPaperRuns = 2, kPaperRows = 6;
 
 struct Experiment {
@@ -44,7 +45,7 @@ Status open_whole_encoder(Experiment* e) {
 Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_t* frames_done, Experiment* e) {
   e->setup = setup;
   e->progress = progress, e->frames_done = frames_done;
-  e->times.resize(2 * std::size_t(setup.frame_count));
+  e->times.resize(kChosenLaps * std::size_t(setup.frame_count));
   Renderer* r = setup.device;
   r->pace = Pace();
   e->camera = make_camera_control(r->camera, r->accel.bounds);
@@ -63,10 +64,9 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   return open_whole_encoder(e);
 }
 
-// The next frame of the path there and back.
+// The next frame along the path.
 Status next_frame(Experiment* e, bool* complete) {
-  std::uint32_t at = e->frame++ % e->setup.frame_count;
-  std::uint32_t step = std::min(at, e->setup.frame_count - at);
+  std::uint32_t step = e->frame++ % (kSkippedFrames + e->setup.frame_count);
   Renderer* r = e->setup.device;
   if (e->setup.orbit_degrees != 0) {
     reset_camera(&e->camera);
@@ -108,17 +108,19 @@ Status settle(Experiment* e, bool* complete) {
   return success();
 }
 
-Status measure_point(Experiment* e, std::uint32_t skip_count, std::uint32_t frame_count, SplitPoint* point,
-                     bool* complete, double* whole) {
-  *complete = true;
-  for (std::uint32_t i = 0; *complete && i < skip_count; ++i) RETURN_IF_ERROR(next_frame(e, complete));
+// The path from its start, `lap_count` times; the first frames, behind a jump and perhaps another share, do not count.
+Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, double* whole) {
   const Settings& settings = e->client.settings;
+  const std::uint32_t frame_count = lap_count * e->setup.frame_count;
   *point = SplitPoint();
-  for (std::uint32_t i = 0; *complete && i < frame_count; ++i) {
+  *complete = true;
+  std::uint32_t measured = 0;
+  for (e->frame = 0; *complete && measured < frame_count;) {
+    bool counts = e->frame % (kSkippedFrames + e->setup.frame_count) >= kSkippedFrames;
     RETURN_IF_ERROR(next_frame(e, complete));
-    if (!*complete) break;
+    if (!*complete || !counts) continue;
     const FrameShare& share = e->client.share;
-    e->times[i] = share.measured_ns / (double(settings.width) * settings.height);
+    e->times[measured++] = share.measured_ns / (double(settings.width) * settings.height);
     point->m += double(share.device_rows) / settings.height / frame_count;
     point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
     point->row_bytes += double(share.row_bytes) / frame_count;
@@ -137,7 +139,7 @@ Status measure_share(Experiment* e, double m, std::vector<SplitPoint>* sweep, bo
   e->client.options.device_share = m;
   e->client.options.device_goes_on = false;
   SplitPoint point;
-  RETURN_IF_ERROR(measure_point(e, kSkippedFrames, e->setup.frame_count, &point, complete, nullptr));
+  RETURN_IF_ERROR(measure_point(e, 1, &point, complete, nullptr));
   if (!*complete) return success();
   sweep->push_back(point);
   std::sort(sweep->begin(), sweep->end(), [](const SplitPoint& a, const SplitPoint& b) { return a.m < b.m; });
@@ -162,7 +164,7 @@ Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::
     Experiment e;
     RETURN_IF_ERROR(open_experiment(setup, progress, frames_done, &e));
     RETURN_IF_ERROR(settle(&e, complete));
-    if (*complete) RETURN_IF_ERROR(measure_point(&e, 0, setup.frame_count, &point, complete, nullptr));
+    if (*complete) RETURN_IF_ERROR(measure_point(&e, 1, &point, complete, nullptr));
     if (point.row_count > 0) *bytes_per_pixel = point.row_bytes / (point.row_count * e.client.settings.width);
   }
   if (!*complete) return success();
@@ -188,8 +190,7 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
   bool complete;
   RETURN_IF_ERROR(open_experiment(setup, progress, &frames_done, &e));
   RETURN_IF_ERROR(settle(&e, &complete));
-  if (complete)
-    RETURN_IF_ERROR(measure_point(&e, 0, 2 * setup.frame_count, &figures->chosen, &complete, &figures->whole_bytes));
+  if (complete) RETURN_IF_ERROR(measure_point(&e, kChosenLaps, &figures->chosen, &complete, &figures->whole_bytes));
   // 1. The ends first, so that an interrupt leaves what the others are compared with.
   std::vector<SplitPoint>* sweep = &figures->sweep;
   if (complete) RETURN_IF_ERROR(measure_share(&e, 1, sweep, &complete));

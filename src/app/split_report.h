@@ -18,8 +18,8 @@ struct SplitSetup {
   platform::NullLinkSettings line;
   std::uint32_t server_count = 1;
   double device_ns = 0, server_ns = 0;  // what a pixel costs the device, and each server
-  float orbit_degrees = 0.5f;           // that the camera goes on around its target in a frame; 0: it stands
-  std::uint32_t frame_count = 8;        // of the path there and back that is measured, again and again
+  float orbit_degrees = 1;              // that the camera goes on around its target in a frame; 0: it stands
+  std::uint32_t frame_count = 8;        // of the path that is measured for each share
 };
 
 // Frames with a share; means but where something else is said.

@@ -18,7 +18,7 @@ struct ReportOptions {
   CommonOptions common;
   std::string folder;
   std::uint32_t server_count = 1, step_count = 21, frame_count = 8;
-  float orbit_degrees = 0.5f;
+  float orbit_degrees = 1;
   double device_ns = 0, server_ns = 0;
   bool no_paper = false;
 };
@@ -232,7 +232,7 @@ void add_split_report_command(CLI::App* program, int* exit_status) {
       ->capture_default_str();
   command
       ->add_option("--orbit", o->orbit_degrees,
-                   "degrees that the camera turns about its target from frame to frame, there and back; 0: it stands, "
+                   "degrees that the camera turns about its target from frame to frame; 0: it stands, "
                    "and only what the scene itself moves is sent")
       ->check(CLI::Range(-90.0f, 90.0f))
       ->capture_default_str();
