@@ -52,6 +52,7 @@ void make_reporting(const SceneStore& store, const char* scene, const char* devi
   double widths = 320.0 / settings.width;
   r->setup.device_ns = kServerNs * device->slowdown / std::max(1, device->core_count) * widths,
   r->setup.server_ns = kServerNs * widths;
+  r->setup.frame_count = 4;
   r->setup.line.bytes_per_second = static_cast<std::uint64_t>(device->link_bytes_per_second / widths);
 }
 
@@ -140,6 +141,7 @@ TEST_CASE("split_report_table" * doctest::skip()) {
       for (std::uint32_t server_count : {1u, 2u, 3u}) {
         Reporting r;
         make_reporting(store, scene.name, device.name, server_count, &r);
+        r.setup.frame_count = 8;
         SplitFigures f;
         Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
         REQUIRE(measure_split(r.setup, kSteps, &progress, &f).ok);
