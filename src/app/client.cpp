@@ -70,7 +70,6 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
   if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
   std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
   s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};
-  // Asking once more, frame after frame, does not give it more time.
   if (!s->unanswered) s->timer = platform::link_timer(s->frame.asked_ns, c->options.silence_timeout_ns);
   s->unanswered = true;
   flush_server(c, s);
@@ -362,8 +361,7 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
   observe_device_start(&c->model, static_cast<double>(prepare_ns));
   FrameRequest* q = &c->request;
   ++q->frame;
-  q->scene = c->scene;
-  q->seconds = seconds;
+  q->scene = c->scene, q->seconds = seconds;
   q->camera_stated = true;
   q->camera_index = static_cast<std::uint16_t>(r.camera_index);
   q->camera = r.camera;

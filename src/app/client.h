@@ -65,7 +65,7 @@ struct RemoteServer {
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
   double round_trip_ns = 0, ns_per_byte = 0;
   double probe_ns_per_pixel = 0;
-  bool unanswered = false;        // nothing has come since rows were asked for
+  bool unanswered = false;        // since rows were asked for; asking anew gives no more time
   std::uint32_t chunk_count = 0;  // that have come with this connection
   ServerFrame frame;
 };
