@@ -27,6 +27,7 @@ struct SplitRigOptions {
   double device_ns = 1000;             // per pixel
   std::vector<double> server_ns = {};  // per pixel; fewer than servers: the last one's, none: 100
   platform::NullLinkSettings line = fine_clock();
+  bool compares = true;  // every frame with the device's own
   ClientOptions client;
 };
 
@@ -47,7 +48,7 @@ struct SplitRig {
   std::uint64_t now() { return world_now_ns(world); }
   void stop_server(std::uint32_t index);
   void start_server(std::uint32_t index);
-  // A frame by client and servers; it is compared with the device's own.
+  // A frame by client and servers; it is compared with the device's own where the options say so.
   const FrameShare& frame(double seconds);
   // Lets time pass without a frame.
   void idle(std::uint64_t ns);
