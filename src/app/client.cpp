@@ -190,20 +190,18 @@ void measure_link(Client* c) {
 // later.
 bool is_watched(const Client& c) { return c.frames_shared < kWatchedFirst || c.frames_shared % kWatchedEvery == 0; }
 
-// Whether the servers' rows are due before the device could render one of them. Late ones are worth as long a wait as a
-// row would take: at most that is lost, once, and mostly the row that nobody needs any more is saved.
+// Whether the servers' rows are due before the device could render one, or late by less than that takes.
 bool is_worth_waiting(const Client& c) {
   double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns), due = c.share.predicted_ns;
-  double row_ns = device_pixel_ns(c) * c.settings.width;
-  return c.joined && elapsed + row_ns > due && elapsed < std::max(kLateFactor * due, due + row_ns);
+  double row = device_pixel_ns(c) * c.settings.width;
+  return c.joined && elapsed + row > due && elapsed < std::max(kLateFactor * due, due + row);
 }
 
 // Rows that the device may render without a look at the link: while somebody is there to look for, not for long.
 std::uint32_t rows_between_looks(const Client& c) {
   bool any = false;
   for (std::uint32_t i = 0; i < c.server_count; ++i) any = any || c.servers[i].phase != ServerPhase::waiting;
-  double row_ns = device_pixel_ns(c) * c.settings.width;
-  double look_ns = kLookNs;
+  double row_ns = device_pixel_ns(c) * c.settings.width, look_ns = kLookNs;
   if (c.joined && is_watched(c)) look_ns = std::min(look_ns, c.share.predicted_ns / kLooksWatched);
   if (!any || !(row_ns * c.settings.height > look_ns)) return c.settings.height;
   return row_ns < look_ns ? static_cast<std::uint32_t>(look_ns / row_ns) : 1;

@@ -30,7 +30,10 @@ struct Experiment {
   std::uint32_t frame = 0;  // along the path
   std::uint64_t* frames_done = nullptr;
   Progress* progress = nullptr;
-  ~Experiment() { close_client(&client); }
+  ~Experiment() {
+    close_client(&client);
+    if (setup.device) setup.device->camera = camera.home;  // for the next one's path
+  }
 };
 
 Status open_whole_encoder(Experiment* e) {
