@@ -22,9 +22,9 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
 }  // namespace
 
 // Goal: whatever breaks, every frame is complete, the device's own byte for byte, and in time: within 1.05 times what
-// the device takes alone and a row, within twice that where a server was lost in it; each loss is told once; afterwards
-// all servers come into use again within a bounded time, and none keeps a client that is gone. Method: one to three
-// servers, random costs and lines, up to four faults of the line and four of the servers in ten frames.
+// the device takes alone and two rows, within twice that where a server was lost in it; each loss is told once;
+// afterwards all servers come into use again within a bounded time, and none keeps a client that is gone. Method: one
+// to three servers, random costs and lines, up to four faults of the line and four of the servers in ten frames.
 TEST_CASE("faults_simulated_sessions_end_well") {
   bool single = std::getenv("POCKETRAY_FAULT_SEED") && !std::getenv("POCKETRAY_FAULT_SESSIONS");
   std::uint64_t seed = number_of("POCKETRAY_FAULT_SEED", 1);

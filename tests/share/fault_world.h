@@ -50,7 +50,7 @@ struct SessionResult {
   std::string failure;  // empty: none
   int frames = 0, frames_disturbed = 0, faults_struck = 0, losses = 0;
   int struck[platform::kLinkFaultCount] = {};  // drawn, of sessions in which as many struck
-  double worst_calm = 0, worst_disturbed = 0;  // time of a frame less a row over the device's alone
+  double worst_calm = 0, worst_disturbed = 0;  // time of a frame less two rows over the device's alone
   std::uint64_t return_ns = 0;                 // till all servers were in use again
 };
 SessionResult run_fault_session(std::uint64_t seed);
