@@ -60,7 +60,7 @@ TEST_CASE("client_merged_frames_equal_local_ones") {
 }
 
 // Goal: at the paper's own times a frame takes what full overlap allows, within 5 %. Method: [Aranha07] table 1 in
-// emulation, T_t = 400 ns a pixel as the rows compress, with a camera that moves. The bound is that of
+// emulation, T_t about 400 ns a pixel as the rows compress, with a camera that moves. The bound is that of
 // overlapped_split(); a chunk of the pipeline and the requests come on top.
 TEST_CASE("client_takes_what_overlap_allows_at_the_papers_times") {
   struct Row {
@@ -78,25 +78,21 @@ TEST_CASE("client_takes_what_overlap_allows_at_the_papers_times") {
     options.device_ns = row.device_ns;
     options.server_ns = {row.server_ns};
     options.compares = false;
-    double bytes_per_pixel = 0.8, ns = 0;
-    // What the rows take compressed is known after a first run.
-    for (int run = 0; run < 2; ++run) {
-      options.line.bytes_per_second = static_cast<std::uint64_t>(bytes_per_pixel * 1e9 / 400);
-      SplitRig rig(options);
-      double bytes = 0, pixels = 0;
-      constexpr int kFrames = 14, kSettled = 10;
-      ns = 0;
-      for (int i = 0; i < kFrames; ++i) {
-        move_on(&rig, i);
-        const FrameShare& share = rig.frame(0);
-        if (i < kSettled) continue;
-        ns += share.measured_ns / (kFrames - kSettled) / (options.width * options.height);
-        bytes += static_cast<double>(share.server_bytes[0]);
-        pixels += static_cast<double>(server_rows(share)) * options.width;
-      }
-      bytes_per_pixel = bytes / pixels;
+    // What rows take on average here; what they took in the end makes T_t, a few percent off 400 ns.
+    double ns_per_byte = 400 / 0.78, bytes = 0, pixels = 0, ns = 0;
+    options.line.bytes_per_second = static_cast<std::uint64_t>(1e9 / ns_per_byte);
+    SplitRig rig(options);
+    constexpr int kFrames = 14, kSettled = 10;
+    for (int i = 0; i < kFrames; ++i) {
+      move_on(&rig, i);
+      const FrameShare& share = rig.frame(0);
+      if (i < kSettled) continue;
+      ns += share.measured_ns / (kFrames - kSettled) / (options.width * options.height);
+      bytes += static_cast<double>(share.server_bytes[0]);
+      pixels += static_cast<double>(server_rows(share)) * options.width;
     }
-    ClosedSplit ideal = overlapped_split({row.device_ns, row.server_ns, 400});
+    double bytes_per_pixel = bytes / pixels;
+    ClosedSplit ideal = overlapped_split({row.device_ns, row.server_ns, bytes_per_pixel * ns_per_byte});
     std::printf("%-12s %d processors: paper %4.0f ns a pixel, full overlap %4.0f, here %4.0f (%.3f bytes a pixel)\n",
                 row.scene, row.processors, row.paper_ns, ideal.ns_per_pixel, ns, bytes_per_pixel);
     // Where rendering and sending take the same, rows that compress worse than others stall the pipeline.
