@@ -24,7 +24,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases mutants faults fuzz bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases mutants faults demo-split split-table fuzz bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -69,7 +69,7 @@ mutants: setup-tests
 	@JSON=$(JSON) tests/mutation/mutate.sh --jobs $(JOBS) $(MUTANTS)
 
 # Sessions of a device and its servers in which something goes wrong, in JOBS shares. SEED= begins with that one; a failing
-# session is printed with its own: make faults SESSIONS=1 SEED=n.
+# session is printed with its own: make faults SESSIONS=1 SEED=n. Without SEED= those over sockets follow, all of them.
 SESSIONS ?= 100000
 SEED ?= 1
 faults: setup-tests configure
@@ -78,6 +78,24 @@ faults: setup-tests configure
 	for first in $$(seq $(SEED) $$share $$(($(SEED) + $(SESSIONS) - 1))); do echo $$first; done | \
 	xargs -P $(JOBS) -I {} sh -c 'POCKETRAY_FAULT_SEED={} POCKETRAY_FAULT_SESSIONS='$$share' \
 	  $(BUILD)/test_share --no-intro --test-case="faults_simulated*"'
+	@[ $(SEED) != 1 ] || POCKETRAY_FAULT_SESSIONS=$(SESSIONS) $(BUILD)/test_share --no-intro --test-case="faults_over_sockets*"
+
+# A render server and an emulated handheld that shares its frames with it. In a window where there is a display; else some
+# frames are rendered and the last one's split is printed, as the display over the picture shows it.
+EMULATE ?= tablet
+DEMO_SCENE := $(if $(filter command line environment,$(origin SCENE)),$(SCENE),seesaw)
+demo-split: configure
+	cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	@log=$$(mktemp); trap 'kill $$server 2>/dev/null; rm -f $$log' EXIT; \
+	$(POCKETRAY) serve --listen 127.0.0.1:0 >$$log & server=$$!; \
+	for i in $$(seq 100); do grep -q '^listening' $$log && break; kill -0 $$server 2>/dev/null || exit 1; sleep 0.1; done; \
+	cat $$log; address=$$(sed -n 's/^listening at \([^ ]*[0-9]\).*/\1/p' $$log); \
+	if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
+	  $(POCKETRAY) view $(DEMO_SCENE) --emulate $(EMULATE) --server $$address; \
+	else \
+	  mkdir -p $(BUILD)/demo && $(POCKETRAY) render $(DEMO_SCENE) --frames 0:24 --emulate $(EMULATE) --server $$address \
+	    -o $(BUILD)/demo/$(DEMO_SCENE).png; \
+	fi
 
 # What a hostile peer or file can do: libFuzzer from the committed corpus on, each target for FUZZ_SECONDS. What it finds to
 # be worth keeping goes to build-fuzz/corpus; an input that breaks something is left in build-fuzz.
@@ -141,6 +159,7 @@ help:
 	@echo "make hardcases    every hard case in full: case, inputs, wrong answers, bound (JSON=FILE: as a list, too)"
 	@echo "make mutants      deliberate faults in the core, one at a time: how many the tests notice (JSON=FILE: as a list, too;"
 	@echo "                  MUTANTS='--only x': that one, MUTANTS=--list: their names)"
+	@echo "make demo-split   a render server and an emulated handheld that share a frame (SCENE=, EMULATE=)"
 	@echo "make faults       SESSIONS=$(SESSIONS) simulated sessions in which lines and servers fail (SEED=n: from that one on)"
 	@echo "make fuzz         libFuzzer on what comes from peers and files, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
 	@echo "make split-table  the split that is chosen beside the best of a sweep, for every device"

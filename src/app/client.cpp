@@ -416,6 +416,7 @@ void end_client_frame(Client* c) {
   share->bytes_in = share->bytes_out = 0;
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     share->server_rows[i] = count_rows(c->merge, i);
+    share->row_begin[i] = c->servers[i].frame.row_begin, share->row_end[i] = c->servers[i].frame.row_end;
     share->server_bytes[i] = c->servers[i].frame.bytes;
     share->row_bytes += c->servers[i].frame.row_bytes;
     share->bytes_in += c->servers[i].messages.bytes_in, share->bytes_out += c->servers[i].messages.bytes_out;

@@ -73,14 +73,15 @@ struct RemoteServer {
 // A frame as it went, for people and for the report.
 struct FrameShare {
   std::uint32_t frame = 0;
-  double predicted_ns = 0;                           // by the split that was chosen; 0: nothing was known yet
-  double measured_ns = 0;                            // from begin to completion
-  double local_ns = 0;                               // predicted for the device alone; 0: not known
-  std::uint32_t device_rows = 0;                     // rendered by the device
-  std::uint32_t server_rows[kServerCountMax] = {};   // that were a server's
-  std::uint64_t server_bytes[kServerCountMax] = {};  // received for it
-  std::uint64_t row_bytes = 0;                       // received, of the rows alone, without their messages
-  std::uint64_t bytes_in = 0, bytes_out = 0;         // on the wire, of all connections
+  double predicted_ns = 0;                          // by the split that was chosen; 0: nothing was known yet
+  double measured_ns = 0;                           // from begin to completion
+  double local_ns = 0;                              // predicted for the device alone; 0: not known
+  std::uint32_t device_rows = 0;                    // rendered by the device
+  std::uint32_t server_rows[kServerCountMax] = {};  // that were a server's
+  std::uint32_t row_begin[kServerCountMax] = {}, row_end[kServerCountMax] = {};  // that they were asked for
+  std::uint64_t server_bytes[kServerCountMax] = {};                              // received for it
+  std::uint64_t row_bytes = 0;                // received, of the rows alone, without their messages
+  std::uint64_t bytes_in = 0, bytes_out = 0;  // on the wire, of all connections
 };
 
 // The time in which rows of a frame came in: from the first chunk, which began nobody knows when, to the last.

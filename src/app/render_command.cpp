@@ -177,7 +177,10 @@ void print_share(const Sharing& sharing) {
   std::printf("  shared: the device rendered %.0f %% of the rows, servers sent %.1f kB a frame",
               100 * static_cast<double>(t.device_rows) / rows, static_cast<double>(t.bytes_in) * 1e-3 / frames);
   if (t.local_ns > 0) std::printf("; %.2f times as fast as alone, as predicted", t.local_ns / t.known_ns);
-  std::printf("\n");
+  std::printf("; the last frame:\n");
+  HudText lines;
+  write_share_lines(sharing, &lines);
+  for (int i = 0; i < lines.line_count; ++i) std::printf("    %s\n", lines.lines[i]);
 }
 
 // Pictures that servers cannot send are for the device alone.

@@ -20,6 +20,7 @@ struct Sharing {
   Client client;
   bool started = false;
   ShareTotals totals;
+  FrameShare last;  // of the last complete frame
 };
 
 namespace {
@@ -140,6 +141,7 @@ Status start_sharing(Sharing* s, Renderer* r, bool small_pixels, bool dither) {
   options.pace = r->pace;
   options.log = print_line;
   s->totals = ShareTotals();
+  s->last = FrameShare();
   s->started = true;
   return make_client(options, r->settings, s->scene, s->link, s->addresses.data(),
                      static_cast<std::uint32_t>(s->addresses.size()), &r->frame_arena, &s->client);
@@ -151,6 +153,7 @@ bool advance_shared(Sharing* s, Renderer* r, std::uint64_t deadline_ns, const st
   if (!advance_shared_frame(r, &s->client, deadline_ns, stop)) return false;
   const FrameShare& share = s->client.share;
   ShareTotals* t = &s->totals;
+  s->last = share;
   ++t->frames;
   t->device_rows += share.device_rows;
   for (std::uint32_t rows : share.server_rows) t->server_rows += rows;
@@ -173,7 +176,7 @@ std::uint32_t shared_rows_done(const Sharing& s) { return s.client.merge.row_cou
 
 void write_share_lines(const Sharing& s, HudText* text) {
   const Client& c = s.client;
-  const FrameShare& f = c.share;
+  const FrameShare& f = s.last;
   if (f.measured_ns > 0) {
     if (f.local_ns > 0)
       add_hud_line(text, "%.1f ms, predicted %.1f, alone %.1f: %.1f times", f.measured_ns * 1e-6, f.predicted_ns * 1e-6,
@@ -185,9 +188,9 @@ void write_share_lines(const Sharing& s, HudText* text) {
   }
   for (std::uint32_t i = 0; i < c.server_count; ++i) {
     const RemoteServer& server = c.servers[i];
-    if (server.phase == ServerPhase::ready)
-      add_hud_line(text, "%s %u rows  %.1f kB", server.address.text, f.server_rows[i],
-                   static_cast<double>(f.server_bytes[i]) * 1e-3);
+    if (server.phase == ServerPhase::ready && f.row_end[i] > 0)
+      add_hud_line(text, "%s rows %u-%u, gave %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
+                   f.server_rows[i], static_cast<double>(f.server_bytes[i]) * 1e-3);
     else
       add_hud_line(text, "%s %s", server.address.text, phase_text(server.phase));
   }
