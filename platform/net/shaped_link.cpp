@@ -18,7 +18,7 @@ struct Slot {
   LinkResult outcome;     // of the inner link's connecting
   bool in_time;           // connecting has time for a way there and back
   bool lost;              // the inner connection is no more
-  bool blocked;           // the inner link takes no more for now
+  bool blocked;           // the inner link has no room until a poll finds some
   std::uint64_t news_ns;  // when the outcome of connecting is known
   LinkPipe in, out;
   Error error;  // why it was lost

@@ -144,7 +144,7 @@ void end_client_frame(Client* client);
 
 // Whether the frame has all its rows.
 inline bool has_all_rows(const Client& client) { return is_complete(client.merge); }
-// Whether all servers are in use, or given up for now: what can be known of them is known.
+// Whether every server is in use, or waits for its next try after a failure that was told: what can be known is known.
 bool is_settled(const Client& client);
 // Rows changed since the last call.
 bool take_shared_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
