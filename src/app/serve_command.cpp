@@ -48,8 +48,8 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
   if (address->loopback || o.insecure_lan) return success();
   return failure(
       "--listen %s is open to other machines, and this server asks nobody who they are: whoever reaches the port can "
-      "use "
-      "its CPU and see its scenes. Listen at 127.0.0.1:7411 and come through an SSH tunnel, or trust the network with "
+      "use its CPU and see its scenes. Listen at 127.0.0.1:7411 and come through an SSH tunnel, or trust the network "
+      "with "
       "--insecure-lan",
       o.listen.c_str());
 }
@@ -76,8 +76,6 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   std::size_t scene_bytes;
   RETURN_IF_ERROR(parse_bytes(o.scene_memory, &scene_bytes, "--scene-memory"));
   store_options.bytes_max = scene_bytes;
-  RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
-  for (const std::string& warning : serving->store.warnings) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
 
   platform::LinkOptions link_options;
   link_options.stream_count_max = server_stream_count(*options);
@@ -88,7 +86,11 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   platform::Error error;
   serving->link = platform::kTcpLink.open(link_options, &error);
   if (!serving->link) return failure("%s", error.text);
-  return open_server(*options, serving->store, serving->link, address, &serving->server);
+  // The address first: that another program has it is told before the scenes are read, which takes its time.
+  RETURN_IF_ERROR(open_server(*options, serving->store, serving->link, address, &serving->server));
+  RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
+  for (const std::string& warning : serving->store.warnings) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
+  return success();
 }
 
 void print_start(const Serving& serving, const ServerOptions& options) {

@@ -35,8 +35,8 @@ struct Server;
 
 // Streams of its link that a server takes.
 int server_stream_count(const ServerOptions& options);
-// Takes all memory and starts the threads; nothing is allocated afterwards. The store and the link stay the caller's
-// and have to outlive the server. On failure *server is null.
+// Takes all memory, listens and starts the threads; nothing is allocated afterwards. The store and the link stay the
+// caller's and have to outlive the server; the store may be filled until the first step. On failure *server is null.
 Status open_server(const ServerOptions& options, const SceneStore& store, platform::Link* link,
                    const platform::LinkAddress& address, Server** server);
 // Where it listens, HOST:PORT in numbers.
