@@ -1,7 +1,6 @@
 #include "app/client.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "app/client_parts.h"
@@ -14,16 +13,10 @@ constexpr std::size_t kOutBytes = 1024;     // of requests that wait to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
 constexpr double kWaitShare = 0.04;         // of a frame's time that the overture may wait: less than the 5 % that a
                                             // network may cost
-constexpr double kGapsMin = 4;              // looks in which rows have to come for their time to mean something
-constexpr double kLinkBound = 1.15;         // times that rows take on the link beyond what they take on the servers
 constexpr double kLateFactor = 1.03;        // of a frame's predicted time, after which nobody waits for rows
 constexpr double kLookNs = 20e6;            // between two looks at the link: a frame that a screen shows
 constexpr double kLooksWatched = 16;  // in a frame that is watched. It costs the device's packets some of their speed:
 constexpr std::uint64_t kWatchedFirst = 4, kWatchedEvery = 16;  // so only the first of these and each of those is
-constexpr std::uint32_t kProbeRowsMax = 2 * kChunkRows, kProbeDivisor = 15;  // of the rows: 16 of 240
-// Nanoseconds a byte beyond which fewer bytes are worth more of the server's time. Measured (codec_frames_test): level
-// 1 takes 400 ns and saves 1.5 bytes a pixel of RGB565, level 6 takes another 300 and saves 0.06.
-constexpr double kDeflateNsPerByte = 250, kDeflateMoreNsPerByte = 5000;
 
 CodecShape codec_shape(const Settings& settings, WireFormat format) {
   return {settings.width, settings.height, std::min(kChunkRows, settings.height), format};
@@ -38,152 +31,6 @@ void mark_dirty(Client* c, std::uint32_t begin, std::uint32_t end) {
   if (c->dirty_begin == c->dirty_end) c->dirty_begin = begin, c->dirty_end = end;
   c->dirty_begin = std::min(c->dirty_begin, begin);
   c->dirty_end = std::max(c->dirty_end, end);
-}
-
-std::uint32_t index_of(const Client& c, const RemoteServer* s) { return static_cast<std::uint32_t>(s - c.servers); }
-
-// What a pixel costs the device, by this frame or those before; 0: not known.
-double device_pixel_ns(const Client& c) {
-  double width = c.settings.width;
-  if (c.device_rows > 0) return c.device_ns / (width * c.device_rows);
-  double sum = 0;
-  std::uint32_t count = 0;
-  for (const RowModel& row : c.model.rows)
-    if (is_known(row.device_ns)) sum += static_cast<double>(row.device_ns.value), ++count;
-  return count ? sum / (width * count) : 0;
-}
-
-// Asks a server for rows; those at the end that are done are left out.
-void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint32_t row_end) {
-  auto is_done = [&](std::uint32_t row) {
-    return c->merge.rows[row].state == RowState::device || c->merge.rows[row].state == RowState::server;
-  };
-  while (row_end > row_begin && is_done(row_end - 1)) --row_end;
-  if (row_begin >= row_end) return;
-  Message message;
-  message.type = MessageType::frame_request;
-  message.frame_request = c->request;
-  message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);
-  message.frame_request.row_end = static_cast<std::uint16_t>(row_end);
-  message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(kChunkRows, c->settings.height));
-  message.frame_request.deflate_level = deflate_level(s->ns_per_byte);
-  if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
-  std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
-  s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};
-  if (!s->unanswered) s->timer = platform::link_timer(s->frame.asked_ns, c->options.silence_timeout_ns);
-  s->unanswered = true;
-  flush_server(c, s);
-}
-
-// Fixed share: the device's rows as told, the others among the servers by their speed.
-Split split_by_share(const Client& c, const SplitProblem& problem) {
-  Split split;
-  split.server_count = c.server_count;
-  double rows = problem.row_count, speed_sum = 0, so_far = 0;
-  auto speed_of = [&](std::uint32_t i) {
-    return problem.servers[i].usable ? 1 / static_cast<double>(c.model.servers[i].speed.value) : 0;
-  };
-  for (std::uint32_t i = 0; i < c.server_count; ++i) speed_sum += speed_of(i);
-  double device_rows = speed_sum > 0 ? std::floor(rows * c.options.device_share + 0.5) : rows;
-  for (std::uint32_t i = 0; i <= c.server_count; ++i) {
-    double share = speed_sum > 0 ? so_far / speed_sum : 0;
-    split.boundary[i] = static_cast<std::uint32_t>(std::floor(device_rows + (rows - device_rows) * share + 0.5));
-    if (i < c.server_count) so_far += speed_of(i);
-  }
-  split.boundary[c.server_count] = problem.row_count;
-  predict_split(problem, &split);
-  return split;
-}
-
-// The split for the frame, of which `elapsed_ns` have passed, and the requests that follow.
-void share_rows(Client* c, std::uint64_t elapsed_ns) {
-  SplitProblem problem = make_problem(&c->model, c->options.wish);
-  for (std::uint32_t i = 0; i < c->server_count; ++i) problem.servers[i].start_ns += elapsed_ns;
-  if (c->options.device_share >= 0)
-    c->split = split_by_share(*c, problem);
-  else
-    c->split = elapsed_ns > 0 ? find_split(problem, &c->workspace) : next_split(problem, c->split, &c->workspace);
-  c->share.predicted_ns = static_cast<double>(c->split.time_ns);
-  Split alone;
-  alone.server_count = c->server_count;
-  for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
-  predict_split(problem, &alone);
-  c->share.local_ns = static_cast<double>(alone.time_ns);
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    s->ns_per_byte = static_cast<double>(c->model.servers[i].ns_per_byte.value);
-    if (s->phase == ServerPhase::ready) ask_for_rows(c, s, c->split.boundary[i], c->split.boundary[i + 1]);
-  }
-  c->joined = true;
-}
-
-// Servers whose overture has come to their first rows get them from the bottom.
-void probe_servers(Client* c) {
-  std::uint32_t bottom = c->settings.height;
-  std::uint32_t rows = std::max(1u, std::min(kProbeRowsMax, bottom / kProbeDivisor));
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    if (s->phase != ServerPhase::probing || s->frame.open || s->frame.rows_come > 0) continue;
-    while (bottom > 0 && c->merge.rows[bottom - 1].state != RowState::missing) --bottom;
-    if (bottom < c->merge.next_row + 2 * rows) return;  // too late for this frame
-    ask_for_rows(c, s, bottom - rows, bottom);
-    bottom -= rows;
-  }
-}
-
-void finish_probe(Client* c, RemoteServer* s) {
-  double device = device_pixel_ns(*c);
-  if (device == 0 || s->frame.open || s->frame.rows_come == 0) return;
-  double pixels = static_cast<double>(s->frame.rows_come) * c->settings.width;
-  double bytes_per_pixel = std::max(1e-3, static_cast<double>(s->frame.bytes) / pixels);
-  PixelTimes times = {device, s->probe_ns_per_pixel, s->ns_per_byte * bytes_per_pixel};
-  observe_overture(&c->model, index_of(*c, s), times, bytes_per_pixel, s->round_trip_ns);
-  // What the radio that all servers share gives to the best of them when it is alone.
-  Smoothed* link = &c->model.link_ns_per_byte;
-  if (!is_known(*link) || s->ns_per_byte < static_cast<double>(link->value)) {
-    *link = Smoothed();
-    smooth(link, s->ns_per_byte);
-  }
-  server_is_ready(c, s);
-  c->frames_shared = 0;
-}
-
-// Servers that have become ready within the frame get their share of what is left, once nobody is worth waiting for.
-void let_join(Client* c) {
-  if (c->complete) return;
-  bool any = false;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    if (c->servers[i].phase == ServerPhase::probing) finish_probe(c, &c->servers[i]);
-    any = any || c->servers[i].phase == ServerPhase::ready;
-  }
-  probe_servers(c);
-  if (c->joined || !any || (!is_settled(*c) && c->merge.next_row < c->settings.height / 4)) return;
-  share_rows(c, client_now_ns(*c) - c->begin_ns);
-}
-
-// What the frame's rows tell of the link. They come as fast as the slower of servers and link allows: where the servers
-// were faster, or the link did better than it was thought to be, that is its speed.
-void measure_link(Client* c) {
-  const Arrivals& a = c->arrivals;
-  double ns = static_cast<double>(a.last_ns - a.first_ns), bytes = static_cast<double>(a.bytes);
-  if (bytes == 0 || ns < kGapsMin * static_cast<double>(a.gap_ns_max)) return;
-  double rate = 0;  // bytes per nanosecond that the servers make
-  std::uint32_t count = 0, last = 0;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    const ServerFrame& f = c->servers[i].frame;
-    if (f.rows_come == 0 || c->servers[i].phase != ServerPhase::ready) continue;
-    if (f.render_ns > 0) rate += static_cast<double>(f.bytes) / f.render_ns;
-    ++count, last = i;
-  }
-  Smoothed* link = &c->model.link_ns_per_byte;
-  double before = is_known(*link) ? static_cast<double>(link->value) : 0;
-  bool link_bound = rate > 0 && ns / bytes * rate > kLinkBound, better = ns / bytes < before;
-  if (count == 0 || !(link_bound || better)) return;
-  if (count == 1) observe_transfer(&c->model, last, bytes, ns);
-  smooth(link, ns / bytes);
-  if (count > 1 && before > 0)
-    for (std::uint32_t i = 0; i < c->server_count; ++i)
-      scale(&c->model.servers[i].ns_per_byte, static_cast<double>(link->value) / before);
 }
 
 // Frames in which the device looks often, so that it sees when rows come: the first ones with a server, and a few
@@ -249,10 +96,6 @@ void cancel_rest(Client* c) {
 
 std::uint64_t client_now_ns(const Client& c) {
   return platform::link_clock_ns(&c.clock, c.link->backend->now_ns(c.link));
-}
-
-std::uint8_t deflate_level(double ns_per_byte) {
-  return ns_per_byte < kDeflateNsPerByte ? 0 : ns_per_byte < kDeflateMoreNsPerByte ? 1 : 6;
 }
 
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count) {

@@ -1,8 +1,13 @@
-// What the client's files share: client.cpp has the frame, client_server.cpp the connections.
+// What the client's files share: client.cpp has the frame, client_plan.cpp who renders what of it, client_server.cpp
+// the connections.
 #pragma once
 #include "app/client.h"
 
 namespace pocketray {
+
+inline std::uint32_t index_of(const Client& c, const RemoteServer* s) {
+  return static_cast<std::uint32_t>(s - c.servers);
+}
 
 // ---- client_server.cpp
 
@@ -16,6 +21,18 @@ void flush_server(Client* client, RemoteServer* server);
 void server_is_ready(Client* client, RemoteServer* server);
 // How long it is worth while to do nothing but wait for an answer, so that its time is measured well.
 std::uint64_t wait_wanted_ns(const Client& client);
+
+// ---- client_plan.cpp
+
+// What a pixel costs the device, by this frame or those before; 0: not known.
+double device_pixel_ns(const Client& client);
+// The split for the frame, of which `elapsed_ns` have passed, and the requests that follow.
+void share_rows(Client* client, std::uint64_t elapsed_ns);
+// Servers that have become ready within the frame get their share of what is left, once nobody is worth waiting for.
+void let_join(Client* client);
+// What the frame's rows tell of the link. They come as fast as the slower of servers and link allows: where the servers
+// were faster, or the link did better than it was thought to be, that is its speed.
+void measure_link(Client* client);
 
 // ---- client.cpp
 

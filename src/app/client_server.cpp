@@ -35,8 +35,6 @@ void enter(Client* c, RemoteServer* s, ServerPhase phase) {
   s->timer = platform::link_timer(client_now_ns(*c), limit);
 }
 
-std::uint32_t index_of(const Client& c, const RemoteServer* s) { return static_cast<std::uint32_t>(s - c.servers); }
-
 void send(Client* c, RemoteServer* s, const Message& message) {
   if (!send_message(&s->messages, message)) lose_server(c, s, "it does not read what it is sent");
 }
