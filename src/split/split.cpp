@@ -39,9 +39,9 @@ void extend_by_server(const SplitProblem& p, const ServerTables& server, std::ui
   }
 }
 
-// The least cost of a split that takes no longer than time_ns, kNever where there is none. w->band_begin then leads to
-// it.
-std::uint64_t least_cost(const SplitProblem& p, std::uint64_t time_ns, SplitWorkspace* w) {
+// The least cost of a split in which device and link take no longer than time_ns and no server longer than servers_ns,
+// kNever where there is none. w->band_begin then leads to it.
+std::uint64_t least_cost(const SplitProblem& p, std::uint64_t time_ns, std::uint64_t servers_ns, SplitWorkspace* w) {
   ++w->search_count;
   std::uint32_t entries = p.row_count + 1;
   for (std::uint32_t b = 0; b < entries; ++b) w->least[b] = near_ns(p, b) <= time_ns ? p.device_cost[b] : kNever;
@@ -49,9 +49,13 @@ std::uint64_t least_cost(const SplitProblem& p, std::uint64_t time_ns, SplitWork
     if (!p.servers[i].usable) continue;
     Array<std::uint64_t> swapped = w->least;
     w->least = w->least_before, w->least_before = swapped;
-    extend_by_server(p, p.servers[i], time_ns, w, w->band_begin.data + std::size_t(i) * entries);
+    extend_by_server(p, p.servers[i], servers_ns, w, w->band_begin.data + std::size_t(i) * entries);
   }
   return w->least[p.row_count];
+}
+
+std::uint64_t least_cost(const SplitProblem& p, std::uint64_t time_ns, SplitWorkspace* w) {
+  return least_cost(p, time_ns, time_ns, w);
 }
 
 // The split that the last least_cost() found.
@@ -66,6 +70,13 @@ Split split_found(const SplitProblem& p, const SplitWorkspace& w) {
   split.boundary[0] = row;
   predict_split(p, &split);
   return split;
+}
+
+std::uint64_t slowest_band_ns(const SplitProblem& p, const Split& split) {
+  std::uint64_t slowest = 0;
+  for (std::uint32_t i = 0; i < p.server_count; ++i)
+    if (p.servers[i].usable) slowest = larger(slowest, band_ns(p.servers[i], split.boundary[i], split.boundary[i + 1]));
+  return slowest;
 }
 
 std::uint64_t objective(const SplitProblem& p, const Split& split) {
@@ -126,6 +137,23 @@ void weigh_time_against_cost(const SplitProblem& p, const Split& soonest, const 
   }
 }
 
+// Of the splits that are as good, one whose slowest server is done soonest. Where device or link bound the time, others
+// may leave a server idle while its neighbour has just enough time by the prediction, and none to spare.
+Split balance(const SplitProblem& p, const Split& best, SplitWorkspace* w) {
+  std::uint64_t low = 0, high = best.time_ns;
+  while (low < high) {
+    std::uint64_t middle = low + (high - low) / 2;
+    if (least_cost(p, best.time_ns, middle, w) <= best.cost)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  least_cost(p, best.time_ns, high, w);
+  Split balanced = split_found(p, *w);
+  balanced.exact = best.exact;
+  return balanced;
+}
+
 }  // namespace
 
 std::size_t split_need(std::uint32_t row_count, std::uint32_t server_count) {
@@ -184,7 +212,7 @@ Split find_split(const SplitProblem& p, SplitWorkspace* w) {
     keep_better(p, cheapest, &best);
     weigh_time_against_cost(p, soonest, cheapest, w, &best);
   }
-  return best;
+  return p.server_count > 1 ? balance(p, best, w) : best;
 }
 
 Split next_split(const SplitProblem& p, const Split& previous, SplitWorkspace* w) {
@@ -195,8 +223,9 @@ Split next_split(const SplitProblem& p, const Split& previous, SplitWorkspace* w
   Split kept = previous;
   predict_split(p, &kept);
   if (kept.cap_met != best.cap_met) return best;
-  std::uint64_t value = objective(p, best);
-  return objective(p, kept) <= value + value / kDeadBandDivisor ? kept : best;
+  std::uint64_t value = objective(p, best), band = value / kDeadBandDivisor;
+  bool as_good = objective(p, kept) <= value + band && slowest_band_ns(p, kept) <= slowest_band_ns(p, best) + band;
+  return as_good ? kept : best;
 }
 
 }  // namespace pocketray

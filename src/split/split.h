@@ -66,11 +66,12 @@ std::uint64_t band_ns(const ServerTables& server, std::uint32_t row_begin, std::
 void predict_split(const SplitProblem& problem, Split* split);
 
 // The best of all splits that cost at most the cap: least time, of equally soon ones the cheapest; or least time +
-// cost. Effort: about 30 · servers · rows steps; kSearchMax · servers · rows at most.
+// cost. Of equally good ones, that whose slowest server is done soonest. Effort: about 30 · servers · rows steps, 60
+// with several servers; (kSearchMax + 60) · servers · rows at most.
 Split find_split(const SplitProblem& problem, SplitWorkspace* workspace);
 
-// The same with a dead band: stays with `previous` while that is predicted to be worse by no more than a
-// kDeadBandDivisor-th.
+// The same with a dead band: stays with `previous` while that, and the slowest of its servers, is predicted to be worse
+// by no more than a kDeadBandDivisor-th of the time.
 Split next_split(const SplitProblem& problem, const Split& previous, SplitWorkspace* workspace);
 
 constexpr std::uint32_t kSearchMax = 1024;

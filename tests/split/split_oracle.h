@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "base/rng.h"
@@ -61,6 +62,20 @@ inline std::unique_ptr<GeneratedProblem> random_problem(std::uint32_t row_count,
   return g;
 }
 
+// Of the servers' bands, the one that takes longest.
+inline std::uint64_t slowest_band(const SplitProblem& p, const std::uint32_t* boundary) {
+  std::uint64_t slowest = 0;
+  for (std::uint32_t i = 0; i < p.server_count; ++i) {
+    std::uint32_t begin = boundary[i], end = boundary[i + 1];
+    const ServerTables& s = p.servers[i];
+    if (begin == end) continue;
+    std::uint64_t render = s.render_ns[end] - s.render_ns[begin], send = s.transfer_ns[end] - s.transfer_ns[begin];
+    slowest =
+        std::max(slowest, s.start_ns + std::min(end - begin, s.chunk_rows) * s.chunk_row_ns + std::max(render, send));
+  }
+  return slowest;
+}
+
 // What the comments of split.h say of a split, once more. Returns time; *cost is set.
 inline std::uint64_t judge(const SplitProblem& p, const std::uint32_t* boundary, std::uint64_t* cost) {
   auto sum = [](RowTable table, std::uint32_t begin, std::uint32_t end) { return table[end] - table[begin]; };
@@ -73,16 +88,15 @@ inline std::uint64_t judge(const SplitProblem& p, const std::uint32_t* boundary,
     if (begin == end) continue;
     const ServerTables& s = p.servers[i];
     if (!s.usable) return ~std::uint64_t(0);
-    time = std::max(time, s.start_ns + std::min(end - begin, s.chunk_rows) * s.chunk_row_ns +
-                              std::max(sum(s.render_ns, begin, end), sum(s.transfer_ns, begin, end)));
     *cost += sum(s.cost, begin, end);
   }
-  return time;
+  return std::max(time, slowest_band(p, boundary));
 }
 
 struct Best {
   std::uint64_t objective = ~std::uint64_t(0), cost = ~std::uint64_t(0);
-  std::uint64_t least_cost = ~std::uint64_t(0);  // of any split, whatever the cap
+  std::uint64_t slowest_band = ~std::uint64_t(0);  // the least of those that are as good
+  std::uint64_t least_cost = ~std::uint64_t(0);    // of any split, whatever the cap
 };
 
 // Over all splits.
@@ -97,8 +111,9 @@ inline Best best_of_all(const SplitProblem& p) {
       best.least_cost = std::min(best.least_cost, cost);
       if (cost > p.cost_cap) return;
       std::uint64_t objective = time + (p.weigh_cost ? cost : 0);
-      if (objective < best.objective || (objective == best.objective && cost < best.cost))
-        best.objective = objective, best.cost = cost;
+      std::uint64_t slowest = slowest_band(p, boundary);
+      if (std::tie(objective, cost, slowest) < std::tie(best.objective, best.cost, best.slowest_band))
+        best.objective = objective, best.cost = cost, best.slowest_band = slowest;
       return;
     }
     for (boundary[index] = from; boundary[index] <= p.row_count; ++boundary[index])

@@ -41,6 +41,7 @@ std::uint32_t compare(const SplitProblem& p) {
     CHECK(split.cap_met);
     CHECK(time + (p.weigh_cost ? cost : 0) == best.objective);
     if (!p.weigh_cost) CHECK(cost == best.cost);
+    if (cost == best.cost) CHECK(slowest_band(p, split.boundary) == best.slowest_band);
   }
   return own.workspace.search_count;
 }
@@ -118,7 +119,7 @@ TEST_CASE("split_of_equal_rows_is_the_closed_form") {
 }
 
 // Goal: three equal servers without a shared link take equal bands; where the link is the limit, more servers do not
-// help and the device does the rest.
+// help, the device does the rest, and the bands are equal still.
 TEST_CASE("split_divides_among_servers_until_the_link_is_full") {
   GeneratedProblem g;
   g.problem.row_count = 240, g.problem.server_count = 3;
@@ -138,7 +139,7 @@ TEST_CASE("split_divides_among_servers_until_the_link_is_full") {
   g.problem.link_ns = table(1000);
   split = find_split(g.problem, &own.workspace);
   CHECK(split.time_ns == 120000);
-  CHECK(split.boundary[0] == 120);
+  for (std::uint32_t i = 0; i < 4; ++i) CHECK(split.boundary[i] == 120 + 40 * i);
 }
 
 // Goal: the dead band holds a split while another would gain less than it, and lets go beyond, at once where a server
@@ -164,6 +165,27 @@ TEST_CASE("next_split_stays_until_the_gain_is_worth_it") {
   Split other = first;
   other.server_count = 0, other.boundary[0] = 240;
   CHECK(next_split(g.problem, other, &own.workspace).boundary[0] != 120);
+}
+
+// Goal: the dead band keeps no split that leaves servers idle while one has no time to spare, though the link bounds
+// the time of both.
+TEST_CASE("next_split_lets_go_of_unequal_bands") {
+  GeneratedProblem g;
+  g.problem.row_count = 240, g.problem.server_count = 2;
+  auto table = [&](std::uint64_t ns) { return make_table(&g, [=](std::uint32_t) { return ns; }); };
+  g.problem.device_ns = table(1000000);
+  g.problem.unpack_ns = g.problem.device_cost = table(0), g.problem.link_ns = table(1000);
+  for (int i = 0; i < 2; ++i) {
+    ServerTables* s = &g.problem.servers[i];
+    s->usable = true, s->render_ns = table(1000), s->transfer_ns = table(1000), s->cost = table(1);
+  }
+  OwnWorkspace own(240, 2);
+  Split split;
+  split.server_count = 2;
+  split.boundary[1] = split.boundary[2] = 240;
+  CHECK(next_split(g.problem, split, &own.workspace).boundary[1] == 120);
+  split.boundary[1] = 121;
+  CHECK(next_split(g.problem, split, &own.workspace).boundary[1] == 121);
 }
 
 // Goal: a workspace takes what split_need() says, exactly.
