@@ -70,7 +70,8 @@ void look_at_servers(Client* c, std::uint64_t timeout_ns) {
   c->unwatched_ns = begin > c->looked_ns ? begin - c->looked_ns : 0;
   c->link->backend->poll(c->link, waits, wait_count, timeout_ns);
   std::uint64_t now = client_now_ns(*c);
-  c->arrivals.gap_ns_max = std::max(c->arrivals.gap_ns_max, now > c->looked_ns ? now - c->looked_ns : 0);
+  std::uint64_t since = std::max(c->looked_ns, c->begin_ns);
+  c->arrivals.gap_ns_max = std::max(c->arrivals.gap_ns_max, now > since ? now - since : 0);
   c->looked_ns = now;
   for (std::uint32_t i = 0; i < c->server_count; ++i) advance_server(c, &c->servers[i]);
   let_join(c);
@@ -197,7 +198,7 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
   c->share.measured_ns = last.measured_ns;
   c->complete = c->joined = false;
   c->waited_ns = 0, c->device_ns = 0, c->device_rows = 0;
-  c->begin_ns = c->looked_ns = client_now_ns(*c);
+  c->begin_ns = client_now_ns(*c);
   c->arrivals = Arrivals();
   observe_device_start(&c->model, static_cast<double>(prepare_ns));
   FrameRequest* q = &c->request;

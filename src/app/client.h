@@ -60,7 +60,7 @@ struct RemoteServer {
   platform::LinkTimer timer;                           // of the phase: the next try, or when it counts as lost
   std::uint64_t retry_ns = 0;                          // till the next try
   bool told = false;                                   // why it is not in use
-  std::uint32_t ping_id = 0;                           // that an answer is awaited to; 0: none
+  std::uint32_t ping_id = 0, ping_bytes = 0;           // that an answer is awaited to, and its payload; id 0: none
   std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the answer came unwatched
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
   double round_trip_ns = 0, ns_per_byte = 0;

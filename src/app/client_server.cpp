@@ -9,12 +9,15 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kPings = 3;                 // without a payload: the least of them is the round trip
-constexpr std::uint32_t kPingsMissedMax = 24;       // after which answers that came unwatched have to do
-constexpr double kUnwatchedShareInverse = 8;        // of an answer's time that the device may not have looked
-constexpr std::uint32_t kPingBytes = 16384;         // of the one that measures the bandwidth
-constexpr std::uint64_t kPingWaitNs = 20'000'000;   // that the device waits for an answer and does nothing else
-constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between two looks at a server that gets no rows
+constexpr std::uint32_t kPings = 3;                // without a payload: the least of them is the round trip
+constexpr std::uint32_t kPingsMissedMax = 24;      // after which answers that came unwatched have to do
+constexpr double kUnwatchedShareInverse = 8;       // of an answer's time that the device may not have looked
+constexpr std::uint32_t kPingBytesLeast = 1024;    // of the one that measures the bandwidth; twice as many each time,
+constexpr std::uint32_t kPingBytesMost = 16384;    // until they take
+constexpr double kPingTripsMin = 8;                // times as long as one without
+constexpr std::uint64_t kPingWaitNs = 20'000'000;  // that the device waits for an answer and does nothing else,
+constexpr std::uint64_t kSizedPingWaitNs = 200'000'000;  // and for one with a payload, over a slow link
+constexpr std::uint64_t kIdlePingNs = 500'000'000;       // between two looks at a server that gets no rows
 constexpr double kNsPerByteMin = 1e-3;  // a link faster than a terabyte a second is one that was not measured
 
 void tell(Client* c, const char* format, ...) __attribute__((format(printf, 2, 3)));
@@ -44,13 +47,20 @@ void send_ping(Client* c, RemoteServer* s, std::uint32_t reply_bytes) {
   message.type = MessageType::ping;
   if (++s->ping_id == 0) ++s->ping_id;
   message.ping = {s->ping_id, reply_bytes};
+  s->ping_bytes = reply_bytes;
   s->ping_ns = client_now_ns(*c);
   send(c, s, message);
 }
 
-std::uint32_t ping_bytes(const RemoteServer& s) {
-  std::size_t room = s.messages.in.count - 64;
-  return room < kPingBytes ? static_cast<std::uint32_t>(room) : kPingBytes;
+// The payload of the answer that is to be timed next. Servers may share the device's radio: one after the other.
+std::uint32_t next_ping_bytes(const Client& c, const RemoteServer& s) {
+  if (s.pings_answered < kPings) return 0;
+  for (std::uint32_t i = 0; i < c.server_count; ++i) {
+    const RemoteServer& other = c.servers[i];
+    if (&other != &s && other.phase == ServerPhase::measuring && other.ping_id != 0 && other.ping_bytes > 0) return 0;
+  }
+  std::uint32_t wanted = kPingBytesLeast << (s.pings_answered - kPings), room = s.messages.in.count - 64;
+  return wanted < room ? wanted : room;
 }
 
 void connect_server(Client* c, RemoteServer* s) {
@@ -105,16 +115,15 @@ bool is_watched(const Client& c, double ns) {
   return kUnwatchedShareInverse * static_cast<double>(c.unwatched_ns) < ns;
 }
 
-// The overture's answers: first without a payload, then with one.
-void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::size_t byte_count) {
-  if (!is_watched(*c, ns) && ++s->pings_missed < kPingsMissedMax)
-    return send_ping(c, s, s->pings_answered == kPings ? ping_bytes(*s) : 0);
-  ++s->pings_answered;
-  if (s->pings_answered <= kPings) {
-    if (s->round_trip_ns == 0 || ns < s->round_trip_ns) s->round_trip_ns = ns;
-    return send_ping(c, s, s->pings_answered == kPings ? ping_bytes(*s) : 0);
-  }
-  double per_byte = (ns - s->round_trip_ns) / static_cast<double>(byte_count);
+// The overture's answers: first without a payload, then with as much as it takes to tell the link from its latency.
+void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::uint32_t byte_count) {
+  if (!is_watched(*c, ns) && ++s->pings_missed < kPingsMissedMax) return send_ping(c, s, next_ping_bytes(*c, *s));
+  if (byte_count > 0 || s->pings_answered < kPings) ++s->pings_answered;
+  if (byte_count == 0 && (s->round_trip_ns == 0 || ns < s->round_trip_ns)) s->round_trip_ns = ns;
+  bool tells = byte_count >= kPingBytesMost || ns >= kPingTripsMin * s->round_trip_ns;
+  if (byte_count == 0 || (!tells && next_ping_bytes(*c, *s) > byte_count))
+    return send_ping(c, s, next_ping_bytes(*c, *s));
+  double per_byte = (ns - s->round_trip_ns) / byte_count;
   s->ns_per_byte = per_byte > kNsPerByteMin ? per_byte : kNsPerByteMin;
   enter(c, s, ServerPhase::probing);
 }
@@ -293,8 +302,8 @@ std::uint64_t wait_wanted_ns(const Client& c) {
   for (std::uint32_t i = 0; i < c.server_count; ++i) {
     const RemoteServer& s = c.servers[i];
     if (s.phase == ServerPhase::measuring && s.ping_id != 0) {
-      std::uint64_t since = client_now_ns(c) - s.ping_ns;
-      if (since < kPingWaitNs && kPingWaitNs - since > wanted) wanted = kPingWaitNs - since;
+      std::uint64_t since = client_now_ns(c) - s.ping_ns, wait = s.ping_bytes > 0 ? kSizedPingWaitNs : kPingWaitNs;
+      if (since < wait && wait - since > wanted) wanted = wait - since;
     }
   }
   return wanted;

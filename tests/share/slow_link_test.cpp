@@ -1,0 +1,54 @@
+// What a device learns of a link and of its servers when its own rows take long and it seldom looks.
+#include <doctest/doctest.h>
+
+#include "split_rig.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr double kNsPerByte = 5000, kLatencyNs = 500'000;
+
+// A row takes the device 64 ms.
+SplitRigOptions slow_link() {
+  SplitRigOptions options;
+  options.device_ns = 1e6;
+  options.server_ns = {3500};
+  options.server_count = 3;
+  options.compares = false;
+  options.line.bytes_per_second = static_cast<std::uint64_t>(1e9 / kNsPerByte);
+  options.line.latency_ns = static_cast<std::uint64_t>(kLatencyNs);
+  return options;
+}
+
+}  // namespace
+
+// Goal: several servers behind one slow radio are each measured as if alone, whatever the device does meanwhile.
+// Method: the speed of the line is known; what the overture, and then the frames, say of it.
+TEST_CASE("client_measures_a_slow_link_that_servers_share") {
+  SplitRig rig(slow_link());
+  for (int i = 0; i < 6; ++i) {
+    rig.frame(0.1 * i);
+    CAPTURE(i);
+    CHECK(is_settled(rig.client));
+    const CostModel& model = rig.client.model;
+    CHECK(static_cast<double>(model.link_ns_per_byte.value) > 0.9 * kNsPerByte);
+    CHECK(static_cast<double>(model.link_ns_per_byte.value) < 1.25 * kNsPerByte);
+    for (std::uint32_t s = 0; s < 3; ++s)
+      CHECK(static_cast<double>(model.servers[s].ns_per_byte.value) < 1.25 * kNsPerByte);
+  }
+  CHECK(rig.client.share.device_rows == 0);
+}
+
+// Goal: while the device renders all rows itself and looks at the link once a row, the time of a row is not taken for
+// the time that a server takes to answer. Method: frames without servers' rows, in which only pings tell of them.
+TEST_CASE("client_start_is_measured_while_the_device_is_at_work") {
+  SplitRig rig(slow_link());
+  for (int i = 0; i < 3; ++i) rig.frame(0.1 * i);
+  rig.client.options.device_share = 1;
+  for (int i = 0; i < 12; ++i) rig.frame(0.3 + 0.1 * i);
+  for (std::uint32_t s = 0; s < 3; ++s)
+    CHECK(static_cast<double>(rig.client.model.servers[s].start_ns.value) < 8 * kLatencyNs);
+  rig.client.options.device_share = -1;
+  CHECK(rig.frame(2).device_rows == 0);
+}
