@@ -112,6 +112,7 @@ Status settle(Experiment* e, bool* complete) {
 }
 
 // The path from its start, `lap_count` times; the first frames, behind a jump and perhaps another share, do not count.
+// Nor does a lap before: a stream that has seen a small picture's path already compresses it better.
 Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, double* whole) {
   const Settings& settings = e->client.settings;
   const std::uint32_t frame_count = lap_count * e->setup.frame_count;
@@ -119,7 +120,8 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
   *complete = true;
   std::uint32_t measured = 0;
   for (e->frame = 0; *complete && measured < frame_count;) {
-    bool counts = e->frame % (kSkippedFrames + e->setup.frame_count) >= kSkippedFrames;
+    const std::uint32_t lap = kSkippedFrames + e->setup.frame_count;
+    bool counts = e->frame >= lap && e->frame % lap >= kSkippedFrames;
     RETURN_IF_ERROR(next_frame(e, complete));
     if (!*complete || !counts) continue;
     const FrameShare& share = e->client.share;
@@ -179,12 +181,12 @@ Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::
 }  // namespace
 
 std::uint64_t split_frame_count(const SplitSetup& setup, std::uint32_t step_count) {
-  std::uint64_t point = kSkippedFrames + setup.frame_count;
-  return 4 + 3 * std::uint64_t(setup.frame_count) + (step_count + 2 * kRefinements) * point;
+  std::uint64_t lap = kSkippedFrames + setup.frame_count;
+  return 4 + (2 + kChosenLaps) * lap + (step_count + 2 * kRefinements) * 2 * lap;
 }
 
 std::uint64_t paper_frame_count(const SplitSetup& setup) {
-  return kPaperRows * kPaperRuns * (4 + 2 * std::uint64_t(setup.frame_count));
+  return kPaperRows * kPaperRuns * (4 + 3 * std::uint64_t(kSkippedFrames + setup.frame_count));
 }
 
 Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress* progress, SplitFigures* figures) {
