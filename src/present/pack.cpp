@@ -101,12 +101,12 @@ ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_beg
     const Vec3* in = radiance + static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
     ScreenPosition at = screen_position(0, row, width, height, rotation);
     unsigned char* out = pixels + static_cast<std::ptrdiff_t>(at.y) * line_bytes + at.x * kBytes;
+    const std::uint16_t* thresholds = kBayer.offset[row & 7];
     for (int column = 0; column < width; ++column, out += step) {
       Vec3 c = in[column] * exposure;
       std::uint32_t pixel = packer.ones;
       if (kDither) {
-        std::uint32_t threshold = kBayer.offset[at.y & 7][at.x & 7];
-        at.x += step_x, at.y += step_y;
+        std::uint32_t threshold = thresholds[column & 7];
         pixel |= pack_dithered(packer.channels[0], c.x, threshold, &counts) |
                  pack_dithered(packer.channels[1], c.y, threshold, &counts) |
                  pack_dithered(packer.channels[2], c.z, threshold, &counts);

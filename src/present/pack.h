@@ -61,8 +61,9 @@ void write_pixel(const PixelFormat& format, void* pixel, std::uint32_t value);
 
 // Rows [row_begin, row_end) of the picture. `radiance` is the whole picture, width × height, row 0 on top; `pixels` is
 // the screen's top left, `line_bytes` (a multiple of 2 or 4 for 16 or 32 bits) from one screen row to the next.
-// Displayed is exposure × radiance. `dither`: ordered, 8 × 8, fixed to the screen; its mean over a tile is within 1/64
-// step of the display value. Returns what could not be shown. Rows may be packed by several threads at once.
+// Displayed is exposure × radiance. `dither`: ordered, 8 × 8, fixed to the picture, however it is turned; its mean over
+// a tile is within 1/64 step of the display value. Returns what could not be shown. Rows may be packed by several
+// threads at once.
 ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
                      const PixelFormat& format, Rotation rotation, bool dither, void* pixels, int line_bytes);
 

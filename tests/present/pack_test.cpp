@@ -111,7 +111,7 @@ TEST_CASE("hard_65_rgb565_is_idempotent_and_near") {
 }
 
 // Goal: the mean of a dithered tile is the display value to 1/64 step. Method: tiles of one colour over the whole
-// range, with every rotation (the pattern is fixed to the screen, a tile is a tile whichever way it is turned).
+// range, with every rotation (the pattern turns with the picture, a tile is a tile whichever way it is turned).
 TEST_CASE("hard_65_dither_mean_is_within_a_64th_of_a_step") {
   count_assertions("mean within 1/64 step");
   std::vector<Vec3> radiance(64);
