@@ -23,7 +23,8 @@ void show_progress(Progress* p, std::uint64_t done) {
   if (now - p->start_ns < kSecond || (p->shown && now - p->shown_ns < interval) || done == 0 || p->total == 0) return;
   p->shown_ns = now;
   p->shown = true;
-  double share = static_cast<double>(done) / static_cast<double>(p->total);
+  double share =
+      done < p->total ? static_cast<double>(done) / static_cast<double>(p->total) : 1;  // totals are estimates
   double left = static_cast<double>(now - p->start_ns) * 1e-9 * (1 - share) / share;
   if (p->terminal) {
     char bar[31];

@@ -57,9 +57,13 @@ WireFormat wire_format(bool small_pixels) { return small_pixels ? WireFormat::rg
 Status check(const SharingOptions& o) {
   if (o.servers.size() > kServerCountMax)
     return failure("--server is given %zu times: at most %u servers take part", o.servers.size(), kServerCountMax);
-  if (o.device_share > 1) return failure("--share is %g: it must lie in 0 … 1", o.device_share);
+  if (o.device_share != kBestShare && !(o.device_share >= 0 && o.device_share <= 1))
+    return failure("--share is %g: it must lie in 0 … 1", o.device_share);
   for (double x : {o.price, o.energy_pixel, o.energy_byte, o.cost_weight_ms, o.cost_cap})
     if (!(x >= 0 && x < 1e30)) return failure("prices, energies and their weights must not be negative");
+  bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
+  if (o.servers.empty() && (any || o.device_share != kBestShare))
+    return failure("shares, prices and energies are about render servers: name one with --server");
   if (o.cost_weight_ms > 0 && o.cost_cap > 0)
     return failure("--cost-weight and --cost-cap exclude each other: give one of them");
   return success();
@@ -96,8 +100,8 @@ void add_sharing_options(CLI::App* command, SharingOptions* o) {
 
 Status open_sharing(const SharingOptions& options, const platform::Device* emulated, Sharing** sharing) {
   *sharing = nullptr;
-  if (options.servers.empty()) return success();
   RETURN_IF_ERROR(check(options));
+  if (options.servers.empty()) return success();
   auto s = std::make_unique<Sharing>();
   s->options = options;
   for (const std::string& server : options.servers) {

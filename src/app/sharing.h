@@ -12,9 +12,11 @@
 
 namespace pocketray {
 
+constexpr double kBestShare = -1;
+
 struct SharingOptions {
   std::vector<std::string> servers;
-  double device_share = -1;  // fixed; below 0: the best
+  double device_share = kBestShare;
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };
 void add_sharing_options(CLI::App* command, SharingOptions* options);

@@ -167,6 +167,96 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   wait $server
   check serve_is_interrupted test $? -eq 3
   check serve_prints_totals grep -q '^0 clients, 0 frames' serve.out
+
+  "${run[@]}" serve --listen 127.0.0.1:0 --threads 1 >sharing.out 2>sharing.err &
+  server=$!
+  until grep -q '^listening' sharing.out || ! kill -0 $server; do sleep 0.1; done
+  address=$(sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' sharing.out)
+
+  # Goal: with a server every picture is the one without, byte for byte, however it is packed and whoever renders what.
+  # Method: sequences, so that the server comes into use; sealed, as all is here.
+  shared=(--size 64x48 --threads 1 --frames 0:7)
+  for kind in plain raw share cost; do
+    ending=ppm more=() sharing=(--server "$address")
+    case $kind in
+      raw) ending=raw more=(--raw-format rgb565 --dither --rotate 90) ;;
+      share) sharing+=(--share 0.3) ;;
+      cost) sharing+=(--price 2 --energy-pixel 1e-6 --energy-byte 1e-6 --cost-weight 3) ;;
+    esac
+    expect "render_alone_$kind" 0 'a frame' render seesaw "${shared[@]}" "${more[@]}" -o "alone.$ending"
+    expect "render_shared_$kind" 0 'shared: .*|gave [1-9]' \
+      render seesaw "${shared[@]}" "${more[@]}" "${sharing[@]}" -o "shared.$ending"
+    for n in 0 1 2 3 4 5 6 7; do check "shared_${kind}_$n" cmp -s alone-000$n.$ending shared-000$n.$ending; done
+  done
+  expect render_two_servers 0 'gave [0-9]+' render seesaw "${shared[@]}" --server "$address" --server "$address" -o two.ppm
+  check two_servers_give_the_same_picture cmp -s alone-0007.ppm two-0007.ppm
+  expect cost_cap 0 'a frame' render seesaw "${shared[@]}" --server "$address" --price 1 --cost-cap 0.001 -o cap.ppm
+  check cost_cap_gives_the_same_picture cmp -s alone-0007.ppm cap-0007.ppm
+  expect view_shared 0 '' view seesaw "${small[@]}" --screen null --frames 5 --server "$address"
+  one=(render cube "${small[@]}" -o refused.ppm)
+  expect server_without_port 1 'HOST:PORT' "${one[@]}" --server 127.0.0.1
+  expect server_with_a_wrong_port 1 '99999.*HOST:PORT' "${one[@]}" --server 127.0.0.1:99999
+  expect server_with_colons 1 'IPv6' "${one[@]}" --server "$address:1"
+  expect server_radiance 1 'radiance' render cube "${small[@]}" -o refused.pfm --server "$address"
+  expect server_aov 1 'colours' "${one[@]}" --aov depth --server "$address"
+  expect servers_too_many 1 'at most 8' "${one[@]}" $(printf -- "--server $address %.0s" 1 2 3 4 5 6 7 8 9)
+  for value in 1.5 -0.5 nan; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
+  for option in price energy-pixel energy-byte cost-weight cost-cap; do
+    expect "${option}_below_0" 1 'negative' "${one[@]}" --server "$address" --$option=-1
+    expect "${option}_without_a_server" 1 '--server' "${one[@]}" --$option=1
+  done
+  expect price_is_no_number 2 'price' "${one[@]}" --server "$address" --price cheap
+  expect cost_weight_and_cap 1 'exclude' "${one[@]}" --server "$address" --cost-weight 1 --cost-cap 1
+  expect share_without_a_server 1 '--server' "${one[@]}" --share 0.5
+  check nothing_refused_is_written test ! -e refused.ppm -a ! -e refused.pfm
+
+  # Goal: a server that is killed in a sequence is told in one line, and every picture is complete. Method: killed when
+  # a few of the frames are there, by an emulated device that takes long enough for each.
+  many=(render seesaw --size 96x72 --frames 0:24 --emulate tablet)
+  "${run[@]}" "${many[@]}" -o lost.ppm --server "$address" >lost.out 2>lost.err &
+  device=$!
+  until [ -s lost-0004.ppm ] || ! kill -0 $device; do sleep 0.05; done
+  kill -KILL $server
+  wait $server 2>/dev/null
+  wait $device
+  check device_goes_on_without_its_server test $? -eq 0
+  check device_tells_the_loss_in_one_line test "$(grep -c "$address.* going on without it" lost.err)" = 1
+  check device_tells_nothing_else test "$(grep -vc '[0-9] %, .* left$' lost.err)" = 1
+  "${run[@]}" render seesaw --size 96x72 --frames 0:24 -o kept.ppm >/dev/null
+  for n in 00 04 05 12 24; do check "frame_${n}_is_complete" cmp -s kept-00$n.ppm lost-00$n.ppm; done
+  expect render_without_its_server 0 'going on without it' render seesaw "${shared[@]}" --server "$address" -o gone.ppm
+  check without_its_server_the_same_picture cmp -s alone-0007.ppm gone-0007.ppm
+  expect view_without_its_server 0 'going on without it' \
+    view seesaw "${small[@]}" --screen null --frames 5 --server "$address"
+
+  # Goal: the report on the split in text, JSON and a file; what cannot be is refused; an interrupt keeps what is there.
+  report=(split-report cube --size 64x48 --steps 3 --frames 2 --device-ns 5000 --server-ns 500)
+  expect split_report 0 '^ *chosen +0\.[0-9]+ ' "${report[@]}"
+  expect split_report_paper 0 'Cornell box +2 ' "${report[@]}"
+  expect split_report_file 0 '2 servers' "${report[@]}" --servers 2 --no-paper -o .
+  check split_report_csv test "$(wc -l <split.csv)" -ge 5
+  if command -v python3 >/dev/null; then
+    "${run[@]}" "${report[@]}" --json - >figures.json 2>/dev/null
+    check split_report_json_keys python3 -c '
+import json
+f = json.load(open("figures.json"))
+assert all(set(f[k]) == {"m", "ns_per_pixel"} for k in ("chosen", "best"))
+assert len(f["sweep"]) >= 3 and all(set(p) == {"m", "ns_per_pixel"} for p in f["sweep"])
+assert f["best"]["ns_per_pixel"] == min(p["ns_per_pixel"] for p in f["sweep"]) < f["local_ns_per_pixel"]
+keys = {"scene", "processors", "share", "ns_per_pixel", "our_share", "our_ns_per_pixel"}
+assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])'
+  fi
+  expect split_report_device 1 'gp2x' split-report cube --emulate toaster
+  expect split_report_no_server 2 'servers' "${report[@]}" --servers 0
+  expect split_report_many_servers 2 'servers' "${report[@]}" --servers 9
+  "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
+  reporting=$!
+  # SIGINT, the second of the signals, is caught: the program runs.
+  until grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status || ! kill -0 $reporting; do sleep 0.05; done
+  sleep 0.2
+  kill -INT $reporting
+  wait $reporting
+  check split_report_is_interrupted test $? -eq 3
 fi
 
 echo "$passed passed, $failed failed"
