@@ -5,10 +5,10 @@ set -eu
 cd "$1"
 
 # Ranks of DESIGN.md: a folder of src/ includes only folders of strictly lower rank, or itself.
-ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 split=5 present=5 wire=5 plan=6 import=6 app=7"
+ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 split=5 present=5 wire=5 plan=6 import=6 accuracy=6 app=7"
 line_count_max=450
 
-# Words that the core (src/ but import/ and app/, and platform/) must do without, as extended regular expressions.
+# Words that the core (src/ but import/, accuracy/ and app/, and platform/) must do without, as extended regular expressions.
 language='\b(try|throw|catch|dynamic_cast|typeid)\b'
 heap='\b(new|delete|malloc|calloc|realloc|free|strdup|aligned_alloc|posix_memalign)\b'
 containers='\bstd::(nothrow|vector|string|deque|list|map|set|multimap|multiset|unordered_[a-z]+|function|any|shared_ptr|unique_ptr|make_[a-z]+)\b'
@@ -77,7 +77,7 @@ check_includes() {
 }
 
 find src platform tests -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.inl' \) 2>/dev/null | sort >"$plain/.all" || true
-grep -vE '^(src/app/|src/import/|tests/)' "$plain/.all" >"$plain/.core" || true
+grep -vE '^(src/app/|src/import/|src/accuracy/|tests/)' "$plain/.all" >"$plain/.core" || true
 grep '^src/' "$plain/.core" >"$plain/.core_src" || true
 grep -vE '^(tests/)?platform/' "$plain/.all" >"$plain/.portable" || true
 strip_sources

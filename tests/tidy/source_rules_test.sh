@@ -59,6 +59,8 @@ must_fail "longer than" tests/base/a_test.cpp $(seq 451)
 
 must_pass src/shade/a.cpp '#include "accel/accel.h"' '#include "shade/b.h"' '#include <cmath>'
 must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'auto p = new std::vector<int>; throw std::pow(1, 2);'
+must_pass src/accuracy/a.cpp '#include "present/pack.h"' '#include <vector>' 'double x = std::pow(a, b);'
+must_fail "(rank 6) must not include app/frame.h (rank 7)" src/accuracy/a.cpp '#include "app/frame.h"'
 must_pass tests/app/a.cpp '#include "platform/platform.h"' '#include "app/frame.h"' 'std::string s;'
 must_pass src/plan/a.cpp '#include "platform/devices/miyoo_mini.h"'
 must_pass platform/linux/a.cpp '#include "platform/platform.h"' '#ifdef __linux__' '#endif'
