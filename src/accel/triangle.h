@@ -36,7 +36,6 @@ inline bool has_valid_vertices(Array<const Vec3> positions, const Triangle& tria
   }
   return true;
 }
-inline Vec3d to_double(const Vec3& p) { return {p.x, p.y, p.z}; }
 inline bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   return is_zero(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
 }

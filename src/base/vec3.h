@@ -47,6 +47,7 @@ inline Vec3 min(const Vec3& a, const Vec3& b) {
 inline Vec3 max(const Vec3& a, const Vec3& b) {
   return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
+inline Vec3d to_double(const Vec3& a) { return {a.x, a.y, a.z}; }
 inline Vec3 abs(const Vec3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
 template <class T>
 inline bool is_zero(const Vec3T<T>& a) {
