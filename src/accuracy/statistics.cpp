@@ -1,0 +1,87 @@
+#include "accuracy/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "base/rng.h"
+
+namespace pocketray {
+namespace {
+
+constexpr int kResamples = 2000;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// 97.5th percentile of Student's t for 1 to 10 degrees of freedom; beyond, Cornish and Fisher's expansion to the second
+// term [Abramowitz & Stegun 1964, eq. 26.7.5], good to 2e-3 there.
+double student_975(std::size_t degrees) {
+  constexpr double table[] = {12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281};
+  CHECK_GT(degrees, 0u);
+  if (degrees <= 10) return table[degrees - 1];
+  double z = 1.959964, n = static_cast<double>(degrees);
+  return z + (z * z * z + z) / (4 * n) + (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n);
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  CHECK_GT(values.size(), 0u);
+  std::ptrdiff_t half = static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), values.begin() + half, values.end());
+  double upper = values[static_cast<std::size_t>(half)];
+  if (values.size() % 2 == 1) return upper;
+  return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + half));
+}
+
+Interval median_ratio(const std::vector<double>& times, const std::vector<double>& baselines, std::uint64_t seed) {
+  CHECK_EQ(times.size(), baselines.size());
+  std::vector<double> ratios(times.size());
+  for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = times[i] / baselines[i];
+  Rng rng = make_rng(seed);
+  std::vector<double> medians(kResamples), drawn(ratios.size());
+  for (double& m : medians) {
+    for (double& d : drawn)
+      d = ratios[static_cast<std::size_t>(next_double(&rng) * static_cast<double>(ratios.size()))];
+    m = median(drawn);
+  }
+  std::sort(medians.begin(), medians.end());
+  return {median(ratios), medians[kResamples / 40], medians[kResamples - 1 - kResamples / 40]};
+}
+
+Interval log_log_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  CHECK_EQ(x.size(), y.size());
+  CHECK_GE(x.size(), 3u);
+  double n = static_cast<double>(x.size()), mean_x = 0, mean_y = 0, xx = 0, xy = 0, rest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) mean_x += std::log(x[i]) / n, mean_y += std::log(y[i]) / n;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double dx = std::log(x[i]) - mean_x;
+    xx += dx * dx, xy += dx * (std::log(y[i]) - mean_y);
+  }
+  if (!(xx > 0)) return {0, -kInfinity, kInfinity};
+  double slope = xy / xx;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double r = std::log(y[i]) - mean_y - slope * (std::log(x[i]) - mean_x);
+    rest += r * r;
+  }
+  double half = student_975(x.size() - 2) * std::sqrt(rest / (n - 2) / xx);
+  return {slope, slope - half, slope + half};
+}
+
+std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {
+  CHECK_EQ(cost.size(), error.size());
+  std::vector<std::size_t> order(cost.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return cost[a] < cost[b] || (cost[a] == cost[b] && error[a] < error[b]);
+  });
+  std::vector<bool> front(cost.size());
+  double least = kInfinity;
+  for (std::size_t i : order) {
+    front[i] = error[i] < least;
+    if (front[i]) least = error[i];
+  }
+  return front;
+}
+
+}  // namespace pocketray
