@@ -171,6 +171,7 @@ void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32
   bool current = chunk.frame == c->request.frame && !c->complete;
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
+  s->frame.heard_ns = client_now_ns(*c);
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
   if (s->phase == ServerPhase::probing) s->probe_ns_per_pixel = 1e-3 * chunk.pixel_ps;
   double render_ns = 1e-3 * chunk.pixel_ps * c->settings.width * chunk.row_count;
@@ -204,7 +205,7 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
   FrameRequest* q = &c->request;
   ++q->frame;
   q->scene = c->scene, q->seconds = seconds;
-  q->camera_stated = true;
+  q->camera_stated = c->options.has_scene || r.camera_overridden;  // without the scene: it moves as it does there
   q->camera_index = static_cast<std::uint16_t>(r.camera_index);
   q->camera = r.camera;
   q->camera.node = kNone;
@@ -222,11 +223,12 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
     c->bytes_in_before += s->messages.bytes_in, c->bytes_out_before += s->messages.bytes_out;
     any = any || s->phase == ServerPhase::ready;
   }
-  if (any) share_rows(c, 0);
+  if (any && c->options.has_scene) share_rows(c, 0);
   advance_client(c, 0);
 }
 
 bool take_device_rows(Client* c, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end) {
+  if (!c->options.has_scene) return false;
   row_count_max = std::min(row_count_max, rows_between_looks(*c));
   std::uint32_t own_end = c->joined ? c->split.boundary[0] : c->settings.height;
   std::uint32_t next = c->merge.next_row;
@@ -269,6 +271,7 @@ void end_client_frame(Client* c) {
   share->bytes_in = since(share->bytes_in, c->bytes_in_before);
   share->bytes_out = since(share->bytes_out, c->bytes_out_before);
   measure_link(c);
+  if (!c->options.has_scene) learn_row_times(c);
   if (c->joined) ++c->frames_shared;
   cancel_rest(c);
   end_frame(&c->model);

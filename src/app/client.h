@@ -23,6 +23,7 @@ struct ClientOptions {
   double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; below 0: the best
   bool device_goes_on = true;                           // into rows that have not come; false: for comparisons
   Pace pace;                                            // the CPU to emulate
+  bool has_scene = true;  // false: the device renders nothing, and shows what servers render
   std::uint64_t connect_timeout_ns = 3'000'000'000;
   std::uint64_t silence_timeout_ns = 3'000'000'000;  // without an answer, half a message included
   std::uint64_t retry_ns_min = 500'000'000, retry_ns_max = 30'000'000'000;
@@ -41,6 +42,8 @@ enum class ServerPhase : std::uint8_t {
 };
 
 const char* phase_text(ServerPhase phase);
+// What an error that a server reports means, and what to do about it.
+const char* wire_error_text(WireError code);
 
 // What became of a server's rows in a frame.
 struct ServerFrame {
@@ -50,6 +53,7 @@ struct ServerFrame {
   std::uint64_t row_bytes = 0;  // of them, what the rows take without their messages
   double render_ns = 0;         // of the rows that have come, by the server's word
   bool open = false;            // rows are still to come
+  std::uint64_t heard_ns = 0;   // when rows came last
 };
 
 struct RemoteServer {
@@ -65,6 +69,7 @@ struct RemoteServer {
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
   double round_trip_ns = 0, ns_per_byte = 0;
   double probe_ns_per_pixel = 0;
+  Smoothed row_ns;                // of a device without the scene: that a row took, from the request until it came
   bool unanswered = false;        // since rows were asked for; asking anew gives no more time
   std::uint32_t chunk_count = 0;  // that have come with this connection
   ServerFrame frame;
@@ -114,7 +119,8 @@ struct Client {
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_shared_rows()
   std::uint64_t frames_shared = 0;               // since a server came into use
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
-  FrameShare share;  // of the last complete frame
+  FrameShare share;               // of the last complete frame
+  std::uint64_t in_reach_ns = 0;  // when a server was last in use
 };
 
 // The level at which rows are asked for from a link of that speed, as zlib counts.
@@ -132,8 +138,9 @@ void close_client(Client* client);
 // Lets connections, overtures and arriving rows go on; waits `timeout_ns` at most for something to come.
 void advance_client(Client* client, std::uint64_t timeout_ns);
 
-// Begins a frame that the renderer is prepared for, `prepare_ns` of work ago: plans the split and asks for the servers'
-// rows. `seconds` is the time of the animation. A frame that was not finished is given up.
+// Begins a frame that the renderer is prepared for, or, without the scene, has camera and exposure of, `prepare_ns` of
+// work ago: plans the split and asks for the servers' rows. `seconds` is the time of the animation. A frame that was
+// not finished is given up.
 void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns);
 // Rows that the device is to render next, at most `row_count_max`; false: there are none left.
 bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
@@ -146,6 +153,8 @@ void end_client_frame(Client* client);
 inline bool has_all_rows(const Client& client) { return is_complete(client.merge); }
 // Whether every server is in use, or waits for its next try after a failure that was told: what can be known is known.
 bool is_settled(const Client& client);
+// Whether a device without the scene can do nothing but wait: no server has been in use for a while.
+bool is_cut_off(const Client& client);
 // Rows changed since the last call.
 bool take_shared_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
 

@@ -1,5 +1,5 @@
 // What the client's files share: client.cpp has the frame, client_plan.cpp who renders what of it, client_server.cpp
-// the connections.
+// the connections, client_thin.cpp what is different for a device without the scene.
 #pragma once
 #include "app/client.h"
 
@@ -28,11 +28,20 @@ std::uint64_t wait_wanted_ns(const Client& client);
 double device_pixel_ns(const Client& client);
 // The split for the frame, of which `elapsed_ns` have passed, and the requests that follow.
 void share_rows(Client* client, std::uint64_t elapsed_ns);
+// Asks a server for rows; those at the end that are done are left out.
+void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
 // Servers that have become ready within the frame get their share of what is left, once nobody is worth waiting for.
 void let_join(Client* client);
 // What the frame's rows tell of the link. They come as fast as the slower of servers and link allows: where the servers
 // were faster, or the link did better than it was thought to be, that is its speed.
 void measure_link(Client* client);
+
+// ---- client_thin.cpp: the device without the scene
+
+// Servers that have nothing to do get rows that nobody is asked for, or that another is late with.
+void ask_idle_servers(Client* client);
+// How long rows of this frame took each server: by that the next frame is shared.
+void learn_row_times(Client* client);
 
 // ---- client.cpp
 

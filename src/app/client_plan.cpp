@@ -14,7 +14,8 @@ constexpr std::uint32_t kProbeRowsMax = 2 * kChunkRows, kProbeDivisor = 15;  // 
 // 1 takes 400 ns and saves 1.5 bytes a pixel of RGB565, level 6 takes another 300 and saves 0.06.
 constexpr double kDeflateNsPerByte = 250, kDeflateMoreNsPerByte = 5000;
 
-// Asks a server for rows; those at the end that are done are left out.
+}  // namespace
+
 void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint32_t row_end) {
   auto is_done = [&](std::uint32_t row) {
     return c->merge.rows[row].state == RowState::device || c->merge.rows[row].state == RowState::server;
@@ -35,6 +36,8 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
   s->unanswered = true;
   flush_server(c, s);
 }
+
+namespace {
 
 // Fixed share: the device's rows as told, the others among the servers by their speed.
 Split split_by_share(const Client& c, const SplitProblem& problem) {
@@ -125,6 +128,7 @@ void share_rows(Client* c, std::uint64_t elapsed_ns) {
 }
 
 void let_join(Client* c) {
+  if (!c->options.has_scene) return ask_idle_servers(c);
   if (c->complete) return;
   bool any = false;
   for (std::uint32_t i = 0; i < c->server_count; ++i) {

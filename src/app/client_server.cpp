@@ -139,26 +139,6 @@ void take_pong(Client* c, RemoteServer* s, const Pong& pong) {
   if (pong.pixel_ps > 0) observe_server_price(&c->model, index_of(*c, s), 1e-3 * pong.pixel_ps);
 }
 
-const char* error_text(WireError code) {
-  switch (code) {
-    case WireError::wrong_version:
-      return "it speaks another version of the protocol: update one of the two";
-    case WireError::malformed:
-      return "it could not read what it was sent";
-    case WireError::unknown_scene:
-      return "it does not have this scene: put the same file into the folder it serves (--scenes)";
-    case WireError::too_large:
-      return "the picture is too large for it: use a smaller --size, or serve with more --memory";
-    case WireError::bad_request:
-      return "it cannot render with these settings";
-    case WireError::busy:
-      return "it has as many clients as it takes: serve with more --clients";
-    case WireError::closing:
-      return "it was ended";
-  }
-  return "it reports an error";
-}
-
 void take_chunk(Client* c, RemoteServer* s, RowChunk chunk) {
   // Decoded twice or in another order, rows would spoil the picture that the decoder keeps.
   if (!take_chunk_number(&chunk, s->chunk_count++)) return lose_server(c, s, "it sends rows out of turn");
@@ -183,7 +163,7 @@ void take(Client* c, RemoteServer* s, const Message& message) {
   if (message.type == MessageType::pong && greeted) return take_pong(c, s, message.pong);
   if (message.type == MessageType::row_chunk && s->phase >= ServerPhase::probing)
     return take_chunk(c, s, message.row_chunk);
-  if (message.type == MessageType::error) return lose_server(c, s, error_text(message.error.code));
+  if (message.type == MessageType::error) return lose_server(c, s, wire_error_text(message.error.code));
   lose_server(c, s, "it sends what it was not asked for");
 }
 
@@ -216,6 +196,26 @@ void read_server(Client* c, RemoteServer* s) {
 }
 
 }  // namespace
+
+const char* wire_error_text(WireError code) {
+  switch (code) {
+    case WireError::wrong_version:
+      return "it speaks another version of the protocol: update one of the two";
+    case WireError::malformed:
+      return "it could not read what it was sent";
+    case WireError::unknown_scene:
+      return "it does not have this scene: put the same file into the folder it serves (--scenes)";
+    case WireError::too_large:
+      return "the picture is too large for it: use a smaller --size, or serve with more --memory";
+    case WireError::bad_request:
+      return "it cannot render with these settings";
+    case WireError::busy:
+      return "it has as many clients as it takes: serve with more --clients";
+    case WireError::closing:
+      return "it was ended";
+  }
+  return "it reports an error";
+}
 
 const char* phase_text(ServerPhase phase) {
   switch (phase) {

@@ -14,6 +14,7 @@ void add_plan_command(CLI::App* program, int* exit_status);
 void add_bench_command(CLI::App* program, int* exit_status);
 #ifdef POCKETRAY_HAVE_NETWORK
 void add_serve_command(CLI::App* program, int* exit_status);
+void add_scenes_command(CLI::App* program, int* exit_status);
 void add_split_report_command(CLI::App* program, int* exit_status);
 #endif
 

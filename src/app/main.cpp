@@ -20,6 +20,7 @@ int main(int argument_count, char** arguments) {
   add_bench_command(&program, &exit_status);
 #ifdef POCKETRAY_HAVE_NETWORK
   add_serve_command(&program, &exit_status);
+  add_scenes_command(&program, &exit_status);
   add_split_report_command(&program, &exit_status);
 #endif
   catch_interrupts();

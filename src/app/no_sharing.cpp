@@ -10,10 +10,20 @@ Status open_sharing(const SharingOptions&, const platform::Device*, Sharing** sh
 }
 void close_sharing(Sharing*) {}
 std::size_t sharing_bytes(const Sharing*, const Settings&) { return 0; }
-Status name_shared_scene(Sharing*, const SceneSource&, Renderer*) { return success(); }
+Status open_shared_scene(Sharing*, const CommonOptions& common,
+                         const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened) {
+  OpenHooks hooks;
+  hooks.output_bytes = output_bytes;
+  RETURN_IF_ERROR(open_scene(common, hooks, opened));
+  return start_scene(opened, common);
+}
+void stop_opening(Sharing*) {}
+std::uint32_t shared_triangle_count(const Sharing*, const Renderer& renderer) { return renderer.scene.triangles.count; }
+Status list_shared_scenes(Sharing*, std::size_t, std::vector<OfferedScene>*) { return success(); }
 Status start_sharing(Sharing*, Renderer*, bool, bool) { return success(); }
 Status begin_shared(Sharing*, Renderer*, double) { return success(); }
 bool advance_shared(Sharing*, Renderer*, std::uint64_t, const std::atomic<bool>*) { return true; }
+bool shares_nothing(const Sharing&) { return false; }
 SharedPicture shared_picture(const Sharing&) { return {}; }
 bool take_shared_rows(Sharing*, std::uint32_t*, std::uint32_t*) { return false; }
 std::uint32_t shared_rows_done(const Sharing&) { return 0; }

@@ -161,6 +161,15 @@ Status parse_camera(const std::string& text, Camera* camera) {
   return success();
 }
 
+Status parse_exposure(const std::string& text, bool* measured, float* factor) {
+  float stops = 0;
+  *measured = text == "auto";
+  if (!*measured && !text.empty() && (!read_numbers(text, &stops, 1) || !(std::fabs(stops) <= 64)))
+    return failure("--exposure is '%s': write stops as 1.5 or -2, or auto", text.c_str());
+  *factor = static_cast<float>(det_exp(static_cast<double>(stops) * 0.693147180559945309));
+  return success();
+}
+
 const AccelInfo* find_accel(const std::string& name) {
   for (const AccelInfo* info : kAccelList)
     if (name == info->name) return info;
@@ -228,9 +237,11 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   r->camera_index = o.camera_index;
   r->accel_info = find_accel(o.accel);
   SceneStorage storage;
-  RETURN_IF_ERROR(load_scene(o.scene, r, &opened->source, &storage));
+  RETURN_IF_ERROR(hooks.load(o.scene, r, &opened->source, &storage));
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, r));
-  RETURN_IF_ERROR(plan_renderer(r, storage, hooks.output_bytes(settings)));
+  Status planned = plan_renderer(r, storage, hooks.output_bytes(settings));
+  if (!planned.ok && r->memory.total_bytes > r->memory.limit_bytes) opened->source.bytes_wanted = r->memory.total_bytes;
+  RETURN_IF_ERROR(planned);
   if (!o.camera.empty()) {
     Camera camera;
     RETURN_IF_ERROR(parse_camera(o.camera, &camera));
@@ -242,13 +253,12 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
 Status start_scene(OpenScene* opened, const CommonOptions& o) {
   Renderer* r = &opened->renderer;
   r->workers = start_workers(r->settings.threads);
-  float stops = 0;
-  if (o.exposure == "auto")
-    r->scene.info.auto_exposure = 1;
-  else if (!o.exposure.empty() && (!read_numbers(o.exposure, &stops, 1) || !(std::fabs(stops) <= 64)))
-    return failure("--exposure is '%s': write stops as 1.5 or -2, or auto", o.exposure.c_str());
+  bool measured;
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));
+  if (measured) r->scene.info.auto_exposure = 1;
   RETURN_IF_ERROR(build_renderer(r));
-  r->exposure *= static_cast<float>(det_exp(static_cast<double>(stops) * 0.693147180559945309));
+  r->exposure *= factor;
   return success();
 }
 

@@ -35,11 +35,13 @@ struct OpenScene {
 
 // What a command adds to opening a scene.
 struct OpenHooks {
-  std::function<std::size_t(const Settings&)> output_bytes;          // as plan_memory() takes it
+  std::function<std::size_t(const Settings&)> output_bytes;  // as plan_memory() takes it
+  std::function<Status(const std::string& name, Renderer*, SceneSource*, SceneStorage*)> load = load_scene;
   std::function<Status(const SceneSource&, Renderer*)> loaded = {};  // between loading and planning
 };
 
-// Reads the options, loads the scene and plans it.
+// Reads the options, loads the scene and plans it. Where it fails for want of memory, opened->source.bytes_wanted says
+// so.
 Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScene* opened);
 // Builds it and starts the threads: ready for render_frame().
 Status start_scene(OpenScene* opened, const CommonOptions& options);
@@ -60,6 +62,8 @@ const AccelInfo* find_accel(const std::string& name);
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
 Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option = "--memory");
 Status parse_camera(const std::string& text, Camera* camera);
+// What --exposure says: whether it is to be measured, and by what factor it differs from the scene's or measured one.
+Status parse_exposure(const std::string& text, bool* measured, float* factor);
 
 // Prints the warning of a scene and what it was given, one line each, on stderr.
 void print_notes(const OpenScene& opened);

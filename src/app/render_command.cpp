@@ -101,6 +101,8 @@ Status render_shared_with_progress(Renderer* r, const Job& job, double seconds, 
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(begin_shared(job.sharing, r, seconds));
   do {
+    if (shares_nothing(*job.sharing))
+      return failure("no server is in reach, and this device has no room for the scene: start one, or raise --memory");
     *complete = advance_shared(job.sharing, r, clock_ns() + kProgressNs, &interrupted);
     show_progress(progress, rows_before + shared_rows_done(*job.sharing));
   } while (!*complete && !interrupted);
@@ -139,7 +141,7 @@ Json to_json(const Job& job, const Renderer& r, const std::vector<std::string>& 
       static_cast<double>(r.settings.width) * r.settings.height * static_cast<double>(files.empty() ? 1 : files.size());
   return {{"scene", job.options.common.scene},
           {"files", files},
-          {"triangles", r.scene.triangles.count},
+          {"triangles", shared_triangle_count(job.sharing, r)},
           {"width", r.settings.width},
           {"height", r.settings.height},
           {"ns_per_pixel", trace_ms * 1e6 / pixels},
@@ -160,9 +162,9 @@ void print_summary(const Job& job, const Renderer& r, std::size_t file_count, co
     print_memory(r.memory);
   }
   std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s%s\n", last.c_str(), r.settings.width,
-              r.settings.height, grouped(r.scene.triangles.count).c_str(), trace_ms / static_cast<double>(file_count),
-              file_count > 1 ? " a frame" : "", trace_ms * 1e6 / pixels, r.settings.threads,
-              r.settings.threads == 1 ? "" : "s", emulation_text(r.pace).c_str());
+              r.settings.height, grouped(shared_triangle_count(job.sharing, r)).c_str(),
+              trace_ms / static_cast<double>(file_count), file_count > 1 ? " a frame" : "", trace_ms * 1e6 / pixels,
+              r.settings.threads, r.settings.threads == 1 ? "" : "s", emulation_text(r.pace).c_str());
   Tracer counts = total_counts(r);
   if (counts.rays_left_out)
     std::printf("  %s rays left out; what they could have added stays below %.2g of a displayed level\n",
@@ -250,12 +252,9 @@ int run(const RenderOptions& options) {
     status = open_sharing(options.sharing, options.common.emulate.empty() ? nullptr : device, &job.sharing);
   std::unique_ptr<Sharing, void (*)(Sharing*)> closing(job.sharing, close_sharing);
   OpenScene opened;
-  OpenHooks hooks;
-  hooks.output_bytes = [&](const Settings& s) { return picture_bytes(s) + sharing_bytes(job.sharing, s); };
-  hooks.loaded = [&](const SceneSource& source, Renderer* r) { return name_shared_scene(job.sharing, source, r); };
-  if (status.ok) status = open_scene(options.common, hooks, &opened);
-  if (status.ok) status = start_scene(&opened, options.common);
+  if (status.ok) status = open_shared_scene(job.sharing, options.common, picture_bytes, &opened);
   if (status.ok) status = start_sharing_for(options, &opened.renderer, &job);
+  if (!status.ok && interrupted) return kExitInterrupted;
   if (!status.ok) return report(status);
   print_notes(opened);
   std::vector<std::string> files;

@@ -131,6 +131,15 @@ Status build_renderer(Renderer* r) {
   return success();
 }
 
+Status plan_without_scene(Renderer* r, std::size_t output_bytes) {
+  RETURN_IF_ERROR(validate_settings(r->settings));
+  RETURN_IF_ERROR(plan_output_memory(r->settings, output_bytes, &r->memory));
+  Arena rest = r->scene_arena;
+  r->scene_arena.capacity = 0;
+  r->frame_arena = take_front(&rest, "frame", r->memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+  return success();
+}
+
 Status set_camera(Renderer* r, const Camera& camera) {
   CameraRays rays;
   RETURN_IF_ERROR(make_camera_rays(camera, r->settings.width, r->settings.height, &rays));

@@ -50,6 +50,10 @@ Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_
 // Third step: carves the arenas, builds the accelerator, poses the scene at time 0. May be called once.
 Status build_renderer(Renderer* renderer);
 
+// In place of the second and third step, for a device that shows what others render: has memory for the output alone
+// and renders nothing. Camera, exposure, effects and what else of the scene the caller uses are his to set.
+Status plan_without_scene(Renderer* renderer, std::size_t output_bytes);
+
 // Sets the camera for the coming frames.
 Status set_camera(Renderer* renderer, const Camera& camera);
 

@@ -17,6 +17,7 @@ void send_scene_entry(Session* session, const SceneStore& store, const ContentHa
     entry->hash = scene->hash;
     entry->byte_count = scene->byte_count;
     entry->index = static_cast<std::uint16_t>(scene - store.scenes.data());
+    entry->triangle_count = scene->scene.triangles.count;
     std::memcpy(entry->name, scene->name, sizeof entry->name);
   }
   send_message(session, reply);
@@ -70,6 +71,25 @@ void take_request(Server* server, Session* s, const FrameRequest& request) {
   if (s->used_ns < server->used_floor_ns) s->used_ns = server->used_floor_ns;
 }
 
+void take_view_query(Server* server, Session* s, const ViewQuery& query) {
+  drop_job(s);
+  ++s->job_number;
+  const Settings& settings = query.settings;
+  if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
+    return refuse(server, s, WireError::too_large, 0, "the picture is larger than this server allows");
+  const StoredScene* scene = find_scene(*server->store, query.scene);
+  if (!scene) return refuse(server, s, WireError::unknown_scene, 0, "its scene is not known here");
+  s->job = FrameJob();
+  s->job.scene = scene;
+  s->job.is_view_query = true;
+  s->job.measure_exposure = query.measure_exposure;
+  FrameRequest* request = &s->job.request;
+  request->scene = query.scene;
+  request->camera_stated = query.camera_stated, request->camera_index = query.camera_index;
+  request->camera = query.camera, request->settings = query.settings;
+  if (s->used_ns < server->used_floor_ns) s->used_ns = server->used_floor_ns;
+}
+
 bool take_hello(Server* server, Session* session, const Message& message) {
   constexpr WireError kMalformed = WireError::malformed, kWrongVersion = WireError::wrong_version;
   if (message.type != MessageType::hello) {
@@ -107,6 +127,9 @@ bool take_message(Server* server, Session* session, const Message& message) {
     case MessageType::frame_request:
       take_request(server, session, message.frame_request);
       return true;
+    case MessageType::view_query:
+      take_view_query(server, session, message.view_query);
+      return true;
     case MessageType::cancel:
       if (has_job(*session) && session->job.request.frame <= message.cancel.frame) drop_job(session);
       return true;
@@ -121,6 +144,7 @@ bool take_message(Server* server, Session* session, const Message& message) {
     case MessageType::scene_piece:
     case MessageType::row_chunk:
     case MessageType::pong:
+    case MessageType::view_entry:
       break;
   }
   leave(server, session, &kMalformed, "it sent what only servers send");

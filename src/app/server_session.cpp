@@ -48,7 +48,10 @@ bool is_built_for(const Session& s) {
          s.renderer.camera_index == request.camera_index;
 }
 
-Status build(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
+}  // namespace
+
+Status build_session_renderer(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
+  if (is_built_for(*s)) return success();
   s->built_scene = nullptr;
   s->trace_ns = 0;
   Renderer* r = &s->renderer;
@@ -73,6 +76,8 @@ Status build(Session* s, std::uint32_t thread_count, Workers* workers, WireError
   s->built_scene = s->job.scene;
   return success();
 }
+
+namespace {
 
 // Chunks as large as asked for, but no larger than the codec makes them and the client takes them.
 std::uint32_t chunk_rows_of(const Session& s) {
@@ -196,7 +201,7 @@ Status prepare_job(Session* s, std::uint32_t thread_count, Workers* workers, Wir
   }
   job->chunk_rows = chunk_rows_of(*s);
   if (job->chunk_rows == 0) return failure("the client takes no message that could hold a row");
-  if (!is_built_for(*s)) RETURN_IF_ERROR(build(s, thread_count, workers, code));
+  RETURN_IF_ERROR(build_session_renderer(s, thread_count, workers, code));
   *code = WireError::bad_request;
   Renderer* r = &s->renderer;
   r->camera = s->own_camera;

@@ -36,6 +36,7 @@ struct OutputQueue {
 struct FrameJob {
   const StoredScene* scene;  // null: there is nothing to do
   FrameRequest request;
+  bool is_view_query, measure_exposure;  // only what a request holds that a query has, too, means something
   bool prepared;
   std::uint32_t chunk_rows, traced_begin, traced_columns, sent_begin;
   std::uint64_t wall_ns, pixel_count;  // of the rows that are traced and not all sent
@@ -100,6 +101,10 @@ inline void drop_job(Session* session) { session->job.scene = nullptr; }
 // Whether a part of the frame can be made now: there is one, and the client keeps up with what it gets.
 bool can_work(const Session& session);
 
+// Makes the renderer for the scene and the settings of the job, unless it is the one there is. As prepare_job().
+Status build_session_renderer(Session* session, std::uint32_t thread_count, Workers* workers, WireError* code);
+// Answers a job that is a view_query, which ends it. Fails as prepare_job().
+Status answer_view_query(Session* session, std::uint32_t thread_count, Workers* workers, WireError* code);
 // Makes the renderer and the codec ready for the job. Fails where the request cannot be met; *code says why.
 Status prepare_job(Session* session, std::uint32_t thread_count, Workers* workers, WireError* code);
 // Traces the next pixels of the job, for about `slice_ns`.

@@ -37,6 +37,8 @@ void begin_work(Server* server, int index) {
   work->slice = {};
   if (s->job.prepared)
     work->slice = trace_slice(s, kSliceNs);
+  else if (s->job.is_view_query)
+    status = answer_view_query(s, server->options.thread_count, server->workers, &code);
   else
     status = prepare_job(s, server->options.thread_count, server->workers, &code);
   std::uint64_t now = now_ns(server), took = elapsed(start, now);

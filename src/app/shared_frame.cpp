@@ -41,8 +41,10 @@ bool render_rows(Renderer* r, Client* c) {
 
 Status begin_shared_frame(Renderer* r, Client* c, double seconds) {
   std::uint64_t begin_ns = client_now_ns(*c);
-  RETURN_IF_ERROR(prepare_frame(r, seconds));
-  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
+  if (c->options.has_scene) {
+    RETURN_IF_ERROR(prepare_frame(r, seconds));
+    for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
+  }
   begin_client_frame(c, *r, seconds, take_time(c, 0, begin_ns));
   return success();
 }

@@ -3,25 +3,12 @@
 #include <cstdlib>
 #include <new>
 
-#include "app/scene_identity.h"
 #include "app/shared_frame.h"
+#include "app/sharing_parts.h"
 #include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
 
 namespace pocketray {
-
-struct Sharing {
-  SharingOptions options;
-  std::vector<platform::LinkAddress> addresses;
-  std::vector<std::max_align_t> tcp_memory, radio_memory;
-  platform::Link* tcp = nullptr;
-  platform::Link* link = nullptr;  // tcp, or the emulated radio over it
-  ContentHash scene;
-  Client client;
-  bool started = false;
-  ShareTotals totals;
-  FrameShare last;  // of the last complete frame
-};
 
 namespace {
 
@@ -117,7 +104,7 @@ Status open_sharing(const SharingOptions& options, const platform::Device* emula
 
 void close_sharing(Sharing* s) {
   if (!s) return;
-  if (s->started) close_client(&s->client);
+  end_sharing(s);
   if (s->link != s->tcp) s->link->backend->close_all(s->link);
   kNet.close_all(s->tcp);
   delete s;
@@ -128,12 +115,13 @@ std::size_t sharing_bytes(const Sharing* s, const Settings& settings) {
   return client_need(settings, WireFormat::rgb888, static_cast<std::uint32_t>(s->addresses.size()));
 }
 
-Status name_shared_scene(Sharing* s, const SceneSource& source, Renderer* renderer) {
-  return s ? identify_scene(source, renderer, &s->scene) : success();
+void end_sharing(Sharing* s) {
+  if (s->started) close_client(&s->client);
+  s->started = false;
 }
 
 Status start_sharing(Sharing* s, Renderer* r, bool small_pixels, bool dither) {
-  if (s->started) close_client(&s->client);
+  end_sharing(s);
   ClientOptions options;
   options.format = wire_format(small_pixels);
   options.dither = dither;
@@ -143,6 +131,7 @@ Status start_sharing(Sharing* s, Renderer* r, bool small_pixels, bool dither) {
   options.cost_per_megabyte = s->options.price;
   options.device_share = s->options.device_share;
   options.pace = r->pace;
+  options.has_scene = !s->is_thin;
   options.log = print_line;
   s->totals = ShareTotals();
   s->last = FrameShare();
@@ -181,10 +170,13 @@ std::uint32_t shared_rows_done(const Sharing& s) { return s.client.merge.row_cou
 void write_share_lines(const Sharing& s, HudText* text) {
   const Client& c = s.client;
   const FrameShare& f = s.last;
+  if (is_cut_off(c)) add_hud_line(text, "no server in reach: the picture stands still");
   if (f.measured_ns > 0) {
     if (f.local_ns > 0)
       add_hud_line(text, "%.1f ms, predicted %.1f, alone %.1f: %.1f times", f.measured_ns * 1e-6, f.predicted_ns * 1e-6,
                    f.local_ns * 1e-6, f.local_ns / f.measured_ns);
+    else if (s.is_thin)
+      add_hud_line(text, "%.1f ms  all of it by servers", f.measured_ns * 1e-6);
     else
       add_hud_line(text, "%.1f ms  device alone so far", f.measured_ns * 1e-6);
     add_hud_line(text, "device %u rows  %.1f kB in  %.1f kB out", f.device_rows, static_cast<double>(f.bytes_in) * 1e-3,
@@ -199,6 +191,8 @@ void write_share_lines(const Sharing& s, HudText* text) {
       add_hud_line(text, "%s %s", server.address.text, phase_text(server.phase));
   }
 }
+
+bool shares_nothing(const Sharing& s) { return is_cut_off(s.client); }
 
 ShareTotals share_totals(const Sharing& s) { return s.totals; }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/options.h"
 #include "app/renderer.h"
 #include "app/source.h"
 #include "app/viewer_hud.h"
@@ -23,6 +24,12 @@ void add_sharing_options(CLI::App* command, SharingOptions* options);
 
 struct Sharing;
 
+struct OfferedScene {
+  std::string name;
+  std::uint32_t triangle_count;
+  std::uint64_t byte_count;
+};
+
 // Finds the servers' addresses, which may take the system a while; *sharing is null where none was named. `emulated`:
 // the device whose radio is to be emulated, or null.
 Status open_sharing(const SharingOptions& options, const platform::Device* emulated, Sharing** sharing);
@@ -31,15 +38,30 @@ void close_sharing(Sharing* sharing);
 
 // What the frame arena must hold for it. Null: nothing.
 std::size_t sharing_bytes(const Sharing* sharing, const Settings& settings);
-// Between loading and planning a scene: which one it is. Null: nothing happens.
-Status name_shared_scene(Sharing* sharing, const SceneSource& source, Renderer* renderer);
-// With the renderer built: ready for frames, which come as pixels of 24 bits, or of 16 where `small_pixels`.
+// Opens the scene, ready for rendering. One that is neither built in nor a file is fetched from the first server that
+// has it; one that does not fit the memory is left to the servers: the renderer then has room for pictures alone, and
+// what it is that --memory would have to be stands in opened->source.warning. Null: the device has to have it, and the
+// room.
+Status open_shared_scene(Sharing* sharing, const CommonOptions& common,
+                         const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened);
+// From another thread: open_shared_scene() need not go on.
+void stop_opening(Sharing* sharing);
+// Triangles of the scene, which the renderer may not have.
+std::uint32_t shared_triangle_count(const Sharing* sharing, const Renderer& renderer);
+
+// What the servers offer, one after the other. `server` counts from 0 to as many as were named.
+Status list_shared_scenes(Sharing* sharing, std::size_t server, std::vector<OfferedScene>* scenes);
+
+// With the scene opened: ready for frames, which come as pixels of 24 bits, or of 16 where `small_pixels`.
 Status start_sharing(Sharing* sharing, Renderer* renderer, bool small_pixels, bool dither);
 
 // A frame: begin, then advance until about `deadline_ns` by clock_ns() until it is complete. A frame that was begun and
 // not completed is given up by the next.
 Status begin_shared(Sharing* sharing, Renderer* renderer, double seconds);
 bool advance_shared(Sharing* sharing, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop);
+
+// Whether a device that leaves all to the servers has had none for a while.
+bool shares_nothing(const Sharing& sharing);
 
 // The merged picture: rows without padding, the formats above. Its rows that changed since the last call.
 struct SharedPicture {

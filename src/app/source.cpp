@@ -11,15 +11,9 @@
 namespace pocketray {
 namespace {
 
-Status too_large(const std::string& name, std::size_t need, std::size_t limit) {
-  return failure("%s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %zuM would be a start",
-                 name.c_str(), static_cast<double>(need) / (1 << 20), static_cast<double>(limit) / (1 << 20),
-                 (need * 5 / 4 >> 20) + 4);
-}
-
-Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneStorage* storage) {
+Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneSource* source, SceneStorage* storage) {
   if (builtin.need() > arena_free(r->scene_arena))
-    return too_large(builtin.name, builtin.need(), r->settings.memory_bytes);
+    return scene_too_large(builtin.name, builtin.need(), r->settings.memory_bytes, source);
   builtin.build(&r->scene_arena, &r->scene);
   storage->arena_bytes = r->scene_arena.used;
   return success();
@@ -31,7 +25,7 @@ Status load_baked(const std::string& name, Renderer* r, SceneSource* source, Sce
   source->baked = source->mapped.bytes;
   source->baked_bytes = storage->mapped_bytes = source->mapped.byte_count;
   if (storage->mapped_bytes > r->settings.memory_bytes)
-    return too_large(name, storage->mapped_bytes, r->settings.memory_bytes);
+    return scene_too_large(name, storage->mapped_bytes, r->settings.memory_bytes, source);
   Status status = baked_open(source->mapped.bytes, source->mapped.byte_count, &r->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
 }
@@ -44,7 +38,7 @@ Status load_imported(const std::string& name, Renderer* r, SceneSource* source, 
   // From the heap into the block, in the form a device would map.
   std::size_t size = baked_size(imported.scene);
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, size));
-  if (!bytes) return too_large(name, size, r->settings.memory_bytes);
+  if (!bytes) return scene_too_large(name, size, r->settings.memory_bytes, source);
   baked_write(imported.scene, bytes);
   source->baked = bytes;
   source->baked_bytes = size;
@@ -78,10 +72,22 @@ void* take_block(std::size_t bytes) {
 }
 void give_block_back(void* block) { std::free(block); }
 
+Status scene_too_large(const std::string& name, std::size_t need, std::size_t limit, SceneSource* source) {
+  std::size_t megabytes = (need * 5 / 4 >> 20) + 4;
+  source->bytes_wanted = megabytes << 20;
+  return failure("%s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %zuM would be a start",
+                 name.c_str(), static_cast<double>(need) / (1 << 20), static_cast<double>(limit) / (1 << 20),
+                 megabytes);
+}
+
+bool is_local_scene(const std::string& name) {
+  return find_builtin(name.c_str()) || platform::file_stamp(name.c_str()) != 0;
+}
+
 Status load_scene(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
   *storage = SceneStorage();
-  if (const BuiltinScene* builtin = find_builtin(name.c_str())) return load_builtin(*builtin, r, storage);
-  if (platform::file_stamp(name.c_str()) == 0) {
+  if (const BuiltinScene* builtin = find_builtin(name.c_str())) return load_builtin(*builtin, r, source, storage);
+  if (!is_local_scene(name)) {
     std::string names;
     int count;
     const BuiltinScene* list = builtin_list(&count);

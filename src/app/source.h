@@ -15,6 +15,7 @@ struct SceneSource {
   const std::uint8_t* baked = nullptr;  // the .pray file, or what a model became, that the scene is a view of; null: a
   std::size_t baked_bytes = 0;          // built-in scene
   std::string warning;                  // one line, empty if there is nothing to say
+  std::size_t bytes_wanted = 0;         // of memory, where it failed for want of that; 0: it did not
 };
 
 // The one block, taken at start and kept as long as its scene is open. Null when it cannot be had.
@@ -26,6 +27,11 @@ void give_block_back(void* block);
 // vary beyond what a display shows; any other asks for the stated lights.
 Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported);
 #endif
+
+// The error of a scene that needs so many bytes where fewer are allowed; notes what would hold it.
+Status scene_too_large(const std::string& name, std::size_t need, std::size_t limit, SceneSource* source);
+// Whether `name` is a built-in scene or a file.
+bool is_local_scene(const std::string& name);
 
 // Puts the scene called `name` into renderer->scene; its arrays lie in the scene arena or in the mapped file.
 Status load_scene(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage);

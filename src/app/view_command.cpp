@@ -23,11 +23,7 @@ struct Loading {
   Loading(const CommonOptions& options, Viewer* viewer)
       : thread([this, &options, viewer] {
           Sharing* sharing = viewer->sharing;
-          OpenHooks hooks;
-          hooks.output_bytes = [=](const Settings& s) { return viewer_bytes(s) + sharing_bytes(sharing, s); };
-          hooks.loaded = [=](const SceneSource& source, Renderer* r) { return name_shared_scene(sharing, source, r); };
-          status = open_scene(options, hooks, opened.get());
-          if (status.ok) status = start_scene(opened.get(), options);
+          status = open_shared_scene(sharing, options, viewer_bytes, opened.get());
           if (status.ok && sharing)
             status =
                 start_sharing(sharing, &opened->renderer, viewer->format.bits_per_pixel == 16, viewer->options.dither);
@@ -62,7 +58,10 @@ int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing) {
   for (bool again = true; again && status.ok;) {
     again = false;
     Loading loading(common, &viewer);
-    if (!wait_for(&viewer, &loading)) break;
+    if (!wait_for(&viewer, &loading)) {
+      stop_opening(viewer.sharing);
+      break;
+    }
     status = loading.status;
     if (!status.ok) break;
     print_notes(*loading.opened);

@@ -9,7 +9,6 @@
 #include "app/picture.h"
 #include "app/viewer_hud.h"
 #include "base/seal.h"
-#include "plan/plan_scene.h"
 #include "platform/file.h"
 #include "present/repack.h"
 
@@ -287,7 +286,7 @@ Status run_viewer(Viewer* v, Renderer* r, bool* again) {
   Loop loop;
   std::size_t mark = arena_mark(r->frame_arena);
   loop.row_spans = arena_array<Span>(&r->frame_arena, r->settings.width);
-  loop.control = make_camera_control(r->camera, scene_bounds(r->scene));
+  loop.control = make_camera_control(r->camera, r->accel.bounds);
   loop.last_ns = loop.last_check_ns = v->backend->now_ns();
   loop.stamp = platform::file_stamp(v->scene_path.c_str());
   loop.finished = true;  // nothing under way

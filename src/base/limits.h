@@ -31,6 +31,7 @@ constexpr float kCoordinateMax = 1e18f;     // its square is finite; HARDCASES r
 // Radiance, intensity and absorption a scene may state, and irradiance that a light gives close by. What a frame makes
 // of them stays finite: no ∞ · 0 arises.
 constexpr float kRadianceMax = 1e18f;
+constexpr float kFrameRateMax = 1e6f;  // frames a second
 
 static_assert(kImageSideMax <= 1u << 16, "span columns are 16 bit");
 

@@ -19,6 +19,12 @@ void add_part(MemoryPlan* plan, const char* name, ArenaKind arena, std::size_t b
   plan->total_bytes += bytes;
 }
 
+// Each arena's start has to be aligned.
+void align_arenas(MemoryPlan* plan) {
+  for (std::size_t& bytes : plan->arena_bytes)
+    if (bytes) bytes += kArenaAlignment, plan->total_bytes += kArenaAlignment;
+}
+
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
 }  // namespace
@@ -51,8 +57,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   // The build's scratch is free again when the first frame is shown: the two share the frame arena.
   add_part(plan, scratch > output_bytes ? "build scratch, then output" : "output", ArenaKind::frame,
            std::max(scratch, output_bytes));
-  for (std::size_t& bytes : plan->arena_bytes)
-    if (bytes) bytes += kArenaAlignment, plan->total_bytes += kArenaAlignment;  // to align its start
+  align_arenas(plan);
 
   if (plan->total_bytes <= plan->limit_bytes) return success();
   const MemoryPart* largest = &plan->parts[0];
@@ -64,6 +69,19 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
       "--memory %zuM would fit",
       megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
       scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
+}
+
+Status plan_output_memory(const Settings& settings, std::size_t output_bytes, MemoryPlan* plan) {
+  *plan = MemoryPlan();
+  plan->limit_bytes = settings.memory_bytes;
+  add_part(plan, "output", ArenaKind::frame, output_bytes);
+  align_arenas(plan);
+  if (plan->total_bytes <= plan->limit_bytes) return success();
+  return failure(
+      "pictures of %ux%u pixels need %.1f MiB of memory without a scene and --memory allows %.1f MiB: --memory %zuM "
+      "would fit, or use a smaller --size",
+      settings.width, settings.height, megabytes(plan->total_bytes), megabytes(plan->limit_bytes),
+      (plan->total_bytes + (1 << 20) - 1) >> 20);
 }
 
 std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size) {

@@ -42,6 +42,9 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                    const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
                    MemoryPlan* plan);
 
+// The same for a device that shows what others render: there is nothing but the output.
+Status plan_output_memory(const Settings& settings, std::size_t output_bytes, MemoryPlan* plan);
+
 // Draws the map as text, one line a part, into `text` (of `size` bytes, always terminated). Returns its length.
 std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size);
 

@@ -43,7 +43,7 @@ Status validate_info(const SceneInfo& info) {
       {"background.x", info.background.x, 0, kRadianceMax}, {"background.y", info.background.y, 0, kRadianceMax},
       {"background.z", info.background.z, 0, kRadianceMax}, {"ambient.x", info.ambient.x, 0, kRadianceMax},
       {"ambient.y", info.ambient.y, 0, kRadianceMax},       {"ambient.z", info.ambient.z, 0, kRadianceMax},
-      {"exposure", info.exposure, least, kFloatMax},        {"frames_per_second", info.frames_per_second, 1e-3f, 1e6f},
+      {"exposure", info.exposure, least, kFloatMax},        {"frames_per_second", info.frames_per_second, 1e-3f, kFrameRateMax},
       {"auto_exposure", info.auto_exposure, 0, 1},
   };
   return check_fields("info", 0, fields);

@@ -118,7 +118,7 @@ void fields(Io& io, SceneQuery* m) {
 template <class Io>
 void fields(Io& io, SceneEntry* m) {
   hash(io, &m->hash);
-  number(io, &m->byte_count), number(io, &m->index), number(io, &m->count);
+  number(io, &m->byte_count), number(io, &m->index), number(io, &m->count), number(io, &m->triangle_count);
   io.text(m->name);
 }
 template <class Io>
@@ -203,6 +203,26 @@ void fields(Io& io, Pong* m) {
   number(io, &m->id), number(io, &m->pixel_ps);
   io.tail(&m->bytes);
 }
+template <class Io>
+void fields(Io& io, ViewQuery* m) {
+  hash(io, &m->scene);
+  choice(io, &m->camera_stated, true);
+  number(io, &m->camera_index);
+  fields(io, &m->camera);
+  fields(io, &m->settings);
+  choice(io, &m->measure_exposure, true);
+}
+template <class Io>
+void fields(Io& io, ViewEntry* m) {
+  hash(io, &m->scene);
+  fields(io, &m->camera);
+  real(io, &m->exposure, kRadianceMax), real(io, &m->frames_per_second, kFrameRateMax);
+  io.require(m->exposure > 0 && m->frames_per_second >= 0);
+  number(io, &m->effects), number(io, &m->triangle_count);
+  io.require((m->effects & ~kAllEffects) == 0);
+  point(io, &m->bounds.low), point(io, &m->bounds.high);
+  io.require(!is_empty(m->bounds));
+}
 
 template <class Io>
 void fields_of_type(Io& io, Message* m) {
@@ -231,6 +251,10 @@ void fields_of_type(Io& io, Message* m) {
       return fields(io, &m->ping);
     case MessageType::pong:
       return fields(io, &m->pong);
+    case MessageType::view_query:
+      return fields(io, &m->view_query);
+    case MessageType::view_entry:
+      return fields(io, &m->view_entry);
   }
 }
 
@@ -243,7 +267,7 @@ constexpr PayloadSize kPayloadSizes[] = {
     {20, 0},               // hello
     {2, 0},                // scene_list
     {16, 0},               // scene_query
-    {92, 0},               // scene_entry
+    {96, 0},               // scene_entry
     {28, 0},               // scene_fetch
     {24, kPieceBytesMax},  // scene_piece
     {111, 0},              // frame_request
@@ -252,9 +276,11 @@ constexpr PayloadSize kPayloadSizes[] = {
     {6, 0},                // error
     {8, 0},                // ping
     {8, kPingBytesMax},    // pong
+    {87, 0},               // view_query
+    {104, 0},              // view_entry
 };
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
-static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::pong) + 1, "one for each type");
+static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::view_entry) + 1, "one for each type");
 
 // A hello of another version ends after magic and version, or goes on as it likes.
 constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;

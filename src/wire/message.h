@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/array.h"
+#include "base/box.h"
 #include "effect/settings.h"
 #include "scene/scene.h"
 #include "wire/content_hash.h"
@@ -32,6 +33,8 @@ enum class MessageType : std::uint8_t {
   error,          // both
   ping,           // device
   pong,           // server
+  view_query,     // device: how does this scene look from there?
+  view_entry,     // server
 };
 
 struct Hello {
@@ -51,7 +54,8 @@ struct SceneEntry {
   ContentHash hash;
   std::uint64_t byte_count = 0;        // of the baked file; 0: there is no such scene
   std::uint16_t index = 0, count = 0;  // its place in the server's list, and how many that has
-  char name[kNameBytes] = {0};         // for people; ends in 0
+  std::uint32_t triangle_count = 0;
+  char name[kNameBytes] = {0};  // for people; ends in 0
 };
 struct SceneFetch {
   ContentHash hash;
@@ -119,6 +123,25 @@ struct Pong {
   Array<const std::uint8_t> bytes;  // of no meaning
 };
 
+// What a device without the scene has to know of it before it asks for frames.
+struct ViewQuery {
+  ContentHash scene;
+  bool camera_stated = false;  // as in a FrameRequest
+  std::uint16_t camera_index = 0;
+  Camera camera;
+  Settings settings;
+  bool measure_exposure = false;  // whether or not the scene asks for it
+};
+struct ViewEntry {
+  ContentHash scene;
+  Camera camera;       // world space, at time 0; its node is kNone
+  float exposure = 1;  // measured from there where that is asked for, else the scene's
+  float frames_per_second = 0;
+  EffectMask effects = 0;  // planned
+  std::uint32_t triangle_count = 0;
+  Box bounds = {{0, 0, 0}, {0, 0, 0}};  // low ≤ high
+};
+
 // The member of the type holds, the others are at their defaults.
 struct Message {
   MessageType type = MessageType::hello;
@@ -134,6 +157,8 @@ struct Message {
   ErrorReport error;
   Ping ping;
   Pong pong;
+  ViewQuery view_query;
+  ViewEntry view_entry;
 };
 
 enum class DecodeState { need_more, message, malformed };

@@ -109,6 +109,15 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::hello, [](Message* m) { m->hello.scene_bytes_max ^= 1; }},
       {MessageType::scene_entry, [](Message* m) { m->scene_entry.name[0] = 'S'; }},
       {MessageType::scene_entry, [](Message* m) { m->scene_entry.count ^= 1; }},
+      {MessageType::scene_entry, [](Message* m) { m->scene_entry.triangle_count ^= 1; }},
+      {MessageType::view_query, [](Message* m) { m->view_query.measure_exposure ^= 1; }},
+      {MessageType::view_query, [](Message* m) { m->view_query.camera_index ^= 1; }},
+      {MessageType::view_query, [](Message* m) { m->view_query.settings.width ^= 1; }},
+      {MessageType::view_entry, [](Message* m) { m->view_entry.camera.eye.x += 1; }},
+      {MessageType::view_entry, [](Message* m) { m->view_entry.exposure += 1; }},
+      {MessageType::view_entry, [](Message* m) { m->view_entry.frames_per_second += 1; }},
+      {MessageType::view_entry, [](Message* m) { m->view_entry.effects ^= 1; }},
+      {MessageType::view_entry, [](Message* m) { m->view_entry.bounds.high.z += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.scene.high ^= 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.seconds += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.camera_stated ^= 1; }},
@@ -198,7 +207,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
   const std::vector<std::uint8_t> nan = {0, 0, 0xC0, 0x7F}, infinite = {0, 0, 0x80, 0xFF};
   const Edit edits[] = {
       {MessageType::hello, 8, {'p'}},
-      {MessageType::scene_entry, 8 + 91, {'x'}},
+      {MessageType::scene_entry, 8 + 95, {'x'}},
       {MessageType::scene_fetch, 8 + 24, {1, 0, 1, 0}},
       {MessageType::scene_fetch, 8 + 16, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
       {MessageType::scene_piece, 8 + 16, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
@@ -232,6 +241,15 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::error, 8, {0, 0}},
       {MessageType::error, 8, {8, 0}},
       {MessageType::ping, 8 + 4, {1, 0, 1, 0}},
+      {MessageType::view_query, 8 + 16, {2}},              // camera stated
+      {MessageType::view_query, 8 + 19, nan},              // eye.x
+      {MessageType::view_query, 8 + 67, {0, 0}},           // width
+      {MessageType::view_query, 8 + 86, {2}},              // exposure measured
+      {MessageType::view_entry, 8 + 16, infinite},         // eye.x
+      {MessageType::view_entry, 8 + 64, {0, 0, 0, 0}},     // exposure
+      {MessageType::view_entry, 8 + 68, nan},              // frames a second
+      {MessageType::view_entry, 8 + 75, {0xFF}},           // effects
+      {MessageType::view_entry, 8 + 80, {0, 0, 0, 0x7F}},  // bounds turned over
   };
   const std::vector<std::uint8_t> tail = {1, 2, 3};
   for (const Edit& edit : edits) {

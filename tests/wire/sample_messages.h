@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-constexpr int kMessageTypeCount = static_cast<int>(MessageType::pong);
+constexpr int kMessageTypeCount = static_cast<int>(MessageType::view_entry);
 
 // `tail` is what a message's array shows; it has to outlive the message.
 inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
@@ -25,6 +25,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   m.scene_list.index = narrow();
   m.scene_query.hash = m.scene_entry.hash = m.scene_fetch.hash = m.scene_piece.hash = hash;
   m.scene_entry.byte_count = wide(), m.scene_entry.index = narrow(), m.scene_entry.count = narrow();
+  m.scene_entry.triangle_count = next_u32(rng);
   std::snprintf(m.scene_entry.name, kNameBytes, "scene %u", next_u32(rng));
   m.scene_fetch.offset = wide() >> 8, m.scene_fetch.byte_count = next_u32(rng) % (kPieceBytesMax + 1);
   m.scene_piece.offset = wide() >> 8, m.scene_piece.bytes = bytes;
@@ -56,6 +57,13 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   m.error.code = static_cast<WireError>(1 + next_u32(rng) % 7), m.error.frame = next_u32(rng);
   m.ping.id = next_u32(rng), m.ping.reply_bytes = next_u32(rng) % (kPingBytesMax + 1);
   m.pong.id = next_u32(rng), m.pong.pixel_ps = next_u32(rng), m.pong.bytes = bytes;
+  ViewQuery* q = &m.view_query;
+  q->scene = hash, q->camera_stated = f->camera_stated, q->camera_index = narrow();
+  q->camera = f->camera, q->settings = f->settings, q->measure_exposure = next_u32(rng) % 2 != 0;
+  ViewEntry* v = &m.view_entry;
+  v->scene = hash, v->camera = f->camera, v->exposure = 1 + next_float(rng), v->frames_per_second = next_float(rng);
+  v->effects = next_u32(rng) & kAllEffects, v->triangle_count = next_u32(rng);
+  v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
   return m;
 }
 

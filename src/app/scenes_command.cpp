@@ -1,0 +1,64 @@
+// pocketray scenes: what render servers offer.
+#include "app/commands.h"
+#include "app/report.h"
+#include "app/sharing.h"
+
+namespace pocketray {
+namespace {
+
+struct ScenesOptions {
+  std::string json;
+  SharingOptions sharing;
+};
+
+Json to_json(const std::vector<OfferedScene>& scenes) {
+  Json list = Json::array();
+  for (const OfferedScene& scene : scenes)
+    list.push_back({{"name", scene.name}, {"triangles", scene.triangle_count}, {"bytes", scene.byte_count}});
+  return list;
+}
+
+void print(const std::string& server, const std::vector<OfferedScene>& scenes) {
+  std::printf("%s: %zu scene%s\n", server.c_str(), scenes.size(), scenes.size() == 1 ? "" : "s");
+  for (const OfferedScene& scene : scenes)
+    std::printf("  %-24s %9s triangles %12s bytes\n", scene.name.c_str(), grouped(scene.triangle_count).c_str(),
+                grouped(scene.byte_count).c_str());
+}
+
+int run(const ScenesOptions& o) {
+  Sharing* sharing = nullptr;
+  Status status = open_sharing(o.sharing, nullptr, &sharing);
+  std::unique_ptr<Sharing, void (*)(Sharing*)> closing(sharing, close_sharing);
+  if (!status.ok) return report(status);
+  Json json = Json::array();
+  int exit_status = kExitDone;
+  for (std::size_t i = 0; i < o.sharing.servers.size(); ++i) {
+    std::vector<OfferedScene> scenes;
+    status = list_shared_scenes(sharing, i, &scenes);
+    if (!status.ok) {
+      exit_status = report(status);
+      continue;
+    }
+    if (o.json != "-") print(o.sharing.servers[i], scenes);
+    json.push_back({{"server", o.sharing.servers[i]}, {"scenes", to_json(scenes)}});
+  }
+  if (!o.json.empty()) status = write_json(o.json, json);
+  return status.ok || exit_status != kExitDone ? exit_status : report(status);
+}
+
+}  // namespace
+
+void add_scenes_command(CLI::App* program, int* exit_status) {
+  auto o = std::make_shared<ScenesOptions>();
+  CLI::App* command = program->add_subcommand("scenes", "list the scenes that render servers offer");
+  command->add_option("--server", o->sharing.servers, "HOST:PORT of a `pocketray serve`; may be given several times")
+      ->allow_extra_args(false)
+      ->required();
+  command->add_option("--json", o->json, "also write them as JSON to FILE, or - for standard output");
+  command->footer(
+      "`render` and `view` take any of the names with the same --server: the scene is fetched, or, where --memory\n"
+      "does not hold it, left to the server.");
+  command->callback([=] { *exit_status = run(*o); });
+}
+
+}  // namespace pocketray
