@@ -48,6 +48,12 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
   send_message(session, reply);
 }
 
+void begin_job(Server* server, Session* s, const StoredScene* scene) {
+  s->job = FrameJob();
+  s->job.scene = scene;
+  if (s->used_ns < server->used_floor_ns) s->used_ns = server->used_floor_ns;
+}
+
 // The request takes the place of what is left of the one before, whatever becomes of it.
 void take_request(Server* server, Session* s, const FrameRequest& request) {
   const Settings& settings = request.settings;
@@ -64,11 +70,9 @@ void take_request(Server* server, Session* s, const FrameRequest& request) {
     return refuse(server, s, WireError::too_large, request.frame, "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, request.scene);
   if (!scene) return refuse(server, s, WireError::unknown_scene, request.frame, "its scene is not known here");
-  s->job = FrameJob();
-  s->job.scene = scene;
+  begin_job(server, s, scene);
   s->job.request = request;
   s->job.traced_begin = s->job.sent_begin = request.row_end;
-  if (s->used_ns < server->used_floor_ns) s->used_ns = server->used_floor_ns;
 }
 
 void take_view_query(Server* server, Session* s, const ViewQuery& query) {
@@ -79,15 +83,13 @@ void take_view_query(Server* server, Session* s, const ViewQuery& query) {
     return refuse(server, s, WireError::too_large, 0, "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, query.scene);
   if (!scene) return refuse(server, s, WireError::unknown_scene, 0, "its scene is not known here");
-  s->job = FrameJob();
-  s->job.scene = scene;
+  begin_job(server, s, scene);
   s->job.is_view_query = true;
   s->job.measure_exposure = query.measure_exposure;
   FrameRequest* request = &s->job.request;
   request->scene = query.scene;
   request->camera_stated = query.camera_stated, request->camera_index = query.camera_index;
   request->camera = query.camera, request->settings = query.settings;
-  if (s->used_ns < server->used_floor_ns) s->used_ns = server->used_floor_ns;
 }
 
 bool take_hello(Server* server, Session* session, const Message& message) {

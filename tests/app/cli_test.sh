@@ -162,11 +162,47 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   check serve_leaves_out_what_is_broken test "$(grep -c '^pocketray: cut.pray is left out: ' serve.err)" = 1
   address=$(sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' serve.out)
   check serve_says_where_it_listens grep -qE '^127\.0\.0\.1:[0-9]+$' <<<"$address"
+
+  # Goal: a device without the scene fetches it, one without room for it shows what the server renders: the same pixels.
+  expect scenes 0 '^ *d\.pray +45 109 triangles' scenes --server "$address"
+  expect scenes_json 0 '"triangles": 45109' scenes --server "$address" --json -
+  expect scenes_of_nobody 1 '127.0.0.1:1: nothing listens' scenes --server 127.0.0.1:1
+  expect scenes_without_server 2 'server' scenes
+  remote=(--size 32x24 --server "$address")
+  expect fetch 0 'device rendered [1-9]' render d "${remote[@]}" -o fetched.ppm
+  check fetched_scene_gives_the_same_picture cmp -s one.ppm fetched.ppm
+  expect fetch_from_the_one_that_has_it 0 'ns per pixel' render d --server 127.0.0.1:1 "${remote[@]}" -o second.ppm
+  check second_server_gives_the_same_picture cmp -s one.ppm second.ppm
+  expect fetch_unknown 1 'no_such is no file.* 127.*: it has cornell, ' render no_such "${remote[@]}" -o b.ppm
+  expect fetch_from_nobody 1 'nothing listens' render no_such --server 127.0.0.1:1 -o b.ppm
+  for scene in cornell d d.pray; do
+    expect "thin_$scene" 0 'device rendered 0 %' \
+      render $scene "${remote[@]}" --memory 700K -o "thin_$scene.ppm"
+    check "thin_${scene}_gives_the_same_picture" cmp -s one.ppm "thin_$scene.ppm"
+  done
+  expect thin_says_so 0 'does not fit --memory 0.7M: the servers render every pixel.*M would hold' \
+    render cornell "${remote[@]}" --memory 700K -o b_thin.ppm
+  turned=(--rotate 90 --dither --exposure 0.5 --camera "0,0,3 0,0,0 0,1,0 40")
+  expect raw_alone 0 '' render cornell --size 32x24 "${turned[@]}" -o alone.raw
+  expect thin_raw 0 'rendered 0 %' render cornell "${remote[@]}" "${turned[@]}" --memory 700K -o thin.raw
+  check thin_raw_is_the_same cmp -s alone.raw thin.raw
+  expect raw_shared 0 '' render cornell "${remote[@]}" "${turned[@]}" -o shared.raw
+  check shared_raw_is_the_same cmp -s alone.raw shared.raw
+  expect seesaw_alone 0 '' render seesaw --size 32x24 --frames 3:5 -o alone.ppm
+  expect thin_sequence 0 'rendered 0 %' render seesaw "${remote[@]}" --memory 400K --frames 3:5 -o thin.ppm
+  for n in 3 4 5; do check "thin_frame_$n" cmp -s alone-000$n.ppm thin-000$n.ppm; done
+  expect thin_view 0 '' view seesaw "${remote[@]}" --memory 500K --screen null --frames 3
+  expect thin_without_server 1 'no server can render it; 127.*nothing listens' \
+    render cornell --server 127.0.0.1:1 --memory 700K -o b.ppm
+  expect thin_camera_index 1 'cannot render with these settings' \
+    render cornell "${remote[@]}" --memory 700K --camera-index 7 -o b.ppm
+  expect thin_without_room 1 'MiB of memory without a scene' render cornell "${remote[@]}" --memory 64K -o b.ppm
+  check no_picture_of_what_failed test ! -e b.ppm
   expect serve_port_is_taken 1 'another program listens' serve --listen "$address"
   kill -INT $server
   wait $server
   check serve_is_interrupted test $? -eq 3
-  check serve_prints_totals grep -q '^0 clients, 0 frames' serve.out
+  check serve_prints_totals grep -q '^[1-9][0-9]* clients, [1-9][0-9]* frames' serve.out
 
   "${run[@]}" serve --listen 127.0.0.1:0 --threads 1 >sharing.out 2>sharing.err &
   server=$!

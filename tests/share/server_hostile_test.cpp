@@ -58,7 +58,8 @@ TEST_CASE("server_ends_whoever_sends_what_is_no_message") {
     bytes.insert(bytes.end(), damaged.begin(), damaged.end());
     check_malformed(&rig, bytes);
   }
-  for (MessageType type : {MessageType::hello, MessageType::scene_entry, MessageType::scene_piece, MessageType::pong}) {
+  for (MessageType type : {MessageType::hello, MessageType::scene_entry, MessageType::scene_piece, MessageType::pong,
+                           MessageType::view_entry}) {
     Message message;
     message.type = type;
     std::vector<std::uint8_t> bytes = hello_bytes(), more = bytes_of(message);
