@@ -20,8 +20,6 @@ struct Corner {
   double angle;
 };
 
-Vec3d to_double(const Vec3& p) { return {p.x, p.y, p.z}; }
-
 // For each vertex, the first vertex at the same position.
 std::vector<std::uint32_t> weld(const std::vector<Vec3>& positions) {
   std::vector<std::uint32_t> order(positions.size()), first(positions.size());
