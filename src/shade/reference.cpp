@@ -59,8 +59,10 @@ bool find_surface(const Reference& reference, const ReferenceRay& ray, Path* pat
     }
     passed = hit.t;
     contact->count = 0;
+    contact->last = hit;
     const ReferenceHit* face = &hit;
-    if (reference.may_pass) {
+    const Material& m = material_of(frame, hit);
+    if (!m.double_sided || m.alpha_mode == AlphaMode::blend || !is_zero(m.transmission)) {  // it may be passed
       *contact = gather_contact(reference.world, ray, hit);
       face = pick_face(frame, *contact, rng);
     }
@@ -167,9 +169,6 @@ Reference make_reference(const FrameData& frame, Arena* arena) {
   reference.world = make_reference_world(frame, arena);
   reference.emitters = arena_array<ReferenceEmitter>(arena, frame.scene->triangles.count);
   reference.emitters.count = find_emitters(frame, reference.emitters.data);
-  for (const Material& m : frame.scene->materials)
-    reference.may_pass =
-        reference.may_pass || !m.double_sided || m.alpha_mode == AlphaMode::blend || !is_zero(m.transmission);
   return reference;
 }
 

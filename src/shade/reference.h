@@ -32,7 +32,6 @@ struct ReferenceEmitter {
 struct Reference {
   ReferenceWorld world;
   Array<ReferenceEmitter> emitters;
-  bool may_pass = false;  // some surface transmits, blends or is culled
 };
 
 // Bytes of arena that the reference of such a frame takes.

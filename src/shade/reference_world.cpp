@@ -188,12 +188,17 @@ ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, cons
   ReferenceHit best = {kInfinity, 0, 0, kNone};
   Vec3d inverse = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
   Shear shear = make_shear(ray.direction);
-  std::uint32_t stack[kDepthMax + 2], stack_count = 0;
-  if (!world.order.empty()) stack[stack_count++] = 0;
+  struct Entry {
+    std::uint32_t node;
+    double t;  // at which the ray enters it
+  } stack[kDepthMax + 2];
+  std::uint32_t stack_count = 0;
+  if (!world.order.empty()) stack[stack_count++] = {0, enter(world.nodes[0], ray, inverse, ray.t_max)};
   while (stack_count > 0) {
-    const ReferenceNode& n = world.nodes[stack[--stack_count]];
+    Entry entry = stack[--stack_count];
     double t_max = (best.t < ray.t_max ? best.t : ray.t_max) * kUlps;
-    if (enter(n, ray, inverse, t_max) == kInfinity) continue;
+    if (!(entry.t <= t_max) || entry.t == kInfinity) continue;
+    const ReferenceNode& n = world.nodes[entry.node];
     for (std::uint32_t i = 0; i < n.count; ++i) {
       ReferenceHit hit;
       if (!meets(*world.frame, world.order[n.first + i], ray, shear, &hit)) continue;
@@ -201,10 +206,11 @@ ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, cons
       if (!is_hole(*world.frame, hit.triangle, hit.u, hit.v)) best = hit;
     }
     if (n.count > 0) continue;
-    bool left_first =
-        enter(world.nodes[n.first], ray, inverse, t_max) < enter(world.nodes[n.first + 1], ray, inverse, t_max);
-    stack[stack_count++] = n.first + (left_first ? 1 : 0);
-    stack[stack_count++] = n.first + (left_first ? 0 : 1);
+    Entry left = {n.first, enter(world.nodes[n.first], ray, inverse, t_max)};
+    Entry right = {n.first + 1, enter(world.nodes[n.first + 1], ray, inverse, t_max)};
+    bool left_first = left.t < right.t;
+    stack[stack_count++] = left_first ? right : left;
+    stack[stack_count++] = left_first ? left : right;
   }
   return best;
 }
