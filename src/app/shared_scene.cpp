@@ -1,6 +1,6 @@
 // The scene that is shared with servers: fetched from them where the device does not have it, left to them where the
 // device has no room for it.
-#include <cstdlib>
+#include <cstdio>
 
 #include "app/heap_scene.h"
 #include "app/inquiry.h"
@@ -139,6 +139,17 @@ Status find_view(Sharing* s, const ViewQuery& query) {
   return failure("%s", reasons.c_str());
 }
 
+EffectPlan effects_of_servers(EffectMask mask) {
+  EffectPlan plan;
+  plan.mask = mask;
+  for (int i = 0; i < kEffectCount; ++i) {
+    EffectDecision* decision = &plan.decisions[i];
+    decision->on = has(mask, static_cast<Effect>(i));
+    std::snprintf(decision->reason, sizeof decision->reason, "as the servers plan it");
+  }
+  return plan;
+}
+
 // Without the scene: what is shown is what the servers render.
 Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
   ViewQuery query;
@@ -168,7 +179,7 @@ Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, O
   r->camera_index = o.camera_index;
   r->camera_overridden = query.camera_stated;
   r->exposure = s->view.exposure * factor;
-  r->effects.mask = s->view.effects;
+  r->effects = effects_of_servers(s->view.effects);
   r->scene.info.frames_per_second = s->view.frames_per_second;
   r->accel.bounds = s->view.bounds;
   s->is_named = s->is_thin = true;

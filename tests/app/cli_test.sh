@@ -180,6 +180,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
       render $scene "${remote[@]}" --memory 700K -o "thin_$scene.ppm"
     check "thin_${scene}_gives_the_same_picture" cmp -s one.ppm "thin_$scene.ppm"
   done
+  expect thin_plan 0 'frame +output' render cornell "${remote[@]}" --memory 700K --plan -o b_thin.ppm
   expect thin_says_so 0 'does not fit --memory 0.7M: the servers render every pixel.*M would hold' \
     render cornell "${remote[@]}" --memory 700K -o b_thin.ppm
   turned=(--rotate 90 --dither --exposure 0.5 --camera "0,0,3 0,0,0 0,1,0 40")
