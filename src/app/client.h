@@ -25,7 +25,8 @@ struct ClientOptions {
   Pace pace;                                            // the CPU to emulate
   bool has_scene = true;  // false: the device renders nothing, and shows what servers render
   std::uint64_t connect_timeout_ns = 3'000'000'000;
-  std::uint64_t silence_timeout_ns = 3'000'000'000;  // without an answer, half a message included
+  std::uint64_t silence_timeout_ns = 3'000'000'000;   // without an answer, half a message included
+  std::uint64_t prepare_timeout_ns = 30'000'000'000;  // the same till the first rows: the server builds its scene first
   std::uint64_t retry_ns_min = 500'000'000, retry_ns_max = 30'000'000'000;
   void (*log)(void* context, const char* line) = nullptr;  // one line when a server is lost and when it is back
   void* log_context = nullptr;

@@ -15,6 +15,8 @@ inline std::uint32_t index_of(const Client& c, const RemoteServer* s) {
 void advance_server(Client* client, RemoteServer* server);
 // Closes the connection; the reason is told once until the server is in use again, and it is tried again later.
 void lose_server(Client* client, RemoteServer* server, const char* reason);
+// How long it may be silent where something is awaited of it.
+std::uint64_t silence_limit_ns(const Client& client, const RemoteServer& server);
 // Sends what waits to be sent, as far as it goes.
 void flush_server(Client* client, RemoteServer* server);
 // The overture is over and all of it known.

@@ -32,7 +32,7 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
   if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
   std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
   s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};
-  if (!s->unanswered) s->timer = platform::link_timer(s->frame.asked_ns, c->options.silence_timeout_ns);
+  if (!s->unanswered) s->timer = platform::link_timer(s->frame.asked_ns, silence_limit_ns(*c, *s));
   s->unanswered = true;
   flush_server(c, s);
 }

@@ -33,9 +33,7 @@ void tell(Client* c, const char* format, ...) {
 
 void enter(Client* c, RemoteServer* s, ServerPhase phase) {
   s->phase = phase;
-  std::uint64_t limit =
-      phase == ServerPhase::connecting ? c->options.connect_timeout_ns : c->options.silence_timeout_ns;
-  s->timer = platform::link_timer(client_now_ns(*c), limit);
+  s->timer = platform::link_timer(client_now_ns(*c), silence_limit_ns(*c, *s));
 }
 
 void send(Client* c, RemoteServer* s, const Message& message) {
@@ -187,7 +185,7 @@ void read_server(Client* c, RemoteServer* s) {
       if (state == DecodeState::need_more) break;
       took = true;
       s->unanswered = false;
-      s->timer = platform::link_timer(client_now_ns(*c), c->options.silence_timeout_ns);
+      s->timer = platform::link_timer(client_now_ns(*c), silence_limit_ns(*c, *s));
       take(c, s, message);
       if (s->phase == ServerPhase::waiting) return;
     }
@@ -232,6 +230,12 @@ const char* phase_text(ServerPhase phase) {
       break;
   }
   return "ready";
+}
+
+std::uint64_t silence_limit_ns(const Client& c, const RemoteServer& s) {
+  const ClientOptions& o = c.options;
+  if (s.phase == ServerPhase::connecting) return o.connect_timeout_ns;
+  return s.phase == ServerPhase::probing ? o.prepare_timeout_ns : o.silence_timeout_ns;
 }
 
 void lose_server(Client* c, RemoteServer* s, const char* reason) {
@@ -282,17 +286,22 @@ void advance_server(Client* c, RemoteServer* s) {
   read_server(c, s);
   if (s->phase == ServerPhase::waiting) return;
   if (!is_awaited(*c, *s)) {
-    s->timer = platform::link_timer(now, c->options.silence_timeout_ns);
+    s->timer = platform::link_timer(now, silence_limit_ns(*c, *s));
     if (s->phase == ServerPhase::ready && now >= s->ping_due_ns) {
       s->ping_due_ns = now + kIdlePingNs;
       send_ping(c, s, 0);
     }
   } else {
     std::uint64_t left = platform::link_timer_left(&s->timer, client_now_ns(*c));
-    if (left == 0) return lose_server(c, s, "it does not answer");
-    // It may have no time for rows, and yet be there.
-    if (s->phase >= ServerPhase::probing && s->ping_id == 0 && left < c->options.silence_timeout_ns / 2)
+    std::uint64_t half = silence_limit_ns(*c, *s) / 2;
+    // It may have no time for rows, and yet be there: asked, it has the other half to answer, even where the device was
+    // too busy to look for longer than that.
+    if (s->phase >= ServerPhase::probing && s->ping_id == 0 && left < half) {
+      s->timer = platform::link_timer(client_now_ns(*c), half);
       send_ping(c, s, 0);
+    } else if (left == 0) {
+      return lose_server(c, s, "it does not answer");
+    }
   }
   flush_server(c, s);
 }

@@ -11,8 +11,8 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kFirstPixels = 64;  // for a thread, while nothing is known of what they cost
-constexpr std::uint32_t kPartPixels = 8;    // of a row at once, at least
+constexpr std::uint32_t kFirstPixels = 8;  // for a thread, while nothing is known of what they cost
+constexpr std::uint32_t kPartPixels = 8;   // of a row for a thread, unless as few take longer than they may
 
 PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 
@@ -127,8 +127,9 @@ Slice trace_part(Session* s, std::uint32_t pixels_max) {
   const FrameJob& job = s->job;
   const Settings& settings = s->renderer.settings;
   std::uint32_t begin = job.traced_columns, left = settings.width - begin;
-  std::uint32_t count = std::min(std::max(pixels_max, kPartPixels), left);
-  std::uint32_t parts = std::min(settings.threads, (count + kPartPixels - 1) / kPartPixels);
+  std::uint32_t part_pixels = pixels_max < kPartPixels ? 1 : kPartPixels;
+  std::uint32_t count = std::min(std::max(pixels_max, part_pixels), left);
+  std::uint32_t parts = std::min(settings.threads, (count + part_pixels - 1) / part_pixels);
   Span spans[kThreadCountMax];
   for (std::uint32_t i = 0; i < parts; ++i)
     spans[i] = {static_cast<std::uint16_t>(job.traced_begin - 1), static_cast<std::uint16_t>(begin + count * i / parts),

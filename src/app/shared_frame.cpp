@@ -1,5 +1,7 @@
 #include "app/shared_frame.h"
 
+#include <algorithm>
+
 #include "app/client_parts.h"
 #include "app/frame.h"
 #include "present/pack.h"
@@ -8,6 +10,8 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint64_t kWaitNs = 500'000;  // for rows, when there is nothing else to do, between two looks around
+constexpr double kLongRowNs = 100e6;        // a row that takes longer is rendered in parts of about that
+constexpr std::uint32_t kFirstPixels = 8;   // of a row, while nothing is known of what they cost
 
 void pack_device_rows(const Renderer& r, Client* c, std::uint32_t row_begin, std::uint32_t row_end) {
   int width = static_cast<int>(r.settings.width), height = static_cast<int>(r.settings.height);
@@ -26,9 +30,50 @@ std::uint64_t take_time(Client* c, std::uint64_t pixel_count, std::uint64_t begi
   return elapsed;
 }
 
+// Pixels of a row, about as many for each thread.
+void trace_part(Renderer* r, std::uint32_t row, std::uint32_t begin, std::uint32_t end) {
+  std::uint32_t parts = std::min(r->settings.threads, end - begin), count = end - begin;
+  Span spans[kThreadCountMax];
+  for (std::uint32_t i = 0; i < parts; ++i)
+    spans[i] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin + count * i / parts),
+                static_cast<std::uint16_t>(begin + count * (i + 1) / parts)};
+  trace_with(r->workers, {spans, parts, Aov::none, r->image.data, r->tracers.data, nullptr});
+}
+
+// A row that takes long, with looks at the servers in between: they are not to take the device for lost, nor it them.
+// It is left when a server sends it meanwhile.
+void render_long_row(Renderer* r, Client* c, std::uint32_t row) {
+  const std::uint32_t width = r->settings.width;
+  double pixel_ns = device_pixel_ns(*c);
+  std::uint32_t begin = 0;
+  std::uint64_t row_ns = 0;
+  for (;;) {
+    double pixels = pixel_ns > 0 ? kLongRowNs / pixel_ns : kFirstPixels;
+    std::uint32_t count = pixels < width ? std::max(1u, static_cast<std::uint32_t>(pixels)) : width;
+    std::uint32_t end = begin + std::min(count, width - begin);
+    std::uint64_t begin_ns = client_now_ns(*c);
+    trace_part(r, row, begin, end);
+    std::uint64_t part_ns = take_time(c, end - begin, begin_ns);
+    row_ns += part_ns;
+    pixel_ns = static_cast<double>(part_ns + 1) / (end - begin);
+    begin = end;
+    if (begin == width) break;
+    advance_client(c, 0);
+    if (c->merge.rows[row].state != RowState::taken) return;
+  }
+  pack_device_rows(*r, c, row, row + 1);
+  finish_device_rows(c, row, row + 1, row_ns);
+}
+
 bool render_rows(Renderer* r, Client* c) {
-  std::uint32_t begin, end;
-  if (!take_device_rows(c, kTileRows * r->settings.threads, &begin, &end)) return false;
+  std::uint32_t begin, end, row_count_max = kTileRows * r->settings.threads;
+  double row_ns = device_pixel_ns(*c) * r->settings.width;
+  bool is_long = row_ns == 0 || row_ns > kLongRowNs;
+  if (!take_device_rows(c, is_long ? 1 : row_count_max, &begin, &end)) return false;
+  if (is_long) {
+    render_long_row(r, c, begin);
+    return true;
+  }
   std::uint64_t begin_ns = client_now_ns(*c);
   trace_with(r->workers, {r->spans.data + begin, end - begin, Aov::none, r->image.data, r->tracers.data, nullptr});
   pack_device_rows(*r, c, begin, end);

@@ -96,7 +96,7 @@ struct Device {
     renderer = make_renderer(built->scene, settings);
     ClientOptions o;
     o.pace.ns_per_pixel = kDeviceNs;
-    o.connect_timeout_ns = silence_ns, o.silence_timeout_ns = silence_ns;
+    o.connect_timeout_ns = silence_ns, o.silence_timeout_ns = o.prepare_timeout_ns = silence_ns;
     o.retry_ns_min = 10 * kMs, o.retry_ns_max = 40 * kMs;
     o.log = [](void* device, const char* line) { static_cast<Device*>(device)->log.push_back(line); };
     o.log_context = this;

@@ -403,7 +403,7 @@ SessionResult run_fault_session(std::uint64_t seed) {
   ClientOptions o;
   o.format = plan.format, o.dither = plan.dither, o.device_share = plan.device_share;
   o.pace.ns_per_pixel = plan.device_ns;
-  o.connect_timeout_ns = kConnectNs, o.silence_timeout_ns = kSilenceNs;
+  o.connect_timeout_ns = kConnectNs, o.silence_timeout_ns = o.prepare_timeout_ns = kSilenceNs;
   o.retry_ns_min = kRetryMinNs, o.retry_ns_max = kRetryMaxNs;
   o.log = [](void*, const char* line) { world->log.push_back(line); };
   std::vector<std::uint8_t> memory(client_need(settings, o.format, plan.server_count) + kArenaAlignment);
