@@ -24,10 +24,13 @@ Status start_sharing(Sharing*, Renderer*, bool, bool) { return success(); }
 Status begin_shared(Sharing*, Renderer*, double) { return success(); }
 bool advance_shared(Sharing*, Renderer*, std::uint64_t, const std::atomic<bool>*) { return true; }
 bool shares_nothing(const Sharing&) { return false; }
+bool has_servers(const Sharing&) { return false; }
+void tend_servers(Sharing*) {}
 SharedPicture shared_picture(const Sharing&) { return {}; }
 bool take_shared_rows(Sharing*, std::uint32_t*, std::uint32_t*) { return false; }
 std::uint32_t shared_rows_done(const Sharing&) { return 0; }
 void write_share_lines(const Sharing&, HudText*) {}
+void write_server_lines(const Sharing&, HudText*) {}
 ShareTotals share_totals(const Sharing&) { return {}; }
 
 }  // namespace pocketray

@@ -1,5 +1,6 @@
 #include "app/sharing.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 
@@ -155,6 +156,14 @@ bool advance_shared(Sharing* s, Renderer* r, std::uint64_t deadline_ns, const st
   return true;
 }
 
+bool has_servers(const Sharing& s) {
+  const Client& c = s.client;
+  return s.is_thin || std::any_of(c.servers, c.servers + c.server_count,
+                                  [](const RemoteServer& server) { return server.phase >= ServerPhase::probing; });
+}
+
+void tend_servers(Sharing* s) { advance_client(&s->client, 0); }
+
 SharedPicture shared_picture(const Sharing& s) {
   WireFormat format = s.client.options.format;
   return {s.client.pixels.data, static_cast<int>(s.client.settings.width * pixel_bytes(format)),
@@ -179,9 +188,16 @@ void write_share_lines(const Sharing& s, HudText* text) {
       add_hud_line(text, "%.1f ms  all of it by servers", f.measured_ns * 1e-6);
     else
       add_hud_line(text, "%.1f ms  device alone so far", f.measured_ns * 1e-6);
-    add_hud_line(text, "device %u rows  %.1f kB in  %.1f kB out", f.device_rows, static_cast<double>(f.bytes_in) * 1e-3,
-                 static_cast<double>(f.bytes_out) * 1e-3);
+    const char* device = c.options.pace.device ? c.options.pace.device : "device";
+    add_hud_line(text, "%s %u rows  %.1f kB in  %.1f kB out", device, f.device_rows,
+                 static_cast<double>(f.bytes_in) * 1e-3, static_cast<double>(f.bytes_out) * 1e-3);
   }
+  write_server_lines(s, text);
+}
+
+void write_server_lines(const Sharing& s, HudText* text) {
+  const Client& c = s.client;
+  const FrameShare& f = s.last;
   for (std::uint32_t i = 0; i < c.server_count; ++i) {
     const RemoteServer& server = c.servers[i];
     if (server.phase == ServerPhase::ready && f.row_end[i] > 0)

@@ -62,6 +62,11 @@ bool advance_shared(Sharing* sharing, Renderer* renderer, std::uint64_t deadline
 
 // Whether a device that leaves all to the servers has had none for a while.
 bool shares_nothing(const Sharing& sharing);
+// Whether servers take part in frames, or could from the next on. With none in reach a picture that is refined shows
+// sooner than one that is complete; a device that leaves all to the servers has no choice.
+bool has_servers(const Sharing& sharing);
+// While no frame that is shared is under way: connections and overtures go on. Does not wait.
+void tend_servers(Sharing* sharing);
 
 // The merged picture: rows without padding, the formats above. Its rows that changed since the last call.
 struct SharedPicture {
@@ -73,8 +78,10 @@ SharedPicture shared_picture(const Sharing& sharing);
 bool take_shared_rows(Sharing* sharing, std::uint32_t* row_begin, std::uint32_t* row_end);
 std::uint32_t shared_rows_done(const Sharing& sharing);
 
-// Who rendered what in the last complete frame, for people: rows, times, bytes, gain. No memory is taken.
+// Who rendered what in the last complete frame, for people: rows, times, bytes, gain. Adds lines; no memory is taken.
 void write_share_lines(const Sharing& sharing, HudText* text);
+// Of those lines the ones about servers.
+void write_server_lines(const Sharing& sharing, HudText* text);
 
 struct ShareTotals {
   std::uint64_t frames = 0, device_rows = 0, server_rows = 0, bytes_in = 0, bytes_out = 0;

@@ -85,7 +85,7 @@ CameraInput read_input(const Viewer& v) {
 }
 
 void pack_page(const Viewer& v, const Renderer& r, int row_begin, int row_end, const platform::Page& page) {
-  if (!v.sharing) {
+  if (!v.picture_shared) {
     pack_rows(r.image.data, v.width, v.height, row_begin, row_end, r.exposure, v.format, v.rotation, v.options.dither,
               page.pixels, page.line_bytes);
     return;
@@ -123,7 +123,7 @@ Status save_screenshot(Viewer* v, Renderer* r) {
                   ++v->screenshot_count);
   } while (platform::file_stamp(path) != 0 && v->screenshot_count < 9999);
   PictureOptions picture;
-  if (v->sharing) {
+  if (v->picture_shared) {
     SharedPicture shared = shared_picture(*v->sharing);
     picture.packed = shared.pixels, picture.packed_line_bytes = shared.line_bytes;
     picture.packed_format = shared.format;
@@ -165,29 +165,6 @@ Status step_scene(Viewer* v, Renderer* r, Loop* loop) {
   return success();
 }
 
-// The same for a frame that servers share: it shows as it comes, from both ends.
-Status step_shared(Viewer* v, Renderer* r, Loop* loop) {
-  if (loop->finished && (loop->moved || loop->passed)) {
-    RETURN_IF_ERROR(begin_shared(v->sharing, r, loop->seconds));
-    loop->moved = loop->passed = loop->finished = false;
-  }
-  if (loop->finished && v->hud == v->hud_shown) {
-    v->backend->sleep_ns(kIdleNs);
-    return success();
-  }
-  if (!loop->finished && advance_shared(v->sharing, r, clock_ns() + kSliceNs, nullptr)) {
-    loop->finished = true;
-    ++v->frames_finished;
-    if (v->options.frame_count > 0) loop->passed = true;
-  }
-  loop->hud.line_count = 0;
-  write_share_lines(*v->sharing, &loop->hud);
-  std::uint32_t begin = 0, end = 0;
-  take_shared_rows(v->sharing, &begin, &end);
-  show_rows(v, *r, loop->hud, begin, end);
-  return success();
-}
-
 // Begins the next picture once the present one can be seen, traces a slice of it, shows it.
 Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
   // A moving camera is followed as soon as something can be seen; time waits until the picture is finished, and so does
@@ -210,10 +187,48 @@ Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
     if (v->options.frame_count > 0) loop->passed = true;  // as many frames as were asked for, even of a still
   }
   write_hud(*r, loop->progressive, loop->control.mode, &loop->hud);
+  if (v->sharing) write_server_lines(*v->sharing, &loop->hud);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);
   show_rows(v, *r, loop->hud, begin, end);
   return success();
+}
+
+// Traces a slice of a frame that servers share, and shows what has come of it from both ends.
+Status step_shared(Viewer* v, Renderer* r, Loop* loop) {
+  if (loop->finished && (loop->moved || loop->passed)) {
+    RETURN_IF_ERROR(begin_shared(v->sharing, r, loop->seconds));
+    loop->moved = loop->passed = loop->finished = false;
+  }
+  if (loop->finished && v->hud == v->hud_shown) {
+    v->backend->sleep_ns(kIdleNs);
+    return success();
+  }
+  if (!loop->finished && advance_shared(v->sharing, r, clock_ns() + kSliceNs, nullptr)) {
+    loop->finished = true;
+    ++v->frames_finished;
+    if (v->options.frame_count > 0) loop->passed = true;
+  }
+  loop->hud.line_count = 0;
+  write_share_lines(*v->sharing, &loop->hud);
+  std::uint32_t begin = 0, end = 0;
+  take_shared_rows(v->sharing, &begin, &end);
+  show_rows(v, *r, loop->hud, begin, end);
+  return success();
+}
+
+// Who makes the next picture: with servers in reach it is complete soon, without it is refined. A camera that moves is
+// not followed within a frame that servers share, unless they are gone.
+Status step_with_servers(Viewer* v, Renderer* r, Loop* loop) {
+  if (!v->picture_shared || loop->finished) tend_servers(v->sharing);
+  bool any = has_servers(*v->sharing);
+  bool follow = loop->moved && v->options.frame_count == 0 && (v->picture_shared || loop->progressive.shown_coarse);
+  bool due = follow || (loop->finished && (loop->moved || loop->passed));
+  if (due && v->picture_shared != any) {
+    v->picture_shared = any;
+    loop->finished = true;  // what was under way is given up
+  }
+  return v->picture_shared ? step_shared(v, r, loop) : step_picture(v, r, loop);
 }
 
 }  // namespace
@@ -290,6 +305,7 @@ Status run_viewer(Viewer* v, Renderer* r, bool* again) {
   loop.last_ns = loop.last_check_ns = v->backend->now_ns();
   loop.stamp = platform::file_stamp(v->scene_path.c_str());
   loop.finished = true;  // nothing under way
+  v->picture_shared = false;
   *again = v->reload = false;
   Status status;
   while (status.ok) {
@@ -313,7 +329,7 @@ Status run_viewer(Viewer* v, Renderer* r, bool* again) {
       if (!saved.ok) std::fprintf(stderr, "pocketray: %s\n", saved.message);
     }
     status = step_scene(v, r, &loop);
-    if (status.ok) status = v->sharing ? step_shared(v, r, &loop) : step_picture(v, r, &loop);
+    if (status.ok) status = v->sharing ? step_with_servers(v, r, &loop) : step_picture(v, r, &loop);
   }
   arena_release(&r->frame_arena, mark);
   return status;

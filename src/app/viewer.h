@@ -28,7 +28,8 @@ struct Viewer {
   int width = 0, height = 0;
   Rotation rotation = Rotation::none;
   PixelFormat format;
-  Sharing* sharing = nullptr;  // null: the device renders alone
+  Sharing* sharing = nullptr;   // null: the device renders alone
+  bool picture_shared = false;  // the picture under way, or shown: by servers, too
   void* page_memory = nullptr;
   char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
   bool held[platform::kButtonCount] = {};

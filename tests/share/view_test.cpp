@@ -1,0 +1,66 @@
+// The viewer with servers in reach and without.
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "app/options.h"
+#include "app/viewer.h"
+#include "platform/net/tcp.h"
+#include "support/scripted_client.h"
+
+using namespace pocketray;
+
+namespace {
+
+// Views finished frames of a scene that moves, on no screen.
+ShareTotals view(const std::string& server, std::uint32_t frame_count, Viewer* viewer) {
+  CommonOptions common;
+  common.scene = "seesaw", common.size = "32x24", common.threads = 1;
+  SharingOptions sharing;
+  sharing.servers = {server};
+  ViewOptions options;
+  options.backend = "null", options.rotation = 0, options.frame_count = frame_count;
+  REQUIRE(open_viewer(options, "seesaw", 32, 24, viewer).ok);
+  REQUIRE(open_sharing(sharing, nullptr, &viewer->sharing).ok);
+  OpenScene opened;
+  auto output_bytes = [&](const Settings& s) { return viewer_bytes(s) + sharing_bytes(viewer->sharing, s); };
+  REQUIRE(open_shared_scene(viewer->sharing, common, output_bytes, &opened).ok);
+  REQUIRE(start_sharing(viewer->sharing, &opened.renderer, false, false).ok);
+  bool again;
+  REQUIRE(run_viewer(viewer, &opened.renderer, &again).ok);
+  ShareTotals totals = share_totals(*viewer->sharing);
+  close_sharing(viewer->sharing);
+  close_viewer(viewer);
+  return totals;
+}
+
+}  // namespace
+
+// Goal: with no server in reach pictures are refined as without sharing, and one that comes into reach takes its share
+// of them from then on. Method: a port at which nobody listens; a server on a thread of its own, and as many frames as
+// its overture takes.
+TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
+  ServerRig rig(ServerOptions(), platform::NullLinkSettings(), platform::kTcpLink);
+  std::string address = server_address(*rig.server);
+  std::atomic<bool> stop{false};
+  std::thread serving([&] {
+    while (!stop) step_server(rig.server, kMs);
+  });
+  Viewer with;
+  ShareTotals shared = view(address, 600, &with);
+  stop = true;
+  serving.join();
+  CHECK(with.frames_finished == 600);
+  CHECK(with.picture_shared);
+  CHECK(shared.frames > 0);
+  CHECK(shared.frames < 600);  // the first ones were the device's own
+  CHECK(shared.server_rows > 0);
+
+  rig.close();
+  Viewer without;
+  ShareTotals alone = view(address, 20, &without);
+  CHECK(without.frames_finished == 20);
+  CHECK_FALSE(without.picture_shared);
+  CHECK(alone.frames == 0);
+}
