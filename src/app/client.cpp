@@ -19,7 +19,7 @@ constexpr double kLooksWatched = 16;  // in a frame that is watched. It costs th
 constexpr std::uint64_t kWatchedFirst = 4, kWatchedEvery = 16;  // so only the first of these and each of those is
 
 CodecShape codec_shape(const Settings& settings, WireFormat format) {
-  return {settings.width, settings.height, std::min(kChunkRows, settings.height), format};
+  return {settings.width, settings.height, std::min(kChunkRowsMax, settings.height), format};
 }
 
 std::size_t in_bytes(const CodecShape& shape) {
@@ -135,7 +135,7 @@ Status make_client(const ClientOptions& options, const Settings& settings, const
     s->messages = make_message_stream(in_bytes(shape), kOutBytes, arena);
     s->timer = platform::link_timer(client_now_ns(*c), 0);
     c->model.servers[i].cost_per_megabyte = options.cost_per_megabyte;
-    c->model.servers[i].chunk_rows = kChunkRows;
+    c->model.servers[i].chunk_rows = kChunkRowsMin;
     RETURN_IF_ERROR(make_row_decoder(shape, arena, &s->decoder));
   }
   return success();

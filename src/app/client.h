@@ -12,7 +12,9 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kChunkRows = kTileRows;  // rows that a server sends at once
+// Rows that a server sends at once: at the ends of a frame and at most between; and everywhere where chunks do not grow.
+// Larger ones take fewer headers and compress better, smaller ones keep nobody waiting; measured by split-report.
+constexpr std::uint32_t kChunkRowsMin = 4, kChunkRowsMax = 32, kChunkRowsEven = 8;
 
 struct ClientOptions {
   WireFormat format = WireFormat::rgb888;
@@ -73,6 +75,7 @@ struct RemoteServer {
   Smoothed row_ns;                // of a device without the scene: that a row took, from the request until it came
   bool unanswered = false;        // since rows were asked for; asking anew gives no more time
   std::uint32_t chunk_count = 0;  // that have come with this connection
+  std::uint8_t chunk_growth = 0;  // 16ths, see FrameRequest; 0: they do not grow
   ServerFrame frame;
 };
 

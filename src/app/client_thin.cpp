@@ -72,10 +72,10 @@ void divide(Client* c, const Run& run) {
 Run rows_to_spare(const Client& c, const RemoteServer& s) {
   Run run = longest_run(c, s.frame.row_begin, s.frame.row_end, 1);
   double silent = static_cast<double>(client_now_ns(c) - std::max(s.frame.asked_ns, s.frame.heard_ns));
-  double chunk_ns = static_cast<double>(s.row_ns.value) * kChunkRows;
+  double chunk_ns = static_cast<double>(s.row_ns.value) * kChunkRowsEven;
   if (silent > std::max(kSilentNsMin, kSilentChunks * chunk_ns)) return run;
   std::uint32_t rows = run.end - run.begin;
-  if (rows < 2 * kChunkRows || !is_known(s.row_ns)) return Run();
+  if (rows < 2 * kChunkRowsEven || !is_known(s.row_ns)) return Run();
   return {run.begin, run.begin + rows / 2};
 }
 

@@ -79,9 +79,9 @@ Status build_session_renderer(Session* s, std::uint32_t thread_count, Workers* w
 
 namespace {
 
-// Chunks as large as asked for, but no larger than the codec makes them and the client takes them.
-std::uint32_t chunk_rows_of(const Session& s) {
-  std::uint32_t rows = s.job.request.chunk_rows;
+// Rows of the largest chunk that was asked for, that the codec makes and that the client takes.
+std::uint32_t largest_chunk_rows(const Session& s) {
+  std::uint32_t rows = s.job.request.chunk_rows_max;
   if (rows > s.shape.chunk_rows_max) rows = s.shape.chunk_rows_max;
   while (rows > 0 && row_chunk_prefix_bytes() + encoded_bytes_max(s.shape, rows) > s.message_bytes_max) --rows;
   return rows;
@@ -115,6 +115,12 @@ void send_chunk(Session* s, std::uint32_t row_begin, std::uint32_t row_end) {
   chunk->bytes = {at + prefix, byte_count};
   send_message(s, message);
   s->row_count += row_count;
+}
+
+// Rows of the chunk that is to be sent next; 0: all are sent.
+std::uint32_t next_chunk_rows(const Session& s) {
+  const FrameJob& job = s.job;
+  return next_chunk_rows(job.request, job.chunk_rows, job.sent_begin - job.request.row_begin);
 }
 
 void trace(Session* s, const Span* spans, std::uint32_t span_count) {
@@ -189,7 +195,7 @@ void send_error(Session* s, WireError code, std::uint32_t frame) {
 bool can_work(const Session& s) {
   if (!has_job(s) || queued_bytes(s) > kAheadBytes) return false;
   std::uint32_t unsent = s.job.sent_begin - s.job.traced_begin;
-  return !s.job.prepared || (s.job.traced_begin > s.job.request.row_begin && unsent < s.job.chunk_rows);
+  return !s.job.prepared || (s.job.traced_begin > s.job.request.row_begin && unsent < next_chunk_rows(s));
 }
 
 Status prepare_job(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
@@ -200,8 +206,10 @@ Status prepare_job(Session* s, std::uint32_t thread_count, Workers* workers, Wir
     if (!codec_shape_valid(s->shape)) return failure("no message can hold a row of it");
     RETURN_IF_ERROR(make_codec(s));
   }
-  job->chunk_rows = chunk_rows_of(*s);
-  if (job->chunk_rows == 0) return failure("the client takes no message that could hold a row");
+  std::uint16_t rows_max = static_cast<std::uint16_t>(largest_chunk_rows(*s));
+  job->request.chunk_rows_max = rows_max;
+  job->request.chunk_rows = std::min(job->request.chunk_rows, rows_max);
+  if (rows_max == 0) return failure("the client takes no message that could hold a row");
   RETURN_IF_ERROR(build_session_renderer(s, thread_count, workers, code));
   *code = WireError::bad_request;
   Renderer* r = &s->renderer;
@@ -224,11 +232,10 @@ Slice trace_slice(Session* s, std::uint64_t slice_ns) {
     pixels_max = pixels < kChunkPixelsMax ? static_cast<std::uint32_t>(pixels) : kChunkPixelsMax;
   }
   if (job.traced_columns > 0 || pixels_max < settings.width) return trace_part(s, pixels_max);
-  // Enough rows for all threads to be busy to the end, in whole chunks.
-  std::uint32_t chunks = (2 * settings.threads + job.chunk_rows - 1) / job.chunk_rows;
-  std::uint32_t whole = job.chunk_rows * (settings.threads > 1 ? chunks : 1);
-  std::uint32_t done = job.request.row_end - job.traced_begin, left = job.traced_begin - job.request.row_begin;
-  std::uint32_t rows = std::min({whole - done % whole, pixels_max / settings.width, left});
+  // The rest of a chunk, but enough rows for all threads to be busy to the end.
+  std::uint32_t rest = next_chunk_rows(*s) - (job.sent_begin - job.traced_begin);
+  std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
+  std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});
   trace(s, s->renderer.spans.data + job.traced_begin - rows, rows);
   return {rows, 0, rows * settings.width};
 }
@@ -245,11 +252,11 @@ void end_slice(Session* s, const Slice& slice, std::uint64_t took_ns, std::uint6
 void send_chunks(Session* s) {
   FrameJob* job = &s->job;
   while (has_job(*s) && job->prepared && queued_bytes(*s) <= kAheadBytes) {
-    std::uint32_t left = job->sent_begin - job->request.row_begin,
-                  rows = left < job->chunk_rows ? left : job->chunk_rows;
+    std::uint32_t rows = next_chunk_rows(*s);
     if (job->sent_begin - job->traced_begin < rows) return;
     send_chunk(s, job->sent_begin - rows, job->sent_begin);
     job->sent_begin -= rows;
+    job->chunk_rows = rows;
     if (job->sent_begin == job->traced_begin) job->wall_ns = job->pixel_count = 0;
     if (job->sent_begin == job->request.row_begin) {
       ++s->frame_count;

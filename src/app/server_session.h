@@ -38,7 +38,8 @@ struct FrameJob {
   FrameRequest request;
   bool is_view_query, measure_exposure;  // only what a request holds that a query has, too, means something
   bool prepared;
-  std::uint32_t chunk_rows, traced_begin, traced_columns, sent_begin;
+  std::uint32_t chunk_rows;  // of the last chunk; 0: none has been sent
+  std::uint32_t traced_begin, traced_columns, sent_begin;
   std::uint64_t wall_ns, pixel_count;  // of the rows that are traced and not all sent
 };
 

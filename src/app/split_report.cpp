@@ -38,7 +38,7 @@ struct Experiment {
 
 Status open_whole_encoder(Experiment* e) {
   const Settings& settings = e->setup.device->settings;
-  CodecShape shape = {settings.width, settings.height, std::min(kChunkRows, settings.height), e->setup.format};
+  CodecShape shape = {settings.width, settings.height, std::min(kChunkRowsMax, settings.height), e->setup.format};
   e->whole_memory.resize(row_encoder_need(shape) + kArenaAlignment);
   e->whole_chunk.resize(encoded_bytes_max(shape, shape.chunk_rows_max));
   Arena arena = make_arena("whole frames", e->whole_memory.data(), e->whole_memory.size());
@@ -92,9 +92,9 @@ double whole_bytes(Experiment* e) {
   int level = deflate_level(e->client.servers[0].ns_per_byte);
   std::uint32_t height = e->client.settings.height;
   double sum = 0;
-  for (std::uint32_t row = 0; row < height; row += kChunkRows) {
+  for (std::uint32_t row = 0; row < height; row += kChunkRowsMax) {
     std::uint8_t encoding;
-    std::uint32_t count = std::min(kChunkRows, height - row);
+    std::uint32_t count = std::min(kChunkRowsMax, height - row);
     sum += encode_rows(e->whole, row, count, shared_row(e->client, row), level, e->whole_chunk.data(), &encoding);
   }
   return sum;

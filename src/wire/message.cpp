@@ -169,9 +169,10 @@ void fields(Io& io, FrameRequest* m) {
   io.require(m->exposure >= 0);
   choice(io, &m->dither, true);
   choice(io, &m->format, WireFormat::rgb888);
-  number(io, &m->row_begin), number(io, &m->row_end), number(io, &m->chunk_rows);
+  number(io, &m->row_begin), number(io, &m->row_end);
+  number(io, &m->chunk_rows), number(io, &m->chunk_rows_max), number(io, &m->chunk_growth);
   io.require(m->row_begin < m->row_end && m->row_end <= m->settings.height);
-  io.require(m->chunk_rows >= 1);
+  io.require(m->chunk_rows >= 1 && m->chunk_rows <= m->chunk_rows_max);
   number(io, &m->deflate_level);
   io.require(m->deflate_level <= 9);
 }
@@ -270,7 +271,7 @@ constexpr PayloadSize kPayloadSizes[] = {
     {96, 0},               // scene_entry
     {28, 0},               // scene_fetch
     {24, kPieceBytesMax},  // scene_piece
-    {111, 0},              // frame_request
+    {114, 0},              // frame_request
     {13, kChunkBytesMax},  // row_chunk
     {4, 0},                // cancel
     {6, 0},                // error
@@ -358,6 +359,16 @@ void encode_message(const Message& message, std::uint8_t* bytes) {
 
 std::uint32_t row_chunk_prefix_bytes() {
   return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::row_chunk)].fields;
+}
+
+std::uint32_t next_chunk_rows(const FrameRequest& request, std::uint32_t rows_before, std::uint32_t rows_left) {
+  constexpr std::uint32_t kWhole = 16;
+  std::uint32_t growth = request.chunk_growth;
+  std::uint32_t grown = rows_before * (kWhole + growth) / kWhole, tail = rows_left * growth / (kWhole + growth);
+  std::uint32_t rows = grown < tail ? grown : tail;
+  if (rows > request.chunk_rows_max) rows = request.chunk_rows_max;
+  if (rows < request.chunk_rows) rows = request.chunk_rows;
+  return rows < rows_left ? rows : rows_left;
 }
 
 }  // namespace pocketray

@@ -12,7 +12,7 @@
 
 namespace pocketray {
 
-constexpr std::uint16_t kWireVersion = 1;
+constexpr std::uint16_t kWireVersion = 2;
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, in one message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -84,8 +84,9 @@ struct FrameRequest {
   bool dither = false;
   WireFormat format = WireFormat::rgb565;
   std::uint16_t row_begin = 0, row_end = 0;
-  std::uint16_t chunk_rows = 1;
-  std::uint8_t deflate_level = 1;  // 0 (no compression) to 9
+  std::uint16_t chunk_rows = 1, chunk_rows_max = 1;  // of the first chunk and the last; of those between
+  std::uint8_t chunk_growth = 0;                     // 16ths by which they grow from either end
+  std::uint8_t deflate_level = 1;                    // 0 (no compression) to 9
 };
 
 struct RowChunk {
@@ -184,5 +185,9 @@ void encode_message(const Message& message, std::uint8_t* bytes);
 
 // Bytes before the rows of a row_chunk, header included: where to encode them so that nothing is copied.
 std::uint32_t row_chunk_prefix_bytes();
+
+// Rows of the next chunk of a request: `rows_before` are those of the chunk before, 0 where it is the first, and
+// `rows_left` (≥ 1) those that are still to be sent. A sender may make it smaller.
+std::uint32_t next_chunk_rows(const FrameRequest& request, std::uint32_t rows_before, std::uint32_t rows_left);
 
 }  // namespace pocketray

@@ -12,6 +12,7 @@ constexpr double kNsPerByte = 5000, kLatencyNs = 500'000;
 // A row takes the device 64 ms.
 SplitRigOptions slow_link() {
   SplitRigOptions options;
+  options.height = 240;
   options.device_ns = 1e6;
   options.server_ns = {3500};
   options.server_count = 3;
@@ -33,9 +34,9 @@ TEST_CASE("client_measures_a_slow_link_that_servers_share") {
     CHECK(is_settled(rig.client));
     const CostModel& model = rig.client.model;
     CHECK(static_cast<double>(model.link_ns_per_byte.value) > 0.9 * kNsPerByte);
-    CHECK(static_cast<double>(model.link_ns_per_byte.value) < 1.25 * kNsPerByte);
+    CHECK(static_cast<double>(model.link_ns_per_byte.value) < 1.6 * kNsPerByte);
     for (std::uint32_t s = 0; s < 3; ++s)
-      CHECK(static_cast<double>(model.servers[s].ns_per_byte.value) < 1.25 * kNsPerByte);
+      CHECK(static_cast<double>(model.servers[s].ns_per_byte.value) < 1.6 * kNsPerByte);
   }
   CHECK(rig.client.share.device_rows == 0);
 }

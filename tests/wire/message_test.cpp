@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -127,7 +128,7 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_request, [](Message* m) { m->frame_request.settings.forced_off ^= 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.exposure += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.dither ^= 1; }},
-      {MessageType::frame_request, [](Message* m) { m->frame_request.chunk_rows += 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.chunk_rows -= 1; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1; }},
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
@@ -290,15 +291,42 @@ TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
   CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 1000).state == DecodeState::need_more);
 }
 
+// Goal: chunks of a request cover its rows once, small at both ends and large between, and never more than the growth
+// apart; without growth they are alike. Method: bands, ends, limits and growths.
+TEST_CASE("message_chunks_grow_from_both_ends") {
+  FrameRequest request;
+  for (std::uint32_t band : {1u, 5u, 64u, 240u, 8192u})
+    for (std::uint16_t first : {1, 4, 8})
+      for (std::uint16_t most : {8, 32})
+        for (std::uint8_t growth : {0, 4, 16, 255}) {
+          request.chunk_rows = first, request.chunk_rows_max = most, request.chunk_growth = growth;
+          std::uint32_t before = 0, largest = 0, left = band, last = 0;
+          while (left > 0) {
+            std::uint32_t rows = next_chunk_rows(request, before, left);
+            REQUIRE(rows >= 1);
+            REQUIRE(rows <= left);
+            CHECK(rows <= most);
+            CHECK((rows >= first || rows == left));
+            CHECK((rows <= first || rows * 16 <= before * (16u + growth)));
+            CHECK((rows <= first || rows * (16u + growth) <= left * growth));
+            left -= rows, before = last = rows;
+            largest = std::max(largest, rows);
+          }
+          CHECK(last <= first);
+          if (growth == 0) CHECK(largest <= first);
+          if (growth == 16 && band == 240) CHECK(largest == most);
+        }
+}
+
 // Goal: a hello of another version is understood as far as its version, however long it is.
 TEST_CASE("message_hello_of_another_version_tells_its_version") {
   for (std::size_t extra : {0, 14, 100}) {
-    std::vector<std::uint8_t> bytes = {1, 0, 0, 0, 0, 0, 0, 0, 'P', 'R', 'A', 'Y', 2, 1};
+    std::vector<std::uint8_t> bytes = {1, 0, 0, 0, 0, 0, 0, 0, 'P', 'R', 'A', 'Y', 3, 1};
     bytes.resize(bytes.size() + extra, 0xEE);
     Message message;
     REQUIRE(decode(sealed(bytes), &message).state == DecodeState::message);
-    CHECK(message.hello.version == 0x0102);
-    bytes[12] = 1, bytes[13] = 0;
+    CHECK(message.hello.version == 0x0103);
+    bytes[12] = kWireVersion, bytes[13] = 0;
     CHECK(refused(sealed(bytes)) == (extra != 14));
   }
 }

@@ -47,7 +47,9 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   f->format = static_cast<WireFormat>(next_u32(rng) % 2);
   f->row_begin = static_cast<std::uint16_t>(next_u32(rng) % f->settings.height);
   f->row_end = static_cast<std::uint16_t>(f->row_begin + 1 + next_u32(rng) % (f->settings.height - f->row_begin));
-  f->chunk_rows = static_cast<std::uint16_t>(1 + next_u32(rng) % 64);
+  f->chunk_rows = static_cast<std::uint16_t>(2 + next_u32(rng) % 64);
+  f->chunk_rows_max = static_cast<std::uint16_t>(f->chunk_rows + next_u32(rng) % 64);
+  f->chunk_growth = static_cast<std::uint8_t>(next_u32(rng));
   f->deflate_level = static_cast<std::uint8_t>(next_u32(rng) % 10);
   m.row_chunk.frame = next_u32(rng), m.row_chunk.row_begin = narrow() % 4000;
   m.row_chunk.row_count = static_cast<std::uint16_t>(1 + next_u32(rng) % 100);
