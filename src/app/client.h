@@ -73,6 +73,7 @@ struct RemoteServer {
   double round_trip_ns = 0, ns_per_byte = 0;
   double probe_ns_per_pixel = 0;
   Smoothed row_ns;                // of a device without the scene: that a row took, from the request until it came
+  FrameRequest asked;             // last; frame 0: nothing with this connection
   bool unanswered = false;        // since rows were asked for; asking anew gives no more time
   std::uint32_t chunk_count = 0;  // that have come with this connection
   std::uint8_t chunk_growth = 0;  // 16ths, see FrameRequest; 0: they do not grow

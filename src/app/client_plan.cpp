@@ -40,7 +40,6 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
   while (row_end > row_begin && is_done(row_end - 1)) --row_end;
   if (row_begin >= row_end) return;
   Message message;
-  message.type = MessageType::frame_request;
   message.frame_request = c->request;
   message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);
   message.frame_request.row_end = static_cast<std::uint16_t>(row_end);
@@ -50,6 +49,9 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
   message.frame_request.chunk_rows_max = static_cast<std::uint16_t>(std::min(kChunkRowsMax, c->settings.height));
   message.frame_request.chunk_growth = s->chunk_growth;
   message.frame_request.deflate_level = deflate_level(s->ns_per_byte);
+  bool like_the_last = s->asked.frame > 0 && is_change(message.frame_request, s->asked);
+  message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
+  s->asked = message.frame_request;
   if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
   std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
   s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};

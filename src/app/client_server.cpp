@@ -76,6 +76,7 @@ void greet_server(Client* c, RemoteServer* s) {
   restart_row_decoder(s->decoder);
   s->pings_answered = s->pings_missed = 0, s->ping_id = 0, s->round_trip_ns = 0;
   s->chunk_count = 0, s->chunk_growth = 0, s->unanswered = false;
+  s->asked.frame = 0;
   s->frame = ServerFrame();
   enter(c, s, ServerPhase::greeting);
   Message message;

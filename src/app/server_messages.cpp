@@ -62,6 +62,7 @@ void take_request(Server* server, Session* s, const FrameRequest& request) {
   drop_job(s);
   ++s->job_number;
   s->frame_last = request.frame;
+  s->request = request;
   if (settings.width != s->shape.width || settings.height != s->shape.height || request.format != s->shape.format) {
     s->shape = {settings.width, settings.height, 1, request.format};
     s->encoder = nullptr;  // both ends begin anew
@@ -73,6 +74,14 @@ void take_request(Server* server, Session* s, const FrameRequest& request) {
   begin_job(server, s, scene);
   s->job.request = request;
   s->job.traced_begin = s->job.sent_begin = request.row_end;
+}
+
+void take_frame_change(Server* server, Session* s, const FrameRequest& change) {
+  if (s->request.frame == 0 || change.row_end > s->request.settings.height)
+    return refuse(server, s, WireError::bad_request, change.frame, "it changes what was not asked for");
+  FrameRequest request = s->request;
+  take_change(change, &request);
+  take_request(server, s, request);
 }
 
 void take_view_query(Server* server, Session* s, const ViewQuery& query) {
@@ -128,6 +137,9 @@ bool take_message(Server* server, Session* session, const Message& message) {
       return true;
     case MessageType::frame_request:
       take_request(server, session, message.frame_request);
+      return true;
+    case MessageType::frame_change:
+      take_frame_change(server, session, message.frame_request);
       return true;
     case MessageType::view_query:
       take_view_query(server, session, message.view_query);

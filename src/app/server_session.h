@@ -72,6 +72,7 @@ struct Session {
   float own_exposure = 1;
 
   FrameJob job = {};
+  FrameRequest request;                // the last one, be it met or refused; frame 0: there was none
   std::uint64_t job_number = 0;        // counts jobs, of clients before this one too
   std::uint32_t frame_last = 0;        // number of the last request
   double trace_ns = 0;                 // what a pixel took all threads, of late; 0: unknown

@@ -177,6 +177,19 @@ void fields(Io& io, FrameRequest* m) {
   io.require(m->deflate_level <= 9);
 }
 
+// What changes from frame to frame.
+template <class Io>
+void change_fields(Io& io, FrameRequest* m) {
+  number(io, &m->frame), real(io, &m->seconds, 1e9);
+  fields(io, &m->camera);
+  number(io, &m->row_begin), number(io, &m->row_end);
+  number(io, &m->chunk_rows), number(io, &m->chunk_rows_max), number(io, &m->chunk_growth);
+  io.require(m->row_begin < m->row_end && m->row_end <= kImageSideMax);
+  io.require(m->chunk_rows >= 1 && m->chunk_rows <= m->chunk_rows_max);
+  number(io, &m->deflate_level);
+  io.require(m->deflate_level <= 9);
+}
+
 template <class Io>
 void fields(Io& io, RowChunk* m) {
   number(io, &m->frame), number(io, &m->row_begin), number(io, &m->row_count);
@@ -256,6 +269,8 @@ void fields_of_type(Io& io, Message* m) {
       return fields(io, &m->view_query);
     case MessageType::view_entry:
       return fields(io, &m->view_entry);
+    case MessageType::frame_change:
+      return change_fields(io, &m->frame_request);
   }
 }
 
@@ -279,9 +294,10 @@ constexpr PayloadSize kPayloadSizes[] = {
     {8, kPingBytesMax},    // pong
     {87, 0},               // view_query
     {104, 0},              // view_entry
+    {70, 0},               // frame_change
 };
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
-static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::view_entry) + 1, "one for each type");
+static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::frame_change) + 1, "one for each type");
 
 // A hello of another version ends after magic and version, or goes on as it likes.
 constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
@@ -359,6 +375,25 @@ void encode_message(const Message& message, std::uint8_t* bytes) {
 
 std::uint32_t row_chunk_prefix_bytes() {
   return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::row_chunk)].fields;
+}
+
+void take_change(const FrameRequest& change, FrameRequest* request) {
+  request->frame = change.frame, request->seconds = change.seconds;
+  request->camera = change.camera;
+  request->row_begin = change.row_begin, request->row_end = change.row_end;
+  request->chunk_rows = change.chunk_rows, request->chunk_rows_max = change.chunk_rows_max;
+  request->chunk_growth = change.chunk_growth, request->deflate_level = change.deflate_level;
+}
+
+bool is_change(const FrameRequest& request, const FrameRequest& before) {
+  std::uint8_t bytes[2][kPayloadSizes[static_cast<std::uint32_t>(MessageType::frame_request)].fields];
+  FrameRequest changed[2] = {request, before};
+  take_change(request, &changed[1]);
+  for (int i = 0; i < 2; ++i) {
+    Writer writer = {bytes[i]};
+    fields(writer, &changed[i]);
+  }
+  return std::memcmp(bytes[0], bytes[1], sizeof bytes[0]) == 0;
 }
 
 std::uint32_t next_chunk_rows(const FrameRequest& request, std::uint32_t rows_before, std::uint32_t rows_left) {

@@ -12,7 +12,7 @@
 
 namespace pocketray {
 
-constexpr std::uint16_t kWireVersion = 2;
+constexpr std::uint16_t kWireVersion = 3;
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, in one message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -35,6 +35,7 @@ enum class MessageType : std::uint8_t {
   pong,           // server
   view_query,     // device: how does this scene look from there?
   view_entry,     // server
+  frame_change,   // device: a frame_request like the one before
 };
 
 struct Hello {
@@ -152,7 +153,7 @@ struct Message {
   SceneEntry scene_entry;
   SceneFetch scene_fetch;
   ScenePiece scene_piece;
-  FrameRequest frame_request;
+  FrameRequest frame_request;  // of a frame_change what changes from frame to frame, see take_change()
   RowChunk row_chunk;
   Cancel cancel;
   ErrorReport error;
@@ -185,6 +186,11 @@ void encode_message(const Message& message, std::uint8_t* bytes);
 
 // Bytes before the rows of a row_chunk, header included: where to encode them so that nothing is copied.
 std::uint32_t row_chunk_prefix_bytes();
+
+// What a frame_change says of the request before it: its number, time, camera, rows, chunks and level.
+void take_change(const FrameRequest& change, FrameRequest* request);
+// Whether `request` says of `before` nothing that a frame_change could not.
+bool is_change(const FrameRequest& request, const FrameRequest& before);
 
 // Rows of the next chunk of a request: `rows_before` are those of the chunk before, 0 where it is the first, and
 // `rows_left` (≥ 1) those that are still to be sent. A sender may make it smaller.

@@ -12,8 +12,8 @@ using namespace pocketray;
 namespace {
 
 // Asks for the frame and compares it with the one rendered here.
-void check_frame(ScriptedClient* client, const FrameRequest& request) {
-  client->request(request);
+void check_frame(ScriptedClient* client, const FrameRequest& request, MessageType type = MessageType::frame_request) {
+  client->request(request, type);
   client->wait_for_rows(request.settings.height);
   CHECK(client->picture() == rendered_here(request));
 }
@@ -45,15 +45,19 @@ TEST_CASE("server_frames_equal_local_ones") {
   request.frame = 5, request.camera_stated = true, request.exposure = 0.4f;
   request.camera.eye = {0.3f, 1.2f, 2.5f}, request.camera.target = {0, 1, 0};
   check_frame(&client, request);
-  request.frame = 6, request.format = WireFormat::rgb888, request.dither = false, request.deflate_level = 6;
+  request.frame = 6, request.camera.eye.x = -0.2f;
+  check_frame(&client, request, MessageType::frame_change);
+  request.frame = 7, request.format = WireFormat::rgb888, request.dither = false, request.deflate_level = 6;
   check_frame(&client, request);
-  request.frame = 7, request.camera_stated = false, request.exposure = 0;
+  request.frame = 8, request.camera_stated = false, request.exposure = 0;
   check_frame(&client, request);
-  request = frame_request("statue", 8, 40, 30);
+  request = frame_request("statue", 9, 40, 30);
   request.settings.samples_per_pixel = 4, request.chunk_rows = request.chunk_rows_max = 7, request.deflate_level = 0;
   check_frame(&client, request);
-  CHECK(server_totals(*rig.server).frame_count == 8);
-  CHECK(server_totals(*rig.server).row_count == 7 * 48 + 30);
+  request.frame = 10, request.chunk_growth = 8, request.chunk_rows = 2;
+  check_frame(&client, request, MessageType::frame_change);
+  CHECK(server_totals(*rig.server).frame_count == 10);
+  CHECK(server_totals(*rig.server).row_count == 8 * 48 + 2 * 30);
 }
 
 // Goal: every setting that changes pixels has its effect, and so has the choice of a camera, whichever came before.

@@ -117,6 +117,32 @@ TEST_CASE("server_refuses_requests_that_it_cannot_meet") {
   CHECK(server_client_count(*rig.server) == 1);
 }
 
+// Goal: a change of no request, or to rows that its picture does not have, is refused, and the connection goes on.
+// Method: before the first request, and after one; a change that can be met gives its picture.
+TEST_CASE("server_refuses_changes_of_what_was_not_asked_for") {
+  ServerRig rig;
+  ScriptedClient client(&rig);
+  Message change;
+  change.type = MessageType::frame_change;
+  change.frame_request = frame_request("cube", 1, 16, 12);
+  auto check_refused = [&] {
+    client.send(change);
+    auto error = client.wait_for(MessageType::error);
+    CHECK(error->message.error.code == WireError::bad_request);
+    CHECK(error->message.error.frame == change.frame_request.frame);
+  };
+  check_refused();
+  FrameRequest whole = frame_request("cube", 2, 16, 12);
+  client.request(whole);
+  client.wait_for_rows(12);
+  change.frame_request.frame = 3, change.frame_request.row_end = 13;
+  check_refused();
+  whole.frame = 4, whole.seconds = 0.5;
+  client.request(whole, MessageType::frame_change);
+  client.wait_for_rows(12);
+  CHECK(client.picture() == rendered_here(whole));
+}
+
 // Goal: frame numbers count up; an old one is refused and disturbs nothing, the same one asks for further rows. Method:
 // number 3 while the upper half of frame 5 is rendered, then its lower half.
 TEST_CASE("server_refuses_old_frame_numbers") {

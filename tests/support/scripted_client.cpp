@@ -113,7 +113,7 @@ void ScriptedClient::send_bytes(const std::vector<std::uint8_t>& bytes) {
 void ScriptedClient::send(const Message& message) { send_bytes(bytes_of(message)); }
 void ScriptedClient::send_hello() { send(hello_message()); }
 
-void ScriptedClient::request(const FrameRequest& request) {
+void ScriptedClient::request(const FrameRequest& request, MessageType type) {
   CodecShape shape = {request.settings.width, request.settings.height, 1, request.format};
   if (!decoder || decoder->state.shape.width != shape.width || decoder->state.shape.height != shape.height ||
       decoder->state.shape.format != shape.format) {
@@ -126,7 +126,7 @@ void ScriptedClient::request(const FrameRequest& request) {
   rows_come = 0;
   chunks.clear();
   Message message;
-  message.type = MessageType::frame_request;
+  message.type = type;
   message.frame_request = request;
   send(message);
 }

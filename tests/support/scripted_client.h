@@ -77,7 +77,7 @@ struct ScriptedClient {
   void send_bytes(const std::vector<std::uint8_t>& bytes);
   void send(const Message& message);
   void send_hello();
-  void request(const FrameRequest& request);
+  void request(const FrameRequest& request, MessageType type = MessageType::frame_request);
   // Takes what has come.
   void poll();
   // Lets the server run until a message of the type has come, and takes it out.

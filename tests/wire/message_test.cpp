@@ -129,6 +129,10 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_request, [](Message* m) { m->frame_request.exposure += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.dither ^= 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.chunk_rows -= 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.frame ^= 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.seconds += 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.camera.eye.z += 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.chunk_growth ^= 1; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1; }},
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
@@ -230,13 +234,19 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 89, {2}},     // normals
       {MessageType::frame_request, 8 + 93, {0xFF}},  // effects
       {MessageType::frame_request, 8 + 97, {0xFF}},
-      {MessageType::frame_request, 8 + 98, {0, 0, 0x80, 0xBF}},  // exposure −1
-      {MessageType::frame_request, 8 + 102, {2}},                // dither
-      {MessageType::frame_request, 8 + 103, {2}},                // format
-      {MessageType::frame_request, 8 + 104, {5, 0, 5, 0}},       // no rows
-      {MessageType::frame_request, 8 + 106, {0xFF, 0xFF}},       // rows beyond the picture
-      {MessageType::frame_request, 8 + 108, {0, 0}},             // chunk rows
-      {MessageType::frame_request, 8 + 110, {10}},               // level
+      {MessageType::frame_request, 8 + 98, {0, 0, 0x80, 0xBF}},            // exposure −1
+      {MessageType::frame_request, 8 + 102, {2}},                          // dither
+      {MessageType::frame_request, 8 + 103, {2}},                          // format
+      {MessageType::frame_request, 8 + 104, {5, 0, 5, 0}},                 // no rows
+      {MessageType::frame_request, 8 + 106, {0xFF, 0xFF}},                 // rows beyond the picture
+      {MessageType::frame_request, 8 + 108, {0, 0}},                       // chunk rows
+      {MessageType::frame_request, 8 + 110, {10}},                         // level
+      {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
+      {MessageType::frame_change, 8 + 12, nan},                            // eye.x
+      {MessageType::frame_change, 8 + 60, {5, 0, 5, 0}},                   // no rows
+      {MessageType::frame_change, 8 + 62, {0xFF, 0xFF}},                   // rows beyond any picture
+      {MessageType::frame_change, 8 + 64, {0, 0}},                         // chunk rows
+      {MessageType::frame_change, 8 + 69, {10}},                           // level
       {MessageType::row_chunk, 8 + 6, {0, 0}},
       {MessageType::row_chunk, 8 + 4, {0xFF, 0x1F, 2, 0}},
       {MessageType::error, 8, {0, 0}},
@@ -289,6 +299,44 @@ TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
   CHECK(!refused(header(8, 13 + kChunkBytesMax)));
   CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 999).state == DecodeState::malformed);
   CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 1000).state == DecodeState::need_more);
+}
+
+// Goal: a request that a change can say is known as such, and the change gives it; what a change cannot say is not.
+// Method: random requests that differ in all that a change has, then in one field more.
+TEST_CASE("message_change_gives_the_request") {
+  Rng rng = make_rng(9);
+  using Field = std::function<void(FrameRequest*)>;
+  const Field others[] = {
+      [](FrameRequest* r) { r->scene.low ^= 1; },
+      [](FrameRequest* r) { r->camera_stated ^= 1; },
+      [](FrameRequest* r) { r->camera_index ^= 1; },
+      [](FrameRequest* r) { r->settings.height ^= 1; },
+      [](FrameRequest* r) { r->settings.cut_off ^= 1; },
+      [](FrameRequest* r) { r->exposure += 1; },
+      [](FrameRequest* r) { r->format = WireFormat(1 - static_cast<int>(r->format)); },
+      [](FrameRequest* r) { r->dither ^= 1; },
+  };
+  for (int round = 0; round < 50; ++round) {
+    FrameRequest before = sample_message(MessageType::frame_request, &rng, {}).frame_request;
+    Message change = sample_message(MessageType::frame_change, &rng, {}), read, whole;
+    FrameRequest request = before;
+    take_change(change.frame_request, &request);
+    request.row_begin = 0, request.row_end = 1;
+    CHECK(is_change(request, before));
+    change.frame_request = request;
+    REQUIRE(decode(encoded(change), &read).state == DecodeState::message);
+    whole.type = MessageType::frame_request;
+    whole.frame_request = before;
+    take_change(read.frame_request, &whole.frame_request);
+    Message expected = whole;
+    expected.frame_request = request;
+    CHECK(encoded(whole) == encoded(expected));
+    for (const Field& other : others) {
+      FrameRequest differs = request;
+      other(&differs);
+      CHECK(!is_change(differs, before));
+    }
+  }
 }
 
 // Goal: chunks of a request cover its rows once, small at both ends and large between, and never more than the growth

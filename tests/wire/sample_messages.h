@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-constexpr int kMessageTypeCount = static_cast<int>(MessageType::view_entry);
+constexpr int kMessageTypeCount = static_cast<int>(MessageType::frame_change);
 
 // `tail` is what a message's array shows; it has to outlive the message.
 inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
