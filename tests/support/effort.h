@@ -1,11 +1,13 @@
 // How much a test does: all of it on the machine itself, a share where every instruction is emulated and floats are,
-// too, or where nothing is optimised.
+// too, or where nothing is optimised, and a larger one where every access is checked.
 #pragma once
 
 namespace pocketray {
 
 #if defined(POCKETRAY_EMULATED) || !defined(__OPTIMIZE__)
 constexpr int kEffortDivisor = 40;
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kEffortDivisor = 6;
 #else
 constexpr int kEffortDivisor = 1;
 #endif
