@@ -90,7 +90,9 @@ Status begin_shared_frame(Renderer* r, Client* c, double seconds) {
     RETURN_IF_ERROR(prepare_frame(r, seconds));
     for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
   }
-  begin_client_frame(c, *r, seconds, take_time(c, 0, begin_ns));
+  // What emulates a CPU has taken its time for that already.
+  std::uint64_t prepare_ns = is_paced(r->pace) ? client_now_ns(*c) - begin_ns : take_time(c, 0, begin_ns);
+  begin_client_frame(c, *r, seconds, prepare_ns);
   return success();
 }
 

@@ -225,6 +225,10 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
       render seesaw "${shared[@]}" "${more[@]}" "${sharing[@]}" -o "shared.$ending"
     for n in 0 1 2 3 4 5 6 7; do check "shared_${kind}_$n" cmp -s alone-000$n.$ending shared-000$n.$ending; done
   done
+  # Goal: what an emulated device does before a frame takes the device's time, not the device's time of that.
+  timeout -k 1 120 "${run[@]}" render seesaw --size 16x12 --frames 0:1 --emulate pi-zero --server "$address" \
+    -o paced.ppm >/dev/null
+  check emulated_frames_come test $? -eq 0
   expect render_two_servers 0 'gave [0-9]+' render seesaw "${shared[@]}" --server "$address" --server "$address" -o two.ppm
   check two_servers_give_the_same_picture cmp -s alone-0007.ppm two-0007.ppm
   expect cost_cap 0 'a frame' render seesaw "${shared[@]}" --server "$address" --price 1 --cost-cap 0.001 -o cap.ppm
