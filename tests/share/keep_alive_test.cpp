@@ -13,7 +13,8 @@ using namespace pocketray;
 TEST_CASE("client_keeps_servers_whose_rows_take_long") {
   constexpr double kDearNs = 10e9 / 32, kCheapNs = 1e5;  // per pixel
   const double times[][2] = {{kDearNs, kDearNs}, {kDearNs, kCheapNs}, {kCheapNs, kDearNs}};
-  for (auto [device_ns, server_ns] : times) {
+  for (const double(&time)[2] : times) {
+    double device_ns = time[0], server_ns = time[1];
     SplitRigOptions options;
     options.scene = "cube";
     options.width = 32, options.height = 4;
