@@ -88,9 +88,8 @@ TEST_CASE("reference_furnace_has_its_closed_form") {
   }
 }
 
-// Goal: a square light at height 1 gives the centre below it .752275 L and the corner .1385316 π L (HARDCASES row 37),
-// by both kinds of transport, and the glossy lobe's light is that of the renderer's limit. Method: a white floor seen
-// at a slant; its radiance is E/π.
+// Goal: a square light at height 1 gives the centre below it the form factor .2394565 and the corner .1385316 (HARDCASES
+// row 37), by both kinds of transport. Method: a white floor seen at a slant; its radiance is that times the light's.
 TEST_CASE("reference_square_light_has_its_closed_form") {
   GeneratedScene s;
   Material floor;
