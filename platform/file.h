@@ -22,10 +22,14 @@ void unmap_file(MappedFile* file);
 // system takes memory for it.
 bool list_folder(const char* path, void (*found)(void* context, const char* name), void* context, FileError* error);
 
+// Makes a folder within one that is there. Also true where it is there already.
+bool make_folder(const char* path, FileError* error);
+
 // Changes whenever the file's content was replaced; 0 where there is no such file.
 std::uint64_t file_stamp(const char* path);
 
-// Writes a file so that readers see the old content or the whole new one: into PATH.part first, renamed at the end.
+// Writes a file so that readers see the old content or the whole new one: into PATH.NUMBER.part first, with a number of
+// this process's own, renamed at the end.
 // Standard output ("-"), a device or a pipe is written directly.
 struct FileWriter {
   int descriptor = -1;

@@ -9,9 +9,27 @@
 
 namespace platform {
 
-enum class Button : std::uint8_t { up, down, left, right, a, b, x, y, l, r, start, select, hud, screenshot, reload };
+enum class Button : std::uint8_t {
+  up,
+  down,
+  left,
+  right,
+  a,
+  b,
+  x,
+  y,
+  l,
+  r,
+  start,
+  select,
+  hud,
+  screenshot,
+  reload,
+  finer,
+  faster
+};
 constexpr int kPadButtonCount = 12;  // up … select: what a handheld has
-constexpr int kButtonCount = 15;     // with the keys of a desktop keyboard
+constexpr int kButtonCount = 17;     // with the keys of a desktop keyboard
 
 const char* button_name(Button button);
 

@@ -34,6 +34,8 @@ constexpr KeyButton kMoreKeys[] = {
     {KEY_F5, Button::reload},
     {KEY_F12, Button::screenshot},
     {KEY_SYSRQ, Button::screenshot},
+    {KEY_PAGEUP, Button::finer},
+    {KEY_PAGEDOWN, Button::faster},
 };
 
 constexpr std::uint16_t kAxisCodes[4] = {ABS_X, ABS_Y, ABS_HAT0X, ABS_HAT0Y};

@@ -17,8 +17,10 @@ bool fail(FileError* error, const char* what, int number) {
   return false;
 }
 
-bool part_path(const FileWriter& writer, char* part, size_t size) {
-  return snprintf(part, size, "%s.part", writer.path) < static_cast<int>(size);
+// Programs that write one file at the same time do not meet in its part: the last to finish replaces it.
+constexpr size_t kPartPathBytes = sizeof(FileWriter::path) + 24;
+void part_path(const FileWriter& writer, char* part) {
+  snprintf(part, kPartPathBytes, "%s.%ld.part", writer.path, static_cast<long>(getpid()));
 }
 
 }  // namespace
@@ -68,6 +70,14 @@ bool list_folder(const char* path, void (*found)(void* context, const char* name
   return ok;
 }
 
+bool make_folder(const char* path, FileError* error) {
+  struct stat info;
+  if (mkdir(path, 0777) == 0) return true;
+  int number = errno;
+  if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return true;
+  return fail(error, "cannot be made as a folder", number);
+}
+
 std::uint64_t file_stamp(const char* path) {
   struct stat info;
   if (stat(path, &info) != 0) return 0;
@@ -82,7 +92,7 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
     writer->descriptor = STDOUT_FILENO;
     return true;
   }
-  char part[sizeof writer->path + 8];
+  char part[kPartPathBytes];
   if (strlen(path) >= sizeof writer->path) {
     snprintf(error->text, sizeof error->text, "the path is longer than %zu bytes: use a shorter one",
              sizeof writer->path - 1);
@@ -95,7 +105,7 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
     return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
   }
   strcpy(writer->path, path);
-  part_path(*writer, part, sizeof part);
+  part_path(*writer, part);
   writer->descriptor = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
 }
@@ -121,8 +131,8 @@ bool close_writer(FileWriter* writer, FileError* error) {
       snprintf(error->text, sizeof error->text, "did not take all that was written: is it full, or closed?");
     return !writer->failed;
   }
-  char part[sizeof writer->path + 8];
-  part_path(*writer, part, sizeof part);
+  char part[kPartPathBytes];
+  part_path(*writer, part);
   bool ok = !writer->failed;
   if (close(writer->descriptor) != 0) ok = false;
   writer->descriptor = -1;
@@ -146,8 +156,8 @@ void discard_writer(FileWriter* writer) {
     writer->descriptor = -1;
     return;
   }
-  char part[sizeof writer->path + 8];
-  part_path(*writer, part, sizeof part);
+  char part[kPartPathBytes];
+  part_path(*writer, part);
   close(writer->descriptor);
   unlink(part);
   writer->descriptor = -1;

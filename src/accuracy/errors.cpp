@@ -37,4 +37,14 @@ double reference_error(const std::vector<double>& one, const std::vector<double>
   return 0.5 * picture_errors(one, other).rmse;
 }
 
+double unbiased_rmse(const std::vector<double>& one, const std::vector<double>& other,
+                     const std::vector<double>& test) {
+  CHECK_EQ(one.size(), test.size());
+  CHECK_EQ(other.size(), test.size());
+  CHECK_GT(test.size(), 0u);
+  double products = 0;
+  for (std::size_t i = 0; i < test.size(); ++i) products += (test[i] - one[i]) * (test[i] - other[i]);
+  return products > 0 ? std::sqrt(products / static_cast<double>(test.size())) : 0;
+}
+
 }  // namespace pocketray

@@ -26,4 +26,8 @@ PictureErrors picture_errors(const std::vector<double>& reference, const std::ve
 // difference is that of their mean.
 double reference_error(const std::vector<double>& one, const std::vector<double>& other);
 
+// √ mean of the squared differences to the truth that two noisy references of independent seeds tell of, without what
+// their noise adds: the mean of (test − one)(test − other), not below 0. All of the same length.
+double unbiased_rmse(const std::vector<double>& one, const std::vector<double>& other, const std::vector<double>& test);
+
 }  // namespace pocketray

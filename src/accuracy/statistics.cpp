@@ -68,7 +68,7 @@ Interval log_log_slope(const std::vector<double>& x, const std::vector<double>& 
   return {slope, slope - half, slope + half};
 }
 
-std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {
+std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error, double resolution) {
   CHECK_EQ(cost.size(), error.size());
   std::vector<std::size_t> order(cost.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -78,7 +78,7 @@ std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vecto
   std::vector<bool> front(cost.size());
   double least = kInfinity;
   for (std::size_t i : order) {
-    front[i] = error[i] < least;
+    front[i] = error[i] < least - resolution;
     if (front[i]) least = error[i];
   }
   return front;

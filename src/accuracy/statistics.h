@@ -23,7 +23,9 @@ Interval median_ratio(const std::vector<double>& times, const std::vector<double
 Interval log_log_slope(const std::vector<double>& x, const std::vector<double>& y);
 
 // Which points no other beats in both numbers: true for each that has less cost than all of equal or less error, and
-// less error than all of equal or less cost. Of equal points the first.
-std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
+// less error than all of equal or less cost. Of equal points the first. Errors closer than `resolution` count as equal:
+// going up in cost, a point joins only with an error less by more than that than of all that have joined.
+std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error,
+                               double resolution = 0);
 
 }  // namespace pocketray

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/commands.h"
+#include "app/front_prices.h"
 #include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/options.h"
@@ -96,18 +97,85 @@ int run(const CommonOptions& options, std::uint32_t frame_count, bool prices) {
   return status.ok && interrupted ? kExitInterrupted : report(status);
 }
 
+Json front_json(const CommonOptions& options, const Renderer& r, const OpenFront& front, const Front& measured,
+                std::uint32_t rounds) {
+  Json candidates = Json::array();
+  for (std::uint32_t i = 0; i < measured.count; ++i) {
+    const Candidate& c = measured.candidates[i];
+    char quality[kFrontLineMax];
+    format_quality(c, quality, sizeof quality);
+    candidates.push_back({{"settings", quality}, {"flip", c.flip}, {"ns_per_pixel", c.ns_per_pixel}});
+  }
+  return {{"scene", options.scene},
+          {"width", r.settings.width},
+          {"height", r.settings.height},
+          {"threads", r.settings.threads},
+          {"emulated", r.pace.device ? Json(r.pace.device) : Json()},
+          {"rounds", rounds},
+          {"front", front.path},
+          {"candidates", candidates}};
+}
+
+void print_front(const CommonOptions& options, const Renderer& r, const OpenFront& front, const Front& measured,
+                 std::uint32_t rounds) {
+  std::printf("%s: %u×%u, %u thread%s, %u round%s%s; prices kept in %s\n", options.scene.c_str(), r.settings.width,
+              r.settings.height, r.settings.threads, r.settings.threads == 1 ? "" : "s", rounds, rounds == 1 ? "" : "s",
+              emulation_text(r.pace).c_str(), front.path.empty() ? "no file" : front.path.c_str());
+  for (std::uint32_t i = 0; i < measured.count; ++i) {
+    const Candidate& c = measured.candidates[i];
+    char quality[kFrontLineMax];
+    format_quality(c, quality, sizeof quality);
+    std::printf("  %10.0f ns a pixel %10.1f ms   ꟻLIP %-8s %s\n", static_cast<double>(c.ns_per_pixel),
+                static_cast<double>(c.ns_per_pixel) * pixel_count(r) * 1e-6, error_text(c).c_str(), quality);
+  }
+}
+
+// Measures and keeps the prices of the front that --budget-ms chooses from.
+int run_front(const CommonOptions& options, const std::string& file, std::uint32_t rounds) {
+  OpenScene opened;
+  OpenFront front;
+  Status status = open_scene_with_front(options, {file, true}, front_prices_bytes, &opened, &front);
+  if (!status.ok) return report(status);
+  print_notes(opened);
+  print_notes(front);
+  if (rounds == 0 || rounds > kFrameCountMax)
+    return report(failure("--frames is %u: it must lie in 1 … %u", rounds, kFrameCountMax));
+  FrontPrices prices = make_front_prices(front.front, rounds);
+  seal_memory();
+  status = measure_front(&opened.renderer, front.front, &prices);
+  unseal_memory();
+  if (!status.ok) return report(status);
+  if (prices.round_count == 0) return kExitInterrupted;
+  Front measured = measured_front(front.front, &prices);
+  status = keep_measured(front, measured);
+  if (options.json != "-") print_front(options, opened.renderer, front, measured, prices.round_count);
+  if (status.ok && !options.json.empty())
+    status = write_json(options.json, front_json(options, opened.renderer, front, measured, prices.round_count));
+  return status.ok && interrupted ? kExitInterrupted : report(status);
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App* program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto frames = std::make_shared<std::uint32_t>(9);
   auto no_prices = std::make_shared<bool>(false);
+  auto front = std::make_shared<std::string>();
   CLI::App* command = program->add_subcommand("bench", "measure what a pixel, a scanline, a ray and an effect cost");
   add_scene_options(command, options.get());
   command->add_option("--frames", *frames, "frames to measure, after one to warm up")->capture_default_str();
   command->add_flag("--no-prices", *no_prices, "leave out the price of each effect");
   command->add_option("--json", options->json, "also write it as JSON to FILE, or - for standard output");
-  command->callback([=] { *exit_status = run(*options, *frames, !*no_prices); });
+  CLI::Option* priced = command->add_option(
+      "--front", *front,
+      "instead: what each of the settings takes that --budget-ms chooses from, kept in FILE, or in the cache, for "
+      "render and view");
+  priced->expected(0, 1);
+  for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
+    priced->excludes(command->get_option(chosen));
+  command->callback([=] {
+    *exit_status = priced->count() > 0 ? run_front(*options, *front, *frames) : run(*options, *frames, !*no_prices);
+  });
 }
 
 }  // namespace pocketray

@@ -59,6 +59,17 @@ bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
   return true;
 }
 
+Camera orbited_camera(const CameraControl& control, float degrees) {
+  CameraControl turned = control;
+  reset_camera(&turned);
+  turned.mode = CameraMode::orbit;
+  CameraInput right;
+  right.right = 1;
+  move_camera(&turned, right, degrees / 90);
+  turned.camera.node = kNone;
+  return turned.camera;
+}
+
 void reset_camera(CameraControl* control) { control->camera = control->home; }
 
 }  // namespace pocketray

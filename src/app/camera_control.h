@@ -25,6 +25,8 @@ CameraControl make_camera_control(const Camera& camera, const Box& bounds);
 // Moves for `seconds`; true if anything changed. Orbit: around the target, 90° a second, the pole kept on top. Fly:
 // turns on the spot, moves half the scene's size a second.
 bool move_camera(CameraControl* control, const CameraInput& input, float seconds);
+// The scene's own view, turned around its target by so many degrees; stays where it is whatever moves in the scene.
+Camera orbited_camera(const CameraControl& control, float degrees);
 // Back to the scene's own view.
 void reset_camera(CameraControl* control);
 

@@ -13,7 +13,8 @@ constexpr std::size_t kOutBytes = 1024;     // of requests that wait to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
 constexpr double kWaitShare = 0.04;         // of a frame's time that the overture may wait: less than the 5 % that a
                                             // network may cost
-constexpr double kLateFactor = 1.03;        // of a frame's predicted time, after which nobody waits for rows
+constexpr double kLateFactor = 1.03;        // of a frame's predicted time, after which nobody waits for rows; and of
+                                            // the device's alone, likewise
 constexpr double kLookNs = 20e6;            // between two looks at the link: a frame that a screen shows
 constexpr double kLooksWatched = 16;  // in a frame that is watched. It costs the device's packets some of their speed:
 constexpr std::uint64_t kWatchedFirst = 4, kWatchedEvery = 16;  // so only the first of these and each of those is
@@ -37,10 +38,12 @@ void mark_dirty(Client* c, std::uint32_t begin, std::uint32_t end) {
 // later.
 bool is_watched(const Client& c) { return c.frames_shared < kWatchedFirst || c.frames_shared % kWatchedEvery == 0; }
 
-// Whether the servers' rows are due before the device could render one, or late by less than that takes.
+// Whether the servers' rows are due before the device could render one, or late by less than that takes; and should
+// none of them come, it is still done about when it would be alone.
 bool is_worth_waiting(const Client& c) {
   double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns), due = c.share.predicted_ns;
-  double row = device_pixel_ns(c) * c.settings.width;
+  double row = device_pixel_ns(c) * c.settings.width, rows_left = c.merge.rows.count - c.merge.row_count_done;
+  if (elapsed + row * rows_left > kLateFactor * c.share.local_ns) return false;
   return c.joined && elapsed + row > due && elapsed < std::max(kLateFactor * due, due + row);
 }
 

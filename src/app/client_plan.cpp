@@ -31,37 +31,6 @@ std::uint8_t chunk_growth(const SplitProblem& p, std::uint32_t server, const Spl
   return growth < kGrowthMin ? std::uint8_t(0) : static_cast<std::uint8_t>(growth);
 }
 
-}  // namespace
-
-void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint32_t row_end) {
-  auto is_done = [&](std::uint32_t row) {
-    return c->merge.rows[row].state == RowState::device || c->merge.rows[row].state == RowState::server;
-  };
-  while (row_end > row_begin && is_done(row_end - 1)) --row_end;
-  if (row_begin >= row_end) return;
-  Message message;
-  message.frame_request = c->request;
-  message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);
-  message.frame_request.row_end = static_cast<std::uint16_t>(row_end);
-  std::uint32_t chunk_rows = s->chunk_growth > 0 ? kChunkRowsMin : kChunkRowsEven;
-  c->model.servers[index_of(*c, s)].chunk_rows = chunk_rows;
-  message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, c->settings.height));
-  message.frame_request.chunk_rows_max = static_cast<std::uint16_t>(std::min(kChunkRowsMax, c->settings.height));
-  message.frame_request.chunk_growth = s->chunk_growth;
-  message.frame_request.deflate_level = deflate_level(s->ns_per_byte);
-  bool like_the_last = s->asked.frame > 0 && is_change(message.frame_request, s->asked);
-  message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
-  s->asked = message.frame_request;
-  if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
-  std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
-  s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};
-  if (!s->unanswered) s->timer = platform::link_timer(s->frame.asked_ns, silence_limit_ns(*c, *s));
-  s->unanswered = true;
-  flush_server(c, s);
-}
-
-namespace {
-
 // Fixed share: the device's rows as told, the others among the servers by their speed.
 Split split_by_share(const Client& c, const SplitProblem& problem) {
   Split split;
@@ -117,6 +86,33 @@ void finish_probe(Client* c, RemoteServer* s) {
 
 std::uint8_t deflate_level(double ns_per_byte) {
   return ns_per_byte < kDeflateNsPerByte ? 0 : ns_per_byte < kDeflateMoreNsPerByte ? 1 : 6;
+}
+
+void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint32_t row_end) {
+  auto is_done = [&](std::uint32_t row) {
+    return c->merge.rows[row].state == RowState::device || c->merge.rows[row].state == RowState::server;
+  };
+  while (row_end > row_begin && is_done(row_end - 1)) --row_end;
+  if (row_begin >= row_end) return;
+  Message message;
+  message.frame_request = c->request;
+  message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);
+  message.frame_request.row_end = static_cast<std::uint16_t>(row_end);
+  std::uint32_t chunk_rows = s->chunk_growth > 0 ? kChunkRowsMin : kChunkRowsEven;
+  c->model.servers[index_of(*c, s)].chunk_rows = chunk_rows;
+  message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, c->settings.height));
+  message.frame_request.chunk_rows_max = static_cast<std::uint16_t>(std::min(kChunkRowsMax, c->settings.height));
+  message.frame_request.chunk_growth = s->chunk_growth;
+  message.frame_request.deflate_level = deflate_level(s->ns_per_byte);
+  bool like_the_last = s->asked.frame > 0 && is_change(message.frame_request, s->asked);
+  message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
+  s->asked = message.frame_request;
+  if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
+  std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
+  s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};
+  if (!s->unanswered) s->timer = platform::link_timer(s->frame.asked_ns, silence_limit_ns(*c, *s));
+  s->unanswered = true;
+  flush_server(c, s);
 }
 
 double device_pixel_ns(const Client& c) {

@@ -87,12 +87,8 @@ void greet_server(Client* c, RemoteServer* s) {
 }
 
 void take_hello(Client* c, RemoteServer* s, const Hello& hello) {
-  if (hello.version != kWireVersion) {
-    char reason[120];
-    std::snprintf(reason, sizeof reason, "it speaks version %u of the protocol and this program version %u: update one",
-                  hello.version, kWireVersion);
-    return lose_server(c, s, reason);
-  }
+  Status same_version = check_version(hello);
+  if (!same_version.ok) return lose_server(c, s, same_version.message);
   if (c->settings.width > hello.image_side_max || c->settings.height > hello.image_side_max)
     return lose_server(c, s, "it does not render pictures of that size: use a smaller --size");
   enter(c, s, ServerPhase::asking);

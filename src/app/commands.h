@@ -12,6 +12,9 @@ void add_view_command(CLI::App* program, int* exit_status);
 void add_bake_command(CLI::App* program, int* exit_status);
 void add_plan_command(CLI::App* program, int* exit_status);
 void add_bench_command(CLI::App* program, int* exit_status);
+#ifdef POCKETRAY_HAVE_ACCURACY
+void add_accuracy_command(CLI::App* program, int* exit_status);
+#endif
 #ifdef POCKETRAY_HAVE_NETWORK
 void add_serve_command(CLI::App* program, int* exit_status);
 void add_scenes_command(CLI::App* program, int* exit_status);

@@ -47,12 +47,26 @@ void choose_kernels(Renderer* r) {
   make_filters(&r->frame);
 }
 
+// Whether the lights of the last frame are this one's, too: nothing moves, and nothing that they follow from has
+// changed.
+bool is_lit(const Renderer& r) {
+  const Settings &before = r.lit_settings, &now = r.settings;
+  return r.lit_mask == r.effects.mask && !r.pose.positions.count && !r.pose.lights.count &&
+         before.points_per_area_light == now.points_per_area_light && before.ray_depth == now.ray_depth &&
+         before.texture_filter == now.texture_filter;
+}
+
 void light_scene(Renderer* r) {
-  place_lights(r->pose.lights.count ? Array<const Light>(r->pose.lights) : r->scene.lights, r->light_points, &r->frame);
-  bool spawns = has(r->effects.mask, Effect::mirror) || has(r->effects.mask, Effect::refraction) ||
-                has(r->effects.mask, Effect::alpha_blend);
-  r->frame.radiance_bound = spawns ? radiance_bound(r->frame) : 0;
-  r->frame.left_out_max = r->settings.cut_off ? kHalfLevel / r->exposure : 0;
+  if (!is_lit(*r)) {
+    place_lights(r->pose.lights.count ? Array<const Light>(r->pose.lights) : r->scene.lights, r->light_points,
+                 &r->frame);
+    bool spawns = has(r->effects.mask, Effect::mirror) || has(r->effects.mask, Effect::refraction) ||
+                  has(r->effects.mask, Effect::alpha_blend);
+    r->frame.radiance_bound = spawns ? radiance_bound(r->frame) : 0;
+    r->lit_settings = r->settings;
+    r->lit_mask = r->effects.mask;
+  }
+  r->frame.left_out_max = 2 * kHalfLevel * r->settings.cut_off_levels / r->exposure;
 }
 
 Status aim_camera(Renderer* r) {

@@ -76,9 +76,7 @@ Status greet(Inquiry* q) {
   message.hello.message_bytes_max = q->messages.in.count;
   RETURN_IF_ERROR(send(q, message));
   RETURN_IF_ERROR(await(q, MessageType::hello, &answer));
-  if (answer.hello.version == kWireVersion) return success();
-  return failure("it speaks version %u of the protocol and this program version %u: update one", answer.hello.version,
-                 kWireVersion);
+  return check_version(answer.hello);
 }
 
 // A server's word goes to a terminal: no control characters.

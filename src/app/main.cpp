@@ -18,6 +18,9 @@ int main(int argument_count, char** arguments) {
   add_bake_command(&program, &exit_status);
   add_plan_command(&program, &exit_status);
   add_bench_command(&program, &exit_status);
+#ifdef POCKETRAY_HAVE_ACCURACY
+  add_accuracy_command(&program, &exit_status);
+#endif
 #ifdef POCKETRAY_HAVE_NETWORK
   add_serve_command(&program, &exit_status);
   add_scenes_command(&program, &exit_status);

@@ -96,4 +96,10 @@ bool send_message(MessageStream* s, const Message& message) {
   return true;
 }
 
+Status check_version(const Hello& hello) {
+  if (hello.version == kWireVersion) return success();
+  return failure("it speaks version %u of the protocol and this program version %u: update one", hello.version,
+                 kWireVersion);
+}
+
 }  // namespace pocketray

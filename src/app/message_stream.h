@@ -1,6 +1,7 @@
 // MessageStream: messages over one connection of a link. Memory is the caller's; nothing waits.
 #pragma once
 #include "base/arena.h"
+#include "base/status.h"
 #include "platform/link.h"
 #include "wire/message.h"
 
@@ -38,6 +39,9 @@ DecodeState take_message(MessageStream* stream, Message* message);
 bool has_room(const MessageStream& stream, std::size_t byte_count);
 // Queues a message; false where there is no room for it.
 [[nodiscard]] bool send_message(MessageStream* stream, const Message& message);
+
+// Fails where the peer's hello is of another version of the protocol.
+Status check_version(const Hello& hello);
 
 inline bool has_output(const MessageStream& stream) { return stream.out_end > stream.out_begin; }
 

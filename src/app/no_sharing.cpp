@@ -23,7 +23,7 @@ Status list_shared_scenes(Sharing*, std::size_t, std::vector<OfferedScene>*) { r
 Status start_sharing(Sharing*, Renderer*, bool, bool) { return success(); }
 Status begin_shared(Sharing*, Renderer*, double) { return success(); }
 bool advance_shared(Sharing*, Renderer*, std::uint64_t, const std::atomic<bool>*) { return true; }
-bool shares_nothing(const Sharing&) { return false; }
+bool is_cut_off(const Sharing&) { return false; }
 bool has_servers(const Sharing&) { return false; }
 void tend_servers(Sharing*) {}
 SharedPicture shared_picture(const Sharing&) { return {}; }

@@ -50,7 +50,7 @@ Status parse_settings(const CommonOptions& o, Settings* s) {
   s->samples_per_pixel = o.samples;
   s->ray_depth = o.depth;
   s->points_per_area_light = o.area_lights;
-  s->cut_off = !o.no_cut_off;
+  s->cut_off_levels = o.cut_off;
   unsigned cores = std::thread::hardware_concurrency();
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
   s->threads = choose_thread_count(o.threads, cores);
@@ -214,7 +214,10 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("--exposure", o->exposure, "stops brighter or darker than the scene's own, or auto");
   command->add_option("--texture-filter", o->texture_filter, "scene, nearest or bilinear")->capture_default_str();
   command->add_option("--normals", o->normals, "scene (smooth where it has normals) or flat")->capture_default_str();
-  command->add_flag("--no-cut-off", o->no_cut_off, "trace also the rays that cannot change a displayed level");
+  command
+      ->add_option("--cut-off", o->cut_off,
+                   "displayed levels that the rays left out of a pixel may be worth together; 0: trace every ray")
+      ->capture_default_str();
 }
 
 OpenScene::~OpenScene() {
@@ -239,7 +242,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   SceneStorage storage;
   RETURN_IF_ERROR(hooks.load(o.scene, r, &opened->source, &storage));
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, r));
-  Status planned = plan_renderer(r, storage, hooks.output_bytes(settings));
+  Status planned = hooks.plan(r, storage, hooks.output_bytes(settings));
   if (!planned.ok && r->memory.total_bytes > r->memory.limit_bytes) opened->source.bytes_wanted = r->memory.total_bytes;
   RETURN_IF_ERROR(planned);
   if (!o.camera.empty()) {

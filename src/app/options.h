@@ -16,7 +16,7 @@ struct CommonOptions {
   std::string size, memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene", json,
                             device, emulate, isa, accel = "auto";
   std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
-  bool no_cut_off = false;
+  float cut_off = Settings().cut_off_levels;
 };
 
 // Adds them to a command, each with its help.
@@ -38,6 +38,7 @@ struct OpenHooks {
   std::function<std::size_t(const Settings&)> output_bytes;  // as plan_memory() takes it
   std::function<Status(const std::string& name, Renderer*, SceneSource*, SceneStorage*)> load = load_scene;
   std::function<Status(const SceneSource&, Renderer*)> loaded = {};  // between loading and planning
+  std::function<Status(Renderer*, const SceneStorage&, std::size_t output_bytes)> plan = plan_renderer;
 };
 
 // Reads the options, loads the scene and plans it. Where it fails for want of memory, opened->source.bytes_wanted says

@@ -1,6 +1,8 @@
 // pocketray render: one frame or a sequence, into files.
 #include <cinttypes>
 
+#include "app/budget.h"
+#include "app/camera_control.h"
 #include "app/commands.h"
 #include "app/frame.h"
 #include "app/interrupt.h"
@@ -18,9 +20,11 @@ struct RenderOptions {
   CommonOptions common;
   std::string output = "out.png", frames, aov = "none", raw_format = "rgb565";
   double seconds = 0;
+  float orbit_degrees = 0;
   int rotation = 0;
   bool dither = false, plan = false;
   SharingOptions sharing;
+  BudgetOptions budget;
 };
 
 struct Sequence {
@@ -92,6 +96,9 @@ struct Job {
   Aov aov;
   PictureOptions picture;
   Sharing* sharing = nullptr;
+  Budget* budget = nullptr;
+  std::uint8_t* page = nullptr;  // the frame packed, where there is a budget: that is part of its time
+  CameraControl camera;          // for --orbit
 };
 
 constexpr std::uint64_t kProgressNs = 100'000'000;
@@ -101,7 +108,7 @@ Status render_shared_with_progress(Renderer* r, const Job& job, double seconds, 
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(begin_shared(job.sharing, r, seconds));
   do {
-    if (shares_nothing(*job.sharing))
+    if (is_cut_off(*job.sharing))
       return failure("no server is in reach, and this device has no room for the scene: start one, or raise --memory");
     *complete = advance_shared(job.sharing, r, clock_ns() + kProgressNs, &interrupted);
     show_progress(progress, rows_before + shared_rows_done(*job.sharing));
@@ -133,6 +140,42 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
   return success();
 }
 
+void pack_page(Renderer* r, const Job& job) {
+  const PictureOptions& p = job.picture;
+  std::uint64_t start = clock_ns();
+  pack_rows(r->image.data, static_cast<int>(r->settings.width), static_cast<int>(r->settings.height), 0,
+            static_cast<int>(r->settings.height), r->exposure, p.packed_format, Rotation::none, p.dither, job.page,
+            p.packed_line_bytes);
+  wait_for_pace(&r->pace, 0, start);
+}
+
+// A lone frame is rendered until its settings are settled; one of a sequence once.
+Status render_budgeted(Renderer* r, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
+  constexpr int kSettleFrames = 12;
+  RETURN_IF_ERROR(begin_budget_frame(job.budget, r));
+  for (int i = 0; i < kSettleFrames; ++i) {
+    std::uint32_t chosen = job.budget->governor.current;
+    std::uint64_t start = clock_ns();
+    RETURN_IF_ERROR(render_with_progress(r, job, frame, progress, complete));
+    if (!*complete) break;
+    pack_page(r, job);
+    end_budget_frame(job.budget, clock_ns() - start);
+    if (job.sequence.numbered || i + 1 == kSettleFrames) break;
+    RETURN_IF_ERROR(begin_budget_frame(job.budget, r));
+    if (job.budget->governor.current == chosen) break;
+  }
+  return success();
+}
+
+Status render_one(Renderer* r, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
+  if (job.options.orbit_degrees != 0) {
+    float degrees = static_cast<float>(frame - job.sequence.first) * job.options.orbit_degrees;
+    RETURN_IF_ERROR(set_camera(r, orbited_camera(job.camera, degrees)));
+  }
+  return job.budget ? render_budgeted(r, job, frame, progress, complete)
+                    : render_with_progress(r, job, frame, progress, complete);
+}
+
 Json to_json(const Job& job, const Renderer& r, const std::vector<std::string>& files, double trace_ms) {
   Tracer counts = total_counts(r);
   Json rays = Json::object();
@@ -151,7 +194,8 @@ Json to_json(const Job& job, const Renderer& r, const std::vector<std::string>& 
           {"left_out_radiance_max", counts.left_out_max},
           {"exposure", r.exposure},
           {"memory", memory_json(r.memory)},
-          {"effects", effects_json(r.effects)}};
+          {"effects", effects_json(r.effects)},
+          {"budget", job.budget ? budget_json(*job.budget) : Json()}};
 }
 
 void print_summary(const Job& job, const Renderer& r, std::size_t file_count, const std::string& last,
@@ -205,6 +249,42 @@ Status start_sharing_for(const RenderOptions& o, Renderer* r, Job* job) {
   return success();
 }
 
+// Pictures of a budget are packed as a screen takes them, as part of the frame.
+std::size_t budget_bytes(const Settings& s) {
+  return picture_bytes(s) + arena_need(std::size_t(s.width) * s.height * 4);
+}
+
+Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
+  if (o.orbit_degrees != 0 && o.frames.empty()) return failure("--orbit turns from frame to frame: add --frames 0:359");
+  if (o.orbit_degrees != 0 && !o.sharing.servers.empty())
+    return failure("--orbit is for the device alone: leave it out, or --server; split-report has one of its own");
+  if (o.budget.ms == 0) return success();
+  if (!o.sharing.servers.empty())
+    return failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
+  if (aov != Aov::none) return failure("--budget-ms is for colours: leave it out, or --aov");
+  return success();
+}
+
+// Opens the scene for the device alone, with a budget.
+Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget* budget) {
+  OpenFront front;
+  RETURN_IF_ERROR(open_scene_with_front(o.common, {o.budget.front}, budget_bytes, opened, &front));
+  print_notes(front);
+  Renderer* r = &opened->renderer;
+  start_budget(o.budget, front, *r, job->sequence.last - job->sequence.first + 12, budget);
+  job->budget = budget;
+  PictureOptions* p = &job->picture;
+  bool raw = o.output.rfind(".raw") == o.output.size() - 4;
+  p->packed_format = raw ? p->raw_format : kRgb888;
+  p->dither = raw && o.dither;
+  p->packed_line_bytes = static_cast<int>(r->settings.width) * p->packed_format.bits_per_pixel / 8;
+  job->page =
+      arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(p->packed_line_bytes) * r->settings.height)
+          .data;
+  p->packed = job->page;
+  return success();
+}
+
 Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files, double* trace_ms, bool* stopped) {
   const Sequence& s = job.sequence;
   files->reserve(s.last - s.first + 1);
@@ -218,7 +298,7 @@ Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files
   for (std::uint32_t frame = s.first; frame <= s.last; ++frame, ++written) {
     bool complete;
     float exposure = r->exposure;
-    status = render_with_progress(r, job, frame, &progress, &complete);
+    status = render_one(r, job, frame, &progress, &complete);
     if (!status.ok) break;
     *stopped = !complete;
     if (*stopped) break;
@@ -246,13 +326,19 @@ int run(const RenderOptions& options) {
     status = failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
   job.picture.dither = options.dither;
   if (status.ok) status = check_shareable(options, job.aov);
+  if (status.ok) status = check_budget_and_orbit(options, job.aov);
   const platform::Device* device = nullptr;
   if (status.ok) status = find_device(options.common, &device);
   if (status.ok)
     status = open_sharing(options.sharing, options.common.emulate.empty() ? nullptr : device, &job.sharing);
   std::unique_ptr<Sharing, void (*)(Sharing*)> closing(job.sharing, close_sharing);
   OpenScene opened;
-  if (status.ok) status = open_shared_scene(job.sharing, options.common, picture_bytes, &opened);
+  Budget budget;
+  if (status.ok)
+    status = options.budget.ms > 0 ? open_budgeted(options, &job, &opened, &budget)
+                                   : open_shared_scene(job.sharing, options.common, picture_bytes, &opened);
+  if (status.ok && options.orbit_degrees != 0)
+    job.camera = make_camera_control(opened.renderer.camera, opened.renderer.accel.bounds);
   if (status.ok) status = start_sharing_for(options, &opened.renderer, &job);
   if (!status.ok && interrupted) return kExitInterrupted;
   if (!status.ok) return report(status);
@@ -264,6 +350,8 @@ int run(const RenderOptions& options) {
   if (!files.empty() && options.common.json != "-")
     print_summary(job, opened.renderer, files.size(), files.back(), trace_ms);
   if (!files.empty() && options.common.json != "-" && job.sharing) print_share(*job.sharing);
+  if (!files.empty() && options.common.json != "-" && job.budget) print_budget(budget, !job.sequence.numbered);
+  if (status.ok && job.budget) status = finish_budget(budget);
   if (status.ok && !options.common.json.empty())
     status = write_json(options.common.json, to_json(job, opened.renderer, files, trace_ms));
   if (status.ok && stopped) {
@@ -281,12 +369,15 @@ void add_render_command(CLI::App* program, int* exit_status) {
   CLI::App* command = program->add_subcommand("render", "render a frame or a sequence into files");
   add_scene_options(command, &o->common);
   add_sharing_options(command, &o->sharing);
+  add_budget_options(command, &o->budget);
   command
       ->add_option("-o,--output", o->output,
                    "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")
       ->capture_default_str();
   command->add_option("--frames", o->frames, "a sequence, first:last; files are numbered: out-0000.png …");
   command->add_option("--time", o->seconds, "seconds into the animation, for a single frame")->capture_default_str();
+  command->add_option("--orbit", o->orbit_degrees, "degrees that the camera goes on around its target in a frame")
+      ->capture_default_str();
   command->add_option("--aov", o->aov, "instead of colour: depth, normal, triangle or cost (.pfm keeps the values)")
       ->capture_default_str();
   command->add_option("--rotate", o->rotation, "turn .raw pictures clockwise: 0, 90, 180 or 270")

@@ -99,7 +99,7 @@ Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t outpu
   r->effects = plan_effects(r->scene, r->settings);
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(r->scene, r->settings, r->effects.mask, &point_count));
-  r->light_points.count = point_count;
+  r->light_points.count = r->light_point_count_max = point_count;
   return choose_accel(r, storage, output_bytes);
 }
 
@@ -137,6 +137,30 @@ Status plan_without_scene(Renderer* r, std::size_t output_bytes) {
   Arena rest = r->scene_arena;
   r->scene_arena.capacity = 0;
   r->frame_arena = take_front(&rest, "frame", r->memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+  return success();
+}
+
+Status change_settings(Renderer* r, const Settings& settings) {
+  const Settings& now = r->settings;
+  CHECK_EQ(settings.width, now.width);
+  CHECK_EQ(settings.height, now.height);
+  CHECK_EQ(settings.threads, now.threads);
+  CHECK_EQ(settings.forced_on, now.forced_on);
+  CHECK_EQ(settings.forced_off, now.forced_off);
+  RETURN_IF_ERROR(validate_settings(settings));
+  EffectPlan effects = plan_effects(r->scene, settings);
+  std::uint32_t point_count;
+  RETURN_IF_ERROR(light_point_count(r->scene, settings, effects.mask, &point_count));
+  if (point_count > r->light_point_count_max)
+    return failure(
+        "the lights would take %u points and memory was planned for %u: start with that many, by "
+        "--area-lights or --effects",
+        point_count, r->light_point_count_max);
+  std::size_t memory_bytes = now.memory_bytes;
+  r->settings = settings;
+  r->settings.memory_bytes = memory_bytes;
+  r->effects = effects;
+  r->light_points.count = point_count;
   return success();
 }
 

@@ -24,12 +24,15 @@ struct Renderer {
   Array<std::uint8_t> accel_data;  // writable where geometry moves
   Pose pose;
   Array<LightPoint> light_points;
+  std::uint32_t light_point_count_max = 0;  // planned for
   FrameData frame;
   Array<Span> spans;            // one per scanline
   Array<std::uint64_t> row_ns;  // what each cost in the last frame
   Array<Tracer> tracers;        // one per thread
   Array<Vec3> image;            // width × height, linear
   Camera camera;
+  Settings lit_settings;                 // that the frame's lights were placed for,
+  EffectMask lit_mask = ~EffectMask(0);  // and effects; ~0: they were not
   bool camera_overridden = false;
   std::uint32_t camera_index = 0;
   float exposure = 1;
@@ -53,6 +56,11 @@ Status build_renderer(Renderer* renderer);
 // In place of the second and third step, for a device that shows what others render: has memory for the output alone
 // and renders nothing. Camera, exposure, effects and what else of the scene the caller uses are his to set.
 Status plan_without_scene(Renderer* renderer, std::size_t output_bytes);
+
+// Changes for the coming frames what trades accuracy for time, within the memory that was planned: samples, depth,
+// points per area light, cut-off, texture filter and normals may differ. Fails, and leaves everything as it was, where
+// one is out of range or the lights would take more points than were planned for.
+Status change_settings(Renderer* renderer, const Settings& settings);
 
 // Sets the camera for the coming frames.
 Status set_camera(Renderer* renderer, const Camera& camera);

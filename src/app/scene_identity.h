@@ -1,4 +1,4 @@
-// Which scene it is, wherever it came from: what device and server call it by. Builds with a network alone have it.
+// Which scene it is, wherever it came from: what device and server call it by, and its front's files.
 #pragma once
 #include "app/source.h"
 #include "wire/content_hash.h"

@@ -37,9 +37,9 @@ Status make_codec(Session* s) {
 
 bool same_pixels(const Settings& a, const Settings& b) {
   return a.width == b.width && a.height == b.height && a.samples_per_pixel == b.samples_per_pixel &&
-         a.ray_depth == b.ray_depth && a.points_per_area_light == b.points_per_area_light && a.cut_off == b.cut_off &&
-         a.texture_filter == b.texture_filter && a.normals == b.normals && a.forced_on == b.forced_on &&
-         a.forced_off == b.forced_off;
+         a.ray_depth == b.ray_depth && a.points_per_area_light == b.points_per_area_light &&
+         a.cut_off_levels == b.cut_off_levels && a.texture_filter == b.texture_filter && a.normals == b.normals &&
+         a.forced_on == b.forced_on && a.forced_off == b.forced_off;
 }
 
 bool is_built_for(const Session& s) {
@@ -47,37 +47,6 @@ bool is_built_for(const Session& s) {
   return s.built_scene == s.job.scene && same_pixels(s.renderer.settings, request.settings) &&
          s.renderer.camera_index == request.camera_index;
 }
-
-}  // namespace
-
-Status build_session_renderer(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
-  if (is_built_for(*s)) return success();
-  s->built_scene = nullptr;
-  s->trace_ns = 0;
-  Renderer* r = &s->renderer;
-  *r = Renderer();
-  Settings settings = s->job.request.settings;
-  settings.threads = thread_count;
-  *code = WireError::bad_request;
-  RETURN_IF_ERROR(validate_settings(settings));
-  const Scene& scene = s->job.scene->scene;
-  r->camera_index = s->job.request.camera_index;
-  if (r->camera_index > 0 && r->camera_index >= scene.cameras.count)
-    return failure("there is no camera %u: the scene has %u", r->camera_index, scene.cameras.count);
-  start_renderer(s->block.base + s->block.used, arena_free(s->block), settings, r);
-  r->scene = scene;
-  *code = WireError::too_large;
-  RETURN_IF_ERROR(plan_renderer(r, SceneStorage(), 0));
-  s->own_camera = r->camera;
-  r->workers = workers;
-  *code = WireError::bad_request;
-  RETURN_IF_ERROR(build_renderer(r));
-  s->own_exposure = r->exposure;
-  s->built_scene = s->job.scene;
-  return success();
-}
-
-namespace {
 
 // Rows of the largest chunk that was asked for, that the codec makes and that the client takes.
 std::uint32_t largest_chunk_rows(const Session& s) {
@@ -196,6 +165,33 @@ bool can_work(const Session& s) {
   if (!has_job(s) || queued_bytes(s) > kAheadBytes) return false;
   std::uint32_t unsent = s.job.sent_begin - s.job.traced_begin;
   return !s.job.prepared || (s.job.traced_begin > s.job.request.row_begin && unsent < next_chunk_rows(s));
+}
+
+Status build_session_renderer(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
+  if (is_built_for(*s)) return success();
+  s->built_scene = nullptr;
+  s->trace_ns = 0;
+  Renderer* r = &s->renderer;
+  *r = Renderer();
+  Settings settings = s->job.request.settings;
+  settings.threads = thread_count;
+  *code = WireError::bad_request;
+  RETURN_IF_ERROR(validate_settings(settings));
+  const Scene& scene = s->job.scene->scene;
+  r->camera_index = s->job.request.camera_index;
+  if (r->camera_index > 0 && r->camera_index >= scene.cameras.count)
+    return failure("there is no camera %u: the scene has %u", r->camera_index, scene.cameras.count);
+  start_renderer(s->block.base + s->block.used, arena_free(s->block), settings, r);
+  r->scene = scene;
+  *code = WireError::too_large;
+  RETURN_IF_ERROR(plan_renderer(r, SceneStorage(), 0));
+  s->own_camera = r->camera;
+  r->workers = workers;
+  *code = WireError::bad_request;
+  RETURN_IF_ERROR(build_renderer(r));
+  s->own_exposure = r->exposure;
+  s->built_scene = s->job.scene;
+  return success();
 }
 
 Status prepare_job(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {

@@ -208,7 +208,7 @@ void write_server_lines(const Sharing& s, HudText* text) {
   }
 }
 
-bool shares_nothing(const Sharing& s) { return is_cut_off(s.client); }
+bool is_cut_off(const Sharing& s) { return is_cut_off(s.client); }
 
 ShareTotals share_totals(const Sharing& s) { return s.totals; }
 

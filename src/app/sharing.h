@@ -61,7 +61,7 @@ Status begin_shared(Sharing* sharing, Renderer* renderer, double seconds);
 bool advance_shared(Sharing* sharing, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop);
 
 // Whether a device that leaves all to the servers has had none for a while.
-bool shares_nothing(const Sharing& sharing);
+bool is_cut_off(const Sharing& sharing);
 // Whether servers take part in frames, or could from the next on. With none in reach a picture that is refined shows
 // sooner than one that is complete; a device that leaves all to the servers has no choice.
 bool has_servers(const Sharing& sharing);

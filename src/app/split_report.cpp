@@ -72,12 +72,7 @@ Status next_frame(Experiment* e, bool* complete) {
   std::uint32_t step = e->frame++ % (kSkippedFrames + e->setup.frame_count);
   Renderer* r = e->setup.device;
   if (e->setup.orbit_degrees != 0) {
-    reset_camera(&e->camera);
-    CameraInput right;
-    right.right = 1;
-    move_camera(&e->camera, right, static_cast<float>(step) * e->setup.orbit_degrees / 90);
-    Camera camera = e->camera.camera;
-    camera.node = kNone;
+    Camera camera = orbited_camera(e->camera, static_cast<float>(step) * e->setup.orbit_degrees);
     RETURN_IF_ERROR(set_camera(r, camera));
   }
   double seconds = step / static_cast<double>(r->scene.info.frames_per_second);

@@ -1,4 +1,5 @@
 // pocketray split-report: what sharing a scene's frames gains a device, over the share, and beside the paper's table.
+#include "accuracy/gnuplot.h"
 #include "app/commands.h"
 #include "app/frame.h"
 #include "app/interrupt.h"
@@ -150,8 +151,8 @@ Status write_files(const ReportOptions& o, const SplitSetup& setup, const SplitF
   if (!drawn)
     std::fprintf(stderr,
                  "pocketray: split.png is left out: gnuplot is not installed or failed; install it (Debian: gnuplot), "
-                 "then: gnuplot '%s/split.gnuplot'\n",
-                 o.folder.c_str());
+                 "then: cd -- %s && gnuplot split.gnuplot\n",
+                 shell_word(o.folder).c_str());
   return success();
 }
 

@@ -1,8 +1,9 @@
 #include "app/split_report_plot.h"
 
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
+
+#include "accuracy/gnuplot.h"
 
 namespace pocketray {
 namespace {
@@ -21,15 +22,6 @@ Status finish_file(const std::string& path, File* file) {
   failed = std::fclose(file->release()) != 0 || failed;
   return failed ? failure("%.300s cannot be written: is there space left?", path.c_str()) : success();
 }
-
-// As a word of the shell, and as a string of gnuplot.
-std::string quoted(const std::string& text, const char* quote_within) {
-  std::string result = "'";
-  for (char c : text) result += c == '\'' ? quote_within : std::string(1, c);
-  return result + "'";
-}
-std::string shell_word(const std::string& text) { return quoted(text, "'\\''"); }
-std::string gnuplot_string(const std::string& text) { return quoted(text, "''"); }
 
 void write_point(std::FILE* f, const char* series, const SplitPoint& p, std::uint32_t pixel_count) {
   if (p.ns_per_pixel <= 0) return;
@@ -106,8 +98,8 @@ Status draw_split(const std::string& folder, const SplitPlot& plot, const SplitF
   RETURN_IF_ERROR(open_file(path, &file));
   std::FILE* f = file.get();
   bool paper = !figures.paper.empty();
-  std::fprintf(f, "set terminal pngcairo size %d,620 font 'sans,11' noenhanced\nset output %s\n", paper ? 1500 : 860,
-               gnuplot_string(folder + "/split.png").c_str());
+  std::fprintf(f, "set terminal pngcairo size %d,620 font 'sans,11' noenhanced\nset output 'split.png'\n",
+               paper ? 1500 : 860);
   write_data(f, figures, plot.pixel_count);
   std::fprintf(f, "set multiplot layout 1,%d title %s font 'sans,13'\n", paper ? 2 : 1,
                gnuplot_string(plot.title).c_str());
@@ -115,7 +107,7 @@ Status draw_split(const std::string& folder, const SplitPlot& plot, const SplitF
   if (paper) write_paper_plot(f);
   std::fprintf(f, "unset multiplot\n");
   RETURN_IF_ERROR(finish_file(path, &file));
-  *drawn = std::system(("gnuplot " + shell_word(path) + " 2>/dev/null").c_str()) == 0;
+  *drawn = run_gnuplot(folder, {"split.gnuplot"});
   return success();
 }
 

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <thread>
 
+#include "app/budget.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/options.h"
@@ -17,13 +18,15 @@ namespace {
 struct Loading {
   std::unique_ptr<OpenScene> opened = std::make_unique<OpenScene>();
   Status status;
+  OpenFront front;
   std::atomic<bool> done{false};
   std::thread thread;
 
-  Loading(const CommonOptions& options, Viewer* viewer)
-      : thread([this, &options, viewer] {
+  Loading(const CommonOptions& options, const BudgetOptions& budget, Viewer* viewer)
+      : thread([this, &options, &budget, viewer] {
           Sharing* sharing = viewer->sharing;
-          status = open_shared_scene(sharing, options, viewer_bytes, opened.get());
+          status = budget.ms > 0 ? open_scene_with_front(options, {budget.front}, viewer_bytes, opened.get(), &front)
+                                 : open_shared_scene(sharing, options, viewer_bytes, opened.get());
           if (status.ok && sharing)
             status =
                 start_sharing(sharing, &opened->renderer, viewer->format.bits_per_pixel == 16, viewer->options.dither);
@@ -40,7 +43,7 @@ bool wait_for(Viewer* viewer, Loading* loading) {
   return true;
 }
 
-int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing) {
+int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing, const BudgetOptions& budgeted) {
   Viewer viewer;
   Settings size;
   const platform::Device* device;
@@ -48,6 +51,9 @@ int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing) {
   if (view.rotation < 0) view.rotation = device ? device->rotation : 0;
   if (device) view.keys = device->keys;
   if (!common.emulate.empty()) view.emulated = device;
+  if (status.ok && budgeted.ms > 0 && !sharing.servers.empty())
+    status =
+        failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
   if (status.ok) status = picture_size(common, &size.width, &size.height);
   if (status.ok)
     status =
@@ -57,7 +63,7 @@ int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing) {
   if (!status.ok) return report(status);
   for (bool again = true; again && status.ok;) {
     again = false;
-    Loading loading(common, &viewer);
+    Loading loading(common, budgeted, &viewer);
     if (!wait_for(&viewer, &loading)) {
       stop_opening(viewer.sharing);
       break;
@@ -65,9 +71,16 @@ int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing) {
     status = loading.status;
     if (!status.ok) break;
     print_notes(*loading.opened);
+    print_notes(loading.front);
+    Budget budget;
+    if (budgeted.ms > 0) start_budget(budgeted, loading.front, loading.opened->renderer, 4096, &budget);
+    viewer.budget = budgeted.ms > 0 ? &budget : nullptr;
     seal_memory();
     status = run_viewer(&viewer, &loading.opened->renderer, &again);
     unseal_memory();
+    if (viewer.budget) print_budget(budget, false);
+    if (status.ok && viewer.budget) status = finish_budget(budget);
+    viewer.budget = nullptr;
     if (viewer.dropped[0]) {
       common.scene = viewer.scene_path = viewer.dropped;
       viewer.dropped[0] = 0;
@@ -88,6 +101,8 @@ void add_view_command(CLI::App* program, int* exit_status) {
   auto sharing = std::make_shared<SharingOptions>();
   add_scene_options(command, common.get());
   add_sharing_options(command, sharing.get());
+  auto budget = std::make_shared<BudgetOptions>();
+  add_budget_options(command, budget.get());
   command
       ->add_option("--screen", view->backend,
                    "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")
@@ -102,9 +117,10 @@ void add_view_command(CLI::App* program, int* exit_status) {
   command->add_option("--screenshots", view->screenshot_folder, "where screenshots go")->capture_default_str();
   command->footer(
       "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and fly,\n"
-      "start goes back to the scene's camera, X pauses, Y or F1 shows the display, F2 saves a screenshot, F5 reloads, "
-      "Esc leaves.");
-  command->callback([=] { *exit_status = run(*common, *view, *sharing); });
+      "start goes back to the scene's camera, page up and down along the front of --budget-ms (start: as the budget "
+      "has it),\n"
+      "X pauses, Y or F1 shows the display, F12 saves a screenshot, F5 reloads, Esc leaves.");
+  command->callback([=] { *exit_status = run(*common, *view, *sharing, *budget); });
 }
 
 }  // namespace pocketray

@@ -66,7 +66,9 @@ void take_events(Viewer* v) {
     if (event.button == Button::x) v->paused = !v->paused;
     if (event.button == Button::screenshot) v->screenshot = true;
     if (event.button == Button::reload) v->reload = true;
-    if (event.button == Button::start) v->home = true;
+    if (event.button == Button::start) v->home = v->front_home = true;
+    if (event.button == Button::finer) ++v->front_steps;
+    if (event.button == Button::faster) --v->front_steps;
     if (event.button == Button::select) v->change_mode = true;
   }
   if (interrupted) v->quit = true;
@@ -103,7 +105,9 @@ void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t 
   if (page.age != 1 || quarter_turned(*v)) row_begin = 0, row_end = r.settings.height;
   if (v->hud || v->hud_shown)
     row_begin = 0, row_end = std::max(row_end, std::min<std::uint32_t>(hud_rows(text), r.settings.height));
+  std::uint64_t start = clock_ns();
   pack_page(*v, r, static_cast<int>(row_begin), static_cast<int>(row_end), page);
+  v->pack_ns = clock_ns() - start;
   if (v->hud) draw_hud_text(text, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);
   v->hud_shown = v->hud;
   bool whole = quarter_turned(*v) || page.age != 1;
@@ -141,6 +145,9 @@ struct Loop {
   double seconds = 0;                 // of the animation
   bool moved = false, passed = true;  // the camera has moved, time has passed: another picture is due
   bool finished = false;
+  // With a budget, since camera or time moved: frames, and of these the last ones in a row with one choice of settings.
+  std::uint32_t still_frames = 0, steady_frames = 0;
+  bool settled = true;
   std::uint64_t last_ns = 0, last_check_ns = 0, stamp = 0;
 };
 
@@ -194,6 +201,50 @@ Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
   return success();
 }
 
+// A still is rendered again until its settings are settled: so many frames with the same ones, longer than the governor
+// waits before it tries what may fit. Where noise keeps two candidates in turn, there is an end to it.
+constexpr std::uint32_t kSteadyFrames = 16, kStillFramesMax = 100;
+
+// Renders whole frames within a budget; each is shown when it is complete.
+Status step_budgeted(Viewer* v, Renderer* r, Loop* loop) {
+  Budget* budget = v->budget;
+  if (v->front_home || v->front_steps != 0) {
+    move_along_front(budget, v->front_home ? 0 : v->front_steps);
+    v->front_home = false;
+    v->front_steps = 0;
+    loop->passed = true;
+  }
+  if (loop->moved || loop->passed) loop->still_frames = loop->steady_frames = 0;
+  bool due = loop->moved || loop->passed || !loop->settled;
+  if (!due && v->hud == v->hud_shown) {
+    v->backend->sleep_ns(kIdleNs);
+    return success();
+  }
+  std::uint32_t before = budget->last;
+  std::uint64_t start = clock_ns(), traced = start;
+  if (due) {
+    RETURN_IF_ERROR(begin_budget_frame(budget, r));
+    RETURN_IF_ERROR(render_frame(r, loop->seconds, Aov::none, &interrupted));
+    traced = clock_ns();
+    loop->progressive = {};
+    loop->progressive.step = 0;
+    loop->progressive.pixels_traced = std::uint64_t(r->settings.width) * r->settings.height;
+    loop->progressive.trace_ns = traced - start;
+    loop->moved = loop->passed = false;
+  }
+  write_hud(*r, loop->progressive, loop->control.mode, &loop->hud);
+  write_budget_lines(*budget, &loop->hud);
+  show_rows(v, *r, loop->hud, 0, r->settings.height);
+  if (!due || interrupted) return success();
+  end_budget_frame(budget, traced - start + paced_ns(r->pace, 0, v->pack_ns));
+  ++v->frames_finished;
+  loop->passed = v->options.frame_count > 0;
+  ++loop->still_frames;
+  loop->steady_frames = budget->last == before ? loop->steady_frames + 1 : 0;
+  loop->settled = budget->pinned || loop->steady_frames >= kSteadyFrames || loop->still_frames >= kStillFramesMax;
+  return success();
+}
+
 // Traces a slice of a frame that servers share, and shows what has come of it from both ends.
 Status step_shared(Viewer* v, Renderer* r, Loop* loop) {
   if (loop->finished && (loop->moved || loop->passed)) {
@@ -229,6 +280,11 @@ Status step_with_servers(Viewer* v, Renderer* r, Loop* loop) {
     loop->finished = true;  // what was under way is given up
   }
   return v->picture_shared ? step_shared(v, r, loop) : step_picture(v, r, loop);
+}
+
+Status step_any(Viewer* v, Renderer* r, Loop* loop) {
+  if (v->budget) return step_budgeted(v, r, loop);
+  return v->sharing ? step_with_servers(v, r, loop) : step_picture(v, r, loop);
 }
 
 }  // namespace
@@ -329,7 +385,7 @@ Status run_viewer(Viewer* v, Renderer* r, bool* again) {
       if (!saved.ok) std::fprintf(stderr, "pocketray: %s\n", saved.message);
     }
     status = step_scene(v, r, &loop);
-    if (status.ok) status = v->sharing ? step_with_servers(v, r, &loop) : step_picture(v, r, &loop);
+    if (status.ok) status = step_any(v, r, &loop);
   }
   arena_release(&r->frame_arena, mark);
   return status;

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "app/budget.h"
 #include "app/camera_control.h"
 #include "app/progressive.h"
 #include "app/sharing.h"
@@ -29,11 +30,15 @@ struct Viewer {
   Rotation rotation = Rotation::none;
   PixelFormat format;
   Sharing* sharing = nullptr;   // null: the device renders alone
+  Budget* budget = nullptr;     // null: frames take what they take, and are refined
+  std::uint64_t pack_ns = 0;    // of the last picture shown
   bool picture_shared = false;  // the picture under way, or shown: by servers, too
   void* page_memory = nullptr;
   char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
   bool held[platform::kButtonCount] = {};
   bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // asked for
+  int front_steps = 0;                                                                       // asked for
+  bool front_home = false;                                                                   //   as the budget has it
   bool hud = true, hud_shown = false, paused = false;
   std::uint64_t waiting_since_ns = 0;
   std::uint32_t screenshot_count = 0, frames_finished = 0;

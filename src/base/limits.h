@@ -22,6 +22,7 @@ constexpr std::uint32_t kBrdfCountMax = 16;
 constexpr float kPhongExponentMax = 1e6f;  // HARDCASES row 31
 constexpr float kIorMax = 100;
 constexpr std::uint32_t kSampleCountMax = 16;       // per pixel
+constexpr float kCutOffLevelsMax = 64;              // a quarter of what a display shows
 constexpr std::uint32_t kRayDepthMax = 16;          // reflections and refractions along one path
 constexpr std::uint32_t kMediumDepthMax = 8;        // transparent bodies nested in one another
 constexpr std::uint32_t kTransparentLayerMax = 64;  // alpha or glass surfaces that one ray may pass in a straight line

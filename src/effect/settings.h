@@ -17,7 +17,9 @@ struct Settings {
   std::uint32_t ray_depth = 8;              // reflections and refractions along a path, 0–16
   std::uint32_t points_per_area_light = 4;  // 1–256
   std::uint32_t threads = 1;
-  bool cut_off = true;  // leave out rays that cannot change a displayed level
+  // What the rays left out of a sample may be worth together, in displayed levels; 0: none is left out, 0.5 cannot be
+  // seen.
+  float cut_off_levels = 0.5f;
   TextureFilter texture_filter = TextureFilter::as_scene;
   NormalMode normals = NormalMode::as_scene;
   EffectMask forced_on = 0, forced_off = 0;  // --effects

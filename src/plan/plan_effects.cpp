@@ -165,6 +165,9 @@ Status validate_settings(const Settings& s) {
   RETURN_IF_ERROR(range("--samples", s.samples_per_pixel, 1, kSampleCountMax));
   RETURN_IF_ERROR(range("--depth", s.ray_depth, 0, kRayDepthMax));
   RETURN_IF_ERROR(range("--area-lights", s.points_per_area_light, 1, kPointsPerAreaLightMax));
+  if (!(s.cut_off_levels >= 0 && s.cut_off_levels <= kCutOffLevelsMax))
+    return failure("--cut-off is %g: it must lie in 0 … %g levels", static_cast<double>(s.cut_off_levels),
+                   static_cast<double>(kCutOffLevelsMax));
   return range("--threads", s.threads, 1, kThreadCountMax);
 }
 

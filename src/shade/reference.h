@@ -18,8 +18,8 @@ enum class Transport {
 
 struct ReferenceOptions {
   Transport transport = Transport::physical;
-  std::uint32_t samples_per_pixel = 64;   // a square number parts the pixel into as many cells
-  std::uint32_t depth_max = 0xFFFFFFFFu;  // scatterings along a path
+  std::uint32_t samples_per_pixel = 64;   // best a power of two: see sobol.h
+  std::uint32_t depth_max = 0xFFFFFFFFu;  // where a path scatters so often, it takes the light of the lights and ends
   std::uint64_t seed = 1;
 };
 
@@ -29,15 +29,38 @@ struct ReferenceEmitter {
   double share_end, area;
 };
 
+// Where light comes from by way of mirrors and glass, see reference_guide.h.
+constexpr std::uint32_t kReferenceSpotCountMax = 4;
+struct ReferenceSpot {
+  Vec3d low, high;      // a box on what reflects or bends it
+  std::uint32_t count;  // of the paths that came by it
+};
+struct ReferenceCell {
+  ReferenceSpot spot[kReferenceSpotCountMax];
+  std::uint32_t spot_count, count;
+  std::int32_t at[3];  // cells from the origin
+};
+struct ReferenceSlot {
+  std::uint32_t hash, cell;
+};
+struct ReferenceGuide {
+  double cell_size = 0;
+  Array<ReferenceSlot> table;  // hashed by place; no cell: kNone
+  Array<ReferenceCell> cells;
+};
+constexpr std::uint32_t kGuidePathCount = 1u << 16;
+
 struct Reference {
   ReferenceWorld world;
   Array<ReferenceEmitter> emitters;
+  ReferenceGuide guide;
 };
 
 // Bytes of arena that the reference of such a frame takes.
 std::size_t reference_need(const FrameData& frame);
-// The frame is posed and has its lights; it has to outlive the reference.
-Reference make_reference(const FrameData& frame, Arena* arena);
+// The frame is posed and has its lights; it has to outlive the reference. More paths of the guide lessen the noise of
+// light that comes by way of mirrors and glass.
+Reference make_reference(const FrameData& frame, Arena* arena, std::uint32_t guide_path_count = kGuidePathCount);
 
 // Radiance that arrives along a ray: one sample of it.
 Vec3d sample_radiance(const Reference& reference, const ReferenceOptions& options, const Vec3d& origin,

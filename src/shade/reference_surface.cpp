@@ -26,20 +26,20 @@ double glossy_share(const ReferenceSurface& s) {
 }
 
 // A direction whose cosine with the axis has the density (n + 1)/2π cosⁿ.
-Vec3d around(const Vec3d& axis, double n, Rng* rng) {
-  double cosine = power(1 - next_double(rng), 1 / (n + 1)), phi = 2 * kPi * next_double(rng);
-  double sine = std::sqrt(1 - cosine * cosine);
+Vec3d around(const Vec3d& axis, double n, const Pair& pair) {
+  double cosine = n == 1 ? std::sqrt(1 - pair.u) : power(1 - pair.u, 1 / (n + 1)), phi = 2 * kPi * pair.v;
+  double sine = std::sqrt((1 - cosine) * (1 + cosine));
   Vec3d tangent, bitangent;
   make_basis(axis, &tangent, &bitangent);
-  return normalize(tangent * (sine * det_cos(phi)) + bitangent * (sine * det_sin(phi)) + axis * cosine);
+  return tangent * (sine * det_cos(phi)) + bitangent * (sine * det_sin(phi)) + axis * cosine;
 }
 
 }  // namespace
 
 void make_basis(const Vec3d& n, Vec3d* tangent, Vec3d* bitangent) {
-  Vec3d across = std::fabs(n.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  *tangent = normalize(cross(across, n));
-  *bitangent = cross(n, *tangent);
+  double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  *tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  *bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
 ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction) {
@@ -114,14 +114,15 @@ double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec
   return (1 - share) * cosine / kPi + share * glossy;
 }
 
-bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, Rng* rng, Vec3d* direction) {
+bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choice, const Pair& pair,
+                  Vec3d* direction) {
   double share = glossy_share(s);
   if (is_zero(s.diffuse) && share == 0) return false;
-  if (share > 0 && next_double(rng) < share)
+  if (choice < share)
     *direction = around(normalize(s.normal * (2 * dot(s.normal, to_viewer)) - to_viewer),
-                        static_cast<double>(s.material->exponent), rng);
+                        static_cast<double>(s.material->exponent), pair);
   else
-    *direction = around(s.normal, 1, rng);
+    *direction = around(s.normal, 1, pair);
   return dot(*direction, s.normal) > 0;
 }
 

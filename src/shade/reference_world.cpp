@@ -1,144 +1,133 @@
 #include "shade/reference_world.h"
 
+#include <cstring>
 #include <limits>
 
-#include "base/check.h"
+#include "base/simd.h"
 #include "shade/texture.h"
 
 namespace pocketray {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kUlps = 1 + 8 * std::numeric_limits<double>::epsilon();  // what box distances may err by
-constexpr std::uint32_t kLeafCountMax = 4, kBinCount = 16, kDepthMax = 60, kHalveDepth = 30;
-
-Vec3d lower(const Vec3d& a, const Vec3d& b) {
-  return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
-}
-Vec3d upper(const Vec3d& a, const Vec3d& b) {
-  return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
-}
-
-struct Bounds {
-  Vec3d low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
-  void add(const Bounds& b) { low = lower(low, b.low), high = upper(high, b.high); }
-  double half_area() const {
-    Vec3d d = high - low;
-    return d.x >= 0 ? d.x * d.y + d.y * d.z + d.z * d.x : 0;
-  }
-};
-
-Vec3d corner(const FrameData& frame, std::uint32_t triangle, std::uint32_t i) {
-  return to_double(frame.positions[frame.scene->triangles[triangle].vertex(i)]);
-}
-Bounds triangle_bounds(const FrameData& frame, std::uint32_t triangle) {
-  Bounds b;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    Vec3d p = corner(frame, triangle, i);
-    b.add({p, p});
-  }
-  return b;
-}
-double middle(const Bounds& b, int axis) { return 0.5 * (b.low[axis] + b.high[axis]); }
-
-// Where to part `count` triangles by the least sum of area × count over kBinCount slices of their middles
-// [Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies", sec. 3]; `count` / 2 where that parts
-// none.
-std::uint32_t part(const FrameData& frame, std::uint32_t* ids, std::uint32_t count, bool halve) {
-  Bounds middles;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Bounds b = triangle_bounds(frame, ids[i]);
-    Vec3d m = {middle(b, 0), middle(b, 1), middle(b, 2)};
-    middles.add({m, m});
-  }
-  double best = kInfinity, best_at = 0;
-  int best_axis = 0;
-  for (int axis = 0; axis < 3 && !halve; ++axis) {
-    double low = middles.low[axis], extent = middles.high[axis] - low;
-    if (!(extent > 0)) continue;
-    Bounds bins[kBinCount];
-    std::uint32_t counts[kBinCount] = {};
-    for (std::uint32_t i = 0; i < count; ++i) {
-      Bounds b = triangle_bounds(frame, ids[i]);
-      std::uint32_t bin = static_cast<std::uint32_t>((middle(b, axis) - low) / extent * (kBinCount * 0.999999));
-      bins[bin].add(b);
-      ++counts[bin];
-    }
-    double right_cost[kBinCount] = {};
-    Bounds right;
-    std::uint32_t right_count = 0;
-    for (std::uint32_t bin = kBinCount - 1; bin > 0; --bin) {
-      right.add(bins[bin]);
-      right_count += counts[bin];
-      right_cost[bin] = right.half_area() * right_count;
-    }
-    Bounds left;
-    std::uint32_t left_count = 0;
-    for (std::uint32_t bin = 0; bin + 1 < kBinCount; ++bin) {
-      left.add(bins[bin]);
-      left_count += counts[bin];
-      double cost = left.half_area() * left_count + right_cost[bin + 1];
-      if (left_count == 0 || left_count == count || !(cost < best)) continue;
-      best = cost, best_axis = axis, best_at = low + extent * (bin + 1) / (kBinCount * 0.999999);
-    }
-  }
-  if (!(best < kInfinity)) return count / 2;
-  std::uint32_t left = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (!(middle(triangle_bounds(frame, ids[i]), best_axis) < best_at)) continue;
-    std::uint32_t id = ids[i];
-    ids[i] = ids[left], ids[left++] = id;
-  }
-  return left == 0 || left == count ? count / 2 : left;
-}
 
 bool is_hole(const FrameData& frame, std::uint32_t triangle, double u, double v) {
-  const Material& m = frame.scene->materials[frame.scene->triangles[triangle].material()];
+  const Material& m = material_of(frame, triangle);
   return m.alpha_mode == AlphaMode::mask &&
          hit_alpha(*frame.scene, m, triangle, static_cast<float>(u), static_cast<float>(v),
                    frame.settings.texture_filter) < m.alpha_cutoff;
+}
+
+// A ray as boxes see it, in floats. What its rounding may err by is given to the boxes: near faces are moved towards
+// the ray's origin and far ones away, by a part of the coordinates for the origin and of the distance for the rest.
+struct BoxRay {
+  static constexpr float kSlack = 0x1p-21f;
+  Float4 near_origin[3], far_origin[3], inverse[3];
+  int near_side[3];
+  float t_min;
+};
+float round_up(double t) { return static_cast<float>(t) * (1 + BoxRay::kSlack); }
+
+BoxRay make_box_ray(const ReferenceWorld& world, const ReferenceRay& ray, double t_min) {
+  BoxRay b;
+  for (int axis = 0; axis < 3; ++axis) {
+    float origin = static_cast<float>(ray.origin[axis]);
+    float slack = (std::fabs(origin) + world.magnitude[axis]) * BoxRay::kSlack;
+    bool backwards = std::signbit(ray.direction[axis]);
+    b.inverse[axis] = Float4::splat(static_cast<float>(1 / ray.direction[axis]));
+    b.near_origin[axis] = Float4::splat(backwards ? origin - slack : origin + slack);
+    b.far_origin[axis] = Float4::splat(backwards ? origin + slack : origin - slack);
+    b.near_side[axis] = backwards;
+  }
+  b.t_min = static_cast<float>(t_min) * (1 - BoxRay::kSlack);
+  return b;
+}
+
+// Bits of the children whose boxes the ray is in somewhere up to t_max; *entry is where it enters them.
+unsigned enter(const ReferenceNode& n, const BoxRay& ray, float t_max, Float4* entry) {
+  Float4 near = Float4::splat(ray.t_min), far = Float4::splat(t_max);
+  for (int axis = 0; axis < 3; ++axis) {
+    int side = ray.near_side[axis];
+    near = max((Float4::load(n.bounds[side][axis]) - ray.near_origin[axis]) * ray.inverse[axis], near);
+    far = min((Float4::load(n.bounds[1 - side][axis]) - ray.far_origin[axis]) * ray.inverse[axis], far);
+  }
+  *entry = near;
+  return bits(near <= far * Float4::splat(1 + BoxRay::kSlack));
 }
 
 // Axes permuted and sheared so that the ray runs along the third [Woop, Benthin, Wald 2013, sec. 3]: what lies on an
 // edge lies on it for both of its triangles.
 struct Shear {
   int x, y, z;
-  double sx, sy, sz;
+  Double4 sx, sy, sz, origin_x, origin_y, origin_z;
 };
-Shear make_shear(const Vec3d& d) {
+Shear make_shear(const ReferenceRay& ray) {
+  const Vec3d& d = ray.direction;
   Vec3d size = {std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)};
   Shear s;
   s.z = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   s.x = (s.z + 1) % 3, s.y = (s.z + 2) % 3;
-  s.sx = d[s.x] / d[s.z], s.sy = d[s.y] / d[s.z], s.sz = 1 / d[s.z];
+  s.sx = Double4::splat(d[s.x] / d[s.z]), s.sy = Double4::splat(d[s.y] / d[s.z]), s.sz = Double4::splat(1 / d[s.z]);
+  s.origin_x = Double4::splat(ray.origin[s.x]), s.origin_y = Double4::splat(ray.origin[s.y]);
+  s.origin_z = Double4::splat(ray.origin[s.z]);
   return s;
 }
 
-bool meets(const FrameData& frame, std::uint32_t triangle, const ReferenceRay& ray, const Shear& s, ReferenceHit* hit) {
-  double x[3], y[3], z[3];
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    Vec3d p = corner(frame, triangle, i) - ray.origin;
-    x[i] = p[s.x] - s.sx * p[s.z], y[i] = p[s.y] - s.sy * p[s.z], z[i] = s.sz * p[s.z];
+struct LeafHits {
+  alignas(32) double t[4], u[4], v[4];
+};
+void spill(const Double4& a, double* values) { std::memcpy(values, &a, sizeof(a)); }
+
+// Bits of the triangles of a leaf that the line of the ray meets within (t_min, t_max].
+unsigned meet(const ReferenceLeaf& leaf, const Shear& s, double t_min, double t_max, LeafHits* hits) {
+  Double4 x[3], y[3], z[3];
+  for (int i = 0; i < 3; ++i) {
+    z[i] = widen(Float4::load(leaf.corner[i][s.z])) - s.origin_z;
+    x[i] = widen(Float4::load(leaf.corner[i][s.x])) - s.origin_x - s.sx * z[i];
+    y[i] = widen(Float4::load(leaf.corner[i][s.y])) - s.origin_y - s.sy * z[i];
   }
-  double a = x[2] * y[1] - y[2] * x[1], b = x[0] * y[2] - y[0] * x[2], c = x[1] * y[0] - y[1] * x[0];
-  if ((a < 0 || b < 0 || c < 0) && (a > 0 || b > 0 || c > 0)) return false;
-  double sum = a + b + c;
-  if (sum == 0) return false;
-  *hit = {(a * z[0] + b * z[1] + c * z[2]) / sum, b / sum, c / sum, triangle};
-  return hit->t > ray.t_min && hit->t < ray.t_max;
+  Double4 zero = Double4::splat(0);
+  Double4 a = x[2] * y[1] - y[2] * x[1], b = x[0] * y[2] - y[0] * x[2], c = x[1] * y[0] - y[1] * x[0];
+  auto inside = ((zero <= a) & (zero <= b) & (zero <= c)) | ((a <= zero) & (b <= zero) & (c <= zero));
+  if (!bits(inside)) return 0;
+  Double4 sum = a + b + c;
+  Double4 t = (a * z[0] + b * z[1] + c * z[2]) * s.sz / sum;  // not a number where the sum is zero: no hit
+  unsigned met = bits(inside & (Double4::splat(t_min) < t) & (t <= Double4::splat(t_max)));
+  if (met) spill(t, hits->t), spill(b / sum, hits->u), spill(c / sum, hits->v);
+  return met;
 }
 
-// Distance at which the ray enters the box; infinity where it does not before `t_max`. Not-a-numbers of rays within a
-// face's plane leave the bounds as they are.
-double enter(const ReferenceNode& n, const ReferenceRay& ray, const Vec3d& inverse, double t_max) {
-  double near = ray.t_min, far = t_max;
-  for (int axis = 0; axis < 3; ++axis) {
-    double a = (n.low[axis] - ray.origin[axis]) * inverse[axis], b = (n.high[axis] - ray.origin[axis]) * inverse[axis];
-    double first = a < b ? a : b, last = (a < b ? b : a) * kUlps;
-    if (first > near) near = first;
-    if (last < far) far = last;
+// Leaves whose boxes the ray enters before *t_max, which at_leaf() may lower; those that are entered first come first.
+template <class AtLeaf>
+void walk(const ReferenceWorld& world, const BoxRay& ray, const double* t_max, AtLeaf at_leaf) {
+  struct Entry {
+    std::uint32_t child;
+    float t;  // at which the ray enters it
+  } stack[3 * kReferenceDepthMax + 4];
+  std::uint32_t stack_count = 1;
+  stack[0] = {0, ray.t_min};
+  while (stack_count > 0) {
+    Entry entry = stack[--stack_count];
+    float end = round_up(*t_max);
+    if (entry.t > end) continue;
+    if (entry.child & kReferenceLeafBit) {
+      at_leaf(world.leaves[entry.child & ~kReferenceLeafBit]);
+      continue;
+    }
+    const ReferenceNode& node = world.nodes[entry.child];
+    Float4 entries;
+    unsigned entered = enter(node, ray, end, &entries);
+    if (!entered) continue;
+    alignas(16) float t[4];
+    store(t, entries);
+    std::uint32_t first = stack_count;
+    for (; entered; entered &= entered - 1) {
+      int i = __builtin_ctz(entered);
+      std::uint32_t at = stack_count++;
+      for (; at > first && stack[at - 1].t < t[i]; --at) stack[at] = stack[at - 1];
+      stack[at] = {node.child[i], t[i]};
+    }
   }
-  return near <= far ? near : kInfinity;
 }
 
 bool is_before(const ReferenceHit& a, const ReferenceHit& b) {
@@ -147,72 +136,44 @@ bool is_before(const ReferenceHit& a, const ReferenceHit& b) {
 
 }  // namespace
 
-std::size_t reference_world_need(std::uint32_t triangle_count) {
-  return arena_need<ReferenceNode>(2 * std::size_t(triangle_count) + 1) + arena_need<std::uint32_t>(triangle_count);
-}
-
-ReferenceWorld make_reference_world(const FrameData& frame, Arena* arena) {
-  ReferenceWorld world;
-  world.frame = &frame;
-  std::uint32_t triangle_count = frame.scene->triangles.count, used = 1;
-  world.nodes = arena_array<ReferenceNode>(arena, 2 * std::size_t(triangle_count) + 1);
-  world.order = arena_array<std::uint32_t>(arena, triangle_count);
-  for (std::uint32_t i = 0; i < triangle_count; ++i) world.order[i] = i;
-  struct Task {
-    std::uint32_t node, depth;
-  } tasks[kDepthMax + 2];
-  std::uint32_t task_count = 1;
-  tasks[0] = {0, 0};
-  world.nodes[0].first = 0, world.nodes[0].count = triangle_count;
-  while (task_count > 0) {
-    Task task = tasks[--task_count];
-    ReferenceNode* n = &world.nodes[task.node];
-    Bounds bounds;
-    for (std::uint32_t i = 0; i < n->count; ++i) bounds.add(triangle_bounds(frame, world.order[n->first + i]));
-    n->low = bounds.low, n->high = bounds.high;
-    if (n->count <= kLeafCountMax || task.depth >= kDepthMax) continue;
-    std::uint32_t begin = n->first, count = n->count;
-    std::uint32_t left = part(frame, world.order.data + begin, count, task.depth >= kHalveDepth);
-    n->first = used, n->count = 0;
-    world.nodes[used].first = begin, world.nodes[used].count = left;
-    world.nodes[used + 1].first = begin + left, world.nodes[used + 1].count = count - left;
-    tasks[task_count++] = {used, task.depth + 1};
-    tasks[task_count++] = {used + 1, task.depth + 1};
-    used += 2;
-  }
-  world.nodes.count = used;
-  return world;
-}
-
 ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, const ReferenceHit* after) {
   ReferenceHit best = {kInfinity, 0, 0, kNone};
-  Vec3d inverse = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
-  Shear shear = make_shear(ray.direction);
-  struct Entry {
-    std::uint32_t node;
-    double t;  // at which the ray enters it
-  } stack[kDepthMax + 2];
-  std::uint32_t stack_count = 0;
-  if (!world.order.empty()) stack[stack_count++] = {0, enter(world.nodes[0], ray, inverse, ray.t_max)};
-  while (stack_count > 0) {
-    Entry entry = stack[--stack_count];
-    double t_max = (best.t < ray.t_max ? best.t : ray.t_max) * kUlps;
-    if (!(entry.t <= t_max) || entry.t == kInfinity) continue;
-    const ReferenceNode& n = world.nodes[entry.node];
-    for (std::uint32_t i = 0; i < n.count; ++i) {
-      ReferenceHit hit;
-      if (!meets(*world.frame, world.order[n.first + i], ray, shear, &hit)) continue;
-      if (!is_before(hit, best) || (after && !is_before(*after, hit))) continue;
-      if (!is_hole(*world.frame, hit.triangle, hit.u, hit.v)) best = hit;
+  Shear shear = make_shear(ray);
+  double t_max = ray.t_max;
+  BoxRay box_ray = make_box_ray(world, ray, after ? after->t : ray.t_min);
+  walk(world, box_ray, &t_max, [&](const ReferenceLeaf& leaf) {
+    LeafHits hits;
+    unsigned met = meet(leaf, shear, ray.t_min, t_max, &hits);
+    for (; met; met &= met - 1) {
+      int i = __builtin_ctz(met);
+      ReferenceHit hit = {hits.t[i], hits.u[i], hits.v[i], leaf.triangle[i]};
+      if (!(hit.t < ray.t_max) || !is_before(hit, best) || (after && !is_before(*after, hit))) continue;
+      if (is_hole(*world.frame, hit.triangle, hit.u, hit.v)) continue;
+      best = hit, t_max = hit.t;
     }
-    if (n.count > 0) continue;
-    Entry left = {n.first, enter(world.nodes[n.first], ray, inverse, t_max)};
-    Entry right = {n.first + 1, enter(world.nodes[n.first + 1], ray, inverse, t_max)};
-    bool left_first = left.t < right.t;
-    stack[stack_count++] = left_first ? right : left;
-    stack[stack_count++] = left_first ? left : right;
-  }
+  });
   return best;
+}
+
+Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules) {
+  const FrameData& frame = *world.frame;
+  Obstacle worst = Obstacle::none;
+  Shear shear = make_shear(ray);
+  double t_max = ray.t_max;
+  walk(world, make_box_ray(world, ray, ray.t_min), &t_max, [&](const ReferenceLeaf& leaf) {
+    LeafHits hits;
+    unsigned met = meet(leaf, shear, ray.t_min, ray.t_max, &hits);
+    for (; met && worst != Obstacle::opaque; met &= met - 1) {
+      int i = __builtin_ctz(met);
+      std::uint32_t triangle = leaf.triangle[i];
+      if (!(hits.t[i] < ray.t_max) || !casts_shadow(frame, triangle, rules) ||
+          is_hole(frame, triangle, hits.u[i], hits.v[i]))
+        continue;
+      worst = blocks(material_of(frame, triangle), rules) ? Obstacle::opaque : Obstacle::clear;
+      if (worst == Obstacle::opaque) t_max = -1;  // no box is entered before it
+    }
+  });
+  return worst;
 }
 
 }  // namespace pocketray

@@ -1,20 +1,30 @@
-// The triangles of a frame for the reference: a bounding volume hierarchy in double precision that shares nothing with
-// the renderer's accelerators, so that neither inherits the other's errors.
+// The triangles of a frame for the reference: a bounding volume hierarchy that shares nothing with the renderer's
+// accelerators, so that neither inherits the other's errors. Boxes are floats, as the vertices are, and never decide on
+// a hit; hits are computed in double precision.
 #pragma once
 #include "base/arena.h"
 #include "shade/frame_data.h"
 
 namespace pocketray {
 
-struct ReferenceNode {
-  Vec3d low, high;
-  std::uint32_t first, count;  // count 0: the children are nodes first and first + 1; else so many of `order`
+// Four children side by side, for one box test of all.
+struct alignas(16) ReferenceNode {
+  float bounds[2][3][4];   // low and high, by axis, of each child; an empty box where there is none
+  std::uint32_t child[4];  // a node; with kReferenceLeafBit a leaf; kNone
 };
+// Up to four triangles side by side; no vertex of one that is missing is a number.
+struct alignas(16) ReferenceLeaf {
+  float corner[3][3][4];  // by vertex and axis
+  std::uint32_t triangle[4];
+};
+constexpr std::uint32_t kReferenceLeafBit = 1u << 31;
+constexpr std::uint32_t kReferenceDepthMax = 60;  // of the tree: 24 levels by the heuristic, then halves
 
 struct ReferenceWorld {
   const FrameData* frame = nullptr;
-  Array<ReferenceNode> nodes;
-  Array<std::uint32_t> order;  // triangles
+  Array<ReferenceNode> nodes;  // the first is the root
+  Array<ReferenceLeaf> leaves;
+  float magnitude[3];  // of the coordinates along each axis, at most
 };
 
 struct ReferenceRay {
@@ -22,7 +32,7 @@ struct ReferenceRay {
   double t_min, t_max;  // open interval
 };
 
-// Hits have an order: by t, then by triangle. The one behind the last is the same with kNoTriangle and infinite t.
+// Hits have an order: by t, then by triangle. The one behind the last is the same with kNone and infinite t.
 struct ReferenceHit {
   double t, u, v;  // u, v: weights of the triangle's vertices 1 and 2
   std::uint32_t triangle;
@@ -35,5 +45,30 @@ ReferenceWorld make_reference_world(const FrameData& frame, Arena* arena);
 
 // The first hit behind `after` in the order of hits (null: of all) that cut-outs leave: their holes are no hits.
 ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, const ReferenceHit* after);
+
+// What casts no shadow, and what of the rest casts a whole one.
+struct ShadowRules {
+  std::uint32_t but_triangle, but_material;  // kNone: none
+  bool transparent_blocks;                   // glass does; what blends does not
+};
+enum class Obstacle { none, clear, opaque };
+// What a ray meets: something opaque; else something that may let light through; else nothing.
+Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules);
+
+inline std::uint32_t material_index(const FrameData& frame, std::uint32_t triangle) {
+  return frame.scene->triangles[triangle].material();
+}
+inline const Material& material_of(const FrameData& frame, std::uint32_t triangle) {
+  return frame.scene->materials[material_index(frame, triangle)];
+}
+inline Vec3d corner_of(const FrameData& frame, std::uint32_t triangle, std::uint32_t i) {
+  return to_double(frame.positions[frame.scene->triangles[triangle].vertex(i)]);
+}
+inline bool casts_shadow(const FrameData& frame, std::uint32_t triangle, const ShadowRules& rules) {
+  return triangle != rules.but_triangle && material_index(frame, triangle) != rules.but_material;
+}
+inline bool blocks(const Material& m, const ShadowRules& rules) {
+  return is_zero(m.transmission) ? m.alpha_mode != AlphaMode::blend : rules.transparent_blocks;
+}
 
 }  // namespace pocketray

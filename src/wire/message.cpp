@@ -151,7 +151,8 @@ void fields(Io& io, Settings* s) {
   io.require(s->samples_per_pixel >= 1 && s->samples_per_pixel <= kSampleCountMax);
   io.require(s->ray_depth <= kRayDepthMax);
   io.require(s->points_per_area_light >= 1 && s->points_per_area_light <= kPointsPerAreaLightMax);
-  choice(io, &s->cut_off, true);
+  real(io, &s->cut_off_levels, kCutOffLevelsMax);
+  io.require(s->cut_off_levels >= 0);
   choice(io, &s->texture_filter, TextureFilter::bilinear);
   choice(io, &s->normals, NormalMode::flat);
   number(io, &s->forced_on), number(io, &s->forced_off);
@@ -286,13 +287,13 @@ constexpr PayloadSize kPayloadSizes[] = {
     {96, 0},               // scene_entry
     {28, 0},               // scene_fetch
     {24, kPieceBytesMax},  // scene_piece
-    {114, 0},              // frame_request
+    {117, 0},              // frame_request
     {13, kChunkBytesMax},  // row_chunk
     {4, 0},                // cancel
     {6, 0},                // error
     {8, 0},                // ping
     {8, kPingBytesMax},    // pong
-    {87, 0},               // view_query
+    {90, 0},               // view_query
     {104, 0},              // view_entry
     {70, 0},               // frame_change
 };

@@ -12,7 +12,7 @@
 
 namespace pocketray {
 
-constexpr std::uint16_t kWireVersion = 3;
+constexpr std::uint16_t kWireVersion = 4;
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, in one message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload

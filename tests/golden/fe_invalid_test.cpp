@@ -220,7 +220,7 @@ TEST_CASE("frames_of_builtin_scenes_raise_no_invalid_operation") {
     }
     Settings settings = small_settings(4, 2);
     check_frames(built->scene, settings, nullptr, {0});
-    settings.cut_off = false, settings.forced_on = ~EffectMask(0), settings.points_per_area_light = 9;
+    settings.cut_off_levels = 0, settings.forced_on = ~EffectMask(0), settings.points_per_area_light = 9;
     check_frames(built->scene, settings, nullptr, {0});
     settings.normals = NormalMode::flat, settings.texture_filter = TextureFilter::nearest;
     check_frames(built->scene, settings, nullptr, {0});

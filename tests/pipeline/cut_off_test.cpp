@@ -28,9 +28,9 @@ std::uint64_t all_rays(const Tracer& t) {
 
 CutOff compare_cut_off(const Scene& scene, Settings settings) {
   CutOff c;
-  settings.cut_off = true;
+  settings.cut_off_levels = 0.5f;
   auto with = make_renderer(scene, settings);
-  settings.cut_off = false;
+  settings.cut_off_levels = 0;
   auto without = make_renderer(scene, settings);
   Renderer &a = with->renderer, &b = without->renderer;
   REQUIRE(render_frame(&a, 0).ok);
@@ -102,7 +102,7 @@ TEST_CASE("radiance_bound_bounds_every_ray") {
     std::uint32_t features = (kAllFeatures & ~bit(Feature::supersampling)) ^ (seed % 2 ? bit(Feature::refraction) : 0u);
     auto generated = generate_scene(features, seed);
     Settings settings = settings_for(features, 8, 6);
-    settings.cut_off = false;
+    settings.cut_off_levels = 0;
     auto test = make_renderer(generated->scene, settings);
     const Renderer& r = test->renderer;
     REQUIRE(std::isfinite(r.frame.radiance_bound));
@@ -135,7 +135,7 @@ TEST_CASE("radiance_bound_is_reached_by_a_mirror_before_an_emitter") {
   s.bind();
   Settings settings = settings_for(0, 4, 3);
   settings.ray_depth = 16;
-  settings.cut_off = false;
+  settings.cut_off_levels = 0;
   auto test = make_renderer(s.scene, settings);
   float seen = trace_ray(test->renderer, {0, 0, 0}, {0, 0, -1}).x;
   CHECK(seen <= test->renderer.frame.radiance_bound);

@@ -4,12 +4,15 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <vector>
 
 using namespace platform;
 
@@ -19,8 +22,19 @@ struct Folder {
   char path[32] = "/tmp/pocketray_XXXXXX";
   Folder() { REQUIRE(mkdtemp(path) != nullptr); }
   ~Folder() {
-    for (const char* name : {"/a", "/a.part", "/pipe", "/link"}) std::remove((path + std::string(name)).c_str());
+    for (const std::string& name : names()) std::remove(file(name.c_str()).c_str());
     rmdir(path);
+  }
+  // Of all that lies in it, sorted.
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    FileError error;
+    auto add = [](void* context, const char* name) {
+      static_cast<std::vector<std::string>*>(context)->push_back(name);
+    };
+    CHECK(list_folder(path, add, &all, &error));
+    std::sort(all.begin(), all.end());
+    return all;
   }
   std::string file(const char* name) const { return std::string(path) + "/" + name; }
 };
@@ -56,16 +70,38 @@ TEST_CASE("file_is_replaced_as_a_whole") {
   REQUIRE(open_writer(folder.file("a").c_str(), &writer, &error));
   write_bytes(&writer, "second one", 10);
   CHECK(content_of(folder.file("a")) == "first");
+  CHECK(folder.names().size() == 2);
   CHECK(close_writer(&writer, &error));
   CHECK(content_of(folder.file("a")) == "second one");
   CHECK(file_stamp(folder.file("a").c_str()) != stamp);
-  CHECK(access(folder.file("a.part").c_str(), F_OK) != 0);
+  CHECK(folder.names() == std::vector<std::string>{"a"});
   REQUIRE(open_writer(folder.file("a").c_str(), &writer, &error));
   write_bytes(&writer, "third", 5);
   discard_writer(&writer);
   discard_writer(&writer);
   CHECK(content_of(folder.file("a")) == "second one");
-  CHECK(access(folder.file("a.part").c_str(), F_OK) != 0);
+  CHECK(folder.names() == std::vector<std::string>{"a"});
+}
+
+// Goal: two programs that write one file both succeed, and it is that of the last one as a whole. Method: another
+// process writes it while this one does.
+TEST_CASE("file_of_two_writers_is_whole") {
+  Folder folder;
+  FileError error;
+  FileWriter writer;
+  REQUIRE(open_writer(folder.file("a").c_str(), &writer, &error));
+  write_bytes(&writer, "this one's", 10);
+  pid_t child = fork();
+  if (child == 0) _exit(write_file(folder.file("a"), "the other's", &error) ? 0 : 1);
+  int status = -1;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+  CHECK(content_of(folder.file("a")) == "the other's");
+  bool closed = close_writer(&writer, &error);
+  INFO(error.text);
+  CHECK(closed);
+  CHECK(content_of(folder.file("a")) == "this one's");
+  CHECK(folder.names() == std::vector<std::string>{"a"});
 }
 
 // Goal: a disk that is full loses neither the old file nor leaves half a new one. Method: a file size limit, which
@@ -85,7 +121,7 @@ TEST_CASE("file_that_does_not_fit_leaves_the_old_one") {
   CHECK_FALSE(written);
   CHECK(std::strstr(error.text, "disk full") != nullptr);
   CHECK(content_of(folder.file("a")) == "old");
-  CHECK(access(folder.file("a.part").c_str(), F_OK) != 0);
+  CHECK(folder.names() == std::vector<std::string>{"a"});
 }
 
 // Goal: devices stay devices, and one that takes nothing is noticed. Method: a link to /dev/full and to /dev/null.
@@ -98,7 +134,7 @@ TEST_CASE("file_writer_writes_devices_directly") {
     struct stat info;
     CHECK(lstat(folder.file("link").c_str(), &info) == 0);
     CHECK(S_ISLNK(info.st_mode));
-    CHECK(access(folder.file("link.part").c_str(), F_OK) != 0);
+    CHECK(folder.names() == std::vector<std::string>{"link"});
     std::remove(folder.file("link").c_str());
   }
   CHECK(std::strstr(error.text, "did not take all") != nullptr);
@@ -118,4 +154,21 @@ TEST_CASE("file_errors_say_why") {
   CHECK(std::strstr(error.text, "longer than") != nullptr);
   CHECK_FALSE(write_file(folder.path, "x", &error));  // a folder
   CHECK(std::strstr(error.text, "cannot be replaced") != nullptr);
+}
+
+// Goal: a folder is made where there is none, and one that is there will do; anything else is an error. Method: twice,
+// within a missing folder, over a file.
+TEST_CASE("file_folder_is_made_or_there") {
+  Folder folder;
+  FileError error;
+  REQUIRE(write_file(folder.file("a"), "x", &error));
+  std::string made = folder.file("made");
+  CHECK(make_folder(made.c_str(), &error));
+  CHECK(make_folder(made.c_str(), &error));
+  REQUIRE(write_file(made + "/a", "x", &error));
+  CHECK_FALSE(make_folder(folder.file("no/such").c_str(), &error));
+  CHECK(error.text[0] != 0);
+  CHECK_FALSE(make_folder(folder.file("a").c_str(), &error));
+  std::remove((made + "/a").c_str());
+  rmdir(made.c_str());
 }

@@ -112,3 +112,30 @@ TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
     CHECK(behind <= static_cast<int>(scene.triangles.count / 100));
   }
 }
+
+// Goal: cornell's sphere takes any number of columns within the memory stated, and cornell itself is one of them.
+// Method: triangles by count, a mirror of them on the sphere, whose facets stand off it less the finer they are.
+TEST_CASE("builtin_cornell_is_tessellated_as_asked") {
+  auto cornell = build_builtin("cornell");
+  double sag_before = 1e9;
+  for (std::uint32_t columns : {8u, 16u, kCornellSphereColumns, 128u}) {
+    CAPTURE(columns);
+    std::vector<std::uint8_t> block(tessellated_cornell_need(columns) + kArenaAlignment);
+    Arena arena = make_arena("cornell", block.data(), block.size());
+    Scene scene;
+    build_tessellated_cornell(columns, &arena, &scene);
+    CHECK(arena.used <= tessellated_cornell_need(columns));
+    if (columns == kCornellSphereColumns) CHECK(baked_size(scene) == baked_size(cornell->scene));
+    CHECK((scene.triangles.count == cornell->scene.triangles.count) == (columns == kCornellSphereColumns));
+    double sag = 0;
+    for (const Triangle& t : scene.triangles) {
+      if (is_zero(scene.materials[t.material()].mirror)) continue;
+      Vec3 middle =
+          (scene.positions[t.vertex(0)] + scene.positions[t.vertex(1)] + scene.positions[t.vertex(2)]) * (1 / 3.0f);
+      sag = std::max(sag, 88 - static_cast<double>(length(middle - Vec3{158, 88, 190})));
+    }
+    CHECK(sag > 0);
+    CHECK(sag < 0.5 * sag_before);
+    sag_before = sag;
+  }
+}

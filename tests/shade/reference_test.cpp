@@ -1,115 +1,20 @@
 // The reference against closed forms, and the renderer against the reference.
-#include "shade/reference.h"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 #include "base/fmath.h"
+#include "shade/reference_helpers.h"
 #include "shade/reference_light.h"
+#include "shade/reference_rendered.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
 
-namespace {
-
-struct TestReference {
-  std::unique_ptr<TestRenderer> renderer;
-  std::vector<std::uint8_t> memory;
-  Reference reference;
-
-  explicit TestReference(const Scene& scene, Settings settings = Settings()) {
-    settings.width = settings.height = 8;
-    renderer = make_renderer(scene, settings);
-    Status status = render_frame(&renderer->renderer, 0);
-    REQUIRE_MESSAGE(status.ok, status.message);
-    const FrameData& frame = renderer->renderer.frame;
-    memory.resize(reference_need(frame) + kArenaAlignment);
-    Arena arena = make_arena("reference", memory.data(), memory.size());
-    reference = make_reference(frame, &arena);
-    CHECK(arena.used <= reference_need(frame));
-  }
-};
-
-struct Estimate {
-  double mean, error;  // error: standard error of the mean
-};
-
-// The green radiance along a ray.
-Estimate estimate(const TestReference& t, Transport transport, const Vec3d& origin, const Vec3d& direction, int count,
-                  std::uint64_t seed = 1, std::uint32_t depth_max = kNone) {
-  ReferenceOptions o;
-  o.transport = transport, o.depth_max = depth_max;
-  Rng rng = make_rng(seed);
-  double sum = 0, squares = 0;
-  for (int i = 0; i < count; ++i) {
-    double v = sample_radiance(t.reference, o, origin, direction, &rng).y;
-    sum += v, squares += v * v;
-  }
-  double mean = sum / count;
-  return {mean, std::sqrt(std::fmax(0, squares / count - mean * mean) / count)};
-}
-
-// Within five standard errors, or what single numbers of the scene, which are floats, may err by.
-void check_equal(const Estimate& e, double expected) {
-  CHECK(std::fabs(e.mean - expected) <= 5 * e.error + 1e-6 * expected);
-  CHECK(e.error <= 0.25 * expected);
-}
-
-void add_camera(GeneratedScene* s) { aim(s, {0, 0.5f, 0.2f}, {0.1f, 0, 0}, 40); }
-
-Material emitter(float radiance) {
-  Material m;
-  m.diffuse = {0, 0, 0};
-  m.emission = {radiance, radiance, radiance};
-  return m;
-}
-
-}  // namespace
-
-// Goal: a closed room of albedo ρ that emits everywhere has the radiance E / (1 − ρ) everywhere (HARDCASES row 35's
-// sum, with diffuse walls). Method: rays from inside; all light transport, so many bounces.
-TEST_CASE("reference_furnace_has_its_closed_form") {
-  for (float albedo : {0.5f, 0.8f, 0.95f}) {
-    GeneratedScene s;
-    Material m = emitter(0.25f);
-    m.diffuse = {albedo, albedo, albedo};
-    add_box(&s, {-1, -1, -1}, {1, 1, 1}, add_material(&s, m), true);
-    add_camera(&s);
-    s.bind();
-    TestReference t(s.scene);
-    Rng rng = make_rng(3);
-    for (int i = 0; i < 4; ++i) {
-      Vec3d direction = normalize(Vec3d{next_double(&rng) - 0.5, next_double(&rng) - 0.5, next_double(&rng) - 0.5});
-      check_equal(estimate(t, Transport::physical, {0.1, 0.2, -0.3}, direction, effort(10000), 7 + i),
-                  0.25 / (1 - static_cast<double>(albedo)));
-    }
-  }
-}
-
-// Goal: a square light at height 1 gives the centre below it the form factor .2394565 and the corner .1385316 (HARDCASES
-// row 37), by both kinds of transport. Method: a white floor seen at a slant; its radiance is that times the light's.
-TEST_CASE("reference_square_light_has_its_closed_form") {
-  GeneratedScene s;
-  Material floor;
-  floor.diffuse = {1, 1, 1};
-  std::uint32_t white = add_material(&s, floor), light = add_material(&s, emitter(3));
-  add_quad(&s, {-20, 0, 20}, {20, 0, 20}, {20, 0, -20}, {-20, 0, -20}, white);
-  add_quad(&s, {-0.5f, 1, -0.5f}, {0.5f, 1, -0.5f}, {0.5f, 1, 0.5f}, {-0.5f, 1, 0.5f}, light);
-  add_camera(&s);
-  s.bind();
-  TestReference t(s.scene);
-  for (Transport transport : {Transport::model, Transport::physical}) {
-    Vec3d eye = {1.5, 0.4, 0.7}, corner = {0.5, 0, 0.5};
-    check_equal(estimate(t, transport, eye, normalize(Vec3d{0, 0, 0} - eye), effort(20000)), 3 * 0.2394565);
-    check_equal(estimate(t, transport, eye, normalize(corner - eye), effort(20000)), 3 * 0.1385316);
-  }
-}
-
-// Goal: glass of index 1.5 at normal incidence lets 12/13 through (HARDCASES row 34), a boundary reflects by Fresnel
-// (row 33), facing mirrors add up to Σρᵏ (row 35). Method: a glowing wall behind a slab, all orders of reflection; two
-// mirrors that glow.
+// Goal: glass of index 1.5 at normal incidence lets 12/13 through and reflects 1/13 (HARDCASES row 34), facing mirrors
+// add up to Σρᵏ (row 35), and paths that end earlier to the first terms of either. Method: a glowing wall behind a slab
+// and one before it; two mirrors that glow. What branches at each boundary is exact at every depth.
 TEST_CASE("reference_optics_have_their_closed_forms") {
   GeneratedScene s;
   Material glass;
@@ -123,10 +28,30 @@ TEST_CASE("reference_optics_have_their_closed_forms") {
   add_quad(&s, {201, -9, -9}, {201, 9, -9}, {201, 9, 9}, {201, -9, 9}, m);
   add_camera(&s);
   s.bind();
+  const Vec3d slab_eye = {0.3, 0.1, 3}, wall_eye = {0.3, 0.1, -3}, mirror_eye = {200.5, 0.1, 0.2};
+  const Vec3d down = {0, 0, -1}, up = {0, 0, 1}, along = {1, 0, 0};
   TestReference t(s.scene);
   for (Transport transport : {Transport::model, Transport::physical}) {
-    check_equal(estimate(t, transport, {0.3, 0.1, 3}, {0, 0, -1}, effort(10000)), 2 * 12.0 / 13);
-    check_equal(estimate(t, transport, {200.5, 0.1, 0.2}, {1, 0, 0}, effort(10000)), 1 / (1 - 0.75));
+    check_equal(estimate(t, transport, slab_eye, down, effort(10000)), 2 * 12.0 / 13);
+    // From between wall and slab: what the slab sends back of the wall, which reflects nothing.
+    check_equal(estimate(t, transport, wall_eye, up, effort(10000)), 2 / 13.0);
+    check_equal(estimate(t, transport, mirror_eye, along, effort(10000)), 1 / (1 - 0.75));
+  }
+  double passed = 0, sent_back = 0, mirrors = 0, order = 1;
+  for (std::uint32_t depth = 0; depth < 12; ++depth) {
+    if (depth >= 2 && depth % 2 == 0) passed += 2 * 0.96 * 0.96 * std::pow(0.04, depth - 2);
+    if (depth == 1) sent_back += 2 * 0.04;
+    if (depth >= 3 && depth % 2 == 1) sent_back += 2 * 0.96 * 0.96 * std::pow(0.04, depth - 2);
+    mirrors += order, order *= 0.75;
+    Settings settings = small_settings();
+    settings.ray_depth = depth;
+    TestReference limited(s.scene, settings);
+    CAPTURE(depth);
+    CHECK(std::fabs(radiance_as_rendered(limited.reference, slab_eye, down).y - passed) < 1e-6);
+    CHECK(std::fabs(radiance_as_rendered(limited.reference, wall_eye, up).y - sent_back) < 1e-6);
+    CHECK(std::fabs(radiance_as_rendered(limited.reference, mirror_eye, along).y - mirrors) < 1e-6);
+    if (depth <= 4)  // before chance ends paths
+      check_equal(estimate(t, Transport::physical, mirror_eye, along, 1, 1, depth), mirrors);
   }
 }
 
@@ -182,7 +107,8 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
     int count = effort(200000), above = 0;
     for (int i = 0; i < count; ++i) {
       Vec3d d;
-      if (!sample_lobes(s, to_viewer, &rng, &d)) continue;
+      double choice = next_double(&rng), u = next_double(&rng);
+      if (!sample_lobes(s, to_viewer, choice, {u, next_double(&rng)}, &d)) continue;
       ++above;
       found[static_cast<std::size_t>(cell(d))] += 1;
     }
@@ -215,7 +141,7 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
   for (std::uint32_t set : sets) {
     auto s = generate_scene(set, 17);
     Settings settings = settings_for(set, 8, 8);
-    settings.cut_off = false, settings.ray_depth = kRayDepthMax;
+    settings.cut_off_levels = 0, settings.ray_depth = kRayDepthMax;
     TestReference t(s->scene, settings);
     const FrameData& frame = t.renderer->renderer.frame;
     Rng rng = make_rng(5);

@@ -48,7 +48,7 @@ inline std::unique_ptr<TestRenderer> ray_renderer(GeneratedScene* s, std::uint32
   settings.width = settings.height = 1;
   settings.ray_depth = depth;
   settings.points_per_area_light = area_points;
-  settings.cut_off = false;
+  settings.cut_off_levels = 0;
   return make_renderer(s->scene, settings);
 }
 inline Vec3 look(const TestRenderer& t, const Vec3& from, const Vec3& to) {

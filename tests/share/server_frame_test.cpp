@@ -117,7 +117,7 @@ TEST_CASE("server_frames_follow_every_setting") {
   check(request, true);
   request.camera_stated = false, request.seconds = 0.6;  // the moving camera is back
   check(request, true);
-  request.settings.cut_off = false;
+  request.settings.cut_off_levels = 0;
   check(request, false);
 }
 

@@ -25,8 +25,7 @@ ShareTotals view(const std::string& server, std::uint32_t frame_count, Viewer* v
   REQUIRE(open_viewer(options, "seesaw", 32, 24, viewer).ok);
   REQUIRE(open_sharing(sharing, nullptr, &viewer->sharing).ok);
   OpenScene opened;
-  auto output_bytes = [&](const Settings& s) { return viewer_bytes(s) + sharing_bytes(viewer->sharing, s); };
-  REQUIRE(open_shared_scene(viewer->sharing, common, output_bytes, &opened).ok);
+  REQUIRE(open_shared_scene(viewer->sharing, common, viewer_bytes, &opened).ok);
   REQUIRE(start_sharing(viewer->sharing, &opened.renderer, false, false).ok);
   bool again;
   REQUIRE(run_viewer(viewer, &opened.renderer, &again).ok);
@@ -49,14 +48,19 @@ TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
     while (!stop) step_server(rig.server, kMs);
   });
   Viewer with;
-  ShareTotals shared = view(address, 600, &with);
+  ShareTotals shared;
+  std::uint32_t frame_count = 600;
+  for (; shared.frames == 0 && frame_count < 600'000; frame_count *= 4) {  // a busy server takes its time
+    with = Viewer();
+    shared = view(address, frame_count, &with);
+    CHECK(with.frames_finished == frame_count);
+    CHECK(shared.frames < frame_count);  // the first ones were the device's own
+  }
   stop = true;
   serving.join();
   unseal_memory();  // the rig's log seals
-  CHECK(with.frames_finished == 600);
   CHECK(with.picture_shared);
   CHECK(shared.frames > 0);
-  CHECK(shared.frames < 600);  // the first ones were the device's own
   CHECK(shared.server_rows > 0);
 
   rig.close();

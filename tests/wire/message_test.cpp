@@ -124,7 +124,7 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_request, [](Message* m) { m->frame_request.camera_stated ^= 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.camera.up.z += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.camera.vertical_extent += 1; }},
-      {MessageType::frame_request, [](Message* m) { m->frame_request.settings.cut_off ^= 1; }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.settings.cut_off_levels += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.settings.forced_off ^= 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.exposure += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.dither ^= 1; }},
@@ -229,18 +229,20 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 84, {17}},    // depth
       {MessageType::frame_request, 8 + 85, {0, 0}},  // points
       {MessageType::frame_request, 8 + 85, {1, 1}},
-      {MessageType::frame_request, 8 + 87, {2}},     // cut off
-      {MessageType::frame_request, 8 + 88, {3}},     // filter
-      {MessageType::frame_request, 8 + 89, {2}},     // normals
-      {MessageType::frame_request, 8 + 93, {0xFF}},  // effects
-      {MessageType::frame_request, 8 + 97, {0xFF}},
-      {MessageType::frame_request, 8 + 98, {0, 0, 0x80, 0xBF}},            // exposure −1
-      {MessageType::frame_request, 8 + 102, {2}},                          // dither
-      {MessageType::frame_request, 8 + 103, {2}},                          // format
-      {MessageType::frame_request, 8 + 104, {5, 0, 5, 0}},                 // no rows
-      {MessageType::frame_request, 8 + 106, {0xFF, 0xFF}},                 // rows beyond the picture
-      {MessageType::frame_request, 8 + 108, {0, 0}},                       // chunk rows
-      {MessageType::frame_request, 8 + 110, {10}},                         // level
+      {MessageType::frame_request, 8 + 87, nan},                 // cut-off
+      {MessageType::frame_request, 8 + 87, {0, 0, 0x82, 0x42}},  // 65 levels
+      {MessageType::frame_request, 8 + 87, {0, 0, 0x80, 0xBF}},  // −1
+      {MessageType::frame_request, 8 + 91, {3}},                 // filter
+      {MessageType::frame_request, 8 + 92, {2}},                 // normals
+      {MessageType::frame_request, 8 + 96, {0xFF}},              // effects
+      {MessageType::frame_request, 8 + 100, {0xFF}},
+      {MessageType::frame_request, 8 + 101, {0, 0, 0x80, 0xBF}},           // exposure −1
+      {MessageType::frame_request, 8 + 105, {2}},                          // dither
+      {MessageType::frame_request, 8 + 106, {2}},                          // format
+      {MessageType::frame_request, 8 + 107, {5, 0, 5, 0}},                 // no rows
+      {MessageType::frame_request, 8 + 109, {0xFF, 0xFF}},                 // rows beyond the picture
+      {MessageType::frame_request, 8 + 111, {0, 0}},                       // chunk rows
+      {MessageType::frame_request, 8 + 116, {10}},                         // level
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 60, {5, 0, 5, 0}},                   // no rows
@@ -255,7 +257,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::view_query, 8 + 16, {2}},              // camera stated
       {MessageType::view_query, 8 + 19, nan},              // eye.x
       {MessageType::view_query, 8 + 67, {0, 0}},           // width
-      {MessageType::view_query, 8 + 86, {2}},              // exposure measured
+      {MessageType::view_query, 8 + 89, {2}},              // exposure measured
       {MessageType::view_entry, 8 + 16, infinite},         // eye.x
       {MessageType::view_entry, 8 + 64, {0, 0, 0, 0}},     // exposure
       {MessageType::view_entry, 8 + 68, nan},              // frames a second
@@ -311,7 +313,7 @@ TEST_CASE("message_change_gives_the_request") {
       [](FrameRequest* r) { r->camera_stated ^= 1; },
       [](FrameRequest* r) { r->camera_index ^= 1; },
       [](FrameRequest* r) { r->settings.height ^= 1; },
-      [](FrameRequest* r) { r->settings.cut_off ^= 1; },
+      [](FrameRequest* r) { r->settings.cut_off_levels += 1; },
       [](FrameRequest* r) { r->exposure += 1; },
       [](FrameRequest* r) { r->format = WireFormat(1 - static_cast<int>(r->format)); },
       [](FrameRequest* r) { r->dither ^= 1; },

@@ -11,10 +11,13 @@ namespace pocketray {
 namespace {
 
 constexpr MeshSize kRoomSize = {17, 19};
-constexpr std::uint32_t kSphereColumns = 64, kSphereRows = 36;
 constexpr FigureDetail kFigure = {113, 164, 31, 34, 23};
-constexpr MeshSize kSize = kRoomSize + box_size() + sphere_size(kSphereColumns, kSphereRows) + figure_size(kFigure);
-static_assert(kSize.triangles == 45109, "[Aranha07] sec. 4");
+// Rows for facets about as high as wide.
+constexpr std::uint32_t sphere_rows(std::uint32_t columns) { return (9 * columns + 8) / 16; }
+constexpr MeshSize size_of(std::uint32_t sphere_columns) {
+  return kRoomSize + box_size() + sphere_size(sphere_columns, sphere_rows(sphere_columns)) + figure_size(kFigure);
+}
+static_assert(size_of(kCornellSphereColumns).triangles == 45109, "[Aranha07] sec. 4");
 
 enum MaterialIndex : std::uint32_t { kWhite, kRed, kGreen, kLamp, kMarble, kMirror, kMaterialCount };
 
@@ -59,11 +62,16 @@ Transform turned(float radians_about_y, const Vec3& to) {
 
 }  // namespace
 
-std::size_t cornell_need() { return mesh_need(kSize) + parts_need(kMaterialCount, 0, 1); }
+std::size_t cornell_need() { return tessellated_cornell_need(kCornellSphereColumns); }
+void build_cornell(Arena* arena, Scene* scene) { build_tessellated_cornell(kCornellSphereColumns, arena, scene); }
 
-void build_cornell(Arena* arena, Scene* scene) {
+std::size_t tessellated_cornell_need(std::uint32_t sphere_columns) {
+  return mesh_need(size_of(sphere_columns)) + parts_need(kMaterialCount, 0, 1);
+}
+
+void build_tessellated_cornell(std::uint32_t sphere_columns, Arena* arena, Scene* scene) {
   name_scene(scene, "cornell");
-  MeshWriter mesh = make_mesh(arena, kSize);
+  MeshWriter mesh = make_mesh(arena, size_of(sphere_columns));
   add_room(&mesh);
   const float turn = 3.45f;  // towards the camera and the light
   const Vec3 place = {362, 0, 335};
@@ -72,7 +80,7 @@ void build_cornell(Arena* arena, Scene* scene) {
   mesh.material = kMarble;
   add_figure(&mesh, kFigure, place + Vec3{0, 48, 0}, 52, turn);
   mesh.material = kMirror;
-  add_sphere(&mesh, {158, 88, 190}, {88, 88, 88}, kSphereColumns, kSphereRows);
+  add_sphere(&mesh, {158, 88, 190}, {88, 88, 88}, sphere_columns, sphere_rows(sphere_columns));
   finish_mesh(mesh, scene);
 
   // The measured spectra seen through linear sRGB; the light is the published one, white-balanced half-way as the

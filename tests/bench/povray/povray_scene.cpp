@@ -85,7 +85,7 @@ void write_mesh(std::FILE* file, const Scene& scene) {
 Status open_povray_scene(std::uint32_t width, std::uint32_t height, PovrayScene* s) {
   Settings settings;
   settings.width = width, settings.height = height;
-  settings.cut_off = false;
+  settings.cut_off_levels = 0;
   settings.memory_bytes = kBlockBytes;
   s->block.reset(new unsigned char[kBlockBytes]);
   s->renderer = std::make_unique<Renderer>();

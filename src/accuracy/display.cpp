@@ -1,0 +1,60 @@
+#include "accuracy/display.h"
+
+#include <cmath>
+
+namespace pocketray {
+
+std::vector<double> exposed_light(const Vec3* radiance, std::size_t pixel_count, float exposure) {
+  std::vector<double> light;
+  light.reserve(3 * pixel_count);
+  for (std::size_t i = 0; i < pixel_count; ++i)
+    for (int c = 0; c < 3; ++c) {
+      double value = static_cast<double>(radiance[i][c]) * static_cast<double>(exposure);
+      light.push_back(!(value > 0) ? 0 : value < 1 ? value : 1);
+    }
+  return light;
+}
+
+std::vector<float> encoded_light(const std::vector<double>& light) {
+  std::vector<float> encoded(light.size());
+  for (std::size_t i = 0; i < light.size(); ++i)  // IEC 61966-2-1
+    encoded[i] =
+        static_cast<float>(light[i] <= 0.0031308 ? 12.92 * light[i] : 1.055 * std::pow(light[i], 1 / 2.4) - 0.055);
+  return encoded;
+}
+
+Levels displayed_levels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
+                        const OutputFormat& output) {
+  int bytes = output.format.bits_per_pixel / 8, line_bytes = static_cast<int>(width) * bytes,
+      rows = static_cast<int>(height);
+  std::size_t line = static_cast<std::size_t>(line_bytes);
+  std::vector<std::uint32_t> packed((line * height + 3) / 4);  // aligned for whole pixels
+  std::uint8_t* pixels = reinterpret_cast<std::uint8_t*>(packed.data());
+  pack_rows(radiance, static_cast<int>(width), rows, 0, rows, exposure, output.format, Rotation::none, output.dither,
+            pixels, line_bytes);
+  Levels levels = {width, height, {}};
+  levels.rgb.reserve(std::size_t(3) * width * height);
+  for (std::uint32_t row = 0; row < height; ++row)
+    for (std::uint32_t column = 0; column < width; ++column) {
+      int shown[3];
+      unpack_levels(output.format,
+                    read_pixel(output.format, pixels + row * line + column * static_cast<std::size_t>(bytes)), shown);
+      for (int level : shown) levels.rgb.push_back(static_cast<std::uint8_t>(level));
+    }
+  return levels;
+}
+
+std::vector<float> encoded_levels(const Levels& levels) {
+  std::vector<float> encoded;
+  encoded.reserve(levels.rgb.size());
+  for (std::uint8_t level : levels.rgb) encoded.push_back(static_cast<float>(level) / 255);
+  return encoded;
+}
+
+double mean_of(const std::vector<float>& errors) {
+  double sum = 0;
+  for (float e : errors) sum += static_cast<double>(e);
+  return errors.empty() ? 0 : sum / static_cast<double>(errors.size());
+}
+
+}  // namespace pocketray

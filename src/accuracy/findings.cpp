@@ -1,0 +1,70 @@
+#include "accuracy/findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/text.h"
+
+namespace pocketray {
+
+double ms_of(const Sweep& sweep, double ns_per_pixel) { return ns_per_pixel * sweep.width * sweep.height * 1e-6; }
+
+bool has_figures(const Measured& m) {
+  return m.missing.empty() && std::isfinite(m.flip) && std::isfinite(m.ns_per_pixel.value);
+}
+
+std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& knob) {
+  std::vector<const Measured*> result;
+  for (const Measured& m : sweep.measured)
+    if (m.knob == knob) result.push_back(&m);
+  return result;
+}
+
+std::vector<const Measured*> front_of(const Sweep& sweep) {
+  std::vector<const Measured*> front;
+  for (const Measured& m : sweep.measured)
+    if (m.pareto && has_figures(m) && (!m.is_default || m.knob == "baseline")) front.push_back(&m);
+  std::stable_sort(front.begin(), front.end(),
+                   [](const Measured* a, const Measured* b) { return a->ns_per_pixel.value < b->ns_per_pixel.value; });
+  return front;
+}
+
+KnobEnds ends_of(const Sweep& sweep, const std::string& knob) {
+  KnobEnds ends;
+  for (const Measured* m : values_of(sweep, knob)) {
+    if (!has_figures(*m)) continue;
+    if (!ends.worst) ends.worst = m;
+    ends.best = m;
+    if (m->is_default) ends.standard = m;
+  }
+  return ends;
+}
+
+bool gain_claimed(const Sweep& sweep, const KnobEnds& ends) {
+  return ends.worst && ends.worst->flip - ends.best->flip > kClaimFactor * sweep.reference_flip;
+}
+
+std::string slope_text(const KnobFigures& knob) {
+  if (!knob.has_slope) return knob.theory.empty() ? "" : "theory: " + knob.theory;
+  auto hundredths = [](double v) { return (v <= -0.005 ? "−" : "") + format("%.2f", std::fabs(v)); };
+  std::string text = "slope of its own RMSE over time " + hundredths(knob.slope.value);
+  if (std::isfinite(knob.slope.low) && std::isfinite(knob.slope.high))
+    text += " [" + hundredths(knob.slope.low) + ", " + hundredths(knob.slope.high) + "]";
+  return text + (knob.theory.empty() ? "" : "; theory: " + knob.theory);
+}
+
+std::vector<const KnobFigures*> knobs_by_price(const Sweep& sweep) {
+  std::vector<const KnobFigures*> knobs;
+  for (const KnobFigures& knob : sweep.knobs) knobs.push_back(&knob);
+  auto rank = [&](const KnobFigures* knob) {
+    if (!std::isfinite(knob->ms_per_flip)) return 2;
+    return gain_claimed(sweep, ends_of(sweep, knob->name)) ? 0 : 1;
+  };
+  std::stable_sort(knobs.begin(), knobs.end(), [&](const KnobFigures* a, const KnobFigures* b) {
+    int rank_a = rank(a), rank_b = rank(b);
+    return rank_a != rank_b ? rank_a < rank_b : rank_a < 2 && a->ms_per_flip < b->ms_per_flip;
+  });
+  return knobs;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,181 @@
+#include "accuracy/page.h"
+
+#include <cmath>
+
+#include "accuracy/findings.h"
+#include "accuracy/page_style.h"
+#include "accuracy/page_tables.h"
+#include "accuracy/strip.h"
+#include "accuracy/text.h"
+
+namespace pocketray {
+namespace {
+
+void replace_all(std::string* text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text->find(from); at != std::string::npos; at = text->find(from, at + to.size()))
+    text->replace(at, from.size(), to);
+}
+
+// gnuplot's SVG as an element of the page: without what only a file of its own has, and with names of its own.
+std::string inline_svg(const std::string& name, const std::string& file) {
+  std::size_t begin = file.find("<svg");
+  if (begin == std::string::npos) return "";
+  std::string svg = file.substr(begin);
+  std::string prefix = file_word(name) + "_";
+  for (const char* mark : {"id=\"", "id='", "href='#", "href=\"#", "url(#"}) replace_all(&svg, mark, mark + prefix);
+  std::size_t title = svg.find("<title>"), title_end = svg.find("</title>");
+  if (title != std::string::npos && title_end != std::string::npos)
+    svg.replace(title, title_end - title, "<title>" + escaped(name));
+  return svg;
+}
+
+std::string plot_figure(const PagePictures& pictures, const std::string& name) {
+  auto found = pictures.plots.find(name);
+  if (found == pictures.plots.end()) return "";
+  return "<figure class=\"plot\">" + inline_svg(name, found->second) + "</figure>\n";
+}
+
+// Side by side where there is room.
+std::string pair(const std::string& one, const std::string& other) {
+  return "<div class=\"pair\">\n" + one + other + "</div>\n";
+}
+
+std::string image(const std::string& png, const std::string& alternative) {
+  return "<img alt=\"" + escaped(alternative) + "\" src=\"data:image/png;base64," + base64(png) + "\" />";
+}
+
+std::string flip_scale() {
+  std::string stops;
+  for (int i = 0; i <= 10; ++i) {
+    std::array<std::uint8_t, 3> c = flip_color(static_cast<float>(i) / 10);
+    stops += format(", #%02x%02x%02x", c[0], c[1], c[2]);
+  }
+  return "<span class=\"scale\" style=\"background: linear-gradient(to right" + stops + ")\"></span>";
+}
+
+std::string strip_figure(const Sweep& sweep, const PagePictures& pictures, const std::string& knob) {
+  auto found = pictures.strips.find(knob);
+  if (found == pictures.strips.end()) return "";
+  std::string rows;
+  for (const Strip& strip : sweep.strips)
+    if (strip.knob == knob)
+      for (const StripRow& row : strip.rows)
+        rows += (rows.empty() ? "" : "; ") + escaped(row.label) + " (" + figure(row.ms) + " ms, FLIP " +
+                figure(row.flip) + ")";
+  return "<figure class=\"strip\"><div class=\"box\">" + image(found->second, "Strip of " + knob) +
+         "</div><figcaption>From the left: reference, setting, " + std::to_string(kDifferenceGain) +
+         " × difference, FLIP from 0 " + flip_scale() + " to 1. From the top: " + rows + ".</figcaption></figure>\n";
+}
+
+std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
+  std::string title = "What accuracy costs in time: " + escaped(sweep.scene);
+  std::string text =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
+      title + "</title>\n<style>" + kPageStyle + "</style>\n</head>\n<body>\n<header>\n<div>\n<h1>" + title +
+      "</h1>\n<p class=\"soft\">" + format("%u × %u pixels", sweep.width, sweep.height) + ", " +
+      escaped(sweep.machine) + ", " + std::to_string(sweep.rounds) + " rounds; the baseline is shown as " +
+      escaped(sweep.output) + ".</p>\n";
+  text += "<p>Errors are against <b>" + escaped(sweep.reference) + "</b>, ";
+  text += sweep.reference == "physical" ? "all light transport, path traced in double precision"
+                                        : "the lighting model taken to its limit, in double precision";
+  text += format(" with %u samples a pixel. ", sweep.reference_samples) + "The reference itself may err by FLIP " +
+          figure(sweep.reference_flip, 2) + " and RMSE " + figure(sweep.reference_rmse, 2) + "; nothing finer than " +
+          figure(kClaimFactor, 2) + " times that, <b>FLIP " + figure(kClaimFactor * sweep.reference_flip, 2) +
+          " and RMSE " + figure(kClaimFactor * sweep.reference_rmse, 2) +
+          "</b>, is claimed: such figures are <span class=\"weak\"><i>grey</i></span>.";
+  if (std::isfinite(sweep.model_flip))
+    text +=
+        " The model's limit is itself FLIP " + figure(sweep.model_flip) +
+        (std::isfinite(sweep.model_rmse) ? " and RMSE " + figure(sweep.model_rmse) : "") + " from all light transport" +
+        (sweep.model_flip < kClaimFactor * sweep.model_flip_error ? ", or less: that reference is too noisy to tell."
+                                                                  : ".");
+  text += "</p>\n</div>\n";
+  if (!pictures.reference_png.empty()) text += image(pictures.reference_png, "The reference") + "\n";
+  return text + "</header>\n";
+}
+
+// What buys the most, in one sentence or two.
+std::string answer_of(const Sweep& sweep) {
+  const KnobFigures *first = nullptr, *last = nullptr;
+  std::string free, idle;
+  auto add = [](std::string* list, const std::string& name) { *list += (list->empty() ? "" : ", ") + escaped(name); };
+  for (const KnobFigures* knob : knobs_by_price(sweep)) {
+    bool claimed = gain_claimed(sweep, ends_of(sweep, knob->name));
+    if (!claimed || !std::isfinite(knob->ms_per_flip)) {
+      add(&idle, knob->name);
+    } else if (knob->ms_per_flip <= 0) {
+      add(&free, knob->name);
+    } else {
+      if (!first) first = knob;
+      last = knob;
+    }
+  }
+  std::string text;
+  if (first)
+    text += "<b>" + escaped(first->name) + "</b> buys the most accuracy per millisecond: .01 of FLIP for <b>" +
+            figure(first->ms_per_flip) + " ms</b> a frame. ";
+  if (last != first)
+    text += "<b>" + escaped(last->name) + "</b> buys the least: " + figure(last->ms_per_flip) + " ms. ";
+  if (!free.empty()) text += "Better and no slower: " + free + ". ";
+  if (!idle.empty()) text += "No gain that can be claimed: " + idle + ".";
+  if (!first && free.empty() && !idle.empty()) text += " A reference of more samples may tell more.";
+  if (text.empty()) text = "No knob was measured.";
+  return "<p class=\"answer\">" + text + "</p>\n";
+}
+
+std::string knob_section(const Sweep& sweep, const PagePictures& pictures, const KnobFigures& knob) {
+  std::string plot = "knob_" + file_word(knob.name), what = knob.what, slope = slope_text(knob);
+  if (!what.empty() && what[0] >= 'a' && what[0] <= 'z') what[0] = static_cast<char>(what[0] - 'a' + 'A');
+  std::string text = "<h2 id=\"" + file_word(knob.name) + "\">" + escaped(knob.name) + "</h2>\n<p>" + escaped(what) +
+                     " <span class=\"soft\">(effect: " + escaped(knob.effect) + ")</span>.";
+  if (pictures.plots.count(plot) == 0 && !slope.empty()) text += " On logarithmic scales: " + escaped(slope) + ".";
+  return text + "</p>\n" + plot_figure(pictures, plot) + strip_figure(sweep, pictures, knob.name) +
+         value_table(sweep, knob.name);
+}
+
+std::string method_of(const Sweep& sweep) {
+  std::string notes;
+  for (const std::string& note : sweep.notes) notes += "<li>" + escaped(note) + "</li>\n";
+  if (!notes.empty()) notes = "<ul class=\"soft\">\n" + notes + "</ul>\n";
+  return "<h2>How it is measured</h2>\n<p class=\"soft\">FLIP (ꟻLIP): Andersson, Nilsson, Akenine-Möller, Oskarsson, "
+         "Åström and Fairchild 2020, “ꟻLIP: A Difference Evaluator for Alternating Images”, at " +
+         figure(sweep.pixels_per_degree) +
+         " pixels per degree; the mean over the picture, after the real output (quantised, dithered) and before it. "
+         "RMSE, relative MSE (Rousselle et al. 2011), 99th percentile, maximum, bias and PSNR are of linear light from "
+         "0 "
+         "to 1 before output. A frame's time is of tracing and packing; the configurations run interleaved in random "
+         "order, "
+         "and ratios to the baseline are medians with the 95 % interval of the bootstrap (Efron and Tibshirani 1993). "
+         "A slope "
+         "is fitted by least squares to logarithms of what the knob itself errs by, the RMSE that its best value takes "
+         "away, where that can be claimed; its 95 % interval in brackets. “ms per "
+         ".01 FLIP” is the time from "
+         "a "
+         "knob’s worst end to its best over what that gains. * marks the baseline’s value.</p>\n" +
+         notes;
+}
+
+}  // namespace
+
+std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
+  std::string text = head_of(sweep, pictures) + "<h2>What buys the most accuracy per millisecond</h2>\n" +
+                     answer_of(sweep) + pair(price_table(sweep), plot_figure(pictures, "price"));
+  text +=
+      "<h2>The front: the least error for the time</h2>\n<p>Nothing that was measured takes less time with less error, "
+      "as "
+      "far as the reference can tell: going up in time, a setting joins the front if it is better by FLIP " +
+      figure(kClaimFactor * sweep.reference_flip, 2) + ".</p>\n" +
+      pair(plot_figure(pictures, "front"), front_table(sweep));
+  std::string links;
+  for (const KnobFigures& knob : sweep.knobs)
+    links += "<a href=\"#" + file_word(knob.name) + "\">" + escaped(knob.name) + "</a> ";
+  if (!links.empty()) text += "<h2>Knob by knob</h2>\n<nav>" + links + "</nav>\n";
+  for (const KnobFigures& knob : sweep.knobs) text += knob_section(sweep, pictures, knob);
+  if (!values_of(sweep, "several").empty())
+    text += "<h2>Several at once</h2>\n<details><summary>What covers pairs of values of two knobs</summary>\n" +
+            value_table(sweep, "several") + "</details>\n";
+  return text + method_of(sweep) + "</body>\n</html>\n";
+}
+
+}  // namespace pocketray

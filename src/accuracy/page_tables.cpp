@@ -1,0 +1,115 @@
+#include "accuracy/page_tables.h"
+
+#include <cmath>
+
+#include "accuracy/findings.h"
+#include "accuracy/text.h"
+
+namespace pocketray {
+namespace {
+
+std::string cell(const std::string& text, const char* kind = "") {
+  return *kind ? "<td class=\"" + std::string(kind) + "\">" + text + "</td>" : "<td>" + text + "</td>";
+}
+std::string headings(const std::vector<std::string>& names) {
+  std::string row = "<thead><tr>";
+  for (const std::string& name : names) row += "<th>" + name + "</th>";
+  return row + "</tr></thead>\n";
+}
+std::string boxed(const std::string& head, const std::string& rows) {
+  return "<div class=\"box\"><table>\n" + head + "<tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
+// A number that the reference cannot vouch for is marked.
+std::string claimed_cell(const std::string& text, bool claimed) {
+  return claimed ? cell(text) : cell("<i>" + text + "</i>", "weak");
+}
+std::string error_cell(double error, double reference_error) {
+  return claimed_cell(figure(error), !(error < kClaimFactor * reference_error));
+}
+std::string ms_text(const Sweep& sweep, const Interval& ns) {
+  std::string text = figure(ms_of(sweep, ns.value));
+  if (std::isfinite(ns.low) && std::isfinite(ns.high) && ns.low < ns.high)
+    text += " <small>" + figure(ms_of(sweep, ns.low)) + "–" + figure(ms_of(sweep, ns.high)) + "</small>";
+  return text;
+}
+std::string ratio_text(const Interval& ratio) {
+  if (!(ratio.value > 0)) return "–";
+  std::string text = figure(ratio.value);
+  if (ratio.low < ratio.high) text += " <small>" + figure(ratio.low) + "–" + figure(ratio.high) + "</small>";
+  return text;
+}
+std::string name_of(const Measured& m) {
+  if (m.knob == "baseline") return "baseline";
+  return escaped(m.knob == "several" ? m.value : m.knob + " " + m.value);
+}
+
+std::string end_text(const Sweep& sweep, const Measured* m) {
+  if (!m) return cell("–");
+  return cell("<b>" + escaped(m->value) + "</b><br /><small>" + figure(ms_of(sweep, m->ns_per_pixel.value)) +
+              " ms, FLIP " + figure(m->flip) + "</small>");
+}
+
+std::string price_text(double price) {
+  if (!std::isfinite(price)) return "–";
+  return price > 0 ? figure(price) : "free";
+}
+
+}  // namespace
+
+std::string price_table(const Sweep& sweep) {
+  std::string rows;
+  for (const KnobFigures* knob : knobs_by_price(sweep)) {
+    KnobEnds ends = ends_of(sweep, knob->name);
+    bool claimed = gain_claimed(sweep, ends);
+    double gain = ends.worst ? ends.worst->flip - ends.best->flip : kNotMeasured;
+    rows += claimed ? "<tr>" : "<tr class=\"weak\">";
+    rows += "<th><a href=\"#" + file_word(knob->name) + "\">" + escaped(knob->name) + "</a><br /><small>" +
+            escaped(knob->effect) + "</small></th>" + cell("<b>" + price_text(knob->ms_per_flip) + "</b>", "key") +
+            cell(figure(gain)) + end_text(sweep, ends.worst) + end_text(sweep, ends.standard) +
+            end_text(sweep, ends.best) + "</tr>\n";
+  }
+  return boxed(headings({"knob", "ms per .01 FLIP", "FLIP gained", "worst end", "baseline", "best end"}), rows);
+}
+
+std::string front_table(const Sweep& sweep) {
+  std::string rows;
+  int number = 0;
+  for (const Measured* m : front_of(sweep))
+    rows += "<tr>" + cell(std::to_string(++number), "key") + "<th class=\"name\"><span>" + name_of(*m) +
+            "</span></th>" + cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
+            error_cell(m->flip, sweep.reference_flip) + error_cell(m->errors.rmse, sweep.reference_rmse) + "</tr>\n";
+  return boxed(headings({"", "setting", "ms per frame", "× baseline", "FLIP", "RMSE"}), rows);
+}
+
+std::string value_table(const Sweep& sweep, const std::string& knob) {
+  std::vector<const Measured*> values = values_of(sweep, knob);
+  bool counted = false;
+  for (const Measured* m : values) counted = counted || std::isfinite(m->instructions_per_pixel);
+  std::vector<std::string> names = {"value",    "ms per frame", "× baseline", "FLIP", "before output", "RMSE",
+                                    "rel. MSE", "p99",          "max",        "bias", "PSNR, dB"};
+  if (counted) names.push_back("instructions per pixel");
+  std::string rows;
+  for (const Measured* m : values) {
+    rows += m->is_default ? "<tr class=\"standard\">" : "<tr>";
+    rows += "<th>" + escaped(m->value) + (m->is_default ? "*" : "") + "</th>";
+    if (!m->missing.empty()) {
+      rows += "<td class=\"missing\" colspan=\"" + std::to_string(names.size() - 1) +
+              "\">not measured: " + escaped(m->missing) + "</td></tr>\n";
+      continue;
+    }
+    const PictureErrors& e = m->errors;
+    rows += cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
+            error_cell(m->flip, sweep.reference_flip) + error_cell(m->flip_before, sweep.reference_flip) +
+            error_cell(e.rmse, sweep.reference_rmse);
+    bool claimed = !(e.rmse < kClaimFactor * sweep.reference_rmse);  // else all are mostly the reference's own
+    for (const std::string& text : {figure(e.rel_mse), figure(e.p99), figure(e.max), figure(e.bias),
+                                    std::isfinite(e.psnr) ? format("%.1f", e.psnr) : figure(e.psnr)})
+      rows += claimed_cell(text, claimed);
+    if (counted) rows += cell(figure(m->instructions_per_pixel, 4));
+    rows += "</tr>\n";
+  }
+  return boxed(headings(names), rows);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,16 @@
+// The tables of the page.
+#pragma once
+#include <string>
+
+#include "accuracy/result.h"
+
+namespace pocketray {
+
+// "ms per .01 FLIP" by knob, what buys the most accuracy first.
+std::string price_table(const Sweep& sweep);
+// The Pareto front's settings, numbered as in its plot.
+std::string front_table(const Sweep& sweep);
+// All figures of one knob's values; of "several" those of settings turned at once.
+std::string value_table(const Sweep& sweep, const std::string& knob);
+
+}  // namespace pocketray

@@ -1,0 +1,61 @@
+#include "accuracy/report.h"
+
+#include <cstdio>
+
+#include "accuracy/gnuplot.h"
+#include "accuracy/page.h"
+#include "accuracy/plot.h"
+#include "accuracy/strip.h"
+#include "accuracy/text.h"
+#include "present/png_file.h"
+
+namespace pocketray {
+namespace {
+
+std::string read_file(const std::string& path) {
+  std::string bytes;
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (!file) return bytes;
+  char part[4096];
+  for (std::size_t count; (count = std::fread(part, 1, sizeof part, file)) > 0;) bytes.append(part, count);
+  std::fclose(file);
+  return bytes;
+}
+
+Status write_strips(const std::string& folder, const Sweep& sweep, PagePictures* pictures) {
+  if (encode_png_need(1) == 0) return success();  // built without libpng
+  if (!sweep.reference_picture.rgb.empty())
+    RETURN_IF_ERROR(encode_png(sweep.reference_picture, &pictures->reference_png));
+  for (const Strip& strip : sweep.strips) {
+    std::string* png = &pictures->strips[strip.knob];
+    RETURN_IF_ERROR(encode_png(draw_strip(sweep.reference_picture, strip), png));
+    RETURN_IF_ERROR(write_file(folder + "/strip_" + file_word(strip.knob) + ".png", *png));
+  }
+  return success();
+}
+
+Status write_plots(const std::string& folder, const Sweep& sweep, PagePictures* pictures, bool* drawn) {
+  std::vector<Plot> plots = {front_plot(sweep), price_plot(sweep)};
+  for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));
+  std::vector<std::string> scripts;
+  for (const Plot& plot : plots) {
+    scripts.push_back(plot.name + ".gnuplot");
+    RETURN_IF_ERROR(write_file(folder + "/" + scripts.back(), plot.script));
+  }
+  *drawn = run_gnuplot(folder, scripts);
+  if (*drawn)
+    for (const Plot& plot : plots) pictures->plots[plot.name] = read_file(folder + "/" + plot.name + ".svg");
+  return success();
+}
+
+}  // namespace
+
+Status write_report(const std::string& folder, const Sweep& sweep, bool* drawn) {
+  *drawn = false;
+  PagePictures pictures;
+  RETURN_IF_ERROR(write_strips(folder, sweep, &pictures));
+  RETURN_IF_ERROR(write_plots(folder, sweep, &pictures, drawn));
+  return write_file(folder + "/index.html", page_of(sweep, pictures));
+}
+
+}  // namespace pocketray

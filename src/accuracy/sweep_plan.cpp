@@ -1,0 +1,193 @@
+#include "accuracy/sweep_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/covering.h"
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+// The least, the baseline's and the best value of those that can be had, each once.
+std::vector<const SweepPoint*> levels_of(const SweepPlan& plan, const SweptKnob& swept) {
+  std::vector<const SweepPoint*> there, levels;
+  for (std::size_t i = 0; i < swept.count; ++i)
+    if (plan.points[swept.first + i].missing.empty()) there.push_back(&plan.points[swept.first + i]);
+  for (const SweepPoint* point : there)
+    if (point == there.front() || point == there.back() || point->is_default) levels.push_back(point);
+  return levels;
+}
+
+void add_knob(const Knob& knob, const Configuration& baseline, const std::function<Status(const Settings&)>& can_be_had,
+              SweepPlan* plan) {
+  std::vector<double> values = knob_values(knob, baseline);
+  plan->knobs.push_back({&knob, plan->points.size(), values.size()});
+  for (double value : values) {
+    SweepPoint point = {knob.name, value_label(knob, value), baseline, 1, "", value == knob.get(baseline), true};
+    point.is_choice = point.is_default || knob.is_setting;
+    knob.set(&point.configuration, value);
+    point.price = relative_price(knob, baseline, value);
+    Status status = can_be_had(point.configuration.settings);
+    if (!status.ok) point.missing = status.message;
+    plan->points.push_back(point);
+  }
+}
+
+void add_covering_set(const Configuration& baseline, double price_limit, SweepPlan* plan) {
+  std::vector<std::vector<const SweepPoint*>> levels;
+  std::vector<std::vector<double>> prices;
+  std::vector<const Knob*> knobs;
+  for (const SweptKnob& swept : plan->knobs) {
+    if (swept.knob->alone) continue;
+    knobs.push_back(swept.knob);
+    levels.push_back(levels_of(*plan, swept));
+    prices.emplace_back();
+    for (const SweepPoint* point : levels.back()) prices.back().push_back(point->price);
+  }
+  Covering covering = cover_pairs(prices, price_limit);
+  std::vector<SweepPoint> points;
+  for (const std::vector<int>& row : covering.rows) {
+    SweepPoint point = {"several", "", baseline, 1, "", false, true};
+    int turned = 0;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const SweepPoint& level = *levels[k][static_cast<std::size_t>(row[k])];
+      const Knob& knob = *knobs[k];
+      point.price *= level.price;
+      if (level.is_default) continue;
+      knob.set(&point.configuration, knob.get(level.configuration));
+      point.is_choice = point.is_choice && knob.is_setting;
+      point.value += (turned++ ? ", " : "") + level.knob + " " + level.value;
+    }
+    if (turned > 1) points.push_back(point);  // others are measured already
+  }
+  plan->points.insert(plan->points.end(), points.begin(), points.end());
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%zu configurations cover all pairs of values but %zu of %zu, which would take more than %g "
+                "times the baseline",
+                points.size(), covering.too_dear_count, covering.pair_count, price_limit);
+  plan->notes.push_back(text);
+}
+
+bool is_planned(const SweepPlan& plan, const Configuration& configuration) {
+  auto is_same = [&](const SweepPoint& point) {
+    return std::all_of(plan.knobs.begin(), plan.knobs.end(), [&](const SweptKnob& swept) {
+      return swept.knob->get(point.configuration) == swept.knob->get(configuration);
+    });
+  };
+  return std::any_of(plan.points.begin(), plan.points.end(), is_same);
+}
+
+// Those of the scene's knobs that settings turn.
+void add_settings(const Settings& settings, const std::function<Status(const Settings&)>& can_be_had,
+                  double price_limit, SweepPlan* plan) {
+  const Configuration& baseline = plan->points[0].configuration;
+  Configuration wanted = baseline;
+  wanted.settings = settings;
+  SweepPoint point = {"several", "", baseline, 1, "", false, true};
+  for (const SweptKnob& swept : plan->knobs) {
+    const Knob& knob = *swept.knob;
+    double value = knob.get(wanted);
+    if (value == knob.get(baseline)) continue;
+    knob.set(&point.configuration, value);
+    point.price *= relative_price(knob, baseline, value);
+    point.value += (point.value.empty() ? "" : ", ") + (knob.name + (" " + value_label(knob, value)));
+  }
+  bool wanted_too = point.price <= price_limit && can_be_had(point.configuration.settings).ok;
+  if (wanted_too && !is_planned(*plan, point.configuration)) plan->points.push_back(point);
+}
+
+Measured measured_of(const SweepPoint& point, const PointFigures& f, const PointFigures& baseline, std::uint64_t seed) {
+  Measured m;
+  m.knob = point.knob, m.value = point.value, m.is_default = point.is_default, m.missing = point.missing;
+  if (!m.missing.empty()) return m;
+  if (!f.has_errors || f.ns_per_pixel.empty()) {
+    m.missing = "not measured yet";
+    return m;
+  }
+  std::size_t rounds = std::min(f.ns_per_pixel.size(), baseline.ns_per_pixel.size());
+  std::vector<double> ns(f.ns_per_pixel.begin(), f.ns_per_pixel.begin() + static_cast<std::ptrdiff_t>(rounds)),
+      of_baseline(baseline.ns_per_pixel.begin(), baseline.ns_per_pixel.begin() + static_cast<std::ptrdiff_t>(rounds));
+  m.ns_per_pixel = median_ratio(ns, std::vector<double>(rounds, 1.0), seed);
+  m.time_ratio = median_ratio(ns, of_baseline, seed);
+  m.instructions_per_pixel = f.instructions_per_pixel;
+  m.flip = f.flip, m.flip_before = f.flip_before, m.errors = f.errors;
+  return m;
+}
+
+// Of what one can choose.
+void mark_front(const SweepPlan& plan, double resolution, std::vector<Measured>* measured) {
+  std::vector<std::size_t> there;
+  std::vector<double> cost, error;
+  for (std::size_t i = 0; i < measured->size(); ++i) {
+    const Measured& m = (*measured)[i];
+    if (!m.missing.empty() || (m.is_default && i > 0) || !plan.points[i].is_choice) continue;
+    there.push_back(i), cost.push_back(m.ns_per_pixel.value), error.push_back(m.flip);
+  }
+  std::vector<bool> front = pareto_front(cost, error, resolution);
+  for (std::size_t i = 0; i < there.size(); ++i) (*measured)[there[i]].pareto = front[i];
+  for (Measured& m : *measured)
+    if (m.is_default) m.pareto = measured->front().pareto;
+}
+
+// The best value stands for a knob's limit in the slope; what takes more of its time is too near to it.
+constexpr double kFarFromBest = 1.0 / 3;
+
+KnobFigures figures_of(const SweptKnob& swept, const Sweep& sweep) {
+  const Knob& knob = *swept.knob;
+  KnobFigures k;
+  k.name = knob.name, k.what = knob.what, k.effect = knob.effect, k.theory = knob.theory;
+  const Measured *worst = nullptr, *best = nullptr;
+  for (std::size_t i = 0; i < swept.count; ++i) {
+    const Measured& m = sweep.measured[swept.first + i];
+    if (!m.missing.empty()) continue;
+    worst = worst ? worst : &m;
+    best = &m;
+  }
+  std::vector<double> time, error;
+  for (std::size_t i = 0; best && i < swept.count; ++i) {
+    const Measured& m = sweep.measured[swept.first + i];
+    if (!m.missing.empty() || m.ns_per_pixel.value > kFarFromBest * best->ns_per_pixel.value) continue;
+    double square = m.errors.rmse * m.errors.rmse - best->errors.rmse * best->errors.rmse;
+    double own = square > 0 ? std::sqrt(square) : 0;
+    if (own > kClaimFactor * sweep.reference_rmse) time.push_back(m.ns_per_pixel.value), error.push_back(own);
+  }
+  k.has_slope = knob.labels.empty() && time.size() >= 3;
+  if (k.has_slope) k.slope = log_log_slope(time, error);
+  if (worst && worst->flip - best->flip > kClaimFactor * sweep.reference_flip)
+    k.ms_per_flip = (best->ns_per_pixel.value - worst->ns_per_pixel.value) * 1e-6 * sweep.width * sweep.height * 0.01 /
+                    (worst->flip - best->flip);
+  return k;
+}
+
+}  // namespace
+
+SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const Configuration& baseline,
+                     const std::function<Status(const Settings&)>& can_be_had, double price_limit,
+                     const std::vector<Settings>& ladder) {
+  SweepPlan plan;
+  plan.points.push_back({"baseline", "", baseline, 1, "", true, true});
+  for (const Knob& knob : knob_list()) {
+    std::string why;
+    if (knob_applies(knob, scene, effects, &why))
+      add_knob(knob, baseline, can_be_had, &plan);
+    else
+      plan.notes.push_back(std::string(knob.name) + " is left out: " + why);
+  }
+  add_covering_set(baseline, price_limit, &plan);
+  for (const Settings& settings : ladder) add_settings(settings, can_be_had, price_limit, &plan);
+  return plan;
+}
+
+void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Sweep* sweep) {
+  CHECK_EQ(plan.points.size(), figures.size());
+  sweep->measured.clear();
+  sweep->knobs.clear();
+  for (std::size_t i = 0; i < plan.points.size(); ++i)
+    sweep->measured.push_back(measured_of(plan.points[i], figures[plan.points[i].is_default ? 0 : i], figures[0], i));
+  mark_front(plan, kClaimFactor * sweep->reference_flip, &sweep->measured);
+  for (const SweptKnob& swept : plan.knobs) sweep->knobs.push_back(figures_of(swept, *sweep));
+}
+
+}  // namespace pocketray

@@ -1,0 +1,184 @@
+// A scene opened for a sweep.
+#include <zlib.h>
+
+#include <thread>
+
+#include "app/accuracy_sweep.h"
+#include "app/frame.h"
+#include "app/front_file.h"
+#include "app/interrupt.h"
+#include "app/scene_identity.h"
+#include "base/limits.h"
+#include "plan/plan_lights.h"
+#include "plan/plan_scene.h"
+#include "platform/instructions.h"
+#include "scene/baked.h"
+#include "shade/reference_rendered.h"
+
+namespace pocketray {
+namespace {
+
+// Where no --memory is given, a sweep starts with this: address space, of which it touches what it needs.
+constexpr std::size_t kMemoryFirst = std::size_t(1) << 30;
+
+std::string hash_of(const SceneSource& source, const Scene& scene) {
+  std::vector<std::uint8_t> own;
+  const std::uint8_t* bytes = source.baked;
+  std::size_t byte_count = source.baked_bytes;
+  if (!bytes) {
+    own.resize(baked_size(scene));
+    baked_write(scene, own.data());
+    bytes = own.data(), byte_count = own.size();
+  }
+  char text[48];
+  std::snprintf(text, sizeof text, "%08lx of %zu bytes", crc32_z(0, bytes, byte_count), byte_count);
+  return text;
+}
+
+// The settings that need the most memory of all a sweep tries.
+Settings dearest(const Scene& scene, Settings settings) {
+  std::uint32_t own = settings.points_per_area_light;
+  for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
+    settings.points_per_area_light = points;
+    std::uint32_t count;
+    // Default lights may come in when the scene is planned.
+    if (light_point_count(scene, settings, kAllEffects, &count).ok && count + kDefaultLightCount <= kPointLightCountMax)
+      return settings;
+  }
+  settings.points_per_area_light = own;
+  return settings;
+}
+
+Status load_cornell(std::uint32_t sphere_columns, Renderer* r, SceneStorage* storage) {
+  if (tessellated_cornell_need(sphere_columns) > arena_free(r->scene_arena))
+    return failure("cornell with a sphere of %u columns does not fit --memory: raise it", sphere_columns);
+  build_tessellated_cornell(sphere_columns, &r->scene_arena, &r->scene);
+  *storage = SceneStorage();
+  storage->arena_bytes = r->scene_arena.used;
+  return success();
+}
+
+Status open_with(const AccuracyOptions& options, const CommonOptions& common, std::uint32_t sphere_columns, Rig* rig) {
+  OpenHooks hooks;
+  hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
+  if (sphere_columns != kCornellSphereColumns)
+    hooks.load = [=](const std::string&, Renderer* r, SceneSource*, SceneStorage* storage) {
+      return load_cornell(sphere_columns, r, storage);
+    };
+  hooks.loaded = [&](const SceneSource& source, Renderer* r) {
+    rig->baseline.settings = r->settings;
+    rig->scene_hash = hash_of(source, r->scene);
+    ContentHash identity;
+    if (identify_scene(source, r, &identity).ok) rig->front_path = front_path(common.scene, identity);
+    r->settings = dearest(r->scene, r->settings);
+    return success();
+  };
+  RETURN_IF_ERROR(open_scene(common, hooks, &rig->opened));
+  RETURN_IF_ERROR(start_scene(&rig->opened, common));
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(r, rig->baseline.settings));
+  RETURN_IF_ERROR(prepare_frame(r, options.seconds));
+  bool measured;
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(common.exposure, &measured, &factor));
+  if (r->scene.info.auto_exposure != 0) r->exposure = measure_exposure(r) * factor;
+  return success();
+}
+
+// As render_frame() does, with the times of tracing alone.
+Status render_in_double(Rig* rig, double seconds) {
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(prepare_frame(r, seconds));
+  make_rig_reference(rig);
+  std::uint64_t start = clock_ns();
+  trace_rows(
+      r->settings,
+      [&](std::uint32_t row, Vec3d* radiances) { trace_as_rendered(rig->reference, row, row + 1, radiances); }, nullptr,
+      r->image.data);
+  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  return success();
+}
+
+}  // namespace
+
+Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig) {
+  CommonOptions common = options.common;
+  bool grows = common.memory.empty() && common.device.empty() && common.emulate.empty();
+  std::size_t memory = kMemoryFirst;
+  for (;;) {
+    if (grows) common.memory = std::to_string(memory);
+    *rig = std::make_unique<Rig>();
+    (*rig)->baseline.output = find_output_format(options.output);
+    (*rig)->baseline.sphere_columns = kCornellSphereColumns;
+    Status status = open_with(options, common, sphere_columns, rig->get());
+    std::size_t wanted = (*rig)->opened.source.bytes_wanted;
+    if (status.ok || !grows || wanted <= memory) return status;
+    memory = wanted + wanted / 4;
+  }
+}
+
+void make_rig_reference(Rig* rig) {
+  if (!rig->reference_memory.empty()) return;
+  const FrameData& frame = rig->opened.renderer.frame;
+  rig->reference_memory.resize(reference_need(frame) + kArenaAlignment);
+  Arena arena = make_arena("reference", rig->reference_memory.data(), rig->reference_memory.size());
+  rig->reference = make_reference(frame, &arena);
+}
+
+bool trace_rows(const Settings& settings, const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
+                Progress* progress, Vec3* picture) {
+  std::atomic<std::uint32_t> next_row{0}, rows_done{0};
+  auto take_rows = [&](bool shows) {
+    std::vector<Vec3d> row_of(settings.width);
+    for (std::uint32_t row; !interrupted && (row = next_row++) < settings.height;) {
+      trace_row(row, row_of.data());
+      Vec3* out = picture + std::size_t(row) * settings.width;
+      for (const Vec3d& radiance : row_of)
+        *out++ = {static_cast<float>(radiance.x), static_cast<float>(radiance.y), static_cast<float>(radiance.z)};
+      ++rows_done;
+      if (shows) show_progress(progress, rows_done);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 1; i < settings.threads; ++i) threads.emplace_back(take_rows, false);
+  take_rows(progress != nullptr);
+  for (std::thread& thread : threads) thread.join();
+  return rows_done == settings.height;
+}
+
+Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(r, configuration.settings));
+  if (configuration.double_precision)
+    RETURN_IF_ERROR(render_in_double(rig, seconds));
+  else
+    RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
+  const OutputFormat& output = kOutputFormats[configuration.output];
+  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height),
+      line_bytes = width * output.format.bits_per_pixel / 8;
+  rig->packed.resize((static_cast<std::size_t>(line_bytes) * r->settings.height + 3) / 4);
+  std::uint64_t start = clock_ns();
+  pack_rows(r->image.data, width, height, 0, height, r->exposure, output.format, Rotation::none, output.dither,
+            rig->packed.data(), line_bytes);
+  double pack_ns = static_cast<double>(clock_ns() - start);
+  *ns_per_pixel = (r->timings.trace_ms * 1e6 + pack_ns) / static_cast<double>(r->image.count);
+  return success();
+}
+
+Status count_instructions(Rig* rig, const Configuration& configuration, double seconds, double* per_pixel) {
+  *per_pixel = kNotMeasured;
+  std::uint64_t start = platform::instruction_count();
+  if (start == 0) return success();
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(r, configuration.settings));
+  RETURN_IF_ERROR(prepare_frame(r, seconds));  // the frame does so again, and it is not timed
+  std::uint64_t prepared = platform::instruction_count();
+  double ns_per_pixel;
+  RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));
+  std::uint64_t end = platform::instruction_count();
+  double traced = static_cast<double>(end - prepared) - static_cast<double>(prepared - start);
+  if (!interrupted && traced > 0) *per_pixel = traced / static_cast<double>(r->image.count);
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,57 @@
+// Measures a sweep: opens the scene with memory for its dearest configuration, renders references, times all
+// configurations in turn and compares their pictures with the reference. See accuracy/sweep_plan.h for what it
+// measures.
+#pragma once
+#include "accuracy/flip.h"
+#include "accuracy/sweep_plan.h"
+#include "app/accuracy_front.h"
+#include "app/accuracy_state.h"
+#include "app/options.h"
+#include "app/progress.h"
+#include "shade/reference.h"
+
+namespace pocketray {
+
+struct AccuracyOptions {
+  CommonOptions common;
+  std::string folder, output = kOutputFormats[Configuration().output].name, reference = "model";
+  std::uint32_t reference_samples = 0;  // a pixel of the chosen reference, both seeds together; 0: what is usual
+  std::uint32_t rounds = 15;
+  double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
+  bool restart = false;
+};
+
+// A scene opened for all configurations that have its geometry.
+struct Rig {
+  OpenScene opened;
+  Configuration baseline;             // as the options have it
+  std::string scene_hash;             // of its content
+  std::string front_path;             // in the cache; empty: the scene could not be named
+  std::vector<std::uint32_t> packed;  // pixels of the last frame
+  std::vector<std::uint8_t> reference_memory;
+  Reference reference;  // of the posed frame; made where it is needed
+};
+
+// Opens the scene, with cornell's sphere of so many columns, for every configuration that the knobs can make of it.
+Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig);
+
+// Makes rig->reference if it is not made yet, of the frame as it is prepared.
+void make_rig_reference(Rig* rig);
+
+// Calls trace_row(row, radiances) for every row by all threads, and puts what it gets into `picture`, width × height.
+// `progress` may be null. False: interrupted.
+bool trace_rows(const Settings& settings, const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
+                Progress* progress, Vec3* picture);
+
+// Renders and packs one frame. Times both; keeps the picture in the rig's renderer. Stops at an interrupt, which the
+// caller has to look for.
+Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel);
+
+// Instructions per pixel of what time_frame() times; NaN where none are counted or at an interrupt.
+Status count_instructions(Rig* rig, const Configuration& configuration, double seconds, double* per_pixel);
+
+// Measures everything. What is there already is taken from the folder; after an interrupt the rest is missing and
+// *whole is false. `front`, where given, becomes what --budget-ms may choose from.
+Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front = nullptr);
+
+}  // namespace pocketray

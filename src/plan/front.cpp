@@ -1,0 +1,156 @@
+#include "plan/front.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/check.h"
+#include "base/fmath.h"
+
+namespace pocketray {
+namespace {
+
+bool dominates(const Candidate& a, const Candidate& b) { return a.ns_per_pixel <= b.ns_per_pixel && a.flip <= b.flip; }
+
+void drop(Front* front, std::uint32_t index) {
+  for (std::uint32_t i = index + 1; i < front->count; ++i) front->candidates[i - 1] = front->candidates[i];
+  --front->count;
+}
+
+}  // namespace
+
+bool same_quality(const Candidate& a, const Candidate& b) {
+  return a.samples_per_pixel == b.samples_per_pixel && a.ray_depth == b.ray_depth &&
+         a.points_per_area_light == b.points_per_area_light && a.cut_off_levels == b.cut_off_levels &&
+         a.texture_filter == b.texture_filter && a.normals == b.normals;
+}
+
+const Candidate* find_candidate(const Front& front, const Candidate& quality) {
+  for (std::uint32_t i = 0; i < front.count; ++i)
+    if (same_quality(front.candidates[i], quality)) return &front.candidates[i];
+  return nullptr;
+}
+
+float clamped_price(double ns) {
+  constexpr double kMin = static_cast<double>(kPriceNsMin), kMax = static_cast<double>(kPriceNsMax);
+  return static_cast<float>(ns > kMin ? ns < kMax ? ns : kMax : kMin);  // NaN: the least
+}
+
+Candidate candidate_of(const Settings& s) {
+  Candidate c;
+  c.samples_per_pixel = s.samples_per_pixel;
+  c.ray_depth = s.ray_depth;
+  c.points_per_area_light = s.points_per_area_light;
+  c.cut_off_levels = s.cut_off_levels;
+  c.texture_filter = s.texture_filter;
+  c.normals = s.normals;
+  return c;
+}
+
+Settings with_candidate(const Settings& settings, const Candidate& c) {
+  Settings s = settings;
+  s.samples_per_pixel = c.samples_per_pixel;
+  s.ray_depth = c.ray_depth;
+  s.points_per_area_light = c.points_per_area_light;
+  s.cut_off_levels = c.cut_off_levels;
+  s.texture_filter = c.texture_filter;
+  s.normals = c.normals;
+  return s;
+}
+
+bool errors_known(const Front& front) {
+  for (std::uint32_t i = 0; i < front.count; ++i)
+    if (std::isnan(front.candidates[i].flip)) return false;
+  return true;
+}
+
+void sort_by_price(Front* front) {
+  CHECK_LE(front->count, kFrontCandidateMax);
+  for (std::uint32_t i = 1; i < front->count; ++i)
+    for (std::uint32_t k = i; k > 0 && front->candidates[k].ns_per_pixel < front->candidates[k - 1].ns_per_pixel; --k)
+      std::swap(front->candidates[k], front->candidates[k - 1]);
+}
+
+void sort_front(Front* front) {
+  if (!errors_known(*front)) return;
+  sort_by_price(front);
+  for (std::uint32_t i = 0; i < front->count;) {
+    bool worse = false;
+    for (std::uint32_t k = 0; k < front->count; ++k) {
+      const Candidate &a = front->candidates[k], &b = front->candidates[i];
+      worse = worse || (k != i && dominates(a, b) && (k < i || !dominates(b, a)));
+    }
+    if (worse)
+      drop(front, i);
+    else
+      ++i;
+  }
+}
+
+bool adopt_prices(Front* front, const Front& measured) {
+  double log_sum = 0;
+  int found = 0;
+  for (std::uint32_t i = 0; i < front->count; ++i)
+    if (const Candidate* same = find_candidate(measured, front->candidates[i])) {
+      log_sum +=
+          det_log(static_cast<double>(same->ns_per_pixel) / static_cast<double>(front->candidates[i].ns_per_pixel));
+      ++found;
+    }
+  if (found == 0) return false;
+  double ratio = det_exp(log_sum / found);
+  for (std::uint32_t i = 0; i < front->count; ++i) {
+    Candidate& c = front->candidates[i];
+    const Candidate* same = find_candidate(measured, c);
+    c.ns_per_pixel = same ? same->ns_per_pixel : clamped_price(static_cast<double>(c.ns_per_pixel) * ratio);
+  }
+  return true;
+}
+
+Front builtin_front() {
+  constexpr struct {
+    std::uint32_t samples, depth, area_lights;
+    float cut_off;
+  } kLadder[] = {{1, 0, 1, 4},      {1, 1, 1, 4},      {1, 1, 1, 0.5f}, {1, 2, 2, 0.5f}, {1, 8, 4, 0.5f},
+                 {2, 8, 4, 0.5f},   {4, 8, 4, 0.5f},   {4, 8, 8, 0.5f}, {8, 8, 8, 0.5f}, {8, 8, 16, 0.5f},
+                 {16, 8, 16, 0.5f}, {16, 8, 64, 0.5f}, {16, 16, 64, 0}};
+  Front front;
+  Candidate c;
+  c.texture_filter = TextureFilter::nearest;
+  for (const auto& row : kLadder) {
+    c.samples_per_pixel = row.samples;
+    c.ray_depth = row.depth;
+    c.points_per_area_light = row.area_lights;
+    c.cut_off_levels = row.cut_off;
+    // Guessed: as `pocketray bench` finds it on the built-in scenes, to a factor of two.
+    double reach = row.depth < 4 ? row.depth : 4, points = row.area_lights;
+    double exact = row.cut_off == 0 ? 1.2 : row.cut_off > 1 ? 0.95 : 1.0;
+    double sample_ns = exact * (200 + 40 * reach + (c.texture_filter == TextureFilter::nearest ? 0 : 10) +
+                                60 * points * (1 + 0.1 * reach));
+    c.ns_per_pixel = static_cast<float>(sample_ns * row.samples);
+    front.candidates[front.count++] = c;
+    c.texture_filter = TextureFilter::as_scene;
+  }
+  return front;
+}
+
+void drop_what_scene_ignores(Front* front, EffectMask effects) {
+  const Candidate usual;
+  bool spawns = has(effects, Effect::mirror) || has(effects, Effect::refraction) || has(effects, Effect::alpha_blend);
+  for (std::uint32_t i = 0; i < front->count; ++i) {
+    Candidate& c = front->candidates[i];
+    if (!has(effects, Effect::area_light)) c.points_per_area_light = usual.points_per_area_light;
+    if (!spawns) c.ray_depth = usual.ray_depth;
+    if (!spawns && !has(effects, Effect::shadow)) c.cut_off_levels = usual.cut_off_levels;
+    if (!has(effects, Effect::texture)) c.texture_filter = usual.texture_filter;
+    if (!has(effects, Effect::smooth_normal)) c.normals = usual.normals;
+  }
+  for (std::uint32_t i = 1; i < front->count;) {  // of the same pictures the first is the cheapest
+    std::uint32_t k = 0;
+    while (k < i && !same_quality(front->candidates[k], front->candidates[i])) ++k;
+    if (k < i)
+      drop(front, i);
+    else
+      ++i;
+  }
+}
+
+}  // namespace pocketray

@@ -1,0 +1,233 @@
+#include "plan/governor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/check.h"
+#include "base/fmath.h"
+
+namespace pocketray {
+namespace {
+
+// Logarithms; by tests/plan/governor_test.cpp, where 95 % of the frames stay within 110 % of the budget.
+constexpr double kLate = 0.0953;                           // 1.1
+constexpr double kLimit = 0.077;                           // 1.08: a candidate that is expected to exceed it is left,
+constexpr double kReturn = 0.03;                           // and one that is expected to stay below this may be gone to
+constexpr double kUnsettled = 0.1;                         // added to the load while few frames are known
+constexpr double kDoubtGrowth = 0.001, kDoubtGrown = 0.2;  // a frame, of what does not run; how far that goes
+constexpr double kDoubtLeast = 0.02;                       // that makes a trial worth while
+constexpr double kCorrectionMax = 3.5;
+constexpr std::uint32_t kFewFrames = 4, kManyFrames = 40;
+constexpr std::uint32_t kAttributedFrames = 3,
+                        kLateFrames = 128;  // after a switch, in which a surprise is the candidate's
+constexpr std::uint32_t kTrialPause = 8, kAgainPauseMin = 64, kAgainPauseMax = 1024;  // frames
+
+double log_price(const Governor& g, std::uint32_t i) {
+  return det_log(static_cast<double>(g.front.candidates[i].ns_per_pixel) * g.pixel_count) + g.corrections[i];
+}
+
+std::uint32_t load_count(const Governor& g) { return std::min(g.load_count, kLoadFrameCount); }
+double last_load(const Governor& g) { return g.loads[(g.load_count - 1) % kLoadFrameCount]; }
+
+// The middle of the last few loads.
+double middle_load(const Governor& g) {
+  constexpr std::uint32_t kCount = 5;
+  std::uint32_t count = std::min(g.load_count, kCount);
+  if (count == 0) return 0;
+  double values[kCount];
+  for (std::uint32_t i = 0; i < count; ++i) values[i] = g.loads[(g.load_count - 1 - i) % kLoadFrameCount];
+  std::sort(values, values + count);
+  return count % 2 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / 2;
+}
+
+constexpr std::uint32_t kRankMax = 4;
+
+// The rank-th highest, from 1.
+double highest(const double* values, std::uint32_t count, std::uint32_t rank) {
+  double best[kRankMax] = {-1e300, -1e300, -1e300, -1e300};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    double value = values[i];
+    for (double& high : best)
+      if (value > high) std::swap(value, high);
+  }
+  return best[rank - 1];
+}
+
+// The load to be prepared for.
+double high_load(const Governor& g) {
+  std::uint32_t count = load_count(g);
+  if (count == 0) return kUnsettled;
+  if (count < kFewFrames) return highest(g.loads, count, 1) + kUnsettled;
+  std::uint32_t rank = count < kManyFrames ? 2 : g.late_share < 0.02 ? 4 : g.late_share < 0.03 ? 3 : 2;
+  double high = highest(g.loads, count, rank);
+  if (count >= kManyFrames) high = std::min(high, middle_load(g) + highest(g.rises, count, rank));
+  double before = g.loads[(g.load_count - 2) % kLoadFrameCount];
+  return std::max(high, std::min(last_load(g), before));
+}
+
+// Whether a is the more accurate.
+bool is_better(const Governor& g, std::uint32_t a, std::uint32_t b) {
+  float error_a = g.front.candidates[a].flip, error_b = g.front.candidates[b].flip;
+  if (std::isnan(error_a) || std::isnan(error_b) || error_a == error_b) return a > b;
+  return error_a < error_b;
+}
+
+std::uint32_t fastest(const Governor& g) {
+  std::uint32_t best = 0;
+  for (std::uint32_t i = 1; i < g.front.count; ++i)
+    if (log_price(g, i) < log_price(g, best)) best = i;
+  return best;
+}
+
+// The best of those that are expected to stay within a limit, the fastest where none is. The one at work has more room:
+// between two that are on the edge it is kept.
+std::uint32_t choose(const Governor& g) {
+  double load = high_load(g), budget = det_log(g.budget_ns);
+  std::uint32_t best = g.front.count;
+  for (std::uint32_t i = 0; i < g.front.count; ++i) {
+    double over = log_price(g, i) + load - budget;
+    if (over <= (i == g.home && g.load_count > 0 ? kLimit : kReturn) &&
+        (best == g.front.count || is_better(g, i, best)))
+      best = i;
+  }
+  return best < g.front.count ? best : fastest(g);
+}
+
+// Better ones that may fit if their price is wrong in our favour; of these the cheapest. front.count: none.
+std::uint32_t choose_trial(const Governor& g) {
+  double load = high_load(g), budget = det_log(g.budget_ns);
+  std::uint32_t best = g.front.count;
+  for (std::uint32_t i = 0; i < g.front.count; ++i) {
+    if (!is_better(g, i, g.home) || g.doubts[i] < kDoubtLeast) continue;
+    if (log_price(g, i) + load - budget - g.doubts[i] > kReturn) continue;
+    if (best == g.front.count || log_price(g, i) < log_price(g, best)) best = i;
+  }
+  return best;
+}
+
+// What never ran is tried soon; what ran and did not fit again after pauses that grow as long as it does not.
+std::uint32_t try_another(Governor* g) {
+  std::uint32_t trial = choose_trial(*g);
+  g->frames_to_trial = kTrialPause;
+  if (trial == g->front.count) return g->home;
+  if (g->ran[trial]) {
+    g->frames_to_trial = g->trial_pause;
+    g->trial_pause = std::min(2 * g->trial_pause, kAgainPauseMax);
+  }
+  g->on_trial = true;
+  return trial;
+}
+
+// Corrections are of prices against each other: their mean goes into the loads.
+void center_corrections(Governor* g) {
+  double sum = 0;
+  int count = 0;
+  for (std::uint32_t i = 0; i < g->front.count; ++i)
+    if (g->ran[i]) sum += g->corrections[i], ++count;
+  double mean = sum / count;
+  for (std::uint32_t i = 0; i < g->front.count; ++i)
+    if (g->ran[i]) g->corrections[i] -= mean;
+  for (double& load : g->loads) load += mean;
+  g->load_sum += mean * g->load_count;
+  g->reference_low += mean;
+  g->reference_high += mean;
+}
+
+// After a switch: what neither the last frame's load nor that of the frames before it explains is the candidate's own.
+void attribute(Governor* g, double load) {
+  std::uint32_t i = g->current;
+  double surprise = load - std::max(g->reference_low, std::min(g->reference_high, load));
+  double share = std::max(0.2, 1.0 / (g->switches_to[i] + g->frames_at_current - 1));
+  double moved =
+      std::max(-kCorrectionMax, std::min(kCorrectionMax, g->corrections[i] + share * surprise)) - g->corrections[i];
+  g->corrections[i] += moved;
+  g->loads[(g->load_count - 1) % kLoadFrameCount] -= moved;
+  g->rises[(g->load_count - 1) % kLoadFrameCount] -= moved;
+  g->load_sum -= moved;
+  center_corrections(g);
+}
+
+void switch_to(Governor* g, std::uint32_t candidate) {
+  if (candidate == g->current) return;
+  g->current = candidate;
+  g->frames_at_current = 0;
+  ++g->switch_count;
+  ++g->switches_to[candidate];
+  g->reference_low = std::min(last_load(*g), middle_load(*g));
+  g->reference_high = std::max(last_load(*g), middle_load(*g));
+}
+
+}  // namespace
+
+void start_governor(const Front& front, double budget_ns, double pixel_count, double doubt, bool load_known,
+                    Governor* g) {
+  CHECK_GT(front.count, 0u);
+  CHECK_LE(front.count, kFrontCandidateMax);
+  CHECK(budget_ns > 0 && pixel_count > 0 && doubt >= 1);
+  *g = Governor();
+  g->front = front;
+  g->budget_ns = budget_ns;
+  g->pixel_count = pixel_count;
+  for (std::uint32_t i = 0; i < front.count; ++i) g->doubts[i] = det_log(doubt);
+  g->current = g->home = load_known ? choose(*g) : fastest(*g);
+  g->frames_at_current = kAttributedFrames;  // there is no load yet to measure a surprise by
+  g->frames_to_trial = kTrialPause;
+  g->trial_pause = kAgainPauseMin;
+}
+
+void set_doubt(Governor* g, std::uint32_t candidate, double doubt) {
+  CHECK_LT(candidate, g->front.count);
+  g->doubts[candidate] = det_log(doubt);
+}
+
+std::uint32_t next_candidate(Governor* g) {
+  if (g->load_count == 0) return g->current;
+  std::uint32_t chosen = choose(*g);
+  if (g->on_trial && chosen == g->current) g->trial_pause = kAgainPauseMin;  // it fits: it stays
+  bool settled = chosen == g->home && !g->on_trial && g->load_count >= kFewFrames;
+  g->on_trial = false;
+  g->home = chosen;
+  if (settled && --g->frames_to_trial == 0) chosen = try_another(g);
+  switch_to(g, chosen);
+  return g->current;
+}
+
+void force_candidate(Governor* g, std::uint32_t candidate) {
+  CHECK_LT(candidate, g->front.count);
+  g->on_trial = false;
+  switch_to(g, candidate);
+}
+
+void observe_frame(Governor* g, double frame_ns) {
+  if (!(frame_ns > 0) || !std::isfinite(frame_ns)) return;
+  g->late_share += ((det_log(frame_ns / g->budget_ns) > kLate ? 1 : 0) - g->late_share) / kLateFrames;
+  std::uint32_t now = g->current;
+  double load = det_log(frame_ns) - log_price(*g, now);
+  g->ran[now] = true;
+  double middle = middle_load(*g);
+  std::uint32_t at = g->load_count++ % kLoadFrameCount;
+  g->loads[at] = load;
+  g->load_sum += load;
+  if (g->load_count == 2) g->loads[0] = std::min(g->loads[0], load);  // the first frame of all often is a cold one
+  g->rises[at] = g->load_count > 1 ? load - middle : 0;
+  if (g->frames_at_current++ < kAttributedFrames) attribute(g, load);
+  for (std::uint32_t i = 0; i < g->front.count; ++i)
+    if (g->doubts[i] < kDoubtGrown) g->doubts[i] = std::min(g->doubts[i] + kDoubtGrowth, kDoubtGrown);
+  g->doubts[now] = 0;
+}
+
+double expected_ns(const Governor& g, std::uint32_t candidate) {
+  CHECK_LT(candidate, g.front.count);
+  return det_exp(log_price(g, candidate) + middle_load(g));
+}
+
+bool budget_too_small(const Governor& g) { return expected_ns(g, fastest(g)) > g.budget_ns; }
+
+double learnt_price(const Governor& g, std::uint32_t candidate) {
+  CHECK_LT(candidate, g.front.count);
+  double load = g.load_count ? g.load_sum / g.load_count : 0;
+  return static_cast<double>(g.front.candidates[candidate].ns_per_pixel) * det_exp(g.corrections[candidate] + load);
+}
+
+}  // namespace pocketray

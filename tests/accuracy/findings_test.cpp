@@ -1,0 +1,58 @@
+// What can be said of a sweep.
+#include "accuracy/findings.h"
+
+#include <doctest/doctest.h>
+
+#include "sample_sweep.h"
+
+using namespace pocketray;
+
+// Goal: the front is what was marked and has figures, the fastest first. Method: three marked ones in the wrong order,
+// one of them without figures.
+TEST_CASE("findings_front_is_sorted_by_time") {
+  Sweep sweep = empty_sweep();
+  for (int i = 0; i < 4; ++i)
+    sweep.measured.push_back(sample_measured("samples", std::to_string(i), 50 - 10 * i, 0.1 * i));
+  sweep.measured[3].is_default = true;
+  for (std::size_t i : {1u, 2u, 3u, 4u}) sweep.measured[i].pareto = true;
+  sweep.measured[2].missing = "no memory";
+  std::vector<const Measured*> front = front_of(sweep);
+  REQUIRE(front.size() == 2);
+  CHECK(front[0]->value == "3");
+  CHECK(front[1]->value == "0");
+}
+
+// Goal: a knob's ends are its first and last value with figures. Method: the last has none; a gain that is claimed, one
+// that is too small for the reference, and a loss.
+TEST_CASE("findings_ends_are_the_first_and_last_with_figures") {
+  Sweep sweep = empty_sweep();
+  double errors[] = {0.04, 0.09, 0.01, 0.5};
+  for (int i = 0; i < 4; ++i) sweep.measured.push_back(sample_measured("depth", std::to_string(i), 40, errors[i]));
+  sweep.measured[4].missing = "no memory", sweep.measured[2].is_default = true;
+  KnobEnds ends = ends_of(sweep, "depth");
+  REQUIRE((ends.worst && ends.standard && ends.best));
+  CHECK(ends.worst->value == "0");
+  CHECK(ends.standard->value == "1");
+  CHECK(ends.best->value == "2");
+  CHECK(gain_claimed(sweep, ends));
+  sweep.reference_flip = 0.0031;
+  CHECK(!gain_claimed(sweep, ends));
+  sweep.reference_flip = 0;
+  sweep.measured[1].flip = 0.001;
+  CHECK(!gain_claimed(sweep, ends_of(sweep, "depth")));
+  CHECK(!ends_of(sweep, "none").worst);
+}
+
+// Goal: what buys the most comes first, and what cannot be claimed does not. Method: the cheapest knob gains too little
+// for the reference, another has no price.
+TEST_CASE("findings_knobs_are_sorted_by_price") {
+  Sweep sweep = empty_sweep();
+  add_knob(&sweep, "unknown", 1, kNotMeasured);
+  add_knob(&sweep, "tiny", 2, 0.01);
+  add_knob(&sweep, "dear", 4, 9);
+  add_knob(&sweep, "cheap", 4, 2);
+  sweep.reference_flip = 0.005;
+  std::string order;
+  for (const KnobFigures* knob : knobs_by_price(sweep)) order += knob->name + " ";
+  CHECK(order == "cheap dear tiny unknown ");
+}

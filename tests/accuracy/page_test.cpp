@@ -1,0 +1,198 @@
+// The page, and the report as a whole.
+#include "accuracy/page.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "accuracy/report.h"
+#include "accuracy/text.h"
+#include "sample_sweep.h"
+
+using namespace pocketray;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// What is wrong with the markup: tags that are not closed in order, attributes without quotes, stray characters. Empty:
+// nothing.
+std::string markup_fault(const std::string& page) {
+  std::vector<std::string> open;
+  for (std::size_t at = page.find('<'); at < page.size(); at = page.find('<', at)) {
+    std::size_t end = page.find('>', at);
+    if (end == std::string::npos) return "'<' without '>'";
+    std::string tag = page.substr(at + 1, end - at - 1);
+    at = end;
+    if (tag[0] == '!') continue;
+    std::string name = tag.substr(0, tag.find_first_of(" \n/", tag[0] == '/'));
+    if (tag[0] == '/') {
+      if (open.empty() || "/" + open.back() != name) return tag + " closes " + (open.empty() ? "nothing" : open.back());
+      open.pop_back();
+    } else if (tag.back() != '/') {
+      open.push_back(name);
+    }
+    for (std::size_t i = tag.find('='), quotes = 0; i < tag.size() && quotes < 1; i = tag.find('=', i + 1)) {
+      std::size_t value = tag.find_first_not_of(' ', i + 1);
+      if (tag[value] != '"' && tag[value] != '\'') return "no quote in " + tag;
+      i = tag.find(tag[value], value + 1);
+      if (i == std::string::npos) return "open quote in " + tag;
+    }
+  }
+  return open.empty() ? "" : open.back() + " is not closed";
+}
+
+// The text between the tags, without the style.
+std::string text_of(const std::string& page) {
+  std::string text;
+  for (std::size_t at = page.find("</style>"); at < page.size();) {
+    std::size_t open = std::min(page.find('<', at), page.size());
+    text += page.substr(at, open - at) + " ";
+    at = std::min(page.find('>', open), page.size() - 1) + 1;
+  }
+  return text;
+}
+bool has_word(const std::string& text, const std::string& word) {
+  auto letter = [&](std::size_t i) { return i < text.size() && std::isalpha(static_cast<unsigned char>(text[i])); };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    if (!letter(at - 1) && !letter(at + word.size())) return true;
+  return false;
+}
+
+struct Folder {
+  char path[64] = "/tmp/pocketray_report_XXXXXX";
+  Folder() { REQUIRE(mkdtemp(path)); }
+  ~Folder() { CHECK(std::system(("rm -r '" + std::string(path) + "'").c_str()) == 0); }
+};
+std::string content(const std::string& path) {
+  std::string bytes;
+  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
+    for (int c; (c = std::fgetc(file)) != EOF;) bytes += static_cast<char>(c);
+    std::fclose(file);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+// Goal: the markup's checker sees faults. Method: one of each.
+TEST_CASE("page_markup_checker_finds_faults") {
+  CHECK(markup_fault("<a b=\"1\"><c d='x' /></a>") == "");
+  for (std::string bad : {"<a>", "<a></b>", "</a>", "<a b=1></a>", "<a b=\"1></a>", "<a"})
+    CHECK_MESSAGE(markup_fault(bad) != "", bad);
+}
+
+// Goal: numbers read well and text is text. Method: cases.
+TEST_CASE("page_text_is_for_readers") {
+  CHECK(figure(0.0421) == "0.0421");
+  CHECK(figure(1) == "1.00");
+  CHECK(figure(-12.34) == "−12.3");
+  CHECK(figure(123.4) == "123");
+  CHECK(figure(99.99) == "100");
+  CHECK(figure(0.00001234) == "1.23e-5");
+  CHECK(figure(0) == "0");
+  CHECK(figure(NAN) == "–");
+  CHECK(figure(INFINITY) == "∞");
+  CHECK(figure(-INFINITY) == "−∞");
+  CHECK(escaped("<a href=\"x\">'&\n") == "&lt;a href=&quot;x&quot;&gt;&#39;&amp; ");
+  CHECK(base64("") == "");
+  CHECK(base64("f") == "Zg==");
+  CHECK(base64("fo") == "Zm8=");
+  CHECK(base64("foo\xff") == "Zm9v/w==");
+}
+
+// Goal: the page is well formed, shows everything and needs nothing else. Method: a made-up sweep whose texts hold
+// markup.
+TEST_CASE("page_is_well_formed_and_shows_each_knob") {
+  Sweep sweep = sample_sweep();
+  add_knob(&sweep, "<b>&\"it's\"", 3, 5);
+  sweep.scene = "a<b", sweep.model_flip = 0.2, sweep.notes = {"fog & mist are left out"};
+  sweep.measured.back().missing = "takes > 64 MB";
+  PagePictures pictures;
+  pictures.reference_png = "png", pictures.strips["samples"] = "strip";
+  pictures.plots["front"] =
+      "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"><title>Gnuplot</title><g id='gpDot'/>"
+      "<use xlink:href='#gpDot'/></svg>\n";
+  std::string page = page_of(sweep, pictures);
+  CHECK(markup_fault(page) == "");
+  for (std::string part : {"width=device-width", "a&lt;b", "id=\"samples\"", "id=\"area-lights\"", "id=\"normals\"",
+                           "&lt;b&gt;&amp;&quot;it&#39;s", "not measured: takes &gt; 64 MB",
+                           "data:image/png;base64,cG5n", "data:image/png;base64,c3RyaXA=", "front_gpDot'/>",
+                           "#front_gpDot", "Andersson", "<li>fog &amp; mist are left out</li>", "samples 2, normals 2",
+                           "512", "prefers-color-scheme: dark", "FLIP 0.200"})
+    CHECK_MESSAGE(has(page, part), part);
+  for (std::string part : {"<b>&\"", "http://", "https://", "<?xml", "Gnuplot"}) CHECK_MESSAGE(!has(page, part), part);
+  CHECK(page == page_of(sweep, pictures));
+  CHECK(page.size() < 100000);
+}
+
+// Goal: the answer stands first, and names what buys the most; nothing finer than the reference can tell is claimed.
+// Method: knobs of known prices; then a reference that errs by more than any gain.
+TEST_CASE("page_answers_what_buys_the_most") {
+  Sweep sweep = sample_sweep();
+  std::string page = page_of(sweep, {});
+  CHECK(
+      has(page, "<b>area-lights</b> buys the most accuracy per millisecond: .01 of FLIP for <b>0.700 ms</b> a frame"));
+  CHECK(has(page, "<b>samples</b> buys the least: 2.40 ms"));
+  CHECK(has(page, "Better and no slower: normals."));
+  CHECK(page.find("buys the most") < page.find("id=\"samples\""));
+  CHECK(!has(page, "<td class=\"weak\">"));
+  sweep.reference_flip = 0.01;
+  page = page_of(sweep, {});
+  CHECK(has(page, "No gain that can be claimed: "));
+  CHECK(has(page, "A reference of more samples may tell more."));
+  CHECK(!has(page, "buys the most accuracy per millisecond:"));
+  CHECK(has(page, "<td class=\"weak\"><i>0.0800</i></td>"));
+}
+
+// Goal: every sweep gives all files, and figures that are none do not show as such. Method: a whole one; one knob of
+// one value, of no errors, without figures; nothing at all.
+TEST_CASE("report_has_no_gaps") {
+  Sweep whole = sample_sweep(), zero = empty_sweep(), missing = sample_sweep(), nothing = empty_sweep();
+  add_knob(&zero, "only", 1, kNotMeasured);
+  for (Measured& m : zero.measured) m.flip = m.flip_before = 0, m.errors = PictureErrors{0, 0, 0, 0, 0, INFINITY};
+  for (Measured& m : missing.measured) m.missing = "no memory";
+  missing.knobs[0].slope = {0, -INFINITY, INFINITY};
+  nothing.measured.clear(), nothing.reference_picture = {};
+
+  for (const Sweep* sweep : {&whole, &zero, &missing, &nothing}) {
+    CAPTURE(sweep->measured.size());
+    Folder folder;
+    bool drawn = false;
+    Status status = write_report(folder.path, *sweep, &drawn);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    CHECK(drawn == (std::system("gnuplot -V >/dev/null 2>&1") == 0));
+    std::vector<std::string> plots = {"/front", "/price"};
+    for (const KnobFigures& knob : sweep->knobs) {
+      plots.push_back("/knob_" + knob.name);
+      CHECK(has(content(folder.path + ("/strip_" + knob.name) + ".png"), "PNG"));
+    }
+    for (const std::string& plot : plots) {
+      CHECK(has(content(folder.path + plot + ".gnuplot"), "set terminal svg"));
+      if (drawn) CHECK(has(content(folder.path + plot + ".png"), "PNG"));
+      if (drawn) CHECK(has(content(folder.path + plot + ".svg"), "</svg>"));
+    }
+    std::string page = content(folder.path + std::string("/index.html"));
+    CHECK(markup_fault(page) == "");
+    CHECK(page.size() < 2000000);
+    for (std::string word : {"nan", "inf", "NaN", "-nan"}) CHECK_MESSAGE(!has_word(text_of(page), word), word);
+    std::size_t drawings = 0;
+    for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++drawings;
+    CHECK(drawings == (drawn ? plots.size() : 0));
+  }
+}
+
+// Goal: a folder that is not there is told in one line. Method: one that is not.
+TEST_CASE("report_names_a_folder_it_cannot_write_to") {
+  bool drawn = true;
+  Status status = write_report("/nonexistent/folder", sample_sweep(), &drawn);
+  CHECK(!status.ok);
+  CHECK(!drawn);
+  CHECK(has(status.message, "/nonexistent/folder/"));
+  CHECK(!has(status.message, "\n"));
+}

@@ -1,0 +1,81 @@
+// A made-up sweep that looks like a real one.
+#pragma once
+#include <cmath>
+
+#include "accuracy/result.h"
+
+namespace pocketray {
+
+inline Levels sample_picture(std::uint32_t width, std::uint32_t height, int shift) {
+  Levels picture = {width, height, {}};
+  for (std::uint32_t i = 0; i < 3 * width * height; ++i)
+    picture.rgb.push_back(static_cast<std::uint8_t>((i * 7 + static_cast<std::uint32_t>(shift)) % 251));
+  return picture;
+}
+
+inline Measured sample_measured(const std::string& knob, const std::string& value, double ns_per_pixel, double flip) {
+  Measured m;
+  m.knob = knob, m.value = value;
+  m.ns_per_pixel = {ns_per_pixel, 0.97 * ns_per_pixel, 1.04 * ns_per_pixel};
+  m.time_ratio = {ns_per_pixel / 40, 0.97 * ns_per_pixel / 40, 1.04 * ns_per_pixel / 40};
+  m.flip = flip, m.flip_before = 0.9 * flip;
+  m.errors = {0.8 * flip, 2 * flip,    4 * flip,
+              9 * flip,   -0.1 * flip, flip > 0 ? -20 * std::log10(0.8 * flip) : INFINITY};
+  return m;
+}
+
+inline StripRow sample_row(const std::string& label, const Levels& reference, int shift) {
+  std::vector<float> map(std::size_t{reference.width} * reference.height);
+  for (std::size_t i = 0; i < map.size(); ++i) map[i] = static_cast<float>(i) / static_cast<float>(map.size() - 1);
+  return {label, 3.1, 0.0421, sample_picture(reference.width, reference.height, shift), map};
+}
+
+// `values` of them, errors falling as time rises.
+inline void add_knob(Sweep* sweep, const std::string& name, int values, double ms_per_flip) {
+  KnobFigures knob;
+  knob.name = name, knob.what = "what " + name + " turns", knob.effect = "shadow", knob.ms_per_flip = ms_per_flip;
+  Strip strip = {name, {}};
+  for (int i = 0; i < values; ++i) {
+    Measured m = sample_measured(name, std::to_string(1 << i), 40 << i, 0.08 / (1 << i));
+    m.is_default = i == 0;
+    sweep->measured.push_back(m);
+    strip.rows.push_back(sample_row(name + " " + m.value, sweep->reference_picture, 3 * i));
+  }
+  if (values >= 3) knob.has_slope = true, knob.slope = {-0.5, -0.6, -0.4}, knob.theory = "Monte Carlo -1/2";
+  sweep->knobs.push_back(knob);
+  sweep->strips.push_back(strip);
+}
+
+inline void mark_front(Sweep* sweep) {
+  std::vector<double> cost, error;
+  for (const Measured& m : sweep->measured) {
+    bool shown = m.missing.empty() && std::isfinite(m.flip);
+    cost.push_back(shown ? m.ns_per_pixel.value : INFINITY), error.push_back(shown ? m.flip : INFINITY);
+  }
+  std::vector<bool> front = pareto_front(cost, error);
+  for (std::size_t i = 0; i < front.size(); ++i) sweep->measured[i].pareto = front[i];
+}
+
+inline Sweep empty_sweep() {
+  Sweep sweep;
+  sweep.scene = "cornell", sweep.machine = "2 threads, avx2", sweep.output = "rgb565 dithered",
+  sweep.reference = "model";
+  sweep.width = 32, sweep.height = 24, sweep.rounds = 15, sweep.reference_samples = 4096;
+  sweep.pixels_per_degree = 23.6, sweep.reference_flip = 0.0004, sweep.reference_rmse = 0.0003;
+  sweep.reference_picture = sample_picture(32, 24, 0);
+  sweep.measured = {sample_measured("baseline", "", 40, 0.08)};
+  return sweep;
+}
+
+inline Sweep sample_sweep() {
+  Sweep sweep = empty_sweep();
+  add_knob(&sweep, "samples", 5, 2.4);
+  add_knob(&sweep, "area-lights", 4, 0.7);
+  add_knob(&sweep, "normals", 2, -0.2);
+  sweep.measured.push_back(sample_measured("several", "samples 2, normals 2", 90, 0.03));
+  sweep.measured.back().instructions_per_pixel = 512;
+  mark_front(&sweep);
+  return sweep;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,208 @@
+// What a sweep measures, and what it makes of the figures.
+#include "accuracy/sweep_plan.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "accuracy/csv.h"
+
+using namespace pocketray;
+
+namespace {
+
+Status always(const Settings&) { return success(); }
+
+EffectPlan all_effects() {
+  EffectPlan plan;
+  plan.mask = kAllEffects;
+  return plan;
+}
+
+const SweptKnob& knob_named(const SweepPlan& plan, const char* name) {
+  for (const SweptKnob& k : plan.knobs)
+    if (std::strcmp(k.knob->name, name) == 0) return k;
+  REQUIRE(false);
+  return plan.knobs[0];
+}
+
+const Measured& measured_as(const Sweep& sweep, const char* knob, const char* value) {
+  for (const Measured& m : sweep.measured)
+    if (m.knob == knob && m.value == value) return m;
+  REQUIRE(false);
+  return sweep.measured[0];
+}
+
+// Times of a power law with noise that rounds have in common, errors that fall with the square root of time to a rest
+// that is owed to other knobs.
+std::vector<PointFigures> made_up(const SweepPlan& plan) {
+  std::vector<PointFigures> figures;
+  for (const SweepPoint& point : plan.points) {
+    PointFigures f;
+    f.has_errors = true;
+    f.flip = f.flip_before = 0.1 / std::sqrt(point.price);
+    f.errors.rmse = std::sqrt(0.02 * 0.02 + (point.price < 16 ? 0.01 / point.price : 0));
+    for (int round = 0; round < 15; ++round) f.ns_per_pixel.push_back(1000 * point.price * (1 + 0.1 * (round % 5)));
+    figures.push_back(f);
+  }
+  return figures;
+}
+
+}  // namespace
+
+// Goal: each value of each knob is there once, with all other knobs as in the baseline; the covering set's points turn
+// several and keep to the limit. Method: cornell with every effect.
+TEST_CASE("sweep_plan_turns_one_knob_at_a_time_and_then_several") {
+  Configuration baseline;
+  SweepPlan plan = plan_sweep("cornell", all_effects(), baseline, always, 16);
+  CHECK(plan.points[0].knob == "baseline");
+  CHECK(plan.knobs.size() == knob_list().size());
+  std::set<std::string> ids;
+  std::size_t end = 1;
+  for (const SweptKnob& swept : plan.knobs) {
+    CHECK(swept.first == end);
+    end += swept.count;
+    int defaults = 0;
+    for (std::size_t i = swept.first; i < end; ++i) {
+      const SweepPoint& p = plan.points[i];
+      CHECK(p.knob == swept.knob->name);
+      CHECK(p.missing.empty());
+      defaults += p.is_default;
+      for (const SweptKnob& other : plan.knobs)
+        if (&other != &swept) CHECK(other.knob->get(p.configuration) == other.knob->get(baseline));
+    }
+    CHECK(defaults == 1);
+  }
+  CHECK(plan.points.size() >= end + 6);
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    CHECK(ids.insert(plan.points[i].knob + plan.points[i].value).second);
+    if (i < end) continue;
+    CHECK(plan.points[i].knob == "several");
+    CHECK(plan.points[i].price <= 16);
+    int turned = 0;
+    for (const SweptKnob& k : plan.knobs) turned += k.knob->get(plan.points[i].configuration) != k.knob->get(baseline);
+    for (const SweptKnob& k : plan.knobs)
+      if (k.knob->alone) CHECK(k.knob->get(plan.points[i].configuration) == k.knob->get(baseline));
+    CHECK(turned >= 2);
+  }
+}
+
+// Goal: settings of a ladder are measured once, as far as they can be had and are not too dear, and only what one can
+// choose from frame to frame is on the front. Method: a ladder of a new configuration, one that is there, one too dear
+// and one that cannot be had; knobs that are no settings of a frame.
+TEST_CASE("sweep_plan_measures_a_ladder_beside_the_knobs") {
+  Configuration baseline;
+  std::vector<Settings> ladder(5, baseline.settings);
+  ladder[1].samples_per_pixel = 16;
+  ladder[2].samples_per_pixel = 4, ladder[2].ray_depth = 5;
+  ladder[3].samples_per_pixel = 16, ladder[3].points_per_area_light = 144;
+  ladder[4].samples_per_pixel = 2, ladder[4].ray_depth = 3;
+  auto had = [](const Settings& s) { return s.samples_per_pixel == 2 && s.ray_depth == 3 ? failure("no") : success(); };
+  std::size_t without = plan_sweep("cornell", all_effects(), baseline, had, 16).points.size();
+  SweepPlan plan = plan_sweep("cornell", all_effects(), baseline, had, 16, ladder);
+  REQUIRE(plan.points.size() == without + 1);
+  CHECK(plan.points.back().knob == "several");
+  CHECK(plan.points.back().value == "samples 4, depth 5");
+  CHECK(plan.points.back().configuration.settings.ray_depth == 5);
+  CHECK(plan.points.back().price == 4);
+
+  std::vector<PointFigures> figures = made_up(plan);
+  for (std::size_t i = 0; i < plan.points.size(); ++i)
+    if (!plan.points[i].is_choice) figures[i].flip = 0.001;  // less than any other
+  Sweep sweep;
+  sum_up(plan, figures, &sweep);
+  int front = 0, others = 0;
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    const Configuration& c = plan.points[i].configuration;
+    bool is_choice = c.output == baseline.output && c.sphere_columns == baseline.sphere_columns && !c.double_precision;
+    CHECK(plan.points[i].is_choice == is_choice);
+    front += sweep.measured[i].pareto && is_choice, others += sweep.measured[i].pareto && !is_choice;
+  }
+  CHECK(front > 2);
+  CHECK(others == 0);
+}
+
+// Goal: what cannot be had is listed with the reason, and the covering set does without. Method: no more than 36 points
+// per area light.
+TEST_CASE("sweep_plan_lists_what_cannot_be_had") {
+  auto few = [](const Settings& s) { return s.points_per_area_light > 36 ? failure("too many points") : success(); };
+  SweepPlan plan = plan_sweep("file.pray", all_effects(), Configuration(), few, 1e9);
+  const SweptKnob& lights = knob_named(plan, "area-lights");
+  int missing = 0;
+  for (std::size_t i = lights.first; i < lights.first + lights.count; ++i)
+    missing += plan.points[i].missing == "too many points";
+  CHECK(missing == 3);
+  std::uint32_t most = 0;
+  for (const SweepPoint& p : plan.points)
+    if (p.missing.empty()) most = std::max(most, p.configuration.settings.points_per_area_light);
+  CHECK(most == 36);
+  CHECK(std::any_of(plan.notes.begin(), plan.notes.end(),
+                    [](const std::string& n) { return n.find("tessellation") != std::string::npos; }));
+  Sweep sweep;
+  sum_up(plan, made_up(plan), &sweep);
+  CHECK(measured_as(sweep, "area-lights", "256").missing == "too many points");
+}
+
+// Goal: slopes, ratios and the front are those of the figures. Method: figures of a law with exponent -1/2.
+TEST_CASE("sweep_sums_up_what_was_measured") {
+  SweepPlan plan = plan_sweep("file.pray", all_effects(), Configuration(), always, 16);
+  Sweep sweep;
+  sweep.width = 100, sweep.height = 10;
+  sum_up(plan, made_up(plan), &sweep);
+  REQUIRE(sweep.measured.size() == plan.points.size());
+  const Measured& sixteen = measured_as(sweep, "samples", "16");
+  CHECK(std::fabs(sixteen.time_ratio.value - 16) < 1e-9);
+  CHECK(sixteen.time_ratio.low == sixteen.time_ratio.high);  // the rounds' moods are in both
+  CHECK(sixteen.ns_per_pixel.low < sixteen.ns_per_pixel.high);
+  CHECK(sixteen.ns_per_pixel.value == doctest::Approx(16 * 1200));
+  CHECK(measured_as(sweep, "samples", "1").is_default);
+  for (const KnobFigures& k : sweep.knobs) {
+    if (k.name != "samples") continue;
+    REQUIRE(k.has_slope);
+    CHECK(k.slope.value == doctest::Approx(-0.5));
+    // From 1 to 16 samples: 15 × 1.2 ms for 0.1 × 3/4 of ꟻLIP.
+    CHECK(k.ms_per_flip == doctest::Approx(18.0 / 7.5));
+  }
+  CHECK(sixteen.pareto);
+  CHECK_FALSE(measured_as(sweep, "arithmetic", "double").pareto);  // no setting of the renderer
+  int front = 0;
+  for (const Measured& m : sweep.measured) front += m.pareto;
+  // With a coarse reference less is claimed: no slope of errors below its limit, no front of small steps.
+  sweep.reference_rmse = 0.009, sweep.reference_flip = 0.004;
+  sum_up(plan, made_up(plan), &sweep);
+  int coarse = 0;
+  for (const Measured& m : sweep.measured) coarse += m.pareto;
+  CHECK(coarse < front);
+  for (const KnobFigures& k : sweep.knobs)
+    if (k.name == "samples") CHECK_FALSE(k.has_slope);
+}
+
+// Goal: the table has a line for each configuration and a field for each name, whatever the texts hold. Method: fields
+// counted outside quotes.
+TEST_CASE("csv_has_a_field_for_each_name") {
+  SweepPlan plan = plan_sweep("file.pray", all_effects(), Configuration(), always, 16);
+  Sweep sweep;
+  sum_up(plan, made_up(plan), &sweep);
+  sweep.measured[1].missing = "a \"quoted\", reason";
+  sweep.measured[2].errors.psnr = std::numeric_limits<double>::infinity();
+  std::string csv = sweep_csv(sweep);
+  CHECK(csv.rfind("knob,value,ns_per_pixel,", 0) == 0);
+  CHECK(csv.find("\"a \"\"quoted\"\", reason\"") != std::string::npos);
+  CHECK(csv.find(",inf,") != std::string::npos);
+  CHECK(csv.find("nan") == std::string::npos);
+  std::size_t lines = 0, fields = 1, names = 0;
+  bool quoted = false;
+  for (char c : csv) {
+    quoted ^= c == '"';
+    fields += c == ',' && !quoted;
+    if (c != '\n' || quoted) continue;
+    names = names ? names : fields;
+    CHECK(fields == names);
+    fields = 1, ++lines;
+  }
+  CHECK(lines == sweep.measured.size() + 1);
+}

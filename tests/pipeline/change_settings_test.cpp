@@ -1,0 +1,83 @@
+// Settings that change between frames.
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "support/feature_sets.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+std::vector<Vec3> picture_of(Renderer* r) {
+  REQUIRE(render_frame(r, 0).ok);
+  return {r->image.begin(), r->image.end()};
+}
+
+bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+}
+
+}  // namespace
+
+// Goal: a renderer whose settings were changed is one that was started with them. Method: scenes with every effect,
+// started with as many points per area light as there are and turned, one setting after the other and in both
+// directions; the bits of the picture against those of a fresh renderer.
+TEST_CASE("change_settings_equals_a_fresh_start") {
+  using Change = void (*)(Settings*);
+  const Change changes[] = {[](Settings* s) { s->samples_per_pixel = 4; },
+                            [](Settings* s) { s->ray_depth = 1; },
+                            [](Settings* s) { s->points_per_area_light = 3; },
+                            [](Settings* s) { s->cut_off_levels = 8; },
+                            [](Settings* s) { s->texture_filter = TextureFilter::nearest; },
+                            [](Settings* s) { s->normals = NormalMode::flat; },
+                            [](Settings* s) { s->samples_per_pixel = 1; },
+                            [](Settings* s) { s->normals = NormalMode::as_scene; },
+                            [](Settings* s) { s->points_per_area_light = 7; }};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    std::uint32_t features = kAllFeatures & ~bit(Feature::supersampling);
+    auto generated = generate_scene(features, seed);
+    Settings settings = settings_for(features, 16, 12);
+    settings.points_per_area_light = 9;
+    auto changed = make_renderer(generated->scene, settings);
+    std::vector<Vec3> before = picture_of(&changed->renderer);
+    int differing = 0;
+    for (Change change : changes) {
+      change(&settings);
+      REQUIRE(change_settings(&changed->renderer, settings).ok);
+      auto fresh = make_renderer(generated->scene, settings);
+      std::vector<Vec3> now = picture_of(&changed->renderer);
+      CHECK(same_bits(now, picture_of(&fresh->renderer)));
+      CHECK(changed->renderer.effects.mask == fresh->renderer.effects.mask);
+      differing += !same_bits(now, before);
+      before = now;
+    }
+    CAPTURE(seed);
+    CHECK(differing >= 6);  // the settings were not without effect
+  }
+}
+
+// Goal: what was not planned for is refused and changes nothing. Method: more points per area light than at the start,
+// and settings out of range; the picture before and after.
+TEST_CASE("change_settings_refuses_what_was_not_planned") {
+  std::uint32_t features = bit(Feature::emission);
+  auto generated = generate_scene(features, 3);
+  Settings settings = settings_for(features, 16, 12);
+  settings.points_per_area_light = 4;
+  auto test = make_renderer(generated->scene, settings);
+  std::vector<Vec3> before = picture_of(&test->renderer);
+  Settings more = settings;
+  more.points_per_area_light = 5;
+  Status refused = change_settings(&test->renderer, more);
+  CHECK_FALSE(refused.ok);
+  CHECK(std::strstr(refused.message, "--area-lights") != nullptr);
+  Settings wrong = settings;
+  wrong.ray_depth = kRayDepthMax + 1;
+  CHECK_FALSE(change_settings(&test->renderer, wrong).ok);
+  wrong = settings;
+  wrong.cut_off_levels = -1;
+  CHECK_FALSE(change_settings(&test->renderer, wrong).ok);
+  CHECK(test->renderer.settings.points_per_area_light == 4);
+  CHECK(same_bits(picture_of(&test->renderer), before));
+}
