@@ -170,7 +170,7 @@ void trace_reference(const Reference& reference, const ReferenceOptions& options
       ReferenceSamples samples(options.seed, std::uint64_t(y) * width + x);
       Vec3d sum = {0, 0, 0};
       for (std::uint32_t i = 0; i < n; ++i) {
-        samples.begin_path(i);
+        samples.begin_path(options.first_sample + i);
         Pair at = samples.pixel();
         sum += trace_path(reference, options, reference_camera_ray(camera, x + at.u, y + at.v), &samples);
       }

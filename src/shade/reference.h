@@ -19,6 +19,7 @@ enum class Transport {
 struct ReferenceOptions {
   Transport transport = Transport::physical;
   std::uint32_t samples_per_pixel = 64;   // best a power of two: see sobol.h
+  std::uint32_t first_sample = 0;         // of a pixel's sequence: with it a picture is gone on with
   std::uint32_t depth_max = 0xFFFFFFFFu;  // where a path scatters so often, it takes the light of the lights and ends
   std::uint64_t seed = 1;
 };

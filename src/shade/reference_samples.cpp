@@ -2,12 +2,14 @@
 
 namespace pocketray {
 
-ReferenceSamples::ReferenceSamples(std::uint64_t seed, std::uint64_t pixel) : rng_(make_rng(seed, pixel)), even_(true) {
+ReferenceSamples::ReferenceSamples(std::uint64_t seed, std::uint64_t pixel)
+    : rng_(make_rng(seed, pixel)), even_(true), seed_(seed), pixel_(pixel) {
   for (std::uint32_t& s : group_seed_) s = next_u32(&rng_);
 }
 
 void ReferenceSamples::begin_path(std::uint32_t index) {
   index_ = index;
+  rng_ = make_rng(seed_ + (index + 1) * 0x9E3779B97F4A7C15u, pixel_);  // far from those of other indices
   for (bool& made : made_) made = false;
   lights_ = directions_ = choices_ = 0;
 }

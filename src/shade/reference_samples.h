@@ -15,7 +15,7 @@ class ReferenceSamples {
  public:
   // Independent numbers alone.
   explicit ReferenceSamples(const Rng& rng) : rng_(rng) {}
-  // For one pixel; begin_path() then begins each of its paths.
+  // For one pixel; begin_path() then begins each of its paths, which follows from seed, pixel and index alone.
   ReferenceSamples(std::uint64_t seed, std::uint64_t pixel);
   void begin_path(std::uint32_t index);
 
@@ -35,6 +35,7 @@ class ReferenceSamples {
 
   Rng rng_;
   bool even_ = false;
+  std::uint64_t seed_ = 0, pixel_ = 0;
   std::uint32_t index_ = 0, group_seed_[kGroupCount] = {};
   bool made_[kGroupCount] = {};
   SobolPoint point_[kGroupCount];
