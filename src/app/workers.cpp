@@ -12,8 +12,8 @@ struct Workers {
   std::vector<std::thread> threads;
   std::mutex mutex;
   std::condition_variable begin, end;
-  TraceJob job = {};
-  std::atomic<std::uint32_t> next_span{0}, done_count{0};
+  void (*work)(void* context, std::uint32_t thread) = nullptr;
+  void* context = nullptr;
   std::uint64_t generation = 0;
   std::uint32_t busy = 0;
   bool quit = false;
@@ -33,22 +33,29 @@ std::uint32_t spans_at_once(std::uint32_t left, std::uint32_t thread_count) {
   return count < left ? count : left;
 }
 
-void take_spans(const TraceJob& job, std::uint32_t thread, std::uint32_t thread_count,
-                std::atomic<std::uint32_t>* next_span, std::atomic<std::uint32_t>* done_count) {
+struct SpanQueue {
+  const TraceJob& job;
+  std::uint32_t thread_count;
+  std::atomic<std::uint32_t> next_span{0}, done_count{0};
+};
+
+void take_spans(void* context, std::uint32_t thread) {
+  SpanQueue* queue = static_cast<SpanQueue*>(context);
+  const TraceJob& job = queue->job;
   for (;;) {
     if (job.stop && job.stop->load(std::memory_order_relaxed)) return;
-    std::uint32_t begin = next_span->load(), count;
+    std::uint32_t begin = queue->next_span.load(), count;
     do {
       if (begin >= job.span_count) return;
-      count = spans_at_once(job.span_count - begin, thread_count);
-    } while (!next_span->compare_exchange_weak(begin, begin + count));
+      count = spans_at_once(job.span_count - begin, queue->thread_count);
+    } while (!queue->next_span.compare_exchange_weak(begin, begin + count));
     std::uint64_t start = job.span_ns ? clock_ns() : 0;
     trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image);
     if (job.span_ns) {
       std::uint64_t each = (clock_ns() - start) / count;
       for (std::uint32_t i = 0; i < count; ++i) job.span_ns[begin + i] = each;
     }
-    done_count->fetch_add(count);
+    queue->done_count.fetch_add(count);
   }
 }
 
@@ -59,9 +66,10 @@ void run_worker(Workers* w, std::uint32_t thread) {
     w->begin.wait(lock, [&] { return w->quit || w->generation != seen; });
     if (w->quit) return;
     seen = w->generation;
-    TraceJob job = w->job;
+    auto* work = w->work;
+    void* context = w->context;
     lock.unlock();
-    take_spans(job, thread, worker_thread_count(w), &w->next_span, &w->done_count);
+    work(context, thread);
     lock.lock();
     if (--w->busy == 0) w->end.notify_one();
   }
@@ -91,25 +99,25 @@ std::uint32_t worker_thread_count(const Workers* workers) {
   return workers ? static_cast<std::uint32_t>(workers->threads.size()) + 1 : 1;
 }
 
-std::uint32_t trace_with(Workers* w, const TraceJob& job) {
-  std::atomic<std::uint32_t> next_span{0}, done_count{0};
-  if (!w) {
-    take_spans(job, 0, 1, &next_span, &done_count);
-    return done_count;
-  }
+void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), void* context) {
+  if (!w) return work(context, 0);
   {
     std::lock_guard<std::mutex> lock(w->mutex);
-    w->job = job;
-    w->next_span = 0;
-    w->done_count = 0;
+    w->work = work;
+    w->context = context;
     w->busy = static_cast<std::uint32_t>(w->threads.size());
     ++w->generation;
   }
   w->begin.notify_all();
-  take_spans(job, 0, worker_thread_count(w), &w->next_span, &w->done_count);
+  work(context, 0);
   std::unique_lock<std::mutex> lock(w->mutex);
   w->end.wait(lock, [&] { return w->busy == 0; });
-  return w->done_count;
+}
+
+std::uint32_t trace_with(Workers* w, const TraceJob& job) {
+  SpanQueue queue{job, worker_thread_count(w)};
+  run_with(w, take_spans, &queue);
+  return queue.done_count;
 }
 
 }  // namespace pocketray

@@ -14,6 +14,9 @@ Workers* start_workers(std::uint32_t thread_count);
 void stop_workers(Workers* workers);
 // The caller's included.
 std::uint32_t worker_thread_count(const Workers* workers);
+// Calls work(context, thread) once on each thread, the caller's being 0, and returns when all are done. `workers` may
+// be null: the caller's thread does it alone.
+void run_with(Workers* workers, void (*work)(void* context, std::uint32_t thread), void* context);
 
 struct TraceJob {
   const Span* spans;

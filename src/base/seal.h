@@ -10,4 +10,20 @@ inline std::atomic<bool> memory_sealed{false};
 inline void seal_memory() { memory_sealed.store(true); }
 inline void unseal_memory() { memory_sealed.store(false); }
 
+// Lifts the seal, if it is on, for what is no part of a device's work.
+class SealPause {
+ public:
+  explicit SealPause(bool needed = true) : paused_(needed && memory_sealed) {
+    if (paused_) unseal_memory();
+  }
+  ~SealPause() {
+    if (paused_) seal_memory();
+  }
+  SealPause(const SealPause&) = delete;
+  SealPause& operator=(const SealPause&) = delete;
+
+ private:
+  bool paused_;
+};
+
 }  // namespace pocketray
