@@ -26,10 +26,11 @@ enum class Button : std::uint8_t {
   screenshot,
   reload,
   finer,
-  faster
+  faster,
+  split
 };
 constexpr int kPadButtonCount = 12;  // up … select: what a handheld has
-constexpr int kButtonCount = 17;     // with the keys of a desktop keyboard
+constexpr int kButtonCount = 18;     // with the keys of a desktop keyboard
 
 const char* button_name(Button button);
 

@@ -31,8 +31,9 @@ void write_to_file(void* user, const void* bytes, std::size_t count) {
 
 Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& sink) {
   int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
+  const Vec3* radiance = o.radiance ? o.radiance : r->image.data;
   if (kind == Kind::pfm) {
-    encode_pfm(&r->image[0].x, 3, width, height, sink);
+    encode_pfm(&radiance->x, 3, width, height, sink);
     return success();
   }
   bool raw = kind == Kind::raw,
@@ -46,7 +47,7 @@ Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& s
     repack_rows(o.packed_format, o.packed, o.packed_line_bytes, width, height, 0, height, format, rotation, pixels.data,
                 row_bytes);
   else
-    pack_rows(r->image.data, width, height, 0, height, r->exposure, format, rotation, raw && o.dither, pixels.data,
+    pack_rows(radiance, width, height, 0, height, r->exposure, format, rotation, raw && o.dither, pixels.data,
               row_bytes);
   if (raw) encode_raw(pixels.data, row_bytes, row_bytes, rows, sink);
   if (kind == Kind::ppm) encode_ppm(pixels.data, width, height, sink);

@@ -11,6 +11,7 @@ struct PictureOptions {
   PixelFormat raw_format = kRgb565;  // of .raw files
   Rotation rotation = Rotation::none;
   bool dither = false;
+  const Vec3* radiance = nullptr;  // null: renderer->image
   // Packed already, for all kinds but .pfm: rows of so many bytes. Null: packed from renderer->image.
   const std::uint8_t* packed = nullptr;
   int packed_line_bytes = 0;
@@ -23,7 +24,7 @@ std::size_t picture_bytes(const Settings& settings);
 // Fails unless the path ends in .png, .ppm, .pfm or .raw.
 Status check_picture_path(const std::string& path);
 
-// Writes renderer->image. The file is replaced as a whole or not at all.
+// Writes what the options name, else renderer->image. The file is replaced as a whole or not at all.
 Status write_picture(const char* path, const PictureOptions& options, Renderer* renderer);
 
 }  // namespace pocketray

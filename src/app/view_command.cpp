@@ -43,46 +43,68 @@ bool wait_for(Viewer* viewer, Loading* loading) {
   return true;
 }
 
-int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing, const BudgetOptions& budgeted) {
+struct ViewCommand {
+  CommonOptions common;
+  ViewOptions view;
+  SharingOptions sharing;
+  BudgetOptions budget;
+  SplitScreenOptions split;
+};
+
+// Shows what was loaded until the user leaves, or wants to see it anew.
+Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* again) {
+  Renderer* renderer = &loading.opened->renderer;
+  print_notes(*loading.opened);
+  print_notes(loading.front);
+  Budget budget;
+  if (o.budget.ms > 0) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
+  viewer->budget = o.budget.ms > 0 ? &budget : nullptr;
+  viewer->split = open_split_screen(o.split, *renderer, viewer->format.bits_per_pixel, o.view.dither);
+  seal_memory();
+  Status status = run_viewer(viewer, renderer, again);
+  unseal_memory();
+  if (viewer->budget) print_budget(budget, false);
+  if (status.ok && viewer->budget) status = finish_budget(budget);
+  if (viewer->split) print_split_screen(*viewer->split);
+  close_split_screen(viewer->split);
+  viewer->budget = nullptr;
+  viewer->split = nullptr;
+  return status;
+}
+
+int run(ViewCommand o) {
   Viewer viewer;
   Settings size;
   const platform::Device* device;
-  Status status = find_device(common, &device);
-  if (view.rotation < 0) view.rotation = device ? device->rotation : 0;
-  if (device) view.keys = device->keys;
-  if (!common.emulate.empty()) view.emulated = device;
-  if (status.ok && budgeted.ms > 0 && !sharing.servers.empty())
-    status =
-        failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
-  if (status.ok) status = picture_size(common, &size.width, &size.height);
+  Status status = find_device(o.common, &device);
+  if (o.view.rotation < 0) o.view.rotation = device ? device->rotation : 0;
+  if (device) o.view.keys = device->keys;
+  if (!o.common.emulate.empty()) o.view.emulated = device;
+  if (status.ok && !o.sharing.servers.empty()) {
+    if (o.budget.ms > 0)
+      status =
+          failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
+    else if (!o.split.reference.empty())
+      status = failure("--split-screen shows the reference of what is rendered here alone: leave it out, or --server");
+  }
+  if (status.ok) status = picture_size(o.common, &size.width, &size.height);
   if (status.ok)
-    status =
-        open_viewer(view, common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height), &viewer);
-  if (status.ok) status = open_sharing(sharing, view.emulated, &viewer.sharing);
+    status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),
+                         &viewer);
+  if (status.ok) status = open_sharing(o.sharing, o.view.emulated, &viewer.sharing);
   std::unique_ptr<Sharing, void (*)(Sharing*)> closing(viewer.sharing, close_sharing);
   if (!status.ok) return report(status);
   for (bool again = true; again && status.ok;) {
     again = false;
-    Loading loading(common, budgeted, &viewer);
+    Loading loading(o.common, o.budget, &viewer);
     if (!wait_for(&viewer, &loading)) {
       stop_opening(viewer.sharing);
       break;
     }
     status = loading.status;
-    if (!status.ok) break;
-    print_notes(*loading.opened);
-    print_notes(loading.front);
-    Budget budget;
-    if (budgeted.ms > 0) start_budget(budgeted, loading.front, loading.opened->renderer, 4096, &budget);
-    viewer.budget = budgeted.ms > 0 ? &budget : nullptr;
-    seal_memory();
-    status = run_viewer(&viewer, &loading.opened->renderer, &again);
-    unseal_memory();
-    if (viewer.budget) print_budget(budget, false);
-    if (status.ok && viewer.budget) status = finish_budget(budget);
-    viewer.budget = nullptr;
+    if (status.ok) status = show(o, loading, &viewer, &again);
     if (viewer.dropped[0]) {
-      common.scene = viewer.scene_path = viewer.dropped;
+      o.common.scene = viewer.scene_path = viewer.dropped;
       viewer.dropped[0] = 0;
     }
   }
@@ -94,33 +116,33 @@ int run(CommonOptions common, ViewOptions view, const SharingOptions& sharing, c
 }  // namespace
 
 void add_view_command(CLI::App* program, int* exit_status) {
-  auto common = std::make_shared<CommonOptions>();
-  auto view = std::make_shared<ViewOptions>();
+  auto o = std::make_shared<ViewCommand>();
   CLI::App* command =
       program->add_subcommand("view", "show a scene in the emulator's window, or on the framebuffer of a device");
-  auto sharing = std::make_shared<SharingOptions>();
-  add_scene_options(command, common.get());
-  add_sharing_options(command, sharing.get());
-  auto budget = std::make_shared<BudgetOptions>();
-  add_budget_options(command, budget.get());
+  add_scene_options(command, &o->common);
+  add_sharing_options(command, &o->sharing);
+  add_budget_options(command, &o->budget);
+  add_split_screen_option(command, &o->split);
   command
-      ->add_option("--screen", view->backend,
+      ->add_option("--screen", o->view.backend,
                    "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")
       ->capture_default_str();
-  command->add_option("--framebuffer", view->device, "the framebuffer's device file, if not the usual one");
-  command->add_option("--rotate", view->rotation, "turn the picture clockwise: 0, 90, 180 or 270")
+  command->add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the usual one");
+  command->add_option("--rotate", o->view.rotation, "turn the picture clockwise: 0, 90, 180 or 270")
       ->default_str("0, or the device's");
-  command->add_option("--scale", view->scale, "window pixels per pixel; 0: as many as fit")->capture_default_str();
-  command->add_flag("--dither", view->dither, "ordered dither, for screens of 16 bits");
-  command->add_option("--frames", view->frame_count, "show so many finished frames, then leave; 0: until quit")
+  command->add_option("--scale", o->view.scale, "window pixels per pixel; 0: as many as fit")->capture_default_str();
+  command->add_flag("--dither", o->view.dither, "ordered dither, for screens of 16 bits");
+  command->add_option("--frames", o->view.frame_count, "show so many finished frames, then leave; 0: until quit")
       ->capture_default_str();
-  command->add_option("--screenshots", view->screenshot_folder, "where screenshots go")->capture_default_str();
+  command->add_option("--screenshots", o->view.screenshot_folder, "where screenshots go")->capture_default_str();
   command->footer(
-      "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and fly,\n"
-      "start goes back to the scene's camera, page up and down along the front of --budget-ms (start: as the budget "
-      "has it),\n"
-      "X pauses, Y or F1 shows the display, F12 saves a screenshot, F5 reloads, Esc leaves.");
-  command->callback([=] { *exit_status = run(*common, *view, *sharing, *budget); });
+      std::string(
+          "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and "
+          "fly,\nstart goes back to the scene's camera, page up and down along the front of --budget-ms (start: as the "
+          "budget has it),\n") +
+      split_screen_key_help() +
+      "X pauses, Y or F1 shows the display,\nF12 saves a screenshot, F5 reloads, Esc leaves.");
+  command->callback([=] { *exit_status = run(*o); });
 }
 
 }  // namespace pocketray

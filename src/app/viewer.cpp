@@ -23,20 +23,7 @@ constexpr std::uint64_t kIdleNs = 8 * kMillisecond;
 constexpr std::uint64_t kFileCheckNs = 500 * kMillisecond;
 
 // A window system takes memory when it likes; the seal is lifted while it is called. Screens of devices are not spared.
-class WindowCall {
- public:
-  explicit WindowCall(const Viewer& v) : pause_(memory_sealed && std::strcmp(v.backend->name, "sdl2") == 0) {
-    if (pause_) unseal_memory();
-  }
-  ~WindowCall() {
-    if (pause_) seal_memory();
-  }
-  WindowCall(const WindowCall&) = delete;
-  WindowCall& operator=(const WindowCall&) = delete;
-
- private:
-  bool pause_;
-};
+bool takes_memory(const platform::Backend& screen) { return std::strcmp(screen.name, "sdl2") == 0; }
 
 PixelFormat to_pixel_format(const platform::ScreenFormat& f) {
   auto channel = [](const platform::Channel& c) { return PixelChannel{c.offset, c.length}; };
@@ -50,7 +37,7 @@ int screen_width(const Viewer& v) { return quarter_turned(v) ? v.height : v.widt
 int screen_height(const Viewer& v) { return quarter_turned(v) ? v.width : v.height; }
 
 void take_events(Viewer* v) {
-  WindowCall call(*v);
+  SealPause pause(takes_memory(*v->backend));
   platform::Event event;
   while (v->backend->poll(&event)) {
     bool down = event.type == platform::EventType::button_down;
@@ -69,6 +56,7 @@ void take_events(Viewer* v) {
     if (event.button == Button::start) v->home = v->front_home = true;
     if (event.button == Button::finer) ++v->front_steps;
     if (event.button == Button::faster) --v->front_steps;
+    if (event.button == Button::split) v->split_shown = !v->split_shown, v->split_changed = true;
     if (event.button == Button::select) v->change_mode = true;
   }
   if (interrupted) v->quit = true;
@@ -86,10 +74,12 @@ CameraInput read_input(const Viewer& v) {
   return in;
 }
 
+bool shows_split(const Viewer& v) { return v.split && v.split_shown; }
+
 void pack_page(const Viewer& v, const Renderer& r, int row_begin, int row_end, const platform::Page& page) {
   if (!v.picture_shared) {
-    pack_rows(r.image.data, v.width, v.height, row_begin, row_end, r.exposure, v.format, v.rotation, v.options.dither,
-              page.pixels, page.line_bytes);
+    pack_rows(shows_split(v) ? split_picture(v.split, r) : r.image.data, v.width, v.height, row_begin, row_end,
+              r.exposure, v.format, v.rotation, v.options.dither, page.pixels, page.line_bytes);
     return;
   }
   SharedPicture shared = shared_picture(*v.sharing);
@@ -99,7 +89,7 @@ void pack_page(const Viewer& v, const Renderer& r, int row_begin, int row_end, c
 
 // Packs the rows that changed and shows them.
 void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t row_begin, std::uint32_t row_end) {
-  WindowCall call(*v);
+  SealPause pause(takes_memory(*v->backend));
   platform::Page page = v->backend->begin_frame();
   if (!page.pixels) return;
   if (page.age != 1 || quarter_turned(*v)) row_begin = 0, row_end = r.settings.height;
@@ -127,6 +117,7 @@ Status save_screenshot(Viewer* v, Renderer* r) {
                   ++v->screenshot_count);
   } while (platform::file_stamp(path) != 0 && v->screenshot_count < 9999);
   PictureOptions picture;
+  if (shows_split(*v)) picture.radiance = split_picture(v->split, *r);
   if (v->picture_shared) {
     SharedPicture shared = shared_picture(*v->sharing);
     picture.packed = shared.pixels, picture.packed_line_bytes = shared.line_bytes;
@@ -165,10 +156,37 @@ Status step_scene(Viewer* v, Renderer* r, Loop* loop) {
     RETURN_IF_ERROR(set_camera(r, loop->control.camera));
     loop->moved = true;
   }
-  if (has(r->effects.mask, Effect::animation) && !v->paused) {
+  if (has(r->effects.mask, Effect::animation) && !v->paused && !shows_split(*v)) {
     loop->seconds += static_cast<double>(elapsed);
     loop->passed = true;
   }
+  return success();
+}
+
+// As many frames as were asked for, even of a still; with a reference beside it, when that has some samples.
+constexpr std::uint32_t kSplitSamples = 32;
+bool goes_on(const Viewer& v) { return v.options.frame_count > 0 && !shows_split(v); }
+
+void write_picture_lines(const Viewer& v, const Renderer& r, Loop* loop) {
+  write_hud(r, loop->progressive, loop->control.mode, &loop->hud);
+  if (v.budget) write_budget_lines(*v.budget, &loop->hud);
+  if (v.sharing) write_server_lines(*v.sharing, &loop->hud);
+}
+
+// Nothing has changed: the reference beside the picture is refined, or the buttons are waited for.
+Status idle(Viewer* v, Renderer* r, Loop* loop) {
+  if (!shows_split(*v) && !v->split_changed) {
+    v->backend->sleep_ns(kIdleNs);
+    return success();
+  }
+  v->split_changed = false;
+  write_picture_lines(*v, *r, loop);
+  if (shows_split(*v)) {
+    RETURN_IF_ERROR(advance_split_screen(v->split, r, loop->seconds, v->frames_finished, clock_ns() + kSliceNs));
+    write_split_lines(*v->split, &loop->hud);
+    if (v->options.frame_count > 0 && split_screen_samples(*v->split) >= kSplitSamples) loop->passed = true;
+  }
+  show_rows(v, *r, loop->hud, 0, r->settings.height);
   return success();
 }
 
@@ -182,19 +200,15 @@ Status step_picture(Viewer* v, Renderer* r, Loop* loop) {
     start_progressive(r, &loop->progressive);
     loop->moved = loop->passed = loop->finished = false;
   }
-  if (loop->finished && v->hud == v->hud_shown) {
-    v->backend->sleep_ns(kIdleNs);
-    return success();
-  }
+  if (loop->finished && v->hud == v->hud_shown) return idle(v, r, loop);
   bool was_finished = loop->finished;
   if (!was_finished)
     loop->finished = advance_progressive(r, loop->row_spans, clock_ns() + kSliceNs, &loop->progressive);
   if (loop->finished && !was_finished) {
     ++v->frames_finished;
-    if (v->options.frame_count > 0) loop->passed = true;  // as many frames as were asked for, even of a still
+    if (goes_on(*v)) loop->passed = true;
   }
-  write_hud(*r, loop->progressive, loop->control.mode, &loop->hud);
-  if (v->sharing) write_server_lines(*v->sharing, &loop->hud);
+  write_picture_lines(*v, *r, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);
   show_rows(v, *r, loop->hud, begin, end);
@@ -215,11 +229,8 @@ Status step_budgeted(Viewer* v, Renderer* r, Loop* loop) {
     loop->passed = true;
   }
   if (loop->moved || loop->passed) loop->still_frames = loop->steady_frames = 0;
-  bool due = loop->moved || loop->passed || !loop->settled;
-  if (!due && v->hud == v->hud_shown) {
-    v->backend->sleep_ns(kIdleNs);
-    return success();
-  }
+  bool due = loop->moved || loop->passed || (!loop->settled && v->options.frame_count == 0);
+  if (!due && v->hud == v->hud_shown) return idle(v, r, loop);
   std::uint32_t before = budget->last;
   std::uint64_t start = clock_ns(), traced = start;
   if (due) {
@@ -232,13 +243,12 @@ Status step_budgeted(Viewer* v, Renderer* r, Loop* loop) {
     loop->progressive.trace_ns = traced - start;
     loop->moved = loop->passed = false;
   }
-  write_hud(*r, loop->progressive, loop->control.mode, &loop->hud);
-  write_budget_lines(*budget, &loop->hud);
+  write_picture_lines(*v, *r, loop);
   show_rows(v, *r, loop->hud, 0, r->settings.height);
   if (!due || interrupted) return success();
   end_budget_frame(budget, traced - start + paced_ns(r->pace, 0, v->pack_ns));
   ++v->frames_finished;
-  loop->passed = v->options.frame_count > 0;
+  loop->passed = goes_on(*v);
   ++loop->still_frames;
   loop->steady_frames = budget->last == before ? loop->steady_frames + 1 : 0;
   loop->settled = budget->pinned || loop->steady_frames >= kSteadyFrames || loop->still_frames >= kStillFramesMax;
@@ -251,14 +261,11 @@ Status step_shared(Viewer* v, Renderer* r, Loop* loop) {
     RETURN_IF_ERROR(begin_shared(v->sharing, r, loop->seconds));
     loop->moved = loop->passed = loop->finished = false;
   }
-  if (loop->finished && v->hud == v->hud_shown) {
-    v->backend->sleep_ns(kIdleNs);
-    return success();
-  }
+  if (loop->finished && v->hud == v->hud_shown) return idle(v, r, loop);
   if (!loop->finished && advance_shared(v->sharing, r, clock_ns() + kSliceNs, nullptr)) {
     loop->finished = true;
     ++v->frames_finished;
-    if (v->options.frame_count > 0) loop->passed = true;
+    if (goes_on(*v)) loop->passed = true;
   }
   loop->hud.line_count = 0;
   write_share_lines(*v->sharing, &loop->hud);

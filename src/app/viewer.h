@@ -6,6 +6,7 @@
 #include "app/camera_control.h"
 #include "app/progressive.h"
 #include "app/sharing.h"
+#include "app/split_screen.h"
 #include "base/status.h"
 #include "platform/devices/device.h"
 #include "platform/platform.h"
@@ -29,15 +30,18 @@ struct Viewer {
   int width = 0, height = 0;
   Rotation rotation = Rotation::none;
   PixelFormat format;
-  Sharing* sharing = nullptr;   // null: the device renders alone
-  Budget* budget = nullptr;     // null: frames take what they take, and are refined
-  std::uint64_t pack_ns = 0;    // of the last picture shown
-  bool picture_shared = false;  // the picture under way, or shown: by servers, too
+  Sharing* sharing = nullptr;    // null: the device renders alone
+  Budget* budget = nullptr;      // null: frames take what they take, and are refined
+  SplitScreen* split = nullptr;  // null: no reference to show
+  bool split_shown = true;       // the user wants to see it
+  std::uint64_t pack_ns = 0;     // of the last picture shown
+  bool picture_shared = false;   // the picture under way, or shown: by servers, too
   void* page_memory = nullptr;
   char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
   bool held[platform::kButtonCount] = {};
   bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // asked for
   int front_steps = 0;                                                                       // asked for
+  bool split_changed = false;                                                                //   or not
   bool front_home = false;                                                                   //   as the budget has it
   bool hud = true, hud_shown = false, paused = false;
   std::uint64_t waiting_since_ns = 0;

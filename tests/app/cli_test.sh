@@ -203,6 +203,18 @@ if [ $# -eq 0 ]; then
   check view_tells_of_its_budget_at_an_interrupt grep -qE '% of [0-9]+ frames? within' <<<"$still"
 fi
 check bench_front_cache_has_prices_alone test "$(grep -l flip= cache/of_its_own/pocketray/*-*.front | wc -l)" = 0
+if "${run[@]}" view --help | grep -q split-screen; then
+  for reference in model physical; do
+    expect split_screen_$reference 0 "RMSE [0-9.]+ from the $reference reference of (1[6-9]|[2-9][0-9]|[1-9][0-9]{2,}) samples" \
+      view seesaw "${small[@]}" --screen null --frames 2 --split-screen $reference
+  done
+  expect split_screen_budget 0 'from the model reference' \
+    view cube "${small[@]}" --screen null --frames 2 --split-screen model --budget-ms 1000000
+  expect split_screen_unknown 2 'split-screen' view cube --screen null --split-screen none
+  ! "${run[@]}" view --help | grep -q -- --server ||
+    expect split_screen_of_servers 1 'leave it out, or --server' \
+      view cube --screen null --split-screen model --server 127.0.0.1:1
+fi
 expect view_budget 0 '% of 4 frames within' view seesaw "${small[@]}" --screen null --frames 4 --budget-ms 1000
 
 # Goal: the render server says where it listens, what it offers and why it does not start; it ends when it is told to.
