@@ -27,7 +27,7 @@ constexpr KeyButton kKeys[] = {
     {SDL_SCANCODE_F1, Button::hud},       {SDL_SCANCODE_F12, Button::screenshot},
     {SDL_SCANCODE_F5, Button::reload},    {SDL_SCANCODE_PRINTSCREEN, Button::screenshot},
     {SDL_SCANCODE_PAGEUP, Button::finer}, {SDL_SCANCODE_PAGEDOWN, Button::faster},
-    {SDL_SCANCODE_C, Button::split},
+    {SDL_SCANCODE_V, Button::split},
 };
 
 struct ControllerButton {

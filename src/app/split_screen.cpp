@@ -159,7 +159,7 @@ void add_split_screen_option(CLI::App* command, SplitScreenOptions* o) {
       ->check(CLI::IsMember({"model", "physical"}));
 }
 
-const char* split_screen_key_help() { return "C shows the reference of --split-screen or not, "; }
+const char* split_screen_key_help() { return "V shows the reference of --split-screen or not, "; }
 
 SplitScreen* open_split_screen(const SplitScreenOptions& options, const Renderer& r, int bits_per_pixel, bool dither) {
   if (options.reference.empty()) return nullptr;
