@@ -68,14 +68,14 @@ std::string strip_figure(const Sweep& sweep, const PagePictures& pictures, const
 }
 
 std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
-  std::string title = "What accuracy costs in time: " + escaped(sweep.scene);
+  std::string title = "What accuracy costs in time: " + escaped(sweep.scene.substr(sweep.scene.rfind('/') + 1));
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
       title + "</title>\n<style>" + kPageStyle + "</style>\n</head>\n<body>\n<header>\n<div>\n<h1>" + title +
-      "</h1>\n<p class=\"soft\">" + format("%u × %u pixels", sweep.width, sweep.height) + ", " +
-      escaped(sweep.machine) + ", " + std::to_string(sweep.rounds) + " rounds; the baseline is shown as " +
-      escaped(sweep.output) + ".</p>\n";
+      "</h1>\n<p class=\"soft\">" + (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
+      format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
+      std::to_string(sweep.rounds) + " rounds; the baseline is shown as " + escaped(sweep.output) + ".</p>\n";
   text += "<p>Errors are against <b>" + escaped(sweep.reference) + "</b>, ";
   text += sweep.reference == "physical" ? "all light transport, path traced in double precision"
                                         : "the lighting model taken to its limit, in double precision";
@@ -146,10 +146,11 @@ std::string method_of(const Sweep& sweep) {
          "0 "
          "to 1 before output. A frame's time is of tracing and packing; the configurations run interleaved in random "
          "order, "
-         "and ratios to the baseline are medians with the 95 % interval of the bootstrap (Efron and Tibshirani 1993). "
-         "A slope "
-         "is fitted by least squares to logarithms of what the knob itself errs by, the RMSE that its best value takes "
-         "away, where that can be claimed; its 95 % interval in brackets. “ms per "
+         "and ratios to the baseline are medians with the 95 % interval of the bootstrap (Efron and Tibshirani 1993); "
+         "times are the baseline’s median times the ratio, as a round’s runs have the machine’s moods in common. A "
+         "slope "
+         "is fitted by least squares to logarithms of RMSE over time above what no time takes away, where that can be "
+         "claimed; the 95 % interval of its profile in brackets. “ms per "
          ".01 FLIP” is the time from "
          "a "
          "knob’s worst end to its best over what that gains. * marks the baseline’s value.</p>\n" +

@@ -34,8 +34,8 @@ struct KnobFigures {
   std::string what;    // "rays through each pixel"
   std::string effect;  // the effect it belongs to, or "all", "display"
   std::string theory;  // what theory says of the slope, with its number; empty: nothing
-  // Of the knob's own RMSE over time, log-log: of what its best value takes away, the square root of the difference of
-  // the squares. What remains at its best is owed to the other knobs.
+  // Of the knob's own RMSE over time, log-log, as slope_to_limit() finds it: what no time takes away is owed to the
+  // other knobs.
   Interval slope;
   bool has_slope = false;
   double ms_per_flip = kNotMeasured;  // ms a frame that 0.01 of ꟻLIP costs, from the knob's worst end to its best

@@ -49,23 +49,46 @@ Interval median_ratio(const std::vector<double>& times, const std::vector<double
   return {median(ratios), medians[kResamples / 40], medians[kResamples - 1 - kResamples / 40]};
 }
 
-Interval log_log_slope(const std::vector<double>& x, const std::vector<double>& y) {
-  CHECK_EQ(x.size(), y.size());
-  CHECK_GE(x.size(), 3u);
-  double n = static_cast<double>(x.size()), mean_x = 0, mean_y = 0, xx = 0, xy = 0, rest = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) mean_x += std::log(x[i]) / n, mean_y += std::log(y[i]) / n;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    double dx = std::log(x[i]) - mean_x;
-    xx += dx * dx, xy += dx * (std::log(y[i]) - mean_y);
+Interval slope_to_limit(const std::vector<double>& time, const std::vector<double>& error) {
+  CHECK_EQ(time.size(), error.size());
+  CHECK_GE(time.size(), 4u);
+  constexpr double kSteepest = -8, kFlattest = -1e-3, kStep = 0.01;
+  // How badly an exponent fits: the weighted variance of what log c would be at each point, times the weights.
+  auto misfit = [&](double s) {
+    double weights = 0, mean = 0, sum = 0, last = std::pow(error.back(), 4);
+    for (std::size_t i = 0; i + 1 < time.size(); ++i) {
+      double own = error[i] * error[i] - error.back() * error.back();
+      double law = std::pow(time[i] / time.back(), 2 * s) - 1;  // the scale is left to c
+      CHECK(own > 0 && time[i] < time.back());
+      double log_c = 0.5 * std::log(own / law), weight = own * own / (std::pow(error[i], 4) + last);
+      double step = log_c - mean;  // West's update
+      weights += weight;
+      mean += step * weight / weights;
+      sum += weight * step * (log_c - mean);
+    }
+    return sum;
+  };
+  double best = kFlattest;
+  for (double s = kSteepest; s < kFlattest; s += kStep)
+    if (misfit(s) < misfit(best)) best = s;
+  double low = std::max(kSteepest, best - kStep), high = std::min(kFlattest, best + kStep);
+  for (int i = 0; i < 60; ++i) {
+    double a = low + (high - low) / 3, b = high - (high - low) / 3;
+    (misfit(a) < misfit(b) ? high : low) = misfit(a) < misfit(b) ? b : a;
   }
-  if (!(xx > 0)) return {0, -kInfinity, kInfinity};
-  double slope = xy / xx;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    double r = std::log(y[i]) - mean_y - slope * (std::log(x[i]) - mean_x);
-    rest += r * r;
-  }
-  double half = student_975(x.size() - 2) * std::sqrt(rest / (n - 2) / xx);
-  return {slope, slope - half, slope + half};
+  best = 0.5 * (low + high);
+  std::size_t freedom = time.size() - 3;
+  double t = student_975(freedom), most = misfit(best) * (1 + t * t / static_cast<double>(freedom));
+  auto end = [&](double bound, double beyond) {
+    if (misfit(bound) <= most) return beyond;
+    double inside = best, outside = bound;
+    for (int i = 0; i < 60; ++i) {
+      double middle = 0.5 * (inside + outside);
+      (misfit(middle) <= most ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  return {best, end(kSteepest, -kInfinity), end(kFlattest, 0)};
 }
 
 std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error, double resolution) {

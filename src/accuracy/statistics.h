@@ -18,9 +18,13 @@ double median(std::vector<double> values);
 // Introduction to the Bootstrap, ch. 13]. As many times as baselines, at least one, all above 0.
 Interval median_ratio(const std::vector<double>& times, const std::vector<double>& baselines, std::uint64_t seed);
 
-// Slope of log y over log x by least squares, with the interval that Student's distribution gives it. At least three
-// points, all above 0; where all have the same x the interval is everything.
-Interval log_log_slope(const std::vector<double>& x, const std::vector<double>& y);
+// The exponent s of a law e² = floor² + (c tˢ)², s < 0, from errors at several times: what an error does on logarithmic
+// scales once what does not depend on the time is taken away. The last point has the most time; the others, at least
+// three, all above 0 and with a larger error, are compared with it, so that the floor need not be known:
+// e² − e_last² = c² (t²ˢ − t_last²ˢ). Least squares of the logarithms, weighted by what errors of equal relative size
+// do to them; the interval is that of the profile [Seber & Wild 1989, Nonlinear Regression, sec. 5.4]. An end that the
+// points do not tell of is infinite or 0.
+Interval slope_to_limit(const std::vector<double>& time, const std::vector<double>& error);
 
 // Which points no other beats in both numbers: true for each that has less cost than all of equal or less error, and
 // less error than all of equal or less cost. Of equal points the first. Errors closer than `resolution` count as equal:

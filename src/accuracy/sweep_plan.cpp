@@ -109,8 +109,11 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
   std::size_t rounds = std::min(f.ns_per_pixel.size(), baseline.ns_per_pixel.size());
   std::vector<double> ns(f.ns_per_pixel.begin(), f.ns_per_pixel.begin() + static_cast<std::ptrdiff_t>(rounds)),
       of_baseline(baseline.ns_per_pixel.begin(), baseline.ns_per_pixel.begin() + static_cast<std::ptrdiff_t>(rounds));
-  m.ns_per_pixel = median_ratio(ns, std::vector<double>(rounds, 1.0), seed);
+  // All ratios are of rounds, which have the machine's moods in common; so are the times that follow from them.
   m.time_ratio = median_ratio(ns, of_baseline, seed);
+  double baseline_ns = median(baseline.ns_per_pixel);
+  m.ns_per_pixel = {m.time_ratio.value * baseline_ns, m.time_ratio.low * baseline_ns, m.time_ratio.high * baseline_ns};
+  if (&f == &baseline) m.ns_per_pixel = median_ratio(ns, std::vector<double>(rounds, 1.0), seed);
   m.instructions_per_pixel = f.instructions_per_pixel;
   m.flip = f.flip, m.flip_before = f.flip_before, m.errors = f.errors;
   return m;
@@ -131,9 +134,6 @@ void mark_front(const SweepPlan& plan, double resolution, std::vector<Measured>*
     if (m.is_default) m.pareto = measured->front().pareto;
 }
 
-// The best value stands for a knob's limit in the slope; what takes more of its time is too near to it.
-constexpr double kFarFromBest = 1.0 / 3;
-
 KnobFigures figures_of(const SweptKnob& swept, const Sweep& sweep) {
   const Knob& knob = *swept.knob;
   KnobFigures k;
@@ -148,13 +148,16 @@ KnobFigures figures_of(const SweptKnob& swept, const Sweep& sweep) {
   std::vector<double> time, error;
   for (std::size_t i = 0; best && i < swept.count; ++i) {
     const Measured& m = sweep.measured[swept.first + i];
-    if (!m.missing.empty() || m.ns_per_pixel.value > kFarFromBest * best->ns_per_pixel.value) continue;
-    double square = m.errors.rmse * m.errors.rmse - best->errors.rmse * best->errors.rmse;
-    double own = square > 0 ? std::sqrt(square) : 0;
-    if (own > kClaimFactor * sweep.reference_rmse) time.push_back(m.ns_per_pixel.value), error.push_back(own);
+    if (!m.missing.empty() || m.ns_per_pixel.value >= best->ns_per_pixel.value) continue;
+    double own = m.errors.rmse * m.errors.rmse - best->errors.rmse * best->errors.rmse;
+    if (own > std::pow(kClaimFactor * sweep.reference_rmse, 2))
+      time.push_back(m.ns_per_pixel.value), error.push_back(m.errors.rmse);
   }
   k.has_slope = knob.labels.empty() && time.size() >= 3;
-  if (k.has_slope) k.slope = log_log_slope(time, error);
+  if (k.has_slope) {
+    time.push_back(best->ns_per_pixel.value), error.push_back(best->errors.rmse);
+    k.slope = slope_to_limit(time, error);
+  }
   if (worst && worst->flip - best->flip > kClaimFactor * sweep.reference_flip)
     k.ms_per_flip = (best->ns_per_pixel.value - worst->ns_per_pixel.value) * 1e-6 * sweep.width * sweep.height * 0.01 /
                     (worst->flip - best->flip);

@@ -14,7 +14,7 @@ struct SweptFront {
 };
 
 // Of all points that a screen of the baseline's format can be given between frames: those that nothing faster is more
-// accurate than by more than the reference may err. `figures`: one for each point.
-Front front_of_sweep(const SweepPlan& plan, const std::vector<PointFigures>& figures, double reference_flip);
+// accurate than by more than the reference may err. `sweep`: summed up from the plan's points.
+Front front_of_sweep(const SweepPlan& plan, const Sweep& sweep);
 
 }  // namespace pocketray

@@ -291,7 +291,7 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   for (const SweepPoint& point : run.plan.points) figures.push_back(run.state.points[id_of(point)]);
   sweep->rounds = run.state.rounds;
   sum_up(run.plan, figures, sweep);
-  if (front) *front = {front_of_sweep(run.plan, figures, sweep->reference_flip), rig.front_path};
+  if (front) *front = {front_of_sweep(run.plan, *sweep), rig.front_path};
   for (const SweptKnob& swept : run.plan.knobs) {
     RETURN_IF_ERROR(add_strip(&run, swept, sweep, whole));
     if (!*whole) return success();
