@@ -1,4 +1,5 @@
 // Light that the reference gathers, against closed forms.
+#include "shade/reference_light.h"
 #include "base/fmath.h"
 #include "scene/builtin_helpers.h"
 #include "shade/reference_helpers.h"
@@ -14,6 +15,15 @@ constexpr Transport kTransports[] = {Transport::model, Transport::physical};
 // A white floor about the origin.
 void add_floor(GeneratedScene* s, float side = 20) {
   add_quad(s, {-side, 0, side}, {side, 0, side}, {side, 0, -side}, {-side, 0, -side}, add_material(s, white()));
+}
+// A disk of 256 sides that shines down with radiance 3.
+void add_disk_light(GeneratedScene* s, double radius, double height) {
+  std::uint32_t light = add_material(s, emitter(3)), center = add_vertex(s, {0, static_cast<float>(height), 0});
+  for (int i = 0; i < 256; ++i) {
+    double x = radius * std::cos(2 * kPi * i / 256), z = radius * std::sin(2 * kPi * i / 256);
+    add_vertex(s, {static_cast<float>(x), static_cast<float>(height), static_cast<float>(z)});
+  }
+  for (std::uint32_t i = 0; i < 256; ++i) add_triangle(s, center, center + 1 + i, center + 1 + (i + 1) % 256, light);
 }
 Estimate look_at(const TestReference& t, Transport transport, const Vec3d& eye, const Vec3d& point, int count) {
   return estimate(t, transport, eye, normalize(point - eye), effort(count));
@@ -81,14 +91,7 @@ TEST_CASE("reference_disk_light_has_its_closed_form") {
   for (double height : {2.0, 0.5, 0.1, 0.01}) {
     GeneratedScene s;
     add_floor(&s);
-    std::uint32_t light = add_material(&s, emitter(3));
-    std::uint32_t center = add_vertex(&s, {0, static_cast<float>(height), 0}), rim = center + 1;
-    for (int i = 0; i < 256; ++i) {
-      double turn = 2 * kPi * i / 256;
-      add_vertex(&s,
-                 {static_cast<float>(std::cos(turn)), static_cast<float>(height), static_cast<float>(std::sin(turn))});
-    }
-    for (std::uint32_t i = 0; i < 256; ++i) add_triangle(&s, center, rim + i, rim + (i + 1) % 256, light);
+    add_disk_light(&s, 1, height);
     add_camera(&s);
     s.bind();
     TestReference t(s.scene);
@@ -98,6 +101,37 @@ TEST_CASE("reference_disk_light_has_its_closed_form") {
       CAPTURE(height);
       check_equal(look_at(t, transport, {0, height / 2, 0}, {0, 0, 0}, 10000), 3 / (1 + h * h), 2e-4);
     }
+  }
+}
+
+// Goal: points on lights are picked with the density they claim: a plane at height h whose geometry term is cut at b
+// gives E / (πL) = 2s − s², s = h√b (HARDCASES row 41). Method: a disk of radius 3, without the h² / (h² + R²) that
+// lies beyond it; the term is cut here, the reference cuts nothing.
+TEST_CASE("reference_plane_with_its_geometry_term_cut_has_its_closed_form") {
+  for (double b : {2.0, 0.5, 8.0}) {
+    GeneratedScene s;
+    add_floor(&s);
+    constexpr double kRadius = 3;
+    add_disk_light(&s, kRadius, 0.3);
+    add_camera(&s);
+    s.bind();
+    TestReference t(s.scene);
+    const FrameData& frame = t.renderer->renderer.frame;
+    double h = static_cast<double>(0.3f), root = h * std::sqrt(b), sum = 0, squares = 0;
+    int count = effort(200000);
+    Rng rng = make_rng(41);
+    for (int i = 0; i < count; ++i) {
+      double u = next_double(&rng);
+      ReferencePlace place = pick_place(frame, t.reference.emitters, {u, next_double(&rng)});
+      double square = dot(place.point, place.point);
+      double value = std::fmin(h * h / (square * square), b) / kPi / emitter_density(t.reference, place.triangle);
+      sum += value, squares += value * value;
+    }
+    double mean = sum / count;
+    CAPTURE(b);
+    if (b == 2.0) CHECK(std::fabs(2 * root - root * root - 0.668528) < 1e-6);
+    check_equal({mean, std::sqrt((squares / count - mean * mean) / count)},
+                2 * root - root * root - h * h / (h * h + kRadius * kRadius), 2e-4);
   }
 }
 
