@@ -33,7 +33,7 @@ int run(const AccuracyOptions& options) {
   // Effects that were switched by hand are no part of what a budget chooses.
   bool kept = status.ok && front.front.count > 1 && !front.path.empty() && options.common.effects == "auto";
   if (kept) {
-    Status written = write_front(front.path, front.front);
+    Status written = cache_front(front.path, front.front);
     kept = written.ok;
     if (!kept) std::fprintf(stderr, "pocketray: %s; prices are not kept\n", written.message);
   }

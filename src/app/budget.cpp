@@ -10,6 +10,7 @@
 #include "app/scene_identity.h"
 #include "base/check.h"
 #include "plan/plan_effects.h"
+#include "platform/file.h"
 
 namespace pocketray {
 namespace {
@@ -28,9 +29,13 @@ Status load_front(const Renderer& r, const FrontSource& source, const ContentHas
     if (!there && !source.may_be_new)
       return failure("--front is %.300s: there is no such file; `pocketray bench SCENE --front FILE` makes one",
                      f->path.c_str());
+    std::string folder = f->path.substr(0, f->path.rfind('/') + 1);
+    if (!there && !folder.empty() && platform::file_stamp(folder.c_str()) == 0)
+      return failure("--front is %.300s: there is no such folder; make it, or name another", f->path.c_str());
     f->file = there ? f->front : builtin_front();
   } else if (identity) {
     f->path = front_path(f->scene, *identity, machine_name(r.pace.device, r.settings.threads));
+    if (f->path.empty()) f->notes.push_back("neither XDG_CACHE_HOME nor HOME names a folder: prices are not kept");
     Status status = read_front(front_path(f->scene, *identity), &f->front, &there);
     if (!status.ok) f->notes.push_back(std::string(status.message) + "; it is not used");
     status = read_front(f->path, &f->measured, &there);
@@ -143,7 +148,7 @@ Front with_prices(const OpenFront& f, const Front& priced) {
 
 Status keep_measured(const OpenFront& f, const Front& measured) {
   if (f.path.empty() || measured.count == 0) return success();
-  return write_front(f.path, f.is_whole ? with_prices(f, measured) : prices_alone(measured));
+  return f.is_whole ? write_front(f.path, with_prices(f, measured)) : cache_front(f.path, prices_alone(measured));
 }
 
 void start_budget(const BudgetOptions& options, const OpenFront& front, const Renderer& r, std::size_t frame_count,
@@ -206,7 +211,7 @@ Status finish_budget(const Budget& b) {
     if (!find_candidate(learnt, old)) learnt.candidates[learnt.count++] = old;
   }
   sort_by_price(&learnt);
-  Status status = write_front(b.front.path, prices_alone(learnt));
+  Status status = cache_front(b.front.path, prices_alone(learnt));
   if (!status.ok) std::fprintf(stderr, "pocketray: %s; prices are not kept\n", status.message);
   return success();
 }

@@ -6,6 +6,7 @@
 
 #include "base/isa.h"
 #include "platform/file.h"
+#include "scene/builtin/builtin.h"
 
 namespace pocketray {
 namespace {
@@ -22,15 +23,17 @@ std::string cache_folder(const std::string& scene) {
   if (cache && *cache == '/') return std::string(cache) + "/pocketray";  // a relative one is to be ignored
   const char* home = std::getenv("HOME");
   if (home && *home == '/') return std::string(home) + "/.cache/pocketray";
-  return folder_of(scene);
+  return find_builtin(scene.c_str()) ? "" : folder_of(scene);
 }
 
 }  // namespace
 
 std::string front_path(const std::string& scene, const ContentHash& identity, const std::string& machine) {
+  std::string folder = cache_folder(scene);
+  if (folder.empty()) return "";
   char hash[40];
   std::snprintf(hash, sizeof hash, "%016" PRIx64 "%016" PRIx64, identity.high, identity.low);
-  return cache_folder(scene) + "/" + hash + (machine.empty() ? "" : "-" + machine) + ".front";
+  return folder + "/" + hash + (machine.empty() ? "" : "-" + machine) + ".front";
 }
 
 std::string machine_name(const char* emulated, std::uint32_t thread_count) {
@@ -54,15 +57,20 @@ Status write_front(const std::string& path, const Front& front) {
   std::vector<char> text(kFrontTextMax);
   std::size_t length = format_front(front, text.data(), text.size());
   platform::FileError error;
-  std::string folder = folder_of(path) + "/";
-  for (std::size_t at = folder.find('/', 1); at != std::string::npos; at = folder.find('/', at + 1))
-    if (platform::file_stamp(folder.substr(0, at).c_str()) == 0)
-      (void)platform::make_folder(folder.substr(0, at).c_str(), &error);  // open_writer() tells what could not be made
   platform::FileWriter writer;
   if (!platform::open_writer(path.c_str(), &writer, &error)) return failure("%.300s %s", path.c_str(), error.text);
   platform::write_bytes(&writer, text.data(), length);
   if (!platform::close_writer(&writer, &error)) return failure("%.300s %s", path.c_str(), error.text);
   return success();
+}
+
+Status cache_front(const std::string& path, const Front& front) {
+  platform::FileError error;
+  std::string folder = folder_of(path) + "/";
+  for (std::size_t at = folder.find('/', 1); at != std::string::npos; at = folder.find('/', at + 1))
+    if (platform::file_stamp(folder.substr(0, at).c_str()) == 0)
+      (void)platform::make_folder(folder.substr(0, at).c_str(), &error);  // write_front() tells what could not be made
+  return write_front(path, front);
 }
 
 }  // namespace pocketray

@@ -192,6 +192,14 @@ expect budget_aov 1 '--aov' render cube "${small[@]}" --budget-ms 40 --aov depth
 expect orbit_of_a_lone_frame 1 '--frames' render cube "${small[@]}" --orbit 2 -o refused.ppm
 expect bench_front 0 'ns a pixel .*samples=1 ' bench cube "${small[@]}" --frames 1 --front new.front
 check bench_front_keeps_all test "$(grep -c '^samples=' new.front)" -ge 5
+expect front_in_a_folder_that_is_not_there 1 'no/such/folder/new.front' \
+  bench cube "${small[@]}" --frames 1 --front no/such/folder/new.front
+check front_makes_no_folder test ! -e no
+mkdir homeless && cd homeless || exit 1
+XDG_CACHE_HOME= HOME= expect budget_without_a_home 0 'prices are not kept' \
+  render cube "${small[@]}" --budget-ms 1000000 -o ../found.ppm
+check budget_without_a_home_leaves_no_file test -z "$(ls)"
+cd ..
 expect bench_front_cache 0 'prices kept in .*cache/of_its_own' bench cube "${small[@]}" --frames 1 --front
 XDG_CACHE_HOME=/dev/null expect budget_cache_cannot_be_written 0 '/dev/null.*prices are not kept' \
   render cube "${small[@]}" --budget-ms 1000000 -o found.ppm
