@@ -25,6 +25,12 @@ bool list_folder(const char* path, void (*found)(void* context, const char* name
 // Makes a folder within one that is there. Also true where it is there already.
 bool make_folder(const char* path, FileError* error);
 
+// Makes a folder that no other program uses, where files that pass lie (TMPDIR or /tmp), and puts its path into `path`.
+// The caller's to remove.
+bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error);
+// Removes a folder with the files in it, but for those whose names begin with a dot; one with folders in it stays.
+void remove_folder(const char* path);
+
 // Changes whenever the file's content was replaced; 0 where there is no such file.
 std::uint64_t file_stamp(const char* path);
 

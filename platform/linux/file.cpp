@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -76,6 +77,24 @@ bool make_folder(const char* path, FileError* error) {
   int number = errno;
   if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return true;
   return fail(error, "cannot be made as a folder", number);
+}
+
+bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error) {
+  const char* where = getenv("TMPDIR");
+  if (!where || !*where) where = "/tmp";
+  int length = snprintf(path, path_bytes, "%s/pocketray_XXXXXX", where);
+  if (length < 0 || static_cast<size_t>(length) >= path_bytes) return fail(error, "the path of TMPDIR", ENAMETOOLONG);
+  return mkdtemp(path) || fail(error, "cannot be made as a folder", errno);
+}
+
+void remove_folder(const char* path) {
+  int descriptor = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  FileError error;
+  list_folder(
+      path, [](void* folder, const char* name) { unlinkat(*static_cast<int*>(folder), name, 0); }, &descriptor, &error);
+  close(descriptor);
+  rmdir(path);
 }
 
 std::uint64_t file_stamp(const char* path) {

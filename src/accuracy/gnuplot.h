@@ -1,9 +1,7 @@
-// What whoever draws with gnuplot needs. All of it here, so that a program without the accuracy library may use it,
-// too.
+// Text for gnuplot and for those who run it by hand. All of it here, so that a program without the accuracy library may
+// use it, too.
 #pragma once
-#include <cstdlib>
 #include <string>
-#include <vector>
 
 namespace pocketray {
 
@@ -23,13 +21,6 @@ inline std::string gnuplot_string(const std::string& text) {
   for (char& c : line)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   return quoted(line, "''");
-}
-
-// Runs scripts, one after the other, in the folder that they are in. False: there is no gnuplot that did.
-inline bool run_gnuplot(const std::string& folder, const std::vector<std::string>& scripts) {
-  std::string command = "cd -- " + shell_word(folder) + " && gnuplot";
-  for (const std::string& script : scripts) command += " " + shell_word(script);
-  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
 }
 
 }  // namespace pocketray

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "accuracy/gnuplot.h"
 #include "accuracy/page.h"
 #include "accuracy/plot.h"
 #include "accuracy/strip.h"
@@ -34,7 +33,8 @@ Status write_strips(const std::string& folder, const Sweep& sweep, PagePictures*
   return success();
 }
 
-Status write_plots(const std::string& folder, const Sweep& sweep, PagePictures* pictures, bool* drawn) {
+Status write_plots(const std::string& folder, const Sweep& sweep, const DrawScripts& draw, PagePictures* pictures,
+                   bool* drawn) {
   std::vector<Plot> plots = {front_plot(sweep), price_plot(sweep)};
   for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));
   std::vector<std::string> scripts;
@@ -42,7 +42,7 @@ Status write_plots(const std::string& folder, const Sweep& sweep, PagePictures* 
     scripts.push_back(plot.name + ".gnuplot");
     RETURN_IF_ERROR(write_file(folder + "/" + scripts.back(), plot.script));
   }
-  *drawn = run_gnuplot(folder, scripts);
+  *drawn = draw(folder, scripts);
   if (*drawn)
     for (const Plot& plot : plots) pictures->plots[plot.name] = read_file(folder + "/" + plot.name + ".svg");
   return success();
@@ -50,11 +50,11 @@ Status write_plots(const std::string& folder, const Sweep& sweep, PagePictures* 
 
 }  // namespace
 
-Status write_report(const std::string& folder, const Sweep& sweep, bool* drawn) {
+Status write_report(const std::string& folder, const Sweep& sweep, const DrawScripts& draw, bool* drawn) {
   *drawn = false;
   PagePictures pictures;
   RETURN_IF_ERROR(write_strips(folder, sweep, &pictures));
-  RETURN_IF_ERROR(write_plots(folder, sweep, &pictures, drawn));
+  RETURN_IF_ERROR(write_plots(folder, sweep, draw, &pictures, drawn));
   return write_file(folder + "/index.html", page_of(sweep, pictures));
 }
 

@@ -6,6 +6,7 @@
 #include "app/accuracy_sweep.h"
 #include "app/commands.h"
 #include "app/front_file.h"
+#include "app/gnuplot.h"
 
 namespace pocketray {
 namespace {
@@ -24,7 +25,7 @@ int run(const AccuracyOptions& options) {
   }
   status = save_text(options.folder, "accuracy.csv", sweep_csv(sweep));
   bool drawn = true;
-  if (status.ok) status = write_report(options.folder, sweep, &drawn);
+  if (status.ok) status = write_report(options.folder, sweep, run_gnuplot, &drawn);
   if (!drawn && status.ok)
     std::fprintf(stderr,
                  "pocketray: plots are left out: gnuplot is not installed or failed; install it (Debian: gnuplot), "

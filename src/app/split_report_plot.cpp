@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "accuracy/gnuplot.h"
+#include "app/gnuplot.h"
 
 namespace pocketray {
 namespace {

@@ -18,6 +18,12 @@ using namespace pocketray;
 
 namespace {
 
+bool gnuplot(const std::string& folder, const std::vector<std::string>& scripts) {
+  std::string command = "cd " + folder + " && gnuplot";
+  for (const std::string& script : scripts) command += " " + script;
+  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
+}
+
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // What is wrong with the markup: tags that are not closed in order, attributes without quotes, stray characters. Empty:
@@ -164,7 +170,7 @@ TEST_CASE("report_has_no_gaps") {
     CAPTURE(sweep->measured.size());
     Folder folder;
     bool drawn = false;
-    Status status = write_report(folder.path, *sweep, &drawn);
+    Status status = write_report(folder.path, *sweep, gnuplot, &drawn);
     REQUIRE_MESSAGE(status.ok, status.message);
     CHECK(drawn == (std::system("gnuplot -V >/dev/null 2>&1") == 0));
     std::vector<std::string> plots = {"/front", "/price"};
@@ -190,7 +196,7 @@ TEST_CASE("report_has_no_gaps") {
 // Goal: a folder that is not there is told in one line. Method: one that is not.
 TEST_CASE("report_names_a_folder_it_cannot_write_to") {
   bool drawn = true;
-  Status status = write_report("/nonexistent/folder", sample_sweep(), &drawn);
+  Status status = write_report("/nonexistent/folder", sample_sweep(), gnuplot, &drawn);
   CHECK(!status.ok);
   CHECK(!drawn);
   CHECK(has(status.message, "/nonexistent/folder/"));

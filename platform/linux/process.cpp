@@ -1,0 +1,95 @@
+#include "platform/process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace platform {
+namespace {
+
+constexpr int kNotStarted = 127;  // as shells have it
+
+// Between fork() and exec, where little but system calls is allowed.
+[[noreturn]] void become(const char* path, const char* const* words, const char* folder, pid_t parent) {
+  int nothing = open("/dev/null", O_RDWR);
+  bool ok = nothing >= 0;
+  for (int descriptor = 0; descriptor <= 2; ++descriptor) ok = ok && dup2(nothing, descriptor) >= 0;
+  if (nothing > 2) close(nothing);
+  ok = ok && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent;
+  if (ok && (!folder || chdir(folder) == 0)) execv(path, const_cast<char* const*>(words));
+  _exit(kNotStarted);
+}
+
+ProcessState collect(Process* process, int options) {
+  if (process->id == 0) return ProcessState::failed;
+  int status = 0;
+  pid_t ended;
+  do ended = waitpid(static_cast<pid_t>(process->id), &status, options);
+  while (ended < 0 && errno == EINTR);
+  if (ended == 0) return ProcessState::running;
+  process->id = 0;
+  return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0 ? ProcessState::succeeded : ProcessState::failed;
+}
+
+}  // namespace
+
+bool find_program(const char* name, char* path, std::size_t path_bytes) {
+  const char* folders = getenv("PATH");
+  while (folders && *folders) {
+    size_t length = strcspn(folders, ":");
+    int path_length = snprintf(path, path_bytes, "%.*s/%s", static_cast<int>(length), folders, name);
+    struct stat info;
+    if (length > 0 && path_length > 0 && static_cast<size_t>(path_length) < path_bytes && stat(path, &info) == 0 &&
+        S_ISREG(info.st_mode) && access(path, X_OK) == 0)
+      return true;
+    folders += length + (folders[length] == ':');
+  }
+  return false;
+}
+
+bool start_program(const char* path, const char* const* words, const char* folder, Process* process, FileError* error) {
+  pid_t parent = getpid(), child = fork();
+  if (child == 0) become(path, words, folder, parent);
+  process->id = child > 0 ? child : 0;
+  if (child < 0) snprintf(error->text, sizeof error->text, "cannot be started: %s", strerror(errno));
+  return child > 0;
+}
+
+ProcessState look_at(Process* process) { return collect(process, WNOHANG); }
+
+bool wait_for(Process* process) { return collect(process, 0) == ProcessState::succeeded; }
+
+void kill_process(Process* process) {
+  if (process->id == 0) return;
+  kill(static_cast<pid_t>(process->id), SIGKILL);
+  collect(process, 0);
+}
+
+bool own_program(char* path, std::size_t path_bytes) {
+  ssize_t length = readlink("/proc/self/exe", path, path_bytes);
+  if (length <= 0 || static_cast<size_t>(length) >= path_bytes) return false;
+  path[length] = 0;
+  return true;
+}
+
+std::size_t own_words(char* words, std::size_t words_bytes) {
+  int descriptor = open("/proc/self/cmdline", O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return 0;
+  size_t count = 0;
+  ssize_t n = 1;
+  while (n > 0 && count < words_bytes) {
+    n = read(descriptor, words + count, words_bytes - count);
+    if (n > 0) count += static_cast<size_t>(n);
+  }
+  close(descriptor);
+  return n == 0 && count > 0 && words[count - 1] == 0 ? count : 0;
+}
+
+}  // namespace platform

@@ -1,0 +1,124 @@
+// Programs that are started.
+#include "platform/process.h"
+
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <thread>
+
+using namespace platform;
+
+namespace {
+
+struct Folder {
+  char path[64] = {0};
+  Folder() {
+    FileError error;
+    REQUIRE_MESSAGE(make_temporary_folder(path, sizeof path, &error), error.text);
+  }
+  ~Folder() { remove_folder(path); }
+  std::string file(const char* name) const { return std::string(path) + "/" + name; }
+};
+
+bool start_shell(const char* script, const char* word, const char* folder, Process* process) {
+  const char* words[] = {"sh", "-c", script, "sh", word, nullptr};
+  FileError error;
+  return start_program("/bin/sh", words, folder, process, &error);
+}
+
+bool is_there(const std::string& path) { return access(path.c_str(), F_OK) == 0; }
+
+}  // namespace
+
+// Goal: a program gets its words as they are and runs in its folder; how it ends is told. Method: a shell that compares
+// a word no shell would leave alone, writes a file and ends with either status, a signal, or is not there at all.
+TEST_CASE("process_runs_with_its_words_in_its_folder") {
+  Folder folder;
+  Process process;
+  REQUIRE(
+      start_shell("test \"$1\" = 'a b$HOME\"*' && echo >made && ! read line", "a b$HOME\"*", folder.path, &process));
+  CHECK(wait_for(&process));
+  CHECK(is_there(folder.file("made")));
+  CHECK(process.id == 0);
+  CHECK(look_at(&process) == ProcessState::failed);
+  for (const char* script : {"exit 3", "kill -TERM $$"}) {
+    REQUIRE(start_shell(script, "", nullptr, &process));
+    CHECK_FALSE(wait_for(&process));
+  }
+  const char* words[] = {"none", nullptr};
+  FileError error;
+  REQUIRE(start_program(folder.file("none").c_str(), words, nullptr, &process, &error));
+  CHECK_FALSE(wait_for(&process));
+  REQUIRE(start_shell("exit 0", "", folder.file("none").c_str(), &process));
+  CHECK_FALSE(wait_for(&process));
+}
+
+// Goal: a program is watched without waiting, and killed. Method: one that sleeps for longer than the test may take.
+TEST_CASE("process_is_watched_and_killed") {
+  Process process;
+  REQUIRE(start_shell("exec sleep 600", "", nullptr, &process));
+  pid_t id = static_cast<pid_t>(process.id);
+  CHECK(look_at(&process) == ProcessState::running);
+  kill_process(&process);
+  CHECK(process.id == 0);
+  CHECK(kill(id, 0) != 0);
+  kill_process(&process);  // nothing
+  REQUIRE(start_shell("exit 0", "", nullptr, &process));
+  ProcessState state;
+  while ((state = look_at(&process)) == ProcessState::running)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  CHECK(state == ProcessState::succeeded);
+}
+
+// Goal: none outlives the one that started it. Method: one that sleeps, started by a thread that ends.
+TEST_CASE("process_ends_with_who_started_it") {
+  Process process;
+  Folder folder;
+  std::thread([&] {
+    CHECK(start_shell("echo >started; exec sleep 600", "", folder.path, &process));
+    while (!is_there(folder.file("started"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }).join();
+  CHECK_FALSE(wait_for(&process));
+}
+
+// Goal: programs are found as a shell finds them. Method: a PATH with an empty folder, one that is not there, one with
+// a file that is no program and one with the program; room for the path and a byte too little.
+TEST_CASE("process_program_is_found_along_the_path") {
+  Folder data, programs;
+  std::string old_path = getenv("PATH") ? getenv("PATH") : "";
+  for (const Folder* folder : {&data, &programs}) {
+    FileWriter writer;
+    FileError error;
+    REQUIRE(open_writer(folder->file("tool").c_str(), &writer, &error));
+    REQUIRE(close_writer(&writer, &error));
+  }
+  REQUIRE(chmod(programs.file("tool").c_str(), 0755) == 0);
+  setenv("PATH", (":/none:" + std::string(data.path) + ":" + programs.path).c_str(), 1);
+  char path[128];
+  std::string expected = programs.file("tool");
+  CHECK(find_program("tool", path, sizeof path));
+  CHECK(path == expected);
+  CHECK(find_program("tool", path, expected.size() + 1));
+  CHECK_FALSE(find_program("tool", path, expected.size()));
+  CHECK_FALSE(find_program("no_tool", path, sizeof path));
+  setenv("PATH", old_path.c_str(), 1);
+}
+
+// Goal: a program knows its file and its words. Method: this test's; a byte too little room.
+TEST_CASE("process_knows_what_it_was_started_as") {
+  char path[1024], words[8192];
+  REQUIRE(own_program(path, sizeof path));
+  CHECK(std::string(path).find("test_platform") != std::string::npos);
+  CHECK_FALSE(own_program(path, std::strlen(path)));
+  std::size_t bytes = own_words(words, sizeof words);
+  REQUIRE(bytes > 1);
+  CHECK(std::string(words).find("test_platform") != std::string::npos);
+  CHECK(own_words(words, bytes) == 0);
+  CHECK(own_words(words, bytes + 1) == bytes);
+}
