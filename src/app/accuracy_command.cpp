@@ -2,6 +2,7 @@
 #include "accuracy/csv.h"
 #include "accuracy/gnuplot.h"
 #include "accuracy/report.h"
+#include "app/accuracy_instructions.h"
 #include "app/accuracy_report.h"
 #include "app/accuracy_sweep.h"
 #include "app/commands.h"
@@ -15,6 +16,7 @@ int run(const AccuracyOptions& options) {
   Sweep sweep;
   bool whole;
   SweptFront front;
+  if (!options.counting_folder.empty()) return report(render_for_valgrind(options));
   Status status = measure_sweep(options, &sweep, &whole, &front);
   if (!status.ok) return report(status);
   if (!whole) {
@@ -52,6 +54,7 @@ int run(const AccuracyOptions& options) {
 
 void add_accuracy_command(CLI::App* program, int* exit_status) {
   auto o = std::make_shared<AccuracyOptions>();
+  o->starts_valgrind = true;
   CLI::App* command =
       program->add_subcommand("accuracy", "show what accuracy costs in time: sweep every knob of a scene");
   command->footer(
@@ -78,6 +81,7 @@ void add_accuracy_command(CLI::App* program, int* exit_status) {
       ->capture_default_str();
   command->add_flag("--restart", o->restart, "drop what the folder has measured");
   command->add_option("--json", o->common.json, "also write it as JSON to FILE, or - for standard output");
+  command->add_option("--counting-folder", o->counting_folder)->group("");  // of valgrind's run alone
   command->callback([=] { *exit_status = run(*o); });
 }
 

@@ -45,9 +45,11 @@ bool is_within(double value, double low, double high) { return value >= low && v
 
 // Whether a sweep could have written it: what is beyond would have no place on a plot.
 bool is_sane(const PointFigures& f) {
-  constexpr double kNsPerPixelMax = 1e15;
+  constexpr double kNsPerPixelMax = 1e15, kInstructionsPerPixelMax = 1e16;
   for (double ns : f.ns_per_pixel)
     if (!(ns > 0 && ns <= kNsPerPixelMax)) return false;
+  if (!std::isnan(f.instructions_per_pixel) && !is_within(f.instructions_per_pixel, 0, kInstructionsPerPixelMax))
+    return false;
   const PictureErrors& e = f.errors;  // of light between 0 and 1
   return !f.has_errors || (is_within(f.flip, 0, 1) && is_within(f.flip_before, 0, 1) && is_within(e.rmse, 0, 1) &&
                            is_within(e.rel_mse, 0, 1 / kRelativeFloor) && is_within(e.p99, 0, 1) &&
@@ -59,6 +61,7 @@ Status read_state(const std::string& text, const std::string& path, AccuracyStat
     Json json = Json::parse(text);
     state->key = json.at("key");
     state->rounds = json.at("rounds").get<std::uint32_t>();
+    state->counted = json.value("counted", std::string());
     state->references = json.at("references").get<std::vector<std::string>>();
     for (const auto& item : json.at("points").items()) {
       PointFigures f = figures_from(item.value());
@@ -117,7 +120,11 @@ Status open_state(const std::string& folder, const Json& wanted, bool restart, A
 Status save_state(const std::string& folder, const AccuracyState& state) {
   Json points = Json::object();
   for (const auto& point : state.points) points[point.first] = to_json(point.second);
-  Json json = {{"key", state.key}, {"rounds", state.rounds}, {"references", state.references}, {"points", points}};
+  Json json = {{"key", state.key},
+               {"rounds", state.rounds},
+               {"counted", state.counted},
+               {"references", state.references},
+               {"points", points}};
   return save_text(folder, kStateName, written(json));
 }
 

@@ -13,6 +13,7 @@ namespace pocketray {
 struct AccuracyState {
   Json key;                                    // name → text: everything that the figures depend on
   std::uint32_t rounds = 0;                    // that are whole
+  std::string counted;                         // how instructions are counted where the CPU does not; empty: it does
   std::map<std::string, PointFigures> points;  // by knob and value; times of whole rounds alone
   std::vector<std::string> references;         // pictures that are whole, by name
 };

@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "accuracy/display.h"
+#include "app/accuracy_instructions.h"
 #include "app/accuracy_reference.h"
+#include "app/accuracy_rigs.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "base/rng.h"
-#include "plan/plan_lights.h"
 #include "platform/instructions.h"
 
 namespace pocketray {
@@ -24,23 +25,11 @@ constexpr std::uint32_t kRoundsMax = 1000;
 
 struct Run {
   const AccuracyOptions& options;
-  std::map<std::uint32_t, std::unique_ptr<Rig>> rigs;  // by the sphere's columns
+  Rigs rigs;
   SweepPlan plan;
   AccuracyState state;
   ReferencePictures reference;
 };
-
-std::string id_of(const SweepPoint& point) { return point.value.empty() ? point.knob : point.knob + " " + point.value; }
-
-Status rig_for(Run* run, const Configuration& configuration, Rig** rig) {
-  std::unique_ptr<Rig>& there = run->rigs[configuration.sphere_columns];
-  if (!there) {
-    RETURN_IF_ERROR(open_rig(run->options, configuration.sphere_columns, &there));
-    there->opened.renderer.exposure = run->rigs[kCornellSphereColumns]->opened.renderer.exposure;
-  }
-  *rig = there.get();
-  return success();
-}
 
 Transport chosen(const AccuracyOptions& o) { return o.reference == "model" ? Transport::model : Transport::physical; }
 Transport other_than(Transport t) { return t == Transport::model ? Transport::physical : Transport::model; }
@@ -97,7 +86,7 @@ void find_errors(const Run& run, const Rig& rig, const Configuration& configurat
 std::vector<std::size_t> round_order(const SweepPlan& plan, std::uint32_t round) {
   std::vector<std::size_t> order(kBaselineRuns, 0);
   for (std::size_t i = 1; i < plan.points.size(); ++i)
-    if (plan.points[i].missing.empty() && !plan.points[i].is_default) order.push_back(i);
+    if (is_measured(plan, i)) order.push_back(i);
   Rng rng = make_rng(15, round);
   for (std::size_t i = order.size(); i > 1; --i)
     std::swap(order[i - 1], order[static_cast<std::size_t>(next_double(&rng) * static_cast<double>(i))]);
@@ -115,7 +104,7 @@ Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
   for (std::size_t i : round_order(run->plan, run->state.rounds)) {
     const SweepPoint& point = run->plan.points[i];
     Rig* rig;
-    RETURN_IF_ERROR(rig_for(run, point.configuration, &rig));
+    RETURN_IF_ERROR(rig_for(&run->rigs, point.configuration, &rig));
     double ns_per_pixel = 0;
     RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
@@ -123,7 +112,7 @@ Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
     times[i].push_back(ns_per_pixel);
     PointFigures* f = &run->state.points[id_of(point)];
     if (!f->has_errors) find_errors(*run, *rig, point.configuration, f);
-    if (std::isnan(f->instructions_per_pixel))
+    if (run->state.counted.empty() && std::isnan(f->instructions_per_pixel))
       RETURN_IF_ERROR(count_instructions(rig, point.configuration, run->options.seconds, &f->instructions_per_pixel));
     progress->done += 1000 * point.price;
     show_progress(&progress->progress, static_cast<std::uint64_t>(progress->done));
@@ -174,7 +163,7 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
     const SweepPoint& point = run->plan.points[i];
     if (i != there.front() && i != there.back() && !point.is_default) continue;
     Rig* rig;
-    RETURN_IF_ERROR(rig_for(run, point.configuration, &rig));
+    RETURN_IF_ERROR(rig_for(&run->rigs, point.configuration, &rig));
     double ns_per_pixel;
     RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
@@ -197,10 +186,10 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
 // Both kinds: the one that knobs are compared with, and what the model's limit errs against all transport.
 Status render_references(Run* run, Sweep* sweep, bool* whole) {
   bool is_cornell = run->options.common.scene == "cornell";
-  Configuration configuration = run->rigs[kCornellSphereColumns]->baseline;
+  Configuration configuration = run->rigs.by_columns[kCornellSphereColumns]->baseline;
   if (is_cornell) configuration.sphere_columns = kReferenceColumns;
   Rig* rig;
-  RETURN_IF_ERROR(rig_for(run, configuration, &rig));
+  RETURN_IF_ERROR(rig_for(&run->rigs, configuration, &rig));
   ReferencePictures other;
   Transport kind = chosen(run->options), other_kind = other_than(kind);
   RETURN_IF_ERROR(render_reference(run->options, kind, rig, &run->state, &run->reference, whole));
@@ -216,7 +205,7 @@ Status render_references(Run* run, Sweep* sweep, bool* whole) {
   std::vector<double> of_one = reference.one, of_other = reference.other, none(of_one.size(), 0.0);
   for (std::size_t i = 0; i < none.size(); ++i) of_one[i] -= other.one[i], of_other[i] -= other.other[i];
   sweep->model_rmse = unbiased_rmse(of_one, of_other, none);
-  if (is_cornell) run->rigs.erase(kReferenceColumns);
+  if (is_cornell) run->rigs.by_columns.erase(kReferenceColumns);
   return success();
 }
 
@@ -235,16 +224,7 @@ Status check_options(const AccuracyOptions& o) {
   return success();
 }
 
-// What --budget-ms chooses from where no front was measured is measured, too.
-std::vector<Settings> ladder_of(const Renderer& r) {
-  Front front = builtin_front();
-  drop_what_scene_ignores(&front, r.effects.mask);
-  std::vector<Settings> ladder;
-  for (std::uint32_t i = 0; i < front.count; ++i) ladder.push_back(with_candidate(r.settings, front.candidates[i]));
-  return ladder;
-}
-
-void describe(const Run& run, const Rig& rig, bool counts, Sweep* sweep) {
+void describe(const Run& run, const Rig& rig, Sweep* sweep) {
   const AccuracyOptions& o = run.options;
   const Settings& s = rig.baseline.settings;
   sweep->scene = o.common.scene;
@@ -255,37 +235,36 @@ void describe(const Run& run, const Rig& rig, bool counts, Sweep* sweep) {
   sweep->reference = o.reference, sweep->reference_samples = reference_samples(o, chosen(o)) / 2 * 2;
   sweep->output = o.output;
   sweep->notes = run.plan.notes;
-  if (!counts)
-    sweep->notes.push_back("instructions are not counted: neither this CPU nor the system does it for programs");
+}
+
+// Where the CPU counts none, and has counted none of this sweep before.
+Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool* whole) {
+  for (const auto& point : run->state.points) by_cpu = by_cpu || std::isfinite(point.second.instructions_per_pixel);
+  if (by_cpu && run->state.counted.empty()) return success();
+  std::string note;
+  count_by_valgrind(run->options, rig, run->plan, &run->state, whole, &note);
+  sweep->notes.push_back(note);
+  return save_state(run->options.folder, run->state);
 }
 
 }  // namespace
 
 Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front) {
-  Run run = {options, {}, {}, {}, {}};
+  Run run = {options, {options, {}}, {}, {}, {}};
   *whole = true;
   RETURN_IF_ERROR(check_options(options));
   bool counts = platform::start_instruction_count();  // of the threads to come, too
-  std::unique_ptr<Rig>& first = run.rigs[kCornellSphereColumns];
-  RETURN_IF_ERROR(open_rig(options, kCornellSphereColumns, &first));
-  const Rig& rig = *first;
+  RETURN_IF_ERROR(plan_rigs(&run.rigs, &run.plan));
+  const Rig& rig = *run.rigs.by_columns[kCornellSphereColumns];
   print_notes(rig.opened);
-  Renderer* r = &first->opened.renderer;
-  // The plan of the scene's own normals, whatever the baseline makes of them.
-  Settings settings = rig.baseline.settings;
-  settings.normals = NormalMode::as_scene;
-  RETURN_IF_ERROR(change_settings(r, settings));
-  auto can_be_had = [&](const Settings& s) {
-    std::uint32_t count;
-    return light_point_count(r->scene, s, r->effects.mask, &count);
-  };
-  run.plan = plan_sweep(options.common.scene, r->effects, rig.baseline, can_be_had, options.price_limit, ladder_of(*r));
-  describe(run, rig, counts, sweep);
+  describe(run, rig, sweep);
   RETURN_IF_ERROR(open_state(options.folder, key_of(run, rig), options.restart, &run.state));
   RETURN_IF_ERROR(check_state(run));
   RETURN_IF_ERROR(render_references(&run, sweep, whole));
   if (!*whole) return success();
   RETURN_IF_ERROR(measure_rounds(&run, whole));
+  if (!*whole) return success();
+  RETURN_IF_ERROR(count_otherwise(&run, rig, counts, sweep, whole));
   if (!*whole) return success();
   std::vector<PointFigures> figures;
   for (const SweepPoint& point : run.plan.points) figures.push_back(run.state.points[id_of(point)]);

@@ -19,6 +19,8 @@ struct AccuracyOptions {
   std::uint32_t rounds = 15;
   double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
   bool restart = false;
+  bool starts_valgrind = false;  // where the CPU counts no instructions; of a program started as `pocketray accuracy …`
+  std::string counting_folder;  // of the program that valgrind runs, and not empty: what it is to render
 };
 
 // A scene opened for all configurations that have its geometry.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <thread>
 
@@ -227,6 +228,9 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   f.errors.psnr = std::numeric_limits<double>::infinity();
   f.ns_per_pixel = {12.25, 1e9 / 3};
   state.points["samples 4"] = f;
+  f.instructions_per_pixel = 7654.5;
+  state.points["samples 9"] = f;
+  state.counted = "by hand";
   REQUIRE(save_state(folder.path, state).ok);
   REQUIRE(open_state(folder.path, key, false, &read).ok);
   CHECK(read.rounds == 2);
@@ -234,6 +238,8 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   CHECK(read.points.at("samples 4").ns_per_pixel == f.ns_per_pixel);
   CHECK(std::isinf(read.points.at("samples 4").errors.psnr));
   CHECK(std::isnan(read.points.at("samples 4").instructions_per_pixel));
+  CHECK(read.points.at("samples 9").instructions_per_pixel == 7654.5);
+  CHECK(read.counted == "by hand");
 
   platform::MappedFile file;
   platform::FileError error;
@@ -246,11 +252,16 @@ TEST_CASE("accuracy_refuses_damaged_files") {
     CHECK_FALSE(status.ok);
     CHECK(std::string(status.message).find("--restart") != std::string::npos);
   }
-  for (const char* figure : {"1e300", "-1.0", "\"none\"", "0"}) {  // what no sweep gives
+  const std::pair<const char*, const char*> senseless[] = {// what no sweep gives
+                                                           {"12.25", "1e300"},    {"12.25", "-1.0"},
+                                                           {"12.25", "\"none\""}, {"12.25", "0"},
+                                                           {"7654.5", "1e300"},   {"7654.5", "-1.0"}};
+  for (const auto& [figure, other] : senseless) {
+    CAPTURE(other);
     std::string changed = text;
-    std::size_t at = changed.find("12.25");
+    std::size_t at = changed.find(figure);
     REQUIRE(at != std::string::npos);
-    REQUIRE(save_text(folder.path, "accuracy.state", changed.replace(at, 5, figure)).ok);
+    REQUIRE(save_text(folder.path, "accuracy.state", changed.replace(at, std::strlen(figure), other)).ok);
     Status status = open_state(folder.path, key, false, &read);
     CHECK_FALSE(status.ok);
     CHECK(std::string(status.message).find("--restart") != std::string::npos);

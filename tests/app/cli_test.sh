@@ -401,6 +401,42 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
   check accuracy_json grep -q '"reference_flip": 0' sweep.json
   check accuracy_page grep -q '</html>' sweep/index.html
+  # Goal: instructions are counted where something can, and without it nothing else is lost. Method: the baseline's row;
+  # where the CPU does not count them, a valgrind that fails, one that an interrupt finds at work, and a program without
+  # symbols. Skipped where valgrind is not there or cannot run this program (an emulated CPU, a sanitizer).
+  counts() { awk -F, '$1 == "baseline" && $18 > 100 { found = 1 } END { exit !found }' "$1/accuracy.csv"; }
+  if [ $# -eq 0 ] && valgrind -q "$program" --version >/dev/null 2>&1; then
+    check accuracy_counts counts sweep
+    mkdir fake
+    printf '#!/bin/sh\nexit 1\n' >fake/valgrind
+    chmod +x fake/valgrind
+    real_path=$PATH PATH=$PWD/fake:$PATH
+    expect accuracy_failing_valgrind 0 'index.html shows it' accuracy cube "${tiny[@]}" -o other --rounds 1 --json other.json
+    if ! counts other; then
+      check accuracy_tells_that_valgrind_failed grep -q 'not counted: .* valgrind failed' other.json
+      cp sweep/accuracy.state counted.state
+      expect accuracy_counts_once 0 'by valgrind over 4×3 pixels, [a-z0-9]+; ' accuracy cube "${tiny[@]}" -o sweep --rounds 1
+      check accuracy_keeps_counts cmp -s sweep/accuracy.state counted.state
+      printf '#!/bin/sh\necho $$ >fake.id.part && mv fake.id.part fake.id\nexec sleep 60\n' >fake/valgrind
+      "${run[@]}" accuracy cube "${tiny[@]}" -o other --rounds 1 >/dev/null 2>&1 &
+      sweeping=$!
+      until [ -s fake.id ] || ! kill -0 $sweeping 2>/dev/null; do sleep 0.05; done
+      kill -INT $sweeping
+      wait $sweeping
+      check accuracy_is_interrupted_when_counting test $? -eq 3
+      check accuracy_ends_valgrind test ! -e "/proc/$(cat fake.id)"
+      PATH=$real_path
+      expect accuracy_counts_after_all 0 'by valgrind over 4×3' accuracy cube "${tiny[@]}" -o other --rounds 1
+      if strip -o stripped "$program" 2>/dev/null; then
+        run=("$PWD/stripped")
+        expect accuracy_without_symbols 0 'not counted: .* no symbols' accuracy cube "${tiny[@]}" -o third --rounds 1
+        run=("$program")
+      fi
+    fi
+    PATH=$real_path
+  else
+    echo "skipped: valgrind is not installed or cannot run $program"
+  fi
   expect accuracy_other_samples 1 'samples.*--restart' accuracy cube "${tiny[@]}" -o sweep --samples 2
   echo nonsense >sweep/accuracy.state
   expect accuracy_damaged 1 'damaged.*--restart' accuracy cube "${tiny[@]}" -o sweep

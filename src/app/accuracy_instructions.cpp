@@ -1,0 +1,237 @@
+#include "app/accuracy_instructions.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "accuracy/callgrind.h"
+#include "accuracy/text.h"
+#include "app/interrupt.h"
+#include "platform/process.h"
+
+namespace pocketray {
+
+// Callgrind dumps what it has counted before it enters this.
+__attribute__((noinline)) void begin_counted_frame() { asm volatile("" ::: "memory"); }
+
+namespace {
+
+constexpr const char *kJobName = "job", *kIsaName = "isa", *kDumpName = "callgrind";
+constexpr const char* kNotCounted =
+    "instructions are not counted: neither this CPU nor the system does it for programs";
+// Chosen for the time it takes: all of cornell at 320×240 in a minute or two. Where triangles are as small as pixels, a
+// pixel of the small picture takes more (cornell's baseline: 11,170 instructions, of the whole one 5,350).
+constexpr std::uint32_t kShrink = 4;
+constexpr std::size_t kWordsBytesMax = 1 << 17;
+
+struct TemporaryFolder {
+  char path[1024] = {0};
+  ~TemporaryFolder() {
+    if (path[0]) platform::remove_folder(path);
+  }
+};
+
+bool read_text(const std::string& path, std::string* text) {
+  platform::MappedFile file;
+  platform::FileError error;
+  if (!platform::map_file(path.c_str(), &file, &error)) return false;
+  text->assign(reinterpret_cast<const char*>(file.bytes), file.byte_count);
+  platform::unmap_file(&file);
+  return true;
+}
+
+struct Counting {
+  std::vector<const SweepPoint*> points;
+  std::uint32_t width = 0, height = 0;
+  TemporaryFolder folder;
+  platform::Process process;
+  bool ended_well = false;
+
+  // Callgrind counts its dumps from 1, and the first is of what was done before the first frame.
+  std::string dump_path(std::size_t dump) const {
+    return std::string(folder.path) + "/" + kDumpName + "." + std::to_string(dump + 1);
+  }
+  std::string dump_of_point(std::size_t i) const { return dump_path(i + 1); }
+};
+
+Status write_job(const Rig& rig, const Counting& counting) {
+  const Renderer& r = rig.opened.renderer;
+  std::vector<std::string> ids;
+  for (const SweepPoint* point : counting.points) ids.push_back(id_of(*point));
+  Json job = {{"size", std::to_string(counting.width) + "x" + std::to_string(counting.height)},
+              {"threads", r.settings.threads},
+              {"exposure", r.exposure},
+              {"accel", r.accel_info->name},
+              {"configurations", ids}};
+  return save_text(counting.folder.path, kJobName, job.dump(1, ' ', false, Json::error_handler_t::replace));
+}
+
+// Valgrind's words, then this program's own with the folder after its command.
+bool command_line(const std::string& valgrind, const std::string& folder, std::vector<std::string>* words) {
+  char own[1024];
+  std::vector<char> own_words(kWordsBytesMax);
+  std::size_t bytes = platform::own_words(own_words.data(), own_words.size());
+  if (bytes == 0 || !platform::own_program(own, sizeof own)) return false;
+  std::string out_file;  // % stands for something
+  for (char c : folder + "/" + kDumpName) out_file += c == '%' ? "%%" : std::string(1, c);
+  *words = {valgrind,
+            "--command-line-only=yes",
+            "--tool=callgrind",
+            "--vgdb=no",
+            "--log-file=/dev/null",
+            "--callgrind-out-file=" + out_file,
+            "--dump-before=pocketray::begin_counted_frame()"};
+  for (const char* timed : {"trace_spans", "trace_as_rendered", "pack_rows"})
+    words->push_back(std::string("--toggle-collect=pocketray::") + timed + "(*)");
+  words->push_back(own);
+  std::size_t at = std::string(own_words.data()).size() + 1;
+  bool has_command = false;
+  while (at < bytes) {
+    words->push_back(&own_words[at]);
+    at += words->back().size() + 1;
+    if (!has_command && words->back() == "accuracy") {
+      words->insert(words->end(), {"--counting-folder", folder});
+      has_command = true;
+    }
+  }
+  return has_command;
+}
+
+bool start(Counting* counting) {
+  char valgrind[1024];
+  std::vector<std::string> words;
+  if (!platform::find_program("valgrind", valgrind, sizeof valgrind)) return false;
+  if (!command_line(valgrind, counting->folder.path, &words)) return false;
+  std::vector<const char*> pointers;
+  for (const std::string& word : words) pointers.push_back(word.c_str());
+  pointers.push_back(nullptr);
+  platform::FileError error;
+  return platform::start_program(valgrind, pointers.data(), nullptr, &counting->process, &error);
+}
+
+void watch(Counting* counting) {
+  double price = 0, done = 0;
+  for (const SweepPoint* point : counting->points) price += 1000 * point->price;
+  Progress progress;
+  std::size_t next = 0;
+  platform::ProcessState state = platform::ProcessState::running;
+  while (!interrupted && (state = platform::look_at(&counting->process)) == platform::ProcessState::running) {
+    if (progress.total == 0 && platform::file_stamp(counting->dump_path(0).c_str()) != 0)
+      progress = start_progress("instructions", static_cast<std::uint64_t>(price));
+    for (; next < counting->points.size() && platform::file_stamp(counting->dump_of_point(next).c_str()) != 0; ++next)
+      done += 1000 * counting->points[next]->price;
+    show_progress(&progress, static_cast<std::uint64_t>(done));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  platform::kill_process(&counting->process);
+  end_progress(&progress);
+  counting->ended_well = state == platform::ProcessState::succeeded;
+}
+
+// Puts what was dumped into the state; how many points got a count.
+std::size_t take_counts(const Counting& counting, AccuracyState* state) {
+  std::size_t count = 0;
+  double pixels = double(counting.width) * counting.height;
+  for (std::size_t i = 0; i < counting.points.size(); ++i) {
+    std::string dump;
+    std::uint64_t instructions;
+    if (!read_text(counting.dump_of_point(i), &dump) || !read_callgrind_dump(dump, &instructions)) break;
+    if (instructions == 0) continue;
+    state->points[id_of(*counting.points[i])].instructions_per_pixel = static_cast<double>(instructions) / pixels;
+    ++count;
+  }
+  return count;
+}
+
+std::string how_counted(const Counting& counting) {
+  std::string isa;
+  read_text(std::string(counting.folder.path) + "/" + kIsaName, &isa);
+  return "instructions are counted by valgrind over " + format("%u×%u pixels, ", counting.width, counting.height) +
+         isa + "; one of the whole picture may take fewer";
+}
+
+Status read_job(const std::string& folder, AccuracyOptions* o, float* exposure, std::vector<std::string>* ids) {
+  std::string text;
+  if (!read_text(folder + "/" + kJobName, &text)) return failure("%.200s has no job", folder.c_str());
+  try {
+    Json job = Json::parse(text);
+    o->common.size = job.at("size").get<std::string>();
+    o->common.threads = job.at("threads").get<std::uint32_t>();
+    o->common.accel = job.at("accel").get<std::string>();
+    *exposure = job.at("exposure").get<float>();
+    *ids = job.at("configurations").get<std::vector<std::string>>();
+  } catch (const Json::exception&) {
+    return failure("the job in %.200s is damaged", folder.c_str());
+  }
+  return success();
+}
+
+}  // namespace
+
+void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const SweepPlan& plan, AccuracyState* state,
+                       bool* whole, std::string* note) {
+  *whole = true;
+  *note = state->counted;
+  Counting counting;
+  for (std::size_t i = 0; i < plan.points.size(); ++i)
+    if (is_measured(plan, i) && std::isnan(state->points[id_of(plan.points[i])].instructions_per_pixel))
+      counting.points.push_back(&plan.points[i]);
+  if (counting.points.empty()) return;
+  if (!options.starts_valgrind) {
+    *note = kNotCounted;
+    return;
+  }
+  const Settings& settings = rig.baseline.settings;
+  counting.width = std::max(1u, settings.width / kShrink), counting.height = std::max(1u, settings.height / kShrink);
+  char path[1024];
+  if (!platform::find_program("valgrind", path, sizeof path)) {
+    *note = std::string(kNotCounted) + ", and valgrind, which can, is not installed";
+    return;
+  }
+  platform::FileError error;
+  bool started = platform::make_temporary_folder(counting.folder.path, sizeof counting.folder.path, &error) &&
+                 write_job(rig, counting).ok && start(&counting);
+  if (started) watch(&counting);
+  std::size_t count = started ? take_counts(counting, state) : 0;
+  if (count > 0) state->counted = how_counted(counting);
+  *whole = !interrupted;
+  *note = state->counted;
+  if (count == counting.points.size()) return;
+  std::string why = counting.ended_well ? "valgrind finds no symbols in this program" : "valgrind failed";
+  *note = note->empty() ? std::string(kNotCounted) + ", and " + why : *note + "; not all of them: " + why;
+}
+
+Status render_for_valgrind(const AccuracyOptions& options) {
+  AccuracyOptions o = options;
+  float exposure = 1;
+  std::vector<std::string> ids;
+  RETURN_IF_ERROR(read_job(o.counting_folder, &o, &exposure, &ids));
+  // Of the device, the job has what matters; its memory is not what is measured, and its time is not waited for.
+  o.common.emulate = o.common.device = o.common.memory = "";
+  Isa isa;
+  if (!parse_isa(o.common.isa, &isa).ok) o.common.isa = "";  // valgrind knows fewer
+  Rigs rigs = {o, {}};
+  SweepPlan plan;
+  RETURN_IF_ERROR(plan_rigs(&rigs, &plan));
+  rigs.by_columns[kCornellSphereColumns]->opened.renderer.exposure = exposure;
+  std::map<std::string, const SweepPoint*> points;
+  for (const SweepPoint& point : plan.points) points[id_of(point)] = &point;
+  Rig* rig;
+  for (const std::string& id : ids) {  // all opened first, which traces, too
+    if (!points.count(id)) return failure("this sweep has no configuration %.100s", id.c_str());
+    RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));
+  }
+  RETURN_IF_ERROR(save_text(o.counting_folder, kIsaName, isa_name(active_isa())));
+  for (const std::string& id : ids) {
+    RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));
+    begin_counted_frame();
+    double ns_per_pixel;
+    RETURN_IF_ERROR(time_frame(rig, points[id]->configuration, o.seconds, &ns_per_pixel));
+    if (interrupted) return failure("interrupted");
+  }
+  begin_counted_frame();
+  return success();
+}
+
+}  // namespace pocketray
