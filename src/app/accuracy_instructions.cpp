@@ -17,12 +17,9 @@ __attribute__((noinline)) void begin_counted_frame() { asm volatile("" ::: "memo
 
 namespace {
 
-constexpr const char *kJobName = "job", *kIsaName = "isa", *kDumpName = "callgrind";
+constexpr const char *kJobName = "job", *kAnswerName = "answer", *kDumpName = "callgrind";
 constexpr const char* kNotCounted =
     "instructions are not counted: neither this CPU nor the system does it for programs";
-// Chosen for the time it takes: all of cornell at 320×240 in a minute or two. Where triangles are as small as pixels, a
-// pixel of the small picture takes more (cornell's baseline: 11,170 instructions, of the whole one 5,350).
-constexpr std::uint32_t kShrink = 4;
 constexpr std::size_t kWordsBytesMax = 1 << 17;
 
 struct TemporaryFolder {
@@ -43,7 +40,6 @@ bool read_text(const std::string& path, std::string* text) {
 
 struct Counting {
   std::vector<const SweepPoint*> points;
-  std::uint32_t width = 0, height = 0;
   TemporaryFolder folder;
   platform::Process process;
   bool ended_well = false;
@@ -59,8 +55,7 @@ Status write_job(const Rig& rig, const Counting& counting) {
   const Renderer& r = rig.opened.renderer;
   std::vector<std::string> ids;
   for (const SweepPoint* point : counting.points) ids.push_back(id_of(*point));
-  Json job = {{"size", std::to_string(counting.width) + "x" + std::to_string(counting.height)},
-              {"threads", r.settings.threads},
+  Json job = {{"size", std::to_string(r.settings.width) + "x" + std::to_string(r.settings.height)},
               {"exposure", r.exposure},
               {"accel", r.accel_info->name},
               {"configurations", ids}};
@@ -129,10 +124,20 @@ void watch(Counting* counting) {
   counting->ended_well = state == platform::ProcessState::succeeded;
 }
 
+// What the other program says of its frames; null: nothing yet.
+Json read_answer(const Counting& counting) {
+  std::string text;
+  if (!read_text(std::string(counting.folder.path) + "/" + kAnswerName, &text)) return nullptr;
+  Json answer = Json::parse(text, nullptr, false);
+  return answer.is_discarded() ? nullptr : answer;
+}
+
 // Puts what was dumped into the state; how many points got a count.
 std::size_t take_counts(const Counting& counting, AccuracyState* state) {
   std::size_t count = 0;
-  double pixels = double(counting.width) * counting.height;
+  Json answer = read_answer(counting);
+  if (answer.is_null()) return 0;
+  double pixels = answer.at("pixels").get<double>();
   for (std::size_t i = 0; i < counting.points.size(); ++i) {
     std::string dump;
     std::uint64_t instructions;
@@ -144,11 +149,13 @@ std::size_t take_counts(const Counting& counting, AccuracyState* state) {
   return count;
 }
 
-std::string how_counted(const Counting& counting) {
-  std::string isa;
-  read_text(std::string(counting.folder.path) + "/" + kIsaName, &isa);
-  return "instructions are counted by valgrind over " + format("%u×%u pixels, ", counting.width, counting.height) +
-         isa + "; one of the whole picture may take fewer";
+std::string how_counted(const Counting& counting, const Rig& rig) {
+  Json answer = read_answer(counting);
+  std::uint32_t pixels = answer.at("pixels").get<std::uint32_t>();
+  bool whole = pixels == rig.opened.renderer.image.count;
+  return "instructions are counted by valgrind over " +
+         (whole ? "the picture" : format("%u pixels of tiles across the picture", pixels)) + ", one thread, " +
+         answer.at("isa").get<std::string>();
 }
 
 Status read_job(const std::string& folder, AccuracyOptions* o, float* exposure, std::vector<std::string>* ids) {
@@ -157,7 +164,6 @@ Status read_job(const std::string& folder, AccuracyOptions* o, float* exposure, 
   try {
     Json job = Json::parse(text);
     o->common.size = job.at("size").get<std::string>();
-    o->common.threads = job.at("threads").get<std::uint32_t>();
     o->common.accel = job.at("accel").get<std::string>();
     *exposure = job.at("exposure").get<float>();
     *ids = job.at("configurations").get<std::vector<std::string>>();
@@ -182,8 +188,6 @@ void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const Swe
     *note = kNotCounted;
     return;
   }
-  const Settings& settings = rig.baseline.settings;
-  counting.width = std::max(1u, settings.width / kShrink), counting.height = std::max(1u, settings.height / kShrink);
   char path[1024];
   if (!platform::find_program("valgrind", path, sizeof path)) {
     *note = std::string(kNotCounted) + ", and valgrind, which can, is not installed";
@@ -194,7 +198,7 @@ void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const Swe
                  write_job(rig, counting).ok && start(&counting);
   if (started) watch(&counting);
   std::size_t count = started ? take_counts(counting, state) : 0;
-  if (count > 0) state->counted = how_counted(counting);
+  if (count > 0) state->counted = how_counted(counting, rig);
   *whole = !interrupted;
   *note = state->counted;
   if (count == counting.points.size()) return;
@@ -209,6 +213,7 @@ Status render_for_valgrind(const AccuracyOptions& options) {
   RETURN_IF_ERROR(read_job(o.counting_folder, &o, &exposure, &ids));
   // Of the device, the job has what matters; its memory is not what is measured, and its time is not waited for.
   o.common.emulate = o.common.device = o.common.memory = "";
+  o.common.threads = 1;  // several share the tiles of the last rows
   Isa isa;
   if (!parse_isa(o.common.isa, &isa).ok) o.common.isa = "";  // valgrind knows fewer
   Rigs rigs = {o, {}};
@@ -222,7 +227,9 @@ Status render_for_valgrind(const AccuracyOptions& options) {
     if (!points.count(id)) return failure("this sweep has no configuration %.100s", id.c_str());
     RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));
   }
-  RETURN_IF_ERROR(save_text(o.counting_folder, kIsaName, isa_name(active_isa())));
+  Json answer = {{"isa", isa_name(active_isa())}};
+  for (auto& opened : rigs.by_columns) answer["pixels"] = take_part(opened.second.get());
+  RETURN_IF_ERROR(save_text(o.counting_folder, kAnswerName, answer.dump()));
   for (const std::string& id : ids) {
     RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));
     begin_counted_frame();

@@ -1,5 +1,5 @@
 // Instructions of configurations where the CPU counts none: valgrind counts them while this program, started once more,
-// renders each configuration once, on a picture of a quarter of the width and height.
+// renders each configuration once, of large pictures a sixteenth.
 #pragma once
 #include "app/accuracy_rigs.h"
 

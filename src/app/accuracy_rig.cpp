@@ -85,16 +85,28 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   return success();
 }
 
+// Rows of the whole picture that are as many pixels as a frame.
+std::uint32_t row_count(const Rig& rig) {
+  const Settings& s = rig.opened.renderer.settings;
+  return rig.part_pixels ? rig.part_pixels / s.width : s.height;
+}
+
 // As render_frame() does, with the times of tracing alone.
 Status render_in_double(Rig* rig, double seconds) {
   Renderer* r = &rig->opened.renderer;
   RETURN_IF_ERROR(prepare_frame(r, seconds));
   make_rig_reference(rig);
   std::uint64_t start = clock_ns();
+  std::uint32_t rows = row_count(*rig);
+  Settings part = r->settings;
+  part.height = rows;
   trace_rows(
-      r->settings,
-      [&](std::uint32_t row, Vec3d* radiances) { trace_as_rendered(rig->reference, row, row + 1, radiances); }, nullptr,
-      r->image.data);
+      part,
+      [&](std::uint32_t i, Vec3d* radiances) {
+        std::uint32_t row = (2 * i + 1) * r->settings.height / (2 * rows);
+        trace_as_rendered(rig->reference, row, row + 1, radiances);
+      },
+      nullptr, r->image.data);
   r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
 }
@@ -146,6 +158,21 @@ bool trace_rows(const Settings& settings, const std::function<void(std::uint32_t
   return rows_done == settings.height;
 }
 
+std::uint32_t take_part(Rig* rig) {
+  Renderer* r = &rig->opened.renderer;
+  constexpr std::uint32_t kParts = 4;  // along each axis
+  std::uint32_t width = r->settings.width, height = r->settings.height, quarter = width / kParts, count = 0;
+  if (quarter < kTileRows || height < kParts * kTileRows) return width * height;
+  for (std::uint32_t band = kParts / 2; (band + 1) * kTileRows <= height; band += kParts)
+    for (std::uint32_t row = band * kTileRows; row < (band + 1) * kTileRows; ++row) {
+      std::uint32_t begin = band / kParts % kParts * quarter;
+      r->spans[count++] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin),
+                           static_cast<std::uint16_t>(begin + quarter)};
+    }
+  r->spans.count = count;
+  return rig->part_pixels = count * quarter;
+}
+
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
   Renderer* r = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(r, configuration.settings));
@@ -158,8 +185,8 @@ Status time_frame(Rig* rig, const Configuration& configuration, double seconds, 
       line_bytes = width * output.format.bits_per_pixel / 8;
   rig->packed.resize((static_cast<std::size_t>(line_bytes) * r->settings.height + 3) / 4);
   std::uint64_t start = clock_ns();
-  pack_rows(r->image.data, width, height, 0, height, r->exposure, output.format, Rotation::none, output.dither,
-            rig->packed.data(), line_bytes);
+  pack_rows(r->image.data, width, height, 0, static_cast<int>(row_count(*rig)), r->exposure, output.format,
+            Rotation::none, output.dither, rig->packed.data(), line_bytes);
   double pack_ns = static_cast<double>(clock_ns() - start);
   *ns_per_pixel = (r->timings.trace_ms * 1e6 + pack_ns) / static_cast<double>(r->image.count);
   return success();

@@ -31,7 +31,8 @@ struct Rig {
   std::string front_path;             // in the cache; empty: the scene could not be named
   std::vector<std::uint32_t> packed;  // pixels of the last frame
   std::vector<std::uint8_t> reference_memory;
-  Reference reference;  // of the posed frame; made where it is needed
+  Reference reference;            // of the posed frame; made where it is needed
+  std::uint32_t part_pixels = 0;  // frames are a part of the picture, of about so many pixels; 0: whole
 };
 
 // Opens the scene, with cornell's sphere of so many columns, for every configuration that the knobs can make of it.
@@ -44,6 +45,10 @@ void make_rig_reference(Rig* rig);
 // `progress` may be null. False: interrupted.
 bool trace_rows(const Settings& settings, const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
                 Progress* progress, Vec3* picture);
+
+// Frames are about a sixteenth of the picture from now on, spread over it in tiles as the whole one is traced in; a
+// small picture stays whole. What they hold elsewhere is left as it was. Returns the pixels.
+std::uint32_t take_part(Rig* rig);
 
 // Renders and packs one frame. Times both; keeps the picture in the rig's renderer. Stops at an interrupt, which the
 // caller has to look for.

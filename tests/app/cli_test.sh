@@ -415,7 +415,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
     if ! counts other; then
       check accuracy_tells_that_valgrind_failed grep -q 'not counted: .* valgrind failed' other.json
       cp sweep/accuracy.state counted.state
-      expect accuracy_counts_once 0 'by valgrind over 4×3 pixels, [a-z0-9]+; ' accuracy cube "${tiny[@]}" -o sweep --rounds 1
+      expect accuracy_counts_once 0 'by valgrind over the picture, one thread, [a-z0-9]+' accuracy cube "${tiny[@]}" -o sweep --rounds 1
       check accuracy_keeps_counts cmp -s sweep/accuracy.state counted.state
       printf '#!/bin/sh\necho $$ >fake.id.part && mv fake.id.part fake.id\nexec sleep 60\n' >fake/valgrind
       "${run[@]}" accuracy cube "${tiny[@]}" -o other --rounds 1 >/dev/null 2>&1 &
@@ -426,7 +426,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
       check accuracy_is_interrupted_when_counting test $? -eq 3
       check accuracy_ends_valgrind test ! -e "/proc/$(cat fake.id)"
       PATH=$real_path
-      expect accuracy_counts_after_all 0 'by valgrind over 4×3' accuracy cube "${tiny[@]}" -o other --rounds 1
+      expect accuracy_counts_after_all 0 'by valgrind over the picture' accuracy cube "${tiny[@]}" -o other --rounds 1
       if strip -o stripped "$program" 2>/dev/null; then
         run=("$PWD/stripped")
         expect accuracy_without_symbols 0 'not counted: .* no symbols' accuracy cube "${tiny[@]}" -o third --rounds 1
