@@ -86,8 +86,8 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
     }
   } else {
     choice = (choice - mirror_share - glass_share) / lobe_share;
-    if (!sample_guided(reference, s, to_viewer, choice, samples->direction(), &direction)) return false;
-    path->density = guided_density(reference, s, to_viewer, direction);
+    if (!sample_guided(s, to_viewer, choice, samples->direction(), &direction)) return false;
+    path->density = guided_density(s, to_viewer, direction);
     if (!(path->density > 0)) return false;
     path->weight *=
         lobe_value(s, to_viewer, direction) * (dot(s.normal, direction) / path->density * (total / lobe_share));

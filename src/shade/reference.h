@@ -31,10 +31,12 @@ struct ReferenceEmitter {
 };
 
 // Where light comes from by way of mirrors and glass, see reference_guide.h.
-constexpr std::uint32_t kReferenceSpotCountMax = 4;
+constexpr std::uint32_t kReferenceSpotCountMax = 8;
 struct ReferenceSpot {
   Vec3d low, high;      // a box on what reflects or bends it
+  double margin;        // around what was found of it
   std::uint32_t count;  // of the paths that came by it
+  std::uint32_t kind;   // spots of different kinds are never joined
 };
 struct ReferenceCell {
   ReferenceSpot spot[kReferenceSpotCountMax];

@@ -3,18 +3,15 @@
 #include <limits>
 
 #include "base/fmath.h"
-#include "shade/media.h"
-#include "shade/reference_light.h"
 
 namespace pocketray {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kCellCountMax = 1u << 14, kTableSize = 4 * kCellCountMax;
-constexpr int kBounceCountMax = 8;
 constexpr double kGuidedShare = 0.15;  // of the directions where there are spots
 constexpr double kSpotSizeMax = 3;     // cells; what is farther apart is another spot
-constexpr double kSpotMargin = 0.3;    // cells; around what was found of a spot
+constexpr std::uint32_t kMirrorSpotCountMax = 4;
 
 // Which cell a point is in, by its place along each axis; false: beyond all.
 bool cell_at(const ReferenceGuide& guide, const Vec3d& point, std::int32_t (&at)[3]) {
@@ -63,71 +60,27 @@ void add_to_spot(const Vec3d& point, ReferenceSpot* spot) {
   ++spot->count;
 }
 
-// Light reached a cell by way of a point: it belongs to the first spot that stays small with it, else to a new one,
-// else to the one that stays smallest.
-void add_to_cell(const Vec3d& point, double size_max, ReferenceCell* cell) {
-  ++cell->count;
-  std::uint32_t best = 0;
+// It belongs to the first spot of its kind that stays small with it, else to a new one, else to the one that stays
+// smallest. The bright spots of a light are one each, whatever their size.
+void add_to_cell(const ReferenceWay& way, double size_max, ReferenceCell* cell) {
+  std::uint32_t best = 0, count = 0;
   double least = kInfinity;
   for (std::uint32_t i = 0; i < cell->spot_count; ++i) {
-    double size = grown_size(cell->spot[i], point);
-    if (size < least) least = size, best = i;
+    if (cell->spot[i].kind != way.kind) continue;
+    double size = grown_size(cell->spot[i], way.point);
+    if (count++ == 0 || size < least) least = size, best = i;
   }
-  if (!(least <= size_max) && cell->spot_count < kReferenceSpotCountMax) {
-    best = cell->spot_count++;
-    cell->spot[best] = {point, point, 0};
-  }
-  add_to_spot(point, &cell->spot[best]);
-}
-
-// In the eight cells about the point: so the edge of a lit region has spots as its middle has.
-void remember(const Vec3d& point, const Vec3d& by_way_of, ReferenceGuide* guide) {
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d beside = point;
-    for (int axis = 0; axis < 3; ++axis) beside[axis] += guide->cell_size * ((corner >> axis & 1) ? 0.5 : -0.5);
-    std::int32_t at[3];
-    if (!cell_at(*guide, beside, at)) continue;
-    Found found = slot_of(*guide, at);
-    std::uint32_t cell = found.slot->cell;
-    if (cell == kNone) {
-      if (guide->cells.count == kCellCountMax) continue;
-      cell = guide->cells.count++;
-      *found.slot = {found.hash, cell};
-      guide->cells[cell].count = guide->cells[cell].spot_count = 0;
-      for (int axis = 0; axis < 3; ++axis) guide->cells[cell].at[axis] = at[axis];
-    }
-    add_to_cell(by_way_of, kSpotSizeMax * guide->cell_size, &guide->cells[cell]);
-  }
-}
-
-bool is_specular(const Material& m) { return !is_zero(m.mirror) || !is_zero(m.transmission); }
-
-// Follows light from a point of an emitter to one on a mirror or glass and on.
-void follow_light(const Reference& reference, const ReferenceSurface& light, const Vec3d& target, Rng* rng,
-                  ReferenceGuide* guide) {
-  const FrameData& frame = *reference.world.frame;
-  ReferenceRay ray = leave(frame, light, normalize(target - light.point), kInfinity);
-  MediumStack media;
-  Vec3d way = light.point;
-  for (int bounce = 0; bounce < kBounceCountMax; ++bounce) {
-    ReferenceHit hit = next_hit(reference.world, ray, nullptr);
-    if (hit.triangle == kNone) return;
-    ReferenceSurface s = reference_surface(frame, hit, ray.direction);
-    const Material& m = *s.material;
-    if (bounce > 0 && (!is_zero(s.diffuse) || !is_zero(m.specular))) remember(s.point, way, guide);
-    if (!is_specular(m) || m.unlit) return;
-    way = s.point;
-    Vec3d direction;
-    if (is_zero(m.transmission)) {
-      direction = mirrored(ray.direction, s);
+  if (count == 0 || (!(least <= size_max) && way.kind == kByMirrors && count < kMirrorSpotCountMax)) {
+    if (cell->spot_count == kReferenceSpotCountMax) {
+      if (count == 0) return;
     } else {
-      ReferenceBoundary b = meet_boundary(frame, s, gather_contact(reference.world, ray, hit), ray.direction, media);
-      bool reflects = next_double(rng) < b.reflectance;
-      direction = reflects ? mirrored(ray.direction, s) : b.direction;
-      if (!reflects) media = b.beyond;
+      best = cell->spot_count++;
+      cell->spot[best] = {way.point, way.point, 0, 0, way.kind};
     }
-    ray = leave(frame, s, direction, kInfinity);
   }
+  ++cell->count;
+  add_to_spot(way.point, &cell->spot[best]);
+  cell->spot[best].margin = std::fmax(cell->spot[best].margin, way.margin);
 }
 
 // A spot as a sphere, seen from a point: the way to its middle, its radius and how far it is, both squared.
@@ -135,9 +88,9 @@ struct View {
   Vec3d way;
   double radius2, distance2;
 };
-View view_of(const ReferenceSpot& spot, double margin, const Vec3d& point) {
+View view_of(const ReferenceSpot& spot, const Vec3d& point) {
   Vec3d way = (spot.low + spot.high) * 0.5 - point, size = spot.high - spot.low;
-  double radius = 0.5 * length(size) + margin;
+  double radius = 0.5 * length(size) + spot.margin;
   return {way, radius * radius, dot(way, way)};
 }
 bool is_within(const View& view) { return !(view.distance2 > view.radius2); }
@@ -152,47 +105,36 @@ bool is_towards(const Vec3d& direction, const View& view) {
   return is_within(view) || (along > 0 && along * along >= view.distance2 - view.radius2);
 }
 
-// Side of a square of the area of all.
-double size_of(const Array<ReferenceEmitter>& parts) {
-  double area = 0;
-  for (const ReferenceEmitter& part : parts) area += part.area;
-  return std::sqrt(area);
-}
-
 }  // namespace
 
-std::size_t reference_guide_need(std::uint32_t triangle_count) {
-  return arena_need<ReferenceSlot>(kTableSize) + arena_need<ReferenceCell>(kCellCountMax) +
-         arena_need<ReferenceEmitter>(triangle_count);
+std::size_t reference_cells_need() {
+  return arena_need<ReferenceSlot>(kTableSize) + arena_need<ReferenceCell>(kCellCountMax);
 }
 
-void make_reference_guide(const FrameData& frame, std::uint32_t path_count, Arena* arena, Reference* reference) {
-  ReferenceGuide* guide = &reference->guide;
-  if (reference->emitters.empty() || path_count == 0) return;
-  bool any = false;
-  for (const Material& m : frame.scene->materials) any = any || is_specular(m);
-  if (!any) return;
+void make_reference_cells(Arena* arena, ReferenceGuide* guide) {
   guide->table = arena_array<ReferenceSlot>(arena, kTableSize);
   for (ReferenceSlot& slot : guide->table) slot = {0, kNone};
   guide->cells = arena_array<ReferenceCell>(arena, kCellCountMax);
   guide->cells.count = 0;
-  std::size_t mark = arena_mark(*arena);
-  Array<ReferenceEmitter> targets = arena_array<ReferenceEmitter>(arena, frame.scene->triangles.count);
-  targets.count = find_parts(
-      frame, [](const Material& m) { return is_specular(m) ? 1.0 : 0.0; }, targets.data);
-  guide->cell_size = std::fmin(size_of(reference->emitters) / 4, size_of(targets) / 16);
-  Rng rng = make_rng(path_count);
-  for (std::uint32_t i = 0; i < path_count && targets.count > 0; ++i) {
-    double u = next_double(&rng), v = next_double(&rng);
-    ReferencePlace from = pick_place(frame, reference->emitters, {u, v});
-    u = next_double(&rng), v = next_double(&rng);
-    ReferencePlace to = pick_place(frame, targets, {u, v});
-    Vec3d direction = to.point - from.point;
-    ReferenceSurface light = reference_surface(frame, {0, from.u, from.v, from.triangle}, -direction);
-    if (is_zero(light.emission) || !(dot(light.geometric, direction) > 0)) continue;
-    follow_light(*reference, light, to.point, &rng, guide);
+}
+
+void remember(const Vec3d& point, const ReferenceWay& way, ReferenceGuide* guide) {
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d beside = point;
+    for (int axis = 0; axis < 3; ++axis) beside[axis] += guide->cell_size * ((corner >> axis & 1) ? 0.5 : -0.5);
+    std::int32_t at[3];
+    if (!cell_at(*guide, beside, at)) continue;
+    Found found = slot_of(*guide, at);
+    std::uint32_t cell = found.slot->cell;
+    if (cell == kNone) {
+      if (guide->cells.count == kCellCountMax) continue;
+      cell = guide->cells.count++;
+      *found.slot = {found.hash, cell};
+      guide->cells[cell].count = guide->cells[cell].spot_count = 0;
+      for (int axis = 0; axis < 3; ++axis) guide->cells[cell].at[axis] = at[axis];
+    }
+    add_to_cell(way, kSpotSizeMax * guide->cell_size, &guide->cells[cell]);
   }
-  arena_release(arena, mark);
 }
 
 const ReferenceCell* find_cell(const ReferenceGuide& guide, const Vec3d& point) {
@@ -202,21 +144,20 @@ const ReferenceCell* find_cell(const ReferenceGuide& guide, const Vec3d& point) 
   return cell == kNone ? nullptr : &guide.cells[cell];
 }
 
-double guided_density(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
-                      const Vec3d& to_light) {
+double guided_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   double lobes = lobe_density(s, to_viewer, to_light);
   const ReferenceCell* cell = s.cell;
   if (!cell) return lobes;
   double spots = 0;
   for (std::uint32_t i = 0; i < cell->spot_count; ++i) {
-    View view = view_of(cell->spot[i], kSpotMargin * reference.guide.cell_size, s.point);
+    View view = view_of(cell->spot[i], s.point);
     if (is_towards(to_light, view)) spots += cell->spot[i].count / (2 * kPi * cone_height(view));
   }
   return (1 - kGuidedShare) * lobes + kGuidedShare * spots / cell->count;
 }
 
-bool sample_guided(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer, double choice,
-                   const Pair& pair, Vec3d* direction) {
+bool sample_guided(const ReferenceSurface& s, const Vec3d& to_viewer, double choice, const Pair& pair,
+                   Vec3d* direction) {
   const ReferenceCell* cell = s.cell;
   if (!cell) return sample_lobes(s, to_viewer, choice, pair, direction);
   if (choice >= kGuidedShare)
@@ -224,7 +165,7 @@ bool sample_guided(const Reference& reference, const ReferenceSurface& s, const 
   double pick = choice / kGuidedShare * cell->count;
   std::uint32_t i = 0;
   for (; i + 1 < cell->spot_count && pick >= cell->spot[i].count; ++i) pick -= cell->spot[i].count;
-  View view = view_of(cell->spot[i], kSpotMargin * reference.guide.cell_size, s.point);
+  View view = view_of(cell->spot[i], s.point);
   Vec3d axis = is_within(view) ? Vec3d{0, 0, 1} : view.way / std::sqrt(view.distance2), tangent, bitangent;
   double below = cone_height(view) * pair.u, sine = std::sqrt(below * (2 - below)), phi = 2 * kPi * pair.v;
   make_basis(axis, &tangent, &bitangent);

@@ -268,6 +268,51 @@ TEST_CASE("reference_light_by_way_of_a_mirror_has_its_closed_form") {
   CHECK(error[1] < 0.6 * error[0]);
 }
 
+// Goal: a point light close under a ceiling lights it in a small bright spot, and what that lights is found, with the
+// guide or without, and with less noise with it. Method: one bounce, integrated over the rings of the ceiling; a light
+// that shines everywhere, and a spot light that shines up.
+TEST_CASE("reference_light_by_way_of_a_bright_spot_has_its_closed_form") {
+  constexpr double kHeight = 2, kSide = 20, kAlbedo = 0.8;
+  for (bool is_spot : {false, true}) {
+    GeneratedScene s;
+    add_floor(&s, static_cast<float>(kSide));
+    float side = static_cast<float>(kSide), top = static_cast<float>(kHeight);
+    Material ceiling = white();
+    ceiling.diffuse = Vec3{1, 1, 1} * static_cast<float>(kAlbedo);
+    add_quad(&s, {-side, top, -side}, {side, top, -side}, {side, top, side}, {-side, top, side},
+             add_material(&s, ceiling));
+    Light light;
+    light.kind = is_spot ? LightKind::spot : LightKind::point;
+    light.position = {0, top - 0.0625f, 0};
+    light.direction = {0, 1, 0};
+    light.intensity = {1, 1, 1};
+    light.cos_inner = light.cos_outer = static_cast<float>(std::cos(0.75));
+    s.lights.push_back(light);
+    add_camera(&s);
+    s.bind();
+    double below = kHeight - static_cast<double>(light.position.y), sum = 0;
+    double cosine = static_cast<double>(light.cos_outer);
+    double reach = is_spot ? below * std::sqrt(1 - cosine * cosine) / cosine : kSide;
+    constexpr int kRings = 200000;
+    for (int i = 0; i < kRings; ++i) {  // rings whose radii grow by a factor: narrow in the middle
+      double r = reach * std::exp(-16.0 * (kRings - i - 0.5) / kRings), width = r * 16.0 / kRings;
+      double irradiance = below / std::pow(below * below + r * r, 1.5);
+      double form = kHeight * kHeight / std::pow(kHeight * kHeight + r * r, 2) / kPi;
+      sum += kAlbedo * irradiance * form * 2 * kPi * r * width;
+    }
+    double direct = is_spot ? 0 : 1 / std::pow(kHeight - below, 2), expected = (direct + sum) / kPi, error[2];
+    CAPTURE(is_spot);
+    for (std::uint32_t guided : {0, 1}) {
+      TestReference t(s.scene, small_settings(), guided * 4000);
+      Vec3d eye = {0.3, 0.4, 0.2};
+      Estimate e = estimate(t, Transport::physical, eye, normalize(-eye), effort(200000), 1, 1);
+      check_equal(e, expected, 2e-3);
+      error[guided] = e.error;
+    }
+    CHECK(error[1] < 0.4 * error[0]);
+  }
+}
+
 // Goal: a picture is the same however its rows are shared out, seeds make different ones, and their mean is that of
 // independent random numbers: what makes the samples even leaves no bias. Method: a room with a lamp and a mirror; five
 // standard errors, of ten seeds and of as many independent paths.
