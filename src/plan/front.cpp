@@ -16,12 +16,23 @@ void drop(Front* front, std::uint32_t index) {
   --front->count;
 }
 
+// Calls f with what can be chosen, a member of each at a time; candidates and settings name them alike.
+template <class Function, class One, class Other>
+void for_each_choice(Function f, One& one, Other& other) {
+  f(one.samples_per_pixel, other.samples_per_pixel);
+  f(one.ray_depth, other.ray_depth);
+  f(one.points_per_area_light, other.points_per_area_light);
+  f(one.cut_off_levels, other.cut_off_levels);
+  f(one.texture_filter, other.texture_filter);
+  f(one.normals, other.normals);
+}
+
 }  // namespace
 
 bool same_quality(const Candidate& a, const Candidate& b) {
-  return a.samples_per_pixel == b.samples_per_pixel && a.ray_depth == b.ray_depth &&
-         a.points_per_area_light == b.points_per_area_light && a.cut_off_levels == b.cut_off_levels &&
-         a.texture_filter == b.texture_filter && a.normals == b.normals;
+  bool same = true;
+  for_each_choice([&](auto& x, auto& y) { same = same && x == y; }, a, b);
+  return same;
 }
 
 const Candidate* find_candidate(const Front& front, const Candidate& quality) {
@@ -35,25 +46,15 @@ float clamped_price(double ns) {
   return static_cast<float>(ns > kMin ? ns < kMax ? ns : kMax : kMin);  // NaN: the least
 }
 
-Candidate candidate_of(const Settings& s) {
+Candidate candidate_of(const Settings& settings) {
   Candidate c;
-  c.samples_per_pixel = s.samples_per_pixel;
-  c.ray_depth = s.ray_depth;
-  c.points_per_area_light = s.points_per_area_light;
-  c.cut_off_levels = s.cut_off_levels;
-  c.texture_filter = s.texture_filter;
-  c.normals = s.normals;
+  for_each_choice([](auto& to, auto& from) { to = from; }, c, settings);
   return c;
 }
 
 Settings with_candidate(const Settings& settings, const Candidate& c) {
   Settings s = settings;
-  s.samples_per_pixel = c.samples_per_pixel;
-  s.ray_depth = c.ray_depth;
-  s.points_per_area_light = c.points_per_area_light;
-  s.cut_off_levels = c.cut_off_levels;
-  s.texture_filter = c.texture_filter;
-  s.normals = c.normals;
+  for_each_choice([](auto& to, auto& from) { to = from; }, s, c);
   return s;
 }
 
