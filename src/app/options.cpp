@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "accel/accel_list.h"
+#include "app/interrupt.h"
 #include "base/fmath.h"
 #include "plan/plan_effects.h"
 #include "scene/builtin/builtin.h"
@@ -77,6 +78,7 @@ Status set_pace(const CommonOptions& o, Renderer* r) {
   if (o.emulate.empty()) return success();
   r->pace.slowdown = device->slowdown;
   r->pace.device = device->name;
+  r->pace.stop = &interrupted;
   return success();
 }
 

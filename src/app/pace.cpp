@@ -39,7 +39,11 @@ void wait_for_pace(Pace* pace, std::uint64_t pixel_count, std::uint64_t start_ns
   std::uint64_t last = clock_ns();
   pace->owed_ns += static_cast<std::int64_t>(paced_ns(*pace, pixel_count, last - start_ns)) -
                    static_cast<std::int64_t>(last - start_ns);
-  while (pace->owed_ns > kOwedNsMax && !(stop && stop->load(std::memory_order_relaxed))) {
+  auto stopped = [&] {
+    return (stop && stop->load(std::memory_order_relaxed)) ||
+           (pace->stop && pace->stop->load(std::memory_order_relaxed));
+  };
+  while (pace->owed_ns > kOwedNsMax && !stopped()) {
     std::int64_t sleep = pace->owed_ns - kOwedNsMax / 2;
     std::this_thread::sleep_for(std::chrono::nanoseconds(sleep < kSleepNsMax ? sleep : kSleepNsMax));
     std::uint64_t now = clock_ns();

@@ -8,7 +8,8 @@ struct Pace {
   double slowdown = 1;           // time on the device over time here, of one thread each; at least 1
   double ns_per_pixel = 0;       // > 0: what a pixel costs the device, whatever it costs here; `slowdown` is not used
   const char* device = nullptr;  // whose it is, to be shown; null: none
-  std::int64_t owed_ns = 0;      // wait_for_pace()'s: what has yet to be waited for, or was in excess
+  const std::atomic<bool>* stop = nullptr;  // set: the user wants to leave, nothing waits any more
+  std::int64_t owed_ns = 0;                 // wait_for_pace()'s: what has yet to be waited for, or was in excess
 };
 
 inline bool is_paced(const Pace& pace) { return pace.slowdown > 1 || pace.ns_per_pixel > 0; }

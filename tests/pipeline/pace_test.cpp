@@ -156,19 +156,22 @@ TEST_CASE("pace_is_shown_in_the_first_line_of_the_display") {
   CHECK(emulation_text(subject.r->pace).empty());
 }
 
-// Goal: who wants to leave does not wait for the emulated CPU. Method: a pace of hours, stopped from
-// another thread.
+// Goal: who wants to leave does not wait for the emulated CPU. Method: a pace of hours, stopped from another thread, by
+// what the frame is told to look at and by what the pace itself looks at.
 TEST_CASE("pace_wait_ends_when_stopped") {
-  Subject subject;
-  subject.r->pace.ns_per_pixel = 1e9;
-  std::atomic<bool> stop{false};
-  std::thread other([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    stop = true;
-  });
-  std::uint64_t start = clock_ns();
-  Status status = render_frame(subject.r, 0, Aov::none, &stop);
-  other.join();
-  CHECK(status.ok);
-  CHECK(clock_ns() - start < 5'000'000'000);
+  for (bool by_pace : {false, true}) {
+    Subject subject;
+    subject.r->pace.ns_per_pixel = 1e9;
+    std::atomic<bool> stop{false};
+    if (by_pace) subject.r->pace.stop = &stop;
+    std::thread other([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      stop = true;
+    });
+    std::uint64_t start = clock_ns();
+    Status status = render_frame(subject.r, 0, Aov::none, by_pace ? nullptr : &stop);
+    other.join();
+    CHECK(status.ok);
+    CHECK(clock_ns() - start < 5'000'000'000);
+  }
 }
