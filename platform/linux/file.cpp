@@ -83,8 +83,11 @@ bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error)
   const char* where = getenv("TMPDIR");
   if (!where || !*where) where = "/tmp";
   int length = snprintf(path, path_bytes, "%s/pocketray_XXXXXX", where);
-  if (length < 0 || static_cast<size_t>(length) >= path_bytes) return fail(error, "the path of TMPDIR", ENAMETOOLONG);
-  return mkdtemp(path) || fail(error, "cannot be made as a folder", errno);
+  bool fits = length >= 0 && static_cast<size_t>(length) < path_bytes;
+  if (fits && mkdtemp(path)) return true;
+  int number = fits ? errno : ENAMETOOLONG;
+  path[0] = 0;  // no folder of somebody else's
+  return fail(error, "of TMPDIR: no folder can be made there", number);
 }
 
 void remove_folder(const char* path) {

@@ -93,16 +93,19 @@ bool command_line(const std::string& valgrind, const std::string& folder, std::v
   return has_command;
 }
 
-bool start(Counting* counting) {
-  char valgrind[1024];
+Status start(const Rig& rig, const char* valgrind, Counting* counting) {
+  platform::FileError error;
   std::vector<std::string> words;
-  if (!platform::find_program("valgrind", valgrind, sizeof valgrind)) return false;
-  if (!command_line(valgrind, counting->folder.path, &words)) return false;
   std::vector<const char*> pointers;
+  if (!platform::make_temporary_folder(counting->folder.path, sizeof counting->folder.path, &error))
+    return failure("the folder for what valgrind counts %s", error.text);
+  RETURN_IF_ERROR(write_job(rig, *counting));
+  if (!command_line(valgrind, counting->folder.path, &words)) return failure("this program's own path cannot be read");
   for (const std::string& word : words) pointers.push_back(word.c_str());
   pointers.push_back(nullptr);
-  platform::FileError error;
-  return platform::start_program(valgrind, pointers.data(), nullptr, &counting->process, &error);
+  if (!platform::start_program(valgrind, pointers.data(), nullptr, &counting->process, &error))
+    return failure("valgrind %s", error.text);
+  return success();
 }
 
 void watch(Counting* counting) {
@@ -154,7 +157,7 @@ std::string how_counted(const Counting& counting, const Rig& rig) {
   std::uint32_t pixels = answer.at("pixels").get<std::uint32_t>();
   bool whole = pixels == rig.opened.renderer.image.count;
   return "instructions are counted by valgrind over " +
-         (whole ? "the picture" : format("%u pixels of tiles across the picture", pixels)) + ", one thread, " +
+         (whole ? "the picture" : format("%u pixels across the picture", pixels)) + ", one thread, " +
          answer.at("isa").get<std::string>();
 }
 
@@ -193,16 +196,16 @@ void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const Swe
     *note = std::string(kNotCounted) + ", and valgrind, which can, is not installed";
     return;
   }
-  platform::FileError error;
-  bool started = platform::make_temporary_folder(counting.folder.path, sizeof counting.folder.path, &error) &&
-                 write_job(rig, counting).ok && start(&counting);
-  if (started) watch(&counting);
-  std::size_t count = started ? take_counts(counting, state) : 0;
+  Status started = start(rig, path, &counting);
+  if (started.ok) watch(&counting);
+  std::size_t count = started.ok ? take_counts(counting, state) : 0;
   if (count > 0) state->counted = how_counted(counting, rig);
   *whole = !interrupted;
   *note = state->counted;
   if (count == counting.points.size()) return;
-  std::string why = counting.ended_well ? "valgrind finds no symbols in this program" : "valgrind failed";
+  std::string why = !started.ok           ? started.message
+                    : counting.ended_well ? "valgrind finds no symbols in this program"
+                                          : "valgrind failed";
   *note = note->empty() ? std::string(kNotCounted) + ", and " + why : *note + "; not all of them: " + why;
 }
 

@@ -13,8 +13,8 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kSamplesMax = 1u << 14;
-constexpr std::uint32_t kSeedCount = 2;  // their difference tells what the reference itself errs by
+constexpr std::uint32_t kSamplesMax = 1u << 14;  // of each seed
+constexpr std::uint32_t kSeedCount = 2;          // their difference tells what the reference itself errs by
 
 bool is_same(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 bool is_same(const Camera& a, const Camera& b) {
@@ -81,8 +81,7 @@ Status aim(SplitScreen* s, Renderer* r, double seconds) {
         make_reference(s->frame, &arena, s->reference_options.transport == Transport::physical ? kGuidePathCount : 0);
   }
   s->camera = r->camera, s->seconds = seconds, s->aimed = true;
-  s->samples = s->row = 0;
-  s->errors = Errors();
+  forget_split_screen(s);
   return success();
 }
 
@@ -134,7 +133,7 @@ std::vector<Vec3> mean_of_seeds(const SplitScreen& s, std::initializer_list<std:
 }
 
 // Where all pixels have the same number of samples.
-void measure_errors(SplitScreen* s, const Renderer& r, std::uint32_t picture) {
+void measure_errors(SplitScreen* s, const Renderer& r) {
   SealPause pause;
   std::vector<double> light = exposed_light(r.image.data, r.image.count, r.exposure);
   std::vector<double> seeds[kSeedCount];
@@ -146,7 +145,7 @@ void measure_errors(SplitScreen* s, const Renderer& r, std::uint32_t picture) {
       mean_of(flip_errors(encoded_light(mean), encoded_levels(levels), s->width, s->height, kHandheldPixelsPerDegree));
   s->errors.rmse = unbiased_rmse(seeds[0], seeds[1], light);
   s->errors.reference_rmse = reference_error(seeds[0], seeds[1]);
-  s->errors.picture = picture, s->errors.samples = s->samples;
+  s->errors.samples = s->samples;
 }
 
 }  // namespace
@@ -183,13 +182,22 @@ void close_split_screen(SplitScreen* split) { delete split; }
 Status advance_split_screen(SplitScreen* s, Renderer* r, double seconds, std::uint32_t picture,
                             std::uint64_t deadline_ns) {
   RETURN_IF_ERROR(aim(s, r, seconds));
-  do {
-    if (s->samples < kSamplesMax) trace_pass(s, r->workers, deadline_ns);
-    bool counts = s->row == 0 && s->samples > 0 && (s->samples & (s->samples - 1)) == 0;
-    if (counts && (s->errors.picture != picture || s->errors.samples != s->samples)) measure_errors(s, *r, picture);
-  } while (s->samples < kSamplesMax && clock_ns() < deadline_ns);
+  if (s->errors.picture != picture) s->errors = Errors(), s->errors.picture = picture;
+  while (!is_split_screen_full(*s)) {
+    trace_pass(s, r->workers, deadline_ns);
+    bool is_whole = s->row == 0 && s->samples > s->errors.samples;
+    if (is_whole && (s->errors.samples == 0 || (s->samples & (s->samples - 1)) == 0)) measure_errors(s, *r);
+    if (clock_ns() >= deadline_ns) break;
+  }
   return success();
 }
+
+void forget_split_screen(SplitScreen* s) {
+  s->samples = s->row = 0;
+  s->errors = Errors();
+}
+
+bool is_split_screen_full(const SplitScreen& s) { return s.aimed && s.samples >= kSamplesMax; }
 
 std::uint32_t split_screen_samples(const SplitScreen& s) { return kSeedCount * s.samples; }
 

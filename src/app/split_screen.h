@@ -28,6 +28,10 @@ void close_split_screen(SplitScreen* split);
 // renderer has to prepare its next frame. Fails as prepare_frame() does.
 Status advance_split_screen(SplitScreen* split, Renderer* renderer, double seconds, std::uint32_t picture,
                             std::uint64_t deadline_ns);
+// The view or the time is about to change: what is shown of the reference is no longer true.
+void forget_split_screen(SplitScreen* split);
+// Nothing is left to refine.
+bool is_split_screen_full(const SplitScreen& split);
 // Samples that every pixel of the reference has.
 std::uint32_t split_screen_samples(const SplitScreen& split);
 

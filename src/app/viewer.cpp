@@ -56,7 +56,7 @@ void take_events(Viewer* v) {
     if (event.button == Button::start) v->home = v->front_home = true;
     if (event.button == Button::finer) ++v->front_steps;
     if (event.button == Button::faster) --v->front_steps;
-    if (event.button == Button::split) v->split_shown = !v->split_shown, v->split_changed = true;
+    if (event.button == Button::split && v->split) v->split_shown = !v->split_shown, v->split_changed = true;
     if (event.button == Button::select) v->change_mode = true;
   }
   if (interrupted) v->quit = true;
@@ -76,10 +76,11 @@ CameraInput read_input(const Viewer& v) {
 
 bool shows_split(const Viewer& v) { return v.split && v.split_shown; }
 
-void pack_page(const Viewer& v, const Renderer& r, int row_begin, int row_end, const platform::Page& page) {
+void pack_page(const Viewer& v, const Renderer& r, const Vec3* radiance, int row_begin, int row_end,
+               const platform::Page& page) {
   if (!v.picture_shared) {
-    pack_rows(shows_split(v) ? split_picture(v.split, r) : r.image.data, v.width, v.height, row_begin, row_end,
-              r.exposure, v.format, v.rotation, v.options.dither, page.pixels, page.line_bytes);
+    pack_rows(radiance, v.width, v.height, row_begin, row_end, r.exposure, v.format, v.rotation, v.options.dither,
+              page.pixels, page.line_bytes);
     return;
   }
   SharedPicture shared = shared_picture(*v.sharing);
@@ -95,8 +96,10 @@ void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t 
   if (page.age != 1 || quarter_turned(*v)) row_begin = 0, row_end = r.settings.height;
   if (v->hud || v->hud_shown)
     row_begin = 0, row_end = std::max(row_end, std::min<std::uint32_t>(hud_rows(text), r.settings.height));
+  const Vec3* radiance = r.image.data;
+  if (shows_split(*v)) radiance = split_picture(v->split, r), row_begin = 0, row_end = r.settings.height;
   std::uint64_t start = clock_ns();
-  pack_page(*v, r, static_cast<int>(row_begin), static_cast<int>(row_end), page);
+  pack_page(*v, r, radiance, static_cast<int>(row_begin), static_cast<int>(row_end), page);
   v->pack_ns = clock_ns() - start;
   if (v->hud) draw_hud_text(text, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);
   v->hud_shown = v->hud;
@@ -156,10 +159,12 @@ Status step_scene(Viewer* v, Renderer* r, Loop* loop) {
     RETURN_IF_ERROR(set_camera(r, loop->control.camera));
     loop->moved = true;
   }
-  if (has(r->effects.mask, Effect::animation) && !v->paused && !shows_split(*v)) {
+  bool passes = has(r->effects.mask, Effect::animation) && !v->paused && !shows_split(*v);
+  if (passes) {
     loop->seconds += static_cast<double>(elapsed);
     loop->passed = true;
   }
+  if (v->split && (moved || passes)) forget_split_screen(v->split);
   return success();
 }
 
@@ -175,7 +180,9 @@ void write_picture_lines(const Viewer& v, const Renderer& r, Loop* loop) {
 
 // Nothing has changed: the reference beside the picture is refined, or the buttons are waited for.
 Status idle(Viewer* v, Renderer* r, Loop* loop) {
-  if (!shows_split(*v) && !v->split_changed) {
+  if (v->options.frame_count > 0 && !shows_split(*v)) loop->passed = true;  // it was put away meanwhile
+  bool refines = shows_split(*v) && !is_split_screen_full(*v->split);
+  if (!refines && !v->split_changed) {
     v->backend->sleep_ns(kIdleNs);
     return success();
   }

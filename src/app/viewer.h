@@ -41,8 +41,8 @@ struct Viewer {
   bool held[platform::kButtonCount] = {};
   bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // asked for
   int front_steps = 0;                                                                       // asked for
-  bool split_changed = false;                                                                //   or not
-  bool front_home = false;                                                                   //   as the budget has it
+  bool split_changed = false;  // split_shown has, and the screen not yet
+  bool front_home = false;     //   as the budget has it
   bool hud = true, hud_shown = false, paused = false;
   std::uint64_t waiting_since_ns = 0;
   std::uint32_t screenshot_count = 0, frames_finished = 0;
@@ -55,7 +55,7 @@ Status open_viewer(const ViewOptions& options, const char* scene, int width, int
 // Shows a sign of life while a scene loads, and takes events. False: the user wants to leave.
 bool show_waiting(Viewer* viewer, const char* text);
 // Runs until the user leaves (*again false), the scene's file changed or is to be reloaded (*again true), or
-// options.frame_count frames are finished. Allocates nothing.
+// options.frame_count frames are finished. Allocates nothing but for the split screen.
 Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again);
 void close_viewer(Viewer* viewer);
 

@@ -6,7 +6,7 @@
 
 namespace pocketray {
 
-constexpr int kHudLineMax = 12, kHudColumnMax = 52;
+constexpr int kHudLineMax = 16, kHudColumnMax = 52;
 
 struct HudText {
   char lines[kHudLineMax][kHudColumnMax + 1] = {};

@@ -1,5 +1,5 @@
 // The seal: while it is on, nothing allocates. Builds with POCKETRAY_SEAL_CHECK abort on a malloc under it
-// (platform/linux/seal_malloc.cpp).
+// (tests/support/seal_malloc.cpp).
 #pragma once
 #include <atomic>
 

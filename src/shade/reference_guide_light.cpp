@@ -150,7 +150,9 @@ void follow_area_lights(const Reference& reference, std::uint32_t path_count, Ar
   Array<ReferenceEmitter> targets = arena_array<ReferenceEmitter>(arena, frame.scene->triangles.count);
   targets.count = find_parts(
       frame, [](const Material& m) { return is_specular(m) ? 1.0 : 0.0; }, targets.data);
-  guide->cell_size = std::fmin(size_of(reference.emitters) / 4, size_of(targets) / 16);
+  if (targets.count > 0)
+    guide->cell_size =
+        std::fmax(std::fmin(size_of(reference.emitters) / 4, size_of(targets) / 16), guide->cell_size / 16);
   Rng rng = make_rng(path_count);
   for (std::uint32_t i = 0; i < path_count && targets.count > 0; ++i) {
     double u = next_double(&rng), v = next_double(&rng);

@@ -84,7 +84,7 @@ TEST_CASE("statistics_slope_is_the_exponent") {
   CHECK(held < kExperiments);
   CHECK(finite > kExperiments * 9 / 10);
   CHECK(width / finite < 0.5);
-  // Three points of which two have the same time and not the same error tell of nothing.
+  // Errors that differ where the time does not tell of nothing.
   Interval nothing = slope_to_limit({1, 1, 1, 2}, {2, 3, 4, 1});
   CHECK(nothing.low == -std::numeric_limits<double>::infinity());
   CHECK(nothing.high == 0);

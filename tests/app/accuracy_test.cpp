@@ -256,7 +256,8 @@ TEST_CASE("accuracy_refuses_damaged_files") {
                                                            {"12.25", "1e300"},    {"12.25", "-1.0"},
                                                            {"12.25", "\"none\""}, {"12.25", "0"},
                                                            {"7654.5", "1e300"},   {"7654.5", "-1.0"}};
-  for (const auto& [figure, other] : senseless) {
+  for (const auto& change : senseless) {
+    const char *figure = change.first, *other = change.second;
     CAPTURE(other);
     std::string changed = text;
     std::size_t at = changed.find(figure);

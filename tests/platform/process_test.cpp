@@ -17,7 +17,7 @@ using namespace platform;
 namespace {
 
 struct Folder {
-  char path[64] = {0};
+  char path[1024] = {0};
   Folder() {
     FileError error;
     REQUIRE_MESSAGE(make_temporary_folder(path, sizeof path, &error), error.text);
@@ -45,6 +45,7 @@ TEST_CASE("process_runs_with_its_words_in_its_folder") {
       start_shell("test \"$1\" = 'a b$HOME\"*' && echo >made && ! read line", "a b$HOME\"*", folder.path, &process));
   CHECK(wait_for(&process));
   CHECK(is_there(folder.file("made")));
+  CHECK_FALSE(is_there("made"));
   CHECK(process.id == 0);
   CHECK(look_at(&process) == ProcessState::failed);
   for (const char* script : {"exit 3", "kill -TERM $$"}) {
@@ -100,7 +101,7 @@ TEST_CASE("process_program_is_found_along_the_path") {
   }
   REQUIRE(chmod(programs.file("tool").c_str(), 0755) == 0);
   setenv("PATH", (":/none:" + std::string(data.path) + ":" + programs.path).c_str(), 1);
-  char path[128];
+  char path[1024];
   std::string expected = programs.file("tool");
   CHECK(find_program("tool", path, sizeof path));
   CHECK(path == expected);
