@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/rng.h"
+#include "shade/reference_samples.h"
 #include "support/effort.h"
 
 using namespace pocketray;
@@ -79,5 +80,25 @@ TEST_CASE("sobol_is_uniform_over_seeds") {
       CHECK(std::fabs(between[d]) < 5 * std::sqrt(count));
       for (int e = 0; e < d; ++e) CHECK(std::fabs(within[d][e]) < 5 * std::sqrt(count));
     }
+  }
+}
+
+// Goal: what a path does follows from seed, pixel and index alone, and differs in each. Method: independent and even
+// numbers of paths begun in order, out of it and by another.
+TEST_CASE("sobol_paths_follow_from_seed_pixel_and_index") {
+  auto numbers = [](ReferenceSamples* samples, std::uint32_t index) {
+    samples->begin_path(index);
+    Pair pixel = samples->pixel();
+    return std::vector<double>{samples->next(), samples->next(), pixel.u, samples->choice()};
+  };
+  ReferenceSamples in_order(1, 7), out_of_order(1, 7), other_seed(2, 7), other_pixel(1, 8);
+  std::vector<double> zero = numbers(&in_order, 0), one = numbers(&in_order, 1);
+  CHECK(numbers(&out_of_order, 1) == one);
+  CHECK(numbers(&out_of_order, 0) == zero);
+  std::vector<double> seed = numbers(&other_seed, 1), pixel = numbers(&other_pixel, 1);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    CHECK(zero[i] != one[i]);
+    CHECK(seed[i] != one[i]);
+    CHECK(pixel[i] != one[i]);
   }
 }
