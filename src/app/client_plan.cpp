@@ -140,8 +140,8 @@ void share_rows(Client* c, std::uint64_t elapsed_ns) {
   c->share.local_ns = static_cast<double>(alone.time_ns);
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     RemoteServer* s = &c->servers[i];
+    if (s->phase != ServerPhase::ready) continue;  // the others' figure is their overture's
     s->ns_per_byte = static_cast<double>(c->model.servers[i].ns_per_byte.value);
-    if (s->phase != ServerPhase::ready) continue;
     s->chunk_growth = chunk_growth(problem, i, c->split, s->chunk_growth);
     ask_for_rows(c, s, c->split.boundary[i], c->split.boundary[i + 1]);
   }

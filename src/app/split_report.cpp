@@ -125,6 +125,8 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
     point->row_bytes += double(share.row_bytes) / frame_count;
     point->row_count += double(settings.height - share.device_rows) / frame_count;
+    for (std::uint32_t i = 0; i < e->setup.server_count; ++i)
+      point->server_rows[i] += double(share.server_rows[i]) / frame_count;
     if (whole) *whole += whole_bytes(e) / frame_count;
   }
   if (*complete) point->ns_per_pixel = range_of(e->times.data(), frame_count).median;

@@ -24,11 +24,12 @@ struct SplitSetup {
 
 // Frames with a share; means but where something else is said.
 struct SplitPoint {
-  double m = 0;             // the device's share of the rows
-  double ns_per_pixel = 0;  // of the median frame
-  double bytes = 0;         // received and sent per frame
-  double row_bytes = 0;     // of them, the rows without their messages
-  double row_count = 0;     // that servers sent
+  double m = 0;                              // the device's share of the rows
+  double ns_per_pixel = 0;                   // of the median frame
+  double bytes = 0;                          // received and sent per frame
+  double row_bytes = 0;                      // of them, the rows without their messages
+  double row_count = 0;                      // that servers sent
+  double server_rows[kServerCountMax] = {};  // of them, each server's
 };
 
 struct PaperRow {

@@ -89,6 +89,33 @@ TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
   }
 }
 
+// Goal: every server that is ready gets rows, and each makes the frame faster. Method: a device to which the link costs
+// next to nothing, where each server is worth the same; the second and third servers are still measured when the first
+// frame is shared. A sweep alone would not tell: it has the same servers.
+TEST_CASE("split_report_every_ready_server_gets_rows") {
+  double before = 0;
+  for (std::uint32_t server_count : {1u, 3u}) {
+    if (kEffortDivisor > 1 && server_count != 3) continue;
+    Reporting r;
+    make_reporting(builtin_store(), "cornell", "desktop", server_count, &r);
+    SplitFigures figures;
+    Progress progress = start_progress("split", split_frame_count(r.setup, 2));
+    REQUIRE(measure_split(r.setup, 2, &progress, &figures).ok);
+    std::printf("desktop, %u servers: %.0f ns a pixel, rows", server_count, figures.chosen.ns_per_pixel);
+    for (std::uint32_t i = 0; i < server_count; ++i) std::printf(" %.1f", figures.chosen.server_rows[i]);
+    std::printf("\n");
+    CAPTURE(server_count);
+    double even = 240.0 / (1 + server_count);
+    for (std::uint32_t i = 0; i < server_count; ++i) {
+      CAPTURE(i);
+      CHECK(figures.chosen.server_rows[i] > even / 2);
+      CHECK(figures.sweep.front().server_rows[i] > even / 2);
+    }
+    if (before > 0) CHECK(figures.chosen.ns_per_pixel < 0.6 * before);
+    before = figures.chosen.ns_per_pixel;
+  }
+}
+
 // Goal: the same report every time, whatever the machine does meanwhile. Method: twice, bit for bit.
 TEST_CASE("split_report_repeats_itself") {
   SplitFigures figures[2];
