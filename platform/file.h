@@ -34,13 +34,19 @@ void remove_folder(const char* path);
 // Changes whenever the file's content was replaced; 0 where there is no such file.
 std::uint64_t file_stamp(const char* path);
 
-// Writes a file so that readers see the old content or the whole new one: into PATH.NUMBER.part first, with a number of
-// this process's own, renamed at the end.
-// Standard output ("-"), a device or a pipe is written directly.
+// Writes a file so that readers see the old content or the whole new one, even after a power cut: into
+// PATH.NUMBER.part, which no other program uses; close_writer() brings it to the disk and renames it.
+// - A symbolic link stays and its target is written.
+// - A file that is there keeps its permissions, and its owner and group where the system allows that. One that may not
+//   be written is refused, though its folder would allow a new one.
+// - What is no regular file (a device, a pipe, a FIFO) is written directly, as are standard output ("-", /dev/stdout)
+//   and other descriptors (/dev/fd/3).
+constexpr std::size_t kWriterPathBytes = 1024;
 struct FileWriter {
   int descriptor = -1;
   bool failed = false;
-  char path[1024] = {0};
+  char path[kWriterPathBytes] = {0};       // what is replaced in the end; empty: written directly
+  char part[kWriterPathBytes + 32] = {0};  // written until then
 };
 bool open_writer(const char* path, FileWriter* writer, FileError* error);
 // After a failure the rest is ignored; close_writer() reports it.
@@ -48,6 +54,12 @@ void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count);
 bool close_writer(FileWriter* writer, FileError* error);
 // Gives up: what was written is removed, an older file of that name stays.
 void discard_writer(FileWriter* writer);
+
+// Whether open_writer() would succeed: to be asked before work whose result goes there. A pipe is not opened.
+bool can_write(const char* path, FileError* error);
+// Whether two paths name one file, through links of both kinds; also one that does not exist yet. False for devices and
+// pipes.
+bool is_same_file(const char* one, const char* other);
 
 // Whether a person watches standard error.
 bool stderr_is_terminal();

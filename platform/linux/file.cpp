@@ -18,12 +18,6 @@ bool fail(FileError* error, const char* what, int number) {
   return false;
 }
 
-// Programs that write one file at the same time do not meet in its part: the last to finish replaces it.
-constexpr size_t kPartPathBytes = sizeof(FileWriter::path) + 24;
-void part_path(const FileWriter& writer, char* part) {
-  snprintf(part, kPartPathBytes, "%s.%ld.part", writer.path, static_cast<long>(getpid()));
-}
-
 }  // namespace
 
 bool map_file(const char* path, MappedFile* file, FileError* error) {
@@ -106,83 +100,6 @@ std::uint64_t file_stamp(const char* path) {
   std::uint64_t time =
       static_cast<std::uint64_t>(info.st_mtim.tv_sec) * 1000000000u + static_cast<std::uint64_t>(info.st_mtim.tv_nsec);
   return (time * 31 + static_cast<std::uint64_t>(info.st_size)) | 1;
-}
-
-bool open_writer(const char* path, FileWriter* writer, FileError* error) {
-  *writer = FileWriter();
-  if (strcmp(path, "-") == 0) {
-    writer->descriptor = STDOUT_FILENO;
-    return true;
-  }
-  char part[kPartPathBytes];
-  if (strlen(path) >= sizeof writer->path) {
-    snprintf(error->text, sizeof error->text, "the path is longer than %zu bytes: use a shorter one",
-             sizeof writer->path - 1);
-    return false;
-  }
-  // A device or a pipe is written as it is: renaming onto it would put a file in its place.
-  struct stat info;
-  if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) {
-    writer->descriptor = open(path, O_WRONLY | O_CLOEXEC);
-    return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
-  }
-  strcpy(writer->path, path);
-  part_path(*writer, part);
-  writer->descriptor = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
-}
-
-void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) {
-  const char* at = static_cast<const char*>(bytes);
-  while (byte_count > 0 && !writer->failed) {
-    ssize_t n = write(writer->descriptor, at, byte_count);
-    if (n > 0) {
-      at += n;
-      byte_count -= static_cast<size_t>(n);
-    } else if (n == 0 || errno != EINTR) {
-      writer->failed = true;
-    }
-  }
-}
-
-bool close_writer(FileWriter* writer, FileError* error) {
-  if (!writer->path[0]) {
-    if (writer->descriptor != STDOUT_FILENO && close(writer->descriptor) != 0) writer->failed = true;
-    writer->descriptor = -1;
-    if (writer->failed)
-      snprintf(error->text, sizeof error->text, "did not take all that was written: is it full, or closed?");
-    return !writer->failed;
-  }
-  char part[kPartPathBytes];
-  part_path(*writer, part);
-  bool ok = !writer->failed;
-  if (close(writer->descriptor) != 0) ok = false;
-  writer->descriptor = -1;
-  if (!ok) {
-    unlink(part);
-    snprintf(error->text, sizeof error->text, "could not be written to the end: is the disk full?");
-    return false;
-  }
-  if (rename(part, writer->path) != 0) {
-    int number = errno;
-    unlink(part);
-    return fail(error, "cannot be replaced", number);
-  }
-  return true;
-}
-
-void discard_writer(FileWriter* writer) {
-  if (writer->descriptor < 0) return;
-  if (!writer->path[0]) {
-    if (writer->descriptor != STDOUT_FILENO) close(writer->descriptor);
-    writer->descriptor = -1;
-    return;
-  }
-  char part[kPartPathBytes];
-  part_path(*writer, part);
-  close(writer->descriptor);
-  unlink(part);
-  writer->descriptor = -1;
 }
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) != 0; }
