@@ -1,4 +1,6 @@
 // pocketray accuracy: what accuracy costs in time.
+#include <CLI/CLI.hpp>
+
 #include "accuracy/csv.h"
 #include "accuracy/gnuplot.h"
 #include "accuracy/report.h"

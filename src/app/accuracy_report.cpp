@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "app/accuracy_report.h"
 
 #include "accuracy/findings.h"

@@ -1,6 +1,7 @@
 // What a sweep has measured so far, kept in its folder so that the same command goes on where it was stopped.
 #pragma once
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "app/accuracy_sweep.h"
 
 #include <zlib.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

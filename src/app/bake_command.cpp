@@ -1,4 +1,6 @@
 // pocketray bake: any format → one .pray file that a device maps as it is, accelerator included.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "app/commands.h"

@@ -1,5 +1,7 @@
 // pocketray bench: what a pixel, a scanline, a ray and an effect cost.
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/front_prices.h"

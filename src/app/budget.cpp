@@ -1,10 +1,12 @@
 #include "app/budget.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "app/measure.h"
 #include "app/scene_identity.h"

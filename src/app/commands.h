@@ -1,6 +1,9 @@
 // One command each: adds itself to the program and, when chosen, leaves its exit status.
 #pragma once
-#include <CLI/CLI.hpp>
+
+namespace CLI {
+class App;
+}
 
 namespace pocketray {
 

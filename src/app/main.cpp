@@ -1,4 +1,6 @@
 // pocketray: the program. The only place that exits.
+#include <CLI/CLI.hpp>
+
 #include "app/commands.h"
 #include "app/interrupt.h"
 

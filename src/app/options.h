@@ -1,6 +1,5 @@
 // Options that several commands share, and how they become a Renderer.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
 #include <string>
@@ -8,6 +7,10 @@
 #include "app/source.h"
 #include "base/isa.h"
 #include "platform/devices/device_list.h"
+
+namespace CLI {
+class App;
+}
 
 namespace pocketray {
 

@@ -1,5 +1,7 @@
 // pocketray plan: the effects a scene calls for, the memory map, and why.
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/measure.h"

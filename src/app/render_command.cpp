@@ -1,5 +1,7 @@
 // pocketray render: one frame or a sequence, into files.
+#include <CLI/CLI.hpp>
 #include <cinttypes>
+#include <nlohmann/json.hpp>
 
 #include "app/budget.h"
 #include "app/camera_control.h"

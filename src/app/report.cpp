@@ -1,6 +1,7 @@
 #include "app/report.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "effect/effect_list.h"

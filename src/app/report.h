@@ -1,6 +1,6 @@
 // How commands speak: one line for an error, tables for people, JSON for programs.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "app/renderer.h"

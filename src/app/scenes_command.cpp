@@ -1,4 +1,7 @@
 // pocketray scenes: what render servers offer.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "app/commands.h"
 #include "app/report.h"
 #include "app/sharing.h"

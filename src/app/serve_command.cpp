@@ -1,4 +1,5 @@
 // pocketray serve: renders for devices that share their frames with it.
+#include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <thread>
 

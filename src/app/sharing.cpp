@@ -1,5 +1,6 @@
 #include "app/sharing.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <new>

@@ -1,6 +1,5 @@
 // Frames shared with render servers, as the commands use it. A build without a network has no_sharing.cpp in its place.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,10 @@
 #include "app/viewer_hud.h"
 #include "platform/devices/device.h"
 #include "present/pack.h"
+
+namespace CLI {
+class App;
+}
 
 namespace pocketray {
 

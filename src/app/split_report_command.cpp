@@ -1,4 +1,7 @@
 // pocketray split-report: what sharing a scene's frames gains a device, over the share, and beside the paper's table.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "accuracy/gnuplot.h"
 #include "app/commands.h"
 #include "app/frame.h"

@@ -1,5 +1,6 @@
 #include "app/split_screen.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <vector>
 

@@ -1,4 +1,5 @@
 // pocketray view: the scene on a screen, moved by buttons. Coarse first, then refined; input never waits.
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <thread>
 

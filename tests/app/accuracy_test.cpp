@@ -1,6 +1,7 @@
 // The sweep as a whole, on a picture of a few pixels.
 #include <doctest/doctest.h>
 #include <stdlib.h>
+#include <nlohmann/json.hpp>
 
 #include <atomic>
 #include <chrono>
