@@ -64,6 +64,7 @@ void look_at_servers(Client* c, std::uint64_t timeout_ns) {
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     const RemoteServer& s = c->servers[i];
     if (s.phase == ServerPhase::waiting) continue;
+    if (s.more) timeout_ns = 0;
     bool connecting = s.phase == ServerPhase::connecting;
     waits[wait_count].stream = s.messages.stream;
     waits[wait_count].want_read = !connecting;

@@ -12,8 +12,8 @@
 
 namespace pocketray {
 
-// Rows that a server sends at once: at the ends of a frame and at most between; and everywhere where chunks do not grow.
-// Larger ones take fewer headers and compress better, smaller ones keep nobody waiting; measured by split-report.
+// Rows that a server sends at once: at the ends of a frame and at most between; and everywhere where chunks do not
+// grow. Larger ones take fewer headers and compress better, smaller ones keep nobody waiting; measured by split-report.
 constexpr std::uint32_t kChunkRowsMin = 4, kChunkRowsMax = 32, kChunkRowsEven = 8;
 
 struct ClientOptions {
@@ -72,11 +72,15 @@ struct RemoteServer {
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
   double round_trip_ns = 0, ns_per_byte = 0;
   double probe_ns_per_pixel = 0;
-  Smoothed row_ns;                // of a device without the scene: that a row took, from the request until it came
-  FrameRequest asked;             // last; frame 0: nothing with this connection
-  bool unanswered = false;        // since rows were asked for; asking anew gives no more time
-  std::uint32_t chunk_count = 0;  // that have come with this connection
-  std::uint8_t chunk_growth = 0;  // 16ths, see FrameRequest; 0: they do not grow
+  Smoothed row_ns;                 // of a device without the scene: that a row took, from the request until it came
+  FrameRequest asked;              // last; frame 0: nothing with this connection
+  std::uint32_t due_end = 0;       // of that, rows [asked.row_begin, due_end) have yet to come
+  std::uint64_t late_rows = 0;     // of what was asked for before, which may still be under way; so much of that when
+  std::uint64_t late_at_ping = 0;  // the ping was sent
+  bool more = false;               // has come and not been looked at: a look takes no more than a frame can bring
+  bool unanswered = false;         // since rows were asked for; asking anew gives no more time
+  std::uint32_t chunk_count = 0;   // that have come with this connection
+  std::uint8_t chunk_growth = 0;   // 16ths, see FrameRequest; 0: they do not grow
   ServerFrame frame;
 };
 

@@ -106,7 +106,9 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
   message.frame_request.deflate_level = deflate_level(s->ns_per_byte);
   bool like_the_last = s->asked.frame > 0 && is_change(message.frame_request, s->asked);
   message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
+  if (s->asked.frame > 0) s->late_rows += s->due_end - s->asked.row_begin;
   s->asked = message.frame_request;
+  s->due_end = row_end;
   if (!send_message(&s->messages, message)) return lose_server(c, s, "it does not read what it is sent");
   std::uint64_t bytes = s->frame.bytes, row_bytes = s->frame.row_bytes;
   s->frame = {row_begin, row_end, 0, client_now_ns(*c), bytes, row_bytes, 0, true};

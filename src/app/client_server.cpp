@@ -18,7 +18,10 @@ constexpr double kPingTripsMin = 8;                // times as long as one witho
 constexpr std::uint64_t kPingWaitNs = 20'000'000;  // that the device waits for an answer and does nothing else,
 constexpr std::uint64_t kSizedPingWaitNs = 200'000'000;  // and for one with a payload, over a slow link
 constexpr std::uint64_t kIdlePingNs = 500'000'000;       // between two looks at a server that gets no rows
+constexpr std::uint32_t kLookMessages = 256;             // of a server in one look, and no more rows than a picture has
 constexpr double kNsPerByteMin = 1e-3;  // a link faster than a terabyte a second is one that was not measured
+
+constexpr const char* kUnasked = "it sends what it was not asked for";
 
 void tell(Client* c, const char* format, ...) __attribute__((format(printf, 2, 3)));
 void tell(Client* c, const char* format, ...) {
@@ -46,6 +49,7 @@ void send_ping(Client* c, RemoteServer* s, std::uint32_t reply_bytes) {
   if (++s->ping_id == 0) ++s->ping_id;
   message.ping = {s->ping_id, reply_bytes};
   s->ping_bytes = reply_bytes;
+  s->late_at_ping = s->late_rows;
   s->ping_ns = client_now_ns(*c);
   send(c, s, message);
 }
@@ -76,7 +80,8 @@ void greet_server(Client* c, RemoteServer* s) {
   restart_row_decoder(s->decoder);
   s->pings_answered = s->pings_missed = 0, s->ping_id = 0, s->round_trip_ns = 0;
   s->chunk_count = 0, s->chunk_growth = 0, s->unanswered = false;
-  s->asked.frame = 0;
+  s->asked = FrameRequest();
+  s->due_end = 0, s->late_rows = 0;
   s->frame = ServerFrame();
   enter(c, s, ServerPhase::greeting);
   Message message;
@@ -101,6 +106,7 @@ void take_hello(Client* c, RemoteServer* s, const Hello& hello) {
 void take_scene_entry(Client* c, RemoteServer* s, const SceneEntry& entry) {
   if (entry.byte_count == 0)
     return lose_server(c, s, "it does not have this scene: put the same file into the folder it serves (--scenes)");
+  if (entry.hash != c->scene) return lose_server(c, s, kUnasked);
   enter(c, s, ServerPhase::measuring);
   send_ping(c, s, 0);
 }
@@ -124,7 +130,10 @@ void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::uint32_t by
 }
 
 void take_pong(Client* c, RemoteServer* s, const Pong& pong) {
-  if (pong.id != s->ping_id) return;
+  // One ping is under way at most, so that there is no other to answer.
+  if (s->ping_id == 0 || pong.id != s->ping_id || pong.bytes.count != s->ping_bytes) return lose_server(c, s, kUnasked);
+  s->late_rows -= s->late_at_ping;  // they would have come before it
+  s->late_at_ping = 0;
   double ns = static_cast<double>(client_now_ns(*c) - s->ping_ns);
   s->ping_id = 0;
   if (s->phase == ServerPhase::measuring) return take_measuring_pong(c, s, ns, pong.bytes.count);
@@ -134,7 +143,27 @@ void take_pong(Client* c, RemoteServer* s, const Pong& pong) {
   if (pong.pixel_ps > 0) observe_server_price(&c->model, index_of(*c, s), 1e-3 * pong.pixel_ps);
 }
 
+// Whether a server owes these rows: the next of what it was asked for last, from the bottom upward, or some that were
+// under way when that took the place of an earlier request. None is owed twice, so that what a server can make the
+// device decode is bounded by what the device asked for. A chunk of the last request says that those before it are
+// over.
+bool takes_owed_rows(RemoteServer* s, const RowChunk& chunk) {
+  std::uint32_t end = std::uint32_t(chunk.row_begin) + chunk.row_count;
+  if (chunk.frame == s->asked.frame && end == s->due_end && chunk.row_begin >= s->asked.row_begin) {
+    s->due_end = chunk.row_begin;
+    s->late_rows = s->late_at_ping = 0;
+    return true;
+  }
+  if (chunk.frame > s->asked.frame || chunk.row_count > s->late_rows) return false;
+  s->late_rows -= chunk.row_count;
+  s->late_at_ping -= s->late_at_ping < chunk.row_count ? s->late_at_ping : chunk.row_count;
+  return true;
+}
+
 void take_chunk(Client* c, RemoteServer* s, RowChunk chunk) {
+  if (!takes_owed_rows(s, chunk)) return lose_server(c, s, "it sends rows that it was not asked for");
+  if (chunk.bytes.count > encoded_bytes_max(s->decoder->state.shape, chunk.row_count))
+    return lose_server(c, s, "it sends more bytes than its rows can take");
   // Decoded twice or in another order, rows would spoil the picture that the decoder keeps.
   if (!take_chunk_number(&chunk, s->chunk_count++)) return lose_server(c, s, "it sends rows out of turn");
   std::uint64_t begin_ns = client_now_ns(*c);
@@ -159,7 +188,7 @@ void take(Client* c, RemoteServer* s, const Message& message) {
   if (message.type == MessageType::row_chunk && s->phase >= ServerPhase::probing)
     return take_chunk(c, s, message.row_chunk);
   if (message.type == MessageType::error) return lose_server(c, s, wire_error_text(message.error.code));
-  lose_server(c, s, "it sends what it was not asked for");
+  lose_server(c, s, kUnasked);
 }
 
 // Whether an answer or rows are awaited.
@@ -170,17 +199,24 @@ bool is_awaited(const Client& c, const RemoteServer& s) {
   return s.phase != ServerPhase::waiting;
 }
 
+// Takes what has come, but no more than a frame can bring: whatever a server sends, the device goes on.
 void read_server(Client* c, RemoteServer* s) {
   platform::Error error;
+  std::uint32_t messages = 0, rows = 0;
+  s->more = false;
   for (;;) {
     if (!pump_message_stream(&s->messages, &error)) return lose_server(c, s, error.text);
     bool took = false;
     for (;;) {
+      s->more = messages == kLookMessages || rows >= c->settings.height;
+      if (s->more) return;
       Message message;
       DecodeState state = take_message(&s->messages, &message);
       if (state == DecodeState::malformed) return lose_server(c, s, "what it sends is no message of the protocol");
       if (state == DecodeState::need_more) break;
       took = true;
+      ++messages;
+      if (message.type == MessageType::row_chunk) rows += message.row_chunk.row_count;
       s->unanswered = false;
       s->timer = platform::link_timer(client_now_ns(*c), silence_limit_ns(*c, *s));
       take(c, s, message);
@@ -237,6 +273,7 @@ std::uint64_t silence_limit_ns(const Client& c, const RemoteServer& s) {
 
 void lose_server(Client* c, RemoteServer* s, const char* reason) {
   close_message_stream(&s->messages);
+  s->more = false;
   std::uint32_t i = index_of(*c, s);
   c->model.servers[i].connected = false;
   s->frame.open = false;

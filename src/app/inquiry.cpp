@@ -14,8 +14,12 @@ constexpr std::uint64_t kLookNs = 50'000'000;                   // till a stop i
 
 std::uint64_t now_ns(const Inquiry& q) { return q.link->backend->now_ns(q.link); }
 
+Status check_stop(const Inquiry& q) {
+  return q.options.stopped && q.options.stopped() ? failure("it is not waited for any longer") : success();
+}
+
 Status wait_for_news(Inquiry* q, bool want_write, std::uint64_t left_ns) {
-  if (q->options.stopped && q->options.stopped()) return failure("it is not waited for any longer");
+  RETURN_IF_ERROR(check_stop(*q));
   platform::LinkWait wait;
   wait.stream = q->messages.stream;
   wait.want_read = true;
@@ -48,6 +52,7 @@ Status send(Inquiry* q, const Message& message) {
 Status await(Inquiry* q, MessageType type, Message* answer) {
   platform::LinkTimer whole = platform::link_timer(now_ns(*q), q->options.answer_timeout_ns);
   platform::LinkTimer silence = platform::link_timer(now_ns(*q), q->options.silence_timeout_ns);
+  RETURN_IF_ERROR(check_stop(*q));  // a fast server is never waited for
   for (;;) {
     DecodeState state = take_message(&q->messages, answer);
     if (state == DecodeState::malformed) return failure("what it sends is no message of the protocol");

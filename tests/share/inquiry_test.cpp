@@ -9,6 +9,7 @@
 #include "app/frame.h"
 #include "app/scene_store.h"
 #include "app/virtual_world.h"
+#include "fake_server.h"
 #include "scene/builtin_helpers.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
@@ -31,81 +32,7 @@ struct InquiryRig {
   }
 };
 
-struct FakeServer;
-struct FakeLink : platform::LinkBackend {
-  FakeServer* server = nullptr;
-};
-
-// A server that answers as a test tells it to; it works while the device waits.
-struct FakeServer {
-  using Answer = std::function<std::vector<Message>(const Message&)>;
-  std::vector<std::max_align_t> memory;
-  FakeLink backend;
-  platform::Link* link = nullptr;
-  platform::LinkAddress address;
-  int listener = -1, stream = -1;
-  std::vector<std::uint8_t> in, out;
-  Answer answer;
-
-  explicit FakeServer(const Answer& answer_) : answer(answer_) {
-    const platform::LinkBackend& net = platform::kNullLink;
-    platform::NullLinkSettings line;
-    platform::LinkOptions options;
-    options.stream_count_max = 8;
-    options.memory_bytes = null_link_need(8, line);
-    memory.resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
-    options.memory = memory.data();
-    platform::Error error;
-    link = null_link_open(options, line, &error);
-    REQUIRE(link != nullptr);
-    REQUIRE(net.resolve(":0", &address, &error));
-    listener = net.listen(link, address, &error);
-    REQUIRE(net.resolve(net.stream_name(link, listener), &address, &error));
-    static_cast<platform::LinkBackend&>(backend) = net;
-    backend.poll = step_and_poll;
-    backend.server = this;
-    link->backend = &backend;
-  }
-  ~FakeServer() { platform::kNullLink.close_all(link); }
-  FakeServer(const FakeServer&) = delete;
-  FakeServer& operator=(const FakeServer&) = delete;
-
-  static int step_and_poll(platform::Link* link, platform::LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
-    static_cast<const FakeLink*>(link->backend)->server->step();
-    return platform::kNullLink.poll(link, waits, wait_count, std::min(timeout_ns, kMs));
-  }
-
-  void step() {
-    const platform::LinkBackend& net = platform::kNullLink;
-    platform::Error error;
-    if (stream < 0) net.accept(link, listener, &stream, &error);
-    if (stream < 0) return;
-    std::uint8_t bytes[4096];
-    std::size_t count = 0;
-    if (net.read(link, stream, bytes, sizeof bytes, &count, &error) == platform::LinkResult::done)
-      in.insert(in.end(), bytes, bytes + count);
-    Message message;
-    for (Decoded decoded;
-         (decoded = decode_message(in.data(), in.size(), 4096, &message)).state == DecodeState::message;) {
-      for (const Message& reply : answer(message)) {
-        std::vector<std::uint8_t> reply_bytes = bytes_of(reply);
-        out.insert(out.end(), reply_bytes.begin(), reply_bytes.end());
-      }
-      in.erase(in.begin(), in.begin() + decoded.byte_count);
-    }
-    if (!out.empty() && net.write(link, stream, out.data(), out.size(), &count, &error) == platform::LinkResult::done)
-      out.erase(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count));
-  }
-};
-
 const std::vector<std::uint8_t> kFile(100'000, 7);  // fetched in several pieces
-
-Message hello_of_server() {
-  Message message;
-  message.type = MessageType::hello;
-  message.hello = {kWireVersion, 2048, 512, 0};
-  return message;
-}
 
 Message entry_of(std::uint16_t index, std::uint16_t count, const char* name) {
   Message message;
@@ -274,6 +201,58 @@ TEST_CASE("inquiry_gives_up_on_silence") {
   REQUIRE(open_inquiry(options, fake.link, fake.address, &stopped).ok);
   stop = true;
   CHECK(has(list_scenes(&stopped, &entries).message, "not waited for"));
+}
+
+// Goal: an inquiry can be stopped however fast a server answers. Method: one whose answers are there whenever the
+// device reads, so that it never waits; stopped at the first piece of a scene, and while a list is read.
+TEST_CASE("inquiry_stops_while_a_server_never_makes_it_wait") {
+  FakeServer fake([&](const Message& message) -> std::vector<Message> {
+    if (message.type == MessageType::hello) return {hello_of_server()};
+    if (message.type == MessageType::scene_list) return {entry_of(message.scene_list.index, 60'000, "a")};
+    return {piece_of(message.scene_fetch)};
+  });
+  fake.flood = [] { return std::vector<std::uint8_t>(); };  // it works while the device reads
+  bool stop = false;
+  std::uint32_t asked = 0;
+  InquiryOptions options;
+  options.stopped = [&] { return stop || ++asked > 1000; };
+  Inquiry inquiry;
+  REQUIRE(open_inquiry(options, fake.link, fake.address, &inquiry).ok);
+  std::vector<std::uint8_t> bytes(kFile.size());
+  std::uint64_t come = 0;
+  Status status = fetch_scene(&inquiry, entry_of(0, 1, "a").scene_entry, bytes.data(), [&](std::uint64_t done) {
+    come = done;
+    stop = true;
+  });
+  CHECK(has(status.message, "not waited for"));
+  CHECK(come < kFile.size() / 2);
+  stop = false;
+  asked = 0;
+  std::vector<SceneEntry> entries;
+  Inquiry another;
+  fake.hang_up();
+  REQUIRE(open_inquiry(options, fake.link, fake.address, &another).ok);
+  CHECK(has(list_scenes(&another, &entries).message, "not waited for"));
+  CHECK(entries.size() < 2000);
+}
+
+// Goal: a server that says more than it was asked is believed no further. Method: two answers for one question, of each
+// kind, the second of which comes in place of the next answer.
+TEST_CASE("inquiry_ends_with_an_answer_to_no_question") {
+  for (int kind = 0; kind < 3; ++kind) {
+    CAPTURE(kind);
+    FakeServer fake([&](const Message& message) -> std::vector<Message> {
+      Message extra = kind == 0 ? hello_of_server() : entry_of(0, 2, "a");
+      if (kind == 2) extra.type = MessageType::pong;
+      if (message.type == MessageType::hello) return {hello_of_server(), extra};
+      return {entry_of(message.scene_list.index, 2, "a"), extra};
+    });
+    Inquiry inquiry;
+    std::vector<SceneEntry> entries;
+    REQUIRE(open_inquiry(InquiryOptions(), fake.link, fake.address, &inquiry).ok);
+    Status status = list_scenes(&inquiry, &entries);
+    CHECK(has(status.message, kind == 1 ? "contradicts itself" : "what it was not asked for"));
+  }
 }
 
 // Goal: a list that contradicts itself is refused, an empty one is not; names cannot move a terminal's cursor.

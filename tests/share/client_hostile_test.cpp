@@ -1,0 +1,265 @@
+// A device and a server that wants its time: whatever is sent, the frame goes on.
+#include <doctest/doctest.h>
+
+#include "app/shared_frame.h"
+#include "fake_server.h"
+#include "scene/builtin_helpers.h"
+#include "split_rig.h"
+#include "support/generated_scene.h"
+#include "support/scripted_client.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 32, kHeight = 64;
+constexpr double kDeviceNs = 20'000, kLocalNs = kDeviceNs * kWidth * kHeight;  // 41 ms a frame
+constexpr std::uint32_t kFloodMessages = 20'000;  // after which a flood ends, so that a device that falls for it fails
+
+// A server that is sound until a test has it do something else, and the device.
+struct HostileRig {
+  RowSource rows{kWidth, kHeight, WireFormat::rgb565};
+  FrameRequest request;                                                  // the last
+  std::vector<FrameRequest> all;                                         // that came
+  std::function<std::vector<Message>(HostileRig*, const Message&)> act;  // instead; empty: sound
+  FakeServer fake{[this](const Message& message) { return act ? act(this, message) : answer(message); }, fine_clock()};
+  std::unique_ptr<BuiltScene> built = build_builtin("cube");
+  std::unique_ptr<TestRenderer> device;
+  std::vector<std::uint8_t> memory;
+  std::vector<std::string> log;
+  std::vector<std::uint8_t> payload = std::vector<std::uint8_t>(kPingBytesMax);
+  std::uint32_t flood_count = 0;
+  Client client;
+
+  HostileRig() {
+    Settings settings;
+    settings.width = kWidth, settings.height = kHeight;
+    device = make_renderer(built->scene, settings);
+    ClientOptions o;
+    o.format = WireFormat::rgb565;
+    o.pace.ns_per_pixel = kDeviceNs;
+    o.log = [](void* rig, const char* line) { static_cast<HostileRig*>(rig)->log.push_back(line); };
+    o.log_context = this;
+    memory.resize(client_need(settings, o.format, 1) + kArenaAlignment);
+    Arena arena = make_arena("client", memory.data(), memory.size());
+    REQUIRE(make_client(o, settings, builtin_hash("cube"), fake.link, &fake.address, 1, &arena, &client).ok);
+  }
+  ~HostileRig() { close_client(&client); }
+
+  Message entry() {
+    Message message;
+    message.type = MessageType::scene_entry;
+    message.scene_entry.hash = builtin_hash("cube");
+    message.scene_entry.byte_count = 1000;
+    return message;
+  }
+  Message pong(const Ping& ping) {
+    Message message;
+    message.type = MessageType::pong;
+    message.pong = {ping.id, 100'000, {payload.data(), ping.reply_bytes}};
+    return message;
+  }
+  // As a sound server answers.
+  std::vector<Message> answer(const Message& message) {
+    if (message.type == MessageType::hello) {
+      rows.restart();
+      return {hello_of_server()};
+    }
+    if (message.type == MessageType::scene_query) return {entry()};
+    if (message.type == MessageType::ping) return {pong(message.ping)};
+    if (!note_request(message)) return {};
+    return rows.rows(request);
+  }
+  bool note_request(const Message& message) {
+    if (message.type == MessageType::frame_request)
+      request = message.frame_request;
+    else if (message.type == MessageType::frame_change)
+      take_change(message.frame_request, &request);
+    else
+      return false;
+    all.push_back(request);
+    return true;
+  }
+
+  bool is_ready() const { return client.servers[0].phase == ServerPhase::ready; }
+  // A frame; the time it took, over the device's alone.
+  double frame() {
+    std::uint64_t begin = fake.now();
+    REQUIRE(render_shared_frame(&device->renderer, &client, 0).ok);
+    return static_cast<double>(fake.now() - begin) / kLocalNs;
+  }
+  void frames_until_ready() {
+    for (int i = 0; i < 20 && !is_ready(); ++i) frame();
+    REQUIRE(is_ready());
+    frame();
+  }
+  void flood_with(const std::function<Message()>& make) {
+    fake.flood = [this, make]() -> std::vector<std::uint8_t> {
+      std::vector<std::uint8_t> bytes;
+      for (int i = 0; i < 100 && flood_count < kFloodMessages; ++i, ++flood_count) {
+        std::vector<std::uint8_t> one = bytes_of(make());
+        bytes.insert(bytes.end(), one.begin(), one.end());
+      }
+      return bytes;
+    };
+  }
+};
+
+Message message_of(MessageType type) {
+  Message message;
+  message.type = type;
+  return message;
+}
+
+struct Flood {
+  const char* what;
+  Message (*make)(HostileRig* rig);
+};
+constexpr Flood kFloods[] = {
+    {"pongs to no ping",
+     [](HostileRig* rig) {
+       return rig->pong({0, 0});
+     }},
+    {"pongs to another ping",
+     [](HostileRig* rig) {
+       return rig->pong({77'777, 16});
+     }},
+    {"hellos", [](HostileRig*) { return hello_of_server(); }},
+    {"scene entries", [](HostileRig* rig) { return rig->entry(); }},
+    {"scene pieces", [](HostileRig*) { return message_of(MessageType::scene_piece); }},
+    {"view entries",
+     [](HostileRig*) {
+       Message message = message_of(MessageType::view_entry);
+       message.view_entry.camera.vertical_fov = 1;
+       return message;
+     }},
+    {"errors", [](HostileRig*) { return message_of(MessageType::error); }},
+    {"rows of a frame before", [](HostileRig* rig) { return rig->rows.chunk(rig->all[0].frame, 0, 8); }},
+    {"rows of this frame, again", [](HostileRig* rig) { return rig->rows.chunk(rig->request.frame, 56, 8); }},
+    {"rows of a frame to come", [](HostileRig* rig) { return rig->rows.chunk(rig->request.frame + 5, 0, 8); }},
+    {"rows of no frame", [](HostileRig* rig) { return rig->rows.chunk(0, 0, 8); }},
+};
+
+}  // namespace
+
+// Goal: a server that sends without end what it was not asked for is left, and costs next to nothing. Method: every
+// kind of message, as fast as the device can read; each would go on for longer than a frame may.
+TEST_CASE("client_leaves_a_server_that_floods") {
+  for (const Flood& flood : kFloods)
+    for (bool before_hello : {false, true}) {
+      CAPTURE(flood.what);
+      CAPTURE(before_hello);
+      HostileRig rig;
+      if (before_hello) rig.all.resize(1), rig.act = [](HostileRig*, const Message&) { return std::vector<Message>(); };
+      if (!before_hello) rig.frames_until_ready();
+      rig.flood_with([&] { return flood.make(&rig); });
+      for (int i = 0; i < 3; ++i) CHECK(rig.frame() < 1.05);
+      CHECK(rig.flood_count < kFloodMessages);
+      CHECK(rig.client.servers[0].phase == ServerPhase::waiting);
+      CHECK(rig.log.size() == 1);
+    }
+}
+
+// Goal: rows that a server may still send, since they were asked for before others were, end no connection; one row
+// more does. Method: a server that keeps back the rows of some frames and sends them with the next request, each
+// frame's before those of the next, as a slow line would bring them; and then a few that it has sent already.
+TEST_CASE("client_takes_late_rows_no_more_than_it_asked_for") {
+  for (bool sends_more : {false, true}) {
+    CAPTURE(sends_more);
+    HostileRig rig;
+    rig.frames_until_ready();
+    rig.client.options.device_share = 0.5;  // whatever becomes known of the server
+    std::vector<FrameRequest> kept;
+    std::size_t asked_before = rig.all.size();
+    rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
+      if (!r->note_request(message))
+        return message.type == MessageType::ping ? r->answer(message) : std::vector<Message>();
+      kept.push_back(r->request);
+      if (kept.size() < 4) return {};
+      std::vector<Message> chunks;
+      for (const FrameRequest& request : kept) {
+        if (sends_more && &request == &kept.back()) chunks.push_back(r->rows.chunk(kept[0].frame, 0, 4));
+        for (const Message& chunk : r->rows.rows(request)) chunks.push_back(chunk);
+      }
+      kept.clear();
+      return chunks;
+    };
+    for (int i = 0; i < 12; ++i) {
+      CHECK(rig.frame() < 1.05);
+      if (!rig.log.empty()) break;
+    }
+    CHECK(rig.all.size() >= asked_before + 4);
+    CHECK(rig.log.empty() == !sends_more);
+    for (const std::string& line : rig.log) CHECK(line.find("rows that it was not asked for") != std::string::npos);
+  }
+}
+
+// Goal: what was asked for in many frames and comes at once takes no more of a look than a frame can bring. Method: a
+// server that answers pings alone for some frames, and then sends all rows that it owes, one at a time.
+TEST_CASE("client_look_is_bounded") {
+  HostileRig rig;
+  rig.frames_until_ready();
+  rig.client.options.device_share = 0;
+  std::vector<FrameRequest> kept;
+  bool gives = false;
+  rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
+    if (message.type == MessageType::ping && !gives) return {};  // which would end what is owed
+    if (!r->note_request(message)) return {};
+    kept.push_back(r->request);
+    if (!gives) return {};
+    std::vector<Message> chunks;
+    for (const FrameRequest& request : kept)
+      for (std::uint32_t row = request.row_end; row > request.row_begin; --row)
+        chunks.push_back(r->rows.chunk(request.frame, row - 1, 1));
+    kept.clear();
+    return chunks;
+  };
+  for (int i = 0; i < 20; ++i) rig.frame();
+  gives = true;
+  RemoteServer* s = &rig.client.servers[0];
+  std::uint64_t owed = s->late_rows;
+  REQUIRE(owed > 4 * kHeight);
+  REQUIRE(begin_shared_frame(&rig.device->renderer, &rig.client, 0).ok);
+  std::uint32_t before = s->chunk_count, most = 0, looks = 0;
+  std::uint64_t begin = rig.fake.now();
+  for (; s->late_rows > 0 && looks < 1000 && s->phase == ServerPhase::ready; ++looks) {
+    advance_client(&rig.client, kMs);
+    most = std::max(most, s->chunk_count - before);
+    before = s->chunk_count;
+  }
+  CHECK(rig.log.empty());
+  CHECK(s->late_rows == 0);
+  CHECK(most <= kHeight);
+  CHECK(looks >= owed / kHeight);
+  CHECK(rig.fake.now() - begin < looks * kMs / 5);  // what has come is not waited for
+}
+
+// Goal: a message that never ends is no answer. Method: the first bytes of a pong or of rows, one a tenth of a second;
+// the connection ends when the answer is overdue, in each phase.
+TEST_CASE("client_leaves_a_server_that_dribbles") {
+  for (MessageType until :
+       {MessageType::hello, MessageType::scene_query, MessageType::ping, MessageType::frame_request}) {
+    CAPTURE(static_cast<int>(until));
+    HostileRig rig;
+    bool dribbles = false;
+    std::uint64_t next_ns = 0;
+    rig.client.options.prepare_timeout_ns = rig.client.options.silence_timeout_ns;
+    Message endless = rig.pong({1, 16'384});
+    std::vector<std::uint8_t> bytes = bytes_of(endless);
+    std::size_t at = 0;
+    rig.fake.flood = [&]() -> std::vector<std::uint8_t> {
+      if (!dribbles || rig.fake.now() < next_ns || at == bytes.size()) return {};
+      next_ns = rig.fake.now() + 100 * kMs;
+      return {bytes[at++]};
+    };
+    rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
+      dribbles = dribbles || message.type == until;
+      return dribbles ? std::vector<Message>() : r->answer(message);
+    };
+    std::uint64_t begin = rig.fake.now();
+    while (rig.log.empty() && rig.fake.now() < begin + 20'000 * kMs) CHECK(rig.frame() < 1.1);
+    CHECK(rig.log.size() == 1);
+    CHECK(at > 1);
+    CHECK(rig.fake.now() - begin < 5'000 * kMs);
+  }
+}
