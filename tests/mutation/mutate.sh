@@ -12,7 +12,7 @@
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-all_suites="base brdf accel hard shade present plan golden pipeline share accuracy app platform"
+all_suites="base brdf accel hard shade present plan golden pipeline split share accuracy app platform"
 seconds_max=240  # what takes longer hangs
 jobs=$(nproc 2>/dev/null || echo 2) build=$root/build-mutants mode=run
 only=() name=() file=() suites=() why=() old=() new=()

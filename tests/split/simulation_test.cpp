@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 #include "base/rng.h"
@@ -21,11 +22,16 @@ constexpr std::uint32_t kRows = 240, kWidth = 320, kChunkRows = 8;
 
 struct World {
   std::vector<double> device_ns = std::vector<double>(kRows, 3e5);  // per row
+  std::vector<double> bytes = std::vector<double>(kRows, 200);      // per row, as they compress
   double speed[3] = {0.2, 0.2, 0.2};                                // server's time over the device's
-  double bytes_per_row = 200, ns_per_byte = 100, latency_ns = 2e6;
+  double ns_per_byte = 100, latency_ns = 2e6;
 
+  double bytes_of(std::uint32_t begin, std::uint32_t end) const {
+    return std::accumulate(bytes.begin() + begin, bytes.begin() + end, 0.0);
+  }
   bool operator==(const World& w) const {
-    return device_ns == w.device_ns && std::equal(speed, speed + 3, w.speed) && ns_per_byte == w.ns_per_byte;
+    return device_ns == w.device_ns && bytes == w.bytes && std::equal(speed, speed + 3, w.speed) &&
+           ns_per_byte == w.ns_per_byte;
   }
 };
 
@@ -45,7 +51,7 @@ double play(const World& world, const Split& split, CostModel* model, double noi
       double render_ns = 0;
       for (std::uint32_t r = begin; r < end; ++r) render_ns += world.device_ns[r] * world.speed[s];
       rendered += render_ns;
-      sent = std::max(sent, rendered) + (end - begin) * world.bytes_per_row * world.ns_per_byte;
+      sent = std::max(sent, rendered) + world.bytes_of(begin, end) * world.ns_per_byte;
       arrivals.push_back({sent, render_ns, s, begin, end});
       end = begin;
     }
@@ -62,7 +68,7 @@ double play(const World& world, const Split& split, CostModel* model, double noi
       accept_rows(&merge, 0, a.begin, a.end, a.server);
       if (is_complete(merge)) now = std::min(now, a.ns);
       if (!model) continue;
-      double bytes = (a.end - a.begin) * world.bytes_per_row;
+      double bytes = world.bytes_of(a.begin, a.end);
       observe_server_rows(model, a.server, a.begin, a.end, measured(a.render_ns), bytes);
       observe_transfer(model, a.server, bytes, measured(bytes * world.ns_per_byte));
     }
@@ -91,18 +97,17 @@ double best_time(const World& world, std::uint32_t servers) {
   GeneratedProblem g;
   SplitProblem* p = &g.problem;
   p->row_count = kRows, p->server_count = servers;
-  auto table = [&](double per_row, double share_of_device) {
+  auto table = [&](double per_row, double share_of_device, double ns_per_byte = 0) {
     return make_table(&g, [&](std::uint32_t r) {
-      return static_cast<std::uint64_t>(per_row + share_of_device * world.device_ns[r]);
+      return static_cast<std::uint64_t>(per_row + share_of_device * world.device_ns[r] + ns_per_byte * world.bytes[r]);
     });
   };
   p->device_ns = table(0, 1);
   p->unpack_ns = p->link_ns = p->device_cost = table(0, 0);
-  double transfer_ns = world.bytes_per_row * world.ns_per_byte;
   for (std::uint32_t s = 0; s < servers; ++s) {
     ServerTables* t = &p->servers[s];
     t->usable = true, t->cost = table(1, 0);
-    t->render_ns = table(0, world.speed[s]), t->transfer_ns = table(transfer_ns, 0);
+    t->render_ns = table(0, world.speed[s]), t->transfer_ns = table(0, 0, world.ns_per_byte);
     t->start_ns = static_cast<std::uint64_t>(world.latency_ns), t->chunk_rows = kChunkRows;
   }
   OwnWorkspace own(kRows, servers);
@@ -116,16 +121,20 @@ double best_time(const World& world, std::uint32_t servers) {
   return best;
 }
 
+constexpr int kChangeFrame = 40, kFrameCount = 120, kRestFrames = 60;  // the last ones
+
 struct Outcome {
-  int settle_frames = 0;   // from the change until frames stay within 5 % of the best
-  int moves_after = 0;     // changes of the split in the 60 frames after that
-  double worst_after = 0;  // time over the best in these
+  int settle_frames = 0;         // from the change until frames stay near the best
+  int late_run = 0;              // the most frames in a row that were not, of the last 60
+  int moves_after = 0;           // changes of the split in the last 60 frames
+  double worst_after = 0;        // time over the best in these
+  double mean_ns_after = 0;      // of a frame in these
+  double mean_best_after = 0;    // of the best split of each
+  std::uint32_t rows_moved = 0;  // the furthest that a boundary went in one move in these
 };
 
-constexpr int kChangeFrame = 40, kFrameCount = 120;
-
 // Plays 120 frames of world(frame), of which the first 40 are of the old world.
-Outcome simulate(std::uint32_t servers, double noise, const std::function<World(int)>& world_of) {
+Outcome simulate(std::uint32_t servers, double noise, const std::function<World(int)>& world_of, double near = 1.05) {
   OwnModel own(kWidth, kRows, servers);
   Rng rng = make_rng(7);
   World first = world_of(0);
@@ -134,29 +143,38 @@ Outcome simulate(std::uint32_t servers, double noise, const std::function<World(
   for (std::uint32_t s = 0; s < servers; ++s) {
     own.model.servers[s].connected = true;
     own.model.servers[s].chunk_rows = kChunkRows;
-    double bytes_per_pixel = first.bytes_per_row / kWidth;
+    double bytes_per_pixel = first.bytes_of(0, kRows) / (kRows * kWidth);
     observe_overture(&own.model, s, {mean, mean * first.speed[s], bytes_per_pixel * first.ns_per_byte}, bytes_per_pixel,
                      first.latency_ns);
   }
   Split split = own.plan();
+  Outcome outcome;
   std::vector<double> excess;
-  std::vector<int> moved;
   std::vector<std::pair<World, double>> best;  // the worlds met so far
   for (int frame = 0; frame < kFrameCount; ++frame) {
     World world = world_of(frame);
     Split now = next_split(make_problem(&own.model, SplitWish()), split, &own.workspace);
-    moved.push_back(!std::equal(now.boundary, now.boundary + servers + 1, split.boundary));
+    bool rests = frame >= kFrameCount - kRestFrames;
+    outcome.moves_after += rests && !std::equal(now.boundary, now.boundary + servers + 1, split.boundary);
+    for (std::uint32_t s = 0; rests && s < servers; ++s) {
+      std::uint32_t low = std::min(now.boundary[s], split.boundary[s]);
+      outcome.rows_moved = std::max(outcome.rows_moved, std::max(now.boundary[s], split.boundary[s]) - low);
+    }
     split = now;
     auto known = std::find_if(best.begin(), best.end(), [&](const auto& entry) { return entry.first == world; });
     if (known == best.end()) known = best.insert(best.end(), {world, best_time(world, servers)});
-    excess.push_back(play(world, split, &own.model, noise, &rng) / known->second);
+    double ns = play(world, split, &own.model, noise, &rng);
+    excess.push_back(ns / known->second);
+    if (rests) outcome.mean_ns_after += ns / kRestFrames, outcome.mean_best_after += known->second / kRestFrames;
   }
-  Outcome outcome;
   for (int frame = kChangeFrame; frame < kFrameCount; ++frame)
-    if (excess[static_cast<std::size_t>(frame)] > 1.05) outcome.settle_frames = frame + 1 - kChangeFrame;
-  for (int frame = kFrameCount - 60; frame < kFrameCount; ++frame) {
-    outcome.moves_after += moved[static_cast<std::size_t>(frame)];
-    outcome.worst_after = std::max(outcome.worst_after, excess[static_cast<std::size_t>(frame)]);
+    if (excess[static_cast<std::size_t>(frame)] > near) outcome.settle_frames = frame + 1 - kChangeFrame;
+  int run = 0;
+  for (int frame = kFrameCount - kRestFrames; frame < kFrameCount; ++frame) {
+    double over = excess[static_cast<std::size_t>(frame)];
+    outcome.worst_after = std::max(outcome.worst_after, over);
+    run = over > near ? run + 1 : 0;
+    outcome.late_run = std::max(outcome.late_run, run);
   }
   return outcome;
 }
@@ -166,13 +184,40 @@ void print(const char* name, std::uint32_t servers, const Outcome& outcome) {
               name, servers, outcome.settle_frames, outcome.moves_after, 100 * (outcome.worst_after - 1));
 }
 
+// 0: all rows alike. 1, 2: dearer and longer towards the bottom or the top. 3: outdoors, a sky that costs little and
+// compresses to nothing, a horizon full of detail, a ground whose texture compresses badly. 4: indoors, dear smooth
+// rows and cheap ragged ones, each unlike its neighbour.
+constexpr int kSceneKinds = 5;
 World scene_world(int kind) {
   World world;
   for (std::uint32_t r = 0; r < kRows; ++r) {
-    double up = static_cast<double>(r) / kRows;
-    world.device_ns[r] = kind == 0 ? 3e5 : kind == 1 ? 1e5 + 8e5 * up : 9e5 * (1 - up) + 1e5;
+    double down = static_cast<double>(r) / kRows, ns = 3e5, bytes = 200;
+    if (kind == 1) ns = 1e5 + 8e5 * down, bytes = 40 + 320 * down;
+    if (kind == 2) ns = 9e5 * (1 - down) + 1e5, bytes = 360 - 320 * down;
+    if (kind == 3) {
+      bool sky = down < 0.4, horizon = !sky && down < 0.5;
+      ns = sky ? 5e4 : horizon ? 9e5 : 2e5 + 6e5 * down;
+      bytes = sky ? 8 : horizon ? 420 : 300 + 10 * (r % 7);
+    }
+    if (kind == 4) ns = r * 7 % 11 < 4 ? 8e5 : 1.2e5, bytes = r * 7 % 11 < 4 ? 90 : 380;
+    world.device_ns[r] = ns, world.bytes[r] = bytes;
   }
   return world;
+}
+
+// The least mean time of a frame that one and the same split gives in the last 60 frames, over the best of each.
+double best_constant(const std::function<World(int)>& world_of) {
+  Rng rng = make_rng(0);
+  Split split;
+  split.server_count = 1, split.boundary[1] = kRows;
+  double best = 1e300;
+  for (split.boundary[0] = 0; split.boundary[0] <= kRows; ++split.boundary[0]) {
+    double sum = 0;
+    for (int frame = kFrameCount - kRestFrames; frame < kFrameCount; ++frame)
+      sum += play(world_of(frame), split, nullptr, 0, &rng);
+    best = std::min(best, sum / kRestFrames);
+  }
+  return best;
 }
 
 }  // namespace
@@ -180,7 +225,7 @@ World scene_world(int kind) {
 // Goal: in a world that does not change, the split rests within 5 % of the best, with measurements 10 % off.
 TEST_CASE("simulation_steady_world_split_rests") {
   for (std::uint32_t servers = 1; servers <= 3; ++servers)
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < kSceneKinds; ++kind) {
       Outcome outcome = simulate(servers, 0.1, [=](int) { return scene_world(kind); });
       print("steady, measurements 10 % off", servers, outcome);
       CHECK(outcome.settle_frames == 0);
@@ -205,43 +250,70 @@ TEST_CASE("simulation_server_slows_fivefold_split_follows") {
     }
 }
 
-// Goal: another scene, its dear rows elsewhere, is followed within 12 frames.
+// Goal: another scene, its dear rows elsewhere, is followed within 12 frames: to 5 % of the best, to 10 % with three
+// servers. Between these nothing tells dear rows from a slow server until the boundaries have moved over them.
 TEST_CASE("simulation_scene_change_split_follows") {
   for (std::uint32_t servers = 1; servers <= 3; ++servers)
-    for (int from = 0; from < 3; ++from)
-      for (int to = 0; to < 3; ++to) {
+    for (int from = 0; from < kSceneKinds; ++from)
+      for (int to = 0; to < kSceneKinds; ++to) {
         if (from == to) continue;
-        Outcome outcome = simulate(servers, 0.05, [=](int f) { return scene_world(f < kChangeFrame ? from : to); });
-        print("scene changes", servers, outcome);
+        double near = servers < 3 ? 1.05 : 1.1;
+        Outcome outcome = simulate(
+            servers, 0.05, [=](int f) { return scene_world(f < kChangeFrame ? from : to); }, near);
+        if (to == 3) print("scene changes", servers, outcome);
         CHECK(outcome.settle_frames <= 12);
         CHECK(outcome.moves_after <= 3);
-        CHECK(outcome.worst_after < 1.05);
+        CHECK(outcome.worst_after < near);
       }
 }
 
-// Goal: bandwidth that alternates every frame, or every ten, makes no split that swings with it; compared with what the
-// best split of each single frame would give, time stays close.
-TEST_CASE("simulation_alternating_bandwidth_does_not_oscillate") {
-  for (int period : {1, 2})
-    for (double factor : {1.5, 4.0}) {
-      Outcome outcome = simulate(1, 0.02, [=](int frame) {
-        World world;
-        world.ns_per_byte = frame / period % 2 ? 200 * factor : 200;
-        return world;
-      });
-      print(period == 1 ? "bandwidth alternates every frame" : "bandwidth alternates every second frame", 1, outcome);
-      CHECK(outcome.moves_after <= 2);
-    }
+// Hard case 61. Goal: bandwidth that alternates makes no split that swings with it, and costs little time. Method:
+// against the best split of each single frame, of all 241, and against the best constant one. Bandwidth that changes
+// every frame or every second moves no boundary and takes no frame 5 % longer on average than what knew of it
+// beforehand. Bandwidth that stays for ten frames is followed, after four at most.
+TEST_CASE("hard_61_alternating_bandwidth_does_not_oscillate") {
+  for (int kind = 0; kind < kSceneKinds; ++kind)
+    for (int period : {1, 2, 10})
+      for (double factor : {1.5, 4.0, 16.0}) {
+        auto world_of = [=](int frame) {
+          World world = scene_world(kind);
+          world.ns_per_byte = frame / period % 2 ? 200 * factor : 200;
+          return world;
+        };
+        Outcome o = simulate(1, 0.02, world_of);
+        double constant = best_constant(world_of) / o.mean_best_after, ours = o.mean_ns_after / o.mean_best_after;
+        if (factor > 4)
+          std::printf(
+              "rows of kind %d, bandwidth changes %4.1f-fold every %2d frames: %2d moves in 60 frames, by %3u rows at "
+              "most; "
+              "time %.3f of the best of each frame, the best constant split %.3f; %d late frames in a row\n",
+              kind, factor, period, o.moves_after, o.rows_moved, ours, constant, o.late_run);
+        INFO(kind, " ", period, " ", factor);
+        CHECK(o.late_run <= 4);
+        if (period > 2) continue;
+        CHECK(ours <= 1.05);
+        CHECK(ours <= 1.02 * constant);
+        CHECK(o.moves_after <= 2);
+        CHECK(o.rows_moved <= 5);
+      }
 }
 
-// Goal: a bandwidth that falls to a tenth for good is followed within 4 frames.
-TEST_CASE("simulation_bandwidth_drops_split_follows") {
-  Outcome outcome = simulate(1, 0.05, [=](int frame) {
-    World world;
-    if (frame >= kChangeFrame) world.ns_per_byte *= 20;
-    return world;
-  });
-  print("bandwidth falls to a twentieth", 1, outcome);
-  CHECK(outcome.settle_frames <= 4);
-  CHECK(outcome.moves_after <= 2);
+// Goal: a bandwidth that falls to a tenth for good, or rises tenfold, is followed whether or not it is what holds up
+// the servers: within 4 frames, within 8 where it rises and the boundary moves into rows that no server has yet sent.
+TEST_CASE("simulation_bandwidth_changes_tenfold_split_follows") {
+  for (std::uint32_t servers = 1; servers <= 3; ++servers)
+    for (int kind = 0; kind < kSceneKinds; ++kind)
+      for (double factor : {10.0, 0.1})
+        for (double ns_per_byte : {100.0, 1000.0}) {
+          Outcome outcome = simulate(servers, 0.05, [=](int frame) {
+            World world = scene_world(kind);
+            world.ns_per_byte = frame < kChangeFrame ? ns_per_byte : ns_per_byte * factor;
+            return world;
+          });
+          if (kind == 3) print(factor > 1 ? "bandwidth falls to a tenth" : "bandwidth rises tenfold", servers, outcome);
+          INFO(kind, " ", ns_per_byte);
+          CHECK(outcome.settle_frames <= (factor > 1 ? 4 : 8));
+          CHECK(outcome.moves_after <= 2);
+          CHECK(outcome.worst_after < 1.05);
+        }
 }
