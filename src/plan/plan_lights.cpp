@@ -7,6 +7,7 @@
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
+#include "shade/even_points.h"
 #include "shade/lights.h"
 #include "shade/texture.h"
 
@@ -63,29 +64,18 @@ void each_emitter(const FrameData& frame, std::uint32_t material, Visit visit) {
   }
 }
 
-// Point j of m in the unit square: a grid where m is a square number, Hammersley's points otherwise.
-void square_point(std::uint32_t j, std::uint32_t m, float* x, float* y) {
-  std::uint32_t side = 1;
-  while (side * side < m) ++side;
-  if (side * side == m) {
-    *x = (static_cast<float>(j % side) + 0.5f) / static_cast<float>(side);
-    *y = (static_cast<float>(j / side) + 0.5f) / static_cast<float>(side);
-    return;
-  }
-  float mirrored = 0, weight = 0.5f;
-  for (std::uint32_t bits = j; bits; bits >>= 1, weight *= 0.5f)
-    if (bits & 1) mirrored += weight;
-  *x = (static_cast<float>(j) + 0.5f) / static_cast<float>(m);
-  *y = mirrored + weight * 0.5f;
-}
-
-// Barycentrics of the triangle, or of one half of the parallelogram, for a point of the unit square.
-void place_on_emitter(const Emitter& e, float x, float y, std::uint32_t* triangle, float* u, float* v) {
+// Where the point of a cell lies on the emitter: barycentrics of the triangle, or of one half of the parallelogram. It
+// is the centroid of what the cell is mapped to, so that the points' mean is the emitter's own centroid.
+void place_on_emitter(const Emitter& e, const Cell& cell, std::uint32_t* triangle, float* u, float* v) {
   *triangle = e.triangle;
-  if (!e.parallelogram) {  // [Turk 1990, "Generating random points in triangles", method 1]
-    float root = std::sqrt(x);
-    *u = root * (1 - y);
-    *v = root * y;
+  float x = static_cast<float>(0.5 * (cell.x_begin + cell.x_end)), y = static_cast<float>(cell.y);
+  if (!e.parallelogram) {
+    // Points (√x(1 − y), √xy) are uniform where x and y are [Turk 1990, "Generating random points in triangles", method
+    // 1]; of √x the mean over the cell.
+    double begin = cell.x_begin * std::sqrt(cell.x_begin), end = cell.x_end * std::sqrt(cell.x_end);
+    double root = 2 * (end - begin) / (3 * (cell.x_end - cell.x_begin));
+    *u = static_cast<float>(root * (1 - cell.y));
+    *v = static_cast<float>(root * cell.y);
   } else if (x >= y) {  // a + x(b − a) + y(d − a), with c = b + d − a
     *u = x - y;
     *v = y;
@@ -130,10 +120,9 @@ std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, L
     std::uint32_t last = end < n ? static_cast<std::uint32_t>(end) : n;
     std::uint32_t first = placed, here = last > first ? last - first : 0;
     for (std::uint32_t j = 0; j < here; ++j) {
-      float x, y, u, v;
+      float u, v;
       std::uint32_t triangle;
-      square_point(j, here, &x, &y);
-      place_on_emitter(e, x, y, &triangle, &u, &v);
+      place_on_emitter(e, equal_cell(j, here), &triangle, &u, &v);
       points[placed++] = point_on(frame, triangle, u, v, total / n);
     }
   });

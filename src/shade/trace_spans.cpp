@@ -4,6 +4,7 @@
 #include "effect/effect_probe.h"
 #include "shade/camera.h"
 #include "shade/contact.h"
+#include "shade/even_points.h"
 #include "shade/surface.h"
 #include "shade/tile_shadows.h"
 
@@ -12,8 +13,7 @@ namespace {
 
 Vec3 same(float value) { return {value, value, value}; }
 
-Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t row, std::uint32_t sample) {
-  Vec2 offset = sample_offset(sample, frame.settings.samples_per_pixel);
+Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t row, const Vec2& offset) {
   return camera_ray(frame.camera, static_cast<float>(column) + offset.x, static_cast<float>(row) + offset.y);
 }
 
@@ -34,7 +34,7 @@ Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
   if (sample_count > 1) effect_entered<Effect::supersampling>();
   Vec3 sum = {0, 0, 0};
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-    Ray ray = pixel_ray(frame, column, row, sample);
+    Ray ray = pixel_ray(frame, column, row, sample_offset(sample, sample_count));
     Hit hit;
     frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
     sum += sample_radiance(tracer, ray, hit, nullptr);
@@ -96,8 +96,9 @@ void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
   RayPacket packet;
   packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+    Vec2 offset = sample_offset(sample, sample_count);
     for (std::uint32_t i = 0; i < tile.count; ++i) {
-      Vec3 direction = pixel_ray(frame, tile.column[i], tile.row[i], sample).direction;
+      Vec3 direction = pixel_ray(frame, tile.column[i], tile.row[i], offset).direction;
       for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
     }
     Hit hits[kPacketMax];
@@ -145,13 +146,7 @@ void trace_band(Tracer* tracer, const Span& top, std::uint32_t height, Vec3* ima
 
 }  // namespace
 
-Vec2 sample_offset(std::uint32_t sample, std::uint32_t sample_count) {
-  if (sample_count == 1) return {0.5f, 0.5f};
-  // Hammersley points: (i + ½)/n and the bits of i mirrored at the binary point.
-  std::uint32_t bits = ((sample & 1) << 3) | ((sample & 2) << 1) | ((sample & 4) >> 1) | ((sample & 8) >> 3);
-  float x = (static_cast<float>(sample) + 0.5f) / static_cast<float>(sample_count);
-  return {x, (static_cast<float>(bits) + 0.5f) / 16.0f};
-}
+Vec2 sample_offset(std::uint32_t sample, std::uint32_t sample_count) { return rook_point(sample, sample_count); }
 
 Tracer make_tracer(const FrameData& frame) {
   Tracer tracer;

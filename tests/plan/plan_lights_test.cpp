@@ -7,6 +7,7 @@
 
 #include "base/limits.h"
 #include "plan/plan_lights.h"
+#include "support/effort.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
@@ -75,29 +76,42 @@ TEST_CASE("plan_lights_keep_the_power_of_an_area_light") {
     }
 }
 
-// Goal: the points lie on the surface, spread evenly, and one point alone is the centre of a square. Method: closed
-// form: the mean of the points tends to the centre as 1/√N.
+// Goal: the points lie on the surface, spread evenly, and their mean is its centre, whatever their number: a light
+// does not move with it. Method: a square and a triangle, every count; one point alone is the centre; their moment of
+// inertia tends to the surface's.
 TEST_CASE("plan_lights_points_lie_evenly_on_the_surface") {
-  auto s = lamp_scene();
-  add_quad(s.get(), {-1, -1, 0.5f}, {1, -1, 0.5f}, {1, 1, 0.5f}, {-1, 1, 0.5f}, add_material(s.get(), lamp(1)));
-  s->bind();
-  std::vector<LightPoint> one = points_of(*s, 1);
-  REQUIRE(one.size() == 1);
-  CHECK(one[0].position == Vec3{0, 0, 0.5f});
-  CHECK(one[0].direction == Vec3{0, 0, 1});
-  for (std::uint32_t n : kCounts) {
-    Vec3 mean = {0, 0, 0};
-    int quadrants[4] = {0, 0, 0, 0};
-    for (const LightPoint& p : points_of(*s, n)) {
-      CHECK((std::fabs(p.position.x) < 1 && std::fabs(p.position.y) < 1 && p.position.z == 0.5f));
-      mean += p.position * (1.0f / static_cast<float>(n));
-      ++quadrants[(p.position.x > 0) + 2 * (p.position.y > 0)];
+  for (bool triangle : {false, true}) {
+    auto s = lamp_scene();
+    std::uint32_t m = add_material(s.get(), lamp(1));
+    if (triangle) {
+      for (Vec3 p : {Vec3{-1, -1, 0.5f}, Vec3{2, -1, 0.5f}, Vec3{-1, 2, 0.5f}}) add_vertex(s.get(), p);
+      add_triangle(s.get(), 0, 1, 2, m);
+    } else {
+      add_quad(s.get(), {-1, -1, 0.5f}, {1, -1, 0.5f}, {1, 1, 0.5f}, {-1, 1, 0.5f}, m);
     }
-    CAPTURE(n);
-    CHECK(std::fabs(mean.x) <= 1.0f / static_cast<float>(n));
-    CHECK(std::fabs(mean.y) <= 1.0f / static_cast<float>(n));
-    if (n % 4 == 0)
-      for (int q : quadrants) CHECK(std::abs(q - int(n) / 4) <= 2);
+    s->bind();
+    CAPTURE(triangle);
+    std::vector<LightPoint> one = points_of(*s, 1);
+    REQUIRE(one.size() == 1);
+    CHECK(length(one[0].position - Vec3{0, 0, 0.5f}) < 1e-6f);
+    CHECK(one[0].direction == Vec3{0, 0, 1});
+    for (std::uint32_t n = 1; n <= kPointsPerAreaLightMax; n += kEffortDivisor > 1 ? 13 : 1) {
+      double x = 0, y = 0, square = 0;
+      int quadrants[4] = {0, 0, 0, 0};
+      for (const LightPoint& p : points_of(*s, n)) {
+        CHECK((p.position.x > -1 && p.position.y > -1 && std::fabs(p.position.z - 0.5f) < 1e-6f));
+        CHECK((triangle ? p.position.x + p.position.y < 1 : p.position.x < 1 && p.position.y < 1));
+        x += double(p.position.x), y += double(p.position.y);
+        square += double(p.position.x * p.position.x + p.position.y * p.position.y);
+        ++quadrants[(p.position.x > 0) + 2 * (p.position.y > 0)];
+      }
+      CAPTURE(n);
+      CHECK(std::hypot(x / n, y / n) < 2e-7);
+      double spread = triangle ? 1 : 2.0 / 3;  // mean square of the distance to the centre over the whole surface
+      CHECK(square / n == doctest::Approx(spread).epsilon(1.01 / n));
+      if (n % 4 == 0 && !triangle)
+        for (int q : quadrants) CHECK(std::abs(q - int(n) / 4) <= 2 + std::sqrt(n) / 2);
+    }
   }
 }
 
