@@ -125,7 +125,7 @@ Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, st
     Status status = open_with(options, common, sphere_columns, rig->get());
     std::size_t wanted = (*rig)->opened.source.bytes_wanted;
     if (status.ok || !grows || wanted <= memory) return status;
-    memory = wanted + wanted / 4;
+    memory = size_sum(wanted, wanted / 4);
   }
 }
 

@@ -136,8 +136,11 @@ const SceneEntry* find_entry(const std::vector<SceneEntry>& entries, const std::
   return nullptr;
 }
 
-Status fetch_scene(Inquiry* q, const SceneEntry& entry, std::uint8_t* bytes,
+Status fetch_scene(Inquiry* q, const SceneEntry& entry, std::uint8_t* bytes, std::size_t byte_count_max,
                    const std::function<void(std::uint64_t)>& progress) {
+  if (entry.byte_count > byte_count_max)
+    return failure("the scene has %llu bytes and there is room for %zu",
+                   static_cast<unsigned long long>(entry.byte_count), byte_count_max);
   std::uint64_t asked = 0, come = 0;
   auto piece_bytes = [&](std::uint64_t offset) {
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(kPieceBytes, entry.byte_count - offset));
@@ -160,7 +163,7 @@ Status fetch_scene(Inquiry* q, const SceneEntry& entry, std::uint8_t* bytes,
     come += piece.bytes.count;
     if (progress) progress(come);
   }
-  if (content_hash(bytes, entry.byte_count) == entry.hash) return success();
+  if (content_hash(bytes, to_size(entry.byte_count)) == entry.hash) return success();
   return failure("what it sent is not the scene that it told of");
 }
 

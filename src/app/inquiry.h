@@ -39,9 +39,9 @@ Status list_scenes(Inquiry* inquiry, std::vector<SceneEntry>* entries);
 // The one that is called `name`; where there is none, the one that is but for the ending of either. Null: none.
 const SceneEntry* find_entry(const std::vector<SceneEntry>& entries, const std::string& name);
 
-// The baked file into entry.byte_count bytes. What comes is what the entry told of, or it fails. `progress` is given
-// the bytes that have come, and may be empty.
-Status fetch_scene(Inquiry* inquiry, const SceneEntry& entry, std::uint8_t* bytes,
+// The baked file into entry.byte_count bytes; there is room for `byte_count_max`. What comes is what the entry told of,
+// or it fails. `progress` is given the bytes that have come, and may be empty.
+Status fetch_scene(Inquiry* inquiry, const SceneEntry& entry, std::uint8_t* bytes, std::size_t byte_count_max,
                    const std::function<void(std::uint64_t)>& progress);
 
 Status ask_view(Inquiry* inquiry, const ViewQuery& query, ViewEntry* entry);

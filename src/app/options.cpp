@@ -145,8 +145,9 @@ Status parse_bytes(const std::string& text, std::size_t* bytes, const char* opti
                 : *end == 'G' || *end == 'g' ? 1 << 30
                                              : 1;
   if (unit > 1) ++end;
-  if (end == text.c_str() || *end || !(value * unit >= 65536) || !(value * unit <= 0x1p36))
-    return failure("%s is '%s': write it as 24M (64K … 64G)", option, text.c_str());
+  if (end == text.c_str() || *end || !(value * unit >= kMemoryBytesMin) || !(value * unit <= kMemoryBytesMax))
+    return failure("%s is '%s': write it as 24M (64K … %s)", option, text.c_str(),
+                   sizeof(void*) == 4 ? "2047M" : "64G");
   *bytes = static_cast<std::size_t>(value * unit);
   return success();
 }

@@ -18,6 +18,14 @@ namespace {
 
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
+// "; 24.0M would hold the scene": what --memory would have to be. Empty where no --memory suffices.
+std::string memory_hint(const char* before, std::size_t wanted, const char* would) {
+  if (wanted > kMemoryBytesMax) return "";
+  char text[80];
+  std::snprintf(text, sizeof text, "%s%.1fM would %s", before, megabytes(wanted), would);
+  return text;
+}
+
 Status ask(Sharing* s, std::size_t server, Inquiry* inquiry) {
   InquiryOptions options;
   options.stopped = [s] { return s->stopped.load() || interrupted.load(); };
@@ -46,17 +54,20 @@ Status find_on(Inquiry* inquiry, const std::string& name, SceneEntry* entry) {
   return success();
 }
 
-// Into the scene arena, where there is room.
+// Into the scene arena, where there is room. How long the scene is, is the server's word: 64 bits, of which a CPU may
+// address 32.
 Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry, Renderer* r, SceneSource* source) {
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, entry.byte_count));
   if (!bytes) return scene_too_large(name, entry.byte_count, r->settings.memory_bytes, source);
-  Progress progress = start_progress("fetching the scene", entry.byte_count);
-  Status status = fetch_scene(inquiry, entry, bytes, [&](std::uint64_t done) { show_progress(&progress, done); });
+  std::size_t byte_count = to_size(entry.byte_count);
+  Progress progress = start_progress("fetching the scene", byte_count);
+  Status status =
+      fetch_scene(inquiry, entry, bytes, byte_count, [&](std::uint64_t done) { show_progress(&progress, done); });
   end_progress(&progress);
   RETURN_IF_ERROR(status);
-  RETURN_IF_ERROR(baked_open(bytes, entry.byte_count, &r->scene));
+  RETURN_IF_ERROR(baked_open(bytes, byte_count, &r->scene));
   source->baked = bytes;
-  source->baked_bytes = entry.byte_count;
+  source->baked_bytes = byte_count;
   return success();
 }
 
@@ -164,8 +175,8 @@ Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, O
   query.scene = s->scene;
   if (status.ok) status = find_view(s, query);
   if (!status.ok)
-    return failure("%.100s does not fit --memory %.1fM (%.1fM would be a start), and no server can render it; %s",
-                   o.scene.c_str(), megabytes(limit), megabytes(wanted), status.message);
+    return failure("%.100s does not fit --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
+                   megabytes(limit), memory_hint(" (", wanted, "be a start)").c_str(), status.message);
   platform::unmap_file(&opened->source.mapped);
   opened->source = SceneSource();
 
@@ -184,11 +195,9 @@ Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, O
   r->accel.bounds = s->view.bounds;
   s->is_named = s->is_thin = true;
   char line[400];
-  std::snprintf(
-      line, sizeof line,
-      "%.100s does not fit --memory %.1fM: the servers render every pixel, this device shows them; %.1fM would "
-      "hold the scene",
-      o.scene.c_str(), megabytes(limit), megabytes(wanted));
+  std::snprintf(line, sizeof line,
+                "%.100s does not fit --memory %.1fM: the servers render every pixel, this device shows them%s",
+                o.scene.c_str(), megabytes(limit), memory_hint("; ", wanted, "hold the scene").c_str());
   opened->source.warning = line;
   return success();
 }

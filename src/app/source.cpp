@@ -72,12 +72,16 @@ void* take_block(std::size_t bytes) {
 }
 void give_block_back(void* block) { std::free(block); }
 
-Status scene_too_large(const std::string& name, std::size_t need, std::size_t limit, SceneSource* source) {
-  std::size_t megabytes = (need * 5 / 4 >> 20) + 4;
-  source->bytes_wanted = megabytes << 20;
-  return failure("%s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %zuM would be a start",
-                 name.c_str(), static_cast<double>(need) / (1 << 20), static_cast<double>(limit) / (1 << 20),
-                 megabytes);
+Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t limit, SceneSource* source) {
+  std::uint64_t megabytes = (need >> 20) + (need >> 22) + 4;  // and a quarter for what is made of it
+  bool hopeless = megabytes > kMemoryBytesMax >> 20;
+  source->bytes_wanted = hopeless ? SIZE_MAX : static_cast<std::size_t>(megabytes << 20);
+  double needed = static_cast<double>(need) / (1 << 20), allowed = static_cast<double>(limit) / (1 << 20);
+  if (hopeless)
+    return failure("%.200s needs %.1f MiB for the scene alone: no --memory holds it", name.c_str(), needed);
+  return failure(
+      "%.200s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %lluM would be a start",
+      name.c_str(), needed, allowed, static_cast<unsigned long long>(megabytes));
 }
 
 bool is_local_scene(const std::string& name) {

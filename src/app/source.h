@@ -29,7 +29,7 @@ Status import_model(const std::string& name, const ImportOptions& options, Impor
 #endif
 
 // The error of a scene that needs so many bytes where fewer are allowed; notes what would hold it.
-Status scene_too_large(const std::string& name, std::size_t need, std::size_t limit, SceneSource* source);
+Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t limit, SceneSource* source);
 // Whether `name` is a built-in scene or a file.
 bool is_local_scene(const std::string& name);
 

@@ -17,9 +17,9 @@ Arena make_arena(const char* name, void* block, std::size_t capacity) {
 
 std::size_t arena_free(const Arena& arena) { return arena.capacity - arena.used; }
 
-void* arena_try_allocate(Arena* arena, std::size_t bytes) {
-  if (bytes > arena->capacity) return nullptr;  // before rounding, which could wrap
-  std::size_t need = arena_need(bytes);
+void* arena_try_allocate(Arena* arena, std::uint64_t bytes) {
+  if (bytes > arena->capacity) return nullptr;  // before it is cut to size_t, and before rounding, which could wrap
+  std::size_t need = arena_need(static_cast<std::size_t>(bytes));
   if (need > arena_free(*arena)) return nullptr;
   void* result = arena->base + arena->used;
   arena->used += need;
@@ -27,7 +27,7 @@ void* arena_try_allocate(Arena* arena, std::size_t bytes) {
   return result;
 }
 
-void* arena_allocate(Arena* arena, std::size_t bytes) {
+void* arena_allocate(Arena* arena, std::uint64_t bytes) {
   void* result = arena_try_allocate(arena, bytes);
   if (!result) CHECK_LE(arena_need(bytes), arena_free(*arena));
   return result;

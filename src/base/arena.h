@@ -10,13 +10,22 @@ namespace pocketray {
 
 constexpr std::size_t kArenaAlignment = 64;  // a cache line; every allocation starts on one
 
+// Sizes that are planned, and not taken yet, may exceed what a 32-bit CPU can address. They stop at SIZE_MAX, which
+// exceeds every block, where they would otherwise start again at 0 and seem to fit.
+constexpr std::size_t size_sum(std::size_t a, std::size_t b) { return a > SIZE_MAX - b ? SIZE_MAX : a + b; }
+constexpr std::size_t to_size(std::uint64_t bytes) {
+  return bytes > SIZE_MAX ? SIZE_MAX : static_cast<std::size_t>(bytes);
+}
+
 // What an allocation of `bytes` takes from an arena.
-constexpr std::size_t arena_need(std::size_t bytes) {
-  return (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
+constexpr std::size_t arena_need(std::uint64_t bytes) {
+  return bytes > SIZE_MAX - kArenaAlignment
+             ? SIZE_MAX
+             : (static_cast<std::size_t>(bytes) + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
 }
 template <class T>
 constexpr std::size_t arena_need(std::size_t count) {
-  return arena_need(count * sizeof(T));
+  return arena_need(std::uint64_t(count) * sizeof(T));
 }
 
 struct Arena {
@@ -33,10 +42,11 @@ Arena make_arena(const char* name, void* block, std::size_t capacity);
 // Bytes that are still free.
 std::size_t arena_free(const Arena& arena);
 
-// Aborts when the arena is full: sizes are planned, so that is a programmer error. Memory is not cleared.
-void* arena_allocate(Arena* arena, std::size_t bytes);
+// Aborts when the arena is full: sizes are planned, so that is a programmer error. Memory is not cleared. Sizes are 64
+// bits wide on every CPU, so that a count from a file or a server is compared with the room before it becomes a size_t.
+void* arena_allocate(Arena* arena, std::uint64_t bytes);
 // The same, but returns null when the arena is full: for callers that turn it into a Status.
-void* arena_try_allocate(Arena* arena, std::size_t bytes);
+void* arena_try_allocate(Arena* arena, std::uint64_t bytes);
 
 inline std::size_t arena_mark(const Arena& arena) { return arena.used; }
 void arena_release(Arena* arena, std::size_t mark);
@@ -44,7 +54,7 @@ void arena_release(Arena* arena, std::size_t mark);
 template <class T>
 Array<T> arena_array(Arena* arena, std::size_t count) {
   static_assert(std::is_trivially_destructible<T>::value, "arenas run no destructors");
-  return {static_cast<T*>(arena_allocate(arena, count * sizeof(T))), static_cast<std::uint32_t>(count)};
+  return {static_cast<T*>(arena_allocate(arena, std::uint64_t(count) * sizeof(T))), static_cast<std::uint32_t>(count)};
 }
 template <class T>
 Array<T> arena_array_zeroed(Arena* arena, std::size_t count) {

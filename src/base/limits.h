@@ -4,6 +4,9 @@
 
 namespace pocketray {
 
+// Of the block: what a handheld has at least, and 64 GiB, or half of what a 32-bit CPU addresses.
+constexpr std::uint64_t kMemoryBytesMin = 1u << 16;
+constexpr std::uint64_t kMemoryBytesMax = sizeof(void*) == 4 ? 0x7FFFFFFFu : std::uint64_t(1) << 36;
 constexpr std::uint32_t kImageSideMax = 8192;          // pixels; spans keep their columns in 16 bits
 constexpr std::uint32_t kTriangleCountMax = 1u << 26;  // leaves room for tag bits in 32-bit child references
 constexpr std::uint32_t kVertexIndexBits = 26;         // in a triangle, which has a share of its material in the others

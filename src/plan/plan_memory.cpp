@@ -15,16 +15,21 @@ void add_part(MemoryPlan* plan, const char* name, ArenaKind arena, std::size_t b
   if (bytes == 0) return;  // an absent effect has no part
   CHECK_LT(plan->part_count, kMemoryPartMax);
   plan->parts[plan->part_count++] = {name, arena, bytes};
-  plan->arena_bytes[static_cast<int>(arena)] += bytes;
-  plan->total_bytes += bytes;
+  std::size_t* arena_bytes = &plan->arena_bytes[static_cast<int>(arena)];
+  *arena_bytes = size_sum(*arena_bytes, bytes);
+  plan->total_bytes = size_sum(plan->total_bytes, bytes);
 }
 
 // Each arena's start has to be aligned.
 void align_arenas(MemoryPlan* plan) {
-  for (std::size_t& bytes : plan->arena_bytes)
-    if (bytes) bytes += kArenaAlignment, plan->total_bytes += kArenaAlignment;
+  for (std::size_t& bytes : plan->arena_bytes) {
+    if (bytes == 0) continue;
+    bytes = size_sum(bytes, kArenaAlignment);
+    plan->total_bytes = size_sum(plan->total_bytes, kArenaAlignment);
+  }
 }
 
+std::size_t megabytes_up(std::size_t bytes) { return ((bytes - 1) >> 20) + 1; }
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
 }  // namespace
@@ -63,7 +68,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   const MemoryPart* largest = &plan->parts[0];
   for (int i = 1; i < plan->part_count; ++i)
     if (plan->parts[i].bytes > largest->bytes) largest = &plan->parts[i];
-  std::size_t fits = (plan->total_bytes + (1 << 20) - 1) >> 20;
+  std::size_t fits = megabytes_up(plan->total_bytes);
   return failure(
       "the scene needs %.1f MiB of memory and --memory allows %.1f MiB; the largest part is %s with %.1f MiB%s. "
       "--memory %zuM would fit",
@@ -81,7 +86,7 @@ Status plan_output_memory(const Settings& settings, std::size_t output_bytes, Me
       "pictures of %ux%u pixels need %.1f MiB of memory without a scene and --memory allows %.1f MiB: --memory %zuM "
       "would fit, or use a smaller --size",
       settings.width, settings.height, megabytes(plan->total_bytes), megabytes(plan->limit_bytes),
-      (plan->total_bytes + (1 << 20) - 1) >> 20);
+      megabytes_up(plan->total_bytes));
 }
 
 std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size) {

@@ -145,10 +145,14 @@ double wrapped(double seconds, double duration) {
 
 std::size_t pose_need(const Scene& scene) {
   if (!is_animated(scene)) return 0;
-  return arena_need<Vec3>(posed_position_count(scene)) + arena_need<Vec3>(posed_normal_count(scene)) +
-         arena_need<Transform>(scene.nodes.count) + arena_need<Light>(scene.lights.count) +
-         arena_need<Camera>(scene.cameras.count) + arena_need<Node>(scene.nodes.count) +
-         arena_need<float>(scene.weights.count) + arena_need<Transform>(scene.joints.count);
+  const std::size_t parts[] = {
+      arena_need<Vec3>(posed_position_count(scene)), arena_need<Vec3>(posed_normal_count(scene)),
+      arena_need<Transform>(scene.nodes.count),      arena_need<Light>(scene.lights.count),
+      arena_need<Camera>(scene.cameras.count),       arena_need<Node>(scene.nodes.count),
+      arena_need<float>(scene.weights.count),        arena_need<Transform>(scene.joints.count)};
+  std::size_t sum = 0;
+  for (std::size_t part : parts) sum = size_sum(sum, part);
+  return sum;
 }
 
 Pose make_pose(const Scene& scene, Arena* arena) {

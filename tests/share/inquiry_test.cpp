@@ -63,7 +63,7 @@ std::string fetch_error(const std::function<void(Message*)>& change) {
   Inquiry inquiry;
   Status status = open_inquiry(InquiryOptions(), fake.link, fake.address, &inquiry);
   std::vector<std::uint8_t> bytes(kFile.size());
-  if (status.ok) status = fetch_scene(&inquiry, entry_of(0, 1, "a").scene_entry, bytes.data(), {});
+  if (status.ok) status = fetch_scene(&inquiry, entry_of(0, 1, "a").scene_entry, bytes.data(), bytes.size(), {});
   if (status.ok) CHECK(bytes == kFile);
   return status.message;
 }
@@ -85,7 +85,7 @@ TEST_CASE("inquiry_lists_and_fetches_scenes") {
     REQUIRE(entries[i].byte_count == stored.byte_count);
     std::vector<std::uint8_t> bytes(stored.byte_count);
     std::uint64_t seen = 0;
-    Status status = fetch_scene(&rig.inquiry, entries[i], bytes.data(), [&](std::uint64_t done) {
+    Status status = fetch_scene(&rig.inquiry, entries[i], bytes.data(), bytes.size(), [&](std::uint64_t done) {
       CHECK(done > seen);
       seen = done;
     });
