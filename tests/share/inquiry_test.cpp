@@ -220,10 +220,11 @@ TEST_CASE("inquiry_stops_while_a_server_never_makes_it_wait") {
   REQUIRE(open_inquiry(options, fake.link, fake.address, &inquiry).ok);
   std::vector<std::uint8_t> bytes(kFile.size());
   std::uint64_t come = 0;
-  Status status = fetch_scene(&inquiry, entry_of(0, 1, "a").scene_entry, bytes.data(), [&](std::uint64_t done) {
-    come = done;
-    stop = true;
-  });
+  Status status =
+      fetch_scene(&inquiry, entry_of(0, 1, "a").scene_entry, bytes.data(), bytes.size(), [&](std::uint64_t done) {
+        come = done;
+        stop = true;
+      });
   CHECK(has(status.message, "not waited for"));
   CHECK(come < kFile.size() / 2);
   stop = false;
