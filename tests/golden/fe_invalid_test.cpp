@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "app/source.h"
 #include "base/limits.h"
 #include "plan/plan_scene.h"
 #include "present/pack.h"
@@ -20,6 +19,9 @@
 #include "scene/builtin_helpers.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
+#ifdef POCKETRAY_HAVE_IMPORT
+#include "app/source.h"
+#endif
 
 using namespace pocketray;
 
