@@ -25,6 +25,7 @@ Status begin_shared(Sharing*, Renderer*, double) { return success(); }
 bool advance_shared(Sharing*, Renderer*, std::uint64_t, const std::atomic<bool>*) { return true; }
 bool is_cut_off(const Sharing&) { return false; }
 bool has_servers(const Sharing&) { return false; }
+void show_own_picture(Sharing*, const Renderer&) {}
 void tend_servers(Sharing*) {}
 SharedPicture shared_picture(const Sharing&) { return {}; }
 bool take_shared_rows(Sharing*, std::uint32_t*, std::uint32_t*) { return false; }

@@ -111,7 +111,7 @@ Status render_shared_with_progress(Renderer* r, const Job& job, double seconds, 
   RETURN_IF_ERROR(begin_shared(job.sharing, r, seconds));
   do {
     if (is_cut_off(*job.sharing))
-      return failure("no server is in reach, and this device has no room for the scene: start one, or raise --memory");
+      return failure("no server sends rows, and this device has no room for the scene: start one, or raise --memory");
     *complete = advance_shared(job.sharing, r, clock_ns() + kProgressNs, &interrupted);
     show_progress(progress, rows_before + shared_rows_done(*job.sharing));
   } while (!*complete && !interrupted);
@@ -258,8 +258,6 @@ std::size_t budget_bytes(const Settings& s) {
 
 Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
   if (o.orbit_degrees != 0 && o.frames.empty()) return failure("--orbit turns from frame to frame: add --frames 0:359");
-  if (o.orbit_degrees != 0 && !o.sharing.servers.empty())
-    return failure("--orbit is for the device alone: leave it out, or --server; split-report has one of its own");
   if (o.budget.ms == 0) return success();
   if (!o.sharing.servers.empty())
     return failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");

@@ -163,6 +163,14 @@ bool has_servers(const Sharing& s) {
                                   [](const RemoteServer& server) { return server.phase >= ServerPhase::probing; });
 }
 
+void show_own_picture(Sharing* s, const Renderer& r) {
+  const Client& c = s->client;
+  SharedPicture shared = shared_picture(*s);
+  int height = static_cast<int>(r.settings.height);
+  pack_rows(r.image.data, static_cast<int>(r.settings.width), height, 0, height, r.exposure, shared.format,
+            Rotation::none, c.options.dither, c.pixels.data, shared.line_bytes);
+}
+
 void tend_servers(Sharing* s) { advance_client(&s->client, 0); }
 
 SharedPicture shared_picture(const Sharing& s) {
@@ -180,7 +188,7 @@ std::uint32_t shared_rows_done(const Sharing& s) { return s.client.merge.row_cou
 void write_share_lines(const Sharing& s, HudText* text) {
   const Client& c = s.client;
   const FrameShare& f = s.last;
-  if (is_cut_off(c)) add_hud_line(text, "no server in reach: the picture stands still");
+  if (is_cut_off(c)) add_hud_line(text, "no server sends rows: the picture stands still");
   if (f.measured_ns > 0) {
     if (f.local_ns > 0)
       add_hud_line(text, "%.1f ms, predicted %.1f, alone %.1f: %.1f times", f.measured_ns * 1e-6, f.predicted_ns * 1e-6,

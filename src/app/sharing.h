@@ -68,6 +68,8 @@ bool is_cut_off(const Sharing& sharing);
 // Whether servers take part in frames, or could from the next on. With none in reach a picture that is refined shows
 // sooner than one that is complete; a device that leaves all to the servers has no choice.
 bool has_servers(const Sharing& sharing);
+// Takes over the device's own picture as far as it is rendered: it stands until rows of the next frame come.
+void show_own_picture(Sharing* sharing, const Renderer& renderer);
 // While no frame that is shared is under way: connections and overtures go on. Does not wait.
 void tend_servers(Sharing* sharing);
 

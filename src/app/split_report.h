@@ -33,7 +33,7 @@ struct SplitPoint {
 };
 
 struct PaperRow {
-  const char* scene;
+  const char* scene;  // of the paper, whose times these are; rendered is the report's own
   int processors;
   double server_ns, device_ns;               // T_s and T_m
   double share, ns_per_pixel;                // as printed in Table 1

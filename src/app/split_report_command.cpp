@@ -80,7 +80,7 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
   Json sweep = Json::array(), paper = Json::array();
   for (const SplitPoint& p : s.sweep) sweep.push_back(point_json(p));
   for (const PaperRow& row : s.paper)
-    paper.push_back({{"scene", row.scene},
+    paper.push_back({{"times_of", row.scene},
                      {"processors", row.processors},
                      {"share", row.share},
                      {"ns_per_pixel", row.ns_per_pixel},
@@ -135,8 +135,10 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
 void print_paper(const SplitFigures& s) {
   if (s.paper.empty()) return;
   std::printf(
-      "Aranha et al. 2007, Table 1: T_m and T_s as printed, T_t = 400 ns a pixel as this scene's rows compress\n");
-  std::printf("  %-12s %10s %15s %15s %17s %12s\n", "scene", "processors", "share, paper", "ns per pixel",
+      "Aranha et al. 2007, Table 1: this scene's rows in the paper's times, T_m and T_s as printed there for its "
+      "scenes,\n"
+      "T_t = 400 ns a pixel as the rows compress\n");
+  std::printf("  %-12s %10s %15s %15s %17s %12s\n", "times of", "processors", "share, paper", "ns per pixel",
               "full overlap, ns", "bytes/pixel");
   for (const PaperRow& row : s.paper)
     std::printf("  %-12s %10d %6.2f%% %6.2f%% %7.0f %7.0f %8.0f (%+.1f%%) %10.3f\n", row.scene, row.processors,

@@ -166,16 +166,19 @@ Status step_shared(Viewer* v, Renderer* r, ViewerLoop* loop) {
   return success();
 }
 
-// Who makes the next picture: with servers in reach it is complete soon, without it is refined. A camera that moves is
-// not followed within a frame that servers share, unless they are gone.
+// Who makes the next picture: with servers in reach it is complete soon, without it is refined. One that the device
+// alone is still refining is left to both when a server comes into reach, as a slow device may take minutes for it. A
+// camera that moves is not followed within a frame that servers share, unless they are gone.
 Status step_with_servers(Viewer* v, Renderer* r, ViewerLoop* loop) {
   if (!v->picture_shared || loop->finished) tend_servers(v->sharing);
   bool any = has_servers(*v->sharing);
   bool follow = loop->moved && v->options.frame_count == 0 && (v->picture_shared || loop->progressive.shown_coarse);
-  bool due = follow || (loop->finished && (loop->moved || loop->passed));
+  bool helped = any && !v->picture_shared && !loop->finished && loop->progressive.shown_coarse;
+  bool due = follow || helped || (loop->finished && (loop->moved || loop->passed));
   if (due && v->picture_shared != any) {
+    if (any) show_own_picture(v->sharing, *r);
     v->picture_shared = any;
-    loop->finished = true;  // what was under way is given up
+    loop->finished = loop->passed = true;  // what was under way is given up
   }
   return v->picture_shared ? step_shared(v, r, loop) : step_picture(v, r, loop);
 }

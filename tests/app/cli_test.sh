@@ -308,6 +308,15 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
       render seesaw "${shared[@]}" "${more[@]}" "${sharing[@]}" -o "shared.$ending"
     for n in 0 1 2 3 4 5 6 7; do check "shared_${kind}_$n" cmp -s alone-000$n.$ending shared-000$n.$ending; done
   done
+  # Goal: a flight around the scene is the same whoever renders it, on a device without the scene, too.
+  flight=(--size 32x24 --threads 1 --frames 0:3 --orbit 7)
+  expect orbit_alone 0 'a frame' render seesaw "${flight[@]}" -o alone.ppm
+  expect orbit_shared 0 'shared: the device rendered' render seesaw "${flight[@]}" --server "$address" -o shared.ppm
+  expect orbit_thin 0 'a frame' render seesaw "${flight[@]}" --memory 700K --server "$address" -o thin.ppm
+  for n in 0 1 2 3; do
+    check "orbit_shared_$n" cmp -s alone-000$n.ppm shared-000$n.ppm
+    check "orbit_thin_$n" cmp -s alone-000$n.ppm thin-000$n.ppm
+  done
   # Goal: what an emulated device does before a frame takes the device's time, not the device's time of that.
   timeout -k 1 120 "${run[@]}" render seesaw --size 16x12 --frames 0:1 --emulate pi-zero --server "$address" \
     -o paced.ppm >/dev/null
@@ -367,7 +376,7 @@ f = json.load(open("figures.json"))
 assert all(set(f[k]) == {"m", "ns_per_pixel"} for k in ("chosen", "best"))
 assert len(f["sweep"]) >= 3 and all(set(p) == {"m", "ns_per_pixel"} for p in f["sweep"])
 assert f["best"]["ns_per_pixel"] == min(p["ns_per_pixel"] for p in f["sweep"]) < f["local_ns_per_pixel"]
-keys = {"scene", "processors", "share", "ns_per_pixel", "our_share", "our_ns_per_pixel"}
+keys = {"times_of", "processors", "share", "ns_per_pixel", "our_share", "our_ns_per_pixel"}
 assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])'
   fi
   expect split_report_device 1 'gp2x' split-report cube --emulate toaster

@@ -5,7 +5,9 @@
 #include <thread>
 
 #include "app/options.h"
+#include "app/sharing_parts.h"
 #include "app/viewer.h"
+#include "app/virtual_world.h"
 #include "base/seal.h"
 #include "platform/net/tcp.h"
 #include "support/scripted_client.h"
@@ -69,4 +71,41 @@ TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
   CHECK(without.frames_finished == 20);
   CHECK_FALSE(without.picture_shared);
   CHECK(alone.frames == 0);
+}
+
+// Goal: a slow device does not render its first picture by itself to the end when a server comes into reach meanwhile:
+// both finish it. Method: an emulated device and its server by a virtual clock, no screen. What the device refines
+// before takes few milliseconds a pixel of the wall clock; each finished picture is a shared one.
+TEST_CASE("view_leaves_its_first_picture_to_servers") {
+  VirtualWorld world;
+  REQUIRE(open_world(platform::NullLinkSettings(), builtin_store(), 1, &world).ok);
+  ServerOptions server;
+  server.client_memory_bytes = 16u << 20;
+  REQUIRE(start_server(&world, 0, server).ok);
+  auto sharing = std::make_unique<Sharing>();
+  sharing->link = world.link;
+  sharing->addresses = world.addresses;
+
+  CommonOptions common;
+  common.scene = "seesaw", common.size = "16x64", common.threads = 1;
+  ViewOptions options;
+  options.backend = "null", options.rotation = 0, options.frame_count = 3;
+  Viewer viewer;
+  REQUIRE(open_viewer(options, "seesaw", 16, 64, &viewer).ok);
+  viewer.sharing = sharing.get();
+  OpenScene opened;
+  REQUIRE(open_shared_scene(sharing.get(), common, viewer_bytes, &opened).ok);
+  opened.renderer.pace.ns_per_pixel = 5e8;  // a picture alone takes eight minutes
+  REQUIRE(start_sharing(sharing.get(), &opened.renderer, false, false).ok);
+  opened.renderer.pace.ns_per_pixel = 3e6;
+  std::uint64_t begin = world_now_ns(world);
+  bool again;
+  REQUIRE(run_viewer(&viewer, &opened.renderer, &again).ok);
+  ShareTotals totals = share_totals(*sharing);
+  CHECK(viewer.frames_finished == 3);
+  CHECK(totals.frames == 3);
+  CHECK(totals.server_rows > totals.device_rows);
+  CHECK(world_now_ns(world) - begin < 512'000 * kMs);  // three pictures in less than the time of one
+  close_client(&sharing->client);
+  close_viewer(&viewer);
 }
