@@ -41,9 +41,10 @@ bool is_watched(const Client& c) { return c.frames_shared < kWatchedFirst || c.f
 // Whether the servers' rows are due before the device could render one, or late by less than that takes; and should
 // none of them come, it is still done about when it would be alone.
 bool is_worth_waiting(const Client& c) {
-  double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns), due = c.share.predicted_ns;
+  double prepare = static_cast<double>(c.prepare_ns), due = c.share.predicted_ns - prepare;
+  double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns);
   double row = device_pixel_ns(c) * c.settings.width, rows_left = c.merge.rows.count - c.merge.row_count_done;
-  if (elapsed + row * rows_left > kLateFactor * c.share.local_ns) return false;
+  if (elapsed + row * rows_left > kLateFactor * (c.share.local_ns - prepare)) return false;
   return c.joined && elapsed + row > due && elapsed < std::max(kLateFactor * due, due + row);
 }
 
@@ -52,7 +53,9 @@ std::uint32_t rows_between_looks(const Client& c) {
   bool any = false;
   for (std::uint32_t i = 0; i < c.server_count; ++i) any = any || c.servers[i].phase != ServerPhase::waiting;
   double row_ns = device_pixel_ns(c) * c.settings.width, look_ns = kLookNs;
-  if (c.joined && is_watched(c)) look_ns = std::min(look_ns, c.share.predicted_ns / kLooksWatched);
+  if (c.joined && is_watched(c))
+    look_ns = std::min(look_ns, (c.share.predicted_ns - static_cast<double>(c.prepare_ns)) / kLooksWatched);
+  look_ns = std::min(look_ns, work_ns_max(c));
   if (!any || !(row_ns * c.settings.height > look_ns)) return c.settings.height;
   return row_ns < look_ns ? static_cast<std::uint32_t>(look_ns / row_ns) : 1;
 }
@@ -176,6 +179,10 @@ void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
   s->frame.heard_ns = client_now_ns(*c);
+  if (s->frame.first_ns == 0)
+    s->frame.first_ns = s->frame.heard_ns;
+  else
+    s->frame.bytes_behind += byte_count;
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
   if (s->phase == ServerPhase::probing) s->probe_ns_per_pixel = 1e-3 * chunk.pixel_ps;
   double render_ns = 1e-3 * chunk.pixel_ps * c->settings.width * chunk.row_count;
@@ -187,7 +194,9 @@ void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32
   else
     a->bytes += byte_count;
   observe_server_rows(&c->model, server, begin, end, render_ns, byte_count);
+  if (s->useful_ns == 0 || s->told) server_is_useful(c, s);
   if (accept_rows(&c->merge, chunk.frame, begin, end, server) == 0) return;
+  c->progress_ns = a->last_ns;
   std::size_t row_bytes = std::size_t(c->settings.width) * pixel_bytes(c->options.format);
   std::memcpy(shared_row(*c, begin), picture_row(s->decoder->state, begin), row_bytes * chunk.row_count);
   mark_dirty(c, begin, end);
@@ -204,8 +213,8 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
   c->complete = c->joined = false;
   c->waited_ns = 0, c->device_ns = 0, c->device_rows = 0;
   c->begin_ns = client_now_ns(*c);
+  c->prepare_ns = prepare_ns;
   c->arrivals = Arrivals();
-  observe_device_start(&c->model, static_cast<double>(prepare_ns));
   FrameRequest* q = &c->request;
   ++q->frame;
   q->scene = c->scene, q->seconds = seconds;
@@ -221,13 +230,15 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
   c->share.frame = q->frame;
   c->bytes_in_before = c->bytes_out_before = 0;
   bool any = false;
+  measure_anew(c);
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     RemoteServer* s = &c->servers[i];
     s->frame = ServerFrame();
     c->bytes_in_before += s->messages.bytes_in, c->bytes_out_before += s->messages.bytes_out;
     any = any || s->phase == ServerPhase::ready;
   }
-  if (any && c->options.has_scene) share_rows(c, 0);
+  c->held = any && wants_quiet(*c);
+  if (any && c->options.has_scene && !c->held) share_rows(c, 0);
   advance_client(c, 0);
 }
 
@@ -261,7 +272,7 @@ void end_client_frame(Client* c) {
   CHECK(is_complete(c->merge));
   c->complete = true;
   FrameShare* share = &c->share;
-  share->measured_ns = static_cast<double>(client_now_ns(*c) - c->begin_ns);
+  share->measured_ns = static_cast<double>(client_elapsed_ns(*c));
   share->device_rows = count_rows(c->merge, kDeviceRows);
   share->bytes_in = share->bytes_out = 0;
   for (std::uint32_t i = 0; i < c->server_count; ++i) {

@@ -53,10 +53,13 @@ struct ServerFrame {
   std::uint32_t row_begin = 0, row_end = 0;  // asked for
   std::uint32_t rows_come = 0;               // of them, also those that the device had already done
   std::uint64_t asked_ns = 0, bytes = 0;
-  std::uint64_t row_bytes = 0;  // of them, what the rows take without their messages
-  double render_ns = 0;         // of the rows that have come, by the server's word
-  bool open = false;            // rows are still to come
-  std::uint64_t heard_ns = 0;   // when rows came last
+  std::uint64_t row_bytes = 0;     // of them, what the rows take without their messages
+  double render_ns = 0;            // of the rows that have come, by the server's word
+  bool open = false;               // rows are still to come
+  std::uint64_t heard_ns = 0;      // when rows came last
+  std::uint64_t first_ns = 0;      // and first
+  std::uint64_t bytes_behind = 0;  // of the chunks behind the first
+  bool answers = false;            // it has answered since it was asked, be it a ping
 };
 
 struct RemoteServer {
@@ -67,10 +70,15 @@ struct RemoteServer {
   platform::LinkTimer timer;                           // of the phase: the next try, or when it counts as lost
   std::uint64_t retry_ns = 0;                          // till the next try
   bool told = false;                                   // why it is not in use
+  std::uint64_t useful_ns = 0;                         // since when this connection has brought rows; 0: none so far
   std::uint32_t ping_id = 0, ping_bytes = 0;           // that an answer is awaited to, and its payload; id 0: none
   std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the answer came unwatched
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
+  bool ping_alone = false;  // no rows of any server were under way when it was sent
   double round_trip_ns = 0, ns_per_byte = 0;
+  double scaled = 1;                 // ns_per_byte, with others' since it was measured by itself
+  std::uint64_t quiet_until_ns = 0;  // its link is measured meanwhile: no rows are asked of others
+  std::uint64_t anew_ns = 0;         // not before then its link is measured anew
   double probe_ns_per_pixel = 0;
   Smoothed row_ns;                 // of a device without the scene: that a row took, from the request until it came
   FrameRequest asked;              // last; frame 0: nothing with this connection
@@ -88,7 +96,7 @@ struct RemoteServer {
 struct FrameShare {
   std::uint32_t frame = 0;
   double predicted_ns = 0;                          // by the split that was chosen; 0: nothing was known yet
-  double measured_ns = 0;                           // from begin to completion
+  double measured_ns = 0;                           // from its preparation to its completion
   double local_ns = 0;                              // predicted for the device alone; 0: not known
   std::uint32_t device_rows = 0;                    // rendered by the device
   std::uint32_t server_rows[kServerCountMax] = {};  // that were a server's
@@ -119,7 +127,9 @@ struct Client {
   // The current frame.
   FrameRequest request;
   bool complete = true, joined = false;
+  bool held = false;  // rows are asked for once a link is measured
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
+  std::uint64_t prepare_ns = 0;  // of work on it before it began
   mutable platform::LinkClock clock;
   std::uint64_t unwatched_ns = 0;  // before the latest look: by so much what came may have come earlier
   Arrivals arrivals;
@@ -129,7 +139,7 @@ struct Client {
   std::uint64_t frames_shared = 0;               // since a server came into use
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
   FrameShare share;               // of the last complete frame
-  std::uint64_t in_reach_ns = 0;  // when a server was last in use
+  std::uint64_t progress_ns = 0;  // when rows that were missing came last
 };
 
 // The level at which rows are asked for from a link of that speed, as zlib counts.
@@ -160,15 +170,20 @@ void end_client_frame(Client* client);
 
 // Whether the frame has all its rows.
 inline bool has_all_rows(const Client& client) { return is_complete(client.merge); }
+// How long the device may work at once before it looks at the link again; shorter while an answer is timed.
+double work_ns_max(const Client& client);
 // Whether every server is in use, or waits for its next try after a failure that was told: what can be known is known.
 bool is_settled(const Client& client);
-// Whether a device without the scene can do nothing but wait: no server has been in use for a while.
+// Whether a device without the scene had better give up: no row has come for five seconds, nor has a server that is
+// asked for some answered a ping; or for as long as a server may prepare its scene, whatever it answers.
 bool is_cut_off(const Client& client);
 // Rows changed since the last call.
 bool take_shared_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
 
 // By the link's clock, but never less than before.
 std::uint64_t client_now_ns(const Client& client);
+// Of the current frame, its preparation included.
+inline std::uint64_t client_elapsed_ns(const Client& c) { return client_now_ns(c) - c.begin_ns + c.prepare_ns; }
 // Where a row begins in client->pixels.
 inline std::uint8_t* shared_row(const Client& client, std::uint32_t row) {
   return client.pixels.data + std::size_t(row) * client.settings.width * pixel_bytes(client.options.format);

@@ -1,5 +1,6 @@
 // What the client's files share: client.cpp has the frame, client_plan.cpp who renders what of it, client_server.cpp
-// the connections, client_thin.cpp what is different for a device without the scene.
+// the connections, client_ping.cpp what answers tell of them, client_thin.cpp what is different for a device without
+// the scene.
 #pragma once
 #include "app/client.h"
 
@@ -21,6 +22,22 @@ std::uint64_t silence_limit_ns(const Client& client, const RemoteServer& server)
 void flush_server(Client* client, RemoteServer* server);
 // The overture is over and all of it known.
 void server_is_ready(Client* client, RemoteServer* server);
+// Rows have come from it: where its loss was told, so is that it is back.
+void server_is_useful(Client* client, RemoteServer* server);
+// The next phase of its overture.
+void enter(Client* client, RemoteServer* server, ServerPhase phase);
+// Queues a message; a server that reads none is lost.
+void send(Client* client, RemoteServer* server, const Message& message);
+constexpr const char* kUnasked = "it sends what it was not asked for";
+
+// ---- client_ping.cpp
+
+void send_ping(Client* client, RemoteServer* server, std::uint32_t reply_bytes);
+void take_pong(Client* client, RemoteServer* server, const Pong& pong);
+// Whether a link is being measured, which rows of others on their way would disturb.
+bool wants_quiet(const Client& client);
+// Asks servers in use for an answer that measures their link, where what is known of it has become doubtful.
+void measure_anew(Client* client);
 // How long it is worth while to do nothing but wait for an answer, so that its time is measured well.
 std::uint64_t wait_wanted_ns(const Client& client);
 

@@ -129,17 +129,20 @@ double device_pixel_ns(const Client& c) {
 
 void share_rows(Client* c, std::uint64_t elapsed_ns) {
   SplitProblem problem = make_problem(&c->model, c->options.wish);
-  for (std::uint32_t i = 0; i < c->server_count; ++i) problem.servers[i].start_ns += elapsed_ns;
+  // Times count from the frame's begin: the device could render from then on, servers begin when they are asked.
+  auto from_now = [&](std::uint64_t* start_ns) { *start_ns = std::min(kRowTableMax, *start_ns + elapsed_ns); };
+  from_now(&problem.link_start_ns);
+  for (std::uint32_t i = 0; i < c->server_count; ++i) from_now(&problem.servers[i].start_ns);
   if (c->options.device_share >= 0)
     c->split = split_by_share(*c, problem);
   else
     c->split = elapsed_ns > 0 ? find_split(problem, &c->workspace) : next_split(problem, c->split, &c->workspace);
-  c->share.predicted_ns = static_cast<double>(c->split.time_ns);
+  c->share.predicted_ns = static_cast<double>(c->split.time_ns + c->prepare_ns);
   Split alone;
   alone.server_count = c->server_count;
   for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
   predict_split(problem, &alone);
-  c->share.local_ns = static_cast<double>(alone.time_ns);
+  c->share.local_ns = static_cast<double>(alone.time_ns + c->prepare_ns);
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     RemoteServer* s = &c->servers[i];
     if (s->phase != ServerPhase::ready) continue;  // the others' figure is their overture's
@@ -159,14 +162,32 @@ void let_join(Client* c) {
     any = any || c->servers[i].phase == ServerPhase::ready;
   }
   probe_servers(c);
-  if (c->joined || !any || (!is_settled(*c) && c->merge.next_row < c->settings.height / 4)) return;
+  if (c->joined || !any) return;
+  if (c->held ? wants_quiet(*c) : !is_settled(*c) && c->merge.next_row < c->settings.height / 4) return;
   share_rows(c, client_now_ns(*c) - c->begin_ns);
 }
+
+namespace {
+
+// A server's bytes came no slower than its link allows: where they came faster than it was thought to be, that is
+// wrong.
+void measure_own_links(Client* c) {
+  for (std::uint32_t i = 0; i < c->server_count; ++i) {
+    const ServerFrame& f = c->servers[i].frame;
+    double ns = static_cast<double>(f.heard_ns - f.first_ns), bytes = static_cast<double>(f.bytes_behind);
+    if (bytes == 0 || ns < kGapsMin * static_cast<double>(c->arrivals.gap_ns_max)) continue;
+    if (ns < bytes * static_cast<double>(c->model.servers[i].ns_per_byte.value))
+      observe_transfer(&c->model, i, bytes, ns);
+  }
+}
+
+}  // namespace
 
 void measure_link(Client* c) {
   const Arrivals& a = c->arrivals;
   double ns = static_cast<double>(a.last_ns - a.first_ns), bytes = static_cast<double>(a.bytes);
   if (bytes == 0 || ns < kGapsMin * static_cast<double>(a.gap_ns_max)) return;
+  measure_own_links(c);
   double rate = 0;  // bytes per nanosecond that the servers make
   std::uint32_t count = 0, last = 0;
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
@@ -179,11 +200,15 @@ void measure_link(Client* c) {
   double before = is_known(*link) ? static_cast<double>(link->value) : 0;
   bool link_bound = rate > 0 && ns / bytes * rate > kLinkBound, better = ns / bytes < before;
   if (count == 0 || !(link_bound || better)) return;
-  if (count == 1) observe_transfer(&c->model, last, bytes, ns);
   smooth(link, ns / bytes);
-  if (count > 1 && before > 0)
-    for (std::uint32_t i = 0; i < c->server_count; ++i)
-      scale(&c->model.servers[i].ns_per_byte, static_cast<double>(link->value) / before);
+  if (count == 1 && link_bound) observe_transfer(&c->model, last, bytes, ns);
+  if (count == 1 || !(before > 0)) return;
+  // What has become of each by itself is measured when it has become doubtful.
+  double factor = static_cast<double>(link->value) / before;
+  for (std::uint32_t i = 0; i < c->server_count; ++i) {
+    scale(&c->model.servers[i].ns_per_byte, factor);
+    c->servers[i].scaled *= factor;
+  }
 }
 
 }  // namespace pocketray

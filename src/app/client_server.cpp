@@ -9,20 +9,10 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kPings = 3;                // without a payload: the least of them is the round trip
-constexpr std::uint32_t kPingsMissedMax = 24;      // after which answers that came unwatched have to do
-constexpr double kUnwatchedShareInverse = 8;       // of an answer's time that the device may not have looked
-constexpr std::uint32_t kPingBytesLeast = 1024;    // of the one that measures the bandwidth; twice as many each time,
-constexpr std::uint32_t kPingBytesMost = 16384;    // until they take
-constexpr double kPingTripsMin = 8;                // times as long as one without
-constexpr std::uint64_t kPingWaitNs = 20'000'000;  // that the device waits for an answer and does nothing else,
-constexpr std::uint64_t kSizedPingWaitNs = 200'000'000;  // and for one with a payload, over a slow link
-constexpr std::uint64_t kIdlePingNs = 500'000'000;       // between two looks at a server that gets no rows
-constexpr std::uint32_t kLookMessages = 256;             // of a server in one look, and no more rows than a picture has
-constexpr double kNsPerByteMin = 1e-3;  // a link faster than a terabyte a second is one that was not measured
-
-constexpr const char* kUnasked = "it sends what it was not asked for";
-
+constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between two looks at a server that gets no rows
+constexpr std::uint64_t kLastingWaits = 10;   // a connection that was of use for so many times the wait before it was a
+                                              // sound one: the next try is soon
+constexpr std::uint32_t kLookMessages = 256;  // of a server in one look, and no more rows than a picture has
 void tell(Client* c, const char* format, ...) __attribute__((format(printf, 2, 3)));
 void tell(Client* c, const char* format, ...) {
   if (!c->options.log) return;
@@ -32,37 +22,6 @@ void tell(Client* c, const char* format, ...) {
   std::vsnprintf(line, sizeof line, format, arguments);
   va_end(arguments);
   c->options.log(c->options.log_context, line);
-}
-
-void enter(Client* c, RemoteServer* s, ServerPhase phase) {
-  s->phase = phase;
-  s->timer = platform::link_timer(client_now_ns(*c), silence_limit_ns(*c, *s));
-}
-
-void send(Client* c, RemoteServer* s, const Message& message) {
-  if (!send_message(&s->messages, message)) lose_server(c, s, "it does not read what it is sent");
-}
-
-void send_ping(Client* c, RemoteServer* s, std::uint32_t reply_bytes) {
-  Message message;
-  message.type = MessageType::ping;
-  if (++s->ping_id == 0) ++s->ping_id;
-  message.ping = {s->ping_id, reply_bytes};
-  s->ping_bytes = reply_bytes;
-  s->late_at_ping = s->late_rows;
-  s->ping_ns = client_now_ns(*c);
-  send(c, s, message);
-}
-
-// The payload of the answer that is to be timed next. Servers may share the device's radio: one after the other.
-std::uint32_t next_ping_bytes(const Client& c, const RemoteServer& s) {
-  if (s.pings_answered < kPings) return 0;
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& other = c.servers[i];
-    if (&other != &s && other.phase == ServerPhase::measuring && other.ping_id != 0 && other.ping_bytes > 0) return 0;
-  }
-  std::uint32_t wanted = kPingBytesLeast << (s.pings_answered - kPings), room = s.messages.in.count - 64;
-  return wanted < room ? wanted : room;
 }
 
 void connect_server(Client* c, RemoteServer* s) {
@@ -80,6 +39,7 @@ void greet_server(Client* c, RemoteServer* s) {
   restart_row_decoder(s->decoder);
   s->pings_answered = s->pings_missed = 0, s->ping_id = 0, s->round_trip_ns = 0;
   s->chunk_count = 0, s->chunk_growth = 0, s->unanswered = false;
+  s->quiet_until_ns = s->anew_ns = 0;
   s->asked = FrameRequest();
   s->due_end = 0, s->late_rows = 0;
   s->frame = ServerFrame();
@@ -109,38 +69,6 @@ void take_scene_entry(Client* c, RemoteServer* s, const SceneEntry& entry) {
   if (entry.hash != c->scene) return lose_server(c, s, kUnasked);
   enter(c, s, ServerPhase::measuring);
   send_ping(c, s, 0);
-}
-
-// Whether an answer was awaited when it came, so that its time means something.
-bool is_watched(const Client& c, double ns) {
-  return kUnwatchedShareInverse * static_cast<double>(c.unwatched_ns) < ns;
-}
-
-// The overture's answers: first without a payload, then with as much as it takes to tell the link from its latency.
-void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::uint32_t byte_count) {
-  if (!is_watched(*c, ns) && ++s->pings_missed < kPingsMissedMax) return send_ping(c, s, next_ping_bytes(*c, *s));
-  if (byte_count > 0 || s->pings_answered < kPings) ++s->pings_answered;
-  if (byte_count == 0 && (s->round_trip_ns == 0 || ns < s->round_trip_ns)) s->round_trip_ns = ns;
-  bool tells = byte_count >= kPingBytesMost || ns >= kPingTripsMin * s->round_trip_ns;
-  if (byte_count == 0 || (!tells && next_ping_bytes(*c, *s) > byte_count))
-    return send_ping(c, s, next_ping_bytes(*c, *s));
-  double per_byte = (ns - s->round_trip_ns) / byte_count;
-  s->ns_per_byte = per_byte > kNsPerByteMin ? per_byte : kNsPerByteMin;
-  enter(c, s, ServerPhase::probing);
-}
-
-void take_pong(Client* c, RemoteServer* s, const Pong& pong) {
-  // One ping is under way at most, so that there is no other to answer.
-  if (s->ping_id == 0 || pong.id != s->ping_id || pong.bytes.count != s->ping_bytes) return lose_server(c, s, kUnasked);
-  s->late_rows -= s->late_at_ping;  // they would have come before it
-  s->late_at_ping = 0;
-  double ns = static_cast<double>(client_now_ns(*c) - s->ping_ns);
-  s->ping_id = 0;
-  if (s->phase == ServerPhase::measuring) return take_measuring_pong(c, s, ns, pong.bytes.count);
-  if (s->phase != ServerPhase::ready) return;
-  const Smoothed& start = c->model.servers[index_of(*c, s)].start_ns;
-  if (is_watched(*c, ns) || ns < static_cast<double>(start.value)) observe_start(&c->model, index_of(*c, s), ns);
-  if (pong.pixel_ps > 0) observe_server_price(&c->model, index_of(*c, s), 1e-3 * pong.pixel_ps);
 }
 
 // Whether a server owes these rows: the next of what it was asked for last, from the bottom upward, or some that were
@@ -228,6 +156,15 @@ void read_server(Client* c, RemoteServer* s) {
 
 }  // namespace
 
+void enter(Client* c, RemoteServer* s, ServerPhase phase) {
+  s->phase = phase;
+  s->timer = platform::link_timer(client_now_ns(*c), silence_limit_ns(*c, *s));
+}
+
+void send(Client* c, RemoteServer* s, const Message& message) {
+  if (!send_message(&s->messages, message)) lose_server(c, s, "it does not read what it is sent");
+}
+
 const char* wire_error_text(WireError code) {
   switch (code) {
     case WireError::wrong_version:
@@ -278,11 +215,14 @@ void lose_server(Client* c, RemoteServer* s, const char* reason) {
   c->model.servers[i].connected = false;
   s->frame.open = false;
   s->phase = ServerPhase::waiting;
+  std::uint64_t now = client_now_ns(*c);
+  if (s->useful_ns > 0 && now - s->useful_ns >= kLastingWaits * s->retry_ns) s->retry_ns = 0;
+  s->useful_ns = 0;
   std::uint64_t next = 2 * s->retry_ns;
   s->retry_ns = next < c->options.retry_ns_min   ? c->options.retry_ns_min
                 : next > c->options.retry_ns_max ? c->options.retry_ns_max
                                                  : next;
-  s->timer = platform::link_timer(client_now_ns(*c), s->retry_ns);
+  s->timer = platform::link_timer(now, s->retry_ns);
   const char* name = s->address.text;
   bool named = std::strncmp(reason, name, std::strlen(name)) == 0;  // the link's errors begin with it
   if (!s->told)
@@ -299,9 +239,14 @@ void server_is_ready(Client* c, RemoteServer* s) {
   s->phase = ServerPhase::ready;
   s->ping_due_ns = client_now_ns(*c) + kIdlePingNs;
   c->model.servers[index_of(*c, s)].connected = true;
+  if (s->useful_ns > 0) server_is_useful(c, s);
+}
+
+void server_is_useful(Client* c, RemoteServer* s) {
+  if (s->useful_ns == 0) s->useful_ns = client_now_ns(*c);
+  if (s->phase != ServerPhase::ready) return;
   if (s->told) tell(c, "server %s is in use again", s->address.text);
   s->told = false;
-  s->retry_ns = 0;
 }
 
 void advance_server(Client* c, RemoteServer* s) {
@@ -338,18 +283,6 @@ void advance_server(Client* c, RemoteServer* s) {
     }
   }
   flush_server(c, s);
-}
-
-std::uint64_t wait_wanted_ns(const Client& c) {
-  std::uint64_t wanted = 0;
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& s = c.servers[i];
-    if (s.phase == ServerPhase::measuring && s.ping_id != 0) {
-      std::uint64_t since = client_now_ns(c) - s.ping_ns, wait = s.ping_bytes > 0 ? kSizedPingWaitNs : kPingWaitNs;
-      if (since < wait && wait - since > wanted) wanted = wait - since;
-    }
-  }
-  return wanted;
 }
 
 }  // namespace pocketray

@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without a server: longer than a connection may take
+constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows: longer than a connection may take
 // A server that has been silent for the time of so many of its chunks is taken to have stopped; at least for so long,
 // which is more than a busy system takes to go on.
 constexpr double kSilentChunks = 4, kSilentNsMin = 30e6;
@@ -92,14 +92,12 @@ void take_over(Client* c, RemoteServer* idle) {
 }  // namespace
 
 void ask_idle_servers(Client* c) {
-  bool any = false, idle = false;
+  bool idle = false;
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     RemoteServer* s = &c->servers[i];
     if (s->phase == ServerPhase::probing) server_is_ready(c, s);  // what it renders is seen as it comes
-    any = any || s->phase == ServerPhase::ready;
     idle = idle || is_idle(*s);
   }
-  if (any) c->in_reach_ns = client_now_ns(*c);
   if (!idle || c->complete) return;
   Run run = longest_run(*c, 0, c->settings.height, 0);
   if (run.begin < run.end) divide(c, run);
@@ -119,8 +117,14 @@ void learn_row_times(Client* c) {
 
 bool is_cut_off(const Client& c) {
   if (c.options.has_scene || c.complete) return false;
-  std::uint64_t now = client_now_ns(c);
-  return now >= std::max(c.begin_ns, c.in_reach_ns) + kCutOffNs;
+  std::uint64_t now = client_now_ns(c), since = std::max(c.begin_ns, c.progress_ns);
+  if (now < since + kCutOffNs) return false;
+  if (now >= since + std::max(kCutOffNs, c.options.prepare_timeout_ns)) return true;
+  for (std::uint32_t i = 0; i < c.server_count; ++i) {
+    const RemoteServer& s = c.servers[i];
+    if (s.phase == ServerPhase::ready && s.frame.open && s.frame.answers) return false;  // it lives, and takes its time
+  }
+  return true;
 }
 
 }  // namespace pocketray

@@ -10,7 +10,6 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint64_t kWaitNs = 500'000;  // for rows, when there is nothing else to do, between two looks around
-constexpr double kLongRowNs = 100e6;        // a row that takes longer is rendered in parts of about that
 constexpr std::uint32_t kFirstPixels = 8;   // of a row, while nothing is known of what they cost
 
 void pack_device_rows(const Renderer& r, Client* c, std::uint32_t row_begin, std::uint32_t row_end) {
@@ -40,15 +39,15 @@ void trace_part(Renderer* r, std::uint32_t row, std::uint32_t begin, std::uint32
   trace_with(r->workers, {spans, parts, Aov::none, r->image.data, r->tracers.data, nullptr});
 }
 
-// A row that takes long, with looks at the servers in between: they are not to take the device for lost, nor it them.
-// It is left when a server sends it meanwhile.
+// A row that takes longer than the device may work at once, in parts, with looks at the servers in between: they are
+// not to take the device for lost, nor it them. It is left when a server sends it meanwhile.
 void render_long_row(Renderer* r, Client* c, std::uint32_t row) {
   const std::uint32_t width = r->settings.width;
   double pixel_ns = device_pixel_ns(*c);
   std::uint32_t begin = 0;
   std::uint64_t row_ns = 0;
   for (;;) {
-    double pixels = pixel_ns > 0 ? kLongRowNs / pixel_ns : kFirstPixels;
+    double pixels = pixel_ns > 0 ? work_ns_max(*c) / pixel_ns : kFirstPixels;
     std::uint32_t count = pixels < width ? std::max(1u, static_cast<std::uint32_t>(pixels)) : width;
     std::uint32_t end = begin + std::min(count, width - begin);
     std::uint64_t begin_ns = client_now_ns(*c);
@@ -68,7 +67,7 @@ void render_long_row(Renderer* r, Client* c, std::uint32_t row) {
 bool render_rows(Renderer* r, Client* c) {
   std::uint32_t begin, end, row_count_max = kTileRows * r->settings.threads;
   double row_ns = device_pixel_ns(*c) * r->settings.width;
-  bool is_long = row_ns == 0 || row_ns > kLongRowNs;
+  bool is_long = row_ns == 0 || row_ns > work_ns_max(*c);
   if (!take_device_rows(c, is_long ? 1 : row_count_max, &begin, &end)) return false;
   if (is_long) {
     render_long_row(r, c, begin);
