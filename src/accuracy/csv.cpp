@@ -25,7 +25,7 @@ std::string number(double value) {
 std::string sweep_csv(const Sweep& sweep) {
   std::string csv =
       "knob,value,ns_per_pixel,ns_per_pixel_low,ns_per_pixel_high,flip,rmse,rel_mse,p99,max,bias,psnr,pareto,"
-      "flip_before,time_ratio,time_ratio_low,time_ratio_high,instructions_per_pixel,default,missing\n";
+      "flip_before,time_ratio,time_ratio_low,time_ratio_high,instructions_per_pixel,default,missing,note\n";
   for (const Measured& m : sweep.measured) {
     bool there = m.missing.empty();
     const double figures[] = {m.ns_per_pixel.value, m.ns_per_pixel.low, m.ns_per_pixel.high, m.flip,
@@ -37,7 +37,7 @@ std::string sweep_csv(const Sweep& sweep) {
     const double further[] = {m.flip_before, m.time_ratio.value, m.time_ratio.low, m.time_ratio.high,
                               m.instructions_per_pixel};
     for (double figure : further) csv += ',' + (there ? number(figure) : "");
-    csv += std::string(m.is_default ? ",1," : ",0,") + quoted(m.missing) + '\n';
+    csv += std::string(m.is_default ? ",1," : ",0,") + quoted(m.missing) + ',' + quoted(m.note) + '\n';
   }
   return csv;
 }

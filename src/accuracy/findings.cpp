@@ -50,6 +50,7 @@ std::string slope_text(const KnobFigures& knob) {
   std::string text = "slope of its own RMSE over time " + hundredths(knob.slope.value);
   if (std::isfinite(knob.slope.low) && std::isfinite(knob.slope.high))
     text += " [" + hundredths(knob.slope.low) + ", " + hundredths(knob.slope.high) + "]";
+  text += "; RMSE is off that law by " + format("%.1f %%", 100 * knob.slope_misfit);
   return text + (knob.theory.empty() ? "" : "; theory: " + knob.theory);
 }
 

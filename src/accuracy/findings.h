@@ -26,7 +26,7 @@ KnobEnds ends_of(const Sweep& sweep, const std::string& knob);
 // Whether the best end is better by more than the reference can tell.
 bool gain_claimed(const Sweep& sweep, const KnobEnds& ends);
 
-// "slope of its own RMSE over time −0.5 [−0.6, −0.4]; theory: …", as far as known.
+// "slope of its own RMSE over time −0.5 [−0.6, −0.4]; RMSE is off that law by 1 %; theory: …", as far as known.
 std::string slope_text(const KnobFigures& knob);
 
 // The knobs, those that buy accuracy for less first; then those whose gain cannot be claimed, then those without a

@@ -107,7 +107,7 @@ std::vector<Knob> make_knobs() {
        false,
        false},
       {"arithmetic",
-       "numbers the picture is computed in",
+       "numbers the picture is computed in; double by the reference's own tracer",
        "all",
        0,
        nullptr,

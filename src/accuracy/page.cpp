@@ -143,17 +143,25 @@ std::string method_of(const Sweep& sweep) {
          figure(sweep.pixels_per_degree) +
          " pixels per degree; the mean over the picture, after the real output (quantised, dithered) and before it. "
          "RMSE, relative MSE (Rousselle et al. 2011), 99th percentile, maximum, bias and PSNR are of linear light from "
-         "0 "
-         "to 1 before output. A frame's time is of tracing and packing; the configurations run interleaved in random "
-         "order, "
-         "and ratios to the baseline are medians with the 95 % interval of the bootstrap (Efron and Tibshirani 1993); "
-         "times are the baseline’s median times the ratio, as a round’s runs have the machine’s moods in common. A "
-         "slope "
-         "is fitted by least squares to logarithms of RMSE over time above what no time takes away, where that can be "
-         "claimed; the 95 % interval of its profile in brackets. “ms per "
-         ".01 FLIP” is the time from "
-         "a "
-         "knob’s worst end to its best over what that gains. * marks the baseline’s value.</p>\n" +
+         "0 to 1 before output.</p>\n<p class=\"soft\">A frame’s time is that of posing, refitting, placing lights, "
+         "tracing and packing, after a frame with the same settings: what only a change of settings costs is not in "
+         "it. "
+         "Instructions are of tracing and packing alone. The configurations run interleaved in random order. Ratios to "
+         "the baseline are of the same round, as a round’s runs have the machine’s moods in common: their median, and "
+         "the 95 % interval of interpolated order statistics (Hettmansperger and Sheather 1986). Times are the ratio "
+         "times the baseline’s median; their interval is that of the configuration’s own times and so holds the moods, "
+         "too." +
+         (sweep.rounds < 6 ? std::string(" With fewer than six rounds all intervals are ranges of the rounds, which "
+                                         "hold the truth less often than 95 %.")
+                           : std::string()) +
+         " Double precision is not this renderer in other numbers: the reference’s own tracer computes it, without "
+         "packets of rays and with a hierarchy of its own, and its time is that tracer’s.</p>\n<p class=\"soft\">A "
+         "slope is that of a law, RMSE² = floor² + (c timeˢ)², fitted to all values of a knob by least squares of "
+         "relative differences, round by round, where the reference can tell the errors apart: the median of the "
+         "rounds, "
+         "with its 95 % interval in brackets. That interval is of the times alone. How far RMSE is from such a law "
+         "stands beside it; no interval covers that. “ms per .01 FLIP” is the time from a knob’s worst end to its best "
+         "over what that gains. * marks the baseline’s value.</p>\n" +
          notes;
 }
 

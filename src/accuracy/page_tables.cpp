@@ -92,7 +92,8 @@ std::string value_table(const Sweep& sweep, const std::string& knob) {
   std::string rows;
   for (const Measured* m : values) {
     rows += m->is_default ? "<tr class=\"standard\">" : "<tr>";
-    rows += "<th>" + escaped(m->value) + (m->is_default ? "*" : "") + "</th>";
+    rows += "<th>" + escaped(m->value) + (m->is_default ? "*" : "") +
+            (m->note.empty() ? "" : "<br /><small>" + escaped(m->note) + "</small>") + "</th>";
     if (!m->missing.empty()) {
       rows += "<td class=\"missing\" colspan=\"" + std::to_string(names.size() - 1) +
               "\">not measured: " + escaped(m->missing) + "</td></tr>\n";

@@ -18,14 +18,17 @@ struct Measured {
   std::string knob;         // its name; "baseline", or "several"
   std::string value;        // "4", "bilinear"; of several: "samples 4, depth 2"
   bool is_default = false;  // the value the baseline has
-  Interval ns_per_pixel;    // tracing and packing
-  Interval time_ratio;      // to the baseline
+  // Of a frame after one with the same settings: pose, refit, lights, tracing and packing. The value is the ratio times
+  // the baseline's median; the interval holds the configuration's own median, with all that rounds differ by.
+  Interval ns_per_pixel;
+  Interval time_ratio;  // to the baseline of the same round
   double instructions_per_pixel = kNotMeasured;
   double flip = kNotMeasured;         // mean, as the screen shows it: after quantisation and dither
   double flip_before = kNotMeasured;  // mean, before them
   PictureErrors errors;               // linear light, exposed, cut to what a display shows: [0, 1]
   bool pareto = false;                // no other takes less time with no more ꟻLIP
   std::string missing;                // why there are no figures; empty: there are
+  std::string note;                   // what its time is the time of, where that is not this renderer
 };
 
 // A knob as a whole. Its configurations are those of `Sweep::measured` with its name, in the order of its values.
@@ -34,9 +37,10 @@ struct KnobFigures {
   std::string what;    // "rays through each pixel"
   std::string effect;  // the effect it belongs to, or "all", "display"
   std::string theory;  // what theory says of the slope, with its number; empty: nothing
-  // Of the knob's own RMSE over time, log-log, as slope_to_limit() finds it: what no time takes away is owed to the
-  // other knobs.
+  // Of the knob's own RMSE over time, log-log, as fit_power_law() finds it in each round: what no time takes away is
+  // owed to the other knobs. The interval is of the times alone; how far errors are from such a law stands beside it.
   Interval slope;
+  double slope_misfit = 0;
   bool has_slope = false;
   double ms_per_flip = kNotMeasured;  // ms a frame that 0.01 of ꟻLIP costs, from the knob's worst end to its best
 };

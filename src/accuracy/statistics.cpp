@@ -5,23 +5,53 @@
 #include <limits>
 
 #include "base/check.h"
-#include "base/rng.h"
 
 namespace pocketray {
 namespace {
 
-constexpr int kResamples = 2000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kConfidence = 0.95;
 
-// 97.5th percentile of Student's t for 1 to 10 degrees of freedom; beyond, Cornish and Fisher's expansion to the second
-// term [Abramowitz & Stegun 1964, eq. 26.7.5], good to 2e-3 there.
-double student_975(std::size_t degrees) {
-  constexpr double table[] = {12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281};
-  CHECK_GT(degrees, 0u);
-  if (degrees <= 10) return table[degrees - 1];
-  double z = 1.959964, n = static_cast<double>(degrees);
-  return z + (z * z * z + z) / (4 * n) + (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n);
+// The chance that `count` or fewer of n fair coins show heads.
+double coins(std::size_t n, std::size_t count) {
+  double term = std::pow(0.5, static_cast<double>(n)), sum = term;
+  for (std::size_t i = 0; i < count; ++i) {
+    term *= static_cast<double>(n - i) / static_cast<double>(i + 1);
+    sum += term;
+  }
+  return sum;
 }
+
+// From a towards b, either of which may be infinite.
+double between(double a, double b, double share) {
+  if (!std::isfinite(a) || share == 0 || a == b) return a;
+  return std::isfinite(b) ? a + (b - a) * share : b;
+}
+
+// The law of an exponent that fits best, and how badly it fits: Σ of the squared relative differences of e².
+struct LawAt {
+  const std::vector<double>&time, &error;
+  double resolution;
+
+  double misfit(double exponent) const {
+    double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, sum = 0;
+    auto each = [&](auto&& visit) {
+      for (std::size_t i = 0; i < time.size(); ++i) {
+        double y = error[i] * error[i], weight = 1 / std::pow(y + resolution * resolution, 2);
+        visit(weight, std::pow(time[i] / time.back(), 2 * exponent), y);
+      }
+    };
+    each([&](double weight, double x, double y) {
+      w += weight, wx += weight * x, wy += weight * y, wxx += weight * x * x, wxy += weight * x * y;
+    });
+    double determinant = w * wxx - wx * wx, scale = 0, floor = wy / w;
+    if (determinant > 0) scale = (w * wxy - wx * wy) / determinant, floor = (wy - scale * wx) / w;
+    if (floor < 0) floor = 0, scale = wxy / wxx;
+    if (scale < 0) scale = 0, floor = wy / w;
+    each([&](double weight, double x, double y) { sum += weight * std::pow(y - floor - scale * x, 2); });
+    return sum;
+  }
+};
 
 }  // namespace
 
@@ -34,61 +64,42 @@ double median(std::vector<double> values) {
   return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + half));
 }
 
-Interval median_ratio(const std::vector<double>& times, const std::vector<double>& baselines, std::uint64_t seed) {
-  CHECK_EQ(times.size(), baselines.size());
-  std::vector<double> ratios(times.size());
-  for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = times[i] / baselines[i];
-  Rng rng = make_rng(seed);
-  std::vector<double> medians(kResamples), drawn(ratios.size());
-  for (double& m : medians) {
-    for (double& d : drawn)
-      d = ratios[static_cast<std::size_t>(next_double(&rng) * static_cast<double>(ratios.size()))];
-    m = median(drawn);
-  }
-  std::sort(medians.begin(), medians.end());
-  return {median(ratios), medians[kResamples / 40], medians[kResamples - 1 - kResamples / 40]};
+Interval median_interval(const std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  std::size_t n = sorted.size(), k = 0;
+  double middle = median(values), wide = 1, narrow = 1;  // how often the k-th and the next from both ends hold it
+  while (k + 1 <= n / 2 && (narrow = 1 - 2 * coins(n, k)) >= kConfidence) wide = narrow, ++k;
+  if (k == 0) return {middle, sorted.front(), sorted.back()};
+  double part = k + 1 <= n / 2 ? (wide - kConfidence) / (wide - narrow) : 0;
+  double rest = static_cast<double>(n - k),
+         share = rest * part / (static_cast<double>(k) + (rest - static_cast<double>(k)) * part);
+  return {middle, between(sorted[k - 1], sorted[k], share), between(sorted[n - k], sorted[n - k - 1], share)};
 }
 
-Interval slope_to_limit(const std::vector<double>& time, const std::vector<double>& error) {
+PowerLaw fit_power_law(const std::vector<double>& time, const std::vector<double>& error, double resolution) {
   CHECK_EQ(time.size(), error.size());
   CHECK_GE(time.size(), 4u);
-  constexpr double kSteepest = -8, kFlattest = -1e-3, kStep = 0.01;
-  // How badly an exponent fits: the weighted variance of what log c would be at each point, times the weights.
-  auto misfit = [&](double s) {
-    double weights = 0, mean = 0, sum = 0, last = std::pow(error.back(), 4);
-    for (std::size_t i = 0; i + 1 < time.size(); ++i) {
-      double own = error[i] * error[i] - error.back() * error.back();
-      double law = std::pow(time[i] / time.back(), 2 * s) - 1;  // the scale is left to c
-      CHECK(own > 0 && time[i] < time.back());
-      double log_c = 0.5 * std::log(own / law), weight = own * own / (std::pow(error[i], 4) + last);
-      double step = log_c - mean;  // West's update
-      weights += weight;
-      mean += step * weight / weights;
-      sum += weight * step * (log_c - mean);
-    }
-    return sum;
-  };
-  double best = kFlattest;
-  for (double s = kSteepest; s < kFlattest; s += kStep)
-    if (misfit(s) < misfit(best)) best = s;
-  double low = std::max(kSteepest, best - kStep), high = std::min(kFlattest, best + kStep);
+  constexpr double kSteepest = -8;
+  constexpr int kSteps = 80;
+  LawAt law = {time, error, resolution};
+  auto exponent_at = [&](int step) { return kSteepest * step * step / (kSteps * kSteps); };
+  int best = 1;
+  double least = kInfinity;
+  for (int step = 1; step <= kSteps; ++step) {
+    double misfit = law.misfit(exponent_at(step));
+    if (misfit < least) least = misfit, best = step;
+  }
+  if (best == 1 || best == kSteps)
+    return {best == 1 ? 0 : -kInfinity, std::sqrt(least / static_cast<double>(time.size())) / 2};
+  double low = exponent_at(best + 1), high = exponent_at(best - 1);
   for (int i = 0; i < 60; ++i) {
     double a = low + (high - low) / 3, b = high - (high - low) / 3;
-    (misfit(a) < misfit(b) ? high : low) = misfit(a) < misfit(b) ? b : a;
+    bool left = law.misfit(a) < law.misfit(b);
+    (left ? high : low) = left ? b : a;
   }
-  best = 0.5 * (low + high);
-  std::size_t freedom = time.size() - 3;
-  double t = student_975(freedom), most = misfit(best) * (1 + t * t / static_cast<double>(freedom));
-  auto end = [&](double bound, double beyond) {
-    if (misfit(bound) <= most) return beyond;
-    double inside = best, outside = bound;
-    for (int i = 0; i < 60; ++i) {
-      double middle = 0.5 * (inside + outside);
-      (misfit(middle) <= most ? inside : outside) = middle;
-    }
-    return inside;
-  };
-  return {best, end(kSteepest, -kInfinity), end(kFlattest, 0)};
+  double exponent = 0.5 * (low + high);
+  return {exponent, std::sqrt(law.misfit(exponent) / static_cast<double>(time.size())) / 2};
 }
 
 std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error, double resolution) {

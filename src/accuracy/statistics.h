@@ -13,18 +13,21 @@ struct Interval {
 // Of at least one value; of an even number of them the mean of the middle two.
 double median(std::vector<double> values);
 
-// How many times as long as a baseline something took: the median of the ratios of runs of one round, which have the
-// machine's moods in common, and its percentile bootstrap interval [Efron & Tibshirani 1993, An
-// Introduction to the Bootstrap, ch. 13]. As many times as baselines, at least one, all above 0.
-Interval median_ratio(const std::vector<double>& times, const std::vector<double>& baselines, std::uint64_t seed);
+// The median of a distribution from independent values of it, at least one. The interval holds it in 95 of 100 cases,
+// however the values are distributed: order statistics, interpolated [Hettmansperger & Sheather 1986, "Confidence
+// intervals based on interpolated order statistics", Statistics & Probability Letters 4]. Of fewer than six values it
+// is their range, which holds it less often: 1 - 2^(1 - count).
+Interval median_interval(const std::vector<double>& values);
 
-// The exponent s of a law e² = floor² + (c tˢ)², s < 0, from errors at several times: what an error does on logarithmic
-// scales once what does not depend on the time is taken away. The last point has the most time; the others, at least
-// three, all above 0 and with a larger error, are compared with it, so that the floor need not be known:
-// e² − e_last² = c² (t²ˢ − t_last²ˢ). Least squares of the logarithms, weighted by what errors of equal relative size
-// do to them; the interval is that of the profile [Seber & Wild 1989, Nonlinear Regression, sec. 5.4]. An end that the
-// points do not tell of is infinite or 0.
-Interval slope_to_limit(const std::vector<double>& time, const std::vector<double>& error);
+// The law e² = floor² + (c tˢ)², s < 0, that comes closest to errors at several times: least squares of the relative
+// differences of e², floor² and c² not below 0. What does not depend on the time is so taken away without taking any
+// one point for the floor. At least four points of time above 0. Errors below `resolution` count as much as those at
+// it.
+struct PowerLaw {
+  double exponent;  // s; -∞ or 0 where it is steeper or flatter than can be told
+  double misfit;    // root mean square of the relative differences between e and the law
+};
+PowerLaw fit_power_law(const std::vector<double>& time, const std::vector<double>& error, double resolution);
 
 // Which points no other beats in both numbers: true for each that has less cost than all of equal or less error, and
 // less error than all of equal or less cost. Of equal points the first. Errors closer than `resolution` count as equal:

@@ -9,6 +9,8 @@
 namespace pocketray {
 namespace {
 
+constexpr const char* kOtherTracerNote = "time of the reference's own tracer, not of the renderer in double precision";
+
 // The least, the baseline's and the best value of those that can be had, each once.
 std::vector<const SweepPoint*> levels_of(const SweepPlan& plan, const SweptKnob& swept) {
   std::vector<const SweepPoint*> there, levels;
@@ -98,7 +100,15 @@ void add_settings(const Settings& settings, const std::function<Status(const Set
   if (wanted_too && !is_planned(*plan, point.configuration)) plan->points.push_back(point);
 }
 
-Measured measured_of(const SweepPoint& point, const PointFigures& f, const PointFigures& baseline, std::uint64_t seed) {
+// Times of whole rounds in the baseline's of the same round: rounds have the machine's moods in common.
+std::vector<double> ratios_of(const PointFigures& f, const PointFigures& baseline) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < std::min(f.ns_per_pixel.size(), baseline.ns_per_pixel.size()); ++i)
+    ratios.push_back(f.ns_per_pixel[i] / baseline.ns_per_pixel[i]);
+  return ratios;
+}
+
+Measured measured_of(const SweepPoint& point, const PointFigures& f, const PointFigures& baseline) {
   Measured m;
   m.knob = point.knob, m.value = point.value, m.is_default = point.is_default, m.missing = point.missing;
   if (!m.missing.empty()) return m;
@@ -106,14 +116,12 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
     m.missing = "not measured yet";
     return m;
   }
-  std::size_t rounds = std::min(f.ns_per_pixel.size(), baseline.ns_per_pixel.size());
-  std::vector<double> ns(f.ns_per_pixel.begin(), f.ns_per_pixel.begin() + static_cast<std::ptrdiff_t>(rounds)),
-      of_baseline(baseline.ns_per_pixel.begin(), baseline.ns_per_pixel.begin() + static_cast<std::ptrdiff_t>(rounds));
-  // All ratios are of rounds, which have the machine's moods in common; so are the times that follow from them.
-  m.time_ratio = median_ratio(ns, of_baseline, seed);
-  double baseline_ns = median(baseline.ns_per_pixel);
-  m.ns_per_pixel = {m.time_ratio.value * baseline_ns, m.time_ratio.low * baseline_ns, m.time_ratio.high * baseline_ns};
-  if (&f == &baseline) m.ns_per_pixel = median_ratio(ns, std::vector<double>(rounds, 1.0), seed);
+  if (point.configuration.double_precision) m.note = kOtherTracerNote;
+  m.time_ratio = median_interval(ratios_of(f, baseline));
+  m.ns_per_pixel = median_interval(f.ns_per_pixel);
+  m.ns_per_pixel.value = m.time_ratio.value * median(baseline.ns_per_pixel);
+  m.ns_per_pixel.low = std::min(m.ns_per_pixel.low, m.ns_per_pixel.value);
+  m.ns_per_pixel.high = std::max(m.ns_per_pixel.high, m.ns_per_pixel.value);
   m.instructions_per_pixel = f.instructions_per_pixel;
   m.flip = f.flip, m.flip_before = f.flip_before, m.errors = f.errors;
   return m;
@@ -134,31 +142,55 @@ void mark_front(const SweepPlan& plan, double resolution, std::vector<Measured>*
     if (m.is_default) m.pareto = measured->front().pareto;
 }
 
-KnobFigures figures_of(const SweptKnob& swept, const Sweep& sweep) {
+// The slope of each round, and how far the medians are from such a law. `points`: which of the plan's, the best last.
+void find_slope(const std::vector<PointFigures>& figures, const std::vector<std::size_t>& points, const Sweep& sweep,
+                KnobFigures* k) {
+  std::vector<double> errors, medians, slopes;
+  for (std::size_t i : points) {
+    errors.push_back(sweep.measured[i].errors.rmse), medians.push_back(sweep.measured[i].time_ratio.value);
+    if (!(errors.back() * errors.back() + sweep.reference_rmse > 0)) return;  // no relative difference
+  }
+  double resolution = kClaimFactor * sweep.reference_rmse;
+  std::size_t rounds = figures[0].ns_per_pixel.size();
+  for (std::size_t i : points) rounds = std::min(rounds, figures[i].ns_per_pixel.size());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    std::vector<double> times;
+    for (std::size_t i : points) times.push_back(figures[i].ns_per_pixel[round] / figures[0].ns_per_pixel[round]);
+    slopes.push_back(fit_power_law(times, errors, resolution).exponent);
+  }
+  k->slope = median_interval(slopes);
+  k->slope_misfit = fit_power_law(medians, errors, resolution).misfit;
+  k->has_slope = std::isfinite(k->slope.value) && k->slope.value < 0;
+}
+
+KnobFigures figures_of(const SweptKnob& swept, const SweepPlan& plan, const std::vector<PointFigures>& figures,
+                       const Sweep& sweep) {
   const Knob& knob = *swept.knob;
   KnobFigures k;
   k.name = knob.name, k.what = knob.what, k.effect = knob.effect, k.theory = knob.theory;
   const Measured *worst = nullptr, *best = nullptr;
-  for (std::size_t i = 0; i < swept.count; ++i) {
-    const Measured& m = sweep.measured[swept.first + i];
+  bool one_renderer = true;
+  std::size_t best_index = 0;
+  for (std::size_t i = swept.first; i < swept.first + swept.count; ++i) {
+    const Measured& m = sweep.measured[i];
     if (!m.missing.empty()) continue;
     worst = worst ? worst : &m;
-    best = &m;
+    best = &m, best_index = i;
+    one_renderer = one_renderer && m.note.empty();
   }
-  std::vector<double> time, error;
-  for (std::size_t i = 0; best && i < swept.count; ++i) {
-    const Measured& m = sweep.measured[swept.first + i];
-    if (!m.missing.empty() || m.ns_per_pixel.value >= best->ns_per_pixel.value) continue;
+  std::vector<std::size_t> faster;
+  for (std::size_t i = swept.first; best && i < swept.first + swept.count; ++i) {
+    const Measured& m = sweep.measured[i];
+    if (!m.missing.empty() || m.time_ratio.value >= best->time_ratio.value) continue;
     double own = m.errors.rmse * m.errors.rmse - best->errors.rmse * best->errors.rmse;
-    if (own > std::pow(kClaimFactor * sweep.reference_rmse, 2))
-      time.push_back(m.ns_per_pixel.value), error.push_back(m.errors.rmse);
+    if (own > std::pow(kClaimFactor * sweep.reference_rmse, 2)) faster.push_back(i);
   }
-  k.has_slope = knob.labels.empty() && time.size() >= 3;
-  if (k.has_slope) {
-    time.push_back(best->ns_per_pixel.value), error.push_back(best->errors.rmse);
-    k.slope = slope_to_limit(time, error);
+  if (knob.labels.empty() && faster.size() >= 3) {
+    faster.push_back(best_index);
+    for (std::size_t& i : faster) i = plan.points[i].is_default ? 0 : i;
+    find_slope(figures, faster, sweep, &k);
   }
-  if (worst && worst->flip - best->flip > kClaimFactor * sweep.reference_flip)
+  if (worst && one_renderer && worst->flip - best->flip > kClaimFactor * sweep.reference_flip)
     k.ms_per_flip = (best->ns_per_pixel.value - worst->ns_per_pixel.value) * 1e-6 * sweep.width * sweep.height * 0.01 /
                     (worst->flip - best->flip);
   return k;
@@ -188,9 +220,9 @@ void sum_up(const SweepPlan& plan, const std::vector<PointFigures>& figures, Swe
   sweep->measured.clear();
   sweep->knobs.clear();
   for (std::size_t i = 0; i < plan.points.size(); ++i)
-    sweep->measured.push_back(measured_of(plan.points[i], figures[plan.points[i].is_default ? 0 : i], figures[0], i));
+    sweep->measured.push_back(measured_of(plan.points[i], figures[plan.points[i].is_default ? 0 : i], figures[0]));
   mark_front(plan, kClaimFactor * sweep->reference_flip, &sweep->measured);
-  for (const SweptKnob& swept : plan.knobs) sweep->knobs.push_back(figures_of(swept, *sweep));
+  for (const SweptKnob& swept : plan.knobs) sweep->knobs.push_back(figures_of(swept, plan, figures, *sweep));
 }
 
 }  // namespace pocketray

@@ -27,6 +27,7 @@ Json measured_json(const Measured& m) {
   json["bias"] = m.errors.bias;
   json["psnr"] = m.errors.psnr;
   json["pareto"] = m.pareto;
+  if (!m.note.empty()) json["note"] = m.note;
   return json;
 }
 
@@ -41,12 +42,16 @@ void print_knob(const Sweep& sweep, const KnobFigures& k) {
   std::printf("  %s: %s\n", k.name.c_str(), k.what.c_str());
   KnobEnds ends = ends_of(sweep, k.name);
   for (const Measured* m : values_of(sweep, k.name))
-    if (m == ends.worst || m == ends.standard || m == ends.best) print_value(sweep, *m);
+    if (m == ends.worst || m == ends.standard || m == ends.best) {
+      print_value(sweep, *m);
+      if (!m->note.empty()) std::printf("      (%s)\n", m->note.c_str());
+    }
   if (k.ms_per_flip > 0) std::printf("    %.3g ms per .01 ꟻLIP\n", k.ms_per_flip);
   if (k.ms_per_flip <= 0) std::printf("    the best costs no time\n");
   if (k.has_slope)
-    std::printf("    its own RMSE goes as time to the power of %.2f (%.2f … %.2f)%s%s\n", k.slope.value, k.slope.low,
-                k.slope.high, k.theory.empty() ? "" : "; theory: ", k.theory.c_str());
+    std::printf("    its own RMSE goes as time to the power of %.2f (%.2f … %.2f), within %.1f %%%s%s\n", k.slope.value,
+                k.slope.low, k.slope.high, 100 * k.slope_misfit,
+                k.theory.empty() ? "" : "; theory: ", k.theory.c_str());
 }
 
 void print_front(const Sweep& sweep) {
@@ -67,6 +72,7 @@ Json sweep_json(const Sweep& sweep) {
                      {"effect", k.effect},
                      {"theory", k.theory},
                      {"slope", k.has_slope ? interval_json(k.slope) : Json()},
+                     {"slope_misfit", k.has_slope ? Json(k.slope_misfit) : Json()},
                      {"ms_per_flip", k.ms_per_flip}});
   return {{"scene", sweep.scene},
           {"machine", sweep.machine},

@@ -156,6 +156,20 @@ TEST_CASE("page_answers_what_buys_the_most") {
   CHECK(has(page, "<td class=\"weak\"><i>0.0800</i></td>"));
 }
 
+// Goal: the page says what its times and intervals are. Method: a value that another tracer was timed for; few rounds.
+TEST_CASE("page_says_what_was_timed_and_how_surely") {
+  Sweep sweep = sample_sweep();
+  std::string page = page_of(sweep, {});
+  CHECK(has(page, "posing, refitting, placing lights, tracing and packing"));
+  CHECK(has(page, "its time is that tracer"));
+  CHECK(has(page, "That interval is of the times alone."));
+  CHECK(!has(page, "fewer than six rounds"));
+  sweep.measured[2].note = "time of <another> tracer", sweep.rounds = 5;
+  page = page_of(sweep, {});
+  CHECK(has(page, "<small>time of &lt;another&gt; tracer</small>"));
+  CHECK(has(page, "fewer than six rounds"));
+}
+
 // Goal: every sweep gives all files, and figures that are none do not show as such. Method: a whole one; one knob of
 // one value, of no errors, without figures; nothing at all.
 TEST_CASE("report_has_no_gaps") {
