@@ -53,6 +53,63 @@ std::uint32_t reference_samples(const AccuracyOptions& options, Transport transp
                                                  : std::min(usual, options.reference_samples);
 }
 
+namespace {
+
+// The rows of a picture that is begun, in its file; a file may hold rows that the state does not know of yet.
+Status save_begun(const AccuracyOptions& options, const Settings& settings, const std::vector<Vec3>& picture,
+                  const AccuracyState& state) {
+  std::vector<Vec3> there(picture.size(), Vec3{0, 0, 0});  // without what other threads write now
+  std::ptrdiff_t width = settings.width;
+  for (std::ptrdiff_t row = 0; row < static_cast<std::ptrdiff_t>(settings.height); ++row)
+    if (state.begun_rows[static_cast<std::size_t>(row)] == '1')
+      std::copy_n(picture.begin() + row * width, width, there.begin() + row * width);
+  RETURN_IF_ERROR(save_radiance(options.folder, state.begun, settings.width, settings.height, there));
+  return save_state(options.folder, state);
+}
+
+// The rows of a picture that are still to be traced; the others are read.
+Status resume(const AccuracyOptions& options, const Settings& settings, const std::string& name, AccuracyState* state,
+              std::vector<Vec3>* picture, std::vector<std::uint32_t>* rows) {
+  picture->assign(std::size_t(settings.width) * settings.height, Vec3{0, 0, 0});
+  bool ours = state->begun == name && state->begun_rows.size() == settings.height;
+  if (ours && state->begun_rows.find('1') != std::string::npos)
+    RETURN_IF_ERROR(load_radiance(options.folder, name, settings.width, settings.height, picture));
+  if (!ours) state->begun = name, state->begun_rows.assign(settings.height, '0');
+  for (std::uint32_t row = 0; row < settings.height; ++row)
+    if (state->begun_rows[row] != '1') rows->push_back(row);
+  return success();
+}
+
+// Renders a picture, or what is left of it, and saves it now and then. What each path finds follows from seed, pixel
+// and index, so the rows are the same whenever they are traced.
+Status render_seed(const AccuracyOptions& options, const ReferenceOptions& o, const std::string& stage,
+                   const std::string& name, const Rig& rig, AccuracyState* state, std::vector<Vec3>* picture,
+                   bool* whole) {
+  const Settings& settings = rig.opened.renderer.settings;
+  std::vector<std::uint32_t> rows;
+  RETURN_IF_ERROR(resume(options, settings, name, state, picture, &rows));
+  Progress progress = start_progress(stage.c_str(), rows.size());
+  std::uint64_t done = 0, saved_ns = clock_ns();
+  auto row_done = [&](std::uint32_t row) {
+    state->begun_rows[row] = '1';
+    show_progress(&progress, ++done);
+    if (options.row_done) options.row_done(row);
+    if (static_cast<double>(clock_ns() - saved_ns) < options.save_seconds * 1e9) return;
+    // What fails now is tried again, at the latest in the end.
+    if (save_begun(options, settings, *picture, *state).ok) saved_ns = clock_ns();
+  };
+  auto trace_row = [&](std::uint32_t row, Vec3d* means) { trace_reference(rig.reference, o, row, row + 1, means); };
+  *whole = trace_rows(settings, rows, trace_row, row_done, picture->data());
+  end_progress(&progress);
+  if (!*whole) return save_begun(options, settings, *picture, *state);
+  RETURN_IF_ERROR(save_radiance(options.folder, name, settings.width, settings.height, *picture));
+  state->references.push_back(name);
+  state->begun.clear(), state->begun_rows.clear();
+  return save_state(options.folder, *state);
+}
+
+}  // namespace
+
 Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
                         ReferencePictures* pictures, bool* whole) {
   const Settings& settings = rig->opened.renderer.settings;
@@ -70,17 +127,9 @@ Status render_reference(const AccuracyOptions& options, Transport transport, Rig
     o.transport = transport;
     o.samples_per_pixel = std::max(1u, reference_samples(options, transport) / 2);
     o.seed = static_cast<std::uint64_t>(i) + 1;
-    seeds[i].resize(std::size_t(settings.width) * settings.height);
     std::string stage = std::string(name_of(transport)) + " reference, " + std::to_string(i + 1) + " of 2";
-    Progress progress = start_progress(stage.c_str(), settings.height);
-    *whole = trace_rows(
-        settings, [&](std::uint32_t row, Vec3d* means) { trace_reference(rig->reference, o, row, row + 1, means); },
-        &progress, seeds[i].data());
-    end_progress(&progress);
+    RETURN_IF_ERROR(render_seed(options, o, stage, name, *rig, state, &seeds[i], whole));
     if (!*whole) return success();
-    RETURN_IF_ERROR(save_radiance(options.folder, name, settings.width, settings.height, seeds[i]));
-    state->references.push_back(name);
-    RETURN_IF_ERROR(save_state(options.folder, *state));
   }
   compare(*rig, options.pixels_per_degree, seeds[0], seeds[1], pictures);
   return success();

@@ -17,7 +17,7 @@ struct ReferencePictures {
 };
 
 // Renders both seeds with all threads, or takes from the folder what is there. After an interrupt *whole is false and
-// what is finished is kept.
+// the rows that are finished are kept; the next call goes on with the others.
 Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
                         ReferencePictures* pictures, bool* whole);
 

@@ -1,6 +1,7 @@
 // A scene opened for a sweep.
 #include <zlib.h>
 
+#include <mutex>
 #include <thread>
 
 #include "app/accuracy_sweep.h"
@@ -91,23 +92,20 @@ std::uint32_t row_count(const Rig& rig) {
   return rig.part_pixels ? rig.part_pixels / s.width : s.height;
 }
 
-// As render_frame() does, with the times of tracing alone.
+// As render_frame() does.
 Status render_in_double(Rig* rig, double seconds) {
   Renderer* r = &rig->opened.renderer;
   RETURN_IF_ERROR(prepare_frame(r, seconds));
-  make_rig_reference(rig);
-  std::uint64_t start = clock_ns();
-  std::uint32_t rows = row_count(*rig);
-  Settings part = r->settings;
-  part.height = rows;
+  std::vector<std::uint32_t> all(row_count(*rig));
+  std::uint32_t rows = static_cast<std::uint32_t>(all.size());
+  for (std::uint32_t i = 0; i < rows; ++i) all[i] = i;
   trace_rows(
-      part,
+      r->settings, all,
       [&](std::uint32_t i, Vec3d* radiances) {
         std::uint32_t row = (2 * i + 1) * r->settings.height / (2 * rows);
         trace_as_rendered(rig->reference, row, row + 1, radiances);
       },
       nullptr, r->image.data);
-  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
 }
 
@@ -137,25 +135,29 @@ void make_rig_reference(Rig* rig) {
   rig->reference = make_reference(frame, &arena);
 }
 
-bool trace_rows(const Settings& settings, const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
-                Progress* progress, Vec3* picture) {
-  std::atomic<std::uint32_t> next_row{0}, rows_done{0};
-  auto take_rows = [&](bool shows) {
+bool trace_rows(const Settings& settings, const std::vector<std::uint32_t>& rows,
+                const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
+                const std::function<void(std::uint32_t)>& row_done, Vec3* picture) {
+  std::atomic<std::size_t> next{0};
+  std::size_t done = 0;
+  std::mutex mutex;
+  auto take_rows = [&] {
     std::vector<Vec3d> row_of(settings.width);
-    for (std::uint32_t row; !interrupted && (row = next_row++) < settings.height;) {
-      trace_row(row, row_of.data());
-      Vec3* out = picture + std::size_t(row) * settings.width;
+    for (std::size_t i; !interrupted && (i = next++) < rows.size();) {
+      trace_row(rows[i], row_of.data());
+      Vec3* out = picture + std::size_t(rows[i]) * settings.width;
       for (const Vec3d& radiance : row_of)
         *out++ = {static_cast<float>(radiance.x), static_cast<float>(radiance.y), static_cast<float>(radiance.z)};
-      ++rows_done;
-      if (shows) show_progress(progress, rows_done);
+      std::lock_guard<std::mutex> lock(mutex);
+      ++done;
+      if (row_done) row_done(rows[i]);
     }
   };
   std::vector<std::thread> threads;
-  for (std::uint32_t i = 1; i < settings.threads; ++i) threads.emplace_back(take_rows, false);
-  take_rows(progress != nullptr);
+  for (std::uint32_t i = 1; i < settings.threads; ++i) threads.emplace_back(take_rows);
+  take_rows();
   for (std::thread& thread : threads) thread.join();
-  return rows_done == settings.height;
+  return done == rows.size();
 }
 
 std::uint32_t take_part(Rig* rig) {
@@ -176,19 +178,23 @@ std::uint32_t take_part(Rig* rig) {
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
   Renderer* r = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(r, configuration.settings));
+  RETURN_IF_ERROR(prepare_frame(r, seconds));  // what a change of settings costs is not a frame's
+  if (configuration.double_precision) make_rig_reference(rig);
+  std::uint64_t start = clock_ns();
   if (configuration.double_precision)
     RETURN_IF_ERROR(render_in_double(rig, seconds));
   else
     RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
+  double frame_ns = static_cast<double>(clock_ns() - start);
   const OutputFormat& output = kOutputFormats[configuration.output];
   int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height),
       line_bytes = width * output.format.bits_per_pixel / 8;
   rig->packed.resize((static_cast<std::size_t>(line_bytes) * r->settings.height + 3) / 4);
-  std::uint64_t start = clock_ns();
+  start = clock_ns();
   pack_rows(r->image.data, width, height, 0, static_cast<int>(row_count(*rig)), r->exposure, output.format,
             Rotation::none, output.dither, rig->packed.data(), line_bytes);
   double pack_ns = static_cast<double>(clock_ns() - start);
-  *ns_per_pixel = (r->timings.trace_ms * 1e6 + pack_ns) / static_cast<double>(r->image.count);
+  *ns_per_pixel = (frame_ns + pack_ns) / static_cast<double>(r->image.count);
   return success();
 }
 
@@ -198,12 +204,15 @@ Status count_instructions(Rig* rig, const Configuration& configuration, double s
   if (start == 0) return success();
   Renderer* r = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(r, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(r, seconds));  // the frame does so again, and it is not timed
+  RETURN_IF_ERROR(prepare_frame(r, seconds));
+  if (configuration.double_precision) make_rig_reference(rig);
+  start = platform::instruction_count();
+  RETURN_IF_ERROR(prepare_frame(r, seconds));  // the frame does so twice, and it is not counted
   std::uint64_t prepared = platform::instruction_count();
   double ns_per_pixel;
   RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));
   std::uint64_t end = platform::instruction_count();
-  double traced = static_cast<double>(end - prepared) - static_cast<double>(prepared - start);
+  double traced = static_cast<double>(end - prepared) - 2 * static_cast<double>(prepared - start);
   if (!interrupted && traced > 0) *per_pixel = traced / static_cast<double>(r->image.count);
   return success();
 }

@@ -63,6 +63,8 @@ Status read_state(const std::string& text, const std::string& path, AccuracyStat
     state->rounds = json.at("rounds").get<std::uint32_t>();
     state->counted = json.value("counted", std::string());
     state->references = json.at("references").get<std::vector<std::string>>();
+    state->begun = json.value("begun", std::string());
+    state->begun_rows = json.value("begun-rows", std::string());
     for (const auto& item : json.at("points").items()) {
       PointFigures f = figures_from(item.value());
       if (f.ns_per_pixel.size() != state->rounds)
@@ -120,10 +122,9 @@ Status open_state(const std::string& folder, const Json& wanted, bool restart, A
 Status save_state(const std::string& folder, const AccuracyState& state) {
   Json points = Json::object();
   for (const auto& point : state.points) points[point.first] = to_json(point.second);
-  Json json = {{"key", state.key},
-               {"rounds", state.rounds},
-               {"counted", state.counted},
-               {"references", state.references},
+  Json json = {{"key", state.key},         {"rounds", state.rounds},
+               {"counted", state.counted}, {"references", state.references},
+               {"begun", state.begun},     {"begun-rows", state.begun_rows},
                {"points", points}};
   return save_text(folder, kStateName, written(json));
 }

@@ -17,6 +17,7 @@ struct AccuracyState {
   std::string counted;                         // how instructions are counted where the CPU does not; empty: it does
   std::map<std::string, PointFigures> points;  // by knob and value; times of whole rounds alone
   std::vector<std::string> references;         // pictures that are whole, by name
+  std::string begun, begun_rows;               // one that is not; of its rows '1' for those in its file, else '0'
 };
 
 // Makes the folder and reads its state, or starts one with the key. Refuses, unless `restart`, a state with another key

@@ -20,6 +20,8 @@ struct AccuracyOptions {
   double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
   bool restart = false;
   bool starts_valgrind = false;  // where the CPU counts no instructions; of a program started as `pocketray accuracy …`
+  double save_seconds = 10;      // between two times that a running reference is saved
+  std::function<void(std::uint32_t)> row_done;  // called after each row of a reference, one at a time; may be null
   std::string counting_folder;  // of the program that valgrind runs, and not empty: what it is to render
 };
 
@@ -41,20 +43,21 @@ Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, st
 // Makes rig->reference if it is not made yet, of the frame as it is prepared.
 void make_rig_reference(Rig* rig);
 
-// Calls trace_row(row, radiances) for every row by all threads, and puts what it gets into `picture`, width × height.
-// `progress` may be null. False: interrupted.
-bool trace_rows(const Settings& settings, const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
-                Progress* progress, Vec3* picture);
+// Calls trace_row(row, radiances) for each of the rows by all threads, puts what it gets into `picture`, width ×
+// height, and calls row_done(row), one thread at a time; that may be null. False: interrupted before the last of them.
+bool trace_rows(const Settings& settings, const std::vector<std::uint32_t>& rows,
+                const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
+                const std::function<void(std::uint32_t)>& row_done, Vec3* picture);
 
 // Frames are about a sixteenth of the picture from now on, spread over it in tiles as the whole one is traced in; a
 // small picture stays whole. What they hold elsewhere is left as it was. Returns the pixels.
 std::uint32_t take_part(Rig* rig);
 
-// Renders and packs one frame. Times both; keeps the picture in the rig's renderer. Stops at an interrupt, which the
-// caller has to look for.
+// Prepares, renders and packs one frame after another has been prepared with the same settings. Times it; keeps the
+// picture in the rig's renderer. Stops at an interrupt, which the caller has to look for.
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel);
 
-// Instructions per pixel of what time_frame() times; NaN where none are counted or at an interrupt.
+// Instructions per pixel of tracing and packing what time_frame() times; NaN where none are counted or at an interrupt.
 Status count_instructions(Rig* rig, const Configuration& configuration, double seconds, double* per_pixel);
 
 // Measures everything. What is there already is taken from the folder; after an interrupt the rest is missing and

@@ -72,6 +72,17 @@ void check_same_errors(const Sweep& a, const Sweep& b) {
   }
 }
 
+void copy_file(const std::string& from, const std::string& to) {
+  platform::MappedFile file;
+  platform::FileError error;
+  REQUIRE(platform::map_file(from.c_str(), &file, &error));
+  platform::FileWriter writer;
+  REQUIRE(platform::open_writer(to.c_str(), &writer, &error));
+  platform::write_bytes(&writer, file.bytes, file.byte_count);
+  REQUIRE(platform::close_writer(&writer, &error));
+  platform::unmap_file(&file);
+}
+
 // Ends what is being measured as soon as one round is whole.
 void interrupt_after_a_round(const Folder& folder, const std::atomic<bool>& done) {
   while (!done) {
@@ -131,6 +142,21 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   CHECK(sixteen < 0.7 * one);
 }
 
+// Goal: the time of a frame is that of all that a frame takes. Method: a moving scene and a few pixels, so that posing
+// and refitting take longer than packing: no less than the renderer's own times of that frame together.
+TEST_CASE("accuracy_times_whole_frames") {
+  Folder folder;
+  AccuracyOptions o = small(folder);
+  o.common.scene = "seesaw", o.common.size = "8x6", o.common.memory = "64M";
+  std::unique_ptr<Rig> rig;
+  REQUIRE(open_rig(o, kCornellSphereColumns, &rig).ok);
+  double ns_per_pixel = 0;
+  REQUIRE(time_frame(rig.get(), rig->baseline, 0.5, &ns_per_pixel).ok);
+  const Timings& t = rig->opened.renderer.timings;
+  CHECK(t.refit_ms > 0);
+  CHECK(ns_per_pixel * 8 * 6 * 1e-6 >= t.pose_ms + t.refit_ms + t.trace_ms);
+}
+
 // Goal: interrupted and resumed, a sweep ends with the errors of one that was not. Method: an interrupt amid the
 // rounds; then as many rounds as are whole and one; against a fresh folder with one round.
 TEST_CASE("accuracy_resumes_where_it_was_interrupted") {
@@ -180,6 +206,45 @@ TEST_CASE("accuracy_interrupted_in_a_reference_goes_on") {
   check_same_errors(measure(o), measure(other));
 }
 
+// Goal: what is traced of a reference is not lost, and its picture is that of one that was never interrupted. Method:
+// an interrupt after seven rows of the second picture; each row is traced once over both runs. Then a program that was
+// killed after it had saved some rows: its files, copied at that time, against the fresh folder.
+TEST_CASE("accuracy_goes_on_within_a_reference") {
+  constexpr std::uint32_t kRows = 24, kPictures = 4;  // two seeds of each kind
+  Folder folder, fresh, killed;
+  AccuracyOptions o = small(folder), other = small(fresh);
+  o.rounds = other.rounds = 1;
+  std::uint32_t traced = 0, again = 0;
+  o.row_done = [&](std::uint32_t) { interrupted = ++traced == kRows + 7; };
+  Sweep sweep;
+  bool whole = true;
+  Status status = measure_sweep(o, &sweep, &whole);
+  interrupted = false;
+  REQUIRE_MESSAGE(status.ok, status.message);
+  CHECK_FALSE(whole);
+  CHECK((traced >= kRows + 7 && traced <= kRows + 7 + o.common.threads));
+  o.row_done = [&](std::uint32_t) { ++again; };
+  other.row_done = [&](std::uint32_t) {
+    static int rows = 0;
+    if (++rows != 9) return;
+    for (const char* name : {"accuracy.state", "reference-model-1.pfm"}) copy_file(fresh.file(name), killed.file(name));
+  };
+  other.save_seconds = 0;
+  Sweep resumed = measure(o), never_stopped = measure(other);
+  CHECK(traced + again == kPictures * kRows);
+  check_same_errors(resumed, never_stopped);
+
+  AccuracyOptions after = small(killed);
+  after.rounds = 1;
+  std::uint32_t left = 0;
+  after.row_done = [&](std::uint32_t) { ++left; };
+  check_same_errors(measure(after), never_stopped);
+  CHECK(left == kPictures * kRows - 8);  // the ninth was not saved yet
+  after.restart = true, left = 0;
+  measure(after);
+  CHECK(left == kPictures * kRows);
+}
+
 // Goal: what another sweep measured is not taken for this one's. Method: other options in the same folder; the message
 // names what differs and how to mend it; --restart starts anew.
 TEST_CASE("accuracy_refuses_the_state_of_another_sweep") {
@@ -224,6 +289,7 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   REQUIRE(open_state(folder.path, key, false, &state).ok);
   state.rounds = 2;
   state.references = {"reference-model-1"};
+  state.begun = "reference-model-2", state.begun_rows = "0110";
   PointFigures f;
   f.has_errors = true;
   f.errors.psnr = std::numeric_limits<double>::infinity();
@@ -236,6 +302,7 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   REQUIRE(open_state(folder.path, key, false, &read).ok);
   CHECK(read.rounds == 2);
   CHECK(read.references == state.references);
+  CHECK((read.begun == state.begun && read.begun_rows == state.begun_rows));
   CHECK(read.points.at("samples 4").ns_per_pixel == f.ns_per_pixel);
   CHECK(std::isinf(read.points.at("samples 4").errors.psnr));
   CHECK(std::isnan(read.points.at("samples 4").instructions_per_pixel));
