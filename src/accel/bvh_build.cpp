@@ -24,10 +24,25 @@ constexpr std::uint32_t kTrianglesPerSpareLeaf = 128;  // what leaves may be sho
 constexpr std::size_t leaf_count_max(std::size_t triangles) {
   return leaves_for(static_cast<std::uint32_t>(triangles)) + triangles / kTrianglesPerSpareLeaf;
 }
-// Nodes above the treelets have four children, treelets or leaves at their ends. So a treelet of L leaves accounts for
-// treelet_node_count(L) nodes and a third of one, which for the L >= 4 that there are is at most 7/15 L (L = 5).
+// Nodes above the treelets have four children, treelets or leaves at their ends. So with E ends there are (E - 1) / 3
+// of them, and an end of L leaves accounts for treelet_node_count(L) nodes (a leaf among such nodes for none) and a
+// third of one, which for the L that there are, 1 and at least 4, is at most 7/15 L. Where the root is a treelet, it
+// alone counts. None of that depends on where triangles lie: part_to_split() has a part to split until there are four,
+// split_part() a split for it, and only what is left to choose follows the boxes.
 constexpr std::size_t node_count_max(std::size_t leaves) { return 7 * leaves / 15 + 1; }
-static_assert(kSideLeavesMin == 4, "as above");
+constexpr bool ends_are_bounded() {
+  for (std::size_t leaves = kSideLeavesMin; leaves <= kTreeletLeafMax; ++leaves)
+    if (15 * (3 * treelet_node_count(leaves) + 1) > 3 * 7 * leaves) return false;
+  for (std::size_t leaves = 0; leaves <= kTreeletLeafMax; ++leaves)
+    if (treelet_node_count(leaves) > node_count_max(leaves)) return false;
+  return true;
+}
+static_assert(ends_are_bounded(), "as above");
+static_assert(kSideLeavesMin < kTreeletLeafMax / 3, "among three parts of more than a treelet one can be split");
+static_assert(bvh_bytes(node_count_max(leaf_count_max(kTriangleCountMax)), leaf_count_max(kTriangleCountMax)) +
+                      2 * kArenaAlignment <=
+                  0xFFFFFFFFu,
+              "fits an address of 32 bits");
 
 // Levels of nodes under which n triangles surely fit when every range is halved: two halvings a level, rounding
 // included.

@@ -10,6 +10,46 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
+// Nodes of four children are full when halves of a and b leaves can be forests that need no node with an empty lane.
+// As a forest of k roots with k = L modulo 3 a subtree of L leaves needs (L - k) / 3 nodes of four children and none
+// else. Its halves can always be such forests with k roots together, but where one L is a multiple of three and the
+// other one is that or leaves the remainder two.
+constexpr bool halves_are_full(std::uint32_t a, std::uint32_t b) {
+  return a % 3 == 1 || b % 3 == 1 || (a % 3 == 2 && b % 3 == 2);
+}
+
+// The proof that a treelet of L leaves becomes at most treelet_node_count(L) nodes, whatever its boxes are. nodes[L][r]
+// bounds what a subtree of L leaves needs below or as up to r roots, for the worst of the splits that are allowed:
+// choose_roots() takes the fewest nodes, of the subtree as one root or of its halves with r roots between them.
+struct TreeletBound {
+  std::uint32_t nodes[kTreeletLeafMax + 1][5] = {};
+  constexpr TreeletBound() {
+    for (std::uint32_t leaves = 2; leaves <= kTreeletLeafMax; ++leaves) {
+      std::uint32_t* most = nodes[leaves];
+      for (std::uint32_t left = 1; left < leaves; ++left) {
+        if (!halves_are_full(left, leaves - left)) continue;
+        for (std::uint32_t roots = 2; roots <= 4; ++roots) {
+          std::uint32_t least = ~0u;
+          for (std::uint32_t i = 1; i < roots; ++i) {
+            std::uint32_t sum = nodes[left][i] + nodes[leaves - left][roots - i];
+            least = sum < least ? sum : least;
+          }
+          most[roots] = least > most[roots] ? least : most[roots];
+        }
+      }
+      most[1] = 1 + most[4];
+      for (std::uint32_t roots = 2; roots <= 4; ++roots) most[roots] = most[1] < most[roots] ? most[1] : most[roots];
+    }
+  }
+};
+constexpr bool treelets_are_bounded() {
+  constexpr TreeletBound bound;
+  for (std::uint32_t leaves = 2; leaves <= kTreeletLeafMax; ++leaves)
+    if (bound.nodes[leaves][1] > treelet_node_count(leaves)) return false;
+  return true;
+}
+static_assert(treelets_are_bounded(), "for every shape of the binary tree");
+
 struct SweepSplit {
   double cost = kInfinite;
   int axis = 0;
@@ -34,13 +74,10 @@ void sort_primitives(Treelet* treelet, std::uint32_t count) {
   }
 }
 
-// Whether a split leaves full leaves, and lets nodes be full. The latter: as a forest of k roots with k = L modulo 3 a
-// subtree of L leaves needs (L - k) / 3 nodes of four children and none else. Its halves can always be such forests
-// with k roots together, but where one L is a multiple of three and the other one is that or leaves the remainder two.
+// Whether a split leaves full leaves, and lets nodes be full: see halves_are_full().
 bool split_is_full(std::uint32_t left, std::uint32_t right) {
   std::uint32_t left_leaves = leaves_for(left), right_leaves = leaves_for(right);
-  if (left_leaves + right_leaves != leaves_for(left + right)) return false;
-  return left_leaves % 3 == 1 || right_leaves % 3 == 1 || (left_leaves % 3 == 2 && right_leaves % 3 == 2);
+  return left_leaves + right_leaves == leaves_for(left + right) && halves_are_full(left_leaves, right_leaves);
 }
 
 // The cheapest full split of a node, among all positions on all axes. There is one: four primitives on the left.
@@ -104,28 +141,34 @@ void split_node(Treelet* treelet, TreeletNode* node) {
   node->right = add_node(treelet, node->begin + split.left_count, node->count - split.left_count);
 }
 
+// What roots cost: the fewest nodes first, which keeps to the planned memory, then the least surface. Two numbers and
+// no sum of them: where all boxes are points or lines, there is no surface to weigh nodes by.
+bool is_cheaper(const TreeletCost& a, const TreeletCost& b) {
+  return a.node_count != b.node_count ? a.node_count < b.node_count : a.surface < b.surface;
+}
+
 // The cheapest ways to stand for a subtree by one to four roots, from those of its halves [Wald, Benthin & Boulos 2008,
 // "Getting Rid of Packets", sec. 3.2].
-void choose_roots(TreeletNode* node, const Treelet& treelet, double node_price) {
+void choose_roots(TreeletNode* node, const Treelet& treelet) {
   double area = half_area(node->box);
   if (node->left == 0) {
-    for (int roots = 1; roots <= 4; ++roots) node->cost[roots] = area, node->left_roots[roots] = 0;
+    for (int roots = 1; roots <= 4; ++roots) node->cost[roots] = {0, area}, node->left_roots[roots] = 0;
     return;
   }
   const TreeletNode &left = treelet.nodes[node->left], &right = treelet.nodes[node->right];
-  double split_cost[5];
+  TreeletCost split_cost[5];
   std::uint8_t split_left[5];
-  for (int roots = 2; roots <= 4; ++roots) {
-    split_cost[roots] = kInfinite;
+  for (int roots = 2; roots <= 4; ++roots)
     for (int i = 1; i < roots; ++i) {
-      double cost = left.cost[i] + right.cost[roots - i];
-      if (cost < split_cost[roots]) split_cost[roots] = cost, split_left[roots] = static_cast<std::uint8_t>(i);
+      const TreeletCost &a = left.cost[i], &b = right.cost[roots - i];
+      TreeletCost cost = {a.node_count + b.node_count, a.surface + b.surface};
+      if (i == 1 || is_cheaper(cost, split_cost[roots]))
+        split_cost[roots] = cost, split_left[roots] = static_cast<std::uint8_t>(i);
     }
-  }
-  node->cost[1] = area + node_price + split_cost[4];
+  node->cost[1] = {1 + split_cost[4].node_count, area + split_cost[4].surface};
   node->left_roots[1] = split_left[4];
   for (int roots = 2; roots <= 4; ++roots) {
-    bool whole = node->cost[1] <= split_cost[roots];
+    bool whole = !is_cheaper(split_cost[roots], node->cost[1]);
     node->cost[roots] = whole ? node->cost[1] : split_cost[roots];
     node->left_roots[roots] = whole ? 0 : split_left[roots];
   }
@@ -152,9 +195,8 @@ void build_treelet(const BuildPrimitive* primitives, std::uint32_t count, Treele
   add_node(treelet, 0, count);
   for (std::uint32_t i = 0; i < treelet->node_count; ++i)
     if (treelet->nodes[i].count > kBvhLeafSize) split_node(treelet, &treelet->nodes[i]);
-  // More than all surfaces of the treelet together: the fewest nodes first, then the least surface.
-  double node_price = half_area(treelet->nodes[0].box) * (2 * kTreeletLeafMax);
-  for (std::uint32_t i = treelet->node_count; i-- > 0;) choose_roots(&treelet->nodes[i], *treelet, node_price);
+  for (std::uint32_t i = treelet->node_count; i-- > 0;) choose_roots(&treelet->nodes[i], *treelet);
+  CHECK_LE(treelet->nodes[0].cost[1].node_count, treelet_node_count(leaves_for(count)));
 }
 
 std::uint32_t treelet_children(const Treelet& treelet, std::uint32_t index, std::uint32_t children[4]) {

@@ -7,9 +7,15 @@ namespace pocketray {
 constexpr std::uint32_t kTreeletMax = 128;  // triangles
 constexpr std::uint32_t kTreeletLeafMax = leaves_for(kTreeletMax);
 
-// A treelet of L leaves becomes this many nodes (one where it is a single leaf). With four children in each it would be
-// (L - 1) / 3.
+// A treelet of L leaves becomes at most this many nodes (one where it is a single leaf), whatever its triangles are:
+// bvh_treelet.cpp has the proof. With four children in each it would be (L - 1) / 3.
 constexpr std::size_t treelet_node_count(std::size_t leaves) { return leaves > 1 ? (leaves + 1) / 3 : 1; }
+
+// What a subtree costs as so many roots: nodes at and below the roots, and their surface.
+struct TreeletCost {
+  std::uint32_t node_count;
+  double surface;
+};
 
 // A node of a binary tree.
 struct TreeletNode {
@@ -18,7 +24,7 @@ struct TreeletNode {
   std::uint32_t left, right;   // nodes; 0 in a leaf
   // The subtree as one root or as up to two, three, four of them: what that costs, and how many of the roots stand for
   // the left half (0: the subtree is one root). Entry 1 has the roots on the left of the four beneath the one.
-  double cost[5];
+  TreeletCost cost[5];
   std::uint8_t left_roots[5];
 };
 
