@@ -28,7 +28,7 @@ struct AccelInfo {
   // Builds over the triangles of `accel` (positions and triangles are set). Keeps data in `keep`, uses and releases
   // `scratch`. Never fails: sizes are planned.
   void (*build)(Accel* accel, Arena* keep, Arena* scratch);
-  // Adapts writable data to moved positions, topology unchanged. Null: rebuild instead.
+  // Adapts writable data to moved positions, topology unchanged. Null: build() again, for every frame.
   void (*refit)(Accel* accel, Array<std::uint8_t> data);
   // Adopts baked data, aligned to 64, after checking every index, bound and vertex in it against the geometry.
   Status (*adopt)(Accel* accel, Array<const std::uint8_t> data);

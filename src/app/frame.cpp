@@ -25,12 +25,17 @@ void pose_scene(Renderer* r, double seconds) {
   if (r->frame.normals.count && r->pose.normals.count) r->frame.normals = r->pose.normals;
 }
 
+// An accelerator that cannot be refitted is built anew, in the memory that plan_memory() set aside for that.
+void follow_motion(Renderer* r) {
+  r->accel.positions = r->frame.positions;
+  if (r->accel_info->refit) return r->accel_info->refit(&r->accel, r->accel_data);
+  Arena keep = make_arena("accelerator", r->accel_data.data, r->accel_data.bytes());
+  r->accel_info->build(&r->accel, &keep, &r->frame_arena);
+}
+
 void accelerate(Renderer* r) {
   std::uint64_t start = clock_ns();
-  if (r->pose.positions.count) {
-    r->accel.positions = r->frame.positions;
-    r->accel_info->refit(&r->accel, r->accel_data);
-  }
+  if (r->pose.positions.count) follow_motion(r);
   wait_for_pace(&r->pace, 0, start);
   r->timings.refit_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   r->frame.accel = r->accel;

@@ -45,6 +45,12 @@ Status adopt_or_build(Renderer* r) {
   r->accel.positions = r->scene.positions;
   r->accel.triangles = r->scene.triangles;
   r->accel.bounds = scene_bounds(r->scene);
+  if (moves(*r) && !r->accel_info->refit) {
+    r->accel_data = arena_array<std::uint8_t>(&r->persistent_arena, r->accel_info->need(r->scene.triangles.count));
+    Arena keep = make_arena("accelerator", r->accel_data.data, r->accel_data.bytes());
+    r->accel_info->build(&r->accel, &keep, &r->frame_arena);
+    return success();
+  }
   if (r->scene.accel.empty()) {
     r->accel_info->build(&r->accel, &r->persistent_arena, &r->frame_arena);
     r->accel_data = {const_cast<std::uint8_t*>(r->accel.data.data), r->accel.data.count};  // lies in our arena

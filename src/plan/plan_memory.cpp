@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "base/check.h"
 #include "base/span.h"
@@ -44,8 +45,9 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
 
   bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
   std::uint32_t triangles = scene.triangles.count;
+  bool rebuilds = moves && !accel.refit;  // for every frame
   std::size_t keep = 0, scratch = 0;
-  if (scene.accel.empty()) {
+  if (scene.accel.empty() || rebuilds) {
     keep = accel.need(triangles);
     scratch = accel.scratch_need(triangles);
   } else if (moves) {
@@ -59,7 +61,8 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
-  // The build's scratch is free again when the first frame is shown: the two share the frame arena.
+  // The scratch of a single build is free again when the first frame is shown: the two share the frame arena.
+  if (rebuilds) add_part(plan, "build scratch", ArenaKind::frame, std::exchange(scratch, 0));
   add_part(plan, scratch > output_bytes ? "build scratch, then output" : "output", ArenaKind::frame,
            std::max(scratch, output_bytes));
   align_arenas(plan);

@@ -1,0 +1,70 @@
+// An accelerator that cannot be refitted is built anew for every frame of a scene that moves.
+#include <doctest/doctest.h>
+
+#include "accel/accel_list.h"
+#include "app/frame.h"
+#include "scene/baked_file.h"
+#include "support/feature_sets.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+AccelInfo without_refit(AccelInfo info) {
+  info.refit = nullptr;
+  return info;
+}
+
+std::size_t frame_bytes(const Renderer& r) { return r.memory.arena_bytes[static_cast<int>(ArenaKind::frame)]; }
+
+}  // namespace
+
+// Goal: without refit() the pictures are the same and the memory is that of the plan, with an accelerator baked in or
+// without. Method: a list entry for the test alone, which builds and has no refit(); frames forth and back in time.
+TEST_CASE("rebuild_stands_in_for_refit_within_the_plan") {
+  auto generated = generate_scene(bit(Feature::animation) | bit(Feature::point_light), 3);
+  Settings settings = settings_for(0, 24, 18);
+  settings.memory_bytes = 4u << 20;
+  BakedFile file = bake(generated->scene);
+  for (const AccelInfo* known : kAccelList) {
+    AccelInfo rebuilt = without_refit(*known);
+    auto usual = make_renderer(generated->scene, settings, known);
+    Scene scene = generated->scene;
+    for (bool baked : {false, true}) {
+      INFO(known->name << (baked ? ", baked" : ""));
+      if (baked && usual->renderer.accel.data.empty()) continue;
+      if (baked) scene.accel = usual->renderer.accel.data;
+      auto test = make_renderer(scene, settings, &rebuilt);
+      Renderer& r = test->renderer;
+      for (double seconds : {0.0, 0.9, 0.3, 0.3}) {
+        REQUIRE(render_frame(&usual->renderer, seconds).ok);
+        REQUIRE(render_frame(&r, seconds).ok);
+        Picture a(usual->renderer.image.begin(), usual->renderer.image.end()), b(r.image.begin(), r.image.end());
+        CHECK(same_picture(a, b));
+      }
+      CHECK(r.frame_arena.used == 0);
+      CHECK(r.frame_arena.used_max <= frame_bytes(r));
+      CHECK(r.persistent_arena.used_max <= r.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+    }
+  }
+}
+
+// Goal: the scratch of a build for every frame lies beside the output, which may be in use then; what moves without any
+// vertex, or not at all, has no build but the first. Method: plans of the same scene.
+TEST_CASE("rebuild_scratch_is_planned_beside_the_output") {
+  constexpr std::size_t kOutput = 1u << 16;
+  AccelInfo rebuilt = without_refit(kBvhAccel);
+  for (bool moves : {false, true}) {
+    auto generated = generate_scene(moves ? bit(Feature::animation) : 0, 3);
+    Settings settings = settings_for(0, 24, 18);
+    settings.memory_bytes = 4u << 20;
+    auto test = make_renderer(generated->scene, settings, &rebuilt);
+    MemoryPlan plan;
+    REQUIRE(plan_memory(generated->scene, settings, test->renderer.effects, rebuilt, {}, 0, kOutput, &plan).ok);
+    std::size_t scratch = kBvhAccel.scratch_need(generated->scene.triangles.count);
+    std::size_t bytes = plan.arena_bytes[static_cast<int>(ArenaKind::frame)];
+    CHECK(scratch > 0);
+    CHECK(bytes == (moves ? scratch + kOutput : std::max(scratch, kOutput)) + kArenaAlignment);
+  }
+}
