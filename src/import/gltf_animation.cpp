@@ -59,7 +59,7 @@ Keys read_keys(GltfFile* file, const tinygltf::Animation& animation, int sampler
 }
 
 void export_channel(GltfFile* file, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& source) {
-  SceneStorage& out = *file->builder->out;
+  SceneArrays& out = *file->builder->out;
   Channel channel = {};
   if (!target_path(*file, source, &channel.path))
     return note_unused(file->builder, "animation of what is no node of the scene");
@@ -124,7 +124,7 @@ Node decomposed(GltfFile* file, const Transform& t) {
 }
 
 void export_node(GltfFile* file, int index) {
-  SceneStorage& out = *file->builder->out;
+  SceneArrays& out = *file->builder->out;
   GltfNode& state = file->nodes[static_cast<std::size_t>(index)];
   require_invertible(state.local, gltf_node_name(*file, index));
   const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
@@ -185,7 +185,7 @@ void gltf_export_nodes(GltfFile* file) {
 }
 
 void gltf_export_animations(GltfFile* file) {
-  SceneStorage& out = *file->builder->out;
+  SceneArrays& out = *file->builder->out;
   if (out.nodes.empty()) return;
   for (const tinygltf::Animation& source : file->model.animations) {
     out.animations.push_back({static_cast<std::uint32_t>(out.channels.size()), 0, 0});

@@ -13,7 +13,7 @@ namespace {
 Vec3 column(const Transform& t, int c) { return {t.m[0][c], t.m[1][c], t.m[2][c]}; }
 
 void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
-  SceneStorage& out = *file->builder->out;
+  SceneArrays& out = *file->builder->out;
   if (out.lights.size() >= kLightCountMax) fail_import("more than %u lights; remove some", kLightCountMax);
   Light light;
   if (source.type == "point") {
@@ -47,7 +47,7 @@ void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
 }
 
 void add_camera(GltfFile* file, int camera_index, int node_index) {
-  SceneStorage& out = *file->builder->out;
+  SceneArrays& out = *file->builder->out;
   if (camera_index < 0 || static_cast<std::size_t>(camera_index) >= file->model.cameras.size())
     fail_import("camera %d does not exist; export the file again", camera_index);
   if (out.cameras.size() >= kCameraCountMax) fail_import("more than %u cameras; remove some", kCameraCountMax);

@@ -128,7 +128,7 @@ Material convert(GltfFile* file, const tinygltf::Material& source) {
 }  // namespace
 
 std::uint32_t gltf_material(GltfFile* file, int index) {
-  SceneStorage& out = *file->builder->out;
+  SceneArrays& out = *file->builder->out;
   std::uint32_t* known = index < 0 ? &file->default_material : &file->materials[static_cast<std::size_t>(index)];
   if (*known != kNone) return *known;
   static const tinygltf::Material kDefault;

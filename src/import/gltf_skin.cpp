@@ -65,7 +65,7 @@ bool gltf_skin_moves(const GltfFile& file, int skin_index) {
 std::uint32_t gltf_export_skin(GltfFile* file, int skin_index) {
   auto known = file->skins.find(skin_index);
   if (known != file->skins.end()) return known->second;
-  SceneStorage& out = *file->builder->out;
+  SceneArrays& out = *file->builder->out;
   const std::vector<int>& joints = gltf_joints(*file, skin_index);
   std::vector<Transform> binds = inverse_binds(file, skin_at(*file, skin_index));
   Skin skin = {static_cast<std::uint32_t>(out.joints.size()), static_cast<std::uint32_t>(joints.size())};

@@ -85,7 +85,7 @@ void shrink_image(Image* image, std::uint32_t side_max) {
 }
 
 TexelRun add_texels(SceneBuilder* builder, Image image) {
-  SceneStorage& out = *builder->out;
+  SceneArrays& out = *builder->out;
   shrink_image(&image, builder->options.texture_side_max);
   charge_bytes(builder, image.texels.size() * 4, "the textures");
   TexelRun run = {static_cast<std::uint32_t>(out.texels.size()), image.width, image.height};
@@ -94,7 +94,7 @@ TexelRun add_texels(SceneBuilder* builder, Image image) {
 }
 
 std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wrap_u, Wrap wrap_v, bool nearest) {
-  SceneStorage& out = *builder->out;
+  SceneArrays& out = *builder->out;
   if (out.textures.size() >= kTextureCountMax) fail_import("more than %u textures; merge some", kTextureCountMax);
   Texture texture = {};
   texture.texel_begin = texels.begin;

@@ -112,7 +112,7 @@ void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
 
 std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_path,
                                const tinyobj::material_t& source) {
-  SceneStorage& out = *builder->out;
+  SceneArrays& out = *builder->out;
   if (out.materials.size() >= kMaterialCountMax) fail_import("more than %u materials; merge some", kMaterialCountMax);
   Material material;
   material.diffuse = bounded3(source.diffuse, 1);

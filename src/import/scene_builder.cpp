@@ -109,7 +109,7 @@ static void require_coordinate(const Vec3& p, const MeshData& mesh) {
 }
 
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world) {
-  SceneStorage& out = *builder->out;
+  SceneArrays& out = *builder->out;
   std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
   if (count == 0) return;
   charge_bytes(builder, count * vertex_bytes(mesh) + triangle_count * sizeof(Triangle), "the geometry");
@@ -140,7 +140,7 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
 }
 
 void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world, MovingMesh moving) {
-  SceneStorage& out = *builder->out;
+  SceneArrays& out = *builder->out;
   std::size_t count = mesh.positions.size();
   if (count == 0) return;
   for (const Vec3& p : mesh.positions) require_coordinate(p, mesh);
@@ -177,7 +177,7 @@ static Array<const T> view(const std::vector<T>& v) {
 }
 
 // Puts moving vertices where animation 0 has them at time 0.
-static void pose_at_start(const Scene& scene, SceneStorage* out) {
+static void pose_at_start(const Scene& scene, SceneArrays* out) {
   if (scene.moving_meshes.empty()) return;
   std::size_t bytes = pose_need(scene) + kArenaAlignment;
   std::vector<std::uint8_t> block(bytes);
@@ -192,7 +192,7 @@ static bool is_textured(const Material& material) {
 }
 
 void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene* result) {
-  SceneStorage& out = *builder->out;
+  SceneArrays& out = *builder->out;
   if (out.triangles.empty()) fail_import("no triangles to render; export meshes with faces");
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();

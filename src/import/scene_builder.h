@@ -26,7 +26,7 @@ struct MeshData {
 };
 
 // The arrays of Scene, owned.
-struct SceneStorage {
+struct SceneArrays {
   SceneInfo info;
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uvs;
@@ -51,7 +51,7 @@ struct SceneStorage {
 
 struct SceneBuilder {
   ImportOptions options;
-  std::shared_ptr<SceneStorage> out = std::make_shared<SceneStorage>();
+  std::shared_ptr<SceneArrays> out = std::make_shared<SceneArrays>();
   std::uint64_t bytes_charged = 0;
   std::vector<std::string> unused;   // what the file has and this program does not use
   std::vector<std::string> remarks;  // what was simplified or repaired

@@ -76,6 +76,51 @@ check_includes() {
     }'
 }
 
+# Two types of one name in one namespace break C++'s rule of one definition, which no compiler sees across files. Types of
+# anonymous namespaces are nobody else's; a folder of tests/ is a program of its own; one of the simd_*.h is compiled.
+check_types() {
+  (cd "$plain" && grep -v '^src/base/simd_' .all | tr '\n' '\0' | xargs -0 -r awk '
+    FNR == 1 { depth = outer = hidden = 0; scope[0] = "" }
+    !/[{}]/ { next }
+    depth == outer && !hidden && match($0, /^(struct|class|union|enum|enum class) +(alignas\([^)]*\) *)?[A-Za-z_0-9]+ *(final *)?(:[^:;]*)?\{/) {
+      name = $0
+      sub(/^(struct|class|union|enum class|enum) +(alignas\([^)]*\) *)?/, "", name)
+      sub(/[^A-Za-z_0-9].*/, "", name)
+      name = scope[outer] name
+      split(FILENAME, part, "/")
+      program = part[1] == "tests" && part[2] != "support" ? part[2] : ""
+      for (i = 1; i <= count[name]; ++i)
+        if (file[name, i] != FILENAME && (program == "" || owner[name, i] == "" || owner[name, i] == program)) {
+          print FILENAME ":" FNR ": type " name " is defined in " file[name, i] ", too"
+          break
+        }
+      ++count[name]
+      file[name, count[name]] = FILENAME
+      owner[name, count[name]] = program
+    }
+    {
+      opens = /^(inline +)?namespace( +[A-Za-z_0-9:]+)? *\{/ || /^extern "" *\{/
+      if (opens) {
+        opened = $0
+        sub(/ *\{.*/, "", opened)
+        sub(/.*(namespace|extern)[ "]*/, "", opened)
+      }
+      for (rest = $0; match(rest, /[{}]/); rest = substr(rest, RSTART + 1)) {
+        if (substr(rest, RSTART, 1) == "{") {
+          ++depth
+          if (!opens) continue
+          opens = 0
+          ++outer
+          scope[outer] = scope[outer - 1] (opened == "" ? "" : opened "::")
+          if (opened == "" && !hidden && $0 !~ /^extern/) hidden = outer
+        } else {
+          if (depth == outer && outer > 0) { if (hidden == outer) hidden = 0; --outer }
+          --depth
+        }
+      }
+    }')
+}
+
 find src platform tests -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.inl' \) 2>/dev/null | sort >"$plain/.all" || true
 grep -vE '^(src/app/|src/import/|src/accuracy/|tests/)' "$plain/.all" >"$plain/.core" || true
 grep '^src/' "$plain/.core" >"$plain/.core_src" || true
@@ -83,6 +128,7 @@ grep -vE '^(tests/)?platform/' "$plain/.all" >"$plain/.portable" || true
 strip_sources
 {
   check_includes
+  check_types
   forbid "$plain/.portable" "$systems" "an operating system is named outside platform/"
   forbid "$plain/.core_src" "$libm" "libm function in the core: use base/fmath.h"
   forbid "$plain/.core" "$language" "exceptions or RTTI in the core"

@@ -57,6 +57,28 @@ must_fail "libm function" src/brdf/a.cpp 'x = std::fma(a, b, c);'
 must_fail "longer than" src/base/a.cpp $(seq 451)
 must_fail "longer than" tests/base/a_test.cpp $(seq 451)
 
+# A type that another file has in the same namespace, with members or without, after a template and behind an alignment.
+plant_beside() { printf '%s\n' "${@:2}" >"$tree/$1"; }
+twice_must() {  # found|allowed FILE OTHER-FILE LINES... : both files have these lines
+  local output
+  plant "$2" "${@:4}"
+  mkdir -p "$(dirname "$tree/$3")"
+  plant_beside "${@:3}"
+  output=$(bash "$check" "$tree") || true
+  if grep -q "is defined in .*, too" <<<"$output"; then [ "$1" = found ]; else [ "$1" = allowed ]; fi || {
+    echo "types twice must be $1 in $2 and $3: ${*:4}; got: $output"
+    failures=$((failures + 1))
+  }
+}
+twice_must found src/plan/a.h src/import/b.h 'namespace pocketray {' 'struct Storage {' 'int x;' '};' '}'
+twice_must found src/plan/a.h platform/b.h 'namespace n {' 'template <class T>' 'class alignas(16) Storage final : Base {};' '}'
+twice_must found src/plan/a.h tests/plan/b.h 'namespace {' 'struct X { int y; };' '}' 'namespace n {' 'enum class E : int { a };' '}'
+twice_must found tests/plan/a.h tests/plan/b.h 'extern "C" {' 'struct Rig {};' '}'
+twice_must allowed tests/plan/a.h tests/wire/b.h 'struct Rig {};'
+twice_must allowed src/plan/a.cpp src/import/b.cpp 'namespace n {' 'namespace {' 'struct Storage {};' '}' 'struct Storage;' '}'
+twice_must allowed src/plan/a.cpp src/import/b.cpp 'void f() {' '  struct Storage {};' 'struct Storage {};' '}'
+twice_must allowed src/base/simd_a.h src/base/simd_b.h 'struct Float4 {};'
+
 must_pass src/shade/a.cpp '#include "accel/accel.h"' '#include "shade/b.h"' '#include <cmath>'
 must_pass src/app/a.cpp '#include "platform/platform.h"' '#include <vector>' 'auto p = new std::vector<int>; throw std::pow(1, 2);'
 must_pass src/accuracy/a.cpp '#include "present/pack.h"' '#include <vector>' 'double x = std::pow(a, b);'
