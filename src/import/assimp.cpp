@@ -80,29 +80,6 @@ class FilesBeside : public Assimp::DefaultIOSystem {
   std::uint64_t byte_count_max_;
 };
 
-// Assimp takes the counts of a PLY header at their word; every element needs at least a byte of the file for each of
-// its properties.
-void check_ply_counts(const Bytes& bytes) {
-  std::string header(bytes.begin(),
-                     bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 65536)));
-  std::size_t end = header.find("end_header");
-  if (header.compare(0, 3, "ply") != 0 || end == std::string::npos) fail_import("this is no PLY file; export it again");
-  std::uint64_t count = 0, left = bytes.size() - end;
-  for (std::size_t at = 0; at < end;) {
-    std::size_t next = std::min(header.find('\n', at), end) + 1;
-    char name[64];
-    unsigned long long number = 0;
-    std::string line = header.substr(at, next - at);
-    if (std::sscanf(line.c_str(), "element %63s %20llu", name, &number) == 2) count = number;
-    bool property = line.compare(0, 9, "property ") == 0;
-    if (property && count > left)
-      fail_import("the PLY header promises %llu elements, more than the file holds; copy the file again",
-                  static_cast<unsigned long long>(count));
-    if (property) left -= count;
-    at = next;
-  }
-}
-
 struct AssimpReader {
   const aiScene* scene;
   SceneBuilder* builder;
@@ -188,7 +165,6 @@ std::string assimp_formats() {
 }
 
 void import_assimp(const std::string& path, const std::string& ending, const Bytes& bytes, SceneBuilder* builder) {
-  if (ending == "ply") check_ply_counts(bytes);
   require_bytes(*builder, bytes.size(), 4, "the file");
   Assimp::Importer importer;
   importer.SetIOHandler(new FilesBeside(path, builder->options.byte_count_max));  // the importer owns it

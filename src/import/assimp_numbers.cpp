@@ -1,4 +1,5 @@
-// What assimp read is looked through before anything is made of it: a number that is not finite is refused by name.
+// What assimp read is looked through before anything is made of it: a number that is not finite is refused by name, and
+// so is a face without corners, of which assimp's own later steps make an index below their tables.
 #ifdef POCKETRAY_HAVE_ASSIMP
 
 #include <cmath>
@@ -37,6 +38,9 @@ void check_mesh(const aiMesh& mesh, bool own_normals) {
     if (mesh.HasTextureCoords(0)) check(&mesh.mTextureCoords[0][v].x, 2, v, kCoordinateMax, "texture coordinate");
     if (mesh.HasVertexColors(0)) check(&mesh.mColors[0][v].r, 4, v, kFloatMax, "colour");
   }
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+    if (mesh.mFaces[f].mNumIndices == 0)
+      fail_import("mesh '%.60s': face %u has no corners; remove it or export the file again", mesh.mName.C_Str(), f);
 }
 
 void check_material(const aiMaterial& material) {

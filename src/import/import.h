@@ -14,6 +14,7 @@ struct ImportOptions {
   std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
   float crease_angle = 40;               // degrees; meshes that come without normals are smoothed below it (glTF: flat)
   std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses what would become larger than this
+  std::uint32_t cpu_seconds_max = 120;                    // for formats read by assimp, which is ended then
 };
 
 struct ImportedScene {

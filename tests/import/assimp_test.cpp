@@ -1,5 +1,6 @@
 // Formats read by assimp, where it is built in.
 #include <cstring>
+#include <initializer_list>
 
 #include "import/import_testing.h"
 
@@ -43,6 +44,63 @@ TEST_CASE("assimp_ply_header_that_lies_is_refused") {
                                              "y\nproperty float z\nend_header\n0 0 0\n"));
     CHECK(contains(error, "promises 4000000000"));
   }
+}
+
+namespace {
+
+// A PLY file of four vertices; `faces` in text, or in bytes.
+std::string ply_of_faces(const char* format, const char* count_type, const std::string& faces) {
+  std::string file = std::string("ply\nformat ") + format +
+                     " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+                     "property list " +
+                     count_type + " int vertex_indices\nend_header\n";
+  if (format[0] == 'a') return file + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" + faces;
+  const float corners[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  return file + std::string(reinterpret_cast<const char*>(corners), sizeof corners) + faces;
+}
+std::string words(std::initializer_list<std::int32_t> values) {
+  return std::string(reinterpret_cast<const char*>(values.begin()), 4 * values.size());
+}
+
+}  // namespace
+
+// Goal: faces with no corners, a negative number of them, more than there can be, or of vertices that do not exist are
+// refused by name, before assimp has them, of whose steps some crash. Method: such lists in text and in bytes, after a
+// sound face; sound lists are read.
+TEST_CASE("assimp_ply_faces_that_lie_are_refused") {
+  if (!reads("ply")) return;
+  TemporaryFolder folder;
+  auto error = [&](const char* format, const char* type, const std::string& faces) {
+    return load_error(folder.write("a.ply", ply_of_faces(format, type, faces)));
+  };
+  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n0\n"), "face 1 of the PLY file has no corners"));
+  CHECK(contains(error("ascii", "uchar", "0\n3 0 1 2\n"), "face 0 of the PLY file has no corners"));
+  CHECK(contains(error("ascii", "int", "3 0 1 2\n-3 0 1 2\n"), "list 1 of the PLY file has -3 entries"));
+  CHECK(contains(error("ascii", "int", "3 0 1 2\n100000 0 1 2\n"), "has 100000 entries"));
+  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n3 0 -3 2\n"), "face 1 of the PLY file uses vertex -3"));
+  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n3 0 4 2\n"), "uses vertex 4, and there are 4"));
+  const char* little = "binary_little_endian";
+  CHECK(contains(error(little, "int", words({3, 0, 1, 2, 0})), "face 1 of the PLY file has no corners"));
+  CHECK(contains(error(little, "int", words({3, 0, 1, 2, -3, 0, 1, 2})), "list 1 of the PLY file has -3 entries"));
+  CHECK(contains(error(little, "uint", words({3, 0, 1, 2, -3, 0, 1, 2})), "has 4.29497e+09 entries"));
+  CHECK(contains(error("binary_big_endian", "int", words({0x03000000, 0, 1 << 24, 2 << 24, 0})), "has no corners"));
+  ImportedScene imported = load(folder.write("a.ply", ply_of_faces(little, "int", words({3, 0, 1, 2, 3, 0, 2, 3}))));
+  CHECK(imported.scene.triangles.count == 2);
+}
+
+// Goal: so are faces without corners in formats that are not looked into before. Method: COLLADA's list of polygons.
+TEST_CASE("assimp_faces_without_corners_are_refused") {
+  if (!reads("dae")) return;
+  TemporaryFolder folder;
+  std::string error = load_error(folder.write("a.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset/>
+<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="2"><input semantic="VERTEX" source="#v" offset="0"/><vcount>3 0</vcount><p>0 1 2</p></polylist></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
+  CHECK_MESSAGE(contains(error, "face 1 has no corners"), error);
 }
 
 // Goal: an STL box is smoothed by the crease angle, not faceted by the file's normals: it is flat, so it has none.

@@ -1,0 +1,206 @@
+#include "import/contained.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "import/import_error.h"
+#include "scene/baked.h"
+
+// Sanitizers take address space by the terabyte; their runs go without a limit of memory.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define POCKETRAY_ADDRESS_SPACE_IS_SHADOWED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define POCKETRAY_ADDRESS_SPACE_IS_SHADOWED 1
+#endif
+#endif
+
+namespace pocketray {
+namespace {
+
+// What the child writes first; then the text (a warning, or what is wrong) and the baked scene.
+struct ResultHeader {
+  std::uint32_t read;  // whether there is a scene
+  std::uint32_t text_bytes;
+  std::uint64_t scene_bytes;
+};
+constexpr std::uint32_t kTextBytesMax = 1u << 16;
+constexpr std::size_t kAlignment = 64;  // of a baked scene
+
+struct FreeBlock {
+  void operator()(std::uint8_t* block) const { std::free(block); }
+};
+using Block = std::unique_ptr<std::uint8_t, FreeBlock>;
+
+Block take_aligned(std::size_t bytes) {
+  void* block = nullptr;
+  if (posix_memalign(&block, kAlignment, std::max<std::size_t>(bytes, 1)) != 0) throw std::bad_alloc();
+  return Block(static_cast<std::uint8_t*>(block));
+}
+
+bool write_all(int pipe, const void* data, std::size_t count) {
+  const char* at = static_cast<const char*>(data);
+  while (count > 0) {
+    ssize_t written = write(pipe, at, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    at += written, count -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+bool read_all(int pipe, void* data, std::size_t count) {
+  char* at = static_cast<char*>(data);
+  while (count > 0) {
+    ssize_t got = read(pipe, at, count);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    at += got, count -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+void limit(int what, std::uint64_t value) {
+  rlimit now;
+  if (getrlimit(what, &now) != 0) return;
+  if (now.rlim_max != RLIM_INFINITY && value > now.rlim_max) value = now.rlim_max;
+  now.rlim_cur = static_cast<rlim_t>(value);
+  now.rlim_max = static_cast<rlim_t>(what == RLIMIT_CPU ? value + 1 : value);
+  setrlimit(what, &now);
+}
+
+// Bytes of address space that this process has; 0 where nobody says.
+std::uint64_t address_space_bytes() {
+  unsigned long long pages = 0;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/statm", "r"), std::fclose);
+  if (!file || std::fscanf(file.get(), "%llu", &pages) != 1) return 0;
+  return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+// The child has no say in the parent's affairs: its signals end it, nothing that it prints is seen, it leaves no core.
+void become_contained(const ContainerLimits& limits) {
+  for (int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGXCPU})
+    signal(signal_number, SIG_DFL);
+  int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
+  for (int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (nowhere >= 0) dup2(nowhere, descriptor);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, limits.cpu_seconds);
+#if !defined(POCKETRAY_ADDRESS_SPACE_IS_SHADOWED)
+  std::uint64_t present = address_space_bytes();
+  if (limits.memory_bytes > 0 && present > 0) limit(RLIMIT_AS, present + limits.memory_bytes);
+#endif
+}
+
+bool send_result(int pipe, bool read, const std::string& text, const std::uint8_t* scene, std::size_t scene_bytes) {
+  ResultHeader header;
+  header.read = read;
+  header.text_bytes = static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), kTextBytesMax));
+  header.scene_bytes = scene_bytes;
+  return write_all(pipe, &header, sizeof header) && write_all(pipe, text.data(), header.text_bytes) &&
+         write_all(pipe, scene, scene_bytes);
+}
+
+bool read_and_send(int pipe, const std::function<void(ImportedScene*)>& read) {
+  try {
+    ImportedScene imported;
+    read(&imported);
+    std::size_t bytes = baked_size(imported.scene);
+    Block block = take_aligned(bytes);
+    baked_write(imported.scene, block.get());
+    return send_result(pipe, true, imported.warning, block.get(), bytes);
+  } catch (const std::bad_alloc&) {
+    return send_result(pipe, false, "not enough memory to read it; use a smaller model", nullptr, 0);
+  } catch (const std::exception& error) {
+    return send_result(pipe, false, error.what(), nullptr, 0);
+  } catch (...) {
+    return send_result(pipe, false, "cannot be read; export the file again", nullptr, 0);
+  }
+}
+
+// False where the child did not come to its end.
+bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* header, std::string* text, Block* block) {
+  if (!read_all(pipe, header, sizeof *header) || header->text_bytes > kTextBytesMax) return false;
+  text->resize(header->text_bytes);
+  if (!read_all(pipe, &(*text)[0], text->size())) return false;
+  if (header->scene_bytes > limits.result_bytes_max)
+    fail_import("the scene would have %llu MiB; use a smaller model",
+                static_cast<unsigned long long>(header->scene_bytes >> 20));
+  *block = take_aligned(static_cast<std::size_t>(header->scene_bytes));
+  return read_all(pipe, block->get(), static_cast<std::size_t>(header->scene_bytes));
+}
+
+[[noreturn]] void fail_as_ended(int status, const ContainerLimits& limits) {
+  int signal_number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal_number == SIGXCPU || signal_number == SIGKILL)
+    fail_import("reading it took more than %u seconds or too much memory; export the file again, or a smaller one",
+                limits.cpu_seconds);
+  if (signal_number == SIGINT || signal_number == SIGTERM || signal_number == SIGHUP)
+    fail_import("reading it was interrupted; start again");
+  fail_import("it makes its reader crash (signal %d), so it is damaged or of an unknown kind; export the file again",
+              signal_number);
+}
+
+// A running child and the pipe from it; neither outlives this.
+struct Child {
+  pid_t id = -1;
+  int pipe = -1;
+  int status = 0;
+  void close_pipe() {
+    if (pipe >= 0) close(pipe);
+    pipe = -1;
+  }
+  void wait_for_end() {
+    while (id > 0 && waitpid(id, &status, 0) < 0 && errno == EINTR) {
+    }
+    id = -1;
+  }
+  ~Child() {
+    close_pipe();
+    if (id > 0) kill(id, SIGKILL);
+    wait_for_end();
+  }
+};
+
+}  // namespace
+
+void import_contained(const ContainerLimits& limits, const std::function<void(ImportedScene*)>& read,
+                      ImportedScene* result) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) fail_import("no pipe to read it through: %s", std::strerror(errno));
+  Child child;
+  child.pipe = ends[0];
+  child.id = fork();
+  if (child.id == 0) {
+    close(ends[0]);
+    become_contained(limits);
+    _exit(read_and_send(ends[1], read) ? 0 : 1);
+  }
+  int fork_error = errno;
+  close(ends[1]);
+  if (child.id < 0) fail_import("no process to read it in: %s; try again", std::strerror(fork_error));
+
+  ResultHeader header = {};
+  std::string text;
+  Block block;
+  bool complete = receive_result(child.pipe, limits, &header, &text, &block);
+  child.close_pipe();
+  child.wait_for_end();
+  if (!complete) fail_as_ended(child.status, limits);
+  if (!header.read) fail_import("%s", text.c_str());
+  Status status = baked_open(block.get(), static_cast<std::size_t>(header.scene_bytes), &result->scene);
+  if (!status.ok) fail_import("%s", status.message);
+  result->storage = std::shared_ptr<void>(block.release(), [](void* data) { std::free(data); });
+  result->warning = text;
+}
+
+}  // namespace pocketray

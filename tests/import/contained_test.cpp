@@ -1,0 +1,120 @@
+// Readers that misbehave, each in a process of its own.
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <thread>
+#include <vector>
+
+#include "import/contained.h"
+#include "import/import_error.h"
+#include "import/import_testing.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr ContainerLimits kLimits = {std::uint64_t(128) << 20, 1, 1u << 20};
+
+std::string error_of(const std::function<void(ImportedScene*)>& read) {
+  ImportedScene result;
+  try {
+    import_contained(kLimits, read, &result);
+  } catch (const ImportError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A scene of one triangle in memory of its own.
+void make_triangle(ImportedScene* imported) {
+  struct Arrays {
+    Vec3 positions[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    Triangle triangle = Triangle(0, 1, 2, 0);
+    Material material;
+  };
+  auto arrays = std::make_shared<Arrays>();
+  imported->scene.positions = {arrays->positions, 3};
+  imported->scene.triangles = {&arrays->triangle, 1};
+  imported->scene.materials = {&arrays->material, 1};
+  imported->storage = arrays;
+  imported->warning = "not used: a hat";
+}
+
+}  // namespace
+
+// Goal: what a contained reader reads arrives, and its warning. Method: a triangle; the descriptors are all closed
+// again.
+TEST_CASE("contained_scene_and_warning_arrive") {
+  int before = dup(0);
+  close(before);
+  for (int round = 0; round < 3; ++round) {
+    ImportedScene result;
+    import_contained(kLimits, make_triangle, &result);
+    REQUIRE(result.scene.triangles.count == 1);
+    CHECK(result.scene.positions[1] == Vec3{1, 0, 0});
+    CHECK(result.warning == "not used: a hat");
+  }
+  int after = dup(0);
+  close(after);
+  CHECK(after == before);
+}
+
+// Goal: a reader that crashes, throws, loops, or asks for too much ends in one line, and this process goes on; nothing
+// that it prints is seen, and what it changes is its own. Method: each once.
+TEST_CASE("contained_reader_takes_nothing_with_it") {
+  CHECK(contains(error_of([](ImportedScene*) { std::raise(SIGSEGV); }), "signal 11"));
+  CHECK(contains(error_of([](ImportedScene*) { std::raise(SIGBUS); }), "signal 7"));
+  CHECK(contains(error_of([](ImportedScene*) { std::abort(); }), "signal 6"));
+  CHECK(contains(error_of([](ImportedScene*) { _exit(0); }), "crash"));
+  CHECK(contains(error_of([](ImportedScene*) { std::raise(SIGINT); }), "interrupted"));
+  CHECK(error_of([](ImportedScene*) { fail_import("line %d is no line", 7); }) == "line 7 is no line");
+  CHECK(contains(error_of([](ImportedScene*) { throw 7; }), "cannot be read"));
+  CHECK(contains(error_of([](ImportedScene*) {
+                   for (volatile std::uint64_t i = 0;; i = i + 1) {
+                   }
+                 }),
+                 "more than 1 seconds"));
+  std::string damaged = error_of([](ImportedScene* imported) {
+    make_triangle(imported);
+    static const Triangle beyond = Triangle(0, 1, 9, 0);
+    imported->scene.triangles.data = &beyond;
+  });
+  CHECK_MESSAGE(contains(damaged, "triangle"), damaged);
+  int touched = 0;
+  error_of([&](ImportedScene* imported) { touched = 1, make_triangle(imported); });
+  CHECK(touched == 0);
+#if !defined(__SANITIZE_ADDRESS__)
+  CHECK(contains(error_of([](ImportedScene* imported) {
+                   std::vector<char> many(std::size_t(1) << 30);
+                   make_triangle(imported);
+                 }),
+                 "not enough memory"));
+#endif
+}
+
+// Goal: a scene larger than the reader may make it is refused. Method: a limit below that of a triangle.
+TEST_CASE("contained_scene_is_no_larger_than_allowed") {
+  ImportedScene result;
+  CHECK_THROWS_AS(import_contained({0, 1, 64}, make_triangle, &result), ImportError);
+}
+
+// Goal: several threads may read at once. Method: eight, of which half crash.
+TEST_CASE("contained_readers_side_by_side") {
+  std::atomic<int> read{0}, failed{0};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i)
+    threads.emplace_back([&, i] {
+      ImportedScene result;
+      try {
+        import_contained(
+            kLimits, [i](ImportedScene* s) { i % 2 ? make_triangle(s) : std::abort(); }, &result);
+        read += result.scene.triangles.count == 1;
+      } catch (const ImportError&) {
+        ++failed;
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  CHECK(read == 4);
+  CHECK(failed == 4);
+}
