@@ -24,7 +24,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases mutants faults demo-split split-table fuzz bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases mutants faults demo-split split-table fuzz flips bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -102,16 +102,27 @@ demo-split: configure
 FUZZ_SECONDS ?= 600
 fuzz:
 	@toolchains/setup.sh desktop clang
-	@mkdir -p build-fuzz && cmake -S . -B build-fuzz -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DPOCKETRAY_IMPORT=OFF \
+	@mkdir -p build-fuzz && cmake -S . -B build-fuzz -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
 	  -DPOCKETRAY_SANITIZE=fuzzer-no-link,address,undefined >build-fuzz/configure.log || { cat build-fuzz/configure.log; exit 1; }
-	cmake --build build-fuzz -j$(JOBS) --target fuzz_message fuzz_pray
-	@for target in message pray; do \
+	cmake --build build-fuzz -j$(JOBS) --target fuzz_message fuzz_pray fuzz_import
+	@for target in message pray import; do \
 	  mkdir -p build-fuzz/corpus/$$target; \
 	  build-fuzz/fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -max_len=16384 -timeout=10 -print_final_stats=1 \
 	    -artifact_prefix=build-fuzz/$$target- build-fuzz/corpus/$$target tests/fuzz/corpus/$$target \
 	    >build-fuzz/$$target.log 2>&1 || { tail -n 40 build-fuzz/$$target.log; exit 1; }; \
 	  grep -E '^#[0-9]+.*(DONE)|stat::number_of_executed' build-fuzz/$$target.log | sed "s/^/$$target: /"; \
 	done
+
+# Bits of every model in ../shared/scenes turned, FLIPS times, in JOBS shares: imported, baked, rendered; nothing may crash,
+# run for ever or take memory without bounds. A flip that does is printed with its number: make flips FLIP=n.
+FLIPS ?= 100000
+FLIP ?=
+flips: setup-tests configure
+	cmake --build $(BUILD) -j$(JOBS) --target test_import
+	@share=$(if $(FLIP),1,$$((($(FLIPS) + $(JOBS) - 1) / $(JOBS)))); \
+	for first in $(or $(FLIP),$$(seq 1 $$share $(FLIPS))); do echo $$first; done | \
+	xargs -P $(JOBS) -I {} env POCKETRAY_FLIP={} POCKETRAY_FLIPS=$$share \
+	  $(BUILD)/test_import --no-intro --test-case="flips_*"
 
 # The chosen split against a sweep of fixed ones: every device, one to three servers, three scenes.
 split-table: setup-tests configure
@@ -162,6 +173,7 @@ help:
 	@echo "make demo-split   a render server and an emulated handheld that share a frame (SCENE=, EMULATE=)"
 	@echo "make faults       SESSIONS=$(SESSIONS) simulated sessions in which lines and servers fail (SEED=n: from that one on)"
 	@echo "make fuzz         libFuzzer on what comes from peers and files, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
+	@echo "make flips        FLIPS=$(FLIPS) turned bits of the sample models, imported and rendered (FLIP=n: that one alone)"
 	@echo "make split-table  the split that is chosen beside the best of a sweep, for every device"
 	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"

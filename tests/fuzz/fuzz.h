@@ -16,6 +16,14 @@ void fuzz_message(const std::uint8_t* bytes, std::size_t byte_count);
 // rendered.
 void fuzz_pray(const std::uint8_t* bytes, std::size_t byte_count);
 
+// A model behind a first byte: which of import_endings() its name has. Where the importers are built in.
+void fuzz_import(const std::uint8_t* bytes, std::size_t byte_count);
+std::vector<std::string> import_endings();
+
+// Renders small frames of a scene that was accepted, at two times.
+struct Scene;
+void fuzz_render(const Scene& scene);
+
 struct FuzzSeed {
   std::string name;
   std::vector<std::uint8_t> bytes;
@@ -23,10 +31,11 @@ struct FuzzSeed {
 // What fuzzing starts from: an input of every kind.
 std::vector<FuzzSeed> message_seeds();
 std::vector<FuzzSeed> pray_seeds();
+std::vector<FuzzSeed> import_seeds();
 
 // How far the inputs since the start came, for tests that show that seeds get somewhere.
 struct FuzzCounts {
-  std::uint64_t messages = 0, chunks = 0, pictures = 0, scenes = 0, frames = 0;
+  std::uint64_t messages = 0, chunks = 0, pictures = 0, scenes = 0, imports = 0, frames = 0;
 };
 inline FuzzCounts fuzz_counts;
 

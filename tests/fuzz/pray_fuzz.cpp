@@ -1,29 +1,12 @@
 // A .pray file from anyone: opened, posed, rendered.
-#include <memory>
+#include <cstring>
 
 #include "fuzz/fuzz.h"
 #include "scene/baked_file.h"
-#include "support/generated_scene.h"
 
 POCKETRAY_FUZZ_TARGET(fuzz_pray)
 
 namespace pocketray {
-namespace {
-
-// Larger ones take the fuzzer's time and show nothing that small ones do not.
-constexpr std::uint32_t kTrianglesToRender = 64;
-
-void render(const Scene& scene) {
-  Settings settings;
-  settings.width = 4, settings.height = 3, settings.ray_depth = 3, settings.points_per_area_light = 1;
-  settings.memory_bytes = 2u << 20;
-  Status status;
-  std::unique_ptr<TestRenderer> test = make_renderer(scene, settings, nullptr, &status);
-  if (!test) return;
-  for (double seconds : {0.0, 0.7}) fuzz_counts.frames += render_frame(&test->renderer, seconds).ok;
-}
-
-}  // namespace
 
 void fuzz_pray(const std::uint8_t* bytes, std::size_t byte_count) {
   if (byte_count == 0) return;
@@ -38,7 +21,7 @@ void fuzz_pray(const std::uint8_t* bytes, std::size_t byte_count) {
   Scene scene;
   if (!baked_open(file.data(), file.size(), &scene).ok) return;
   ++fuzz_counts.scenes;
-  if (scene.triangles.count <= kTrianglesToRender) render(scene);
+  fuzz_render(scene);
 }
 
 }  // namespace pocketray

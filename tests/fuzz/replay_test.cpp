@@ -88,3 +88,17 @@ TEST_CASE("fuzz_pray_corpus_and_damaged_seeds") {
   CHECK(fuzz_counts.scenes > 2);
   CHECK(replay("pray", fuzz_pray) >= 2);
 }
+
+#ifdef POCKETRAY_HAVE_IMPORT
+// Goal: no model makes the program abort, hang or allocate without bounds, whatever its format; seeds of several
+// formats are read and rendered.
+TEST_CASE("fuzz_import_corpus_and_damaged_seeds") {
+  write_seeds("import", import_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : import_seeds()) fuzz_import(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.imports >= (import_seeds().size() > 10 ? 10 : 4));
+  CHECK(fuzz_counts.frames == 2 * fuzz_counts.imports);
+  damage(import_seeds(), fuzz_import, effort(8));
+  CHECK(replay("import", fuzz_import) >= 4);
+}
+#endif
