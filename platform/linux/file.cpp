@@ -18,20 +18,32 @@ bool fail(FileError* error, const char* what, int number) {
   return false;
 }
 
+// Opens a regular file for reading; -1: `error` says why. A pipe that nobody writes to would have open() wait for ever,
+// some devices too: nothing waits with O_NONBLOCK, which means nothing to a regular file.
+int open_regular(const char* path, struct stat* info, FileError* error) {
+  int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) {
+    fail(error, "cannot be opened", errno);
+    return -1;
+  }
+  bool ok = fstat(descriptor, info) == 0 || fail(error, "cannot be examined", errno);
+  if (ok && !S_ISREG(info->st_mode)) {
+    ok = false;
+    snprintf(error->text, sizeof error->text, "is not a regular file: name one that is");
+  }
+  if (ok) return descriptor;
+  close(descriptor);
+  return -1;
+}
+
 }  // namespace
 
 bool map_file(const char* path, MappedFile* file, FileError* error) {
-  int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return fail(error, "cannot be opened", errno);
   struct stat info;
-  bool ok = fstat(descriptor, &info) == 0;
+  int descriptor = open_regular(path, &info, error);
+  if (descriptor < 0) return false;
+  bool ok = info.st_size > 0;
   if (!ok) {
-    fail(error, "cannot be examined", errno);
-  } else if (!S_ISREG(info.st_mode)) {
-    ok = false;
-    snprintf(error->text, sizeof error->text, "is not a regular file: name a scene file");
-  } else if (info.st_size <= 0) {
-    ok = false;
     snprintf(error->text, sizeof error->text, "is empty: make it again");
   } else {
     void* bytes = mmap(nullptr, static_cast<size_t>(info.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);

@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/heap_scene.h"
 #include "app/options.h"
+#include "app/note.h"
 #include "app/report.h"
 #include "platform/file.h"
 #include "scene/baked.h"
@@ -45,7 +46,7 @@ Status bake(const BakeOptions& o) {
   std::size_t accel_bytes = scene.accel.bytes();
   give_block_back(accel_block);
   RETURN_IF_ERROR(status);
-  if (!heap.warning.empty()) std::fprintf(stderr, "pocketray: %s\n", heap.warning.c_str());
+  if (!heap.warning.empty()) print_note(heap.warning);
   if (o.json != "-" && o.output != "-")
     std::printf(
         "%s: %s triangles, %u materials, %u textures, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f "

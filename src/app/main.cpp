@@ -3,9 +3,11 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "platform/standard_streams.h"
 
 int main(int argument_count, char** arguments) {
   using namespace pocketray;
+  platform::open_standard_streams();
   int exit_status = kExitDone;
   CLI::App program{
       "pocketray ray-traces scenes for handheld screens in a block of memory fixed at start.\n"

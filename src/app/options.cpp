@@ -7,6 +7,7 @@
 
 #include "accel/accel_list.h"
 #include "app/interrupt.h"
+#include "app/note.h"
 #include "base/fmath.h"
 #include "plan/plan_effects.h"
 #include "scene/builtin/builtin.h"
@@ -270,7 +271,7 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
 }
 
 void print_notes(const OpenScene& opened) {
-  if (!opened.source.warning.empty()) std::fprintf(stderr, "pocketray: %s\n", opened.source.warning.c_str());
+  if (!opened.source.warning.empty()) print_note(opened.source.warning);
   if (opened.renderer.accel_is_fallback)
     std::fprintf(
         stderr,

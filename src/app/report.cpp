@@ -4,14 +4,21 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/note.h"
+#include "base/printable.h"
 #include "effect/effect_list.h"
 #include "platform/file.h"
 
 namespace pocketray {
 
+void print_note(std::string text) {
+  make_printable(&text[0], text.size());
+  std::fprintf(stderr, "pocketray: %s\n", text.c_str());
+}
+
 int report(const Status& status) {
   if (status.ok) return kExitDone;
-  std::fprintf(stderr, "pocketray: %s\n", status.message);
+  print_note(status.message);
   return kExitInput;
 }
 

@@ -5,6 +5,7 @@
 
 #include "app/heap_scene.h"
 #include "app/progress.h"
+#include "base/printable.h"
 #include "platform/file.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
@@ -83,11 +84,12 @@ Status read_scene(const std::string& path, std::uint64_t bytes_left, StoredScene
   return success();
 }
 
-// Cut where a character of UTF-8 begins.
+// Cut where a character of UTF-8 begins. Clients show it: nothing is in it that a terminal obeys.
 void set_name(const std::string& name, StoredScene* stored) {
   std::size_t length = std::min(name.size(), std::size_t(kNameBytes - 1));
   while (length > 0 && length < name.size() && (name[length] & 0xC0) == 0x80) --length;
   std::memcpy(stored->name, name.data(), length);
+  make_printable(stored->name, length);
 }
 
 std::uint64_t stored_bytes(const SceneStore& store) {

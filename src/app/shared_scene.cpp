@@ -8,6 +8,7 @@
 #include "app/progress.h"
 #include "app/scene_identity.h"
 #include "app/sharing_parts.h"
+#include "base/printable.h"
 #include "platform/net/tcp.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
@@ -239,7 +240,11 @@ Status list_shared_scenes(Sharing* s, std::size_t server, std::vector<OfferedSce
   std::string reason;
   if (!status.ok) add_reason(*s, server, status.message, &reason);
   if (!status.ok) return failure("%s", reason.c_str());
-  for (const SceneEntry& entry : entries) scenes->push_back({entry.name, entry.triangle_count, entry.byte_count});
+  for (const SceneEntry& entry : entries) {
+    OfferedScene scene = {entry.name, entry.triangle_count, entry.byte_count};
+    make_printable(&scene.name[0], scene.name.size());  // whatever the server sent
+    scenes->push_back(scene);
+  }
   return success();
 }
 

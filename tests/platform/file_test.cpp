@@ -1,6 +1,7 @@
 #include "platform/file.h"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -16,7 +17,7 @@ TEST_CASE("file_errors_say_why") {
   Folder folder;
   FileError error;
   CHECK(content_of(folder.file("a")) == "cannot be opened: No such file or directory");
-  CHECK(content_of(folder.path) == "is not a regular file: name a scene file");
+  CHECK(content_of(folder.path) == "is not a regular file: name one that is");
   REQUIRE(write_file(folder.file("a"), "", &error));
   CHECK(content_of(folder.file("a")) == "is empty: make it again");
   CHECK_FALSE(write_file(folder.file("no/a"), "x", &error));
@@ -44,4 +45,18 @@ TEST_CASE("file_folder_is_made_or_there") {
   CHECK_FALSE(make_folder(folder.file("a").c_str(), &error));
   std::remove((made + "/a").c_str());
   rmdir(made.c_str());
+}
+
+// Goal: nothing that is no regular file is waited for. Method: a pipe that nobody writes to, a device, a loop of links;
+// an alarm ends the test where it hangs.
+TEST_CASE("file_that_is_none_is_refused_at_once") {
+  Folder folder;
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  REQUIRE(symlink("loop", folder.file("loop").c_str()) == 0);
+  alarm(20);
+  CHECK(content_of(folder.file("pipe")) == "is not a regular file: name one that is");
+  CHECK(content_of("/dev/zero") == "is not a regular file: name one that is");
+  CHECK(content_of("/dev/tty").find("bytes") == std::string::npos);
+  CHECK(content_of(folder.file("loop")).find("cannot be opened") == 0);
+  alarm(0);
 }

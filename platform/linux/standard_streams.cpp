@@ -1,0 +1,40 @@
+#include "platform/standard_streams.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+namespace platform {
+namespace {
+
+// A pipe that poll() calls writable takes as many bytes as this at once [POSIX, pipe(7)], so that write() cannot wait.
+constexpr size_t kLineBytesMax = 4096;
+
+}  // namespace
+
+void open_standard_streams() {
+  for (int descriptor = 0; descriptor <= 2; ++descriptor) {
+    if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free number is this one. Opened the wrong way round, so that its use is an error and not silence.
+    int opened = open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
+    if (opened > 2) close(opened);
+  }
+}
+
+void survive_closed_pipes() { signal(SIGPIPE, SIG_IGN); }
+
+bool print_line_at_once(const char* line) {
+  char bytes[kLineBytesMax];
+  size_t length = strlen(line);
+  if (length > sizeof bytes - 1) length = sizeof bytes - 1;
+  memcpy(bytes, line, length);
+  bytes[length++] = '\n';
+  pollfd output = {STDOUT_FILENO, POLLOUT, 0};
+  if (poll(&output, 1, 0) != 1 || (output.revents & POLLOUT) == 0) return false;
+  return write(STDOUT_FILENO, bytes, length) == static_cast<ssize_t>(length);
+}
+
+}  // namespace platform

@@ -1,0 +1,69 @@
+#include "platform/standard_streams.h"
+
+#include <doctest/doctest.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+
+using namespace platform;
+
+namespace {
+
+// Runs `body` in a process of its own; whether it says true.
+template <class Body>
+bool holds_in_child(Body body) {
+  pid_t child = fork();
+  if (child == 0) _exit(body() ? 0 : 1);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+// Goal: nothing else takes the place of a standard stream, and one that was closed stays unusable. Method: each set of
+// them closed, in a process of its own.
+TEST_CASE("standard_streams_are_all_open") {
+  for (int closed = 0; closed < 8; ++closed) {
+    CAPTURE(closed);
+    CHECK(holds_in_child([=] {
+      for (int i = 0; i < 3; ++i)
+        if (closed >> i & 1) close(i);
+      open_standard_streams();
+      bool ok = true;
+      for (int i = 0; i < 3; ++i) ok = ok && fcntl(i, F_GETFD) >= 0;
+      char byte = 'x';
+      if (closed & 1) ok = ok && read(0, &byte, 1) < 0;
+      for (int i = 1; i < 3; ++i)
+        if (closed >> i & 1) ok = ok && write(i, &byte, 1) < 0;
+      int next = open("/dev/null", O_RDONLY);
+      return ok && next > 2;
+    }));
+  }
+}
+
+// Goal: a line is printed, or lost, and never waited for. Method: a pipe that is read, one that nobody reads from until
+// it is full, one whose reader has gone.
+TEST_CASE("line_is_printed_at_once_or_lost") {
+  CHECK(holds_in_child([] {
+    alarm(20);
+    int ends[2];
+    if (pipe(ends) != 0 || dup2(ends[1], 1) != 1) return false;
+    char text[8] = {0};
+    if (!print_line_at_once("hello") || read(ends[0], text, 7) != 6 || std::strcmp(text, "hello\n") != 0) return false;
+    int lines = 0;
+    while (lines < 1'000'000 && print_line_at_once("what nobody reads")) ++lines;
+    return lines > 10 && lines < 1'000'000;
+  }));
+  CHECK(holds_in_child([] {
+    survive_closed_pipes();
+    int ends[2];
+    if (pipe(ends) != 0 || dup2(ends[1], 1) != 1) return false;
+    close(ends[0]);
+    return !print_line_at_once("hello") && !print_line_at_once("again");
+  }));
+}
