@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "platform/link_slots.h"
+#include "platform/net/descriptors.h"
 #include "platform/net/resolve.h"
 
 namespace platform {
@@ -20,6 +21,7 @@ enum class Phase : std::uint8_t { unused, listening, connecting, connected, brok
 struct Slot {
   Phase phase;
   int file;          // -1: none
+  int spare;         // of a listener: a descriptor to give away when there are no more; else -1
   int generation;    // counts the streams that lived here, so that a stale number is known
   int place;         // while connecting: of the address, which is tried
   int error_number;  // of the first place that failed; broken: why
@@ -38,6 +40,7 @@ struct TcpLink : Link {
 constexpr int kBacklog = 64;
 constexpr int kUnsentBytes = 16384;  // that a system takes beyond what it has sent
 constexpr std::uint64_t kPollNsMax = 3'600'000'000'000;
+constexpr std::uint64_t kBlindRestNs = 10'000'000;  // between two looks where the system cannot tell what is ready
 
 TcpLink* tcp(Link* link) { return static_cast<TcpLink*>(link); }
 
@@ -50,13 +53,14 @@ Slot* take_slot(TcpLink* link, Error* error) {
   int generation = slot->generation;
   *slot = Slot();
   slot->generation = generation;
-  slot->file = -1;
+  slot->file = slot->spare = -1;
   return slot;
 }
 
 void close_file(Slot* slot) {
   if (slot->file >= 0) close(slot->file);  // not again after EINTR: the file is closed all the same
-  slot->file = -1;
+  if (slot->spare >= 0) close(slot->spare);
+  slot->file = slot->spare = -1;
 }
 
 // What went wrong with a connection, and how to mend it.
@@ -239,6 +243,7 @@ int listen(Link* base, const LinkAddress& address, Error* error) {
   }
   socket_address_text(at, slot->name, sizeof slot->name);
   slot->phase = Phase::listening;
+  slot->spare = take_spare();
   return stream_of(link, slot);
 }
 
@@ -252,6 +257,7 @@ LinkResult accept(Link* base, int listener, int* stream, Error* error) {
   if (file < 0) {
     if (would_wait(errno) || errno == ECONNABORTED) return LinkResult::later;
     tell(from->name, errno, error);
+    if (is_shortage(errno)) from->spare = turn_away(from->file, from->spare);
     return LinkResult::failed;
   }
   // A peer that there is no room for is sent away: left waiting, it would have poll() return for ever.
@@ -300,13 +306,29 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   return LinkResult::done;
 }
 
+// Asks the system about the first `file_count` of link->files. Where it cannot tell, for want of memory or because the
+// limit on open files has been lowered, everything counts as ready after a rest: whoever tries sees how it stands.
+int ask_system(TcpLink* link, int file_count, std::uint64_t wait_ns) {
+  auto time_of = [](std::uint64_t ns) {
+    return timespec{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+  };
+  timespec time = time_of(wait_ns);
+  int woken = ppoll(link->files, static_cast<nfds_t>(file_count), &time, nullptr);
+  if (woken >= 0 || errno == EINTR) return woken;
+  time = time_of(wait_ns < kBlindRestNs ? wait_ns : kBlindRestNs);
+  nanosleep(&time, nullptr);
+  for (int i = 0; i < file_count; ++i) link->files[i].revents = link->files[i].events;
+  return file_count;
+}
+
 // One round of poll(): what is ready when the system has waited for at most `wait_ns`. Adds to `waited_ns` what has
 // passed in vain.
 int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait_ns, std::uint64_t* waited_ns) {
-  // 1. What the system is asked. A connection that fails in time is looked at when its time is over.
+  // 1. What the system is asked: only what is open, since it takes no more entries than files may be open. A connection
+  // that fails in time is looked at when its time is over.
+  int file_count = 0;
   for (int i = 0; i < wait_count; ++i) {
     Slot* slot = slot_of(link, waits[i].stream);
-    link->files[i] = {-1, 0, 0};
     waits[i].can_read = waits[i].can_write = false;
     if (!waits[i].want_read && !waits[i].want_write) continue;
     if (!slot || slot->phase == Phase::broken) {
@@ -318,20 +340,25 @@ int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait
       std::uint64_t left = link_timer_left(&slot->timer, link->now_ns());
       if (left < wait_ns) wait_ns = left;
     }
-    link->files[i].fd = slot->file;
-    if (waits[i].want_read && !connecting) link->files[i].events |= POLLIN;
-    if (waits[i].want_write || connecting) link->files[i].events |= POLLOUT;
+    waits[i].can_read = true;  // it is asked about
+    pollfd* file = &link->files[file_count++];
+    *file = {slot->file, 0, 0};
+    if (waits[i].want_read && !connecting) file->events |= POLLIN;
+    if (waits[i].want_write || connecting) file->events |= POLLOUT;
   }
-  timespec time = {static_cast<time_t>(wait_ns / 1'000'000'000), static_cast<long>(wait_ns % 1'000'000'000)};
-  int woken = ppoll(link->files, static_cast<nfds_t>(wait_count), &time, nullptr);
+  int woken = ask_system(link, file_count, wait_ns);
   if (woken == 0) *waited_ns += wait_ns;
 
-  // 2. What it says.
+  // 2. What it says, in the same order.
   int ready_count = 0;
+  const pollfd* file = link->files;
   for (int i = 0; i < wait_count; ++i) {
     LinkWait* wait = &waits[i];
+    if (!wait->want_read && !wait->want_write) continue;
     Slot* slot = slot_of(link, wait->stream);
-    short events = woken > 0 ? link->files[i].revents : 0;
+    short events = wait->can_read && woken > 0 ? file->revents : 0;
+    if (wait->can_read) ++file;
+    wait->can_read = false;
     bool failed = !slot || slot->phase == Phase::broken || (events & (POLLERR | POLLHUP | POLLNVAL)) != 0;
     if (slot && slot->phase == Phase::connecting) {
       Error error;

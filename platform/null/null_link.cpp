@@ -151,7 +151,7 @@ std::uint64_t look(NullLink* link, LinkWait* wait) {
   wait->can_write = wait->want_write && (failed || told_end || room);
   std::uint64_t news_ns = failed ? 0 : pipe_news_ns(slot->in);
   wait->can_read = wait->want_read && news_ns <= link->clock_ns;
-  return wait->want_read ? news_ns : slot->in.reset_ns;
+  return wait->want_read || !slot ? news_ns : slot->in.reset_ns;
 }
 
 int poll(Link* base, LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {

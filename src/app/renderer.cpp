@@ -1,6 +1,7 @@
 #include "app/renderer.h"
 
 #include "accel/accel_list.h"
+#include "app/exposure.h"
 #include "app/frame.h"
 #include "base/check.h"
 #include "base/color.h"
@@ -109,7 +110,7 @@ Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t outpu
   return choose_accel(r, storage, output_bytes);
 }
 
-Status build_renderer(Renderer* r) {
+Status build_renderer_unexposed(Renderer* r) {
   // The scene arena so far reached over the whole block; from here on each arena has just what was planned for it.
   Arena rest = r->scene_arena;
   rest.used = arena_need(rest.used);
@@ -132,8 +133,14 @@ Status build_renderer(Renderer* r) {
   for (std::uint32_t row = 0; row < r->settings.height; ++row)
     r->spans[row] = {static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(r->settings.width)};
   r->exposure = r->scene.info.exposure;
-  RETURN_IF_ERROR(prepare_frame(r, 0));
-  if (r->scene.info.auto_exposure != 0) r->exposure = measure_exposure(r);
+  return prepare_frame(r, 0);
+}
+
+bool wants_exposure(const Renderer& r) { return r.scene.info.auto_exposure != 0; }
+
+Status build_renderer(Renderer* r) {
+  RETURN_IF_ERROR(build_renderer_unexposed(r));
+  if (wants_exposure(*r)) r->exposure = measure_exposure(r);
   return success();
 }
 
@@ -190,22 +197,33 @@ Tracer total_counts(const Renderer& r) {
   return total;
 }
 
-float measure_exposure(Renderer* r) {
+bool probe_exposure(Renderer* r, ExposureProbe* p, std::uint32_t pixel_count_max, std::uint32_t* pixel_count,
+                    float* exposure) {
   constexpr float kGrey = 0.18f;
   constexpr std::uint32_t kStep = 10;
+  auto places = [](std::uint32_t side) { return (side + kStep / 2 - 1) / kStep; };
+  std::uint32_t columns = places(r->settings.width), count = columns * places(r->settings.height), begin = p->next;
   Tracer tracer = make_tracer(r->frame);
-  double log_sum = 0;
-  std::uint32_t lit = 0;
-  for (std::uint32_t row = kStep / 2; row < r->settings.height; row += kStep) {
-    for (std::uint32_t column = kStep / 2; column < r->settings.width; column += kStep) {
-      Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column),
-                  static_cast<std::uint16_t>(column + 1)};
-      trace_spans(&tracer, &one, 1, Aov::none, r->image.data);
-      float bright = luminance(r->image[static_cast<std::size_t>(row) * r->settings.width + column]);
-      if (bright > 0 && std::isfinite(bright)) log_sum += det_log(bright), ++lit;
-    }
+  for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {
+    std::uint32_t row = kStep / 2 + p->next / columns * kStep, column = kStep / 2 + p->next % columns * kStep;
+    Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column),
+                static_cast<std::uint16_t>(column + 1)};
+    trace_spans(&tracer, &one, 1, Aov::none, r->image.data);
+    float bright = luminance(r->image[static_cast<std::size_t>(row) * r->settings.width + column]);
+    if (bright > 0 && std::isfinite(bright)) p->log_sum += det_log(bright), ++p->lit;
   }
-  return lit ? static_cast<float>(kGrey / det_exp(log_sum / lit)) : 1.0f;
+  *pixel_count = p->next - begin;
+  if (p->next < count) return false;
+  *exposure = p->lit ? static_cast<float>(kGrey / det_exp(p->log_sum / p->lit)) : 1.0f;
+  return true;
+}
+
+float measure_exposure(Renderer* r) {
+  ExposureProbe probe;
+  std::uint32_t pixel_count;
+  float exposure = 1;
+  probe_exposure(r, &probe, ~0u, &pixel_count, &exposure);
+  return exposure;
 }
 
 }  // namespace pocketray

@@ -1,16 +1,20 @@
 // pocketray serve: renders for devices that share their frames with it.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cinttypes>
 #include <thread>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/note.h"
 #include "app/options.h"
 #include "app/report.h"
 #include "app/server.h"
 #include "base/isa.h"
 #include "base/seal.h"
+#include "platform/net/descriptors.h"
 #include "platform/net/tcp.h"
+#include "platform/standard_streams.h"
 
 namespace pocketray {
 namespace {
@@ -38,9 +42,25 @@ struct Serving {
   }
 };
 
-void print_line(void*, const char* line) {
-  std::printf("%s\n", line);
-  std::fflush(stdout);
+// Whoever reads the log may go, or fall asleep: that is no matter of the clients.
+void print_line(void*, const char* line) { (void)platform::print_line_at_once(line); }
+
+// Plans for as many streams as files may be open, or fails where that is too few.
+Status plan_streams(ServerOptions* options) {
+  constexpr int kOtherFiles = 4;  // the listener's spare, a scene being read, what the C library opens
+  int wanted = server_stream_count(*options) + kOtherFiles, left = platform::descriptors_left(wanted);
+  if (left >= wanted) return success();
+  int own = server_stream_count(*options) - options->client_count_max - options->guest_count_max + kOtherFiles;
+  int client_count = options->client_count_max;
+  options->guest_count_max = std::max(1, std::min((left - own) / 3, options->guest_count_max));
+  options->client_count_max = std::min(left - own - options->guest_count_max, client_count);
+  if (options->client_count_max < 1)
+    return failure("this program may open %d more files and needs %d to serve anybody: raise `ulimit -n` by %d", left,
+                   own + 2, own + 2 - left);
+  if (options->client_count_max < client_count)
+    print_note("the limit on open files allows " + std::to_string(options->client_count_max) + " clients, not " +
+               std::to_string(client_count) + ": raise it with `ulimit -n`");
+  return success();
 }
 
 Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
@@ -60,6 +80,8 @@ Status read_options(const ServeOptions& o, ServerOptions* options) {
   options->thread_count = choose_thread_count(o.threads, std::thread::hardware_concurrency());
   options->client_count_max = o.clients;
   options->image_side_max = o.image_side_max;
+  if (!(o.idle_seconds >= 1 && o.idle_seconds <= 1e6))
+    return failure("--idle is %g: it must lie in 1 … 1000000 seconds", o.idle_seconds);
   options->idle_timeout_ns = static_cast<std::uint64_t>(o.idle_seconds * 1e9);
   options->log = print_line;
   Isa isa;
@@ -78,6 +100,7 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   RETURN_IF_ERROR(parse_bytes(o.scene_memory, &scene_bytes, "--scene-memory"));
   store_options.bytes_max = scene_bytes;
 
+  RETURN_IF_ERROR(plan_streams(options));
   platform::LinkOptions link_options;
   link_options.stream_count_max = server_stream_count(*options);
   link_options.memory_bytes = platform::kTcpLink.need(link_options.stream_count_max);
@@ -90,7 +113,7 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   // The address first: that another program has it is told before the scenes are read, which takes its time.
   RETURN_IF_ERROR(open_server(*options, serving->store, serving->link, address, &serving->server));
   RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
-  for (const std::string& warning : serving->store.warnings) std::fprintf(stderr, "pocketray: %s\n", warning.c_str());
+  for (const std::string& warning : serving->store.warnings) print_note(warning);
   return success();
 }
 
@@ -107,6 +130,7 @@ void print_start(const Serving& serving, const ServerOptions& options) {
 
 int run(const ServeOptions& o) {
   constexpr std::uint64_t kStepNs = 100'000'000;  // till an interrupt is noticed
+  platform::survive_closed_pipes();
   Serving serving;
   ServerOptions options;
   Status status = start(o, &serving, &options);
@@ -118,9 +142,11 @@ int run(const ServeOptions& o) {
   ServerTotals totals = server_totals(*serving.server);
   close_server(serving.server);
   serving.server = nullptr;
-  std::printf("%" PRIu64 " clients, %s frames, %s rows, %.1f MiB sent\n", totals.client_count,
-              grouped(totals.frame_count).c_str(), grouped(totals.row_count).c_str(),
-              static_cast<double>(totals.byte_count) / (1 << 20));
+  char line[160];
+  std::snprintf(line, sizeof line, "%" PRIu64 " clients, %s frames, %s rows, %.1f MiB sent", totals.client_count,
+                grouped(totals.frame_count).c_str(), grouped(totals.row_count).c_str(),
+                static_cast<double>(totals.byte_count) / (1 << 20));
+  (void)platform::print_line_at_once(line);
   return kExitInterrupted;
 }
 
@@ -151,7 +177,6 @@ void add_serve_command(CLI::App* program, int* exit_status) {
       ->check(CLI::Range(1u, kImageSideMax))
       ->capture_default_str();
   command->add_option("--idle", o->idle_seconds, "seconds after which a silent client is closed")
-      ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
       ->default_str("the best of this CPU");

@@ -1,5 +1,6 @@
 #include "app/server.h"
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 
@@ -14,89 +15,9 @@ using platform::LinkResult;
 
 constexpr std::uint64_t kLingerNs = 2'000'000'000;  // for who leaves to read why
 constexpr std::uint64_t kFarewellNs = 500'000'000;  // for all to be told that the server ends
-constexpr int kAcceptsAtOnce = 16;
 
-int find_free(const Server& server) {
-  for (std::size_t i = 0; i < server.sessions.size(); ++i)
-    if (server.sessions[i].phase == SessionPhase::unused) return static_cast<int>(i);
-  return -1;
-}
-
-void close_guest(Server* server, Guest* guest) {
-  server->net->close(server->link, guest->stream);
-  guest->stream = -1;
-}
-
-// Tells one that there is no place for why it is closed.
-void send_away(Server* server, int stream) {
-  Guest* guest = &server->guests[0];
-  for (Guest& other : server->guests) {
-    if (other.stream < 0) guest = &other;
-    if (guest->stream < 0) break;
-    if (platform::link_timer_left(&other.timer, now_ns(server)) <
-        platform::link_timer_left(&guest->timer, now_ns(server)))
-      guest = &other;
-  }
-  if (guest->stream >= 0) close_guest(server, guest);
-  guest->stream = stream;
-  guest->timer = platform::link_timer(now_ns(server), kLingerNs);
-
-  Message hello = server_hello(*server), busy;
-  busy.type = MessageType::error;
-  busy.error.code = WireError::busy;
-  std::uint8_t bytes[128];
-  std::uint32_t hello_bytes = message_bytes(hello), byte_count = hello_bytes + message_bytes(busy);
-  CHECK_LE(byte_count, sizeof bytes);
-  encode_message(hello, bytes);
-  encode_message(busy, bytes + hello_bytes);
-  std::size_t sent = 0;
-  platform::Error error;
-  server->net->write(server->link, stream, bytes, byte_count, &sent, &error);
-  if (sent < byte_count) close_guest(server, guest);
-  log_line(&server->log, now_ns(server), "%s was sent away: all %zu places are taken",
-           server->net->stream_name(server->link, stream), server->sessions.size());
-}
-
-void receive_client(Server* server, int stream) {
-  int free = find_free(*server);
-  if (free < 0) return send_away(server, stream);
-  Session* s = &server->sessions[static_cast<std::size_t>(free)];
-  restart_session(s);
-  s->phase = SessionPhase::greeting;
-  s->stream = stream;
-  std::snprintf(s->name, sizeof s->name, "%s", server->net->stream_name(server->link, stream));
-  std::uint64_t now = now_ns(server);
-  s->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
-  s->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
-  s->stall_timer = platform::link_timer(now, server->options.stall_timeout_ns);
-  send_message(s, server_hello(*server));
-}
-
-void accept_clients(Server* server) {
-  for (int i = 0; i < kAcceptsAtOnce; ++i) {
-    int stream = -1;
-    platform::Error error;
-    LinkResult result = server->net->accept(server->link, server->listener, &stream, &error);
-    if (result == LinkResult::later) return;
-    if (result == LinkResult::done)
-      receive_client(server, stream);
-    else
-      log_line(&server->log, now_ns(server), "a client could not be let in: %s", error.text);
-  }
-}
-
-// Drops what has come; false: nothing more will.
-bool drop_input(Server* server, int stream) {
-  std::uint8_t bytes[512];
-  std::size_t count = 0;
-  platform::Error error;
-  LinkResult result = server->net->read(server->link, stream, bytes, sizeof bytes, &count, &error);
-  return result != LinkResult::ended && result != LinkResult::failed;
-}
-
-void tend_guest(Server* server, Guest* guest) {
-  if (!drop_input(server, guest->stream) || platform::link_timer_left(&guest->timer, now_ns(server)) == 0)
-    close_guest(server, guest);
+bool accepts(Server* server) {
+  return !server->accept_rests || platform::link_timer_left(&server->accept_timer, now_ns(server)) == 0;
 }
 
 void write_session(Server* server, Session* s) {
@@ -115,11 +36,14 @@ void write_session(Server* server, Session* s) {
   q->begin = q->end = 0;
 }
 
-// Sends what there is, and rows that waited for room.
+// Sends what there is, and rows that waited for room, unless they have to wait for their turn as well.
 void send_session(Server* server, Session* s) {
   for (;;) {
+    std::uint64_t start = now_ns(server), queued_before = queued_bytes(*s);
     write_session(server, s);
-    if (s->phase != SessionPhase::serving) return;
+    std::uint64_t now = now_ns(server);
+    if (in_turn(*server) && now > start && queued_before > 0) account_for(server, s, now - start, false);
+    if (s->phase != SessionPhase::serving || in_turn(*server)) return;
     std::size_t queued = queued_bytes(*s);
     send_chunks(s);
     if (queued_bytes(*s) == queued) return;
@@ -127,9 +51,7 @@ void send_session(Server* server, Session* s) {
 }
 
 // Whether it waits for the rest of a message; for the client to take what it is sent; for nothing.
-bool awaits_message(const Session& s) {
-  return s.phase == SessionPhase::greeting || (s.phase == SessionPhase::serving && s.input_count > 0);
-}
+bool awaits_message(const Session& s) { return s.phase == SessionPhase::serving && s.input_count > 0; }
 bool awaits_room(const Session& s) { return queued_bytes(s) > 0; }
 bool is_idle(const Session& s) { return s.phase == SessionPhase::serving && !has_job(s) && queued_bytes(s) == 0; }
 
@@ -170,18 +92,20 @@ void wait_for_news(Server* server, std::uint64_t timeout_ns) {
   std::uint64_t due = work_due_ns(server), now = now_ns(server);
   if (timeout_ns < due) due = timeout_ns;
   platform::LinkWait* wait = server->waits.data();
-  *wait++ = {server->listener, true, false};
+  *wait++ = {server->listener, accepts(server), false};
+  if (server->accept_rests) due = std::min(due, platform::link_timer_left(&server->accept_timer, now));
   for (Session& s : server->sessions) {
     *wait = platform::LinkWait();
     if (s.phase != SessionPhase::unused) {
-      *wait = {s.stream, s.input_count<s.input.count, queued_bytes(s)> 0};
-      std::uint64_t session_due = s.more_to_take ? 0 : session_due_ns(&s, now);
+      bool has_room = s.input_count < s.input.count;
+      *wait = {s.stream, has_room && !s.has_ended, queued_bytes(s) != 0};
+      std::uint64_t session_due = wants_messages(s) ? 0 : session_due_ns(&s, now);
       if (session_due < due) due = session_due;
     }
     ++wait;
   }
   for (Guest& guest : server->guests) {
-    *wait++ = {guest.stream, guest.stream >= 0, false};
+    *wait++ = {guest.stream, guest.stream >= 0, guest.stream >= 0 && guest.output_begin < guest.output_end};
     if (guest.stream < 0) continue;
     std::uint64_t left = platform::link_timer_left(&guest.timer, now);
     if (left < due) due = left;
@@ -213,6 +137,8 @@ void say_farewell(Server* server) {
 Status check_options(const ServerOptions& o) {
   if (o.client_count_max < 1 || o.client_count_max > kServerClientsMax)
     return failure("a server has 1 to %d clients, not %d", kServerClientsMax, o.client_count_max);
+  if (o.guest_count_max < 1 || o.guest_count_max > kServerClientsMax)
+    return failure("a server has room for 1 to %d guests, not %d", kServerClientsMax, o.guest_count_max);
   if (o.client_memory_bytes < kSessionBytesMin)
     return failure("a client's memory is %zu bytes: give it %zu or more", o.client_memory_bytes, kSessionBytesMin);
   if (o.thread_count < 1 || o.thread_count > kThreadCountMax)
@@ -225,7 +151,8 @@ Status check_options(const ServerOptions& o) {
 Status take_memory(Server* server) {
   const ServerOptions& o = server->options;
   server->sessions.resize(static_cast<std::size_t>(o.client_count_max));
-  server->guests.resize(kGuestCountMax);
+  server->guests.resize(static_cast<std::size_t>(o.guest_count_max));
+  server->addresses.resize(kAddressCountMax);
   server->waits.resize(1 + server->sessions.size() + server->guests.size());
   for (Session& s : server->sessions) {
     void* block = take_block(o.client_memory_bytes);
@@ -271,7 +198,7 @@ void end_session(Server* server, Session* s, const char* reason) {
            static_cast<double>(s->byte_count) / 1024, reason);
 }
 
-int server_stream_count(const ServerOptions& options) { return 1 + options.client_count_max + kGuestCountMax + 1; }
+int server_stream_count(const ServerOptions& options) { return 2 + options.client_count_max + options.guest_count_max; }
 
 Status open_server(const ServerOptions& options, const SceneStore& store, platform::Link* link,
                    const platform::LinkAddress& address, Server** result) {
@@ -308,6 +235,7 @@ void step_server(Server* server, std::uint64_t timeout_ns) {
   for (Session& s : server->sessions) {
     bool has_news = (wait++)->can_read;
     if (s.phase != SessionPhase::unused && (has_news || s.input_count > 0)) read_session(server, &s);
+    if (s.phase == SessionPhase::serving && !in_turn(*server) && wants_messages(s)) take_messages(server, &s);
   }
   for (Guest& guest : server->guests)
     if (guest.stream >= 0) tend_guest(server, &guest);

@@ -15,11 +15,13 @@ constexpr int kServerClientsMax = 64;
 
 struct ServerOptions {
   int client_count_max = 8;                           // one more is told `busy`
+  int guest_count_max = 16;                           // connections that have not said hello, or are told to go
   std::size_t client_memory_bytes = 64u << 20;        // block of each: buffers, encoder, renderer; without the scene
   std::uint32_t image_side_max = 2048;                // pixels; larger pictures are refused
   std::uint32_t thread_count = 1;                     // that trace, shared by all clients
-  Pace pace;                                          // the CPU to emulate
-  std::uint64_t message_timeout_ns = 10'000'000'000;  // for a message to be whole, the first one counted from the start
+  Pace pace;                                          // the CPU to emulate: what pixels cost it, and
+  std::uint64_t message_ns = 0, byte_ps = 0;          //   a message and a byte of its answer; 0: nothing
+  std::uint64_t message_timeout_ns = 10'000'000'000;  // for a message to be whole; the hello, from the start
   std::uint64_t idle_timeout_ns = 300'000'000'000;    // without a message, nor anything to send
   std::uint64_t stall_timeout_ns = 10'000'000'000;    // without taking anything of what is sent
   void (*log)(void* context, const char* line) = nullptr;  // one line for each event, no more than a few a second

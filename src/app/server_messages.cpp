@@ -5,7 +5,9 @@
 namespace pocketray {
 namespace {
 
-constexpr int kMessagesAtOnce = 32;  // of one client, before the others have their turn
+// Of one client, before the others have their turn.
+constexpr int kMessagesAtOnce = 32;
+constexpr std::uint64_t kMessagesNs = 2'000'000;
 
 void send_scene_entry(Session* session, const SceneStore& store, const ContentHash& hash, const StoredScene* scene) {
   Message reply;
@@ -48,15 +50,15 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
   send_message(session, reply);
 }
 
-void begin_job(Server* server, Session* s, const StoredScene* scene) {
+void begin_job(Session* s, const StoredScene* scene) {
   s->job = FrameJob();
   s->job.scene = scene;
-  if (s->used_ns < server->used_floor_ns) s->used_ns = server->used_floor_ns;
 }
 
 // The request takes the place of what is left of the one before, whatever becomes of it.
 void take_request(Server* server, Session* s, const FrameRequest& request) {
   const Settings& settings = request.settings;
+  if (request.frame == 0) return refuse(server, s, WireError::bad_request, 0, "frames count from 1");
   bool is_late = request.frame < s->frame_last;  // further rows of the same frame may be asked for
   if (is_late) return refuse(server, s, WireError::bad_request, request.frame, "a later frame was asked for before");
   drop_job(s);
@@ -71,7 +73,7 @@ void take_request(Server* server, Session* s, const FrameRequest& request) {
     return refuse(server, s, WireError::too_large, request.frame, "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, request.scene);
   if (!scene) return refuse(server, s, WireError::unknown_scene, request.frame, "its scene is not known here");
-  begin_job(server, s, scene);
+  begin_job(s, scene);
   s->job.request = request;
   s->job.traced_begin = s->job.sent_begin = request.row_end;
 }
@@ -92,7 +94,7 @@ void take_view_query(Server* server, Session* s, const ViewQuery& query) {
     return refuse(server, s, WireError::too_large, 0, "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, query.scene);
   if (!scene) return refuse(server, s, WireError::unknown_scene, 0, "its scene is not known here");
-  begin_job(server, s, scene);
+  begin_job(s, scene);
   s->job.is_view_query = true;
   s->job.measure_exposure = query.measure_exposure;
   FrameRequest* request = &s->job.request;
@@ -101,28 +103,10 @@ void take_view_query(Server* server, Session* s, const ViewQuery& query) {
   request->camera = query.camera, request->settings = query.settings;
 }
 
-bool take_hello(Server* server, Session* session, const Message& message) {
-  constexpr WireError kMalformed = WireError::malformed, kWrongVersion = WireError::wrong_version;
-  if (message.type != MessageType::hello) {
-    leave(server, session, &kMalformed, "it did not begin with a hello");
-    return false;
-  }
-  if (message.hello.version != kWireVersion) {
-    leave(server, session, &kWrongVersion, "it speaks another version of the protocol");
-    return false;
-  }
-  session->phase = SessionPhase::serving;
-  session->message_bytes_max = message.hello.message_bytes_max;
-  ++server->totals.client_count;
-  log_line(&server->log, now_ns(server), "%s came", session->name);
-  return true;
-}
-
 // False: the session is at its end.
 bool take_message(Server* server, Session* session, const Message& message) {
   constexpr WireError kMalformed = WireError::malformed;
   const SceneStore& store = *server->store;
-  if (session->phase == SessionPhase::greeting) return take_hello(server, session, message);
   switch (message.type) {
     case MessageType::scene_list: {
       std::size_t index = message.scene_list.index;
@@ -165,33 +149,6 @@ bool take_message(Server* server, Session* session, const Message& message) {
   return false;
 }
 
-// Decodes what is there, as long as every answer has room. False: the session is at its end.
-bool take_messages(Server* server, Session* s) {
-  constexpr WireError kMalformed = WireError::malformed;
-  std::size_t begin = 0;
-  bool goes_on = true;
-  s->more_to_take = false;
-  for (int i = 0; goes_on && output_room(*s) >= 2 * kReplyBytesMax; ++i) {
-    s->more_to_take = i == kMessagesAtOnce;
-    if (s->more_to_take) break;
-    Message message;
-    Decoded decoded = decode_message(s->input.data + begin, s->input_count - begin, kRequestBytesMax, &message);
-    if (decoded.state == DecodeState::need_more) break;
-    if (decoded.state == DecodeState::malformed) {
-      leave(server, s, &kMalformed, "it sent what is no message");
-      return false;
-    }
-    begin += decoded.byte_count;
-    s->idle_timer = platform::link_timer(now_ns(server), server->options.idle_timeout_ns);
-    s->message_timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
-    goes_on = take_message(server, s, message);
-  }
-  if (!goes_on) return false;
-  s->input_count -= begin;
-  std::memmove(s->input.data, s->input.data + begin, s->input_count);
-  return true;
-}
-
 }  // namespace
 
 Message server_hello(const Server& server) {
@@ -200,6 +157,35 @@ Message server_hello(const Server& server) {
   message.hello.image_side_max = static_cast<std::uint16_t>(server.options.image_side_max);
   message.hello.message_bytes_max = kRequestBytesMax;
   return message;
+}
+
+int take_messages(Server* server, Session* s) {
+  constexpr WireError kMalformed = WireError::malformed;
+  std::uint64_t start = now_ns(server);
+  std::size_t begin = 0;
+  int count = 0;
+  while (wants_messages(*s)) {
+    Message message;
+    Decoded decoded = decode_message(s->input.data + begin, s->input_count - begin, kRequestBytesMax, &message);
+    s->more_to_take = decoded.state == DecodeState::message;
+    if (decoded.state == DecodeState::need_more) break;
+    ++count;
+    if (decoded.state == DecodeState::malformed) {
+      leave(server, s, &kMalformed, "it sent what is no message");
+      return count;
+    }
+    begin += decoded.byte_count;
+    std::uint64_t now = now_ns(server);
+    s->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
+    s->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
+    if (!take_message(server, s, message)) return count;
+    if (count == kMessagesAtOnce || now_ns(server) > start + kMessagesNs) break;
+  }
+  s->input_count -= begin;
+  std::memmove(s->input.data, s->input.data + begin, s->input_count);
+  if (s->has_ended && !wants_messages(*s) && s->phase == SessionPhase::serving && !s->more_to_take)
+    end_session(server, s, "it closed the connection");
+  return count;
 }
 
 void read_session(Server* server, Session* s) {
@@ -211,9 +197,11 @@ void read_session(Server* server, Session* s) {
   platform::LinkResult result = server->net->read(server->link, s->stream, s->input.data + s->input_count,
                                                   s->input.count - s->input_count, &count, &error);
   s->input_count += count;
+  s->more_to_take = s->more_to_take || (!leaving && count > 0);
   if (result == platform::LinkResult::failed) return end_session(server, s, error.text);
-  if (!leaving && !take_messages(server, s)) return;
-  if (result == platform::LinkResult::ended) end_session(server, s, "it closed the connection");
+  if (result != platform::LinkResult::ended) return;
+  if (leaving || !s->more_to_take) return end_session(server, s, "it closed the connection");
+  s->has_ended = true;  // what it said before counts
 }
 
 }  // namespace pocketray

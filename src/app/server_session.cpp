@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "app/frame.h"
 #include "base/check.h"
-#include "plan/plan_effects.h"
 #include "present/pack.h"
 
 namespace pocketray {
@@ -15,46 +13,6 @@ constexpr std::uint32_t kFirstPixels = 8;  // for a thread, while nothing is kno
 constexpr std::uint32_t kPartPixels = 8;   // of a row for a thread, unless as few take longer than they may
 
 PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
-
-// As many rows as a chunk of pictures of that shape can have.
-std::uint32_t chunk_rows_max(CodecShape shape) {
-  shape.chunk_rows_max = shape.height < kChunkPixelsMax / shape.width ? shape.height : kChunkPixelsMax / shape.width;
-  while (shape.chunk_rows_max > 1 && !codec_shape_valid(shape)) shape.chunk_rows_max -= shape.chunk_rows_max / 8 + 1;
-  return shape.chunk_rows_max;
-}
-
-Status make_codec(Session* s) {
-  arena_release(&s->block, s->frame_mark);
-  s->built_scene = nullptr;  // its renderer lay behind
-  std::size_t pixels = std::size_t(s->shape.width) * s->shape.height * pixel_bytes(s->shape.format);
-  if (arena_need(pixels) + row_encoder_need(s->shape) > arena_free(s->block))
-    return failure("%ux%u pixels take more than the memory of a client", s->shape.width, s->shape.height);
-  s->pixels = arena_array<std::uint8_t>(&s->block, pixels);
-  Status status = make_row_encoder(s->shape, &s->block, &s->encoder);
-  if (!status.ok) s->encoder = nullptr;
-  return status;
-}
-
-bool same_pixels(const Settings& a, const Settings& b) {
-  return a.width == b.width && a.height == b.height && a.samples_per_pixel == b.samples_per_pixel &&
-         a.ray_depth == b.ray_depth && a.points_per_area_light == b.points_per_area_light &&
-         a.cut_off_levels == b.cut_off_levels && a.texture_filter == b.texture_filter && a.normals == b.normals &&
-         a.forced_on == b.forced_on && a.forced_off == b.forced_off;
-}
-
-bool is_built_for(const Session& s) {
-  const FrameRequest& request = s.job.request;
-  return s.built_scene == s.job.scene && same_pixels(s.renderer.settings, request.settings) &&
-         s.renderer.camera_index == request.camera_index;
-}
-
-// Rows of the largest chunk that was asked for, that the codec makes and that the client takes.
-std::uint32_t largest_chunk_rows(const Session& s) {
-  std::uint32_t rows = s.job.request.chunk_rows_max;
-  if (rows > s.shape.chunk_rows_max) rows = s.shape.chunk_rows_max;
-  while (rows > 0 && row_chunk_prefix_bytes() + encoded_bytes_max(s.shape, rows) > s.message_bytes_max) --rows;
-  return rows;
-}
 
 std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
   double ps = static_cast<double>(ns) * 1000 / static_cast<double>(pixel_count);
@@ -110,8 +68,8 @@ Slice trace_part(Session* s, std::uint32_t pixels_max) {
     spans[i] = {static_cast<std::uint16_t>(job.traced_begin - 1), static_cast<std::uint16_t>(begin + count * i / parts),
                 static_cast<std::uint16_t>(begin + count * (i + 1) / parts)};
   trace(s, spans, parts);
-  if (count == left) return {1, 0, count};
-  return {0, begin + count, count};
+  if (count == left) return {1, 0, count, false};
+  return {0, begin + count, count, false};
 }
 
 }  // namespace
@@ -152,7 +110,10 @@ void send_message(Session* s, const Message& message) {
   std::uint32_t byte_count = message_bytes(message);
   encode_message(message, reserve_output(s, byte_count));
   s->output.end += byte_count;
+  s->queued_count += byte_count;
 }
+
+bool wants_messages(const Session& s) { return s.more_to_take && output_room(s) >= 2 * kReplyBytesMax; }
 
 void send_error(Session* s, WireError code, std::uint32_t frame) {
   Message message;
@@ -161,62 +122,24 @@ void send_error(Session* s, WireError code, std::uint32_t frame) {
   send_message(s, message);
 }
 
+void drop_job(Session* s) {
+  FrameJob* job = &s->job;
+  if (!has_job(*s)) return;
+  job->scene = nullptr;
+  std::uint32_t traced = job->request.row_end - job->traced_begin, sent = job->request.row_end - job->sent_begin;
+  s->ended_took_ns += job->took_ns;
+  if (!job->is_view_query && traced > 0) s->ended_sent_ns += job->took_ns * sent / traced;
+}
+
+bool has_chunk(const Session& s) {
+  return has_job(s) && s.job.stage == JobStage::rows && queued_bytes(s) <= kAheadBytes &&
+         s.job.sent_begin - s.job.traced_begin >= next_chunk_rows(s);
+}
+
 bool can_work(const Session& s) {
   if (!has_job(s) || queued_bytes(s) > kAheadBytes) return false;
   std::uint32_t unsent = s.job.sent_begin - s.job.traced_begin;
-  return !s.job.prepared || (s.job.traced_begin > s.job.request.row_begin && unsent < next_chunk_rows(s));
-}
-
-Status build_session_renderer(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
-  if (is_built_for(*s)) return success();
-  s->built_scene = nullptr;
-  s->trace_ns = 0;
-  Renderer* r = &s->renderer;
-  *r = Renderer();
-  Settings settings = s->job.request.settings;
-  settings.threads = thread_count;
-  *code = WireError::bad_request;
-  RETURN_IF_ERROR(validate_settings(settings));
-  const Scene& scene = s->job.scene->scene;
-  r->camera_index = s->job.request.camera_index;
-  if (r->camera_index > 0 && r->camera_index >= scene.cameras.count)
-    return failure("there is no camera %u: the scene has %u", r->camera_index, scene.cameras.count);
-  start_renderer(s->block.base + s->block.used, arena_free(s->block), settings, r);
-  r->scene = scene;
-  *code = WireError::too_large;
-  RETURN_IF_ERROR(plan_renderer(r, SceneStorage(), 0));
-  s->own_camera = r->camera;
-  r->workers = workers;
-  *code = WireError::bad_request;
-  RETURN_IF_ERROR(build_renderer(r));
-  s->own_exposure = r->exposure;
-  s->built_scene = s->job.scene;
-  return success();
-}
-
-Status prepare_job(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
-  FrameJob* job = &s->job;
-  *code = WireError::too_large;
-  if (!s->encoder) {
-    s->shape.chunk_rows_max = chunk_rows_max(s->shape);
-    if (!codec_shape_valid(s->shape)) return failure("no message can hold a row of it");
-    RETURN_IF_ERROR(make_codec(s));
-  }
-  std::uint16_t rows_max = static_cast<std::uint16_t>(largest_chunk_rows(*s));
-  job->request.chunk_rows_max = rows_max;
-  job->request.chunk_rows = std::min(job->request.chunk_rows, rows_max);
-  if (rows_max == 0) return failure("the client takes no message that could hold a row");
-  RETURN_IF_ERROR(build_session_renderer(s, thread_count, workers, code));
-  *code = WireError::bad_request;
-  Renderer* r = &s->renderer;
-  r->camera = s->own_camera;
-  r->camera_overridden = false;
-  if (job->request.camera_stated) RETURN_IF_ERROR(set_camera(r, job->request.camera));
-  r->exposure = job->request.exposure > 0 ? job->request.exposure : s->own_exposure;
-  RETURN_IF_ERROR(prepare_frame(r, job->request.seconds));
-  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
-  job->prepared = true;
-  return success();
+  return s.job.stage != JobStage::rows || (s.job.traced_begin > s.job.request.row_begin && unsent < next_chunk_rows(s));
 }
 
 Slice trace_slice(Session* s, std::uint64_t slice_ns) {
@@ -233,11 +156,15 @@ Slice trace_slice(Session* s, std::uint64_t slice_ns) {
   std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
   std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});
   trace(s, s->renderer.spans.data + job.traced_begin - rows, rows);
-  return {rows, 0, rows * settings.width};
+  return {rows, 0, rows * settings.width, false};
 }
 
 void end_slice(Session* s, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns) {
   FrameJob* job = &s->job;
+  if (slice.is_probe) {
+    s->probe_ns = static_cast<double>(took_ns + 1) / slice.pixel_count;
+    return;
+  }
   job->traced_begin -= slice.row_count;
   job->traced_columns = slice.column_end;
   job->wall_ns += wall_ns;
@@ -247,9 +174,8 @@ void end_slice(Session* s, const Slice& slice, std::uint64_t took_ns, std::uint6
 
 void send_chunks(Session* s) {
   FrameJob* job = &s->job;
-  while (has_job(*s) && job->prepared && queued_bytes(*s) <= kAheadBytes) {
+  while (has_chunk(*s)) {
     std::uint32_t rows = next_chunk_rows(*s);
-    if (job->sent_begin - job->traced_begin < rows) return;
     send_chunk(s, job->sent_begin - rows, job->sent_begin);
     job->sent_begin -= rows;
     job->chunk_rows = rows;

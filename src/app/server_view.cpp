@@ -1,7 +1,6 @@
 // What a server tells of a scene to a device that has no room for it.
 #include <cmath>
 
-#include "app/frame.h"
 #include "app/server_session.h"
 
 namespace pocketray {
@@ -20,18 +19,8 @@ bool can_travel(const ViewEntry& entry) {
 
 }  // namespace
 
-Status answer_view_query(Session* s, std::uint32_t thread_count, Workers* workers, WireError* code) {
-  RETURN_IF_ERROR(build_session_renderer(s, thread_count, workers, code));
-  *code = WireError::bad_request;
-  Renderer* r = &s->renderer;
-  const FrameRequest& request = s->job.request;
-  r->camera = s->own_camera;
-  r->camera_overridden = false;
-  if (request.camera_stated) RETURN_IF_ERROR(set_camera(r, request.camera));
-  // As build_renderer() does, but from where the camera is.
-  r->exposure = r->scene.info.exposure;
-  RETURN_IF_ERROR(prepare_frame(r, 0));
-  if (s->job.measure_exposure || r->scene.info.auto_exposure != 0) r->exposure = measure_exposure(r);
+Status answer_view_query(Session* s) {
+  const Renderer* r = &s->renderer;
   Message message;
   message.type = MessageType::view_entry;
   ViewEntry* entry = &message.view_entry;

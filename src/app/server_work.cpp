@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "app/server_state.h"
 
 namespace pocketray {
@@ -7,52 +9,110 @@ constexpr std::uint64_t kSliceNs = 20'000'000;  // of the CPU, before another cl
 
 std::uint64_t elapsed(std::uint64_t begin, std::uint64_t end) { return end > begin ? end - begin : 0; }
 
-// The one of those with work that has used the CPU least; notes since when they wait. -1: there is none.
-int choose_session(Server* server) {
-  std::uint64_t now = now_ns(server);
-  int chosen = -1;
-  for (std::size_t i = 0; i < server->sessions.size(); ++i) {
-    Session* s = &server->sessions[i];
-    if (s->phase != SessionPhase::serving || !can_work(*s)) {
-      s->waiting_since_ns = 0;
-      continue;
-    }
-    if (s->waiting_since_ns == 0) s->waiting_since_ns = now;
-    if (chosen < 0 || s->used_ns < server->sessions[static_cast<std::size_t>(chosen)].used_ns)
-      chosen = static_cast<int>(i);
+// Closes the books on frames that have come to their end, and lets time forgive.
+void settle(Server* server, std::uint64_t now) {
+  std::uint64_t passed = elapsed(server->settled_ns, now), count = 1;
+  server->settled_ns = now;
+  for (Session& s : server->sessions) {
+    if (s.phase != SessionPhase::unused) ++count;
+    if (s.address < 0 || s.ended_took_ns == 0) continue;
+    end_frame(&s.account, s.ended_took_ns, s.ended_sent_ns);
+    end_frame(&server->addresses[static_cast<std::size_t>(s.address)].account, s.ended_took_ns, s.ended_sent_ns);
+    s.ended_took_ns = s.ended_sent_ns = 0;
   }
-  return chosen;
+  for (Session& s : server->sessions) forgive(&s.account, passed, count);
+  for (Address& address : server->addresses) forgive(&address.account, passed, count);
 }
 
-// Prepares the frame or traces a part of it.
+bool has_turn(const Server& server, const Session& s) {
+  if (s.phase != SessionPhase::serving) return false;
+  return can_work(s) || (in_turn(server) && (wants_messages(s) || has_chunk(s)));
+}
+
+// One of those with something to do: of the address whose turn it is, the session whose turn it is. Notes since when
+// they wait. -1: there is none.
+int choose_session(Server* server) {
+  std::uint64_t now = now_ns(server);
+  settle(server, now);
+  for (Address& address : server->addresses) address.waits = false;
+  for (Session& s : server->sessions) {
+    if (s.phase != SessionPhase::serving || !can_work(s)) {
+      s.waiting_since_ns = 0;
+    } else if (s.waiting_since_ns == 0) {
+      s.waiting_since_ns = now;
+    }
+    if (s.address < 0) continue;
+    Address* address = &server->addresses[static_cast<std::size_t>(s.address)];
+    bool waits = has_turn(*server, s);
+    address->waits = address->waits || waits;
+    note(&address->lanes, &s.account, waits);
+  }
+  int first[2] = {-1, -1};
+  for (std::size_t i = 0; i < server->addresses.size(); ++i) {
+    Address* a = &server->addresses[i];
+    note(&server->lanes, &a->account, a->waits);
+    int* best = &first[a->account.heavy ? 1 : 0];
+    bool goes = *best < 0 || goes_before(a->account, server->addresses[static_cast<std::size_t>(*best)].account);
+    if (a->waits && goes) *best = static_cast<int>(i);
+  }
+  int chosen = first[choose_lane(&server->lanes, first[0] >= 0, first[1] >= 0)];
+  if (chosen < 0) return -1;
+
+  first[0] = first[1] = -1;
+  for (std::size_t i = 0; i < server->sessions.size(); ++i) {
+    const Session& s = server->sessions[i];
+    if (s.address != chosen || !s.account.waits) continue;
+    int* best = &first[s.account.heavy ? 1 : 0];
+    bool goes = *best < 0 || goes_before(s.account, server->sessions[static_cast<std::size_t>(*best)].account);
+    if (goes) *best = static_cast<int>(i);
+  }
+  Lanes* lanes = &server->addresses[static_cast<std::size_t>(chosen)].lanes;
+  return first[choose_lane(lanes, first[0] >= 0, first[1] >= 0)];
+}
+
+// How long the work was, by the CPU that is emulated if there is one.
+std::uint64_t work_ns(const Server& server, const Work& work, std::uint64_t took) {
+  const ServerOptions& o = server.options;
+  if (!is_paced(o.pace)) return took;
+  if (work.message_count == 0) return paced_ns(o.pace, work.slice.pixel_count, took);
+  return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
+}
+
+// Takes messages, queues what waited for room, prepares a frame or traces a part of it.
 void begin_work(Server* server, int index) {
   Session* s = &server->sessions[static_cast<std::size_t>(index)];
-  if (server->used_floor_ns < s->used_ns) server->used_floor_ns = s->used_ns;
   Work* work = &server->work;
+  *work = Work();
   work->session = index;
+  work->address = s->address;
   work->job_number = s->job_number;
-  std::uint64_t start = now_ns(server);
-  WireError code;
-  Status status;
-  work->slice = {};
-  if (s->job.prepared)
-    work->slice = trace_slice(s, kSliceNs);
-  else if (s->job.is_view_query)
-    status = answer_view_query(s, server->options.thread_count, server->workers, &code);
-  else
-    status = prepare_job(s, server->options.thread_count, server->workers, &code);
-  std::uint64_t now = now_ns(server), took = elapsed(start, now);
-  if (!status.ok) {
-    drop_job(s);
-    refuse(server, s, code, s->job.request.frame, status.message);
+  work->is_job = !(in_turn(*server) && (wants_messages(*s) || has_chunk(*s)));
+  std::uint64_t start = now_ns(server), waited_since = s->waiting_since_ns;
+  if (!work->is_job && wants_messages(*s)) {
+    std::uint64_t queued = s->queued_count;
+    work->message_count = take_messages(server, s);
+    work->byte_count = s->queued_count - queued;
+  } else if (!work->is_job) {
+    send_chunks(s);
+  } else {
+    WireError code;
+    JobTools tools = {server->options.thread_count, server->workers};
+    Status status = step_job(s, tools, kSliceNs, &work->slice, &code);
+    if (!status.ok) {
+      std::uint32_t frame = s->job.request.frame;
+      drop_job(s);
+      refuse(server, s, code, frame, status.message);
+    }
   }
 
+  std::uint64_t now = now_ns(server), took = elapsed(start, now);
   work->begin_ns = start;
   work->end_ns = now;
   if (is_paced(server->options.pace)) {
-    took = paced_ns(server->options.pace, work->slice.pixel_count, took);
+    took = work_ns(*server, *work, took);
     // Who waited already when the CPU became free was begun with at that moment.
-    if (s->waiting_since_ns < server->cpu_free_ns && server->cpu_free_ns < start) work->begin_ns = server->cpu_free_ns;
+    if (work->is_job && waited_since < server->cpu_free_ns && server->cpu_free_ns < start)
+      work->begin_ns = server->cpu_free_ns;
     if (work->begin_ns + took > now) work->end_ns = work->begin_ns + took;
     server->cpu_free_ns = work->end_ns;
   }
@@ -64,15 +124,40 @@ void end_work(Server* server) {
   Session* s = &server->sessions[static_cast<std::size_t>(work->session)];
   work->session = -1;
   std::uint64_t took = elapsed(work->begin_ns, work->end_ns);
-  s->used_ns += took;
-  if (!has_job(*s) || s->job_number != work->job_number) return;
+  bool goes_on = work->is_job && has_job(*s) && s->job_number == work->job_number;
+  bool is_job = work->is_job && s->address == work->address;
+  account_for(server, s, took, is_job);
+  if (is_job) (goes_on ? s->job.took_ns : s->ended_took_ns) += took;  // of a frame that was given up: in vain
+  if (!goes_on) return;
   if (work->slice.pixel_count > 0) end_slice(s, work->slice, took, elapsed(s->waiting_since_ns, work->end_ns));
   s->waiting_since_ns = work->end_ns;
+  std::uint64_t start = now_ns(server);
   send_chunks(s);
+  std::uint64_t sending = elapsed(start, now_ns(server));
+  account_for(server, s, sending, true);
+  if (has_job(*s)) {
+    s->job.took_ns += sending;
+  } else {
+    s->ended_took_ns += sending;
+    s->ended_sent_ns += sending;
+  }
   if (s->pixel_ps) server->pixel_ps = s->pixel_ps;
 }
 
 }  // namespace
+
+void account_for(Server* server, Session* s, std::uint64_t took, bool is_job) {
+  if (s->address < 0) return;
+  Address* address = &server->addresses[static_cast<std::size_t>(s->address)];
+  charge(&server->lanes, &address->account, took);
+  charge(&address->lanes, &s->account, took);
+  for (Account* account : {&address->account, &s->account}) {
+    if (is_job)
+      account->job_ns += took;
+    else
+      owe(account, took);
+  }
+}
 
 void refuse(Server* server, Session* session, WireError code, std::uint32_t frame, const char* reason) {
   send_error(session, code, frame);
