@@ -1,0 +1,538 @@
+#!/usr/bin/env python3
+"""A second implementation of the device's side of the wire, written from src/wire/PROTOCOL.md and in nothing but Python's
+standard library, against the real server. It says hello, lists and fetches scenes, asks for frames in both formats and with
+every encoding, and for what must be refused; pictures are compared byte for byte with those of `pocketray render`.
+
+Usage: conformance.py PROGRAM
+"""
+import os, re, signal, socket, struct, subprocess, sys, tempfile, zlib
+
+MASK = 2**64 - 1
+HELLO, SCENE_LIST, SCENE_QUERY, SCENE_ENTRY, SCENE_FETCH, SCENE_PIECE, FRAME_REQUEST, ROW_CHUNK, CANCEL, ERROR, PING, PONG, \
+    VIEW_QUERY, VIEW_ENTRY, FRAME_CHANGE = range(1, 16)
+WRONG_VERSION, MALFORMED, UNKNOWN_SCENE, TOO_LARGE, BAD_REQUEST, BUSY, CLOSING = range(1, 8)
+RGB565, RGB888 = 0, 1
+EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-mask", "alpha-blend", "emission", "texture",
+           "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
+           "supersampling", "animation", "back-face-culling"]
+
+failures = 0
+
+
+def check(condition, what):
+    global failures
+    if not condition:
+        failures += 1
+        print("FAILED", what)
+
+
+# ---- Scenes: the hash
+
+
+def rotl(x, r):
+    return (x << r | x >> (64 - r)) & MASK
+
+
+def scene_hash(data):
+    c1, c2 = 0x87c37b91114253d5, 0x4cf5ad432745937f
+    h1 = h2 = 0
+    whole = len(data) // 16 * 16
+    for k1, k2 in struct.iter_unpack("<QQ", data[:whole]):
+        h1 ^= rotl(k1 * c1 & MASK, 31) * c2 & MASK
+        h1 = (rotl(h1, 27) + h2) * 5 + 0x52dce729 & MASK
+        h2 ^= rotl(k2 * c2 & MASK, 33) * c1 & MASK
+        h2 = (rotl(h2, 31) + h1) * 5 + 0x38495ab5 & MASK
+    rest = data[whole:]
+    if len(rest) > 8:
+        h2 ^= rotl(int.from_bytes(rest[8:], "little") * c2 & MASK, 33) * c1 & MASK
+    if rest:
+        h1 ^= rotl(int.from_bytes(rest[:8], "little") * c1 & MASK, 31) * c2 & MASK
+    h1 ^= len(data)
+    h2 ^= len(data)
+    h1 = h1 + h2 & MASK
+    h2 = h2 + h1 & MASK
+
+    def mix(h):
+        h ^= h >> 33
+        h = h * 0xff51afd7ed558ccd & MASK
+        h ^= h >> 33
+        h = h * 0xc4ceb9fe1a85ec53 & MASK
+        return h ^ h >> 33
+
+    h1, h2 = mix(h1), mix(h2)
+    h1 = h1 + h2 & MASK
+    h2 = h2 + h1 & MASK
+    return struct.pack("<QQ", h1, h2)
+
+
+# ---- Chunks
+
+
+class Picture:
+    """The picture as it was last sent, and the deflate stream."""
+
+    def __init__(self, width, height, pixel_format):
+        self.width, self.height, self.format = width, height, pixel_format
+        self.levels = (32, 64, 32) if pixel_format == RGB565 else (256, 256, 256)
+        self.pixels = [(0, 0, 0)] * (width * height)
+        self.inflater = zlib.decompressobj(-15)
+
+    def load(self, body, at):
+        if self.format == RGB888:
+            return body[at], body[at + 1], body[at + 2]
+        value = body[at] | body[at + 1] << 8
+        return value >> 11, value >> 5 & 63, value & 31
+
+    def decode(self, row, row_count, encoding, data):
+        if encoding & 2:
+            data = self.inflater.decompress(data + b"\0\0\xff\xff")
+        at = 0
+
+        def number():
+            nonlocal at
+            value = shift = 0
+            while True:
+                byte = data[at]
+                at += 1
+                value |= (byte & 127) << shift
+                shift += 7
+                if byte < 128:
+                    return value
+
+        run_bytes = number()
+        values = runs_end = at + run_bytes
+        count = row_count * self.width
+        size = 3 if self.format == RGB888 else 2
+        chunk = self.pixels[row * self.width:(row + row_count) * self.width]
+        place = 0
+        while at < runs_end:
+            place += number()
+            given = number()
+            assert given >= 1 and place + given <= count
+            for i in range(place, place + given):
+                pixel = self.load(data, values)
+                values += size
+                chunk[i] = self.undo(pixel, chunk, i) if encoding & 1 else pixel
+            place += given
+        assert at == runs_end and values == len(data), "the body has the length that its runs call for"
+        self.pixels[row * self.width:(row + row_count) * self.width] = chunk
+
+    def undo(self, difference, chunk, i):
+        width = self.width
+        if i < width:
+            guess = chunk[i - 1] if i else (0, 0, 0)
+        elif i % width == 0:
+            guess = chunk[i - width]
+        else:
+            guess = tuple(
+                min(left, up) if corner >= max(left, up) else max(left, up) if corner <= min(left, up) else left + up - corner
+                for left, up, corner in zip(chunk[i - 1], chunk[i - width], chunk[i - width - 1]))
+        red, green, blue = difference
+        share = green >> 1 if self.format == RGB565 else green
+        return tuple((d + g) % n for d, g, n in zip((red + share, green, blue + share), guess, self.levels))
+
+    def compare(self, rgb, rows=None):
+        """Whether it is what `rgb`, bytes of R, G and B, makes in this format."""
+        first, end = rows or (0, self.height)
+        for i in range(first * self.width, end * self.width):
+            level = rgb[3 * i:3 * i + 3]
+            # 565 has the nearest of its values to each of 256 levels.
+            wanted = tuple(level) if self.format == RGB888 else tuple(
+                (2 * x * (n - 1) + 255) // 510 for x, n in zip(level, self.levels))
+            if self.pixels[i] != wanted:
+                return False
+        return True
+
+
+# ---- Messages
+
+
+def message(kind, fields=b""):
+    head = struct.pack("<I", kind | len(fields) << 8)
+    return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
+
+
+def hello(version=4, more=b""):
+    return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
+
+
+CAMERA = dict(eye=(0, 0, 5), target=(0, 0, 0), up=(0, 1, 0), fov=0.8, extent=1.0, projection=0)
+
+
+def pack_camera(camera):
+    return struct.pack("<11fI", *camera["eye"], *camera["target"], *camera["up"], camera["fov"], camera["extent"],
+                       camera["projection"])
+
+
+DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4,
+                cut_off=0.5, filter=0, normals=0, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
+                chunk=4, largest=16, growth=8, level=1, measure=0)
+
+
+def request(scene, kind=FRAME_REQUEST, **changes):
+    r = dict(DEFAULTS, **changes)
+    end = r["height"] if r["end"] is None else r["end"]
+    rows = struct.pack("<HHHHBB", r["first"], end, r["chunk"], r["largest"], r["growth"], r["level"])
+    settings = struct.pack("<HHBBHfBBII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
+                           r["filter"], r["normals"], r["on"], r["off"])
+    view = struct.pack("<BH", r["stated"], r["index"]) + pack_camera(r["camera"])
+    if kind == FRAME_CHANGE:
+        return message(kind, struct.pack("<Id", r["frame"], r["time"]) + pack_camera(r["camera"]) + rows)
+    if kind == VIEW_QUERY:
+        return message(kind, scene + view + settings + struct.pack("<B", r["measure"]))
+    return message(kind, struct.pack("<I", r["frame"]) + scene + struct.pack("<d", r["time"]) + view + settings +
+                   struct.pack("<fBB", r["exposure"], r["dither"], r["format"]) + rows)
+
+
+class Device:
+    def __init__(self, address, greets=True):
+        host, port = address.rsplit(":", 1)
+        self.socket = socket.create_connection((host, int(port)), 60)
+        self.bytes = b""
+        self.chunk_count = 0
+        self.encodings = set()
+        self.picture = None
+        if greets:
+            self.send(hello())
+            kind, fields = self.receive()
+            check(kind == HELLO and fields[:6] == b"PRAY\4\0", "the server says hello first, of version 4")
+            self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
+
+    def send(self, data):
+        try:
+            self.socket.sendall(data)
+        except OSError:
+            pass  # closed; reading tells why
+
+    def take(self, count):
+        while len(self.bytes) < count:
+            try:
+                more = self.socket.recv(65536)
+            except ConnectionResetError:
+                more = b""
+            if not more:
+                return None
+            self.bytes += more
+        taken, self.bytes = self.bytes[:count], self.bytes[count:]
+        return taken
+
+    def receive(self):
+        """The next message; type None: the server has closed."""
+        head = self.take(8)
+        if head is None:
+            return None, b""
+        kind, length = head[0], int.from_bytes(head[1:4], "little")
+        fields = self.take(length)
+        assert struct.unpack("<I", head[4:])[0] == zlib.crc32(head[:4] + fields), "a message has its CRC"
+        return kind, fields
+
+    def ask(self, data, expected):
+        self.send(data)
+        kind, fields = self.receive()
+        check(kind == expected, "type %s answers, expected %d" % (kind, expected))
+        return fields
+
+    def error(self, data, what=""):
+        """Code and frame of the error that answers."""
+        self.send(data)
+        kind, fields = self.receive()
+        while kind not in (ERROR, None):
+            kind, fields = self.receive()
+        check(kind == ERROR, "an error answers: " + what)
+        return struct.unpack("<HI", fields) if kind == ERROR else (0, 0)
+
+    def closed(self):
+        kind, _ = self.receive()
+        while kind is not None:
+            kind, _ = self.receive()
+        return True
+
+    def entry(self, data):
+        fields = self.ask(data, SCENE_ENTRY)
+        size, index, count, triangles = struct.unpack("<QHHI", fields[16:32])
+        name = fields[32:].split(b"\0", 1)
+        check(name[1].strip(b"\0") == b"", "a name is filled with zeros")
+        return dict(hash=fields[:16], size=size, index=index, count=count, triangles=triangles, name=name[0].decode())
+
+    def take_chunk(self, fields, frame, r, due, before):
+        number, row, rows, _, encoding = struct.unpack("<IHHIB", fields[:13])
+        data = fields[13:]
+        check(number == frame, "a chunk is of the frame")
+        check(encoding >> 2 == self.chunk_count % 64, "chunks are counted")
+        check(row + rows == due and row >= r["first"], "the lowest rows come first")
+        left, growth = due - r["first"], r["growth"]
+        most = max(min(before * (16 + growth) // 16, left * growth // (16 + growth), r["largest"]), r["chunk"])
+        check(rows <= min(most, left), "a chunk of %d rows grows as asked" % rows)
+        size = 3 if r["format"] == RGB888 else 2
+        count = rows * r["width"]
+        body = 21 + count // 2 + count * size
+        check(len(data) <= body + body // 8 + 64, "a chunk is no longer than its rows can take")
+        self.encodings.add(encoding & 3)
+        self.chunk_count += 1
+        self.picture.decode(row, rows, encoding, data)
+        return row, rows
+
+    def frame(self, scene, kind=FRAME_REQUEST, **changes):
+        """Asks for rows and takes them."""
+        r = dict(DEFAULTS, **changes)
+        p = self.picture
+        if not p or (p.width, p.height, p.format) != (r["width"], r["height"], r["format"]):
+            self.picture = Picture(r["width"], r["height"], r["format"])
+        self.send(request(scene, kind, **changes))
+        due, before = r["height"] if r["end"] is None else r["end"], 0
+        while due > r["first"]:
+            kind, fields = self.receive()
+            if kind != ROW_CHUNK:
+                check(False, "rows come, not %s %s: %s" % (kind, fields[:6], changes))
+                break
+            due, before = self.take_chunk(fields, r["frame"], r, due, before)
+        return self.picture
+
+
+# ---- The real program
+
+
+class Server:
+    def __init__(self, program, *more):
+        words = [program, "serve", "--listen", "127.0.0.1:0", "--threads", "1", "--memory", "16M", *more]
+        self.process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+        self.address = None
+        for line in self.process.stdout:
+            found = re.match(r"listening at (\S+):", line)
+            if found:
+                self.address = found.group(1)
+                break
+        assert self.address, "the server listens"
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        self.process.stdout.read()
+        return self.process.wait()
+
+
+def rendered(program, folder, scene, *words):
+    path = os.path.join(folder, "picture.ppm")
+    subprocess.run([program, "render", scene, "--size", "48x36", "--threads", "1", "-o", path, *words], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    with open(path, "rb") as file:
+        magic, width, height, most, pixels = re.match(rb"(P6)\s(\d+)\s(\d+)\s(\d+)\s(.*)", file.read(), re.S).groups()
+    check((magic, width, height, most) == (b"P6", b"48", b"36", b"255"), "the picture is a PPM of that size")
+    return pixels
+
+
+def list_scenes(device):
+    first = device.entry(message(SCENE_LIST, struct.pack("<H", 0)))
+    scenes = [first] + [device.entry(message(SCENE_LIST, struct.pack("<H", i))) for i in range(1, first["count"])]
+    for i, scene in enumerate(scenes):
+        check(scene["index"] == i and scene["count"] == len(scenes) and scene["size"] > 0, "entry %d" % i)
+        check(device.entry(message(SCENE_QUERY, scene["hash"])) == scene, "a query finds what the list has")
+    none = device.entry(message(SCENE_LIST, struct.pack("<H", len(scenes))))
+    unknown = device.entry(message(SCENE_QUERY, b"\x55" * 16))
+    for entry, key in ((none, bytes(16)), (unknown, b"\x55" * 16)):
+        check(entry == dict(hash=key, size=0, index=0, count=len(scenes), triangles=0, name=""), "no such scene")
+    return {scene["name"]: scene for scene in scenes}
+
+
+def fetch(device, scene):
+    data = b""
+    while True:
+        ask = scene["hash"] + struct.pack("<QI", len(data), 65536)
+        fields = device.ask(message(SCENE_FETCH, ask), SCENE_PIECE)
+        check(fields[:24] == ask[:24], "a piece says what it is of")
+        if len(fields) == 24:
+            break
+        data += fields[24:]
+    check(len(data) == scene["size"] and scene_hash(data) == scene["hash"], "a scene has its length and its hash")
+    fields = device.ask(message(SCENE_FETCH, scene["hash"] + struct.pack("<QI", 10, 7)), SCENE_PIECE)
+    check(fields[24:] == data[10:17], "a piece is as long as was asked for")
+    check(device.error(message(SCENE_FETCH, bytes(28))) == (UNKNOWN_SCENE, 0), "an unknown scene is not fetched")
+    return data
+
+
+def test_frames(program, folder, device, scenes):
+    cornell, seesaw = scenes["cornell"]["hash"], scenes["seesaw"]["hash"]
+    rgb = rendered(program, folder, "cornell")
+    frame = 0
+    for pixel_format in (RGB888, RGB565):
+        for level, growth, chunk in ((0, 0, 1), (1, 8, 4), (6, 255, 2), (9, 16, 16)):
+            frame += 1
+            picture = device.frame(cornell, frame=frame, format=pixel_format, level=level, growth=growth, chunk=chunk)
+            check(picture.compare(rgb), "cornell, format %d, level %d" % (pixel_format, level))
+    # Rows of another scene over those of the first, in two parts of one frame.
+    moved = rendered(program, folder, "seesaw", "--time", "0.5")
+    frame += 1
+    device.frame(seesaw, frame=frame, time=0.5, format=RGB888)
+    check(device.picture.compare(moved), "seesaw at half a second")
+    frame += 1
+    device.frame(cornell, frame=frame, end=10)
+    check(device.picture.compare(rgb, (0, 10)) and device.picture.compare(moved, (10, 36)), "the upper rows alone")
+    device.frame(cornell, frame=frame, first=10)
+    check(device.picture.compare(rgb), "further rows of the same frame")
+    # Changes: time and rows.
+    frame += 1
+    device.frame(seesaw, frame=frame, format=RGB565)
+    for time in (0.25, 0.5, 1.0):
+        frame += 1
+        picture = device.frame(b"", FRAME_CHANGE, frame=frame, time=time, format=RGB565, level=6)
+        check(picture.compare(rendered(program, folder, "seesaw", "--time", str(time))), "a change to %g s" % time)
+    # Settings.
+    for changes, words in ((dict(samples=4), ["--samples", "4"]), (dict(depth=0), ["--depth", "0"]),
+                           (dict(points=9, cut_off=0), ["--area-lights", "9", "--cut-off", "0"]),
+                           (dict(normals=1, filter=1), ["--normals", "flat", "--texture-filter", "nearest"]),
+                           (dict(off=1 << EFFECTS.index("shadow")), ["--effects=-shadow"]),
+                           (dict(off=1 << EFFECTS.index("mirror")), ["--effects=-mirror"])):
+        frame += 1
+        picture = device.frame(seesaw, frame=frame, **changes)
+        check(picture.compare(rendered(program, folder, "seesaw", *words)), "seesaw with %s" % changes)
+    frame += 1
+    device.frame(cornell, frame=frame, dither=1)
+    check(all(abs(a - b) <= 1 for p, i in zip(device.picture.pixels, range(48 * 36)) for a, b in zip(p, rgb[3 * i:3 * i + 3])),
+          "dithering changes a level at most")
+    # A row, a column, a pixel.
+    for width, height in ((300, 1), (1, 70), (1, 1)):
+        frame += 1
+        device.frame(cornell, frame=frame, width=width, height=height, chunk=1, largest=70)
+    check(device.encodings == {0, 1, 2, 3}, "every encoding has occurred, not just %s" % device.encodings)
+    return frame
+
+
+def test_views(device, scenes, rgb, frame):
+    cornell = scenes["cornell"]
+    fields = device.ask(request(cornell["hash"], VIEW_QUERY), VIEW_ENTRY)
+    values = struct.unpack("<11fIffII6f", fields[16:])
+    camera = dict(eye=values[0:3], target=values[3:6], up=values[6:9], fov=values[9], extent=values[10], projection=values[11])
+    exposure, rate, effects, triangles, low, high = *values[12:16], values[16:19], values[19:22]
+    check(fields[:16] == cornell["hash"] and triangles == cornell["triangles"] and exposure > 0 and rate >= 0, "view_entry")
+    check(all(a <= b for a, b in zip(low, high)) and effects < 1 << len(EFFECTS), "bounds and effects of a view")
+    check(effects >> EFFECTS.index("shadow") & 1 and not effects >> EFFECTS.index("texture") & 1, "cornell has shadows alone")
+    check(device.frame(cornell["hash"], frame=frame + 1, stated=1, camera=camera, exposure=exposure).compare(rgb),
+          "the scene's camera and exposure, stated")
+    fields = device.ask(request(cornell["hash"], VIEW_QUERY, measure=1, stated=1, camera=camera), VIEW_ENTRY)
+    check(struct.unpack("<f", fields[64:68])[0] > 0, "a measured exposure")
+    check(device.error(request(bytes(16), VIEW_QUERY)) == (UNKNOWN_SCENE, 0), "a view of an unknown scene")
+    check(device.error(request(cornell["hash"], VIEW_QUERY, index=200)) == (BAD_REQUEST, 0), "a view from no camera")
+    return frame + 1
+
+
+def test_pings_and_cancel(device, scenes, frame):
+    for size in (0, 1, 65536):
+        fields = device.ask(message(PING, struct.pack("<II", 7 + size, size)), PONG)
+        check(struct.unpack("<I", fields[:4])[0] == 7 + size and len(fields) == 8 + size, "a pong of %d bytes" % size)
+    # Large enough to be under way when it is cancelled.
+    large = dict(width=1024, height=1024, samples=16, chunk=1, largest=1)
+    device.send(request(scenes["statue"]["hash"], frame=frame + 1, **large) + message(CANCEL, struct.pack("<I", frame + 1)) +
+                message(PING, struct.pack("<II", 1, 0)))
+    kind, fields = device.receive()
+    while kind == ROW_CHUNK:
+        device.chunk_count += 1
+        kind, fields = device.receive()
+    check(kind == PONG, "a pong follows what was cancelled")
+    device.frame(scenes["cube"]["hash"], frame=frame + 2)
+    device.send(message(CANCEL, struct.pack("<I", 2**32 - 1)))
+    return frame + 2
+
+
+def test_refusals(device, scenes, frame):
+    cube = scenes["cube"]["hash"]
+    still = dict(CAMERA, target=CAMERA["eye"])
+    cases = [
+        (request(cube, frame=0), BAD_REQUEST, 0), (request(cube, frame=frame - 1), BAD_REQUEST, frame - 1),
+        (request(cube, FRAME_CHANGE, frame=frame, end=37), BAD_REQUEST, frame),
+        (request(cube, frame=frame, index=250), BAD_REQUEST, frame),
+        (request(cube, frame=frame, stated=1, camera=still), BAD_REQUEST, frame),
+        (request(cube, frame=frame, stated=1, camera=dict(CAMERA, fov=0.0)), BAD_REQUEST, frame),
+        (request(cube, frame=frame, stated=1, camera=dict(CAMERA, fov=3.14)), BAD_REQUEST, frame),
+        (request(cube, frame=frame, stated=1, camera=dict(CAMERA, extent=-1.0, projection=1)), BAD_REQUEST, frame),
+        (request(b"\x11" * 16, frame=frame), UNKNOWN_SCENE, frame),
+        (request(cube, frame=frame, width=device.side + 1), TOO_LARGE, frame),
+        (request(cube, VIEW_QUERY, height=device.side + 1), TOO_LARGE, 0),
+        (request(cube, frame=frame, width=device.side, height=device.side), TOO_LARGE, frame),
+    ]
+    for data, code, number in cases:
+        what = "request %s" % data[8:60].hex()
+        answer = device.error(data, what)
+        check(answer == (code, number), "refused by %s, expected %s: %s" % (answer, (code, number), what))
+    device.ask(message(PING, bytes(8)), PONG)
+
+
+def test_malformed(server, scenes):
+    cube = scenes["cube"]["hash"]
+    nan, big = float("nan"), 1.1e18
+    values = [dict(time=nan), dict(time=1.1e9), dict(stated=2), dict(camera=dict(CAMERA, eye=(nan, 0, 0))),
+              dict(camera=dict(CAMERA, up=(0, big, 0))), dict(camera=dict(CAMERA, fov=float("inf"))),
+              dict(camera=dict(CAMERA, projection=2)), dict(width=0), dict(width=8193), dict(height=0, end=0), dict(height=8193),
+              dict(samples=0), dict(samples=17), dict(depth=17), dict(points=0), dict(points=257), dict(cut_off=-1.0),
+              dict(cut_off=65.0), dict(filter=3), dict(normals=2), dict(on=1 << 19), dict(off=1 << 31), dict(exposure=-1.0),
+              dict(exposure=big), dict(dither=2), dict(format=2), dict(first=36), dict(first=9, end=9), dict(end=37),
+              dict(chunk=0), dict(chunk=9, largest=8), dict(level=10)]
+    cases = [request(cube, **v) for v in values]
+    cases += [request(cube, FRAME_CHANGE, time=nan), request(cube, FRAME_CHANGE, end=8193), request(cube, FRAME_CHANGE, chunk=0)]
+    cases += [request(cube, VIEW_QUERY, measure=2), request(cube, VIEW_QUERY, samples=0)]
+    cases += [message(SCENE_FETCH, cube + struct.pack("<QI", 0, 65537)), message(SCENE_FETCH, cube + struct.pack("<QI", MASK, 0)),
+              message(PING, struct.pack("<II", 1, 65537)), message(ERROR, struct.pack("<HI", 0, 0)),
+              message(ERROR, struct.pack("<HI", 8, 0)), message(0), message(16), message(SCENE_LIST, b""),
+              message(SCENE_LIST, bytes(3)), message(ROW_CHUNK, bytes(600)), hello()]
+    cases += [message(kind, bytes(size)) for kind, size in ((SCENE_ENTRY, 96), (SCENE_PIECE, 24), (PONG, 8))]
+    good = message(PING, bytes(8))
+    cases += [good[:i] + bytes([good[i] ^ 1]) + good[i + 1:] for i in range(3, len(good))]
+    for data in cases:
+        device = Device(server.address)
+        check(device.error(data, data.hex()[:80]) == (MALFORMED, 0), "malformed: %s" % data.hex()[:80])
+        check(device.closed(), "malformed bytes end the connection")
+        device.socket.close()
+    for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\5\0"), WRONG_VERSION), (hello(9, bytes(236)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\5\0" + bytes(251)), MALFORMED), (hello(4, b"x"), MALFORMED),
+                       (message(HELLO, b"pray" + bytes(16)), MALFORMED)):
+        device = Device(server.address, greets=False)
+        check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])
+        check(device.closed(), "a wrong first message ends the connection")
+        device.socket.close()
+    device = Device(server.address)
+    device.send(message(ERROR, struct.pack("<HI", CLOSING, 0)))
+    check(device.closed(), "a device's error ends the connection")
+    device = Device(server.address)
+    check(device.error(request(cube, FRAME_CHANGE, frame=5)) == (BAD_REQUEST, 5), "a change of nothing")
+
+
+def test_places(program):
+    server = Server(program, "--clients", "2")
+    devices = [Device(server.address), Device(server.address)]
+    third = Device(server.address)
+    check(third.error(b"") == (BUSY, 0) and third.closed(), "one too many is told that the server is busy")
+    server.process.send_signal(signal.SIGINT)
+    check(all(device.error(b"") == (CLOSING, 0) and device.closed() for device in devices), "a server that ends says so")
+    server.process.stdout.read()
+    check(server.process.wait(60) == 3, "the server is interrupted")
+
+
+def main():
+    program = os.path.abspath(sys.argv[1])
+    check(scene_hash(b"") == bytes(16), "the hash of nothing")
+    check(scene_hash(b"pocketray") == struct.pack("<QQ", 0x165f8be4a8264bd0, 0x6c30a3d2c6337914), "the hash on the page")
+    with tempfile.TemporaryDirectory() as folder:
+        server = Server(program)
+        try:
+            device = Device(server.address)
+            check((device.message_bytes, device.scene_bytes) == (512, 0), "what the server's hello states")
+            scenes = list_scenes(device)
+            data = fetch(device, scenes["cube"])
+            path = os.path.join(folder, "fetched.pray")
+            with open(path, "wb") as file:
+                file.write(data)
+            check(rendered(program, folder, path) == rendered(program, folder, "cube"), "a fetched scene renders the same")
+            frame = test_frames(program, folder, device, scenes)
+            frame = test_views(device, scenes, rendered(program, folder, "cornell"), frame)
+            frame = test_pings_and_cancel(device, scenes, frame)
+            test_refusals(device, scenes, frame)
+            device.socket.close()
+            test_malformed(server, scenes)
+        finally:
+            server.end()
+        test_places(program)
+    print("%d failed" % failures)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
