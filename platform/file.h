@@ -57,6 +57,8 @@ void discard_writer(FileWriter* writer);
 
 // Whether open_writer() would succeed: to be asked before work whose result goes there. A pipe is not opened.
 bool can_write(const char* path, FileError* error);
+// Whether open_writer() writes directly there.
+bool is_device_or_pipe(const char* path);
 // Whether two paths name one file, through links of both kinds; also one that does not exist yet. False for devices and
 // pipes.
 bool is_same_file(const char* one, const char* other);

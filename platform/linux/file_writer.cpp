@@ -225,6 +225,12 @@ bool can_write(const char* path, FileError* error) {
   return true;
 }
 
+bool is_device_or_pipe(const char* path) {
+  Destination d;
+  FileError error;
+  return strcmp(path, "-") == 0 || (find_destination(path, &d, &error) && d.is_direct);
+}
+
 bool is_same_file(const char* one, const char* other) {
   struct stat a, b;
   bool there = stat(one, &a) == 0;

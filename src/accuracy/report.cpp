@@ -21,26 +21,26 @@ std::string read_file(const std::string& path) {
   return bytes;
 }
 
-Status write_strips(const std::string& folder, const Sweep& sweep, PagePictures* pictures) {
+Status write_strips(const std::string& folder, const Sweep& sweep, const WriteFile& write, PagePictures* pictures) {
   if (encode_png_need(1) == 0) return success();  // built without libpng
   if (!sweep.reference_picture.rgb.empty())
     RETURN_IF_ERROR(encode_png(sweep.reference_picture, &pictures->reference_png));
   for (const Strip& strip : sweep.strips) {
     std::string* png = &pictures->strips[strip.knob];
     RETURN_IF_ERROR(encode_png(draw_strip(sweep.reference_picture, strip), png));
-    RETURN_IF_ERROR(write_file(folder + "/strip_" + file_word(strip.knob) + ".png", *png));
+    RETURN_IF_ERROR(write(folder + "/strip_" + file_word(strip.knob) + ".png", *png));
   }
   return success();
 }
 
-Status write_plots(const std::string& folder, const Sweep& sweep, const DrawScripts& draw, PagePictures* pictures,
-                   bool* drawn) {
+Status write_plots(const std::string& folder, const Sweep& sweep, const WriteFile& write, const DrawScripts& draw,
+                   PagePictures* pictures, bool* drawn) {
   std::vector<Plot> plots = {front_plot(sweep), price_plot(sweep)};
   for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));
   std::vector<std::string> scripts;
   for (const Plot& plot : plots) {
     scripts.push_back(plot.name + ".gnuplot");
-    RETURN_IF_ERROR(write_file(folder + "/" + scripts.back(), plot.script));
+    RETURN_IF_ERROR(write(folder + "/" + scripts.back(), plot.script));
   }
   *drawn = draw(folder, scripts);
   if (*drawn)
@@ -50,12 +50,13 @@ Status write_plots(const std::string& folder, const Sweep& sweep, const DrawScri
 
 }  // namespace
 
-Status write_report(const std::string& folder, const Sweep& sweep, const DrawScripts& draw, bool* drawn) {
+Status write_report(const std::string& folder, const Sweep& sweep, const WriteFile& write, const DrawScripts& draw,
+                    bool* drawn) {
   *drawn = false;
   PagePictures pictures;
-  RETURN_IF_ERROR(write_strips(folder, sweep, &pictures));
-  RETURN_IF_ERROR(write_plots(folder, sweep, draw, &pictures, drawn));
-  return write_file(folder + "/index.html", page_of(sweep, pictures));
+  RETURN_IF_ERROR(write_strips(folder, sweep, write, &pictures));
+  RETURN_IF_ERROR(write_plots(folder, sweep, write, draw, &pictures, drawn));
+  return write(folder + "/index.html", page_of(sweep, pictures));
 }
 
 }  // namespace pocketray

@@ -74,15 +74,4 @@ std::string file_word(const std::string& text) {
   return result;
 }
 
-Status write_file(const std::string& path, const std::string& bytes) {
-  std::string partial = path + ".partial";
-  std::FILE* file = std::fopen(partial.c_str(), "wb");
-  if (!file) return failure("%.300s cannot be written: does its folder exist, and may you write there?", path.c_str());
-  bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  written = std::fclose(file) == 0 && written;
-  if (written && std::rename(partial.c_str(), path.c_str()) == 0) return success();
-  std::remove(partial.c_str());
-  return failure("%.300s cannot be written: is there space left, and is it a file?", path.c_str());
-}
-
 }  // namespace pocketray

@@ -1,8 +1,6 @@
-// Text of reports: figures, markup, files.
+// Text of reports: figures, markup, names of files.
 #pragma once
 #include <string>
-
-#include "base/status.h"
 
 namespace pocketray {
 
@@ -18,8 +16,5 @@ std::string base64(const std::string& bytes);
 
 // What may stand in the name of a file: letters, digits, '-'; '_' for each other byte.
 std::string file_word(const std::string& text);
-
-// The file is replaced as a whole or not at all.
-Status write_file(const std::string& path, const std::string& bytes);
 
 }  // namespace pocketray

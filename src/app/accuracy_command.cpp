@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/front_file.h"
 #include "app/gnuplot.h"
+#include "app/output.h"
 
 namespace pocketray {
 namespace {
@@ -19,7 +20,8 @@ int run(const AccuracyOptions& options) {
   bool whole;
   SweptFront front;
   if (!options.counting_folder.empty()) return report(render_for_valgrind(options));
-  Status status = measure_sweep(options, &sweep, &whole, &front);
+  Status status = check_outputs({{"SCENE", options.common.scene}}, {{"--json", options.common.json}});
+  if (status.ok) status = measure_sweep(options, &sweep, &whole, &front);
   if (!status.ok) return report(status);
   if (!whole) {
     std::fprintf(stderr,
@@ -29,7 +31,7 @@ int run(const AccuracyOptions& options) {
   }
   status = save_text(options.folder, "accuracy.csv", sweep_csv(sweep));
   bool drawn = true;
-  if (status.ok) status = write_report(options.folder, sweep, run_gnuplot, &drawn);
+  if (status.ok) status = write_report(options.folder, sweep, write_file, run_gnuplot, &drawn);
   if (!drawn && status.ok)
     std::fprintf(stderr,
                  "pocketray: plots are left out: gnuplot is not installed or failed; install it (Debian: gnuplot), "

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <limits>
 
+#include "app/output.h"
 #include "platform/file.h"
-#include "present/image_file.h"
 
 namespace pocketray {
 namespace {
@@ -93,11 +93,6 @@ Status compare_keys(const std::string& folder, const Json& there, const Json& wa
 // Bytes that are no UTF-8, as names of files may have, become others.
 std::string written(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-Status close(platform::FileWriter* writer, const std::string& path) {
-  platform::FileError error;
-  return platform::close_writer(writer, &error) ? success() : failure("%s %s", path.c_str(), error.text);
-}
-
 }  // namespace
 
 Status open_state(const std::string& folder, const Json& wanted, bool restart, AccuracyState* state) {
@@ -130,26 +125,16 @@ Status save_state(const std::string& folder, const AccuracyState& state) {
 }
 
 Status save_text(const std::string& folder, const std::string& name, const std::string& text) {
-  std::string path = folder + "/" + name;
-  platform::FileWriter writer;
-  platform::FileError error;
-  if (!platform::open_writer(path.c_str(), &writer, &error)) return failure("%s %s", path.c_str(), error.text);
-  platform::write_bytes(&writer, text.data(), text.size());
-  return close(&writer, path);
+  return write_file(folder + "/" + name, text);
 }
 
 Status save_radiance(const std::string& folder, const std::string& name, std::uint32_t width, std::uint32_t height,
                      const std::vector<Vec3>& radiance) {
   std::string path = folder + "/" + name + ".pfm";
-  platform::FileWriter writer;
-  platform::FileError error;
-  if (!platform::open_writer(path.c_str(), &writer, &error)) return failure("%s %s", path.c_str(), error.text);
-  ByteSink sink = {[](void* user, const void* bytes, std::size_t count) {
-                     platform::write_bytes(static_cast<platform::FileWriter*>(user), bytes, count);
-                   },
-                   &writer};
-  encode_pfm(&radiance[0].x, 3, static_cast<int>(width), static_cast<int>(height), sink);
-  return close(&writer, path);
+  return write_encoded(path.c_str(), [&](const ByteSink& sink) {
+    encode_pfm(&radiance[0].x, 3, static_cast<int>(width), static_cast<int>(height), sink);
+    return success();
+  });
 }
 
 Status load_radiance(const std::string& folder, const std::string& name, std::uint32_t width, std::uint32_t height,

@@ -5,8 +5,9 @@
 
 #include "app/commands.h"
 #include "app/heap_scene.h"
-#include "app/options.h"
 #include "app/note.h"
+#include "app/options.h"
+#include "app/output.h"
 #include "app/report.h"
 #include "platform/file.h"
 #include "scene/baked.h"
@@ -23,15 +24,27 @@ Status write_scene(const std::string& path, const Scene& scene, std::size_t* byt
   std::vector<std::uint8_t> bytes(baked_size(scene));
   baked_write(scene, bytes.data());
   *byte_count = bytes.size();
-  platform::FileWriter writer;
-  platform::FileError error;
-  if (!platform::open_writer(path.c_str(), &writer, &error)) return failure("%s %s", path.c_str(), error.text);
-  platform::write_bytes(&writer, bytes.data(), bytes.size());
-  if (!platform::close_writer(&writer, &error)) return failure("%s %s", path.c_str(), error.text);
-  return success();
+  return write_encoded(path.c_str(), [&](const ByteSink& sink) {
+    sink.write(sink.user, bytes.data(), bytes.size());
+    return success();
+  });
+}
+
+// And has something before that.
+bool ends_in_pray(const std::string& path) {
+  std::size_t at = path.rfind(".pray");
+  return at != std::string::npos && at + 5 == path.size() && at > 0 && path[at - 1] != '/';
+}
+
+// Before the work. A device or a pipe, and standard output, may have any name.
+Status check(const BakeOptions& o) {
+  if (!platform::is_device_or_pipe(o.output.c_str()) && !ends_in_pray(o.output))
+    return failure("-o is '%.300s': a baked scene's name must end in .pray", o.output.c_str());
+  return check_outputs({{"IN", o.input}}, {{"-o", o.output}, {"--json", o.json}});
 }
 
 Status bake(const BakeOptions& o) {
+  RETURN_IF_ERROR(check(o));
   std::uint64_t start = clock_ns();
   HeapScene heap;
   RETURN_IF_ERROR(read_heap_scene(o.input, o.model, &heap));
@@ -72,7 +85,7 @@ void add_bake_command(CLI::App* program, int* exit_status) {
   auto options = std::make_shared<BakeOptions>();
   CLI::App* command = program->add_subcommand("bake", "turn a model into one .pray file that a device maps as it is");
   command->add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene")->required();
-  command->add_option("-o,--output", options->output, "the .pray file")->required();
+  command->add_option("-o,--output", options->output, "the .pray file to write")->required();
   command
       ->add_option("--texture-max", options->model.texture_side_max,
                    "halve textures until no side is longer, in texels")

@@ -4,10 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/front_file.h"
 #include "app/front_prices.h"
 #include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/options.h"
+#include "app/output.h"
 #include "app/report.h"
 #include "base/seal.h"
 #include "effect/effect_list.h"
@@ -80,7 +82,8 @@ void print_table(const CommonOptions& options, const Renderer& r, Measurement* m
 
 int run(const CommonOptions& options, std::uint32_t frame_count, bool prices) {
   OpenScene opened;
-  Status status = open_scene(options, {[](const Settings&) -> std::size_t { return 0; }}, &opened);
+  Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
+  if (status.ok) status = open_scene(options, {[](const Settings&) -> std::size_t { return 0; }}, &opened);
   if (status.ok) status = start_scene(&opened, options);
   if (!status.ok) return report(status);
   print_notes(opened);
@@ -136,7 +139,9 @@ void print_front(const CommonOptions& options, const Renderer& r, const OpenFron
 int run_front(const CommonOptions& options, const std::string& file, std::uint32_t rounds) {
   OpenScene opened;
   OpenFront front;
-  Status status = open_scene_with_front(options, {file, true}, front_prices_bytes, &opened, &front);
+  Status status = check_outputs({{"SCENE", options.scene}}, {{"--front", file}, {"--json", options.json}});
+  if (status.ok) status = open_scene_with_front(options, {file, true}, front_prices_bytes, &opened, &front);
+  if (status.ok && file.empty() && !front.path.empty()) status = make_cache(front.path);
   if (!status.ok) return report(status);
   print_notes(opened);
   print_notes(front);

@@ -2,8 +2,8 @@
 
 #include <cinttypes>
 #include <cstdlib>
-#include <vector>
 
+#include "app/output.h"
 #include "base/isa.h"
 #include "platform/file.h"
 #include "scene/builtin/builtin.h"
@@ -54,22 +54,22 @@ Status read_front(const std::string& path, Front* front, bool* there) {
 }
 
 Status write_front(const std::string& path, const Front& front) {
-  std::vector<char> text(kFrontTextMax);
-  std::size_t length = format_front(front, text.data(), text.size());
-  platform::FileError error;
-  platform::FileWriter writer;
-  if (!platform::open_writer(path.c_str(), &writer, &error)) return failure("%.300s %s", path.c_str(), error.text);
-  platform::write_bytes(&writer, text.data(), length);
-  if (!platform::close_writer(&writer, &error)) return failure("%.300s %s", path.c_str(), error.text);
-  return success();
+  std::string text(kFrontTextMax, 0);
+  text.resize(format_front(front, &text[0], text.size()));
+  return write_file(path, text);
 }
 
-Status cache_front(const std::string& path, const Front& front) {
+Status make_cache(const std::string& path) {
   platform::FileError error;
   std::string folder = folder_of(path) + "/";
   for (std::size_t at = folder.find('/', 1); at != std::string::npos; at = folder.find('/', at + 1))
     if (platform::file_stamp(folder.substr(0, at).c_str()) == 0)
-      (void)platform::make_folder(folder.substr(0, at).c_str(), &error);  // write_front() tells what could not be made
+      (void)platform::make_folder(folder.substr(0, at).c_str(), &error);
+  return check_outputs({}, {{"--front", path}});
+}
+
+Status cache_front(const std::string& path, const Front& front) {
+  RETURN_IF_ERROR(make_cache(path));
   return write_front(path, front);
 }
 

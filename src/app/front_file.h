@@ -19,7 +19,9 @@ std::string machine_name(const char* emulated, std::uint32_t thread_count);
 Status read_front(const std::string& path, Front* front, bool* there);
 // Replaces the file as a whole or not at all.
 Status write_front(const std::string& path, const Front& front);
-// The same for a front_path(): makes its folder where there is none.
+// Makes the folder of a front_path() where there is none; fails where the file cannot be written.
+Status make_cache(const std::string& path);
+// Both.
 Status cache_front(const std::string& path, const Front& front);
 
 }  // namespace pocketray

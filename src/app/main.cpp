@@ -3,11 +3,14 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/output.h"
+#include "app/report.h"
 #include "platform/standard_streams.h"
 
-int main(int argument_count, char** arguments) {
-  using namespace pocketray;
-  platform::open_standard_streams();
+namespace pocketray {
+namespace {
+
+int run(int argument_count, char** arguments) {
   int exit_status = kExitDone;
   CLI::App program{
       "pocketray ray-traces scenes for handheld screens in a block of memory fixed at start.\n"
@@ -31,6 +34,8 @@ int main(int argument_count, char** arguments) {
   add_split_report_command(&program, &exit_status);
 #endif
   catch_interrupts();
+  Status given = check_arguments(argument_count, arguments);
+  if (!given.ok) return report(given), kExitUsage;
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -41,4 +46,12 @@ int main(int argument_count, char** arguments) {
     return kExitInput;
   }
   return exit_status;
+}
+
+}  // namespace
+}  // namespace pocketray
+
+int main(int argument_count, char** arguments) {
+  platform::open_standard_streams();
+  return pocketray::finish_printing(pocketray::run(argument_count, arguments));
 }

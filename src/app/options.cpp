@@ -132,7 +132,8 @@ Status parse_isa(const std::string& text, Isa* isa) {
 
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height) {
   int used = 0;
-  if (std::sscanf(text.c_str(), "%5ux%5u%n", width, height, &used) != 2 ||
+  if (text.find_first_not_of("0123456789x") != std::string::npos ||  // a sign would wrap around
+      std::sscanf(text.c_str(), "%5ux%5u%n", width, height, &used) != 2 ||
       static_cast<std::size_t>(used) != text.size())
     return failure("--size is '%s': write it as 320x240", text.c_str());
   return success();

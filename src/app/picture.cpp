@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "platform/file.h"
+#include "app/output.h"
 #include "present/image_file.h"
 #include "present/png_file.h"
 #include "present/repack.h"
@@ -23,10 +23,6 @@ Kind kind_of(const char* path) {
   for (const auto& row : kEndings)
     if (std::strcmp(dot, row.ending) == 0) return row.kind;
   return Kind::unknown;
-}
-
-void write_to_file(void* user, const void* bytes, std::size_t count) {
-  platform::write_bytes(static_cast<platform::FileWriter*>(user), bytes, count);
 }
 
 Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& sink) {
@@ -70,18 +66,10 @@ Status check_picture_path(const std::string& path) {
 }
 
 Status write_picture(const char* path, const PictureOptions& options, Renderer* r) {
-  platform::FileWriter writer;
-  platform::FileError error;
-  if (!platform::open_writer(path, &writer, &error)) return failure("%s %s", path, error.text);
   std::size_t mark = arena_mark(r->frame_arena);
-  Status status = encode(kind_of(path), options, r, {write_to_file, &writer});
+  Status status = write_encoded(path, [&](const ByteSink& sink) { return encode(kind_of(path), options, r, sink); });
   arena_release(&r->frame_arena, mark);
-  if (!status.ok) {
-    platform::discard_writer(&writer);
-    return status;
-  }
-  if (!platform::close_writer(&writer, &error)) return failure("%s %s", path, error.text);
-  return success();
+  return status;
 }
 
 }  // namespace pocketray

@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/measure.h"
 #include "app/options.h"
+#include "app/output.h"
 #include "app/picture.h"
 #include "app/report.h"
 #include "effect/effect_list.h"
@@ -28,7 +29,8 @@ Status print_prices(const CommonOptions& options, OpenScene* opened) {
 
 int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
-  Status status = open_scene(options, {picture_bytes}, &opened);
+  Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
+  if (status.ok) status = open_scene(options, {picture_bytes}, &opened);
   const Renderer& r = opened.renderer;
   if (r.memory.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);

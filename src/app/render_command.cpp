@@ -9,6 +9,7 @@
 #include "app/frame.h"
 #include "app/interrupt.h"
 #include "app/options.h"
+#include "app/output.h"
 #include "app/picture.h"
 #include "app/progress.h"
 #include "app/report.h"
@@ -38,7 +39,8 @@ Status parse_frames(const std::string& text, Sequence* sequence) {
   if (text.empty()) return success();
   int used = 0;
   sequence->numbered = true;
-  if (std::sscanf(text.c_str(), "%6u:%6u%n", &sequence->first, &sequence->last, &used) != 2 ||
+  bool plain = text.find_first_not_of("0123456789:") == std::string::npos;  // a sign would wrap around
+  if (!plain || std::sscanf(text.c_str(), "%6u:%6u%n", &sequence->first, &sequence->last, &used) != 2 ||
       static_cast<std::size_t>(used) != text.size() || sequence->last < sequence->first)
     return failure("--frames is '%s': write first:last, as 0:350", text.c_str());
   return success();
@@ -95,6 +97,7 @@ void fit_for_levels(Aov aov, const std::string& path, Renderer* r) {
 struct Job {
   RenderOptions options;
   Sequence sequence;
+  std::vector<std::string> paths;  // a picture each
   Aov aov;
   PictureOptions picture;
   Sharing* sharing = nullptr;
@@ -285,12 +288,20 @@ Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget
   return success();
 }
 
+// That each picture can be written, before the first is rendered.
+Status check_paths(const RenderOptions& o, Job* job) {
+  RETURN_IF_ERROR(check_picture_path(o.output));
+  const Sequence& s = job->sequence;
+  for (std::uint32_t frame = s.first; frame <= s.last; ++frame) {
+    job->paths.push_back(s.numbered ? numbered_path(o.output, frame) : o.output);
+    RETURN_IF_ERROR(check_outputs({{"SCENE", o.common.scene}, {"--front", o.budget.front}},
+                                  {{"-o", job->paths.back()}, {"--json", o.common.json}}));
+  }
+  return success();
+}
+
 Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files, double* trace_ms, bool* stopped) {
   const Sequence& s = job.sequence;
-  files->reserve(s.last - s.first + 1);
-  std::vector<std::string> paths;
-  for (std::uint32_t frame = s.first; frame <= s.last; ++frame)
-    paths.push_back(s.numbered ? numbered_path(job.options.output, frame) : job.options.output);
   Progress progress = start_progress("rendering", std::uint64_t(s.last - s.first + 1) * r->settings.height);
   Status status;
   seal_memory();
@@ -303,15 +314,14 @@ Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files
     *stopped = !complete;
     if (*stopped) break;
     *trace_ms += r->timings.trace_ms;
-    fit_for_levels(job.aov, paths[written], r);
-    status = write_picture(paths[written].c_str(), job.picture, r);
+    fit_for_levels(job.aov, job.paths[written], r);
+    status = write_picture(job.paths[written].c_str(), job.picture, r);
     r->exposure = exposure;
     if (!status.ok) break;
   }
   unseal_memory();
   end_progress(&progress);
-  paths.resize(written);
-  *files = paths;
+  files->assign(job.paths.begin(), job.paths.begin() + static_cast<std::ptrdiff_t>(written));
   return status;
 }
 
@@ -321,7 +331,7 @@ int run(const RenderOptions& options) {
   Status status = parse_frames(options.frames, &job.sequence);
   if (status.ok) status = parse_aov(options.aov, &job.aov);
   if (status.ok) status = parse_raw_format(options.raw_format, &job.picture.raw_format);
-  if (status.ok) status = check_picture_path(options.output);
+  if (status.ok) status = check_paths(options, &job);
   if (status.ok && !rotation_from_degrees(options.rotation, &job.picture.rotation))
     status = failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
   job.picture.dither = options.dither;

@@ -5,9 +5,9 @@
 
 #include "app/commands.h"
 #include "app/note.h"
+#include "app/output.h"
 #include "base/printable.h"
 #include "effect/effect_list.h"
-#include "platform/file.h"
 
 namespace pocketray {
 
@@ -23,14 +23,7 @@ int report(const Status& status) {
 }
 
 Status write_json(const std::string& path, const Json& json) {
-  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  platform::FileWriter writer;
-  platform::FileError error;
-  std::fflush(stdout);
-  if (!platform::open_writer(path.c_str(), &writer, &error)) return failure("%s %s", path.c_str(), error.text);
-  platform::write_bytes(&writer, text.data(), text.size());
-  if (!platform::close_writer(&writer, &error)) return failure("%s %s", path.c_str(), error.text);
-  return success();
+  return write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void print_effects(const EffectPlan& plan) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/output.h"
 #include "app/report.h"
 #include "app/sharing.h"
 
@@ -30,7 +31,8 @@ void print(const std::string& server, const std::vector<OfferedScene>& scenes) {
 
 int run(const ScenesOptions& o) {
   Sharing* sharing = nullptr;
-  Status status = open_sharing(o.sharing, nullptr, &sharing);
+  Status status = check_outputs({}, {{"--json", o.json}});
+  if (status.ok) status = open_sharing(o.sharing, nullptr, &sharing);
   std::unique_ptr<Sharing, void (*)(Sharing*)> closing(sharing, close_sharing);
   if (!status.ok) return report(status);
   Json json = Json::array();

@@ -8,6 +8,7 @@
 #include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/options.h"
+#include "app/output.h"
 #include "app/report.h"
 #include "app/scene_identity.h"
 #include "app/split_report_plot.h"
@@ -175,6 +176,8 @@ Status measure(const ReportOptions& o, const SplitSetup& setup, SplitFigures* fi
 int run(const ReportOptions& o) {
   const platform::Device* device;
   Status status = find_device(o.common, &device);
+  if (status.ok) status = check_outputs({{"SCENE", o.common.scene}}, {{"--json", o.common.json}});
+  if (status.ok && !o.folder.empty()) status = make_output_folder(o.folder);
   OpenScene opened;
   SceneStore store;
   SplitSetup setup;
@@ -227,7 +230,8 @@ void add_split_report_command(CLI::App* program, int* exit_status) {
   command->add_option("--servers", o->server_count, "servers that take part")
       ->check(CLI::Range(1u, kServerCountMax))
       ->capture_default_str();
-  command->add_option("-o,--output", o->folder, "folder for split.csv and, where gnuplot is installed, split.png");
+  command->add_option("-o,--output", o->folder,
+                      "folder for split.csv and, where gnuplot is installed, split.png; made if missing");
   command
       ->add_option("--steps", o->step_count,
                    "shares to measure from 0 to 1; a few more are added around the fastest of them")

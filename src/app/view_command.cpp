@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/options.h"
+#include "app/output.h"
 #include "app/report.h"
 #include "app/sharing.h"
 #include "app/viewer.h"
@@ -88,6 +89,8 @@ int run(ViewCommand o) {
     else if (!o.split.reference.empty())
       status = failure("--split-screen shows the reference of what is rendered here alone: leave it out, or --server");
   }
+  if (status.ok && o.view.screenshot_folder != ViewOptions().screenshot_folder)
+    status = make_output_folder(o.view.screenshot_folder);
   if (status.ok) status = picture_size(o.common, &size.width, &size.height);
   if (status.ok)
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),

@@ -1,0 +1,53 @@
+# What the tests of the program share: source it with the test's own arguments. PROGRAM [EMULATOR...]
+# PROGRAM is built with the sealed heap, so every command here also proves that nothing allocates after the seal.
+# A test ends with `finish`.
+set -u
+program=$(realpath "$1")
+shift
+run=("$@" "$program")
+subject=cornell
+[ $# -eq 0 ] || subject=seesaw  # sculpting the statue takes an emulated CPU without FPU ten seconds
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+export XDG_CACHE_HOME=$folder/cache/of_its_own
+passed=0 failed=0
+has_png=$("${run[@]}" render cube --size 8x8 -o probe.png >/dev/null 2>&1 && echo 1 || echo 0)
+
+# expect NAME STATUS PATTERN COMMAND...: the exit status, and a pattern in what it prints.
+expect() {
+  local name=$1 status=$2 pattern=$3
+  shift 3
+  local out got
+  out=$("${run[@]}" "$@" 2>&1 </dev/null)
+  got=$?
+  if [ "$got" -ne "$status" ]; then
+    echo "FAILED $name: exit $got, expected $status: $out" && failed=$((failed + 1))
+  elif ! grep -qE -- "$pattern" <<<"$out"; then
+    echo "FAILED $name: '$pattern' is not in: $out" && failed=$((failed + 1))
+  elif [ "$status" -eq 1 ] && [ "$(grep -vc '[0-9] %, .* left$' <<<"$out")" -ne 1 ]; then  # but for the progress of slow builds
+    echo "FAILED $name: an error must be one line: $out" && failed=$((failed + 1))
+  else
+    passed=$((passed + 1))
+  fi
+}
+# A server comes into use within some frames, and on a busy machine not within these few: then again.
+expect_in_use() {
+  local name=$1 pattern=$2
+  shift 2
+  for _ in 1 2 3 4 5 6 7 8 9; do
+    "${run[@]}" "$@" 2>&1 </dev/null | grep -E -- "$pattern" >/dev/null && passed=$((passed + 1)) && return
+  done
+  expect "$name" 0 "$pattern" "$@"
+}
+check() {
+  local name=$1
+  shift
+  if "$@"; then passed=$((passed + 1)); else echo "FAILED $name: $*" && failed=$((failed + 1)); fi
+}
+small=(--size 32x24 --threads 2)
+
+finish() {
+  echo "$passed passed, $failed failed"
+  [ "$failed" -eq 0 ]
+}

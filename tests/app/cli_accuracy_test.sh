@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Sweeps of what accuracy costs. Usage: cli_accuracy_test.sh PROGRAM [EMULATOR...]
+. "$(dirname "$0")/cli.sh"
+
+# Goal: a sweep leaves its table and its page, goes on where it was interrupted, and refuses another's folder.
+if "${run[@]}" --help | grep -q '^ *accuracy '; then
+  tiny=(--size 16x12 --threads 2 --reference-samples 2)
+  expect accuracy_without_folder 2 'output-folder' accuracy cube
+  expect accuracy_output 1 'rgb565-dithered' accuracy cube "${tiny[@]}" -o sweep --output vga
+  expect accuracy_reference 1 'model or physical' accuracy cube "${tiny[@]}" -o sweep --reference best
+  expect accuracy_folder 1 'no/such' accuracy cube "${tiny[@]}" -o no/such/folder
+  "${run[@]}" accuracy cube "${tiny[@]}" -o sweep --rounds 1000 >/dev/null 2>interrupted.err &
+  sweeping=$!
+  until grep -qs '"rounds": [1-9]' sweep/accuracy.state || ! kill -0 $sweeping; do sleep 0.05; done
+  kill -INT $sweeping
+  wait $sweeping
+  check accuracy_is_interrupted test $? -eq 3
+  check accuracy_says_that_it_is_kept grep -q 'kept in sweep.*same command' interrupted.err
+  expect accuracy 0 'index.html shows it' accuracy cube "${tiny[@]}" -o sweep --rounds 1 --json sweep.json
+  check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
+  check accuracy_json grep -q '"reference_flip": 0' sweep.json
+  check accuracy_page grep -q '</html>' sweep/index.html
+  # Goal: instructions are counted where something can, and without it nothing else is lost. Method: the baseline's row;
+  # where the CPU does not count them, a valgrind that fails, one that an interrupt finds at work, and a program without
+  # symbols. Skipped where valgrind is not there or cannot run this program (an emulated CPU, a sanitizer).
+  counts() { awk -F, '$1 == "baseline" && $18 > 100 { found = 1 } END { exit !found }' "$1/accuracy.csv"; }
+  if [ $# -eq 0 ] && valgrind -q "$program" --version >/dev/null 2>&1; then
+    check accuracy_counts counts sweep
+    mkdir fake
+    printf '#!/bin/sh\nexit 1\n' >fake/valgrind
+    chmod +x fake/valgrind
+    real_path=$PATH PATH=$PWD/fake:$PATH
+    expect accuracy_failing_valgrind 0 'index.html shows it' accuracy cube "${tiny[@]}" -o other --rounds 1 --json other.json
+    if ! counts other; then
+      check accuracy_tells_that_valgrind_failed grep -q 'not counted: .* valgrind failed' other.json
+      cp sweep/accuracy.state counted.state
+      expect accuracy_counts_once 0 'by valgrind over the picture, one thread, [a-z0-9]+' accuracy cube "${tiny[@]}" -o sweep --rounds 1
+      check accuracy_keeps_counts cmp -s sweep/accuracy.state counted.state
+      printf '#!/bin/sh\necho $$ >fake.id.part && mv fake.id.part fake.id\nexec sleep 60\n' >fake/valgrind
+      "${run[@]}" accuracy cube "${tiny[@]}" -o other --rounds 1 >/dev/null 2>&1 &
+      sweeping=$!
+      until [ -s fake.id ] || ! kill -0 $sweeping 2>/dev/null; do sleep 0.05; done
+      kill -INT $sweeping
+      wait $sweeping
+      check accuracy_is_interrupted_when_counting test $? -eq 3
+      check accuracy_ends_valgrind test ! -e "/proc/$(cat fake.id)"
+      PATH=$real_path
+      expect accuracy_counts_after_all 0 'by valgrind over the picture' accuracy cube "${tiny[@]}" -o other --rounds 1
+      if strip -o stripped "$program" 2>/dev/null; then
+        run=("$PWD/stripped")
+        expect accuracy_without_symbols 0 'not counted: .* no symbols' accuracy cube "${tiny[@]}" -o third --rounds 1
+        run=("$program")
+      fi
+    fi
+    PATH=$real_path
+  else
+    echo "skipped: valgrind is not installed or cannot run $program"
+  fi
+  expect accuracy_other_samples 1 'samples.*--restart' accuracy cube "${tiny[@]}" -o sweep --samples 2
+  echo nonsense >sweep/accuracy.state
+  expect accuracy_damaged 1 'damaged.*--restart' accuracy cube "${tiny[@]}" -o sweep
+fi
+
+finish

@@ -1,0 +1,160 @@
+#!/usr/bin/env bash
+# What commands write, and what they do not overwrite. Usage: cli_output_test.sh PROGRAM [EMULATOR...]
+. "$(dirname "$0")/cli.sh"
+
+tiny=(--size 8x6 --threads 1)
+has() { "${run[@]}" --help | grep -q "^ *$1 "; }
+quality="samples=1 depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat"
+mode_of() { stat -c %a "$1"; }
+
+# Goal: a file that is replaced stays what it was: its permissions, the link that names it, a pipe. Method: each of them,
+# by each kind of output.
+"${run[@]}" bake cube -o seen.pray >/dev/null
+commands=("render cube --size 8x6 -o" "render cube --size 8x6 -o probe.ppm --json" "bake cube -o" "plan cube --json"
+  "bench cube --size 8x6 --frames 1 --no-prices --json" "bench cube --size 8x6 --frames 1 --front")
+names=(a.ppm a.json a.pray b.json c.json a.front)
+for i in "${!commands[@]}"; do
+  read -ra command <<<"${commands[i]}"
+  name=${names[i]}
+  mkdir -p real
+  (umask 077 && : >"real/$name")
+  case $name in *.front) printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$quality" >"real/$name" ;; esac
+  ln -s "real/$name" "$name"
+  expect "replaces_$name" 0 '' "${command[@]}" "$name"
+  check "keeps_the_link_$name" test -L "$name" -a -s "real/$name"
+  check "keeps_the_mode_$name" test "$(mode_of "real/$name")" = 600
+done
+for pair in "pipe.ppm render cube --size 8x6 -o" "pipe.json plan cube --json" "pipe bake cube -o"; do
+  read -ra command <<<"$pair"
+  mkfifo "${command[0]}"
+  cat "${command[0]}" >piped &
+  reader=$!
+  expect "writes_${command[0]}" 0 '' "${command[@]:1}" "${command[0]}"
+  wait $reader
+  check "pipe_stays_${command[0]}" test -p "${command[0]}" -a -s piped
+done
+check nothing_is_left test -z "$(find . -name '*.part')"
+
+# Goal: standard output may be named, and takes text and figures in their order. Method: a file behind it, by its names.
+for name in - /dev/stdout /dev/fd/1; do
+  "${run[@]}" plan cube --json "$name" >both.txt
+  check "figures_to_$name" grep -q '"total_bytes"' both.txt
+  [ "$name" = - ] || check "text_before_them_$name" test "$(grep -nm1 '^effects' both.txt | cut -d: -f1)" -lt "$(grep -nm1 '"scene"' both.txt | cut -d: -f1)"
+done
+"${run[@]}" bake cube -o - >piped.pray
+check baked_to_stdout cmp -s piped.pray seen.pray
+expect nowhere 0 'effects' plan cube --json /dev/null
+
+# Goal: what did not arrive is told, whatever was printed, and nothing else fails of it. Method: a device that is full, a
+# closed output; by all commands that print.
+printing=("--help" "--version" "plan cube" "plan cube --json -" "render cube --size 8x6 -o full.ppm" "bake cube -o full.pray"
+  "render cube --size 8x6 -o full.ppm --json -" "bench cube --size 8x6 --frames 1 --no-prices"
+  "bench cube --size 8x6 --frames 1 --no-prices --json -" "bake cube -o -")
+! has split-report || printing+=("split-report cube --size 64x48 --steps 2 --frames 2 --device-ns 5000 --server-ns 500 --no-paper")
+[ $# -gt 0 ] || ! has accuracy || printing+=("accuracy cube --size 8x6 --threads 1 --reference-samples 2 --rounds 1 -o swept")
+for line in "${printing[@]}"; do
+  read -ra command <<<"$line"
+  told=$("${run[@]}" "${command[@]}" 2>&1 >/dev/full)
+  check "full_$line" test $? -eq 1
+  check "full_is_told_once_$line" test "$(grep -c 'did not take all' <<<"$told")" = 1
+  told=$("${run[@]}" "${command[@]}" 2>&1 >&-)
+  check "closed_$line" test $? -eq 1
+done
+cmp -s full.ppm a.ppm || check picture_is_whole false
+check scene_is_whole cmp -s full.pray seen.pray
+
+# Goal: an empty text is no value, in any place. Method: every option of every command that takes a text or a number.
+for command in $("${run[@]}" --help | sed -n '/^Subcommands/,$s/^  \([a-z][a-z-]*\) .*/\1/p'); do
+  for option in $("${run[@]}" "$command" --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -v -- '--help'); do
+    expect "empty_${command}_$option" 2 "$option is followed by an empty text" "$command" cube "$option" ''
+  done
+  expect "empty_${command}_scene" 2 'argument 2 is an empty text' "$command" ''
+done
+expect empty_command 2 'argument 1 is an empty text' ''
+expect empty_short 2 '-o is followed by an empty' bake cube -o ''
+
+# Goal: sizes and sequences are plain numbers. Method: signs, which wrap around; what is too large; what follows.
+for size in -1x3 3x-1 +3x3 ' 3x3' 3x3x 3x 0x3 3x0 99999x1 3x3.5 1e1x3; do
+  expect "size_$size" 1 '320x240|width|height' render cube --size "$size" -o refused.ppm
+done
+for frames in 0:-1 -1:3 +0:1 1: :1 2 ' 0:1' 0:1:2 0x1; do
+  expect "frames_$frames" 1 'first:last' render seesaw "${tiny[@]}" --frames "$frames" -o refused.ppm
+done
+
+# Goal: no command replaces what it reads. Method: the scene and the front as every output, by their names and through
+# links of both kinds; the files stay as they are, and no output is another.
+cp seen.pray kept.pray
+ln seen.pray hard.pray
+ln -s seen.pray soft.pray
+ln seen.pray hard.ppm
+mkdir within && ln -s ../seen.pray within/soft.json
+quick=(--size 8x6 --threads 1)
+for name in seen.pray ./seen.pray "$PWD/seen.pray" hard.pray soft.pray; do
+  expect "bake_over_$name" 1 "would replace seen.pray|must end|cannot be read|no reader" bake seen.pray -o "$name"
+  expect "plan_over_$name" 1 'would replace seen.pray, which is read as SCENE' plan seen.pray --json "$name"
+  expect "bench_over_$name" 1 'would replace' bench seen.pray "${quick[@]}" --frames 1 --json "$name"
+  expect "bench_front_over_$name" 1 'would replace' bench seen.pray "${quick[@]}" --frames 1 --front "$name"
+  expect "render_json_over_$name" 1 'would replace' render seen.pray "${quick[@]}" -o refused.ppm --json "$name"
+done
+expect render_over_the_scene 1 '-o hard.ppm would replace seen.pray' render seen.pray "${quick[@]}" -o hard.ppm
+cp real/a.front front.ppm && ln -f front.ppm the.front
+expect render_over_the_front 1 'which is read as --front' \
+  render cube "${quick[@]}" --budget-ms 1000000 --front the.front -o front.ppm
+ln -s front.ppm flight-0001.ppm
+expect sequence_over_the_front 1 'flight-0001.ppm would replace the.front' \
+  render seesaw "${quick[@]}" --frames 0:2 --budget-ms 1000000 --front the.front -o flight.ppm
+check sequence_has_not_begun test ! -e flight-0000.ppm
+! has split-report || expect split_report_over 1 'would replace' split-report seen.pray "${quick[@]}" --json within/soft.json
+! has accuracy || expect accuracy_over 1 'would replace' accuracy seen.pray "${quick[@]}" -o swept_other --json within/soft.json
+expect one_file_of_two 1 '-o and --json name the same file' render cube "${quick[@]}" -o one.ppm --json ./one.ppm
+expect one_output_of_two 1 '-o and --json name the same file' bake cube -o - --json -
+expect bake_ending 1 'must end in .pray' bake cube -o cube.glb
+expect bake_no_name 1 'must end in .pray' bake cube -o .pray
+check inputs_are_as_they_were cmp -s seen.pray kept.pray
+if "${run[@]}" render --help | grep -q glTF; then
+  printf 'mtllib house.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n' >house.obj
+  printf 'newmtl wall\nKd 1 0 0\n' >house.mtl
+  cp house.obj kept.obj && cp house.mtl kept.mtl
+  cp house.obj again.pray && ln again.pray other.obj
+  expect bake_over_a_model 1 'must end in .pray' bake house.obj -o house.obj
+  expect bake_over_a_linked_model 1 'would replace other.obj, which is read as IN' bake other.obj -o again.pray
+  check model_is_as_it_was cmp -s house.obj kept.obj
+  check linked_model_is_as_it_was cmp -s other.obj kept.obj
+fi
+
+# Goal: what cannot be written is told before the work, and a folder for results is made. Method: work that takes
+# longer than anybody waits.
+ages=(--size 2048x2048 --samples 16 --threads 1 --memory 512M)
+slow=(--size 2048x2048 --threads 1 --memory 512M)
+mkdir folder.ppm folder.json
+: >file
+for output in no/such/a.ppm folder.ppm file/a.ppm "$(printf 'n%.0s' {1..2000}).ppm"; do
+  expect "told_at_once_${output:0:20}" 1 'cannot be written|is a folder|path is longer' \
+    render statue "${ages[@]}" -o "$output"
+done
+for output in no/such/a.json folder.json; do
+  expect "render_json_told_$output" 1 'cannot be written|is a folder' render statue "${ages[@]}" -o refused.ppm --json "$output"
+  expect "bench_json_told_$output" 1 'cannot be written|is a folder' bench statue "${ages[@]}" --frames 1000 --json "$output"
+  expect "plan_json_told_$output" 1 'cannot be written|is a folder' plan cube --prices --json "$output"
+  expect "bake_json_told_$output" 1 'cannot be written|is a folder' bake cube -o told.pray --json "$output"
+done
+expect bench_front_told 1 'cannot be written' bench statue "${slow[@]}" --frames 1000 --front file/a.front
+XDG_CACHE_HOME=/dev/null expect bench_cache_told 1 '/dev/null.*(cannot be|is no|Not a directory)' bench statue "${slow[@]}" --frames 1000 --front
+expect bake_told 1 'no/such/a.pray' bake cube -o no/such/a.pray
+mkdir "$folder/blocked" && : >"$folder/blocked/flight-0003.ppm" && mkdir "$folder/blocked/flight-0004.ppm"
+expect sequence_told 1 'flight-0004.ppm is a folder' render seesaw "${tiny[@]}" --frames 0:5 -o blocked/flight.ppm
+check sequence_told_before_the_first test ! -e blocked/flight-0000.ppm
+for command in split-report accuracy; do
+  has $command || continue
+  expect "${command}_file_as_folder" 1 'file ' $command statue "${ages[@]}" -o file
+  expect "${command}_folder_in_none" 1 'no/such' $command statue "${ages[@]}" -o no/such
+  expect "${command}_json_told" 1 'no/such' $command statue "${ages[@]}" -o made --json no/such/a.json
+done
+if has split-report; then
+  expect split_report_new_folder 0 'chosen' split-report cube --size 64x48 --steps 2 --frames 2 --device-ns 5000 \
+    --server-ns 500 --no-paper -o made_by_report
+  check split_report_is_there test -s made_by_report/split.csv
+fi
+check nothing_refused_is_written test ! -e refused.ppm -a ! -e told.pray
+
+finish

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Pictures as files, and what they must not depend on. Usage: cli_picture_test.sh PROGRAM [EMULATOR...]
+. "$(dirname "$0")/cli.sh"
+
+# Goal: every output exists and has its size. Method: PPM and PFM headers and byte counts, raw framebuffers.
+expect render_ppm 0 'ns per pixel' render "$subject" "${small[@]}" -o a.ppm
+check ppm_size test "$(stat -c %s a.ppm)" -eq $((13 + 32 * 24 * 3))
+expect render_pfm 0 'ns per pixel' render "$subject" "${small[@]}" -o a.pfm
+check pfm_size test "$(tail -c $((32 * 24 * 12)) a.pfm | wc -c)" -eq $((32 * 24 * 12))
+expect render_raw 0 'ns per pixel' render "$subject" "${small[@]}" --raw-format rgb565 --rotate 90 --dither -o a.raw
+check raw_size test "$(stat -c %s a.raw)" -eq $((32 * 24 * 2))
+for aov in depth normal triangle cost; do expect "aov_$aov" 0 'ns per pixel' render "$subject" "${small[@]}" --aov $aov -o "$aov.pfm"; done
+expect sequence 0 'a frame' render seesaw "${small[@]}" --frames 3:5 -o s.ppm
+for n in 3 4 5; do check "sequence_file_$n" test -s s-000$n.ppm; done
+check no_part_file_is_left test -z "$(ls ./*.part 2>/dev/null)"
+if [ "$has_png" = 1 ]; then
+  expect render_png 0 'ns per pixel' render "$subject" "${small[@]}" -o a.png
+  check png_magic test "$(head -c 8 a.png | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a
+else
+  expect png_is_refused 1 'libpng' render "$subject" "${small[@]}" -o a.png
+fi
+
+# Goal: the picture depends on nothing it should not depend on.
+"${run[@]}" render "$subject" --size 32x24 --threads 1 -o one.ppm >/dev/null
+"${run[@]}" render "$subject" --size 32x24 --threads 5 -o five.ppm >/dev/null
+check threads_give_one_picture cmp -s one.ppm five.ppm
+expect bake 0 'triangles' bake "$subject" -o c.pray
+expect render_baked 0 'ns per pixel' render c.pray --size 32x24 -o baked.ppm
+check baked_gives_the_same_picture cmp -s one.ppm baked.ppm
+"${run[@]}" render "$subject" --size 32x24 --effects all -o all.ppm >/dev/null
+check all_effects_give_the_same_picture cmp -s one.ppm all.ppm
+for accel in compact brute; do
+  "${run[@]}" render "$subject" --size 32x24 --accel $accel -o $accel.ppm >/dev/null
+  check "accel_${accel}_gives_the_same_picture" cmp -s one.ppm $accel.ppm
+done
+expect accel_name 2 'brute' render "$subject" --accel octree -o b.ppm
+expect bake_compact 0 'triangles' bake "$subject" --accel compact -o d.pray
+check compact_is_smaller test "$(stat -c %s d.pray)" -lt "$(stat -c %s c.pray)"
+expect render_baked_compact 0 'ns per pixel' render d.pray --size 32x24 -o baked_compact.ppm
+check baked_compact_gives_the_same_picture cmp -s one.ppm baked_compact.ppm
+expect plan_baked_compact 0 'accelerator compact' plan d.pray
+expect plan_other_than_baked 0 'accelerator bvh' plan d.pray --accel bvh
+
+# Goal: an emulated handheld is slower, has its own screen and cores, and the same picture.
+expect emulate 0 '32×24.*1 thread, emulating tablet: 4.47 times slower' render "$subject" --size 32x24 \
+  --emulate tablet -o emulated.ppm
+check emulated_gives_the_same_picture cmp -s one.ppm emulated.ppm
+[ $# -gt 0 ] || expect emulate_screen_and_cores 0 '640×480.*2 threads, emulating miyoo-mini' \
+  render cube --emulate miyoo-mini -o large.ppm
+expect emulate_in_bench 0 '"emulated": "tablet"' bench cube "${small[@]}" --frames 1 --emulate tablet --json -
+expect emulate_in_view 0 '' view cube --size 32x24 --screen null --frames 2 --emulate tablet
+
+finish

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Exit statuses and one-line errors, and what commands report. Usage: cli_usage_test.sh PROGRAM [EMULATOR...]
+. "$(dirname "$0")/cli.sh"
+
+# Goal: help teaches and usage errors are told apart from bad input.
+expect help 0 'render +render a frame' --help
+expect help_of_command 0 '--area-lights' render --help
+expect version 0 '[0-9]+\.[0-9]+' --version
+expect no_command 2 'subcommand' 
+expect unknown_option 2 'nonsense' render cornell --nonsense
+expect unknown_scene 1 'no_such_scene' render no_such_scene -o a.ppm
+expect bad_size 1 '320x240' render cube --size 0y3 -o a.ppm
+expect bad_size_zero 1 'width' render cube --size 0x3 -o a.ppm
+expect bad_ending 1 '\.png' render cube "${small[@]}" -o a.jpeg
+expect bad_folder 1 'cannot be written' render cube "${small[@]}" -o no/such/folder/a.ppm
+expect bad_depth 1 'depth' render cube "${small[@]}" --depth 99 -o a.ppm
+expect bad_effect 1 'no effect' render cube "${small[@]}" --effects auto,-sparkle -o a.ppm
+expect bad_camera 1 'VFOV' render cube "${small[@]}" --camera "1 2" -o a.ppm
+expect camera_at_its_target 1 'same point' render cube "${small[@]}" --camera "1,1,1 1,1,1 0,1,0 40" -o a.ppm
+expect camera_index 1 'no camera 7' render cube "${small[@]}" --camera-index 7 -o a.ppm
+expect too_little_memory 1 'memory .*would' render statue --memory 1M -o a.ppm
+expect aov_name 1 'depth, normal' render cube "${small[@]}" --aov colour -o a.ppm
+expect unknown_device 1 'gp2x' render cube "${small[@]}" --device toaster -o a.ppm
+expect device_memory 0 'of 16.0 MiB' plan cornell --device gp2x
+expect emulate_unknown 1 "emulate.*gp2x, miyoo" render cube "${small[@]}" --emulate toaster -o a.ppm
+expect emulate_and_another_device 1 'name one of them' render cube "${small[@]}" --emulate tablet --device gp2x -o a.ppm
+expect emulate_memory 0 'of 16.0 MiB' plan cube --emulate gp2x
+expect isa_name 1 'this CPU has baseline' render cube "${small[@]}" --isa sse9 -o a.ppm
+expect isa_in_report 0 '2 threads, baseline' bench cube "${small[@]}" --frames 1 --no-prices --isa baseline
+expect frames_format 1 'first:last' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
+
+# Goal: a file that lies is refused in one line.
+"${run[@]}" bake "$subject" -o c.pray >/dev/null
+head -c 5000 c.pray >cut.pray
+expect truncated_scene 1 'cut.pray' render cut.pray -o b.ppm
+: >empty.pray
+expect empty_scene 1 'empty' render empty.pray -o b.ppm
+mkdir folder.pray
+expect folder_as_scene 1 "regular file" render folder.pray -o b.ppm
+if "${run[@]}" render --help | grep -q glTF; then
+  printf 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
+  expect number_that_is_none 1 "nan.obj: line 2: 'nan' .*export" render nan.obj -o b.ppm
+fi
+check nothing_was_written test ! -e b.ppm
+
+# Goal: reports.
+expect plan 0 'shadow +on' plan "$subject"
+expect plan_map 0 'persistent +accelerator' plan "$subject"
+expect plan_json 0 '"total_bytes"' plan "$subject" --json -
+expect bench 0 'per pixel' bench cube "${small[@]}" --frames 2
+expect bench_json 0 '"scanline_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --json -
+
+finish

@@ -1,0 +1,157 @@
+// What commands write, asked before their work, by the commands themselves.
+#include "app/output.h"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+
+#include "app/commands.h"
+#include "platform/file.h"
+
+using namespace pocketray;
+
+namespace {
+
+struct Folder {
+  char path[32] = "/tmp/pocketray_XXXXXX";
+  Folder() { REQUIRE(mkdtemp(path) != nullptr); }
+  ~Folder() { platform::remove_folder(path); }
+  std::string operator/(const char* name) const { return std::string(path) + "/" + name; }
+};
+
+// The exit status of a command line. What it prints goes where `out` leads.
+int run(const std::vector<std::string>& words, const char* out = "/dev/null") {
+  int exit_status = kExitDone;
+  CLI::App program;
+  add_render_command(&program, &exit_status);
+  add_bake_command(&program, &exit_status);
+  add_plan_command(&program, &exit_status);
+  add_bench_command(&program, &exit_status);
+#ifdef POCKETRAY_HAVE_NETWORK
+  add_split_report_command(&program, &exit_status);
+#endif
+  std::vector<std::string> reversed(words.rbegin(), words.rend());
+  std::fflush(stdout);
+  int kept = dup(STDOUT_FILENO), other = open(out, O_WRONLY);
+  REQUIRE(dup2(other, STDOUT_FILENO) >= 0);
+  program.parse(reversed);
+  exit_status = finish_printing(exit_status);
+  dup2(kept, STDOUT_FILENO);
+  std::clearerr(stdout);
+  close(kept), close(other);
+  return exit_status;
+}
+
+std::string content(const std::string& path) {
+  platform::MappedFile file;
+  platform::FileError error;
+  if (!platform::map_file(path.c_str(), &file, &error)) return "";
+  std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
+  platform::unmap_file(&file);
+  return text;
+}
+
+bool has(const Status& status, const char* part) { return std::strstr(status.message, part) != nullptr; }
+
+}  // namespace
+
+// Goal: no command replaces what it reads. Method: a scene and its other names as each output; none has changed.
+TEST_CASE("output_is_no_input") {
+  Folder folder;
+  std::string scene = folder / "scene.pray", other = folder / "other.pray", json = folder / "a.json";
+  REQUIRE(run({"bake", "cube", "-o", scene}) == 0);
+  REQUIRE(link(scene.c_str(), other.c_str()) == 0);
+  REQUIRE(link(scene.c_str(), json.c_str()) == 0);
+  REQUIRE(link(scene.c_str(), (folder / "a.ppm").c_str()) == 0);
+  std::string before = content(scene);
+  CHECK(run({"bake", scene, "-o", other}) == 1);
+  CHECK(run({"plan", scene, "--json", json}) == 1);
+  CHECK(run({"bench", scene, "--size", "8x6", "--frames", "1", "--json", json}) == 1);
+  CHECK(run({"bench", scene, "--size", "8x6", "--frames", "1", "--front", other}) == 1);
+  CHECK(run({"render", scene, "--size", "8x6", "-o", folder / "a.ppm"}) == 1);
+  CHECK(run({"render", scene, "--size", "8x6", "-o", folder / "b.ppm", "--json", json}) == 1);
+#ifdef POCKETRAY_HAVE_NETWORK
+  CHECK(run({"split-report", scene, "--size", "8x6", "--json", json}) == 1);
+#endif
+  CHECK(content(scene) == before);
+  CHECK(content(folder / "b.ppm").empty());
+}
+
+// Goal: a baked scene has the name of one, so that no model is replaced by a slip. Method: names of other files, and
+// what may have any name.
+TEST_CASE("output_of_bake_is_named_so") {
+  Folder folder;
+  for (const char* name : {"a.glb", "a.pray.obj", "a", ".pray"}) {
+    CAPTURE(name);
+    CHECK(run({"bake", "cube", "-o", folder / name}) == 1);
+    CHECK(content(folder / name).empty());
+  }
+  CHECK(run({"bake", "cube", "-o", folder / "a.pray"}) == 0);
+  CHECK(run({"bake", "cube", "-o", "/dev/null"}) == 0);
+}
+
+// Goal: what cannot be written is told before the work. Method: two outputs, the later one impossible: the earlier one
+// is not there; a sequence whose last picture is in the way.
+TEST_CASE("output_is_asked_for_before_the_work") {
+  Folder folder;
+  std::string nowhere = folder / "no/such.json", picture = folder / "a.ppm";
+  CHECK(run({"render", "cube", "--size", "8x6", "-o", picture, "--json", nowhere}) == 1);
+  CHECK(content(picture).empty());
+  CHECK(run({"bake", "cube", "-o", folder / "a.pray", "--json", nowhere}) == 1);
+  CHECK(content(folder / "a.pray").empty());
+  for (const char* option : {"--json", "--front"})
+    CHECK(run({"bench", "cube", "--size", "8x6", "--frames", "1", option, nowhere}) == 1);
+  CHECK(run({"render", "cube", "--size", "8x6", "-o", picture, "--json", picture}) == 1);
+  CHECK(content(picture).empty());
+  std::string last = folder / "s-0002.ppm";
+  REQUIRE(mkdir(last.c_str(), 0777) == 0);
+  CHECK(run({"render", "cube", "--size", "8x6", "--frames", "0:2", "-o", folder / "s.ppm"}) == 1);
+  CHECK(content(folder / "s-0000.ppm").empty());
+  rmdir(last.c_str());
+}
+
+// Goal: a folder for results is there before the work, and a file in its place is told. Method: a new one, again, one
+// within none, a file.
+TEST_CASE("output_folder_is_made") {
+  Folder folder;
+  std::string made = folder / "made";
+  CHECK(make_output_folder(made).ok);
+  CHECK(make_output_folder(made).ok);
+  CHECK(rmdir(made.c_str()) == 0);  // empty
+  CHECK(has(make_output_folder(folder / "no/such"), "no/such"));
+  REQUIRE(write_file(folder / "file", "x").ok);
+  CHECK(!make_output_folder(folder / "file").ok);
+#ifdef POCKETRAY_HAVE_NETWORK
+  std::vector<std::string> command = {"split-report", "cube", "--size",    "64x48", "--steps",     "2",
+                                      "--frames",     "2",    "-o",        made,    "--device-ns", "5000",
+                                      "--server-ns",  "500",  "--no-paper"};
+  CHECK(run(command) == 0);
+  CHECK(content(made + "/split.csv").size() > 100);
+  platform::remove_folder(made.c_str());
+#endif
+}
+
+// Goal: what was printed and did not arrive is an error. Method: a device that is full; text, and JSON.
+TEST_CASE("output_that_does_not_arrive_is_an_error") {
+  CHECK(run({"plan", "cube"}, "/dev/null") == 0);
+  CHECK(run({"plan", "cube"}, "/dev/full") == 1);
+  CHECK(run({"plan", "cube", "--json", "-"}, "/dev/full") == 1);
+  CHECK(run({"bench", "cube", "--size", "8x6", "--frames", "1", "--no-prices"}, "/dev/full") == 1);
+}
+
+// Goal: an empty text is no value. Method: in place of one, and of the scene.
+TEST_CASE("output_empty_arguments_are_refused") {
+  const char* const good[] = {"pocketray", "render", "cube"};
+  const char* const value[] = {"pocketray", "render", "cube", "--size", ""};
+  const char* const scene[] = {"pocketray", "render", ""};
+  CHECK(check_arguments(3, good).ok);
+  CHECK(has(check_arguments(5, value), "--size is followed by an empty text"));
+  CHECK(has(check_arguments(3, scene), "argument 2"));
+}
