@@ -29,12 +29,6 @@ const Backend* platform_find(const char* name) {
   return nullptr;
 }
 
-const Backend* platform_default() {
-  for (const Backend* backend : kBackends)
-    if (backend->usable()) return backend;
-  return &kNullBackend;
-}
-
 ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_first) {
   ScreenFormat format = {width, height, 32, {16, 8}, {8, 8}, {0, 8}, {}};
   if (bits_per_pixel == 16) format = {width, height, 16, {11, 5}, {5, 6}, {0, 5}, {}};
@@ -46,8 +40,8 @@ ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_
 }
 
 const char* button_name(Button button) {
-  static const char* const kNames[kButtonCount] = {"up",  "down",       "left",   "right", "a",     "b",
-                                                   "x",   "y",          "l",      "r",     "start", "select",
+  static const char* const kNames[kButtonCount] = {"up",  "down",       "left",   "right", "a",      "b",
+                                                   "x",   "y",          "l",      "r",     "start",  "select",
                                                    "hud", "screenshot", "reload", "finer", "faster", "split"};
   return kNames[static_cast<int>(button)];
 }

@@ -92,6 +92,8 @@ struct Error {
 
 struct Backend {
   const char* name;
+  // What usable() looks for, to be told where it is missing.
+  const char* needs;
   // Whether open() has a chance here. Changes nothing.
   bool (*usable)();
   // Opens screen and buttons. False: `error` says why, and everything is as it was before.
@@ -114,7 +116,5 @@ extern const int kBackendCount;
 
 // The backend of that name, or null.
 const Backend* platform_find(const char* name);
-// The first usable one: a window where a display is present, else the framebuffer, else null.
-const Backend* platform_default();
 
 }  // namespace platform

@@ -69,6 +69,10 @@ void linux_set_driver(const Driver* driver) {
   state.driver = driver ? driver : &kSystemDriver;
 }
 
-const Backend kLinuxBackend = {"linux", usable, open, begin_frame, end_frame, poll, now_ns, sleep_ns, close};
+const Backend kLinuxBackend = {"linux",     "a framebuffer, /dev/fb0, that this user may write",
+                               usable,      open,
+                               begin_frame, end_frame,
+                               poll,        now_ns,
+                               sleep_ns,    close};
 
 }  // namespace platform

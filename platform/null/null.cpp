@@ -95,6 +95,6 @@ void null_configure(const NullSettings& settings) { state.settings = settings; }
 
 const NullRecord& null_record() { return state.record; }
 
-const Backend kNullBackend = {"null", usable, open, begin_frame, end_frame, poll, now_ns, sleep_ns, close};
+const Backend kNullBackend = {"null", "nothing", usable, open, begin_frame, end_frame, poll, now_ns, sleep_ns, close};
 
 }  // namespace platform

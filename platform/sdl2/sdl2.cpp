@@ -300,6 +300,8 @@ bool poll(Event* event) {
 
 }  // namespace
 
-const Backend kSdl2Backend = {"sdl2", usable, open, begin_frame, end_frame, poll, now_ns, sleep_ns, close};
+const Backend kSdl2Backend = {
+    "sdl2", "a display, DISPLAY or WAYLAND_DISPLAY", usable, open, begin_frame, end_frame, poll, now_ns, sleep_ns,
+    close};
 
 }  // namespace platform

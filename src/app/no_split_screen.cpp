@@ -5,6 +5,7 @@ namespace pocketray {
 
 void add_split_screen_option(CLI::App*, SplitScreenOptions*) {}
 const char* split_screen_key_help() { return ""; }
+const char* split_screen_hint() { return "V shows a reference on the desktop: this program was built without it"; }
 SplitScreen* open_split_screen(const SplitScreenOptions&, const Renderer&, int, bool) { return nullptr; }
 void close_split_screen(SplitScreen*) {}
 Status advance_split_screen(SplitScreen*, Renderer*, double, std::uint32_t, std::uint64_t) { return success(); }

@@ -160,6 +160,9 @@ void add_split_screen_option(CLI::App* command, SplitScreenOptions* o) {
 }
 
 const char* split_screen_key_help() { return "V shows the reference of --split-screen or not, "; }
+const char* split_screen_hint() {
+  return "V shows the reference beside the picture: start with --split-screen model to have one";
+}
 
 SplitScreen* open_split_screen(const SplitScreenOptions& options, const Renderer& r, int bits_per_pixel, bool dither) {
   if (options.reference.empty()) return nullptr;

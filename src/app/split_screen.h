@@ -17,6 +17,8 @@ struct SplitScreenOptions {
 void add_split_screen_option(CLI::App* command, SplitScreenOptions* options);
 // What the help says of its key.
 const char* split_screen_key_help();
+// What the viewer says of its key where there is no split screen.
+const char* split_screen_hint();
 
 // Null where none is asked for. The scene is open; the picture is judged as a screen of such pixels shows it.
 SplitScreen* open_split_screen(const SplitScreenOptions& options, const Renderer& renderer, int bits_per_pixel,

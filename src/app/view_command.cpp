@@ -53,7 +53,7 @@ struct ViewCommand {
   SplitScreenOptions split;
 };
 
-// Shows what was loaded until the user leaves, or wants to see it anew.
+// Shows what was loaded until the user leaves, or it is to be loaded anew.
 Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* again) {
   Renderer* renderer = &loading.opened->renderer;
   print_notes(*loading.opened);
@@ -74,6 +74,73 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   return status;
 }
 
+// Loads the scene, tells the news about it, shows it. False: the user left while it was loading.
+bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer, Status* status, bool* again) {
+  watch_scene(viewer);
+  Loading loading(o.common, o.budget, viewer);
+  if (!wait_for(viewer, &loading)) {
+    stop_opening(viewer->sharing);
+    return false;
+  }
+  *status = loading.status;
+  if (status->ok && !news.empty()) tell(viewer, news.c_str());
+  if (status->ok) *status = show(o, loading, viewer, again);
+  return true;
+}
+
+// A scene that took another's place by being dropped on the window, and cannot be loaded, leaves it to that one. Any
+// other keeps the last picture and waits. False: there is nothing to keep, or the user left.
+bool goes_on_without(const Status& status, std::string* previous, std::string* news, ViewCommand* o, Viewer* viewer) {
+  if (!viewer->has_picture) return false;
+  std::string why = status.message;
+  if (previous->empty()) {
+    why += "; the last picture stays, and the file is tried again when it changes";
+    tell(viewer, why.c_str());
+    return wait_for_another(viewer, why.c_str());
+  }
+  *news = why + "; back to " + *previous;
+  o->common.scene = viewer->scene_path = *previous;
+  previous->clear();
+  return true;
+}
+
+// One scene after the other. A scene's block is given back before the next one is loaded: a device has no room for two.
+// So the scene is gone where the next one turns out to be broken; its picture stays until there is another.
+Status view_scenes(ViewCommand* o, Viewer* viewer) {
+  std::string previous, news;
+  Status status;
+  for (bool again = true; again;) {
+    again = false;
+    status = success();
+    if (!load_and_show(*o, news, viewer, &status, &again)) break;
+    news = o->common.scene + " is loaded again";
+    if (status.ok)
+      previous.clear();
+    else
+      again = goes_on_without(status, &previous, &news, o, viewer);
+    if (viewer->quit) status = success();
+    if (!again || !viewer->dropped[0]) continue;
+    news.clear();
+    previous = o->common.scene;
+    o->common.scene = viewer->scene_path = viewer->dropped;
+    viewer->dropped[0] = 0;
+  }
+  return status;
+}
+
+// Whether the options go together.
+Status check_options(const ViewCommand& o) {
+  if (!o.sharing.servers.empty()) {
+    if (o.budget.ms > 0)
+      return failure(
+          "--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
+    if (!o.split.reference.empty())
+      return failure("--split-screen shows the reference of what is rendered here alone: leave it out, or --server");
+  }
+  bool asked = o.view.screenshot_folder != ViewOptions().screenshot_folder;
+  return asked ? make_output_folder(o.view.screenshot_folder) : success();
+}
+
 int run(ViewCommand o) {
   Viewer viewer;
   Settings size;
@@ -82,15 +149,7 @@ int run(ViewCommand o) {
   if (o.view.rotation < 0) o.view.rotation = device ? device->rotation : 0;
   if (device) o.view.keys = device->keys;
   if (!o.common.emulate.empty()) o.view.emulated = device;
-  if (status.ok && !o.sharing.servers.empty()) {
-    if (o.budget.ms > 0)
-      status =
-          failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
-    else if (!o.split.reference.empty())
-      status = failure("--split-screen shows the reference of what is rendered here alone: leave it out, or --server");
-  }
-  if (status.ok && o.view.screenshot_folder != ViewOptions().screenshot_folder)
-    status = make_output_folder(o.view.screenshot_folder);
+  if (status.ok) status = check_options(o);
   if (status.ok) status = picture_size(o.common, &size.width, &size.height);
   if (status.ok)
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),
@@ -98,20 +157,7 @@ int run(ViewCommand o) {
   if (status.ok) status = open_sharing(o.sharing, o.view.emulated, &viewer.sharing);
   std::unique_ptr<Sharing, void (*)(Sharing*)> closing(viewer.sharing, close_sharing);
   if (!status.ok) return report(status);
-  for (bool again = true; again && status.ok;) {
-    again = false;
-    Loading loading(o.common, o.budget, &viewer);
-    if (!wait_for(&viewer, &loading)) {
-      stop_opening(viewer.sharing);
-      break;
-    }
-    status = loading.status;
-    if (status.ok) status = show(o, loading, &viewer, &again);
-    if (viewer.dropped[0]) {
-      o.common.scene = viewer.scene_path = viewer.dropped;
-      viewer.dropped[0] = 0;
-    }
-  }
+  status = view_scenes(&o, &viewer);
   close_viewer(&viewer);
   if (!status.ok) return report(status);
   return interrupted ? kExitInterrupted : kExitDone;
@@ -129,7 +175,8 @@ void add_view_command(CLI::App* program, int* exit_status) {
   add_split_screen_option(command, &o->split);
   command
       ->add_option("--screen", o->view.backend,
-                   "sdl2 (window), linux (framebuffer), null (none); auto picks the first there is")
+                   "sdl2 (window), linux (framebuffer), null (none, for tests); auto picks a window or the "
+                   "framebuffer, whichever is there")
       ->capture_default_str();
   command->add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the usual one");
   command->add_option("--rotate", o->view.rotation, "turn the picture clockwise: 0, 90, 180 or 270")
@@ -138,7 +185,8 @@ void add_view_command(CLI::App* program, int* exit_status) {
   command->add_flag("--dither", o->view.dither, "ordered dither, for screens of 16 bits");
   command->add_option("--frames", o->view.frame_count, "show so many finished frames, then leave; 0: until quit")
       ->capture_default_str();
-  command->add_option("--screenshots", o->view.screenshot_folder, "where screenshots go")->capture_default_str();
+  command->add_option("--screenshots", o->view.screenshot_folder, "folder where screenshots go, made if missing")
+      ->capture_default_str();
   command->footer(
       std::string(
           "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and "

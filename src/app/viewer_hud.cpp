@@ -62,10 +62,27 @@ void write_waiting(const char* what, double seconds, HudText* text) {
   add_hud_line(text, "%s, %.1f s", what, seconds);
 }
 
-std::uint32_t hud_rows(const HudText& text) { return static_cast<std::uint32_t>(text_box_height(text.line_count, 1)); }
+void add_hud_text(HudText* text, const char* words) {
+  constexpr std::size_t kColumns = static_cast<std::size_t>(kHudColumnMax);
+  while (*words && text->line_count < kHudLineMax) {
+    std::size_t length = std::strlen(words), end = length;
+    if (length > kColumns) {
+      for (end = kColumns; end > 0 && words[end] != ' ';) --end;
+      if (end == 0) end = kColumns;  // one long word
+    }
+    add_hud_line(text, "%.*s", static_cast<int>(end), words);
+    words += end;
+    while (*words == ' ') ++words;
+  }
+}
+
+std::uint32_t hud_rows(const HudText& text) {
+  return text.line_count > 0 ? static_cast<std::uint32_t>(text_box_height(text.line_count, 1)) : 0;
+}
 
 void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height,
                    void* pixels, int line_bytes) {
+  if (text.line_count == 0) return;
   const char* lines[kHudLineMax];
   for (int i = 0; i < text.line_count; ++i) lines[i] = text.lines[i];
   draw_text_box({pixels, line_bytes, format, width, height, rotation}, 0, 0, 1, lines, text.line_count);

@@ -13,12 +13,21 @@ struct HudText {
   int line_count = 0;
 };
 
+// Something to be told over the picture for some seconds, or until there is something else.
+struct HudNote {
+  char text[600] = {0};
+  std::uint64_t until_ns = 0;  // by the screen's clock
+  std::uint32_t number = 0;    // how many there have been
+};
+
 // Adds a line, cut to the display's width, where there is room for one.
 void add_hud_line(HudText* text, const char* format, ...) __attribute__((format(printf, 2, 3)));
 
 // Milliseconds per frame, nanoseconds per pixel, rays, memory, effects on.
 void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text);
 void write_waiting(const char* what, double seconds, HudText* text);
+// Adds a text in as many lines as it takes, broken between words where it has some.
+void add_hud_text(HudText* text, const char* words);
 
 // Rows of the picture the display covers.
 std::uint32_t hud_rows(const HudText& text);

@@ -15,33 +15,26 @@ constexpr std::uint64_t kMillisecond = 1000000;
 constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two looks at the buttons
 constexpr std::uint64_t kIdleNs = 8 * kMillisecond;
 
-void pack_page(const Viewer& v, const Renderer& r, const Vec3* radiance, int row_begin, int row_end,
-               const platform::Page& page) {
-  if (!v.picture_shared) {
-    pack_rows(radiance, v.width, v.height, row_begin, row_end, r.exposure, v.format, v.rotation, v.options.dither,
-              page.pixels, page.line_bytes);
-    return;
-  }
-  SharedPicture shared = shared_picture(*v.sharing);
-  repack_rows(shared.format, shared.pixels, shared.line_bytes, v.width, v.height, row_begin, row_end, v.format,
-              v.rotation, page.pixels, page.line_bytes);
-}
-
 // Packs the rows that changed and shows them.
 void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t row_begin, std::uint32_t row_end) {
   SealPause pause(takes_memory(*v->backend));
   platform::Page page = v->backend->begin_frame();
   if (!page.pixels) return;
   if (page.age != 1 || quarter_turned(*v)) row_begin = 0, row_end = r.settings.height;
-  if (v->hud || v->hud_shown)
-    row_begin = 0, row_end = std::max(row_end, std::min<std::uint32_t>(hud_rows(text), r.settings.height));
+  std::uint32_t note = note_now(*v);
+  HudText shown;
+  if (v->hud) shown = text;
+  if (note) add_hud_text(&shown, v->note.text);
+  std::uint32_t covered = std::min(hud_rows(shown), r.settings.height);
+  if (covered > 0 || v->hud_rows_shown > 0)
+    row_begin = 0, row_end = std::max(row_end, std::max(covered, v->hud_rows_shown));
   const Vec3* radiance = r.image.data;
   if (shows_split(*v)) radiance = split_picture(v->split, r), row_begin = 0, row_end = r.settings.height;
   std::uint64_t start = clock_ns();
-  pack_page(*v, r, radiance, static_cast<int>(row_begin), static_cast<int>(row_end), page);
+  pack_picture(*v, r, radiance, static_cast<int>(row_begin), static_cast<int>(row_end), page);
   v->pack_ns = clock_ns() - start;
-  if (v->hud) draw_hud_text(text, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);
-  v->hud_shown = v->hud;
+  draw_hud_text(shown, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);
+  v->hud_shown = v->hud, v->note_shown = note, v->hud_rows_shown = covered;
   bool whole = quarter_turned(*v) || page.age != 1;
   if (whole) {
     v->backend->end_frame(0, screen_height(*v));
@@ -51,6 +44,9 @@ void show_rows(Viewer* v, const Renderer& r, const HudText& text, std::uint32_t 
     v->backend->end_frame(static_cast<int>(row_begin), static_cast<int>(row_end));
   }
 }
+
+// What is written over the picture is what is to be.
+bool is_text_shown(const Viewer& v) { return v.hud == v.hud_shown && note_now(v) == v.note_shown; }
 
 // As many frames as were asked for, even of a still; with a reference beside it, when that has some samples.
 constexpr std::uint32_t kSplitSamples = 32;
@@ -91,7 +87,7 @@ Status step_picture(Viewer* v, Renderer* r, ViewerLoop* loop) {
     start_progressive(r, &loop->progressive);
     loop->moved = loop->passed = loop->finished = false;
   }
-  if (loop->finished && v->hud == v->hud_shown) return idle(v, r, loop);
+  if (loop->finished && is_text_shown(*v)) return idle(v, r, loop);
   bool was_finished = loop->finished;
   if (!was_finished)
     loop->finished = advance_progressive(r, loop->row_spans, clock_ns() + kSliceNs, &loop->progressive);
@@ -121,7 +117,7 @@ Status step_budgeted(Viewer* v, Renderer* r, ViewerLoop* loop) {
   }
   if (loop->moved || loop->passed) loop->still_frames = loop->steady_frames = 0;
   bool due = loop->moved || loop->passed || (!loop->settled && v->options.frame_count == 0);
-  if (!due && v->hud == v->hud_shown) return idle(v, r, loop);
+  if (!due && is_text_shown(*v)) return idle(v, r, loop);
   std::uint32_t before = budget->last;
   std::uint64_t start = clock_ns(), traced = start;
   if (due) {
@@ -152,7 +148,7 @@ Status step_shared(Viewer* v, Renderer* r, ViewerLoop* loop) {
     RETURN_IF_ERROR(begin_shared(v->sharing, r, loop->seconds));
     loop->moved = loop->passed = loop->finished = false;
   }
-  if (loop->finished && v->hud == v->hud_shown) return idle(v, r, loop);
+  if (loop->finished && is_text_shown(*v)) return idle(v, r, loop);
   if (!loop->finished && advance_shared(v->sharing, r, clock_ns() + kSliceNs, nullptr)) {
     loop->finished = true;
     ++v->frames_finished;
@@ -184,6 +180,18 @@ Status step_with_servers(Viewer* v, Renderer* r, ViewerLoop* loop) {
 }
 
 }  // namespace
+
+void pack_picture(const Viewer& v, const Renderer& r, const Vec3* radiance, int row_begin, int row_end,
+                  const platform::Page& page) {
+  if (!v.picture_shared) {
+    pack_rows(radiance, v.width, v.height, row_begin, row_end, r.exposure, v.format, v.rotation, v.options.dither,
+              page.pixels, page.line_bytes);
+    return;
+  }
+  SharedPicture shared = shared_picture(*v.sharing);
+  repack_rows(shared.format, shared.pixels, shared.line_bytes, v.width, v.height, row_begin, row_end, v.format,
+              v.rotation, page.pixels, page.line_bytes);
+}
 
 bool takes_memory(const platform::Backend& screen) { return std::strcmp(screen.name, "sdl2") == 0; }
 

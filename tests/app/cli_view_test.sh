@@ -13,6 +13,47 @@ fi
 unset SDL_VIDEODRIVER
 expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
 
+# Goal: nobody is shown a picture on no screen unless that is asked for: what was tried is told. Method: no display, and
+# no framebuffer; one that is named and is not there; a folder for screenshots that cannot be.
+if [ ! -e /dev/fb0 ]; then
+  saved=("${run[@]}")
+  run=(env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER "${run[@]}")
+  expect view_without_a_screen 1 'no screen was found \(.*linux needs a framebuffer, /dev/fb0.*\): choose one by --screen' \
+    view cube "${small[@]}" --frames 1
+  run=("${saved[@]}")
+fi
+expect view_no_framebuffer 1 'no/such/fb' view cube "${small[@]}" --framebuffer no/such/fb --frames 1
+expect view_screenshots_nowhere 1 'no/such' view cube "${small[@]}" --screen null --frames 1 --screenshots no/such/folder
+expect view_screenshots_new 0 '' view cube "${small[@]}" --screen null --frames 1 --screenshots shots
+check view_makes_its_folder test -d shots
+
+# Goal: a scene that is written while it is shown costs no viewer, and each state of it is told. Method: the file is
+# touched until the viewer tells that it has loaded it again; cut short; another one; gone, and there again.
+if [ $# -eq 0 ]; then
+  "${run[@]}" bake cube -o live.pray >/dev/null
+  "${run[@]}" bake seesaw -o other.pray >/dev/null
+  cp live.pray good.pray
+  "${run[@]}" view live.pray "${small[@]}" --screen null >view.out 2>view.err &
+  viewing=$!
+  told() { grep -c "$1" view.err; }
+  until [ "$(told 'live.pray is loaded again')" -gt 0 ] || ! kill -0 $viewing; do touch live.pray && sleep 0.2; done
+  before=$(told 'is loaded again')
+  head -c 3000 good.pray >live.pray
+  until [ "$(told 'the last picture stays')" -gt 0 ] || ! kill -0 $viewing; do sleep 0.05; done
+  check view_tells_what_is_broken grep -q 'live.pray: .*; the last picture stays, and the file is tried again' view.err
+  check view_stays kill -0 $viewing
+  : >live.pray
+  until [ "$(told 'live.pray is empty')" -gt 0 ] || ! kill -0 $viewing; do sleep 0.05; done
+  check view_tells_the_next_fault grep -q 'live.pray is empty' view.err
+  rm live.pray
+  cp other.pray live.pray
+  until [ "$(told 'is loaded again')" -gt "$before" ] || ! kill -0 $viewing; do sleep 0.05; done
+  check view_loads_it_after_all test "$(told 'is loaded again')" -gt "$before"
+  kill -INT $viewing
+  wait $viewing
+  check view_is_left test $? -eq 3
+fi
+
 if "${run[@]}" view --help | grep -q split-screen; then
   for reference in model physical; do
     expect split_screen_$reference 0 "RMSE [0-9.]+ from the $reference reference of (1[6-9]|[2-9][0-9]|[1-9][0-9]{2,}) samples" \
