@@ -55,6 +55,19 @@ std::uint32_t accept_rows(Merge* merge, std::uint32_t frame, std::uint32_t row_b
   return count;
 }
 
+std::uint32_t discard_rows(Merge* merge, std::uint32_t server) {
+  std::uint32_t count = 0;
+  for (std::uint32_t r = merge->rows.count; r-- > 0;) {
+    MergeRow* row = &merge->rows[r];
+    if (row->state != RowState::server || row->server != server) continue;
+    *row = MergeRow();
+    ++count;
+    if (merge->next_row > r) merge->next_row = r;
+  }
+  merge->row_count_done -= count;
+  return count;
+}
+
 std::uint32_t count_rows(const Merge& merge, std::uint32_t server) {
   std::uint32_t count = 0;
   for (const MergeRow& row : merge.rows)

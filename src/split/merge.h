@@ -1,6 +1,7 @@
 // Merge: which rows of the current frame came from where. The device takes rows from the top, its own and then those
-// that have not come; servers' chunks arrive from the bottom; they meet. Pixels are the same from anyone, so whoever is
-// first wins, and a lost server costs time and never a pixel. Not for several threads at once.
+// that have not come; servers' chunks arrive from the bottom; they meet. Pixels are the same from everyone who is
+// honest, so whoever is first wins, and a lost server costs time and no pixel; rows of one that sends wrong pixels can
+// be discarded. Not for several threads at once.
 #pragma once
 #include <cstdint>
 
@@ -40,6 +41,9 @@ void finish_rows(Merge* merge, std::uint32_t row_begin, std::uint32_t row_end);
 // None of a stale or future frame, of rows outside the picture, or of rows that were done before.
 std::uint32_t accept_rows(Merge* merge, std::uint32_t frame, std::uint32_t row_begin, std::uint32_t row_end,
                           std::uint32_t server);
+
+// The rows of that server are not to be trusted: they are missing again. Returns how many there were.
+std::uint32_t discard_rows(Merge* merge, std::uint32_t server);
 
 inline bool is_complete(const Merge& merge) { return merge.row_count_done == merge.rows.count; }
 

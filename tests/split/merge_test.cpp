@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "base/rng.h"
@@ -105,5 +106,34 @@ TEST_CASE("merge_completes_under_random_arrivals") {
     }
     CHECK(done == rows);
     CHECK(count_rows(*m, kDeviceRows) + count_rows(*m, 0) + count_rows(*m, 1) + count_rows(*m, 2) == rows);
+  }
+}
+
+// Goal: rows of a server that is not trusted are missing again, those of others stay, and the device takes them from
+// the top. Method: against a plain account, over random courses of a frame.
+TEST_CASE("merge_discards_the_rows_of_a_server") {
+  Rng rng = make_rng(23);
+  for (int round = 0; round < effort(300); ++round) {
+    std::uint32_t rows = 1 + next_u32(&rng) % 40, begin, end;
+    OwnMerge own(rows);
+    Merge* m = &own.merge;
+    begin_merge(m, 1);
+    while (!is_complete(*m)) {
+      std::uint32_t row = next_u32(&rng) % rows;
+      if (next_u32(&rng) % 4 > 0)
+        accept_rows(m, 1, row, std::min(rows, row + 3), next_u32(&rng) % 3);
+      else if (take_rows(m, 2, &begin, &end))
+        finish_rows(m, begin, end);
+    }
+    std::uint32_t theirs = count_rows(*m, 1), others = rows - theirs;
+    CHECK(discard_rows(m, 1) == theirs);
+    CHECK(count_rows(*m, 1) == 0);
+    CHECK(m->row_count_done == others);
+    CHECK(is_complete(*m) == (theirs == 0));
+    std::uint32_t device_rows = count_rows(*m, kDeviceRows);
+    while (take_rows(m, 5, &begin, &end)) finish_rows(m, begin, end);
+    CHECK(is_complete(*m));
+    CHECK(count_rows(*m, kDeviceRows) == device_rows + theirs);
+    CHECK(discard_rows(m, 1) == 0);
   }
 }
