@@ -1,5 +1,7 @@
 #include "present/pack.h"
 
+#include <cstring>
+
 #include "base/check.h"
 
 namespace pocketray {
@@ -88,6 +90,26 @@ inline void store(unsigned char* at, std::uint32_t pixel) {
   }
 }
 
+inline void store_unaligned(unsigned char* at, std::uint32_t pixel, int bytes) {
+  std::uint16_t small = static_cast<std::uint16_t>(pixel);
+  if (bytes == 2) std::memcpy(at, &small, sizeof small);
+  if (bytes == 3) store<3>(at, pixel);
+  if (bytes == 4) std::memcpy(at, &pixel, sizeof pixel);
+}
+
+// One pixel of a row of the picture, whose dither thresholds are given.
+template <bool kDither>
+inline std::uint32_t packed(const Packer& packer, Vec3 c, const std::uint16_t* thresholds, int column,
+                            ToneCounts* counts) {
+  if (!kDither)
+    return packer.ones | pack_plain(packer.channels[0], c.x, counts) | pack_plain(packer.channels[1], c.y, counts) |
+           pack_plain(packer.channels[2], c.z, counts);
+  std::uint32_t threshold = thresholds[column & 7];
+  return packer.ones | pack_dithered(packer.channels[0], c.x, threshold, counts) |
+         pack_dithered(packer.channels[1], c.y, threshold, counts) |
+         pack_dithered(packer.channels[2], c.z, threshold, counts);
+}
+
 template <int kBytes, bool kDither>
 ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
                         const Packer& packer, Rotation rotation, unsigned char* pixels, int line_bytes) {
@@ -102,20 +124,8 @@ ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_beg
     ScreenPosition at = screen_position(0, row, width, height, rotation);
     unsigned char* out = pixels + static_cast<std::ptrdiff_t>(at.y) * line_bytes + at.x * kBytes;
     const std::uint16_t* thresholds = kBayer.offset[row & 7];
-    for (int column = 0; column < width; ++column, out += step) {
-      Vec3 c = in[column] * exposure;
-      std::uint32_t pixel = packer.ones;
-      if (kDither) {
-        std::uint32_t threshold = thresholds[column & 7];
-        pixel |= pack_dithered(packer.channels[0], c.x, threshold, &counts) |
-                 pack_dithered(packer.channels[1], c.y, threshold, &counts) |
-                 pack_dithered(packer.channels[2], c.z, threshold, &counts);
-      } else {
-        pixel |= pack_plain(packer.channels[0], c.x, &counts) | pack_plain(packer.channels[1], c.y, &counts) |
-                 pack_plain(packer.channels[2], c.z, &counts);
-      }
-      store<kBytes>(out, pixel);
-    }
+    for (int column = 0; column < width; ++column, out += step)
+      store<kBytes>(out, packed<kDither>(packer, in[column] * exposure, thresholds, column, &counts));
   }
   return counts;
 }
@@ -184,6 +194,27 @@ ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin,
                            : (dither ? pack_rows_of<4, true> : pack_rows_of<4, false>);
   return rows(radiance, width, height, row_begin, row_end, exposure, packer, rotation,
               static_cast<unsigned char*>(pixels), line_bytes);
+}
+
+void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, float exposure,
+                const PixelFormat& format, bool dither, std::uint8_t* pixels) {
+  CHECK(pixel_format_valid(format));
+  Packer packer;
+  make_packer(format, &packer);
+  int bytes = format.bits_per_pixel / 8;
+  ToneCounts counts;
+  for (std::uint32_t i = 0; i < span_count; ++i) {
+    const Span& span = spans[i];
+    CHECK_LE(span.column_end, width);
+    const Vec3* in = radiance + static_cast<std::size_t>(span.row) * static_cast<std::size_t>(width);
+    const std::uint16_t* thresholds = kBayer.offset[span.row & 7];
+    for (int column = span.column_begin; column < span.column_end; ++column, pixels += bytes) {
+      Vec3 c = in[column] * exposure;
+      std::uint32_t pixel = dither ? packed<true>(packer, c, thresholds, column, &counts)
+                                   : packed<false>(packer, c, thresholds, column, &counts);
+      store_unaligned(pixels, pixel, bytes);
+    }
+  }
 }
 
 }  // namespace pocketray

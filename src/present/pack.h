@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/span.h"
 #include "base/vec3.h"
 #include "present/tonemap.h"
 
@@ -67,7 +68,12 @@ void write_pixel(const PixelFormat& format, void* pixel, std::uint32_t value);
 ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin, int row_end, float exposure,
                      const PixelFormat& format, Rotation rotation, bool dither, void* pixels, int line_bytes);
 
-// The same into a picture of bytes R, G, B without padding: what PNG and PPM take.
+// The pixels of the spans, one behind the other without padding, with the bytes that pack_rows() writes without a
+// rotation.
+void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, float exposure,
+                const PixelFormat& format, bool dither, std::uint8_t* pixels);
+
+// A whole picture into bytes R, G, B without padding: what PNG and PPM take.
 inline ToneCounts pack_rgb8(const Vec3* radiance, int width, int height, float exposure, std::uint8_t* rgb) {
   return pack_rows(radiance, width, height, 0, height, exposure, kRgb888, Rotation::none, false, rgb, 3 * width);
 }

@@ -209,3 +209,36 @@ TEST_CASE("pixel_format_valid_refuses_what_cannot_be_packed") {
   CHECK_FALSE(pixel_format_valid({32, {16, 8}, {8, 8}, {-1, 8}, {}}));
   CHECK_FALSE(pixel_format_valid({32, {20, 12}, {8, 12}, {0, 8}, {}}));  // more bits than we have
 }
+
+// Goal: pixels of spans are the bytes that pack_rows() writes for them, wherever they go. Method: spans of every length
+// in an uneven picture, every format, with dither and without, into memory that is aligned to nothing.
+TEST_CASE("pack_spans_equal_the_rows_they_are_of") {
+  constexpr int kWidth = 13, kHeight = 11;
+  std::vector<Vec3> radiance(kWidth * kHeight);
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    float x = static_cast<float>(i) / (kWidth * kHeight);
+    radiance[static_cast<std::size_t>(i)] = {x * 1.3f, 1 - x, x * x};
+  }
+  std::vector<Span> spans;
+  for (int row = kHeight - 1; row >= 0; --row)
+    for (int begin = row % 3; begin <= kWidth; begin += 4)
+      spans.push_back({static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin),
+                       static_cast<std::uint16_t>(begin + (row + begin) % (kWidth - begin + 1))});
+  for (const PixelFormat& format : kFormats)
+    for (bool dither : {false, true}) {
+      std::size_t bytes = static_cast<std::size_t>(format.bits_per_pixel / 8);
+      std::vector<std::uint32_t> rows(kWidth * kHeight);
+      auto* whole = reinterpret_cast<unsigned char*>(rows.data());
+      int line_bytes = kWidth * static_cast<int>(bytes);
+      if (bytes == 2) line_bytes += 2 * (kWidth % 2);
+      pack_rows(radiance.data(), kWidth, kHeight, 0, kHeight, 0.9f, format, Rotation::none, dither, whole, line_bytes);
+      std::vector<unsigned char> packed(1 + spans.size() * kWidth * bytes, 0xab);
+      pack_spans(radiance.data(), kWidth, spans.data(), static_cast<std::uint32_t>(spans.size()), 0.9f, format, dither,
+                 packed.data() + 1);
+      const unsigned char* at = packed.data() + 1;
+      for (const Span& span : spans)
+        for (int column = span.column_begin; column < span.column_end; ++column, at += bytes)
+          CHECK(std::memcmp(at, whole + span.row * line_bytes + column * static_cast<int>(bytes), bytes) == 0);
+      CHECK(*at == 0xab);
+    }
+}
