@@ -110,7 +110,7 @@ std::size_t client_need(const Settings& settings, WireFormat format, std::uint32
   CodecShape shape = codec_shape(settings, format);
   std::size_t each = message_stream_need(in_bytes(shape), kOutBytes) + row_decoder_need(shape);
   return server_count * each + cost_model_need(settings.height, server_count) +
-         split_need(settings.height, server_count) + merge_need(settings.height) +
+         split_need(settings.height, server_count) + merge_need(settings.height) + verifier_need(settings) +
          arena_need(std::size_t(settings.width) * settings.height * pixel_bytes(format));
 }
 
@@ -130,6 +130,7 @@ Status make_client(const ClientOptions& options, const Settings& settings, const
   c->pixels = arena_array_zeroed<std::uint8_t>(
       arena, std::size_t(settings.width) * settings.height * pixel_bytes(options.format));
   c->merge = make_merge(settings.height, arena);
+  RETURN_IF_ERROR(make_verifier(options.check_count, options.entropy, settings, arena, &c->verifier));
   c->model = make_cost_model(settings.width, settings.height, server_count, arena);
   c->workspace = make_split_workspace(settings.height, server_count, arena);
   c->model.cost_per_device_pixel = options.cost_per_device_pixel;
@@ -194,6 +195,8 @@ void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32
   else
     a->bytes += byte_count;
   observe_server_rows(&c->model, server, begin, end, render_ns, byte_count);
+  if (!agrees_with_device(c, s, begin, end)) return;
+  if (!c->options.has_scene) compare_with_others(c, s, begin, end);
   if (s->useful_ns == 0 || s->told) server_is_useful(c, s);
   if (accept_rows(&c->merge, chunk.frame, begin, end, server) == 0) return;
   c->progress_ns = a->last_ns;
@@ -227,6 +230,7 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
   q->dither = c->options.dither;
   q->format = c->options.format;
   begin_merge(&c->merge, q->frame);
+  begin_checks(c);
   c->share.frame = q->frame;
   c->bytes_in_before = c->bytes_out_before = 0;
   bool any = false;

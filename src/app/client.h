@@ -1,8 +1,10 @@
 // Client: the device's side of the split ([Aranha07] sec. 3.2-3.3). It keeps a connection to each render server, learns
 // in an overture what they and the link can do, asks them for their rows of each frame and merges what comes with the
-// device's own. Pixels are the same from anyone, so a server that is late, wrong or gone costs time and never a pixel.
+// device's own. A server that is late or gone costs time and no pixel. One that sends wrong pixels is found by spot
+// checks (client_verify.h), with a probability that is known; what it sent before may have been shown.
 // Everything lies in one arena; time is the link's, and nothing waits but where the link is polled.
 #pragma once
+#include "app/client_verify.h"
 #include "app/message_stream.h"
 #include "app/pace.h"
 #include "app/renderer.h"
@@ -25,7 +27,10 @@ struct ClientOptions {
   double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; below 0: the best
   bool device_goes_on = true;                           // into rows that have not come; false: for comparisons
   Pace pace;                                            // the CPU to emulate
-  bool has_scene = true;  // false: the device renders nothing, and shows what servers render
+  bool has_scene = true;              // false: the device renders nothing, and shows what servers render
+  int check_count = kCheckCountAuto;  // of servers' pixels in a frame, at most kSpotChecksMax; 0: none
+  // Gives random numbers that no server can foresee, as platform/entropy.h; null: the same ones every time, for tests.
+  bool (*entropy)(void* bytes, std::size_t byte_count) = nullptr;
   std::uint64_t connect_timeout_ns = 3'000'000'000;
   std::uint64_t silence_timeout_ns = 3'000'000'000;   // without an answer, half a message included
   std::uint64_t prepare_timeout_ns = 30'000'000'000;  // the same till the first rows: the server builds its scene first
@@ -70,6 +75,7 @@ struct RemoteServer {
   platform::LinkTimer timer;                           // of the phase: the next try, or when it counts as lost
   std::uint64_t retry_ns = 0;                          // till the next try
   bool told = false;                                   // why it is not in use
+  bool lied = false;                                   // it has sent wrong pixels: never used again
   std::uint64_t useful_ns = 0;                         // since when this connection has brought rows; 0: none so far
   std::uint32_t ping_id = 0, ping_bytes = 0;           // that an answer is awaited to, and its payload; id 0: none
   std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the answer came unwatched
@@ -90,6 +96,9 @@ struct RemoteServer {
   std::uint32_t chunk_count = 0;   // that have come with this connection
   std::uint8_t chunk_growth = 0;   // 16ths, see FrameRequest; 0: they do not grow
   ServerFrame frame;
+  bool is_witness = false;   // it is asked for a row of another's; meanwhile its own rows are
+  ServerFrame frame_before;  //   those of
+  ServerChecks checks;
 };
 
 // A frame as it went, for people and for the report.
@@ -102,8 +111,10 @@ struct FrameShare {
   std::uint32_t server_rows[kServerCountMax] = {};  // that were a server's
   std::uint32_t row_begin[kServerCountMax] = {}, row_end[kServerCountMax] = {};  // that they were asked for
   std::uint64_t server_bytes[kServerCountMax] = {};                              // received for it
-  std::uint64_t row_bytes = 0;                // received, of the rows alone, without their messages
-  std::uint64_t bytes_in = 0, bytes_out = 0;  // on the wire, of all connections
+  std::uint32_t checked[kServerCountMax] = {};  // of their pixels; of their rows where the device has no scene
+  std::uint32_t lies = 0;                       // servers found to send wrong pixels
+  std::uint64_t row_bytes = 0;                  // received, of the rows alone, without their messages
+  std::uint64_t bytes_in = 0, bytes_out = 0;    // on the wire, of all connections
 };
 
 // The time in which rows of a frame came in: from the first chunk, which began nobody knows when, to the last.
@@ -123,6 +134,7 @@ struct Client {
   SplitWorkspace workspace;
   Split split;
   Merge merge;
+  Verifier verifier;
   Array<std::uint8_t> pixels;  // the merged frame in the wire's format, rows without padding
   // The current frame.
   FrameRequest request;

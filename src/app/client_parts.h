@@ -1,6 +1,6 @@
 // What the client's files share: client.cpp has the frame, client_plan.cpp who renders what of it, client_server.cpp
 // the connections, client_ping.cpp what answers tell of them, client_thin.cpp what is different for a device without
-// the scene.
+// the scene, client_verify.cpp and client_witness.cpp whether servers send the right pixels.
 #pragma once
 #include "app/client.h"
 
@@ -49,6 +49,8 @@ double device_pixel_ns(const Client& client);
 void share_rows(Client* client, std::uint64_t elapsed_ns);
 // Asks a server for rows; those at the end that are done are left out.
 void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
+// The same, whether or not they are done.
+void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
 // Servers that have become ready within the frame get their share of what is left, once nobody is worth waiting for.
 void let_join(Client* client);
 // What the frame's rows tell of the link. They come as fast as the slower of servers and link allows: where the servers
@@ -61,6 +63,28 @@ void measure_link(Client* client);
 void ask_idle_servers(Client* client);
 // How long rows of this frame took each server: by that the next frame is shared.
 void learn_row_times(Client* client);
+
+// ---- client_verify.cpp
+
+// A frame begins.
+void begin_checks(Client* client);
+// A server's rows [row_begin, row_end) of this frame have come and are decoded, some perhaps not for the first time:
+// false, and the server is not used any more, where they are not what the device has rendered.
+bool agrees_with_device(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
+// It has sent wrong pixels: one line says so, its rows of this frame are missing again, and it is never used any more.
+void drop_liar(Client* client, RemoteServer* server, const char* proof);
+
+// ---- client_witness.cpp: checks without the scene
+
+// As agrees_with_device(), with the rows of other servers; where they differ, a third is asked later.
+void compare_with_others(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
+// As is_verified().
+bool is_witnessed(Client* client);
+
+// ---- shared_frame.cpp
+
+// Takes the time that the emulated device takes for work on so many pixels; returns how long that was.
+std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t begin_ns);
 
 // ---- client.cpp
 

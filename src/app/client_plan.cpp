@@ -93,7 +93,10 @@ void ask_for_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint
     return c->merge.rows[row].state == RowState::device || c->merge.rows[row].state == RowState::server;
   };
   while (row_end > row_begin && is_done(row_end - 1)) --row_end;
-  if (row_begin >= row_end) return;
+  if (row_begin < row_end) request_rows(c, s, row_begin, row_end);
+}
+
+void request_rows(Client* c, RemoteServer* s, std::uint32_t row_begin, std::uint32_t row_end) {
   Message message;
   message.frame_request = c->request;
   message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);

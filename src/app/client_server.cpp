@@ -250,6 +250,7 @@ void server_is_useful(Client* c, RemoteServer* s) {
 }
 
 void advance_server(Client* c, RemoteServer* s) {
+  if (s->lied) return;
   std::uint64_t now = client_now_ns(*c);
   if (s->phase == ServerPhase::waiting) {
     if (platform::link_timer_left(&s->timer, now) == 0) connect_server(c, s);

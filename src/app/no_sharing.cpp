@@ -24,6 +24,7 @@ Status start_sharing(Sharing*, Renderer*, bool, bool) { return success(); }
 Status begin_shared(Sharing*, Renderer*, double) { return success(); }
 bool advance_shared(Sharing*, Renderer*, std::uint64_t, const std::atomic<bool>*) { return true; }
 bool is_cut_off(const Sharing&) { return false; }
+bool is_disputed(const Sharing&) { return false; }
 bool has_servers(const Sharing&) { return false; }
 void show_own_picture(Sharing*, const Renderer&) {}
 void tend_servers(Sharing*) {}

@@ -116,6 +116,8 @@ Status render_shared_with_progress(Renderer* r, const Job& job, double seconds, 
     if (is_cut_off(*job.sharing))
       return failure("no server sends rows, and this device has no room for the scene: start one, or raise --memory");
     *complete = advance_shared(job.sharing, r, clock_ns() + kProgressNs, &interrupted);
+    if (is_disputed(*job.sharing))
+      return failure("the frame is not kept: two of the servers disagree about its pixels (--verify 0 does not ask)");
     show_progress(progress, rows_before + shared_rows_done(*job.sharing));
   } while (!*complete && !interrupted);
   r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
@@ -228,6 +230,9 @@ void print_share(const Sharing& sharing) {
   std::printf("  shared: the device rendered %.0f %% of the rows, servers sent %.1f kB a frame",
               100 * static_cast<double>(t.device_rows) / rows, static_cast<double>(t.bytes_in) * 1e-3 / frames);
   if (t.local_ns > 0) std::printf("; %.2f times as fast as alone, as predicted", t.local_ns / t.known_ns);
+  if (t.checked > 0)
+    std::printf("; %.1f of their %s a frame checked: one wrong row in each would have been found with %.4g %%",
+                static_cast<double>(t.checked) / frames, t.checks_rows ? "rows" : "pixels", 100 * t.caught_row);
   std::printf("; the last frame:\n");
   HudText lines;
   write_share_lines(sharing, &lines);

@@ -20,15 +20,6 @@ void pack_device_rows(const Renderer& r, Client* c, std::uint32_t row_begin, std
             width * static_cast<int>(pixel_bytes(c->options.format)));
 }
 
-// Takes the time that the emulated device takes for it; returns how long that was.
-std::uint64_t take_time(Client* c, std::uint64_t pixel_count, std::uint64_t begin_ns) {
-  std::uint64_t elapsed = client_now_ns(*c) - begin_ns;
-  if (!is_paced(c->options.pace)) return elapsed;
-  elapsed = paced_ns(c->options.pace, pixel_count, elapsed);
-  work_until(c, begin_ns + elapsed);
-  return elapsed;
-}
-
 // Pixels of a row, about as many for each thread.
 void trace_part(Renderer* r, std::uint32_t row, std::uint32_t begin, std::uint32_t end) {
   std::uint32_t parts = std::min(r->settings.threads, end - begin), count = end - begin;
@@ -83,6 +74,14 @@ bool render_rows(Renderer* r, Client* c) {
 
 }  // namespace
 
+std::uint64_t take_time(Client* c, std::uint64_t pixel_count, std::uint64_t begin_ns) {
+  std::uint64_t elapsed = client_now_ns(*c) - begin_ns;
+  if (!is_paced(c->options.pace)) return elapsed;
+  elapsed = paced_ns(c->options.pace, pixel_count, elapsed);
+  work_until(c, begin_ns + elapsed);
+  return elapsed;
+}
+
 Status begin_shared_frame(Renderer* r, Client* c, double seconds) {
   std::uint64_t begin_ns = client_now_ns(*c);
   if (c->options.has_scene) {
@@ -96,14 +95,16 @@ Status begin_shared_frame(Renderer* r, Client* c, double seconds) {
 }
 
 bool advance_shared_frame(Renderer* r, Client* c, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
-  while (!has_all_rows(*c)) {
+  while (!c->complete) {
     if (stop && stop->load(std::memory_order_relaxed)) return false;
-    bool rendered = render_rows(r, c);
-    if (has_all_rows(*c)) break;
-    advance_client(c, rendered ? 0 : kWaitNs);
+    bool busy = !has_all_rows(*c) && render_rows(r, c);
+    if (has_all_rows(*c) && is_verified(r, c)) {
+      end_client_frame(c);
+      break;
+    }
+    advance_client(c, busy ? 0 : kWaitNs);
     if (client_now_ns(*c) >= deadline_ns) return false;
   }
-  if (!c->complete) end_client_frame(c);
   return true;
 }
 

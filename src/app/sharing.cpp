@@ -7,6 +7,7 @@
 
 #include "app/shared_frame.h"
 #include "app/sharing_parts.h"
+#include "platform/entropy.h"
 #include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
 
@@ -50,6 +51,10 @@ Status check(const SharingOptions& o) {
     return failure("--share is %g: it must lie in 0 … 1", o.device_share);
   for (double x : {o.price, o.energy_pixel, o.energy_byte, o.cost_weight_ms, o.cost_cap})
     if (!(x >= 0 && x < 1e30)) return failure("prices, energies and their weights must not be negative");
+  if (o.verify != kVerifyAuto && !(o.verify >= 0 && o.verify <= static_cast<int>(kSpotChecksMax)))
+    return failure("--verify is %d: it must lie in 0 … %u", o.verify, kSpotChecksMax);
+  if (o.servers.empty() && o.verify != kVerifyAuto)
+    return failure("--verify checks the pixels of render servers: name one with --server");
   bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
   if (o.servers.empty() && (any || o.device_share != kBestShare))
     return failure("shares, prices and energies are about render servers: name one with --server");
@@ -75,6 +80,12 @@ void add_sharing_options(CLI::App* command, SharingOptions* o) {
       ->allow_extra_args(false)
       ->group(group);
   command->add_option("--share", o->device_share, "the device's share of the rows, 0 … 1, instead of the best")
+      ->group(group);
+  command
+      ->add_option("--verify", o->verify,
+                   "pixels that the device renders again in each frame, at random, to check the servers: 0 … 1024; "
+                   "default: as many as take 1 % of the time. A server caught with a wrong one is not used any more. N "
+                   "pixels find one wrong row of R in a frame with the probability 1 - (1 - 1/R)^N or more")
       ->group(group);
   command->add_option("--price", o->price, "what 10^6 bytes from a server cost, in any unit")->group(group);
   command->add_option("--energy-pixel", o->energy_pixel, "what rendering a pixel costs the device, in that unit")
@@ -118,6 +129,7 @@ std::size_t sharing_bytes(const Sharing* s, const Settings& settings) {
 }
 
 void end_sharing(Sharing* s) {
+  for (std::uint32_t i = 0; s->started && i < s->client.server_count; ++i) s->lied[i] = s->client.servers[i].lied;
   if (s->started) close_client(&s->client);
   s->started = false;
 }
@@ -134,12 +146,17 @@ Status start_sharing(Sharing* s, Renderer* r, bool small_pixels, bool dither) {
   options.device_share = s->options.device_share;
   options.pace = r->pace;
   options.has_scene = !s->is_thin;
+  options.check_count = s->options.verify;
+  options.entropy = platform::random_bytes;
   options.log = print_line;
   s->totals = ShareTotals();
   s->last = FrameShare();
   s->started = true;
-  return make_client(options, r->settings, s->scene, s->link, s->addresses.data(),
-                     static_cast<std::uint32_t>(s->addresses.size()), &r->frame_arena, &s->client);
+  RETURN_IF_ERROR(make_client(options, r->settings, s->scene, s->link, s->addresses.data(),
+                              static_cast<std::uint32_t>(s->addresses.size()), &r->frame_arena, &s->client));
+  for (std::uint32_t i = 0; i < s->client.server_count; ++i)
+    s->client.servers[i].lied = s->client.servers[i].told = s->lied[i];
+  return success();
 }
 
 Status begin_shared(Sharing* s, Renderer* r, double seconds) { return begin_shared_frame(r, &s->client, seconds); }
@@ -153,9 +170,13 @@ bool advance_shared(Sharing* s, Renderer* r, std::uint64_t deadline_ns, const st
   t->device_rows += share.device_rows;
   for (std::uint32_t rows : share.server_rows) t->server_rows += rows;
   t->bytes_in += share.bytes_in, t->bytes_out += share.bytes_out;
+  for (std::uint32_t checked : share.checked) t->checked += checked;
+  t->lies += share.lies;
   if (share.local_ns > 0) t->local_ns += share.local_ns, t->known_ns += share.measured_ns;
   return true;
 }
+
+bool is_disputed(const Sharing& s) { return s.client.verifier.disputed; }
 
 bool has_servers(const Sharing& s) {
   const Client& c = s.client;
@@ -202,6 +223,16 @@ void write_share_lines(const Sharing& s, HudText* text) {
                  static_cast<double>(f.bytes_in) * 1e-3, static_cast<double>(f.bytes_out) * 1e-3);
   }
   write_server_lines(s, text);
+  if (c.verifier.disputed) add_hud_line(text, "servers disagree: the picture may be wrong");
+  std::uint64_t checked = 0;
+  double caught = 1;
+  for (std::uint32_t i = 0; i < c.server_count; ++i) {
+    checked += f.checked[i];
+    if (f.server_rows[i] > 0) caught = std::min(caught, c.servers[i].checks.caught_row_last);
+  }
+  if (checked > 0)
+    add_hud_line(text, "%llu %s checked: a wrong row is seen with %.2g %%", static_cast<unsigned long long>(checked),
+                 s.is_thin ? "rows" : "pixels", 100 * caught);
 }
 
 void write_server_lines(const Sharing& s, HudText* text) {
@@ -213,12 +244,20 @@ void write_server_lines(const Sharing& s, HudText* text) {
       add_hud_line(text, "%s rows %u-%u, gave %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
                    f.server_rows[i], static_cast<double>(f.server_bytes[i]) * 1e-3);
     else
-      add_hud_line(text, "%s %s", server.address.text, phase_text(server.phase));
+      add_hud_line(text, "%s %s", server.address.text, server.lied ? "sent wrong pixels" : phase_text(server.phase));
   }
 }
 
 bool is_cut_off(const Sharing& s) { return is_cut_off(s.client); }
 
-ShareTotals share_totals(const Sharing& s) { return s.totals; }
+ShareTotals share_totals(const Sharing& s) {
+  ShareTotals totals = s.totals;
+  totals.checks_rows = s.is_thin;
+  totals.caught_row = 1;
+  for (const RemoteServer& server : s.client.servers)
+    if (server.checks.rows > 0 && !server.lied)
+      totals.caught_row = std::min(totals.caught_row, server.checks.caught_row);
+  return totals;
+}
 
 }  // namespace pocketray

@@ -17,10 +17,12 @@ class App;
 namespace pocketray {
 
 constexpr double kBestShare = -1;
+constexpr int kVerifyAuto = -1;
 
 struct SharingOptions {
   std::vector<std::string> servers;
   double device_share = kBestShare;
+  int verify = kVerifyAuto;  // pixels of servers that are checked in a frame
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };
 void add_sharing_options(CLI::App* command, SharingOptions* options);
@@ -65,6 +67,8 @@ bool advance_shared(Sharing* sharing, Renderer* renderer, std::uint64_t deadline
 
 // Whether a device that leaves all to the servers has had none for a while.
 bool is_cut_off(const Sharing& sharing);
+// Whether two servers sent different pixels, and this device, without the scene, cannot tell which are right.
+bool is_disputed(const Sharing& sharing);
 // Whether servers take part in frames, or could from the next on. With none in reach a picture that is refined shows
 // sooner than one that is complete; a device that leaves all to the servers has no choice.
 bool has_servers(const Sharing& sharing);
@@ -90,6 +94,11 @@ void write_server_lines(const Sharing& sharing, HudText* text);
 
 struct ShareTotals {
   std::uint64_t frames = 0, device_rows = 0, server_rows = 0, bytes_in = 0, bytes_out = 0;
+  std::uint64_t checked = 0;  // of servers' pixels, or of their rows where the device has no scene
+  std::uint32_t lies = 0;     // servers that sent wrong ones
+  bool checks_rows = false;
+  double caught_row =
+      0;  // had a server sent one wrong row in each frame: the probability that it was found; the least of all
   double local_ns = 0, known_ns = 0;  // predicted for the device alone, and measured, of frames that had a prediction
 };
 ShareTotals share_totals(const Sharing& sharing);

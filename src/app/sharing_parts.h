@@ -17,6 +17,7 @@ struct Sharing {
   ViewEntry view;         // of it, where that is so
   Client client;
   bool started = false;
+  bool lied[kServerCountMax] = {};  // found out by a client before this one
   ShareTotals totals;
   FrameShare last;  // of the last complete frame
   std::atomic<bool> stopped{false};

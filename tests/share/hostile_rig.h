@@ -42,6 +42,7 @@ struct HostileRig {
     ClientOptions o;
     o.format = WireFormat::rgb565;
     o.pace.ns_per_pixel = kDeviceNs;
+    o.check_count = 0;  // its rows show no scene
     o.log = [](void* rig, const char* line) { static_cast<HostileRig*>(rig)->log.push_back(line); };
     o.log_context = this;
     o.has_scene = has_scene;

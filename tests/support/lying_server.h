@@ -1,0 +1,21 @@
+// A render server that sends wrong pixels in messages that are right: its own kernels trace, and what they traced is
+// changed before it is packed, encoded and sent.
+#pragma once
+#include <cstdint>
+#include <functional>
+
+#include "app/virtual_world.h"
+
+namespace pocketray {
+
+// Whether it lies about a pixel.
+using Lie = std::function<bool(std::uint32_t frame, std::uint32_t row, std::uint32_t column)>;
+
+// Makes a liar of a server of the world, before or after it is started, until forget_lies().
+void make_liar(VirtualWorld* world, std::uint32_t server, const Lie& lie);
+// Called before the world ends.
+void forget_lies();
+// So many wrong pixels have been made.
+std::uint64_t lies_told();
+
+}  // namespace pocketray
