@@ -113,6 +113,10 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   expect server_radiance 1 'radiance' render cube "${small[@]}" -o refused.pfm --server "$address"
   expect server_aov 1 'colours' "${one[@]}" --aov depth --server "$address"
   expect servers_too_many 1 'at most 8' "${one[@]}" $(printf -- "--server $address %.0s" 1 2 3 4 5 6 7 8 9)
+  for value in -2 1025; do expect "verify_$value" 1 '0 … 1024' "${one[@]}" --server "$address" --verify=$value; done
+  expect verify_without_a_server 1 '--server' "${one[@]}" --verify=3
+  expect_in_use verify_prints_its_odds 'of their pixels a frame checked: one wrong row in each would have been found with' \
+    render seesaw "${shared[@]}" --server "$address" --verify 9 -o verified.ppm
   for value in 1.5 -0.5 nan; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
   for option in price energy-pixel energy-byte cost-weight cost-cap; do
     expect "${option}_below_0" 1 'negative' "${one[@]}" --server "$address" --$option=-1
