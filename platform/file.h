@@ -1,4 +1,4 @@
-// Files without the heap: mapping one for reading, replacing one as a whole. Standard types only.
+// Files without the heap: reading one, replacing one as a whole. Standard types only.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,14 +9,28 @@ struct FileError {
   char text[256] = {0};  // what is wrong and how to mend it, without the path
 };
 
-struct MappedFile {
-  const std::uint8_t* bytes = nullptr;  // aligned to a page; null: not mapped
-  std::size_t byte_count = 0;
+// Files are read, never mapped: what has been checked in memory stays as it is, whatever becomes of the file. Under a
+// mapping it could change after the check, or be cut short, which ends a program with SIGBUS.
+
+// A regular file that is open for reading, and its size at that moment.
+struct FileReader {
+  int descriptor = -1;
+  std::uint64_t byte_count = 0;
 };
 
-// Maps a whole regular file read-only. An empty file is an error.
-bool map_file(const char* path, MappedFile* file, FileError* error);
-void unmap_file(MappedFile* file);
+// An empty file is an error, and so is all that is not a regular file; nothing is waited for.
+bool open_reader(const char* path, FileReader* reader, FileError* error);
+// The next `byte_count` bytes. Fails where the file ends before them.
+bool read_bytes(FileReader* reader, void* bytes, std::size_t byte_count, FileError* error);
+void close_reader(FileReader* reader);
+
+// A whole file in memory that is not the heap's.
+struct LoadedFile {
+  const std::uint8_t* bytes = nullptr;  // aligned to a page; null: not loaded
+  std::size_t byte_count = 0;
+};
+bool load_file(const char* path, LoadedFile* file, FileError* error);
+void unload_file(LoadedFile* file);
 
 // Calls found() with the name of everything in a folder but what begins with a dot, in no order. At the start only: the
 // system takes memory for it.

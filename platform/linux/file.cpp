@@ -38,30 +38,67 @@ int open_regular(const char* path, struct stat* info, FileError* error) {
 
 }  // namespace
 
-bool map_file(const char* path, MappedFile* file, FileError* error) {
+bool open_reader(const char* path, FileReader* reader, FileError* error) {
   struct stat info;
   int descriptor = open_regular(path, &info, error);
   if (descriptor < 0) return false;
   bool ok = info.st_size > 0;
   if (!ok) {
     snprintf(error->text, sizeof error->text, "is empty: make it again");
-  } else {
-    void* bytes = mmap(nullptr, static_cast<size_t>(info.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
-    ok = bytes != MAP_FAILED;
-    if (ok) {
-      file->bytes = static_cast<const std::uint8_t*>(bytes);
-      file->byte_count = static_cast<size_t>(info.st_size);
-    } else {
-      fail(error, "cannot be mapped into memory", errno);
-    }
+    close(descriptor);
+    return false;
   }
-  close(descriptor);
+  reader->descriptor = descriptor;
+  reader->byte_count = static_cast<std::uint64_t>(info.st_size);
+  return true;
+}
+
+bool read_bytes(FileReader* reader, void* bytes, std::size_t byte_count, FileError* error) {
+  char* at = static_cast<char*>(bytes);
+  while (byte_count > 0) {
+    ssize_t n = read(reader->descriptor, at, byte_count);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return fail(error, "cannot be read", errno);
+    if (n == 0) {
+      snprintf(error->text, sizeof error->text, "became shorter while it was read: try again when it is complete");
+      return false;
+    }
+    at += n;
+    byte_count -= static_cast<size_t>(n);
+  }
+  return true;
+}
+
+void close_reader(FileReader* reader) {
+  if (reader->descriptor >= 0) close(reader->descriptor);
+  *reader = FileReader();
+}
+
+bool load_file(const char* path, LoadedFile* file, FileError* error) {
+  FileReader reader;
+  if (!open_reader(path, &reader, error)) return false;
+  void* bytes = MAP_FAILED;
+  size_t byte_count = static_cast<size_t>(reader.byte_count);
+  if (reader.byte_count <= PTRDIFF_MAX)
+    bytes = mmap(nullptr, byte_count, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  bool ok = bytes != MAP_FAILED;
+  if (!ok)
+    snprintf(error->text, sizeof error->text, "has %llu bytes: there is no memory for them",
+             static_cast<unsigned long long>(reader.byte_count));
+  if (ok) {
+    ok = read_bytes(&reader, bytes, byte_count, error);
+    if (ok)
+      *file = {static_cast<const std::uint8_t*>(bytes), byte_count};
+    else
+      munmap(bytes, byte_count);
+  }
+  close_reader(&reader);
   return ok;
 }
 
-void unmap_file(MappedFile* file) {
+void unload_file(LoadedFile* file) {
   if (file->bytes) munmap(const_cast<std::uint8_t*>(file->bytes), file->byte_count);
-  *file = MappedFile();
+  *file = LoadedFile();
 }
 
 bool list_folder(const char* path, void (*found)(void* context, const char* name), void* context, FileError* error) {

@@ -31,11 +31,11 @@ struct TemporaryFolder {
 };
 
 bool read_text(const std::string& path, std::string* text) {
-  platform::MappedFile file;
+  platform::LoadedFile file;
   platform::FileError error;
-  if (!platform::map_file(path.c_str(), &file, &error)) return false;
+  if (!platform::load_file(path.c_str(), &file, &error)) return false;
   text->assign(reinterpret_cast<const char*>(file.bytes), file.byte_count);
-  platform::unmap_file(&file);
+  platform::unload_file(&file);
   return true;
 }
 

@@ -82,8 +82,9 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   bool measured;
   float factor;
   RETURN_IF_ERROR(parse_exposure(common.exposure, &measured, &factor));
-  if (r->scene.info.auto_exposure != 0) r->exposure = measure_exposure(r) * factor;
-  return success();
+  if (r->scene.info.auto_exposure == 0) return success();
+  r->exposure = measure_exposure(r);
+  return change_exposure(factor, &r->exposure);
 }
 
 // Rows of the whole picture that are as many pixels as a frame.

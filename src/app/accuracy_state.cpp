@@ -102,11 +102,11 @@ Status open_state(const std::string& folder, const Json& wanted, bool restart, A
   if (!platform::make_folder(folder.c_str(), &error)) return failure("%s %s", folder.c_str(), error.text);
   std::string path = folder + "/" + kStateName;
   if (!restart && platform::file_stamp(path.c_str()) != 0) {
-    platform::MappedFile file;
-    if (!platform::map_file(path.c_str(), &file, &error))
+    platform::LoadedFile file;
+    if (!platform::load_file(path.c_str(), &file, &error))
       return failure("%s %s, or --restart starts anew", path.c_str(), error.text);
     std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
-    platform::unmap_file(&file);
+    platform::unload_file(&file);
     RETURN_IF_ERROR(read_state(text, path, state));
     return compare_keys(folder, state->key, key);
   }
@@ -140,9 +140,9 @@ Status save_radiance(const std::string& folder, const std::string& name, std::ui
 Status load_radiance(const std::string& folder, const std::string& name, std::uint32_t width, std::uint32_t height,
                      std::vector<Vec3>* radiance) {
   std::string path = folder + "/" + name + ".pfm";
-  platform::MappedFile file;
+  platform::LoadedFile file;
   platform::FileError error;
-  if (!platform::map_file(path.c_str(), &file, &error))
+  if (!platform::load_file(path.c_str(), &file, &error))
     return failure("%s %s, or --restart starts anew", path.c_str(), error.text);
   char header[48];
   int header_bytes = std::snprintf(header, sizeof header, "PF\n%u %u\n-1.0\n", width, height);
@@ -151,7 +151,7 @@ Status load_radiance(const std::string& folder, const std::string& name, std::ui
   radiance->assign(std::size_t(width) * height, Vec3{0, 0, 0});
   for (std::uint32_t row = 0; ours && row < height; ++row)  // the bottom row is first
     std::memcpy(&(*radiance)[std::size_t(height - 1 - row) * width].x, file.bytes + start + row * row_bytes, row_bytes);
-  platform::unmap_file(&file);
+  platform::unload_file(&file);
   return ours ? success() : failure("%s is damaged: --restart starts anew", path.c_str());
 }
 

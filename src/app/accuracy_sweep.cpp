@@ -12,6 +12,7 @@
 #include "app/accuracy_rigs.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "base/limit_list.h"
 #include "base/rng.h"
 #include "platform/instructions.h"
 
@@ -217,7 +218,9 @@ Status check_options(const AccuracyOptions& o) {
     return failure("--reference is '%s': it must be model or physical", o.reference.c_str());
   if (o.rounds < 1 || o.rounds > kRoundsMax)
     return failure("--rounds is %u: it must lie in 1 … %u", o.rounds, kRoundsMax);
-  if (!(o.price_limit >= 1)) return failure("--price-limit is %g: it must be 1 or more", o.price_limit);
+  if (!(o.price_limit >= 1 && o.price_limit <= 1e6))
+    return failure("--price-limit is %g: it must lie in 1 … 1000000", o.price_limit);
+  RETURN_IF_ERROR(check_limit(Quantity::seconds, o.seconds, "--time"));
   if (o.reference_samples == 1 || o.reference_samples > 1000000)
     return failure("--reference-samples is %u: it must lie in 2 … 1000000", o.reference_samples);
   if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))

@@ -1,6 +1,6 @@
 #include "app/camera_control.h"
 
-#include "base/fmath.h"
+#include "base/limit_list.h"
 
 namespace pocketray {
 namespace {
@@ -19,6 +19,14 @@ Vec3 turn(const Vec3& view, const Vec3& up, double yaw, double pitch) {
   Vec3 tilted = rotate(turned, right, pitch);
   float sine = dot(normalize(tilted), up);
   return sine > 0.99f || sine < -0.99f ? turned : tilted;
+}
+
+// Whether a frame can be rendered, here and by servers, as far as limits go.
+bool is_within_limits(const Camera& c) {
+  for (const Vec3& v : {c.eye, c.target, c.up})
+    for (float x : {v.x, v.y, v.z})
+      if (!within(Quantity::coordinate, x)) return false;
+  return within(Quantity::vertical_extent, c.vertical_extent);
 }
 
 }  // namespace
@@ -41,6 +49,7 @@ CameraControl make_camera_control(const Camera& camera, const Box& bounds) {
 bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
   if (in.right == 0 && in.up == 0 && in.forward == 0 && in.sideways == 0 && in.rise == 0) return false;
   Camera& c = control->camera;
+  const Camera before = c;
   Vec3 up = normalize(c.up);
   double quarter = radians(90) * static_cast<double>(seconds);
   if (control->mode == CameraMode::orbit) {
@@ -49,6 +58,7 @@ bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
     if (length(view) * zoom > control->size * 1e-3f) view = view * zoom;
     c.eye = c.target - view;
     c.vertical_extent *= c.projection == Projection::orthographic ? zoom : 1;
+    if (!is_within_limits(c)) c = before;
     return true;
   }
   Vec3 view = turn(c.target - c.eye, up, -in.right * quarter, in.up * quarter);
@@ -56,6 +66,7 @@ bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
   Vec3 step = (ahead * in.forward + right * in.sideways + up * in.rise) * (control->size * 0.5f * seconds);
   c.eye += step;
   c.target = c.eye + view;
+  if (!is_within_limits(c)) c = before;
   return true;
 }
 

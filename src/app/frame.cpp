@@ -3,6 +3,7 @@
 #include "app/frame.h"
 
 #include "base/color.h"
+#include "base/limit_list.h"
 #include "effect/effect_probe.h"
 #include "plan/plan_lights.h"
 #include "shade/camera.h"
@@ -95,6 +96,7 @@ std::uint32_t trace(Renderer* r, Aov aov, const std::atomic<bool>* stop) {
 }  // namespace
 
 Status prepare_frame(Renderer* r, double seconds) {
+  RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   r->pace.owed_ns = 0;
   std::uint64_t start = clock_ns();
   pose_scene(r, seconds);

@@ -44,12 +44,12 @@ Status read_front(const std::string& path, Front* front, bool* there) {
   *front = Front();
   *there = platform::file_stamp(path.c_str()) != 0;
   if (!*there) return success();
-  platform::MappedFile file;
+  platform::LoadedFile file;
   platform::FileError error;
-  if (!platform::map_file(path.c_str(), &file, &error)) return failure("%.300s %s", path.c_str(), error.text);
+  if (!platform::load_file(path.c_str(), &file, &error)) return failure("%.300s %s", path.c_str(), error.text);
   Status status = file.byte_count <= kFileBytesMax ? parse_front(file.bytes, file.byte_count, front)
                                                    : failure("longer than %zu bytes: that is no front", kFileBytesMax);
-  platform::unmap_file(&file);
+  platform::unload_file(&file);
   return status.ok ? status : failure("%.200s: %.280s", path.c_str(), status.message);
 }
 

@@ -3,7 +3,7 @@
 
 #include "app/frame.h"
 #include "app/pocketray.h"
-#include "base/fmath.h"
+#include "base/limit_list.h"
 #include "present/pack.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
@@ -41,26 +41,40 @@ PixelFormat to_format(PixelOrder order) {
   return kXrgb8888;
 }
 
-// Negative numbers become too large ones: validate_settings() refuses them by name.
-std::uint32_t to_count(int value) { return static_cast<std::uint32_t>(value); }
+// Before they lose their sign.
+Status read_options(const Options& o, Settings* s) {
+  RETURN_IF_ERROR(check_limit(Quantity::width, o.width));
+  RETURN_IF_ERROR(check_limit(Quantity::height, o.height));
+  RETURN_IF_ERROR(check_limit(Quantity::samples, o.samples_per_pixel));
+  RETURN_IF_ERROR(check_limit(Quantity::depth, o.ray_depth));
+  RETURN_IF_ERROR(check_limit(Quantity::area_light_points, o.points_per_area_light));
+  if (o.threads < 1 || o.threads > static_cast<int>(kThreadCountMax))
+    return failure("the number of threads is %d: it must lie in 1 … %u", o.threads, kThreadCountMax);
+  s->width = static_cast<std::uint32_t>(o.width);
+  s->height = static_cast<std::uint32_t>(o.height);
+  s->samples_per_pixel = static_cast<std::uint32_t>(o.samples_per_pixel);
+  s->ray_depth = static_cast<std::uint32_t>(o.ray_depth);
+  s->points_per_area_light = static_cast<std::uint32_t>(o.points_per_area_light);
+  s->threads = static_cast<std::uint32_t>(o.threads);
+  return success();
+}
+
+Status no_instance() { return failure("the instance is a null pointer: open one first, and look at the result"); }
 
 template <class Load>
 Status open_instance(const Options& o, void* memory, std::size_t memory_bytes, Instance** result, Load load) {
+  if (!result) return failure("there is nowhere to put the instance: pass the address of a pointer");
   *result = nullptr;
+  if (!memory) return failure("the memory is a null pointer: pass a block for the instance to lie in");
+  constexpr std::size_t least = kArenaAlignment + arena_need(sizeof(Instance));
+  if (memory_bytes < least)
+    return failure("%zu bytes of memory are too few: an instance alone takes %zu", memory_bytes, least);
+  Settings s;
+  RETURN_IF_ERROR(read_options(o, &s));
   Arena block = make_arena("instance", memory, memory_bytes);
-  void* place = arena_try_allocate(&block, sizeof(Instance));
-  if (!place)
-    return failure("%zu bytes of memory are too few: an instance alone takes %zu", memory_bytes, sizeof(Instance));
-  Instance* instance = new (place) Instance;
+  Instance* instance = new (arena_allocate(&block, sizeof(Instance))) Instance;
   instance->format = to_format(o.order);
   instance->dither = o.dither;
-  Settings s;
-  s.width = to_count(o.width);
-  s.height = to_count(o.height);
-  s.samples_per_pixel = to_count(o.samples_per_pixel);
-  s.ray_depth = to_count(o.ray_depth);
-  s.points_per_area_light = to_count(o.points_per_area_light);
-  s.threads = to_count(o.threads);
   Renderer* r = &instance->renderer;
   start_renderer(block.base + block.used, arena_free(block), s, r);
   SceneStorage storage;
@@ -80,7 +94,8 @@ Status open_instance(const Options& o, void* memory, std::size_t memory_bytes, I
 Result open_builtin(const char* name, const Options& options, void* memory, std::size_t memory_bytes,
                     Instance** instance) {
   return to_result(open_instance(options, memory, memory_bytes, instance, [name](Renderer* r, SceneStorage* storage) {
-    const BuiltinScene* builtin = find_builtin(name);
+    const BuiltinScene* builtin = name ? find_builtin(name) : nullptr;
+    if (!name) return failure("the scene's name is a null pointer: pass cornell, or another built-in scene");
     if (!builtin) return failure("there is no built-in scene '%.60s'", name);
     if (builtin->need() > arena_free(r->scene_arena))
       return failure("%s alone needs %zu bytes and %zu are free: give more memory", name, builtin->need(),
@@ -94,11 +109,13 @@ Result open_builtin(const char* name, const Options& options, void* memory, std:
 Result open_baked(const void* bytes, std::size_t byte_count, const Options& options, void* memory,
                   std::size_t memory_bytes, Instance** instance) {
   return to_result(open_instance(options, memory, memory_bytes, instance, [=](Renderer* r, SceneStorage*) {
+    if (!bytes) return failure("the scene's bytes are a null pointer: pass those of a .pray file");
     return baked_open(static_cast<const std::uint8_t*>(bytes), byte_count, &r->scene);
   }));
 }
 
 Result look(Instance* instance, const View& v) {
+  if (!instance) return to_result(no_instance());
   Camera camera;
   camera.eye = {v.eye[0], v.eye[1], v.eye[2]};
   camera.target = {v.target[0], v.target[1], v.target[2]};
@@ -108,12 +125,16 @@ Result look(Instance* instance, const View& v) {
 }
 
 Result render(Instance* instance, double seconds, void* pixels, int line_bytes) {
+  if (!instance) return to_result(no_instance());
+  if (!pixels) return to_result(failure("the pixels are a null pointer: pass room for the picture"));
   Renderer* r = &instance->renderer;
+  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
+  int row_bytes = width * instance->format.bits_per_pixel / 8;
+  if (line_bytes < row_bytes)
+    return to_result(failure("a row of %d pixels takes %d bytes and has %d: pass at least as many as line_bytes", width,
+                             row_bytes, line_bytes));
   Status status = render_frame(r, seconds);
   if (!status.ok) return to_result(status);
-  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
-  if (line_bytes < width * instance->format.bits_per_pixel / 8)
-    return to_result(failure("a row of %d pixels does not fit in %d bytes", width, line_bytes));
   pack_rows(r->image.data, width, height, 0, height, r->exposure, instance->format, Rotation::none, instance->dither,
             pixels, line_bytes);
   return Result();

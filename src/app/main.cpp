@@ -1,5 +1,7 @@
 // pocketray: the program. The only place that exits.
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -9,6 +11,26 @@
 
 namespace pocketray {
 namespace {
+
+// An empty value is none, and a NaN or infinity is no number that any option could use. CLI11's own ranges let a NaN
+// pass, since it is neither below nor above.
+std::string refuse_meaningless(const std::string& text, bool is_real) {
+  if (text.empty()) return "must not be empty";
+  return is_real && !std::isfinite(std::strtod(text.c_str(), nullptr)) ? "must be a finite number" : "";
+}
+
+void check_values(CLI::App* program) {
+  for (CLI::App* command : program->get_subcommands({}))
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_min() == 0) continue;  // a flag, or a value that may be left out
+      bool is_real = option->get_type_name().compare(0, 5, "FLOAT") == 0;
+      option->check([is_real](const std::string& text) { return refuse_meaningless(text, is_real); });
+    }
+}
+
+std::string one_line(const CLI::App*, const CLI::Error& error) {
+  return std::string("pocketray: ") + error.what() + " (see --help)\n";
+}
 
 int run(int argument_count, char** arguments) {
   int exit_status = kExitDone;
@@ -33,6 +55,8 @@ int run(int argument_count, char** arguments) {
   add_scenes_command(&program, &exit_status);
   add_split_report_command(&program, &exit_status);
 #endif
+  check_values(&program);
+  program.failure_message(one_line);
   catch_interrupts();
   Status given = check_arguments(argument_count, arguments);
   if (!given.ok) return report(given), kExitUsage;

@@ -9,6 +9,7 @@
 #include "app/interrupt.h"
 #include "app/note.h"
 #include "base/fmath.h"
+#include "base/limit_list.h"
 #include "plan/plan_effects.h"
 #include "scene/builtin/builtin.h"
 
@@ -39,27 +40,6 @@ Status parse_texture_filter(const std::string& text, TextureFilter* filter) {
   return success();
 }
 
-Status parse_settings(const CommonOptions& o, Settings* s) {
-  RETURN_IF_ERROR(picture_size(o, &s->width, &s->height));
-  const platform::Device* device;
-  RETURN_IF_ERROR(find_device(o, &device));
-  if (device) s->memory_bytes = device->memory_bytes;
-  if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &s->memory_bytes));
-  RETURN_IF_ERROR(parse_effects(o.effects.c_str(), s));
-  RETURN_IF_ERROR(parse_texture_filter(o.texture_filter, &s->texture_filter));
-  if (o.normals != "scene" && o.normals != "flat")
-    return failure("--normals is '%s': it must be scene or flat", o.normals.c_str());
-  s->normals = o.normals == "flat" ? NormalMode::flat : NormalMode::as_scene;
-  s->samples_per_pixel = o.samples;
-  s->ray_depth = o.depth;
-  s->points_per_area_light = o.area_lights;
-  s->cut_off_levels = o.cut_off;
-  unsigned cores = std::thread::hardware_concurrency();
-  if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
-  s->threads = choose_thread_count(o.threads, cores);
-  return validate_settings(*s);
-}
-
 // Reads numbers separated by spaces or commas; false when there are not exactly `count` finite ones.
 bool read_numbers(const std::string& text, float* values, int count) {
   const char* at = text.c_str();
@@ -85,6 +65,46 @@ Status set_pace(const CommonOptions& o, Renderer* r) {
 }
 
 }  // namespace
+
+Status read_settings(const CommonOptions& o, Settings* s) {
+  RETURN_IF_ERROR(picture_size(o, &s->width, &s->height));
+  const platform::Device* device;
+  RETURN_IF_ERROR(find_device(o, &device));
+  if (device) s->memory_bytes = device->memory_bytes;
+  if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &s->memory_bytes));
+  RETURN_IF_ERROR(parse_effects(o.effects.c_str(), s));
+  RETURN_IF_ERROR(parse_texture_filter(o.texture_filter, &s->texture_filter));
+  if (o.normals != "scene" && o.normals != "flat")
+    return failure("--normals is '%s': it must be scene or flat", o.normals.c_str());
+  s->normals = o.normals == "flat" ? NormalMode::flat : NormalMode::as_scene;
+  s->samples_per_pixel = o.samples;
+  s->ray_depth = o.depth;
+  s->points_per_area_light = o.area_lights;
+  s->cut_off_levels = o.cut_off;
+  // By the names that were typed; validate_settings() tests the same limits, by the names that a library's user knows.
+  const struct {
+    Quantity quantity;
+    double value;
+    const char* option;
+  } kOptions[] = {
+      {Quantity::width, double(s->width), "the width of --size"},
+      {Quantity::height, double(s->height), "the height of --size"},
+      {Quantity::samples, double(o.samples), "--samples"},
+      {Quantity::depth, double(o.depth), "--depth"},
+      {Quantity::area_light_points, double(o.area_lights), "--area-lights"},
+      {Quantity::cut_off, double(o.cut_off), "--cut-off"},
+      {Quantity::camera_index, double(o.camera_index), "--camera-index"},
+  };
+  for (const auto& row : kOptions) RETURN_IF_ERROR(check_limit(row.quantity, row.value, row.option));
+  bool measured;
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // also of commands that show nothing
+  if (o.threads > kThreadCountMax) return failure("--threads is %u: it must lie in 0 … %u", o.threads, kThreadCountMax);
+  unsigned cores = std::thread::hardware_concurrency();
+  if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
+  s->threads = choose_thread_count(o.threads, cores);
+  return validate_settings(*s);
+}
 
 Status find_device(const CommonOptions& o, const platform::Device** device) {
   *device = nullptr;
@@ -159,21 +179,31 @@ Status parse_camera(const std::string& text, Camera* camera) {
   if (!read_numbers(text, v, 10))
     return failure("--camera is '%s': write it as \"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\", the field of view in degrees",
                    text.c_str());
+  for (int i = 0; i < 9; ++i)
+    RETURN_IF_ERROR(check_limit(Quantity::coordinate, static_cast<double>(v[i]), "a coordinate of --camera"));
   *camera = Camera();
   camera->eye = {v[0], v[1], v[2]};
   camera->target = {v[3], v[4], v[5]};
   camera->up = {v[6], v[7], v[8]};
   camera->vertical_fov = static_cast<float>(radians(v[9]));
+  if (!within(Quantity::field_of_view, camera->vertical_fov))
+    return failure("the field of view of --camera is %g degrees: it must lie in 0.001 … 179",
+                   static_cast<double>(v[9]));
   return success();
 }
 
 Status parse_exposure(const std::string& text, bool* measured, float* factor) {
   float stops = 0;
   *measured = text == "auto";
-  if (!*measured && !text.empty() && (!read_numbers(text, &stops, 1) || !(std::fabs(stops) <= 64)))
-    return failure("--exposure is '%s': write stops as 1.5 or -2, or auto", text.c_str());
+  if (!*measured && !text.empty() && (!read_numbers(text, &stops, 1) || !(std::fabs(stops) <= kExposureStopsMax)))
+    return failure("--exposure is '%s': write stops as 1.5 or -2, -60 … 60, or auto", text.c_str());
   *factor = static_cast<float>(det_exp(static_cast<double>(stops) * 0.693147180559945309));
   return success();
+}
+
+Status change_exposure(float factor, float* exposure) {
+  *exposure *= factor;
+  return check_limit(Quantity::exposure, static_cast<double>(*exposure), "the scene's exposure times --exposure");
 }
 
 const AccelInfo* find_accel(const std::string& name) {
@@ -228,13 +258,12 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
 
 OpenScene::~OpenScene() {
   stop_workers(renderer.workers);
-  platform::unmap_file(&source.mapped);
   give_block_back(block);
 }
 
 Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* opened) {
   Settings settings;
-  RETURN_IF_ERROR(parse_settings(o, &settings));
+  RETURN_IF_ERROR(read_settings(o, &settings));
   Isa isa;
   RETURN_IF_ERROR(parse_isa(o.isa, &isa));
   select_isa(isa);
@@ -250,6 +279,8 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, r));
   Status planned = hooks.plan(r, storage, hooks.output_bytes(settings));
   if (!planned.ok && r->memory.total_bytes > r->memory.limit_bytes) opened->source.bytes_wanted = r->memory.total_bytes;
+  if (opened->source.bytes_wanted > 0 && !planned.ok)
+    return failure("%s: --memory %zuM", planned.message, (opened->source.bytes_wanted >> 20) + 1);
   RETURN_IF_ERROR(planned);
   if (!o.camera.empty()) {
     Camera camera;
@@ -267,8 +298,7 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
   RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));
   if (measured) r->scene.info.auto_exposure = 1;
   RETURN_IF_ERROR(build_renderer(r));
-  r->exposure *= factor;
-  return success();
+  return change_exposure(factor, &r->exposure);
 }
 
 void print_notes(const OpenScene& opened) {

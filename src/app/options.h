@@ -44,6 +44,8 @@ struct OpenHooks {
   std::function<Status(Renderer*, const SceneStorage&, std::size_t output_bytes)> plan = plan_renderer;
 };
 
+// The settings that the options ask for.
+Status read_settings(const CommonOptions& options, Settings* settings);
 // Reads the options, loads the scene and plans it. Where it fails for want of memory, opened->source.bytes_wanted says
 // so.
 Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScene* opened);
@@ -68,6 +70,8 @@ Status parse_bytes(const std::string& text, std::size_t* bytes, const char* opti
 Status parse_camera(const std::string& text, Camera* camera);
 // What --exposure says: whether it is to be measured, and by what factor it differs from the scene's or measured one.
 Status parse_exposure(const std::string& text, bool* measured, float* factor);
+// Multiplies; fails where the product is beyond what exposures may be.
+Status change_exposure(float factor, float* exposure);
 
 // Prints the warning of a scene and what it was given, one line each, on stderr.
 void print_notes(const OpenScene& opened);

@@ -36,6 +36,9 @@ struct View {
 
 struct Instance;  // lies in the memory given
 
+// What is wrong with an argument, be it out of range, not a number or null, comes back as a Result; nothing aborts. An
+// instance that could not be opened is null.
+
 // Opens a built-in scene (cornell, statue, seesaw, cube, furnace), or a .pray file's bytes, which must be aligned to 64
 // and outlive the instance. `memory` must too; it is all the instance ever uses.
 Result open_builtin(const char* name, const Options& options, void* memory, std::size_t memory_bytes,
@@ -44,7 +47,8 @@ Result open_baked(const void* bytes, std::size_t byte_count, const Options& opti
                   std::size_t memory_bytes, Instance** instance);
 // Looks from elsewhere from now on.
 Result look(Instance* instance, const View& view);
-// Renders the scene at a time in seconds into `pixels`, `line_bytes` from row to row, row 0 on top.
+// Renders the scene at a time in seconds into `pixels`, `line_bytes` from row to row, row 0 on top. Times lie within
+// ±10⁹ seconds.
 Result render(Instance* instance, double seconds, void* pixels, int line_bytes);
 // Ends its threads. The memory is the caller's again. Null is allowed.
 void close(Instance* instance);

@@ -1,6 +1,7 @@
 // pocketray render: one frame or a sequence, into files.
 #include <CLI/CLI.hpp>
 #include <cinttypes>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/budget.h"
@@ -14,6 +15,7 @@
 #include "app/progress.h"
 #include "app/report.h"
 #include "app/sharing.h"
+#include "base/limit_list.h"
 #include "base/seal.h"
 
 namespace pocketray {
@@ -339,6 +341,9 @@ int run(const RenderOptions& options) {
   if (status.ok) status = check_paths(options, &job);
   if (status.ok && !rotation_from_degrees(options.rotation, &job.picture.rotation))
     status = failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
+  if (status.ok) status = check_limit(Quantity::seconds, options.seconds, "--time");
+  if (status.ok && !(std::fabs(options.orbit_degrees) <= 360))
+    status = failure("--orbit is %g: it must lie in -360 … 360", static_cast<double>(options.orbit_degrees));
   job.picture.dither = options.dither;
   if (status.ok) status = check_shareable(options, job.aov);
   if (status.ok) status = check_budget_and_orbit(options, job.aov);

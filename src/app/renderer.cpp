@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/color.h"
 #include "base/fmath.h"
+#include "base/limit_list.h"
 #include "brdf/brdf_list.h"
 #include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
@@ -165,10 +166,8 @@ Status change_settings(Renderer* r, const Settings& settings) {
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(r->scene, settings, effects.mask, &point_count));
   if (point_count > r->light_point_count_max)
-    return failure(
-        "the lights would take %u points and memory was planned for %u: start with that many, by "
-        "--area-lights or --effects",
-        point_count, r->light_point_count_max);
+    return failure("the lights would take %u points and memory was planned for %u: plan with that many", point_count,
+                   r->light_point_count_max);
   std::size_t memory_bytes = now.memory_bytes;
   r->settings = settings;
   r->settings.memory_bytes = memory_bytes;
@@ -214,7 +213,9 @@ bool probe_exposure(Renderer* r, ExposureProbe* p, std::uint32_t pixel_count_max
   }
   *pixel_count = p->next - begin;
   if (p->next < count) return false;
-  *exposure = p->lit ? static_cast<float>(kGrey / det_exp(p->log_sum / p->lit)) : 1.0f;
+  const LimitRow& limit = limit_of(Quantity::exposure);
+  double measured = p->lit ? kGrey / det_exp(p->log_sum / p->lit) : 1;
+  *exposure = static_cast<float>(std::fmin(std::fmax(measured, limit.low), limit.high));
   return true;
 }
 

@@ -51,7 +51,6 @@ Json effects_json(const EffectPlan& plan) {
 
 Json memory_json(const MemoryPlan& plan) {
   Json parts = Json::array();
-  if (plan.mapped_bytes) parts.push_back({{"name", "scene file"}, {"arena", "mapped"}, {"bytes", plan.mapped_bytes}});
   for (int i = 0; i < plan.part_count; ++i)
     parts.push_back({{"name", plan.parts[i].name},
                      {"arena", kArenaNames[static_cast<int>(plan.parts[i].arena)]},

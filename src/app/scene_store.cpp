@@ -29,14 +29,14 @@ bool is_scene_file(const std::string& name) {
 }
 
 void release(StoredScene* stored) {
-  platform::unmap_file(&stored->mapped);
   give_block_back(stored->baked_block);
   give_block_back(stored->accel_block);
   stored->baked_block = stored->accel_block = nullptr;
 }
 
 // A block of so many bytes aligned as a baked file must be.
-std::uint8_t* take_aligned(std::size_t byte_count, void** block) {
+std::uint8_t* take_aligned(std::uint64_t byte_count, void** block) {
+  if (byte_count > kMemoryBytesMax) return nullptr;
   *block = take_block(arena_need(byte_count) + kArenaAlignment);
   if (!*block) return nullptr;
   Arena arena = make_arena("scene", *block, arena_need(byte_count) + kArenaAlignment);
@@ -50,12 +50,18 @@ Status too_many_bytes(std::uint64_t bytes_max) {
 
 // The baked bytes, from wherever they come.
 Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene* stored) {
-  if (ends_with(path, ".pray")) {
-    platform::FileError error;
-    if (!platform::map_file(path.c_str(), &stored->mapped, &error)) return failure("%s", error.text);
-    stored->bytes = stored->mapped.bytes;
-    stored->byte_count = stored->mapped.byte_count;
-    return success();
+  if (is_baked_name(path)) {
+    // A copy: who writes to the file, or cuts it short, while it is served changes nothing that clients or threads see.
+    auto take = [&](std::uint64_t byte_count) -> std::uint8_t* {
+      return byte_count <= bytes_left ? take_aligned(byte_count, &stored->baked_block) : nullptr;
+    };
+    std::uint8_t* bytes = nullptr;
+    std::uint64_t byte_count = 0;
+    Status status = read_baked(path, take, &bytes, &byte_count);
+    if (byte_count > bytes_left) return too_many_bytes(bytes_left);
+    stored->bytes = bytes;
+    stored->byte_count = bytes ? static_cast<std::size_t>(byte_count) : 0;
+    return status;
   }
   HeapScene heap;
   RETURN_IF_ERROR(read_heap_scene(path, ModelOptions(), &heap));

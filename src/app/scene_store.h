@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/status.h"
-#include "platform/file.h"
 #include "scene/scene.h"
 #include "wire/content_hash.h"
 #include "wire/message.h"
@@ -15,11 +14,10 @@ namespace pocketray {
 struct StoredScene {
   ContentHash hash;
   char name[kNameBytes] = {0};          // the built-in scene's or the file's, for people
-  const std::uint8_t* bytes = nullptr;  // the baked file
+  const std::uint8_t* bytes = nullptr;  // the baked file, a copy
   std::size_t byte_count = 0;
   Scene scene;                  // a view of it, with an accelerator of ours where it brings none
   std::size_t accel_bytes = 0;  // of ours
-  platform::MappedFile mapped;
   void* baked_block = nullptr;
   void* accel_block = nullptr;
 };

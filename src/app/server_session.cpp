@@ -35,9 +35,9 @@ void send_chunk(Session* s, std::uint32_t row_begin, std::uint32_t row_end) {
   chunk->row_begin = static_cast<std::uint16_t>(row_begin);
   chunk->row_count = static_cast<std::uint16_t>(row_count);
   chunk->pixel_ps = s->pixel_ps = picoseconds(s->job.wall_ns, s->job.pixel_count);
-  std::uint32_t byte_count =
-      encode_rows(s->encoder, row_begin, row_count, s->pixels.data + std::size_t(row_begin) * line_bytes,
-                  request.deflate_level, at + prefix, &chunk->encoding);
+  std::uint32_t byte_count = encode_rows(s->encoder, row_begin, row_count,
+                                         s->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes),
+                                         request.deflate_level, at + prefix, &chunk->encoding);
   add_chunk_number(chunk, s->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};
   send_message(s, message);

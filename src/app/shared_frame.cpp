@@ -4,6 +4,7 @@
 
 #include "app/client_parts.h"
 #include "app/frame.h"
+#include "base/limit_list.h"
 #include "present/pack.h"
 
 namespace pocketray {
@@ -83,6 +84,7 @@ std::uint64_t take_time(Client* c, std::uint64_t pixel_count, std::uint64_t begi
 }
 
 Status begin_shared_frame(Renderer* r, Client* c, double seconds) {
+  RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   std::uint64_t begin_ns = client_now_ns(*c);
   if (c->options.has_scene) {
     RETURN_IF_ERROR(prepare_frame(r, seconds));

@@ -110,12 +110,10 @@ Status name_loaded(Sharing* s, SceneSource* source, Renderer* r) {
 }
 
 // The hash of a scene that did not fit: of a file by its bytes, of a built-in scene by a server that has it, too.
-Status name_without_loading(Sharing* s, const std::string& name, const SceneSource& source) {
-  if (source.mapped.bytes) {
-    s->scene = content_hash(source.mapped.bytes, source.mapped.byte_count);
-    return success();
-  }
-  if (!find_builtin(name.c_str())) {
+Status name_without_loading(Sharing* s, const std::string& name) {
+  bool is_builtin = find_builtin(name.c_str()) != nullptr;
+  if (!is_builtin && is_baked_name(name)) return hash_file(name, &s->scene);
+  if (!is_builtin) {
     HeapScene heap;
     RETURN_IF_ERROR(read_heap_scene(name, ModelOptions(), &heap));
     std::vector<std::max_align_t> bytes(baked_size(heap.scene) / sizeof(std::max_align_t) + 1);
@@ -166,19 +164,18 @@ EffectPlan effects_of_servers(EffectMask mask) {
 Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
   ViewQuery query;
   query.settings = opened->renderer.settings;
-  query.camera_index = static_cast<std::uint16_t>(o.camera_index);
+  query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked
   query.camera_stated = !o.camera.empty();
   if (query.camera_stated) RETURN_IF_ERROR(parse_camera(o.camera, &query.camera));
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &query.measure_exposure, &factor));
   std::size_t wanted = opened->source.bytes_wanted, limit = query.settings.memory_bytes;
-  Status status = s->is_named ? success() : name_without_loading(s, o.scene, opened->source);
+  Status status = s->is_named ? success() : name_without_loading(s, o.scene);
   query.scene = s->scene;
   if (status.ok) status = find_view(s, query);
   if (!status.ok)
     return failure("%.100s does not fit --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
                    megabytes(limit), memory_hint(" (", wanted, "be a start)").c_str(), status.message);
-  platform::unmap_file(&opened->source.mapped);
   opened->source = SceneSource();
 
   Pace pace = opened->renderer.pace;
@@ -190,7 +187,8 @@ Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, O
   r->camera = s->view.camera;
   r->camera_index = o.camera_index;
   r->camera_overridden = query.camera_stated;
-  r->exposure = s->view.exposure * factor;
+  r->exposure = s->view.exposure;
+  RETURN_IF_ERROR(change_exposure(factor, &r->exposure));
   r->effects = effects_of_servers(s->view.effects);
   r->scene.info.frames_per_second = s->view.frames_per_second;
   r->accel.bounds = s->view.bounds;

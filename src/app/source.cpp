@@ -1,9 +1,10 @@
 #include "app/source.h"
 
 #include <cstdlib>
-#include <cstring>
+#include <vector>
 
 #include "plan/plan_scene.h"
+#include "platform/file.h"
 #include "platform/memory.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
@@ -20,13 +21,18 @@ Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneSource* sourc
 }
 
 Status load_baked(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
-  platform::FileError error;
-  if (!platform::map_file(name.c_str(), &source->mapped, &error)) return failure("%s %s", name.c_str(), error.text);
-  source->baked = source->mapped.bytes;
-  source->baked_bytes = storage->mapped_bytes = source->mapped.byte_count;
-  if (storage->mapped_bytes > r->settings.memory_bytes)
-    return scene_too_large(name, storage->mapped_bytes, r->settings.memory_bytes, source);
-  Status status = baked_open(source->mapped.bytes, source->mapped.byte_count, &r->scene);
+  auto take = [r](std::uint64_t byte_count) {
+    return static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, byte_count));
+  };
+  std::uint8_t* bytes = nullptr;
+  std::uint64_t byte_count = 0;
+  Status status = read_baked(name, take, &bytes, &byte_count);
+  if (byte_count > 0 && !bytes) return scene_too_large(name, byte_count, r->settings.memory_bytes, source);
+  if (!status.ok) return failure("%.300s %s", name.c_str(), status.message);
+  source->baked = bytes;
+  source->baked_bytes = static_cast<std::size_t>(byte_count);
+  storage->arena_bytes = r->scene_arena.used;
+  status = baked_open(bytes, source->baked_bytes, &r->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
 }
 
@@ -48,11 +54,6 @@ Status load_imported(const std::string& name, Renderer* r, SceneSource* source, 
 }
 #endif
 
-bool ends_with(const std::string& text, const char* end) {
-  std::size_t n = std::strlen(end);
-  return text.size() >= n && text.compare(text.size() - n, n, end) == 0;
-}
-
 }  // namespace
 
 #ifdef POCKETRAY_HAVE_IMPORT
@@ -71,6 +72,45 @@ void* take_block(std::size_t bytes) {
   return block;
 }
 void give_block_back(void* block) { std::free(block); }
+
+bool is_baked_name(const std::string& name) {
+  const std::string end = ".pray";
+  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
+Status read_baked(const std::string& path, const std::function<std::uint8_t*(std::uint64_t byte_count)>& take,
+                  std::uint8_t** bytes, std::uint64_t* byte_count) {
+  platform::FileReader file;
+  platform::FileError error;
+  if (!platform::open_reader(path.c_str(), &file, &error)) return failure("%s", error.text);
+  *byte_count = file.byte_count;
+  *bytes = take(file.byte_count);
+  bool ok = *bytes != nullptr;
+  if (!ok)
+    std::snprintf(error.text, sizeof error.text, "has %llu bytes: there is no memory for them",
+                  static_cast<unsigned long long>(file.byte_count));
+  ok = ok && platform::read_bytes(&file, *bytes, static_cast<std::size_t>(file.byte_count), &error);
+  platform::close_reader(&file);
+  return ok ? success() : failure("%s", error.text);
+}
+
+Status hash_file(const std::string& path, ContentHash* hash) {
+  platform::FileReader file;
+  platform::FileError error;
+  if (!platform::open_reader(path.c_str(), &file, &error)) return failure("%.300s %s", path.c_str(), error.text);
+  std::vector<std::uint8_t> part(1u << 16);
+  ContentHasher hasher;
+  bool ok = true;
+  for (std::uint64_t left = file.byte_count; ok && left > 0;) {
+    std::size_t count = left < part.size() ? static_cast<std::size_t>(left) : part.size();
+    ok = platform::read_bytes(&file, part.data(), count, &error);
+    if (ok) hash_part(&hasher, part.data(), count);
+    left -= count;
+  }
+  platform::close_reader(&file);
+  *hash = hash_end(hasher);
+  return ok ? success() : failure("%.300s %s", path.c_str(), error.text);
+}
 
 Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t limit, SceneSource* source) {
   std::uint64_t megabytes = (need >> 20) + (need >> 22) + 4;  // and a quarter for what is made of it
@@ -98,7 +138,7 @@ Status load_scene(const std::string& name, Renderer* r, SceneSource* source, Sce
     for (int i = 0; i < count; ++i) names += std::string(i ? ", " : "") + list[i].name;
     return failure("%.300s is no file, nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
   }
-  if (ends_with(name, ".pray")) return load_baked(name, r, source, storage);
+  if (is_baked_name(name)) return load_baked(name, r, source, storage);
 #ifdef POCKETRAY_HAVE_IMPORT
   return load_imported(name, r, source, storage);
 #else

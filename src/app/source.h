@@ -1,9 +1,10 @@
-// Where a scene comes from: a built-in name, a .pray file used as it lies, or any format that import/ reads.
+// Where a scene comes from: a built-in name, a .pray file used as it is read, or any format that import/ reads.
 #pragma once
+#include <functional>
 #include <string>
 
 #include "app/renderer.h"
-#include "platform/file.h"
+#include "wire/content_hash.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "import/import.h"
 #endif
@@ -11,7 +12,6 @@
 namespace pocketray {
 
 struct SceneSource {
-  platform::MappedFile mapped;          // of a .pray file
   const std::uint8_t* baked = nullptr;  // the .pray file, or what a model became, that the scene is a view of; null: a
   std::size_t baked_bytes = 0;          // built-in scene
   std::string warning;                  // one line, empty if there is nothing to say
@@ -33,7 +33,17 @@ Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t 
 // Whether `name` is a built-in scene or a file.
 bool is_local_scene(const std::string& name);
 
-// Puts the scene called `name` into renderer->scene; its arrays lie in the scene arena or in the mapped file.
+// Reads a .pray file into memory of `take(byte_count)`, aligned to 64, which returns null where there is none. What is
+// checked there is what will be used: whoever writes to the file later does not change it. byte_count is set where the
+// file could be opened.
+Status read_baked(const std::string& path, const std::function<std::uint8_t*(std::uint64_t byte_count)>& take,
+                  std::uint8_t** bytes, std::uint64_t* byte_count);
+// The hash of a file's bytes, without memory for all of them.
+Status hash_file(const std::string& path, ContentHash* hash);
+// Whether a scene's name is that of a .pray file.
+bool is_baked_name(const std::string& name);
+
+// Puts the scene called `name` into renderer->scene; its arrays lie in the scene arena.
 Status load_scene(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage);
 
 }  // namespace pocketray

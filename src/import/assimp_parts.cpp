@@ -8,7 +8,7 @@
 
 #include "base/color.h"
 #include "base/fmath.h"
-#include "base/limits.h"
+#include "base/limit_list.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/import_error.h"
@@ -107,7 +107,7 @@ void add_camera(SceneBuilder* builder, const aiCamera& source, const Transform& 
   double half = std::atan(std::tan(static_cast<double>(source.mHorizontalFOV) / 2) / aspect);
   camera.vertical_fov = static_cast<float>(2 * half);
   bool valid = is_coordinate(camera.eye) && camera.target != camera.eye && !is_zero(cross(forward, camera.up)) &&
-               half > 0 && half < kPi / 2;
+               within(Quantity::field_of_view, camera.vertical_fov);
   if (!valid) return note_unused(builder, "cameras without a valid view");
   builder->out->cameras.push_back(camera);
 }

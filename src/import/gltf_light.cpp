@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/fmath.h"
-#include "base/limits.h"
+#include "base/limit_list.h"
 #include "import/gltf.h"
 #include "import/import_error.h"
 
@@ -59,8 +59,9 @@ void add_camera(GltfFile* file, int camera_index, int node_index) {
   camera.target = camera.eye + forward;
   camera.up = up;
   double size = source.type == "orthographic" ? 2 * source.orthographic.ymag : source.perspective.yfov;
-  bool valid = size > 0 && size < (source.type == "orthographic" ? 1e18 : kPi) && !is_zero(forward) &&
-               camera.target != camera.eye && !is_zero(cross(forward, up));
+  Quantity quantity = source.type == "orthographic" ? Quantity::vertical_extent : Quantity::field_of_view;
+  bool valid = within(quantity, static_cast<float>(size)) && !is_zero(forward) && camera.target != camera.eye &&
+               !is_zero(cross(forward, up));
   if (!valid) {
     note_unused(file->builder, "cameras without a valid view");
     return;

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "base/limits.h"
+#include "base/limit_list.h"
 #include "effect/effect_list.h"
 
 namespace pocketray {
@@ -156,19 +156,14 @@ Status parse_effects(const char* text, Settings* settings) {
 }
 
 Status validate_settings(const Settings& s) {
-  auto range = [](const char* option, std::uint32_t value, std::uint32_t low, std::uint32_t high) {
-    if (value < low || value > high) return failure("%s is %u: it must lie in %u … %u", option, value, low, high);
-    return success();
-  };
-  RETURN_IF_ERROR(range("the image width", s.width, 1, kImageSideMax));
-  RETURN_IF_ERROR(range("the image height", s.height, 1, kImageSideMax));
-  RETURN_IF_ERROR(range("--samples", s.samples_per_pixel, 1, kSampleCountMax));
-  RETURN_IF_ERROR(range("--depth", s.ray_depth, 0, kRayDepthMax));
-  RETURN_IF_ERROR(range("--area-lights", s.points_per_area_light, 1, kPointsPerAreaLightMax));
-  if (!(s.cut_off_levels >= 0 && s.cut_off_levels <= kCutOffLevelsMax))
-    return failure("--cut-off is %g: it must lie in 0 … %g levels", static_cast<double>(s.cut_off_levels),
-                   static_cast<double>(kCutOffLevelsMax));
-  return range("--threads", s.threads, 1, kThreadCountMax);
+  RETURN_IF_ERROR(check_limit(Quantity::width, s.width));
+  RETURN_IF_ERROR(check_limit(Quantity::height, s.height));
+  RETURN_IF_ERROR(check_limit(Quantity::samples, s.samples_per_pixel));
+  RETURN_IF_ERROR(check_limit(Quantity::depth, s.ray_depth));
+  RETURN_IF_ERROR(check_limit(Quantity::area_light_points, s.points_per_area_light));
+  RETURN_IF_ERROR(check_limit(Quantity::cut_off, static_cast<double>(s.cut_off_levels)));
+  if (s.threads >= 1 && s.threads <= kThreadCountMax) return success();
+  return failure("the number of threads is %u: it must lie in 1 … %u", s.threads, kThreadCountMax);
 }
 
 }  // namespace pocketray

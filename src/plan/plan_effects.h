@@ -14,7 +14,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings);
 // "auto,-shadow" is what the scene calls for without shadows; "shadow,mirror" is these two alone.
 Status parse_effects(const char* text, Settings* settings);
 
-// Checks every setting against base/limits.h.
+// Checks every setting against base/limit_list.h.
 Status validate_settings(const Settings& settings);
 
 }  // namespace pocketray

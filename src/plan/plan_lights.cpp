@@ -193,7 +193,7 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
     for (std::uint32_t i = 0; i < scene.materials.count; ++i)
       if (is_emissive(scene, i)) n += settings.points_per_area_light;
   if (n > kPointLightCountMax)
-    return failure("the scene's lights make %llu points, more than %u: lower --area-lights",
+    return failure("the scene's lights make %llu points, more than %u: use fewer per area light",
                    static_cast<unsigned long long>(n), kPointLightCountMax);
   *count = static_cast<std::uint32_t>(n);
   return success();

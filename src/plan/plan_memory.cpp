@@ -40,7 +40,6 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                    MemoryPlan* plan) {
   *plan = MemoryPlan();
   plan->limit_bytes = settings.memory_bytes;
-  plan->mapped_bytes = plan->total_bytes = storage.mapped_bytes;
   add_part(plan, "scene", ArenaKind::scene, storage.arena_bytes);
 
   bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
@@ -73,8 +72,8 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
     if (plan->parts[i].bytes > largest->bytes) largest = &plan->parts[i];
   std::size_t fits = megabytes_up(plan->total_bytes);
   return failure(
-      "the scene needs %.1f MiB of memory and --memory allows %.1f MiB; the largest part is %s with %.1f MiB%s. "
-      "--memory %zuM would fit",
+      "the scene needs %.1f MiB of memory and %.1f MiB are allowed; the largest part is %s with %.1f MiB%s; "
+      "%zu MiB would do",
       megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
       scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
 }
@@ -86,8 +85,8 @@ Status plan_output_memory(const Settings& settings, std::size_t output_bytes, Me
   align_arenas(plan);
   if (plan->total_bytes <= plan->limit_bytes) return success();
   return failure(
-      "pictures of %ux%u pixels need %.1f MiB of memory without a scene and --memory allows %.1f MiB: --memory %zuM "
-      "would fit, or use a smaller --size",
+      "pictures of %ux%u pixels need %.1f MiB of memory without a scene and %.1f MiB are allowed; %zu MiB would do, "
+      "or a smaller picture",
       settings.width, settings.height, megabytes(plan->total_bytes), megabytes(plan->limit_bytes),
       megabytes_up(plan->total_bytes));
 }
@@ -109,7 +108,6 @@ std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t siz
     add("  %-11s %-27s %9.1f %s  %s\n", where, name, small ? static_cast<double>(bytes) / 1024 : megabytes(bytes),
         small ? "KiB" : "MiB", bar);
   };
-  if (plan.mapped_bytes) line("scene file", "mapped", plan.mapped_bytes);
   for (int arena = 0; arena < 3; ++arena)
     for (int i = 0; i < plan.part_count; ++i)
       if (plan.parts[i].arena == static_cast<ArenaKind>(arena))

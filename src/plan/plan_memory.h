@@ -24,7 +24,6 @@ constexpr int kMemoryPartMax = 16;
 struct MemoryPlan {
   MemoryPart parts[kMemoryPartMax];
   int part_count = 0;
-  std::size_t mapped_bytes = 0;  // of a scene file used as it lies; counts against the limit
   std::size_t arena_bytes[3] = {0, 0, 0};
   std::size_t total_bytes = 0, limit_bytes = 0;
 };
@@ -32,7 +31,6 @@ struct MemoryPlan {
 // What holds the scene before planning.
 struct SceneStorage {
   std::size_t arena_bytes = 0;   // already taken from the scene arena
-  std::size_t mapped_bytes = 0;  // mapped from a file
 };
 
 // Plans the block. `output_bytes` is what the caller needs to show or write a frame (packed pixels, PNG encoder).

@@ -31,6 +31,8 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
   }
   if (!(distance > 0)) distance = max_component(abs(camera.target)) > 0 ? max_component(abs(camera.target)) : 1;
   camera.eye = camera.target + backward * (distance * 1.05f);
+  for (float* x : {&camera.eye.x, &camera.eye.y, &camera.eye.z})  // of a scene as large as may be: as far as may be
+    *x = *x > kCoordinateMax ? kCoordinateMax : *x < -kCoordinateMax ? -kCoordinateMax : *x;
   return camera;
 }
 

@@ -1,7 +1,7 @@
 // What stands still: geometry, materials, textures, lights, cameras.
 #include <cstring>
 
-#include "base/fmath.h"
+#include "base/limit_list.h"
 #include "scene/baked.h"
 #include "scene/validate_checks.h"
 
@@ -38,12 +38,15 @@ Status validate_info(const SceneInfo& info) {
   if (info.frame_count < 1) return failure("info.frame_count is 0, it must be at least 1");
   if (info.default_lights > 1 || info.default_camera > 1)
     return failure("info.default_lights and _camera must be 0 or 1");
-  constexpr float least = std::numeric_limits<float>::min();
   const FieldRange fields[] = {
-      {"background.x", info.background.x, 0, kRadianceMax}, {"background.y", info.background.y, 0, kRadianceMax},
-      {"background.z", info.background.z, 0, kRadianceMax}, {"ambient.x", info.ambient.x, 0, kRadianceMax},
-      {"ambient.y", info.ambient.y, 0, kRadianceMax},       {"ambient.z", info.ambient.z, 0, kRadianceMax},
-      {"exposure", info.exposure, least, kFloatMax},        {"frames_per_second", info.frames_per_second, 1e-3f, kFrameRateMax},
+      {"background.x", info.background.x, 0, kRadianceMax},
+      {"background.y", info.background.y, 0, kRadianceMax},
+      {"background.z", info.background.z, 0, kRadianceMax},
+      {"ambient.x", info.ambient.x, 0, kRadianceMax},
+      {"ambient.y", info.ambient.y, 0, kRadianceMax},
+      {"ambient.z", info.ambient.z, 0, kRadianceMax},
+      {"exposure", info.exposure, kExposureMin, kExposureMax},
+      {"frames_per_second", info.frames_per_second, kFrameRateMin, kFrameRateMax},
       {"auto_exposure", info.auto_exposure, 0, 1},
   };
   return check_fields("info", 0, fields);
@@ -140,10 +143,9 @@ Status validate_camera(const Scene& scene, std::uint32_t index) {
     return failure("cameras[%u] follows node %u of %u", index, camera.node, scene.nodes.count);
   if (camera.node != kNone && scene.animations.empty())
     return failure("cameras[%u] follows a node, but nothing is animated: place it in world space", index);
-  constexpr float least = std::numeric_limits<float>::min();
   const FieldRange fields[] = {
-      {"vertical_fov", camera.vertical_fov, 1e-6f, 3.1415925f},  // just below π
-      {"vertical_extent", camera.vertical_extent, least, kCoordinateMax},
+      {"vertical_fov", camera.vertical_fov, kFieldOfViewMin, kFieldOfViewMax},
+      {"vertical_extent", camera.vertical_extent, kVerticalExtentMin, kCoordinateMax},
   };
   return check_fields("cameras", index, fields);
 }

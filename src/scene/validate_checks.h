@@ -45,7 +45,7 @@ struct FieldRange {
   const char* field;
   float value, low, high;
 };
-template <int count>
+template <std::size_t count>
 Status check_fields(const char* array, std::uint32_t index, const FieldRange (&fields)[count]) {
   for (const FieldRange& f : fields)
     if (!(f.value >= f.low && f.value <= f.high))

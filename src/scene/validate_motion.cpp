@@ -1,5 +1,6 @@
 // What moves: nodes, animations, skins, moving meshes. Every pass is linear in what the file holds: ranges that several
 // elements may share are bounded by kChannelKeyCountMax and kMorphTargetCountMax, moving meshes may not overlap.
+#include "base/limit_list.h"
 #include "scene/validate_checks.h"
 
 namespace pocketray {
@@ -153,15 +154,17 @@ Status validate_nodes(const Scene& scene) {
 }
 
 Status validate_animations(const Scene& scene) {
-  RETURN_IF_ERROR(check_coordinates("key_times", scene.key_times));
+  for (std::uint32_t i = 0; i < scene.key_times.count; ++i)
+    if (!within(Quantity::seconds, scene.key_times[i]))
+      return failure("key_times[%u] is not a number of seconds or beyond %g: shorten the animation", i, kSecondsMax);
   RETURN_IF_ERROR(check_coordinates("key_values", scene.key_values));
   RETURN_IF_ERROR(validate_channels(scene));
   for (std::uint32_t i = 0; i < scene.animations.count; ++i) {
     const Animation& animation = scene.animations[i];
     if (!is_range(animation.channel_begin, animation.channel_count, scene.channels.count))
       return failure("animations[%u] has channels beyond the %u there are", i, scene.channels.count);
-    if (!is_coordinate(animation.duration) || !(animation.duration >= 0))
-      return failure("animations[%u] has a duration that is negative or not finite", i);
+    if (!within(Quantity::seconds, animation.duration) || animation.duration < 0)
+      return failure("animations[%u] has a duration that is negative, beyond %g seconds or not finite", i, kSecondsMax);
   }
   return success();
 }

@@ -1,12 +1,13 @@
 #include "shade/camera.h"
 
-#include "base/fmath.h"
+#include "base/limit_list.h"
 
 namespace pocketray {
 
 Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t height, CameraRays* rays) {
-  if (!is_finite(camera.eye) || !is_finite(camera.target) || !is_finite(camera.up))
-    return failure("the camera has a coordinate that is not a finite number");
+  for (const Vec3& v : {camera.eye, camera.target, camera.up})
+    for (float x : {v.x, v.y, v.z})
+      RETURN_IF_ERROR(check_limit(Quantity::coordinate, static_cast<double>(x), "a coordinate of the camera"));
   Vec3 forward = normalize(camera.target - camera.eye);
   if (is_zero(forward)) return failure("the camera's eye and target are the same point: move one of them");
   Vec3 right = normalize(cross(forward, normalize(camera.up)));
@@ -18,13 +19,11 @@ Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t
   float half_height;
   rays->orthographic = camera.projection == Projection::orthographic;
   if (rays->orthographic) {
-    if (!(camera.vertical_extent > 0) || !(camera.vertical_extent < kCoordinateMax))
-      return failure("the orthographic camera's height is %g: it must be above 0 and finite",
-                     static_cast<double>(camera.vertical_extent));
+    RETURN_IF_ERROR(check_limit(Quantity::vertical_extent, static_cast<double>(camera.vertical_extent)));
     half_height = camera.vertical_extent * 0.5f;
   } else {
     double fov = camera.vertical_fov;
-    if (!(fov >= radians(0.001)) || !(fov <= radians(179.0)))
+    if (!within(Quantity::field_of_view, fov))
       return failure("the vertical field of view is %g degrees: it must lie in 0.001 … 179", fov * (180 / kPi));
     half_height = static_cast<float>(det_sin(fov / 2) / det_cos(fov / 2));
   }

@@ -27,9 +27,9 @@ std::uint64_t load(const std::uint8_t* bytes, std::size_t count) {
 
 }  // namespace
 
-ContentHash content_hash(const void* data, std::size_t byte_count) {
+void hash_part(ContentHasher* hasher, const void* data, std::size_t byte_count) {
   const std::uint8_t* bytes = static_cast<const std::uint8_t*>(data);
-  std::uint64_t a = 0, b = 0;
+  std::uint64_t a = hasher->a, b = hasher->b;
   std::size_t left = byte_count;
   for (; left >= 16; left -= 16, bytes += 16) {
     a ^= mix_first(load(bytes, 8));
@@ -39,11 +39,21 @@ ContentHash content_hash(const void* data, std::size_t byte_count) {
   }
   if (left > 8) b ^= mix_second(load(bytes + 8, left - 8));
   if (left > 0) a ^= mix_first(load(bytes, left < 8 ? left : 8));
-  a ^= byte_count, b ^= byte_count;
+  *hasher = {a, b, hasher->byte_count + byte_count};
+}
+
+ContentHash hash_end(const ContentHasher& hasher) {
+  std::uint64_t a = hasher.a ^ hasher.byte_count, b = hasher.b ^ hasher.byte_count;
   a += b, b += a;
   a = finish(a), b = finish(b);
   a += b, b += a;
   return {a, b};
+}
+
+ContentHash content_hash(const void* bytes, std::size_t byte_count) {
+  ContentHasher hasher;
+  hash_part(&hasher, bytes, byte_count);
+  return hash_end(hasher);
 }
 
 }  // namespace pocketray

@@ -15,4 +15,11 @@ inline bool operator!=(const ContentHash& a, const ContentHash& b) { return !(a 
 
 ContentHash content_hash(const void* bytes, std::size_t byte_count);
 
+// The same of bytes that come in parts: every part but the last has a multiple of 16.
+struct ContentHasher {
+  std::uint64_t a = 0, b = 0, byte_count = 0;
+};
+void hash_part(ContentHasher* hasher, const void* bytes, std::size_t byte_count);
+ContentHash hash_end(const ContentHasher& hasher);
+
 }  // namespace pocketray

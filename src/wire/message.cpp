@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/check.h"
-#include "base/limits.h"
+#include "base/limit_list.h"
 
 namespace pocketray {
 namespace {
@@ -59,6 +59,16 @@ struct Writer {
   }
 };
 
+// Goes through the fields of a message that is to be sent, and writes nothing.
+struct Checker {
+  bool valid = true;
+
+  void integer(std::uint64_t*, std::uint32_t) {}
+  void require(bool condition) { valid = valid && condition; }
+  void text(char* text) { require(strnlen(text, kNameBytes) < kNameBytes); }
+  void tail(Array<const std::uint8_t>*) {}
+};
+
 // Integers, bools and enumerations of `byte_count` bytes.
 template <class Io, class T>
 void number(Io& io, T* value, std::uint32_t byte_count = sizeof(T)) {
@@ -73,22 +83,36 @@ void choice(Io& io, T* value, T last) {
   io.require(bits <= static_cast<std::uint64_t>(last));
   *value = static_cast<T>(bits);
 }
-// Finite, and below `max` in magnitude.
 template <class Io>
-void real(Io& io, float* value, float max) {
+void raw_real(Io& io, float* value) {
   std::uint32_t bits;
   std::memcpy(&bits, value, sizeof bits);
   number(io, &bits);
   std::memcpy(value, &bits, sizeof bits);
-  io.require(*value >= -max && *value <= max);
 }
 template <class Io>
-void real(Io& io, double* value, double max) {
+void raw_real(Io& io, double* value) {
   std::uint64_t bits;
   std::memcpy(&bits, value, sizeof bits);
   number(io, &bits);
   std::memcpy(value, &bits, sizeof bits);
-  io.require(*value >= -max && *value <= max);
+}
+// A number within its limits, which are everybody's.
+template <class Io, class T>
+void real(Io& io, T* value, Quantity quantity) {
+  raw_real(io, value);
+  io.require(within(quantity, *value));
+}
+template <class Io, class T>
+void count(Io& io, T* value, Quantity quantity, std::uint32_t byte_count = sizeof(T)) {
+  number(io, value, byte_count);
+  io.require(within(quantity, static_cast<double>(*value)));
+}
+// 0 stands for the scene's own.
+template <class Io>
+void own_or_exposure(Io& io, float* value) {
+  raw_real(io, value);
+  io.require(*value == 0 || within(Quantity::exposure, *value));
 }
 template <class Io>
 void hash(Io& io, ContentHash* h) {
@@ -96,7 +120,7 @@ void hash(Io& io, ContentHash* h) {
 }
 template <class Io>
 void point(Io& io, Vec3* v) {
-  real(io, &v->x, kCoordinateMax), real(io, &v->y, kCoordinateMax), real(io, &v->z, kCoordinateMax);
+  for (float* x : {&v->x, &v->y, &v->z}) real(io, x, Quantity::coordinate);
 }
 
 template <class Io>
@@ -138,21 +162,17 @@ void fields(Io& io, ScenePiece* m) {
 template <class Io>
 void fields(Io& io, Camera* c) {
   point(io, &c->eye), point(io, &c->target), point(io, &c->up);
-  real(io, &c->vertical_fov, kCoordinateMax), real(io, &c->vertical_extent, kCoordinateMax);
+  real(io, &c->vertical_fov, Quantity::field_of_view), real(io, &c->vertical_extent, Quantity::vertical_extent);
   choice(io, &c->projection, Projection::orthographic);
 }
 
 // Those that change pixels.
 template <class Io>
 void fields(Io& io, Settings* s) {
-  number(io, &s->width, 2), number(io, &s->height, 2);
-  io.require(s->width >= 1 && s->width <= kImageSideMax && s->height >= 1 && s->height <= kImageSideMax);
-  number(io, &s->samples_per_pixel, 1), number(io, &s->ray_depth, 1), number(io, &s->points_per_area_light, 2);
-  io.require(s->samples_per_pixel >= 1 && s->samples_per_pixel <= kSampleCountMax);
-  io.require(s->ray_depth <= kRayDepthMax);
-  io.require(s->points_per_area_light >= 1 && s->points_per_area_light <= kPointsPerAreaLightMax);
-  real(io, &s->cut_off_levels, kCutOffLevelsMax);
-  io.require(s->cut_off_levels >= 0);
+  count(io, &s->width, Quantity::width, 2), count(io, &s->height, Quantity::height, 2);
+  count(io, &s->samples_per_pixel, Quantity::samples, 1), count(io, &s->ray_depth, Quantity::depth, 1);
+  count(io, &s->points_per_area_light, Quantity::area_light_points, 2);
+  real(io, &s->cut_off_levels, Quantity::cut_off);
   choice(io, &s->texture_filter, TextureFilter::bilinear);
   choice(io, &s->normals, NormalMode::flat);
   number(io, &s->forced_on), number(io, &s->forced_off);
@@ -161,13 +181,12 @@ void fields(Io& io, Settings* s) {
 
 template <class Io>
 void fields(Io& io, FrameRequest* m) {
-  number(io, &m->frame), hash(io, &m->scene), real(io, &m->seconds, 1e9);
+  number(io, &m->frame), hash(io, &m->scene), real(io, &m->seconds, Quantity::seconds);
   choice(io, &m->camera_stated, true);
-  number(io, &m->camera_index);
+  count(io, &m->camera_index, Quantity::camera_index);
   fields(io, &m->camera);
   fields(io, &m->settings);
-  real(io, &m->exposure, kRadianceMax);
-  io.require(m->exposure >= 0);
+  own_or_exposure(io, &m->exposure);
   choice(io, &m->dither, true);
   choice(io, &m->format, WireFormat::rgb888);
   number(io, &m->row_begin), number(io, &m->row_end);
@@ -181,7 +200,7 @@ void fields(Io& io, FrameRequest* m) {
 // What changes from frame to frame.
 template <class Io>
 void change_fields(Io& io, FrameRequest* m) {
-  number(io, &m->frame), real(io, &m->seconds, 1e9);
+  number(io, &m->frame), real(io, &m->seconds, Quantity::seconds);
   fields(io, &m->camera);
   number(io, &m->row_begin), number(io, &m->row_end);
   number(io, &m->chunk_rows), number(io, &m->chunk_rows_max), number(io, &m->chunk_growth);
@@ -222,7 +241,7 @@ template <class Io>
 void fields(Io& io, ViewQuery* m) {
   hash(io, &m->scene);
   choice(io, &m->camera_stated, true);
-  number(io, &m->camera_index);
+  count(io, &m->camera_index, Quantity::camera_index);
   fields(io, &m->camera);
   fields(io, &m->settings);
   choice(io, &m->measure_exposure, true);
@@ -231,8 +250,7 @@ template <class Io>
 void fields(Io& io, ViewEntry* m) {
   hash(io, &m->scene);
   fields(io, &m->camera);
-  real(io, &m->exposure, kRadianceMax), real(io, &m->frames_per_second, kFrameRateMax);
-  io.require(m->exposure > 0 && m->frames_per_second >= 0);
+  real(io, &m->exposure, Quantity::exposure), real(io, &m->frames_per_second, Quantity::frame_rate);
   number(io, &m->effects), number(io, &m->triangle_count);
   io.require((m->effects & ~kAllEffects) == 0);
   point(io, &m->bounds.low), point(io, &m->bounds.high);
@@ -358,6 +376,13 @@ Decoded decode_message(const std::uint8_t* bytes, std::size_t byte_count, std::u
 
 std::uint32_t message_bytes(const Message& message) {
   return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(message.type)].fields + tail_bytes(message);
+}
+
+bool can_encode(const Message& message) {
+  Message copy = message;
+  Checker checker;
+  fields_of_type(checker, &copy);
+  return checker.valid && tail_bytes(message) <= kPayloadSizes[static_cast<std::uint32_t>(message.type)].tail_max;
 }
 
 void encode_message(const Message& message, std::uint8_t* bytes) {

@@ -138,7 +138,7 @@ struct ViewEntry {
   ContentHash scene;
   Camera camera;       // world space, at time 0; its node is kNone
   float exposure = 1;  // measured from there where that is asked for, else the scene's
-  float frames_per_second = 0;
+  float frames_per_second = 1;
   EffectMask effects = 0;  // planned
   std::uint32_t triangle_count = 0;
   Box bounds = {{0, 0, 0}, {0, 0, 0}};  // low ≤ high
@@ -180,6 +180,8 @@ Decoded decode_message(const std::uint8_t* bytes, std::size_t byte_count, std::u
 // Bytes that the message takes, header included.
 std::uint32_t message_bytes(const Message& message);
 
+// Whether encode_message() takes it: every value within its limits. For messages whose values come from elsewhere.
+bool can_encode(const Message& message);
 // Writes message_bytes(message) of them. What a message's arrays hold may already lie where it goes, at the end. Values
 // that the decoder would refuse are a programmer error.
 void encode_message(const Message& message, std::uint8_t* bytes);

@@ -73,25 +73,25 @@ void check_same_errors(const Sweep& a, const Sweep& b) {
 }
 
 void copy_file(const std::string& from, const std::string& to) {
-  platform::MappedFile file;
+  platform::LoadedFile file;
   platform::FileError error;
-  REQUIRE(platform::map_file(from.c_str(), &file, &error));
+  REQUIRE(platform::load_file(from.c_str(), &file, &error));
   platform::FileWriter writer;
   REQUIRE(platform::open_writer(to.c_str(), &writer, &error));
   platform::write_bytes(&writer, file.bytes, file.byte_count);
   REQUIRE(platform::close_writer(&writer, &error));
-  platform::unmap_file(&file);
+  platform::unload_file(&file);
 }
 
 // Ends what is being measured as soon as one round is whole.
 void interrupt_after_a_round(const Folder& folder, const std::atomic<bool>& done) {
   while (!done) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    platform::MappedFile file;
+    platform::LoadedFile file;
     platform::FileError error;
-    if (!platform::map_file(folder.file("accuracy.state").c_str(), &file, &error)) continue;
+    if (!platform::load_file(folder.file("accuracy.state").c_str(), &file, &error)) continue;
     std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
-    platform::unmap_file(&file);
+    platform::unload_file(&file);
     if (text.find("\"rounds\": 0") != std::string::npos) continue;
     interrupted = true;
     return;
@@ -309,11 +309,11 @@ TEST_CASE("accuracy_refuses_damaged_files") {
   CHECK(read.points.at("samples 9").instructions_per_pixel == 7654.5);
   CHECK(read.counted == "by hand");
 
-  platform::MappedFile file;
+  platform::LoadedFile file;
   platform::FileError error;
-  REQUIRE(platform::map_file(folder.file("accuracy.state").c_str(), &file, &error));
+  REQUIRE(platform::load_file(folder.file("accuracy.state").c_str(), &file, &error));
   std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
-  platform::unmap_file(&file);
+  platform::unload_file(&file);
   for (std::size_t length = 0; length + 3 < text.size(); length += 7) {
     REQUIRE(save_text(folder.path, "accuracy.state", text.substr(0, length)).ok);
     Status status = open_state(folder.path, key, false, &read);

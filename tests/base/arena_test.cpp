@@ -121,3 +121,24 @@ TEST_CASE("check_prints_both_operands_and_aborts") {
   CHECK(aborted);
   CHECK(text.find("64 against 0") != std::string::npos);
 }
+
+// Goal: sizes that no CPU can address stop at the largest number instead of starting again at zero, and none of them
+// fits. Method: the ends of 32 and 64 bits.
+TEST_CASE("arena_sizes_stop_at_the_largest") {
+  CHECK(size_sum(SIZE_MAX, 1) == SIZE_MAX);
+  CHECK(size_sum(SIZE_MAX - 5, 5) == SIZE_MAX);
+  CHECK(size_sum(SIZE_MAX - 5, 6) == SIZE_MAX);
+  CHECK(size_sum(SIZE_MAX / 2 + 1, SIZE_MAX / 2 + 1) == SIZE_MAX);
+  CHECK(size_sum(2, 3) == 5);
+  CHECK(arena_need(std::uint64_t(0)) == 0);
+  CHECK(arena_need(1) == kArenaAlignment);
+  CHECK(arena_need(~std::uint64_t(0)) == SIZE_MAX);
+  CHECK(arena_need<std::uint64_t>(SIZE_MAX) >= SIZE_MAX - kArenaAlignment);
+  CHECK(to_size(~std::uint64_t(0)) == SIZE_MAX);
+  alignas(64) std::uint8_t block[1024];
+  Arena arena = make_arena("test", block, sizeof block);
+  for (std::uint64_t bytes : {std::uint64_t(1025), std::uint64_t(0xFFFFFFFF), std::uint64_t(0x1'0000'0000),
+                              std::uint64_t(0x1'0000'0040), ~std::uint64_t(0), ~std::uint64_t(0) - 62})
+    CHECK(arena_try_allocate(&arena, bytes) == nullptr);
+  CHECK(arena_try_allocate(&arena, 1024) == arena.base);
+}

@@ -113,7 +113,7 @@ TEST_CASE("front_text_faults_are_named") {
       {kHead, "no candidate"},
       {kHead + "samples=4\n", "line 2: depth= is missing"},
       {kHead + "# one\n" + kLine + kLine, "line 4: these settings"},
-      {kHead + "samples=99" + kLine.substr(9), "line 2: --samples is 99: it must lie in 1"},
+      {kHead + "samples=99" + kLine.substr(9), "line 2: the number of samples per pixel is 99: it must lie in 1"},
       {kHead + "samples=0x4" + kLine.substr(9), "line 2: 'samples=0x4'"},
       {kHead + "samples=-4" + kLine.substr(9), "line 2: 'samples=-4'"},
       {kHead + "samples=" + kLine.substr(9), "line 2: 'samples='"},
@@ -126,7 +126,7 @@ TEST_CASE("front_text_faults_are_named") {
       {kHead + kLine.substr(0, kLine.find("flip=")) + "flip=1.5 ns=1\n", "'flip=1.5'"},
       {kHead + kLine.substr(0, kLine.find("flip=")) + "flip=nan ns=1\n", "'flip=nan'"},
       {kHead + "cut-off=65 " + "samples=4 depth=8 area-lights=16 texture-filter=scene normals=scene ns=812\n",
-       "line 2: --cut-off is 65"},
+       "line 2: the cut-off in displayed levels is 65"},
       {kHead + kLine.substr(0, kLine.find("ns=")) + "ns=" + std::string(60, '0') + "8\n", "line 2: 'ns=000"},
       {kHead + std::string(kFrontLineMax + 1, 'x') + "\n", "longer than"},
   };

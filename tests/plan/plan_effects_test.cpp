@@ -136,10 +136,10 @@ TEST_CASE("validate_settings_names_what_is_out_of_range") {
   };
   const Row rows[] = {{&Settings::width, 1, kImageSideMax, "width"},
                       {&Settings::height, 1, kImageSideMax, "height"},
-                      {&Settings::samples_per_pixel, 1, kSampleCountMax, "--samples"},
-                      {&Settings::ray_depth, 0, kRayDepthMax, "--depth"},
-                      {&Settings::points_per_area_light, 1, kPointsPerAreaLightMax, "--area-lights"},
-                      {&Settings::threads, 1, kThreadCountMax, "--threads"}};
+                      {&Settings::samples_per_pixel, 1, kSampleCountMax, "samples"},
+                      {&Settings::ray_depth, 0, kRayDepthMax, "depth"},
+                      {&Settings::points_per_area_light, 1, kPointsPerAreaLightMax, "area light"},
+                      {&Settings::threads, 1, kThreadCountMax, "threads"}};
   for (const Row& row : rows) {
     CAPTURE(std::string(row.name));
     Settings settings;

@@ -156,7 +156,7 @@ TEST_CASE("plan_lights_refuse_more_points_than_fit") {
   s->bind();
   Status status = light_point_count(s->scene, settings, kAllEffects, &count);
   CHECK_FALSE(status.ok);
-  CHECK(std::string(status.message).find("--area-lights") != std::string::npos);
+  CHECK(std::string(status.message).find("per area light") != std::string::npos);
 }
 
 // Goal: the bound on radiance holds on both sides of a light that has two. Method: a wall at the same distance before

@@ -60,3 +60,35 @@ TEST_CASE("file_that_is_none_is_refused_at_once") {
   CHECK(content_of(folder.file("loop")).find("cannot be opened") == 0);
   alarm(0);
 }
+
+// Goal: what was read stays, whatever becomes of the file, and a file that is cut short while it is read is an error,
+// not a signal. Method: cut and written over, by its one inode, as `cp` and a full disk do it.
+TEST_CASE("file_in_memory_does_not_follow_the_file") {
+  Folder folder;
+  FileError error;
+  const std::string path = folder.file("a"), content(100'000, 'x');
+  REQUIRE(write_file(path, content, &error));
+  LoadedFile file;
+  REQUIRE(load_file(path.c_str(), &file, &error));
+  REQUIRE(file.byte_count == content.size());
+  std::FILE* over = std::fopen(path.c_str(), "r+b");
+  REQUIRE(over != nullptr);
+  CHECK(std::fwrite("changed", 1, 7, over) == 7);
+  std::fclose(over);
+  CHECK(std::memcmp(file.bytes, content.data(), content.size()) == 0);
+  REQUIRE(truncate(path.c_str(), 0) == 0);
+  CHECK(std::memcmp(file.bytes, content.data(), content.size()) == 0);
+  unload_file(&file);
+
+  REQUIRE(write_file(path, content, &error));
+  FileReader reader;
+  std::string bytes(content.size(), 0);
+  REQUIRE(open_reader(path.c_str(), &reader, &error));
+  CHECK(reader.byte_count == content.size());
+  CHECK(read_bytes(&reader, &bytes[0], 1000, &error));
+  REQUIRE(truncate(path.c_str(), 5000) == 0);
+  CHECK_FALSE(read_bytes(&reader, &bytes[1000], bytes.size() - 1000, &error));
+  CHECK(std::strstr(error.text, "became shorter") != nullptr);
+  close_reader(&reader);
+  CHECK(reader.descriptor == -1);
+}

@@ -44,11 +44,11 @@ inline bool write_file(const std::string& path, const std::string& content, File
 }
 
 inline std::string content_of(const std::string& path) {
-  MappedFile file;
+  LoadedFile file;
   FileError error;
-  if (!map_file(path.c_str(), &file, &error)) return error.text;
+  if (!load_file(path.c_str(), &file, &error)) return error.text;
   std::string content(reinterpret_cast<const char*>(file.bytes), file.byte_count);
-  unmap_file(&file);
+  unload_file(&file);
   return content;
 }
 

@@ -27,7 +27,6 @@ struct Loaded {
     SceneStorage storage;
     status = load_scene(name, &renderer, &source, &storage);
   }
-  ~Loaded() { platform::unmap_file(&source.mapped); }
   ContentHash identity() {
     ContentHash hash;
     REQUIRE(identify_scene(source, &renderer, &hash).ok);

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # install_test.sh SOURCE BUILD COMPILER : an installed copy is enough to build the README's example.
 # Method: install BUILD into a fresh prefix, cut the first C++ block out of README.md, build it by the CMake package and by
-# pkg-config, run both, and compare the pixel they print with the installed program's own picture.
+# pkg-config, run both, and compare the pixel they print with the installed program's own picture. Then what the library
+# makes of arguments that it cannot use.
 set -eu
 source=$1 build=$2 compiler=$3
 work=$(mktemp -d)
@@ -30,6 +31,11 @@ export PKG_CONFIG_PATH=${pc%/*}
 # shellcheck disable=SC2046
 "$compiler" -O2 -Wall -Wextra -Werror "$work/main.cpp" -o "$work/example" $(pkg-config --cflags --libs pocketray)
 by_pkg_config=$("$work/example")
+
+# shellcheck disable=SC2046
+"$compiler" -std=c++17 -O1 -Wall -Wextra -Werror "$source/tests/tidy/installed_misuse.cpp" -o "$work/misuse" \
+  $(pkg-config --cflags --libs pocketray)
+misuse=$("$work/misuse") || fail "the library takes what it cannot use: $misuse"
 
 [ "$by_cmake" = "$by_pkg_config" ] || fail "CMake's example prints '$by_cmake', pkg-config's '$by_pkg_config'"
 "$prefix/bin/pocketray" render cornell -o "$work/cornell.ppm" >/dev/null

@@ -31,9 +31,9 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   m.scene_piece.offset = wide() >> 8, m.scene_piece.bytes = bytes;
   FrameRequest* f = &m.frame_request;
   f->frame = next_u32(rng), f->scene = hash, f->seconds = static_cast<double>(real());
-  f->camera_stated = next_u32(rng) % 2 != 0, f->camera_index = narrow();
+  f->camera_stated = next_u32(rng) % 2 != 0, f->camera_index = narrow() % kCameraCountMax;
   f->camera.eye = {real(), real(), real()}, f->camera.target = {real(), real(), real()}, f->camera.up = {0, real(), 1};
-  f->camera.vertical_fov = next_float(rng), f->camera.vertical_extent = next_float(rng);
+  f->camera.vertical_fov = 1 + next_float(rng), f->camera.vertical_extent = 1 + next_float(rng);
   f->camera.projection = static_cast<Projection>(next_u32(rng) % 2);
   f->settings.width = 1 + next_u32(rng) % kImageSideMax, f->settings.height = 1 + next_u32(rng) % kImageSideMax;
   f->settings.samples_per_pixel = 1 + next_u32(rng) % kSampleCountMax;
@@ -43,7 +43,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   f->settings.texture_filter = static_cast<TextureFilter>(next_u32(rng) % 3);
   f->settings.normals = static_cast<NormalMode>(next_u32(rng) % 2);
   f->settings.forced_on = next_u32(rng) & kAllEffects, f->settings.forced_off = next_u32(rng) & kAllEffects;
-  f->exposure = next_float(rng), f->dither = next_u32(rng) % 2 != 0;
+  f->exposure = 1 + next_float(rng), f->dither = next_u32(rng) % 2 != 0;
   f->format = static_cast<WireFormat>(next_u32(rng) % 2);
   f->row_begin = static_cast<std::uint16_t>(next_u32(rng) % f->settings.height);
   f->row_end = static_cast<std::uint16_t>(f->row_begin + 1 + next_u32(rng) % (f->settings.height - f->row_begin));
@@ -60,10 +60,10 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   m.ping.id = next_u32(rng), m.ping.reply_bytes = next_u32(rng) % (kPingBytesMax + 1);
   m.pong.id = next_u32(rng), m.pong.pixel_ps = next_u32(rng), m.pong.bytes = bytes;
   ViewQuery* q = &m.view_query;
-  q->scene = hash, q->camera_stated = f->camera_stated, q->camera_index = narrow();
+  q->scene = hash, q->camera_stated = f->camera_stated, q->camera_index = narrow() % kCameraCountMax;
   q->camera = f->camera, q->settings = f->settings, q->measure_exposure = next_u32(rng) % 2 != 0;
   ViewEntry* v = &m.view_entry;
-  v->scene = hash, v->camera = f->camera, v->exposure = 1 + next_float(rng), v->frames_per_second = next_float(rng);
+  v->scene = hash, v->camera = f->camera, v->exposure = 1 + next_float(rng), v->frames_per_second = 1 + next_float(rng);
   v->effects = next_u32(rng) & kAllEffects, v->triangle_count = next_u32(rng);
   v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
   return m;

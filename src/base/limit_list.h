@@ -1,0 +1,84 @@
+// Quantities that reach the renderer by more than one way: the command line, the library's caller, a scene file, a
+// message. Each has one range, in this table, and every way tests with within(): what one of them takes, none of the
+// others refuses, and no NaN or infinity comes in by any.
+#pragma once
+#include "base/fmath.h"
+#include "base/limits.h"
+#include "base/status.h"
+
+namespace pocketray {
+
+enum class Quantity : int {
+  width,
+  height,
+  samples,
+  depth,
+  area_light_points,
+  cut_off,
+  camera_index,
+  seconds,
+  frame_rate,
+  exposure,
+  coordinate,
+  field_of_view,
+  vertical_extent,
+};
+
+struct LimitRow {
+  Quantity quantity;
+  const char* name;
+  double low, high;  // both allowed; of what is kept as float, these are floats
+};
+
+// Exposures beyond 60 stops make nothing but black or white of whatever a float holds, and a product of the largest
+// with kRadianceMax is finite. Times beyond 31 years have no frames of their own: a float of seconds has steps of
+// minutes there.
+constexpr float kExposureMin = 0x1p-60f, kExposureMax = 0x1p60f;
+constexpr float kExposureStopsMax = 60;
+constexpr double kSecondsMax = 1e9;
+constexpr float kFrameRateMin = 1e-3f;
+constexpr float kFieldOfViewMin = static_cast<float>(radians(0.001)),
+                kFieldOfViewMax = static_cast<float>(radians(179));
+constexpr float kVerticalExtentMin = 0x1p-126f;  // the least float that is not denormal
+
+constexpr LimitRow kLimitList[] = {
+    {Quantity::width, "the picture's width", 1, kImageSideMax},
+    {Quantity::height, "the picture's height", 1, kImageSideMax},
+    {Quantity::samples, "the number of samples per pixel", 1, kSampleCountMax},
+    {Quantity::depth, "the depth of reflections and refractions", 0, kRayDepthMax},
+    {Quantity::area_light_points, "the number of points per area light", 1, kPointsPerAreaLightMax},
+    {Quantity::cut_off, "the cut-off in displayed levels", 0, double(kCutOffLevelsMax)},
+    {Quantity::camera_index, "the camera's index", 0, kCameraCountMax - 1},
+    {Quantity::seconds, "the time in seconds", -kSecondsMax, kSecondsMax},
+    {Quantity::frame_rate, "the number of frames per second", double(kFrameRateMin), double(kFrameRateMax)},
+    {Quantity::exposure, "the exposure", double(kExposureMin), double(kExposureMax)},
+    {Quantity::coordinate, "a coordinate", -double(kCoordinateMax), double(kCoordinateMax)},
+    {Quantity::field_of_view, "the vertical field of view in radians", double(kFieldOfViewMin),
+     double(kFieldOfViewMax)},
+    {Quantity::vertical_extent, "the height that an orthographic camera sees", double(kVerticalExtentMin),
+     double(kCoordinateMax)},
+};
+constexpr int kLimitCount = sizeof kLimitList / sizeof kLimitList[0];
+
+constexpr const LimitRow& limit_of(Quantity quantity) { return kLimitList[static_cast<int>(quantity)]; }
+constexpr bool limits_in_order() {
+  for (int i = 0; i < kLimitCount; ++i)
+    if (static_cast<int>(kLimitList[i].quantity) != i) return false;
+  return kLimitCount == static_cast<int>(Quantity::vertical_extent) + 1;
+}
+static_assert(limits_in_order(), "one row for each quantity, in their order");
+
+constexpr bool within(Quantity quantity, double x) {  // false for NaN
+  return x >= limit_of(quantity).low && x <= limit_of(quantity).high;
+}
+constexpr bool within(Quantity quantity, float x) { return within(quantity, static_cast<double>(x)); }
+
+// "the time in seconds is nan: it must lie in -1e+09 … 1e+09". `name` takes the place of the table's, as an option's
+// does on the command line.
+inline Status check_limit(Quantity quantity, double x, const char* name = nullptr) {
+  if (within(quantity, x)) return success();
+  const LimitRow& row = limit_of(quantity);
+  return failure("%s is %.10g: it must lie in %.6g … %.6g", name ? name : row.name, x, row.low, row.high);
+}
+
+}  // namespace pocketray
