@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs what a build needs and this machine lacks. Silent when nothing is missing.
-# Groups: desktop tests bench-embree bench-povray clang format tidy armhf armel aarch64. Run by the Makefile and by .ci/run.
+# Groups: desktop tests bench-embree bench-povray clang format tidy armhf armel aarch64 x86-32. Run by the Makefile and by .ci/run.
 set -eu
 
 # What each group needs. "command=package" counts as there when the command is; a plain name is a Debian package.
@@ -16,6 +16,8 @@ required() {
     tidy) echo clang-tidy=clang-tidy ;;
     armhf) echo $common arm-linux-gnueabihf-g++=g++-arm-linux-gnueabihf qemu-arm=qemu-user ;;
     armel) echo $common arm-linux-gnueabi-g++=g++-arm-linux-gnueabi qemu-arm=qemu-user ;;
+    # Not g++-multilib: that package and the cross compilers exclude each other.
+    x86-32) echo $common c++=g++ "g++-$(c++ -dumpversion 2>/dev/null | cut -d. -f1 || echo 12)-multilib" lib32z1-dev ;;
     aarch64) echo $common aarch64-linux-gnu-g++=g++-aarch64-linux-gnu qemu-aarch64=qemu-user ;;
     *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
