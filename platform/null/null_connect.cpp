@@ -51,6 +51,28 @@ void part(NullLink* link, Slot* slot) {
   slot->phase = Phase::unused;
 }
 
+// Both ends come to be at once: the peer sees the connection after one latency, the outcome is known after two.
+Slot* begin_connection(NullLink* link, const LinkAddress& address, std::uint64_t timeout_ns, Error* error) {
+  Slot* slot = take_slot(link, Phase::connecting, error);
+  if (!slot) return nullptr;
+  slot->device = true;
+  slot->connection = link->record.connection_count;
+  slot->port = port_of(address);
+  slot->deadline_ns = timeout_ns < kNever - link->clock_ns ? link->clock_ns + timeout_ns : kNever;
+  std::snprintf(slot->name, sizeof slot->name, "127.0.0.1:%d", slot->port);
+  slot->news_ns = link->clock_ns + 2 * link->settings.latency_ns;
+  Slot* listener = listener_at(link, slot->port);
+  Slot* other = listener ? take_slot(link, Phase::waiting, error) : nullptr;
+  slot->refused = !other;
+  if (!other) return slot;
+  other->listener = index_of(link, listener);
+  other->connection = slot->connection;
+  other->news_ns = link->clock_ns + link->settings.latency_ns;
+  other->other = index_of(link, slot);
+  slot->other = index_of(link, other);
+  return slot;
+}
+
 }  // namespace
 
 bool resolve(const char* text, LinkAddress* address, Error* error) {
@@ -82,36 +104,24 @@ int listen(Link* base, const LinkAddress& address, Error* error) {
   return stream_of(link, slot);
 }
 
-// Both ends come to be at once: the peer sees the connection after one latency, the outcome is known after two.
 int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Error* error) {
   NullLink* link = null(base);
-  Slot* slot = take_slot(link, Phase::connecting, error);
+  Slot* slot = begin_connection(link, address, timeout_ns, error);
   if (!slot) return -1;
-  slot->device = true;
-  slot->connection = link->record.connection_count++;
-  slot->port = port_of(address);
-  slot->deadline_ns = timeout_ns < kNever - link->clock_ns ? link->clock_ns + timeout_ns : kNever;
-  std::snprintf(slot->name, sizeof slot->name, "127.0.0.1:%d", slot->port);
+  ++link->record.connection_count;
   const NullLinkSettings& settings = link->settings;
-  slot->news_ns = link->clock_ns + 2 * settings.latency_ns;
-  Slot* listener = listener_at(link, slot->port);
-  Slot* other = listener ? take_slot(link, Phase::waiting, error) : nullptr;
-  slot->refused = !other;
   for (int i = 0; i < settings.fault_count; ++i)
     if (at_start(settings.faults[i].fault) && meant_for(settings.faults[i], *slot)) {
       ++link->record.faults_struck;
       if (settings.faults[i].fault == LinkFault::no_answer) slot->news_ns = kNever;
       slot->refused = true;
-      if (other) other->phase = Phase::unused;
-      other = nullptr;
+      if (slot->other >= 0) link->slots[slot->other].phase = Phase::unused;
+      slot->other = -1;
     }
-  if (!other) return stream_of(link, slot);
-  other->listener = index_of(link, listener);
-  other->connection = slot->connection;
-  other->news_ns = link->clock_ns + settings.latency_ns;
-  other->other = index_of(link, slot);
-  slot->other = index_of(link, other);
-  std::snprintf(other->name, sizeof other->name, "127.0.0.1:%d", 49152 + slot->connection % 16384);
+  if (slot->other >= 0) {
+    Slot* other = &link->slots[slot->other];
+    std::snprintf(other->name, sizeof other->name, "127.0.0.1:%d", 49152 + slot->connection % 16384);
+  }
   return stream_of(link, slot);
 }
 
@@ -169,4 +179,19 @@ void close_all(Link* base) {
 }
 
 }  // namespace null_link
+
+int null_link_connect_from(Link* base, const char* host, const LinkAddress& address, std::uint64_t timeout_ns,
+                           Error* error) {
+  using namespace null_link;
+  NullLink* link = null(base);
+  Slot* slot = begin_connection(link, address, timeout_ns, error);
+  if (!slot) return -1;
+  slot->elsewhere = true;
+  if (slot->other < 0) return stream_of(link, slot);
+  Slot* other = &link->slots[slot->other];
+  other->elsewhere = true;
+  std::snprintf(other->name, sizeof other->name, "%.24s:%d", host, 49152 + slot->other);
+  return stream_of(link, slot);
+}
+
 }  // namespace platform

@@ -46,6 +46,11 @@ extern const LinkBackend kNullLink;
 std::size_t null_link_need(int stream_count_max, const NullLinkSettings& settings);
 Link* null_link_open(const LinkOptions& options, const NullLinkSettings& settings, Error* error);
 
+// A connection from another machine: with its own address and its own radio, which has the latency of the settings and
+// no limit of bandwidth; faults do not strike it and connection_count leaves it out. `host` is an address in numbers.
+int null_link_connect_from(Link* link, const char* host, const LinkAddress& address, std::uint64_t timeout_ns,
+                           Error* error);
+
 // Faults drawn from a seed: of any kind, for one of the first `connection_count` connections, at one of its first
 // `byte_count` bytes.
 void null_link_draw_faults(std::uint64_t seed, int connection_count, std::uint64_t byte_count, NullFault* faults,

@@ -16,6 +16,7 @@ enum class Phase : std::uint8_t { unused, listening, connecting, waiting, connec
 struct Slot {
   Phase phase;
   bool device;            // the connecting end
+  bool elsewhere;         // of a connection from another machine
   int generation;         // counts the streams that lived here, so that a stale number is known
   int other;              // the slot of the other end; -1: closed, or there never was one
   int listener;           // of a waiting one
@@ -65,6 +66,7 @@ constexpr const char* kBrokenText =
     "the peer broke the connection off: it was stopped, or did not like what it was sent";
 
 inline bool meant_for(const NullFault& fault, const Slot& slot) {
+  if (slot.elsewhere) return false;
   return fault.connection < 0 || fault.connection == slot.connection;
 }
 inline bool at_start(LinkFault fault) { return fault == LinkFault::refuse || fault == LinkFault::no_answer; }

@@ -243,3 +243,42 @@ TEST_CASE("null_link_sessions_replay_by_seed") {
   MESSAGE(pocketray::effort(2000) << " sessions, " << struck << " faults struck");
   CHECK(struck > pocketray::effort(2000));
 }
+
+// Goal: whoever is at the server beside the device neither takes the device's radio nor its faults, and has an address
+// of its own. Method: a slow line; what the other one is sent takes no time of it.
+TEST_CASE("null_link_connects_from_elsewhere") {
+  NullFault fault;
+  fault.fault = LinkFault::reset, fault.at_byte = 10;
+  NullLinkSettings settings = with_fault(fault);
+  settings.bytes_per_second = 1'000'000;
+  settings.clock_step_ns = 0;
+  LinkRig rig(kNullLink, 6, settings);
+  int other = null_link_connect_from(rig.link, "10.0.0.7", rig.address, kMs * 100, &rig.error);
+  REQUIRE(other >= 0);
+  LinkWait wait = {};
+  wait.stream = rig.listener, wait.want_read = true;
+  REQUIRE(rig.net->poll(rig.link, &wait, 1, 100 * kMs) == 1);
+  int server = -1;
+  REQUIRE(rig.net->accept(rig.link, rig.listener, &server, &rig.error) == LinkResult::done);
+  CHECK(std::string(rig.net->stream_name(rig.link, server)).substr(0, 9) == "10.0.0.7:");
+  rig.net->poll(rig.link, nullptr, 0, kMs);
+  std::uint64_t begin_ns = elapsed_ns(rig);
+  LinkResult result;
+  REQUIRE(rig.write_all(server, counted_bytes(20000)));
+  CHECK(rig.read_all(other, 20000, &result) == counted_bytes(20000));
+  CHECK(elapsed_ns(rig) - begin_ns == kMs);
+  CHECK(null_link_record(rig.link).faults_struck == 0);
+  CHECK(null_link_record(rig.link).connection_count == 0);
+}
+
+// Goal: who waits for a stream that is closed is told at once, whatever it waits for.
+TEST_CASE("null_link_poll_tells_of_stale_streams") {
+  LinkRig rig(kNullLink, 6);
+  int device = -1, server = -1;
+  REQUIRE(rig.pair(&device, &server));
+  rig.net->close(rig.link, device);
+  LinkWait wait = {};
+  wait.stream = device, wait.want_write = true;
+  CHECK(rig.net->poll(rig.link, &wait, 1, kMs) == 1);
+  CHECK(wait.can_write);
+}
