@@ -100,12 +100,13 @@ demo-split: configure
 # What a hostile peer or file can do: libFuzzer from the committed corpus on, each target for FUZZ_SECONDS. What it finds to
 # be worth keeping goes to build-fuzz/corpus; an input that breaks something is left in build-fuzz.
 FUZZ_SECONDS ?= 600
+FUZZ_TARGETS ?= message pray import front text client server
 fuzz:
 	@toolchains/setup.sh desktop clang
 	@mkdir -p build-fuzz && cmake -S . -B build-fuzz -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
 	  -DPOCKETRAY_SANITIZE=fuzzer-no-link,address,undefined >build-fuzz/configure.log || { cat build-fuzz/configure.log; exit 1; }
-	cmake --build build-fuzz -j$(JOBS) --target fuzz_message fuzz_pray fuzz_import
-	@for target in message pray import; do \
+	cmake --build build-fuzz -j$(JOBS) --target $(FUZZ_TARGETS:%=fuzz_%)
+	@for target in $(FUZZ_TARGETS); do \
 	  mkdir -p build-fuzz/corpus/$$target; \
 	  build-fuzz/fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -max_len=16384 -timeout=10 -print_final_stats=1 \
 	    -artifact_prefix=build-fuzz/$$target- build-fuzz/corpus/$$target tests/fuzz/corpus/$$target \

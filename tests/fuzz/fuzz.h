@@ -24,6 +24,20 @@ std::vector<std::string> import_endings();
 struct Scene;
 void fuzz_render(const Scene& scene);
 
+// The text of a front's file, then, behind a zero, that of a file of prices.
+void fuzz_front(const std::uint8_t* bytes, std::size_t byte_count);
+
+// First byte: what the rest is: an option's text, the state of a sweep, a dump of callgrind.
+void fuzz_text(const std::uint8_t* bytes, std::size_t byte_count);
+
+// First byte: what the device is and does. Then, for each message of a server that keeps to the protocol, what becomes
+// of it: client_fuzz.cpp has the list.
+void fuzz_client(const std::uint8_t* bytes, std::size_t byte_count);
+
+// First byte: the line, and whether the clients greet. Then what two clients do, one act after the other: see
+// server_fuzz.cpp.
+void fuzz_server(const std::uint8_t* bytes, std::size_t byte_count);
+
 struct FuzzSeed {
   std::string name;
   std::vector<std::uint8_t> bytes;
@@ -32,10 +46,16 @@ struct FuzzSeed {
 std::vector<FuzzSeed> message_seeds();
 std::vector<FuzzSeed> pray_seeds();
 std::vector<FuzzSeed> import_seeds();
+std::vector<FuzzSeed> front_seeds();
+std::vector<FuzzSeed> text_seeds();
+std::vector<FuzzSeed> client_seeds();
+std::vector<FuzzSeed> server_seeds();
 
 // How far the inputs since the start came, for tests that show that seeds get somewhere.
 struct FuzzCounts {
-  std::uint64_t messages = 0, chunks = 0, pictures = 0, scenes = 0, imports = 0, frames = 0;
+  std::uint64_t messages = 0, chunks = 0, pictures = 0, scenes = 0, imports = 0, frames = 0, fronts = 0, texts = 0,
+                states = 0;
+  std::uint64_t server_rows = 0, answers = 0;
 };
 inline FuzzCounts fuzz_counts;
 

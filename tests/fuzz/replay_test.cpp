@@ -102,3 +102,51 @@ TEST_CASE("fuzz_import_corpus_and_damaged_seeds") {
   CHECK(replay("import", fuzz_import) >= 4);
 }
 #endif
+
+// Goal: no file of a front or of prices makes the program abort, and what is read can be used and written again.
+TEST_CASE("fuzz_front_corpus_and_damaged_seeds") {
+  write_seeds("front", front_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : front_seeds()) fuzz_front(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.fronts == 4);
+  damage(front_seeds(), fuzz_front, effort(400));
+  CHECK(replay("front", fuzz_front) >= 4);
+}
+
+// Goal: no text of an option, of a state or of another program's makes the program abort.
+TEST_CASE("fuzz_text_corpus_and_damaged_seeds") {
+  write_seeds("text", text_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : text_seeds()) fuzz_text(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.texts >= 5);
+#if defined(POCKETRAY_HAVE_ACCURACY)
+  CHECK(fuzz_counts.texts == 6);
+  CHECK(fuzz_counts.states == 1);
+#endif
+  damage(text_seeds(), fuzz_text, effort(400));
+  CHECK(replay("text", fuzz_text) >= 7);
+}
+
+// Goal: whatever a server does, a device goes on: its frames are complete, and it keeps to the protocol itself. The
+// seeds get as far as rows, scenes and views.
+TEST_CASE("fuzz_client_corpus_and_damaged_seeds") {
+  write_seeds("client", client_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : client_seeds()) fuzz_client(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.frames > 30);
+  CHECK(fuzz_counts.server_rows > 100);
+  CHECK(fuzz_counts.scenes == 1);
+  CHECK(fuzz_counts.messages == 1);  // views
+  damage(client_seeds(), fuzz_client, effort(20));
+  CHECK(replay("client", fuzz_client) >= 12);
+}
+
+// Goal: whatever clients do, a server goes on and greets the next one. The seeds get answers of every kind.
+TEST_CASE("fuzz_server_corpus_and_damaged_seeds") {
+  write_seeds("server", server_seeds());
+  fuzz_counts = FuzzCounts();
+  for (const FuzzSeed& seed : server_seeds()) fuzz_server(seed.bytes.data(), seed.bytes.size());
+  CHECK(fuzz_counts.answers > 20);
+  damage(server_seeds(), fuzz_server, effort(20));
+  CHECK(replay("server", fuzz_server) >= 9);
+}

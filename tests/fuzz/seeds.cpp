@@ -2,6 +2,7 @@
 
 #include "accel/accel_list.h"
 #include "fuzz/fuzz.h"
+#include "plan/front.h"
 #include "scene/baked_file.h"
 #include "scene/full_scene.h"
 #include "wire/codec.h"
@@ -102,6 +103,81 @@ std::vector<FuzzSeed> pray_seeds() {
   seeds.push_back({"full", pray_seed(full.scene)});
   seeds.push_back({"accelerated", accelerated_seed(full.scene)});
   return seeds;
+}
+
+std::vector<FuzzSeed> front_seeds() {
+  auto text_of = [](const Front& front) {
+    std::vector<char> text(kFrontTextMax);
+    std::size_t length = format_front(front, text.data(), text.size());
+    return Bytes(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(length));
+  };
+  auto bytes_of = [](const std::string& text) { return Bytes(text.begin(), text.end()); };
+  Front front = builtin_front(), few = front;
+  few.count = 3;
+  for (std::uint32_t i = 0; i < few.count; ++i) {
+    few.candidates[i].flip = 0.1f / static_cast<float>(i + 1);
+    few.candidates[i].ns_per_pixel = 100.5f * static_cast<float>(i + 1);
+  }
+  Bytes both = text_of(few);
+  both.push_back(0);
+  append(&both, text_of(front));
+  return {{"builtin", text_of(front)},
+          {"with_prices", both},
+          {"comments", bytes_of("pocketray-front 1\r\n\n# what follows\nsamples=4 depth=8 area-lights=16 cut-off=5e-1 "
+                                "texture-filter=nearest normals=flat flip=1 ns=1e9\n")},
+          {"another_version", bytes_of("pocketray-front 2\nsamples=4\n")}};
+}
+
+std::vector<FuzzSeed> text_seeds() {
+  auto seed = [](const char* name, std::uint8_t kind, const std::string& text) {
+    Bytes bytes(1, kind);
+    append(&bytes, Bytes(text.begin(), text.end()));
+    return FuzzSeed{name, bytes};
+  };
+  return {seed("size", 0, "320x240"),
+          seed("bytes", 1, "24.5M"),
+          seed("camera", 2, "0,1.5,-3 0,1,0 0,1,0 40"),
+          seed("exposure", 3, "-1.5"),
+          seed("effects", 4, "auto,-shadow"),
+          seed("callgrind", 5, "version: 1\ndesc: Trigger: --dump-before=work\nevents: Ir\ntotals: 123456\n"),
+          seed("state", 6,
+               R"({"key": {}, "rounds": 1, "counted": "", "references": ["a"], "points": {"samples 4": )"
+               R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "errors": [0.1, 0.1, 0.01, 0.1, 0.1, )"
+               R"(0.1, 0.1, "inf"]}}})")};
+}
+
+// A server that keeps to the protocol, towards a device of each kind; then one that changes, drops, repeats and adds.
+std::vector<FuzzSeed> client_seeds() {
+  std::vector<FuzzSeed> seeds;
+  const char* const kNames[] = {"thin", "scene", "thin_rgb888", "scene_rgb888", "thin_far", "scene_far"};
+  for (std::uint8_t flags = 0; flags < 6; ++flags) {
+    Bytes bytes(16, 0);
+    bytes[0] = flags;
+    seeds.push_back({kNames[flags], bytes});
+  }
+  Bytes inquiry(16, 0);
+  inquiry[0] = 8;
+  seeds.push_back({"inquiry", inquiry});
+  // Behind the hello, the scene and three pongs.
+  seeds.push_back({"changes_a_chunk", {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 192, 9, 1, 0, 192, 20, 255, 0}});
+  seeds.push_back({"adds_a_pong", {1, 0, 0, 0, 0, 0, 232, 12, 8, 1, 0, 0, 0, 0, 0, 0, 0, 0}});
+  seeds.push_back({"floods", {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 244, 12, 8, 1, 0, 0, 0, 0, 0, 0, 0, 0}});
+  seeds.push_back({"reports_errors", {1, 0, 0, 232, 10, 6, 6, 0, 0, 0, 0, 0, 0}});
+  seeds.push_back({"hangs_up", {0, 0, 0, 0, 0, 0, 250, 0, 0, 254, 0, 0, 255}});
+  return seeds;
+}
+
+// Two clients at once: what each sends, and rounds of the server between.
+std::vector<FuzzSeed> server_seeds() {
+  return {{"lists", {4, 2, 1, 0, 0, 1, 0, 7, 3, 2, 0, 0, 1, 0, 7}},
+          {"fetches", {4, 2, 3, 16, 0, 1, 0, 7, 3, 3, 255, 0, 1, 0, 7}},
+          {"frames", {4, 2, 4, 0, 0, 1, 1, 0, 7, 3, 4, 0, 0, 2, 3, 0, 7, 2, 5, 0, 0, 2, 0, 0, 7}},
+          {"cancels", {5, 2, 4, 0, 0, 1, 1, 0, 1, 2, 6, 0, 0, 1, 0, 0, 7}},
+          {"pings", {6, 2, 7, 0, 200, 1, 0, 3, 7, 0, 255, 1, 0, 0, 7}},
+          {"views", {4, 2, 8, 0, 0, 0, 0, 0, 7, 3, 8, 0, 0, 0, 0, 1, 7}},
+          {"changed", {4, 6, 4, 0, 0, 1, 1, 60, 255, 0, 7, 8, 8, 0, 0, 0, 0, 30, 1, 0, 7}},
+          {"not_greeted", {0, 10, 9, 4, 1, 2, 3, 4, 0, 3, 12, 8, 1, 2, 3, 4, 5, 6, 7, 8, 0, 7}},
+          {"hangs_up", {4, 2, 4, 0, 0, 1, 1, 0, 1, 46, 0, 1, 31, 2, 0, 0, 0, 0, 0, 0, 7}}};
 }
 
 }  // namespace pocketray

@@ -1,0 +1,56 @@
+// What the fuzz targets of client and server have in common: a link of its own in simulated time, a small scene, and
+// the input as a supply of decisions.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "app/scene_store.h"
+#include "platform/null/null_link.h"
+#include "support/generated_scene.h"
+#include "wire/message.h"
+
+namespace pocketray {
+
+// An input, taken from the front. Beyond its end everything is 0.
+struct FuzzInput {
+  const std::uint8_t* at;
+  std::size_t left;
+  std::uint8_t byte() {
+    if (left == 0) return 0;
+    --left;
+    return *at++;
+  }
+  std::vector<std::uint8_t> bytes(std::size_t count) {
+    std::vector<std::uint8_t> taken(at, at + (count < left ? count : left));
+    at += taken.size(), left -= taken.size();
+    return taken;
+  }
+};
+
+// A link that lives as long as this.
+struct FuzzLink {
+  std::vector<std::max_align_t> memory;
+  platform::Link* link = nullptr;
+  platform::LinkAddress address;
+  explicit FuzzLink(const platform::NullLinkSettings& settings);
+  ~FuzzLink();
+  FuzzLink(const FuzzLink&) = delete;
+  FuzzLink& operator=(const FuzzLink&) = delete;
+};
+
+// The built-in cube as servers keep it.
+const SceneStore& fuzz_store();
+constexpr std::uint32_t kFuzzWidth = 16, kFuzzHeight = 12;
+// A renderer for pictures of it of that size.
+Renderer* fuzz_renderer();
+
+// The message on the wire.
+std::vector<std::uint8_t> wire_bytes(const Message& message);
+// A message of any type and payload, with its length and checksum right.
+std::vector<std::uint8_t> sealed_bytes(std::uint8_t type, const std::vector<std::uint8_t>& payload);
+// Changes a byte of the payload and seals the message again.
+void change_sealed(std::vector<std::uint8_t>* bytes, std::uint8_t offset, std::uint8_t difference);
+// Writes what there is room for; false: the connection is over.
+bool write_some(platform::Link* link, int stream, std::vector<std::uint8_t>* bytes);
+
+}  // namespace pocketray
