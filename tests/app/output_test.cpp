@@ -50,11 +50,11 @@ int run(const std::vector<std::string>& words, const char* out = "/dev/null") {
 }
 
 std::string content(const std::string& path) {
-  platform::MappedFile file;
+  platform::LoadedFile file;
   platform::FileError error;
-  if (!platform::map_file(path.c_str(), &file, &error)) return "";
+  if (!platform::load_file(path.c_str(), &file, &error)) return "";
   std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
-  platform::unmap_file(&file);
+  platform::unload_file(&file);
   return text;
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/frame.h"
 #include "plan/plan_scene.h"
+#include "platform/file.h"
 
 namespace pocketray {
 namespace {

@@ -193,6 +193,6 @@ TEST_CASE("import_unknown_endings_empty_and_absent_files") {
   CHECK(contains(error_of("a.txt", "hello"), "gltf glb obj"));
   CHECK(contains(error_of("a.obj", ""), "empty"));
   CHECK(contains(load_error("/nowhere/a.glb"), "cannot read"));
-  CHECK(contains(load_error("/"), "no file"));
+  CHECK(contains(load_error("/"), "no regular file"));
   CHECK(contains(error_of("a.obj", "v 0 0 0\n"), "no triangles"));
 }
