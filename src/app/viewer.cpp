@@ -7,6 +7,7 @@
 #include "app/interrupt.h"
 #include "app/picture.h"
 #include "app/viewer_steps.h"
+#include "base/printable.h"
 #include "base/seal.h"
 #include "platform/file.h"
 #include "present/png_file.h"
@@ -255,8 +256,9 @@ void watch_scene(Viewer* v) {
 }
 
 void tell(Viewer* v, const char* text) {
-  std::fprintf(stderr, "pocketray: %s\n", text);
   std::snprintf(v->note.text, sizeof v->note.text, "%s", text);
+  make_printable(v->note.text, std::strlen(v->note.text));
+  std::fprintf(stderr, "pocketray: %s\n", v->note.text);
   v->note.until_ns = v->backend->now_ns() + kNoteNs;
   ++v->note.number;
 }

@@ -172,7 +172,7 @@ Status step_with_servers(Viewer* v, Renderer* r, ViewerLoop* loop) {
   bool helped = any && !v->picture_shared && !loop->finished && loop->progressive.shown_coarse;
   bool due = follow || helped || (loop->finished && (loop->moved || loop->passed));
   if (due && v->picture_shared != any) {
-    if (any) show_own_picture(v->sharing, *r);
+    if (any && r->image.data) show_own_picture(v->sharing, *r);  // a device without the scene has none
     v->picture_shared = any;
     loop->finished = loop->passed = true;  // what was under way is given up
   }
