@@ -58,6 +58,17 @@ std::string content(const std::string& path) {
   return text;
 }
 
+// What a command line that fails says on standard error.
+std::string told_by(const std::vector<std::string>& words, const std::string& file) {
+  int kept = dup(STDERR_FILENO), other = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  REQUIRE(dup2(other, STDERR_FILENO) >= 0);
+  int exit_status = run(words);
+  dup2(kept, STDERR_FILENO);
+  close(kept), close(other);
+  CHECK(exit_status == kExitInput);
+  return content(file);
+}
+
 bool has(const Status& status, const char* part) { return std::strstr(status.message, part) != nullptr; }
 
 }  // namespace
@@ -71,7 +82,7 @@ TEST_CASE("output_is_no_input") {
   REQUIRE(link(scene.c_str(), json.c_str()) == 0);
   REQUIRE(link(scene.c_str(), (folder / "a.ppm").c_str()) == 0);
   std::string before = content(scene);
-  CHECK(run({"bake", scene, "-o", other}) == 1);
+  CHECK(told_by({"bake", scene, "-o", other}, folder / "told").find("would replace") != std::string::npos);
   CHECK(run({"plan", scene, "--json", json}) == 1);
   CHECK(run({"bench", scene, "--size", "8x6", "--frames", "1", "--json", json}) == 1);
   CHECK(run({"bench", scene, "--size", "8x6", "--frames", "1", "--front", other}) == 1);
