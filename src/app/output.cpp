@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/commands.h"
+#include "app/report.h"
 #include "platform/file.h"
 #include "scene/builtin/builtin.h"
 
@@ -76,9 +77,9 @@ Status write_file(const std::string& path, const std::string& bytes) {
 }
 
 int finish_printing(int exit_status) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_status;
-  std::fprintf(stderr, "pocketray: standard output did not take all that was printed: is it full, or closed?\n");
-  return exit_status == kExitDone ? kExitInput : exit_status;
+  bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (arrived || exit_status != kExitDone) return exit_status;  // of what failed before, the reason is told
+  return report(failure("standard output did not take all that was printed: is it full, or closed?"));
 }
 
 Status check_arguments(int argument_count, const char* const* arguments) {

@@ -117,7 +117,8 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   expect verify_without_a_server 1 '--server' "${one[@]}" --verify=3
   expect_in_use verify_prints_its_odds 'of their pixels a frame checked: one wrong row in each would have been found with' \
     render seesaw "${shared[@]}" --server "$address" --verify 9 -o verified.ppm
-  for value in 1.5 -0.5 nan; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
+  for value in 1.5 -0.5; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
+  expect share_nan 2 'finite number' "${one[@]}" --server "$address" --share=nan
   for option in price energy-pixel energy-byte cost-weight cost-cap; do
     expect "${option}_below_0" 1 'negative' "${one[@]}" --server "$address" --$option=-1
     expect "${option}_without_a_server" 1 '--server' "${one[@]}" --$option=1
