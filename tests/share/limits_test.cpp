@@ -83,7 +83,6 @@ bool option_accepts(Quantity quantity, double x) {
 
 bool file_accepts(Quantity quantity, double x) {
   Scene scene;
-  Camera camera;
   std::vector<Camera> cameras(1);
   Node nodes[1];
   float key_time = 0;
