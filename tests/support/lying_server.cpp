@@ -39,11 +39,13 @@ void lie_about(Liar* liar, Session* s, const Slice& slice) {
 std::uint64_t now_and_lie(platform::Link* link) {
   for (Liar& liar : liars) {
     Server* server = liar.world->servers[liar.server];
-    if (!server || server->work.session < 0 || server->work.end_ns == liar.end_ns) continue;
-    liar.end_ns = server->work.end_ns;
-    Session* s = &server->sessions[static_cast<std::size_t>(server->work.session)];
-    if (server->work.slice.pixel_count == 0 || !has_job(*s) || s->job_number != server->work.job_number) continue;
-    lie_about(&liar, s, server->work.slice);
+    if (!server || server->work.session < 0) continue;
+    const Work& work = server->work;
+    if (work.end_ns == 0 || work.end_ns == liar.end_ns) continue;
+    liar.end_ns = work.end_ns;
+    Session* s = &server->sessions[static_cast<std::size_t>(work.session)];
+    bool traced = work.is_job && work.slice.pixel_count > 0 && !work.slice.is_probe;
+    if (traced && has_job(*s) && s->job_number == work.job_number) lie_about(&liar, s, work.slice);
   }
   return platform::kNullLink.now_ns(link);
 }
