@@ -130,8 +130,9 @@ Status aim(Session* s) {
 
 // The next pixels of an exposure, for about `slice_ns`.
 Status probe(Session* s, std::uint64_t slice_ns, Slice* slice) {
-  double pixels = s->probe_ns > 0 ? static_cast<double>(slice_ns) / s->probe_ns : kFirstPixels;
-  std::uint32_t count = pixels < 1 ? 1 : pixels < 1e6 ? static_cast<std::uint32_t>(pixels) : 1'000'000;
+  const Renderer& r = s->renderer;
+  std::uint32_t count = slice_pixels(r.settings, r.light_points.count, s->probe_ns, slice_ns);
+  if (s->probe_ns == 0) count = std::min(count, kFirstPixels);
   *slice = {0, 0, 0, true};
   float exposure = 0;
   bool done = probe_exposure(&s->renderer, &s->job.probe, count, &slice->pixel_count, &exposure);

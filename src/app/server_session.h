@@ -98,7 +98,7 @@ struct Session {
   FrameRequest request;                // the last one, be it met or refused; frame 0: there was none
   std::uint64_t job_number = 0;        // counts jobs, of clients before this one too
   std::uint32_t frame_last = 0;        // number of the last request
-  double trace_ns = 0, probe_ns = 0;   // what a pixel took all threads, and one of an exposure, of late; 0: unknown
+  double trace_ns = 0, probe_ns = 0;   // what a dear pixel takes all threads, and one of an exposure; 0: unknown
   std::uint32_t pixel_ps = 0;          // what a pixel cost the client, of late: time it had to wait included
   std::uint64_t waiting_since_ns = 0;  // for its turn; 0: it does not wait
 
@@ -136,6 +136,15 @@ bool can_work(const Session& session);
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code);
 // Answers a job that is a view_query, which ends it.
 Status answer_view_query(Session* session);
+// Pixels that one thread traces in about `slice_ns` where `known_ns` is what each takes (0: unknown). No more than it
+// can trace in about that time where they suddenly are as dear as such settings make them: the background before a
+// room costs a thousandth of the room.
+std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_count, double known_ns,
+                           std::uint64_t slice_ns);
+// What a dear pixel takes, after some have taken `new_ns` each: cheap ones are believed slowly.
+inline double dear_pixel_ns(double known_ns, double new_ns) {
+  return new_ns > 0.875 * known_ns ? new_ns : 0.875 * known_ns;
+}
 // Traces the next pixels of the job, for about `slice_ns`.
 Slice trace_slice(Session* session, std::uint64_t slice_ns);
 // Counts them: they took the threads `took_ns`, and the client `wall_ns`.

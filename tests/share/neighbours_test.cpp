@@ -280,3 +280,21 @@ TEST_CASE("server_refuses_frame_zero") {
   client.request(frame_request("cube", 0, 16, 12));
   CHECK(client.wait_for(MessageType::error)->message.error.code == WireError::bad_request);
 }
+
+// Goal: pixels that suddenly are dear do not make a slice long: cheap ones that come before them tell little. Method:
+// what a slice takes of a room behind a background that costs a thousandth, with settings that make rooms dear; cheap
+// settings, of which slices are as long as they should be.
+TEST_CASE("server_slices_expect_dear_pixels_behind_cheap_ones") {
+  constexpr std::uint64_t kSliceNs = 20 * kMs;
+  constexpr double kRoomNs = 650'000, kBackgroundNs = 650;
+  Settings dear, cheap;
+  dear.samples_per_pixel = 16;
+  CHECK(slice_pixels(dear, 512, kBackgroundNs, kSliceNs) * kRoomNs < 2.0 * kSliceNs);
+  CHECK(slice_pixels(dear, 512, 10 * kRoomNs, kSliceNs) * 10 * kRoomNs <= kSliceNs);
+  CHECK(slice_pixels(dear, 512, 1e12, kSliceNs) == 1);
+  CHECK(slice_pixels(cheap, 8, 2'000, kSliceNs) == kSliceNs / 2'000);
+  double known = kRoomNs;
+  for (int i = 0; i < 3; ++i) known = dear_pixel_ns(known, kBackgroundNs);  // to the left and right of the room
+  CHECK(known > 0.6 * kRoomNs);
+  CHECK(dear_pixel_ns(known, kRoomNs) == kRoomNs);
+}
