@@ -152,7 +152,7 @@ Status take_memory(Server* server) {
   const ServerOptions& o = server->options;
   server->sessions.resize(static_cast<std::size_t>(o.client_count_max));
   server->guests.resize(static_cast<std::size_t>(o.guest_count_max));
-  server->addresses.resize(kAddressCountMax);
+  server->addresses.reserve(kAddressCountMax);
   server->waits.resize(1 + server->sessions.size() + server->guests.size());
   for (Session& s : server->sessions) {
     void* block = take_block(o.client_memory_bytes);

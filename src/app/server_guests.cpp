@@ -77,25 +77,37 @@ void receive_guest(Server* server, int stream) {
   if (!flush(server, guest)) close_guest(server, guest);
 }
 
-// The account of an address: its own, or else of those that nobody is at the one that was seen longest ago.
-int find_address(Server* server, std::uint64_t key) {
-  std::vector<Address>& all = server->addresses;
+// Of the addresses that nobody is at the one that was seen longest ago.
+int forgotten_address(const Server& server) {
+  const std::vector<Address>& all = server.addresses;
   int oldest = -1;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].used && all[i].key == key) return static_cast<int>(i);
-    bool taken = std::any_of(server->sessions.begin(), server->sessions.end(), [&](const Session& s) {
+    bool taken = std::any_of(server.sessions.begin(), server.sessions.end(), [&](const Session& s) {
       return s.phase != SessionPhase::unused && s.address == static_cast<int>(i);
     });
     if (!taken && (oldest < 0 || all[i].last_ns < all[static_cast<std::size_t>(oldest)].last_ns))
       oldest = static_cast<int>(i);
   }
   CHECK_GE(oldest, 0);  // there are more of them than sessions
-  for (Session& s : server->sessions)
-    if (s.address == oldest) s.address = -1;
-  all[static_cast<std::size_t>(oldest)] = Address();
-  all[static_cast<std::size_t>(oldest)].key = key;
-  all[static_cast<std::size_t>(oldest)].used = true;
   return oldest;
+}
+
+// The account of an address: its own, or else a new one, if need be that of another.
+int find_address(Server* server, std::uint64_t key) {
+  std::vector<Address>& all = server->addresses;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].key == key) return static_cast<int>(i);
+  int chosen = static_cast<int>(all.size());
+  if (chosen < kAddressCountMax) {
+    all.emplace_back();
+  } else {
+    chosen = forgotten_address(*server);
+    for (Session& s : server->sessions)
+      if (s.address == chosen) s.address = -1;
+    all[static_cast<std::size_t>(chosen)] = Address();
+  }
+  all[static_cast<std::size_t>(chosen)].key = key;
+  return chosen;
 }
 
 int places_of(const Server& server, int address) {

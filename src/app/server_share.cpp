@@ -46,6 +46,7 @@ void end_frame(Account* account, std::uint64_t took_ns, std::uint64_t sent_ns) {
 }
 
 void forgive(Account* account, std::uint64_t passed_ns, std::uint64_t account_count) {
+  if (account->owed_ns == 0) return;
   account->owed_ns -= std::min(account->owed_ns, passed_ns / (kForgiveFactor * account_count));
 }
 

@@ -16,7 +16,7 @@ constexpr std::size_t kGuestInputBytes = 272;  // any hello, also of another ver
 // Where connections come from, and what they have used together; kept when they have gone.
 struct Address {
   std::uint64_t key = 0, last_ns = 0;  // seen last
-  bool used = false, waits = false;
+  bool waits = false;
   Account account;
   Lanes lanes;  // of its sessions
 };
@@ -59,7 +59,7 @@ struct Server {
   std::vector<Session> sessions;
   std::vector<void*> blocks;
   std::vector<Guest> guests;
-  std::vector<Address> addresses;
+  std::vector<Address> addresses;  // kAddressCountMax at most
   Lanes lanes;  // of addresses
   std::vector<platform::LinkWait> waits;
   Work work;
