@@ -24,7 +24,7 @@ struct Slot {
   Error error;  // why it was lost
 };
 
-struct ShapedLink : Link {
+struct alignas(Slot) ShapedLink : Link {  // slots follow it
   LinkBackend functions;
   Link* inner;
   ShapedLinkSettings settings;

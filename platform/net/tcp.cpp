@@ -30,7 +30,7 @@ struct Slot {
   char name[64];
 };
 
-struct TcpLink : Link {
+struct alignas(Slot) TcpLink : Link {  // slots follow it
   std::uint64_t (*now_ns)();
   int slot_count;
   Slot* slots;

@@ -29,7 +29,7 @@ struct Slot {
   char name[40];
 };
 
-struct NullLink : Link {
+struct alignas(Slot) NullLink : Link {  // slots follow it
   NullLinkSettings settings;
   NullLinkRecord record;
   std::uint64_t clock_ns, set_back_ns;

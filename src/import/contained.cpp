@@ -78,12 +78,15 @@ void limit(int what, std::uint64_t value) {
   setrlimit(what, &now);
 }
 
-// Bytes of address space that this process has; 0 where nobody says.
-std::uint64_t address_space_bytes() {
+// The process may take so much more than it has; where nobody says what that is, or sanitizers take most of it, nothing
+// limits it.
+void limit_memory([[maybe_unused]] std::uint64_t more_bytes) {
+#if !defined(POCKETRAY_ADDRESS_SPACE_IS_SHADOWED)
   unsigned long long pages = 0;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/statm", "r"), std::fclose);
-  if (!file || std::fscanf(file.get(), "%llu", &pages) != 1) return 0;
-  return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  if (!file || std::fscanf(file.get(), "%llu", &pages) != 1 || pages == 0) return;
+  limit(RLIMIT_AS, pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + more_bytes);
+#endif
 }
 
 // The child has no say in the parent's affairs: its signals end it, nothing that it prints is seen, it leaves no core.
@@ -95,10 +98,7 @@ void become_contained(const ContainerLimits& limits) {
     if (nowhere >= 0) dup2(nowhere, descriptor);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds);
-#if !defined(POCKETRAY_ADDRESS_SPACE_IS_SHADOWED)
-  std::uint64_t present = address_space_bytes();
-  if (limits.memory_bytes > 0 && present > 0) limit(RLIMIT_AS, present + limits.memory_bytes);
-#endif
+  if (limits.memory_bytes > 0) limit_memory(limits.memory_bytes);
 }
 
 bool send_result(int pipe, bool read, const std::string& text, const std::uint8_t* scene, std::size_t scene_bytes) {
