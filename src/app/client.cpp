@@ -38,6 +38,29 @@ void mark_dirty(Client* c, std::uint32_t begin, std::uint32_t end) {
 // later.
 bool is_watched(const Client& c) { return c.frames_shared < kWatchedFirst || c.frames_shared % kWatchedEvery == 0; }
 
+// How much longer the device may do nothing in this frame, so that it is done within 1 + `share` times what it takes
+// alone even if nothing comes any more. What that is has to be certain: rows count as they were in this frame or, by as
+// much as this frame's are cheaper, in the frames before; those that were never measured count for nothing. Rows
+// that have come have saved their time.
+double time_to_spare(const Client& c, double share) {
+  auto is_measured = [](const RowModel& row) { return is_known(row.device_ns) && !row.guessed; };
+  double seen = 0, seen_before = 0, others = 0, come = 0;
+  for (std::uint32_t r = 0; r < c.model.rows.count; ++r) {
+    const RowModel& row = c.model.rows[r];
+    if (!is_measured(row)) continue;
+    double before = static_cast<double>(row.device_ns.value);
+    if (row.device_ns_seen > 0)
+      seen += static_cast<double>(row.device_ns_seen), seen_before += before;
+    else
+      others += before, come += c.merge.rows[r].state == RowState::server ? before : 0;
+  }
+  // Rows that were rendered at once have their mean: by a few of them a frame only seems to be dearer than the last.
+  double change = seen_before > 0 ? std::min(1.0, seen / seen_before) : 1;
+  double alone = std::max(c.device_ns, std::min(c.device_ns + change * others, seen_before + others));
+  double idle = static_cast<double>(client_now_ns(c) - c.begin_ns) - c.device_ns;
+  return share * alone + change * come - idle;
+}
+
 // Whether the servers' rows are due before the device could render one, or late by less than that takes; and should
 // none of them come, it is still done about when it would be alone.
 bool is_worth_waiting(const Client& c) {
@@ -154,19 +177,23 @@ void close_client(Client* c) {
 }
 
 void work_until(Client* c, std::uint64_t due_ns) {
-  for (std::uint64_t now = client_now_ns(*c); now < due_ns; now = client_now_ns(*c))
+  for (std::uint64_t now = client_now_ns(*c), before = 0; now < due_ns && now != before; now = client_now_ns(*c)) {
+    before = now;  // still, where the clock has been set back meanwhile: the time is over all the same
     c->link->backend->poll(c->link, nullptr, 0, due_ns - now);
+  }
 }
 
 void advance_client(Client* c, std::uint64_t timeout_ns) {
   look_at_servers(c, timeout_ns);
   // A while of doing nothing but waiting for the answers of the overture, within what a network may cost.
   while (timeout_ns == 0 && !c->complete) {
-    double elapsed = static_cast<double>(client_now_ns(*c) - c->begin_ns);
-    double alone = device_pixel_ns(*c) * c->settings.width * c->settings.height;
-    double left = kWaitShare * std::max({elapsed, c->share.measured_ns, alone}) - static_cast<double>(c->waited_ns);
-    std::uint64_t wanted = wait_wanted_ns(*c), begin = client_now_ns(*c);
-    if (wanted == 0 || left <= 0) return;
+    std::uint64_t wanted = wait_wanted_ns(*c);
+    if (wanted == 0) return;
+    double left = time_to_spare(*c, kWaitShare);
+    std::uint64_t begin = client_now_ns(*c);
+    // What the servers in use have saved is not for others to waste.
+    if (c->joined) left = std::min(left, kWaitShare * c->share.predicted_ns - static_cast<double>(c->waited_ns));
+    if (left <= 0) return;
     look_at_servers(c, std::min(wanted, static_cast<std::uint64_t>(left) + 1));
     c->waited_ns += client_now_ns(*c) - begin;
   }

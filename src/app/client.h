@@ -27,6 +27,7 @@ struct ClientOptions {
   double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; below 0: the best
   bool device_goes_on = true;                           // into rows that have not come; false: for comparisons
   Pace pace;                                            // the CPU to emulate
+  const float* row_costs = nullptr;                     // on it, see row_costs.h
   bool has_scene = true;              // false: the device renders nothing, and shows what servers render
   int check_count = kCheckCountAuto;  // of servers' pixels in a frame, at most kSpotChecksMax; 0: none
   // Gives random numbers that no server can foresee, as platform/entropy.h; null: the same ones every time, for tests.

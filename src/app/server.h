@@ -21,6 +21,7 @@ struct ServerOptions {
   std::uint32_t thread_count = 1;                     // that trace, shared by all clients
   Pace pace;                                          // the CPU to emulate: what pixels cost it, and
   std::uint64_t message_ns = 0, byte_ps = 0;          //   a message and a byte of its answer; 0: nothing
+  const float* row_costs = nullptr;                   //   rows over each other, see row_costs.h
   std::uint64_t message_timeout_ns = 10'000'000'000;  // for a message to be whole; the hello, from the start
   std::uint64_t idle_timeout_ns = 300'000'000'000;    // without a message, nor anything to send
   std::uint64_t stall_timeout_ns = 10'000'000'000;    // without taking anything of what is sent

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "app/row_costs.h"
 #include "app/server_state.h"
 
 namespace pocketray {
@@ -70,11 +71,16 @@ int choose_session(Server* server) {
   return first[choose_lane(lanes, first[0] >= 0, first[1] >= 0)];
 }
 
+Pace pace_of(const Server& server, const Session& s, const Slice& slice) {
+  std::uint32_t end = s.job.traced_begin, row_count = std::max(slice.row_count, slice.pixel_count > 0 ? 1u : 0u);
+  return pace_of_rows(server.options.pace, server.options.row_costs, end - row_count, end);
+}
+
 // How long the work was, by the CPU that is emulated if there is one.
-std::uint64_t work_ns(const Server& server, const Work& work, std::uint64_t took) {
+std::uint64_t work_ns(const Server& server, const Session& s, const Work& work, std::uint64_t took) {
   const ServerOptions& o = server.options;
   if (!is_paced(o.pace)) return took;
-  if (work.message_count == 0) return paced_ns(o.pace, work.slice.pixel_count, took);
+  if (work.message_count == 0) return paced_ns(pace_of(server, s, work.slice), work.slice.pixel_count, took);
   return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
 }
 
@@ -109,7 +115,7 @@ void begin_work(Server* server, int index) {
   work->begin_ns = start;
   work->end_ns = now;
   if (is_paced(server->options.pace)) {
-    took = work_ns(*server, *work, took);
+    took = work_ns(*server, *s, *work, took);
     // Who waited already when the CPU became free was begun with at that moment.
     if (work->is_job && waited_since < server->cpu_free_ns && server->cpu_free_ns < start)
       work->begin_ns = server->cpu_free_ns;

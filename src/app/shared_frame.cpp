@@ -4,6 +4,7 @@
 
 #include "app/client_parts.h"
 #include "app/frame.h"
+#include "app/row_costs.h"
 #include "base/limit_list.h"
 #include "present/pack.h"
 
@@ -19,6 +20,22 @@ void pack_device_rows(const Renderer& r, Client* c, std::uint32_t row_begin, std
   pack_rows(r.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end), r.exposure,
             small ? kRgb565 : kRgb888, Rotation::none, c->options.dither, c->pixels.data,
             width * static_cast<int>(pixel_bytes(c->options.format)));
+}
+
+// Takes the time that the emulated device takes for so many pixels; returns how long that was.
+std::uint64_t take_time_at(Client* c, const Pace& pace, std::uint64_t pixel_count, std::uint64_t begin_ns) {
+  std::uint64_t elapsed = client_now_ns(*c) - begin_ns;
+  if (!is_paced(pace)) return elapsed;
+  elapsed = paced_ns(pace, pixel_count, elapsed);
+  work_until(c, begin_ns + elapsed);
+  return elapsed;
+}
+
+// The same for pixels of these rows, which may cost more or less than others.
+std::uint64_t take_row_time(Client* c, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t pixel_count,
+                            std::uint64_t begin_ns) {
+  return take_time_at(c, pace_of_rows(c->options.pace, c->options.row_costs, row_begin, row_end), pixel_count,
+                      begin_ns);
 }
 
 // Pixels of a row, about as many for each thread.
@@ -44,7 +61,7 @@ void render_long_row(Renderer* r, Client* c, std::uint32_t row) {
     std::uint32_t end = begin + std::min(count, width - begin);
     std::uint64_t begin_ns = client_now_ns(*c);
     trace_part(r, row, begin, end);
-    std::uint64_t part_ns = take_time(c, end - begin, begin_ns);
+    std::uint64_t part_ns = take_row_time(c, row, row + 1, end - begin, begin_ns);
     row_ns += part_ns;
     pixel_ns = static_cast<double>(part_ns + 1) / (end - begin);
     begin = end;
@@ -69,18 +86,14 @@ bool render_rows(Renderer* r, Client* c) {
   trace_with(r->workers, {r->spans.data + begin, end - begin, Aov::none, r->image.data, r->tracers.data, nullptr});
   pack_device_rows(*r, c, begin, end);
   std::uint64_t pixel_count = std::uint64_t(end - begin) * r->settings.width;
-  finish_device_rows(c, begin, end, take_time(c, pixel_count, begin_ns));
+  finish_device_rows(c, begin, end, take_row_time(c, begin, end, pixel_count, begin_ns));
   return true;
 }
 
 }  // namespace
 
 std::uint64_t take_time(Client* c, std::uint64_t pixel_count, std::uint64_t begin_ns) {
-  std::uint64_t elapsed = client_now_ns(*c) - begin_ns;
-  if (!is_paced(c->options.pace)) return elapsed;
-  elapsed = paced_ns(c->options.pace, pixel_count, elapsed);
-  work_until(c, begin_ns + elapsed);
-  return elapsed;
+  return take_time_at(c, c->options.pace, pixel_count, begin_ns);
 }
 
 Status begin_shared_frame(Renderer* r, Client* c, double seconds) {

@@ -43,6 +43,7 @@ void fold_device_rows(CostModel* model) {
     if (!(row.device_ns_seen > 0)) continue;
     double old_value = value_of(row.device_ns, 0);
     smooth(&row.device_ns, static_cast<double>(row.device_ns_seen));
+    row.guessed = false;
     if (old_value > 0) before += old_value, after += static_cast<double>(row.device_ns.value);
   }
   if (!(before > 0)) return;
@@ -62,8 +63,10 @@ void fold_server_rows(CostModel* model, std::uint32_t server) {
   smooth(&model->servers[server].speed, speed);
   if (!(speed > 0)) return;
   for (RowModel& row : model->rows)
-    if (row.server_ns_seen > 0 && row.server_seen == server && !(row.device_ns_seen > 0))
+    if (row.server_ns_seen > 0 && row.server_seen == server && !(row.device_ns_seen > 0)) {
       smooth(&row.device_ns, static_cast<double>(row.server_ns_seen) / speed);
+      row.guessed = false;
+    }
 }
 
 void add_times(ByteTimes* times, double bytes, double ns) {
@@ -127,7 +130,7 @@ void observe_overture(CostModel* model, std::uint32_t server, const PixelTimes& 
   s->speed = s->ns_per_byte = s->start_ns = Smoothed();
   double pixels = model->width;
   for (RowModel& row : model->rows) {
-    if (!is_known(row.device_ns)) smooth(&row.device_ns, times.device_ns * pixels);
+    if (!is_known(row.device_ns)) smooth(&row.device_ns, times.device_ns * pixels), row.guessed = true;
     if (!is_known(row.bytes)) smooth(&row.bytes, bytes_per_pixel * pixels);
   }
   observe_server_price(model, server, times.server_ns);

@@ -29,8 +29,9 @@ struct ServerModel {
 };
 
 struct RowModel {
-  Smoothed device_ns;  // wall time of the device for the row, whether or not it rendered it
-  Smoothed bytes;      // as it is sent
+  Smoothed device_ns;    // wall time of the device for the row, whether or not it rendered it
+  Smoothed bytes;        // as it is sent
+  bool guessed = false;  // device_ns is the mean of other rows
   // Of the current frame; 0: not observed.
   float device_ns_seen = 0, server_ns_seen = 0;
   std::uint8_t server_seen = 0;

@@ -1,0 +1,202 @@
+#include "fault_session.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+
+#include "fault_oracle.h"
+#include "fault_world.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kTimeMax = 1.05;  // of the device alone, whatever happens
+constexpr int kSettleFrames = 12, kJudgedFrames = 5;
+// A lost connection is noticed, its place at the server is free again, the next try is due, the overture is over.
+constexpr std::uint64_t kReturnNsMax = kSilenceNs + kServerIdleNs + 2 * kRetryMaxNs + 3 * kSilenceNs;
+// Without the scene: so long without a row, and then the next look.
+constexpr std::uint64_t kCutOffNsMax = 5'000 * kMs + 3 * kSilenceNs;
+
+std::string fail(const FaultWorld& w, const std::string& what, double value = 0) {
+  char text[60];
+  std::snprintf(text, sizeof text, " (%.4g)", value);
+  return "frame " + std::to_string(w.frame) + ": " + what + text;
+}
+
+std::string phases(const FaultWorld& w) {
+  std::string text;
+  for (std::uint32_t i = 0; i < w.plan.server_count; ++i)
+    text += std::string(i ? ", " : "") + phase_text(w.client.servers[i].phase);
+  for (const std::string& line : w.log) text += "\n    " + line;
+  return text;
+}
+
+bool is_right(const FaultWorld& w, int second) {
+  const std::vector<std::uint8_t>& expected = device_picture(w.plan, second);
+  const Array<std::uint8_t>& pixels = w.client.pixels;
+  return std::equal(pixels.begin(), pixels.end(), expected.begin(), expected.end());
+}
+
+void begin_frame(FaultWorld* w) {
+  w->disturbed = w->stuck = false;
+  look_for_events(true);
+  w->frame_begin_ns = w->elapsed();
+  w->lost_ns = 0;
+}
+
+// One frame, against the device's own and its time: nothing is taken off but what the device cannot know of. `ratio` is
+// the frame's time over that.
+std::string run_frame(FaultWorld* w, SessionResult* result) {
+  const FaultPlan& plan = w->plan;
+  int second = w->frame % static_cast<int>(std::size(kFaultSeconds));
+  std::size_t lines_before = w->log.size();
+  device_picture(plan, second);
+  begin_frame(w);
+  bool complete = false;
+  if (!render_shared_frame(device_renderer(plan), &w->client, kFaultSeconds[second], nullptr, &complete).ok ||
+      !complete)
+    return fail(*w, "is not complete");
+  double ns = static_cast<double>(w->elapsed() - w->frame_begin_ns);
+  note_faults();
+  if (!is_right(*w, second)) return fail(*w, "is not the device's own");
+  bool calm = !w->disturbed && (w->disturbed_ns == 0 || w->frame_begin_ns > w->disturbed_ns + kSilenceNs);
+  double ratio = (ns - static_cast<double>(w->lost_ns)) / static_cast<double>(w->local_ns);
+  ++result->frames, result->frames_disturbed += !calm;
+  double* worst = calm ? &result->worst_calm : &result->worst_disturbed;
+  *worst = std::max(*worst, ratio);
+  if (w->stuck) return fail(*w, "a server holds the device", ratio);
+  if (ratio > kTimeMax) return fail(*w, "is late", ratio);
+  if (w->log.size() > lines_before + 2 * plan.server_count) return fail(*w, "is reported too often");
+  return "";
+}
+
+// The same without the scene: it takes what the servers take, and is left when no rows have come for long.
+std::string run_thin_frame(FaultWorld* w, SessionResult* result) {
+  int second = w->frame % static_cast<int>(std::size(kFaultSeconds));
+  device_picture(w->plan, second);
+  Renderer* r = device_renderer(w->plan);
+  Client* c = &w->client;
+  begin_frame(w);
+  if (!begin_shared_frame(r, c, kFaultSeconds[second]).ok) return fail(*w, "does not begin");
+  std::uint64_t rows_come_ns = w->elapsed();
+  std::uint32_t rows = 0;
+  while (!advance_shared_frame(r, c, client_now_ns(*c) + 20 * kMs, nullptr)) {
+    if (w->stuck) return fail(*w, "a server holds the device");
+    if (c->merge.row_count_done != rows) rows = c->merge.row_count_done, rows_come_ns = w->elapsed();
+    if (is_cut_off(*c)) break;
+    if (w->elapsed() - rows_come_ns > kCutOffNsMax + w->lost_ns) break;
+  }
+  note_faults();
+  ++result->frames, ++result->frames_disturbed;
+  if (has_all_rows(*c) && !is_right(*w, second)) return fail(*w, "is not as servers render it");
+  if (w->peace && !has_all_rows(*c)) return fail(*w, "is not complete: " + phases(*w));
+  return "";
+}
+
+std::string run_any_frame(FaultWorld* w, SessionResult* result) {
+  return w->plan.has_scene ? run_frame(w, result) : run_thin_frame(w, result);
+}
+
+// Whether a server is in use. One whose first rows take most of a frame has no part in frames: it is asked for some in
+// each, and they come too late.
+bool is_back(const FaultWorld& w, std::uint32_t i) {
+  const FaultPlan& plan = w.plan;
+  ServerPhase phase = w.client.servers[i].phase;
+  double dearest = *std::max_element(plan.row_costs, plan.row_costs + plan.height);
+  double rows_ns = 2 * static_cast<double>(plan.line.latency_ns + plan.line.jitter_ns) +
+                   plan.server_count * (plan.server_ns[i] * plan.width * 4 * dearest + 2e6);
+  return phase == ServerPhase::ready || (phase == ServerPhase::probing && rows_ns > w.client.share.measured_ns / 4);
+}
+
+// Lines come in turns: lost, in use again.
+std::string check_log(const FaultWorld& w, SessionResult* result) {
+  for (std::uint32_t i = 0; i < w.plan.server_count; ++i) {
+    bool lost = false;
+    for (const std::string& line : w.log) {
+      if (line.find(w.places[i].address.text) == std::string::npos) continue;
+      bool back = line.find("in use again") != std::string::npos;
+      if (back != lost) return fail(w, "is reported out of turn: " + line);
+      lost = !back;
+      result->losses += lost;
+    }
+    if (lost && w.client.servers[i].phase == ServerPhase::ready)
+      return fail(w, "a server that is back is not reported so");
+  }
+  return "";
+}
+
+std::string run_troubles(FaultWorld* w, SessionResult* result) {
+  const FaultPlan& plan = w->plan;
+  for (w->frame = 0; w->frame < kFaultFrames; ++w->frame) {
+    for (int i = 0; i < plan.event_count; ++i)
+      if (w->done[i] && plan.events[i].back_frame == w->frame) bring_back(plan.events[i].server);
+    std::string failure = run_any_frame(w, result);
+    if (!failure.empty()) return failure;
+    if (w->frame % 3 == 2) advance_client(&w->client, w->local_ns);
+  }
+  return "";
+}
+
+// All are back within a bounded time.
+std::string run_return(FaultWorld* w, SessionResult* result) {
+  auto all_ready = [&] {
+    for (std::uint32_t i = 0; i < w->plan.server_count; ++i)
+      if (!is_back(*w, i)) return false;
+    return true;
+  };
+  std::uint64_t begin = w->elapsed();
+  // A connection of which the device does not know yet that it is dead is found out meanwhile.
+  std::uint64_t quiet_ns = kSilenceNs + 600 * kMs;
+  while (!all_ready() || w->elapsed() - begin < quiet_ns) {
+    if (!all_ready() && w->elapsed() - begin > kReturnNsMax + 10 * w->local_ns)
+      return fail(*w, "not all servers are in use again: " + phases(*w));
+    std::string failure = run_any_frame(w, result);
+    if (!failure.empty()) return failure;
+    ++w->frame;
+    for (std::uint64_t until = w->elapsed() + 100 * kMs; w->elapsed() < until;)
+      advance_client(&w->client, until - w->elapsed());
+    if (!all_ready()) result->return_ns = w->elapsed() - begin;
+  }
+  return "";
+}
+
+// What frames then take, over what the best split of them takes: to be told.
+std::string run_settled(FaultWorld* w, SessionResult* result) {
+  if (!w->plan.has_scene || w->plan.device_share >= 0) return "";
+  std::vector<double> times;
+  for (int i = 0; i < kSettleFrames + kJudgedFrames; ++i, ++w->frame) {
+    std::string failure = run_any_frame(w, result);
+    if (!failure.empty()) return failure;
+    times.push_back(static_cast<double>(w->elapsed() - w->frame_begin_ns));
+  }
+  std::sort(times.end() - kJudgedFrames, times.end());
+  double best = best_frame_ns(w->plan, w->client), ratio = times[kSettleFrames + kJudgedFrames / 2] / best;
+  result->worst_settled = std::max(result->worst_settled, ratio);
+  return "";
+}
+
+}  // namespace
+
+SessionResult run_fault_session(const FaultPlan& plan) {
+  SessionResult result;
+  FaultWorld w;
+  open_fault_world(plan, &w);
+  result.failure = run_troubles(&w, &result);
+  make_peace();
+  if (result.failure.empty()) result.failure = run_return(&w, &result);
+  if (result.failure.empty()) result.failure = run_settled(&w, &result);
+  if (result.failure.empty()) result.failure = check_log(w, &result);
+  result.faults_struck = w.faults_struck;
+  for (int i = 0; i < plan.line.fault_count; ++i) ++result.struck[static_cast<int>(plan.faults[i].fault)];
+
+  // No server keeps a client that is gone.
+  close_client(&w.client);
+  let_pass(kServerIdleNs + kSilenceNs + 200 * kMs);
+  for (std::uint32_t i = 0; i < plan.server_count; ++i)
+    if (result.failure.empty() && server_client_count(*w.places[i].server) > 0)
+      result.failure = fail(w, "leaves a session behind");
+  close_fault_world(&w);
+  return result;
+}
+
+}  // namespace pocketray
