@@ -1,6 +1,6 @@
 #include "app/heap_scene.h"
 
-#include <cstring>
+#include <algorithm>
 
 #include "scene/builtin/builtin.h"
 
@@ -43,7 +43,7 @@ void* build_heap_accel(const AccelInfo& info, const Scene& scene, Array<const st
   if (block) {
     Arena kept = make_arena("accelerator", block, arena_need(accel.data.count) + kArenaAlignment);
     Array<std::uint8_t> data = arena_array<std::uint8_t>(&kept, accel.data.count);
-    std::memcpy(data.data, accel.data.data, accel.data.count);
+    std::copy(accel.data.begin(), accel.data.end(), data.begin());
     *result = data;
   }
   give_block_back(building);

@@ -155,10 +155,10 @@ int run(ViewCommand o) {
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),
                          &viewer);
   if (status.ok) status = open_sharing(o.sharing, o.view.emulated, &viewer.sharing);
-  std::unique_ptr<Sharing, void (*)(Sharing*)> closing(viewer.sharing, close_sharing);
-  if (!status.ok) return report(status);
-  status = view_scenes(&o, &viewer);
-  close_viewer(&viewer);
+  std::unique_ptr<Viewer, void (*)(Viewer*)> closing_screen(&viewer, close_viewer);
+  std::unique_ptr<Sharing, void (*)(Sharing*)> closing_sharing(viewer.sharing, close_sharing);
+  if (status.ok) status = view_scenes(&o, &viewer);
+  closing_screen.reset();
   if (!status.ok) return report(status);
   return interrupted ? kExitInterrupted : kExitDone;
 }

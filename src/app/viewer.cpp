@@ -177,7 +177,9 @@ Status open_screen(const platform::ScreenOptions& options, Viewer* v, platform::
   v->backend = platform::platform_find(name == "auto" ? "linux" : name.c_str());  // whose a framebuffer is
   if (!v->backend) return failure("--screen is '%s': this program has sdl2, linux or null, as built", name.c_str());
   platform::Error error;
-  return v->backend->open(options, format, &error) ? success() : failure("%s", error.text);
+  if (v->backend->open(options, format, &error)) return success();
+  v->backend = nullptr;
+  return failure("%s", error.text);
 }
 
 // Moves camera and time on; marks the picture as changed.
@@ -204,17 +206,8 @@ Status step_scene(Viewer* v, Renderer* r, ViewerLoop* loop) {
   return success();
 }
 
-}  // namespace
-
-std::size_t viewer_bytes(const Settings& settings) { return picture_bytes(settings) + progressive_need(settings); }
-
-Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* v) {
-  v->options = options;
-  v->scene_path = scene;
-  v->width = width;
-  v->height = height;
-  if (!rotation_from_degrees(options.rotation, &v->rotation))
-    return failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
+// Takes memory for pages and opens the screen; what has been taken stays so on failure.
+Status take_screen(const ViewOptions& options, int width, int height, Viewer* v) {
   std::size_t page_bytes = platform::page_bytes_max(width, height);
   v->page_memory = std::malloc(page_bytes);
   v->picture_memory = std::malloc(page_bytes);
@@ -239,11 +232,26 @@ Status open_viewer(const ViewOptions& options, const char* scene, int width, int
   platform::ScreenFormat format;
   RETURN_IF_ERROR(open_screen(screen, v, &format));
   v->format = to_pixel_format(format);
-  if (format.width < screen_width(*v) || format.height < screen_height(*v)) {
-    v->backend->close();
-    return failure("the screen has %dx%d pixels, too few for the picture: use --size %dx%d", format.width,
-                   format.height, quarter_turned(*v) ? format.height : format.width,
-                   quarter_turned(*v) ? format.width : format.height);
+  if (format.width >= screen_width(*v) && format.height >= screen_height(*v)) return success();
+  return failure("the screen has %dx%d pixels, too few for the picture: use --size %dx%d", format.width, format.height,
+                 quarter_turned(*v) ? format.height : format.width, quarter_turned(*v) ? format.width : format.height);
+}
+
+}  // namespace
+
+std::size_t viewer_bytes(const Settings& settings) { return picture_bytes(settings) + progressive_need(settings); }
+
+Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* v) {
+  v->options = options;
+  v->scene_path = scene;
+  v->width = width;
+  v->height = height;
+  if (!rotation_from_degrees(options.rotation, &v->rotation))
+    return failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
+  Status status = take_screen(options, width, height, v);
+  if (!status.ok) {
+    close_viewer(v);
+    return status;
   }
   v->waiting_since_ns = v->backend->now_ns();
   watch_scene(v);
@@ -311,6 +319,7 @@ Status run_viewer(Viewer* v, Renderer* r, bool* again) {
 
 void close_viewer(Viewer* v) {
   if (v->backend) v->backend->close();
+  v->backend = nullptr;
   std::free(v->page_memory);
   std::free(v->picture_memory);
   v->page_memory = v->picture_memory = nullptr;

@@ -88,6 +88,7 @@ void tell(Viewer* viewer, const char* text);
 // frames are finished. Camera and time go on from viewer->kept where that is of this scene; the view and the picture
 // are kept for the next one. Allocates nothing but for the split screen.
 Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again);
+// Of one that is closed, or that was never opened, too.
 void close_viewer(Viewer* viewer);
 
 }  // namespace pocketray

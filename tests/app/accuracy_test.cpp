@@ -215,7 +215,9 @@ TEST_CASE("accuracy_goes_on_within_a_reference") {
   AccuracyOptions o = small(folder), other = small(fresh);
   o.rounds = other.rounds = 1;
   std::uint32_t traced = 0, again = 0;
-  o.row_done = [&](std::uint32_t) { interrupted = ++traced == kRows + 7; };
+  o.row_done = [&](std::uint32_t) {
+    if (++traced == kRows + 7) interrupted = true;
+  };
   Sweep sweep;
   bool whole = true;
   Status status = measure_sweep(o, &sweep, &whole);

@@ -44,7 +44,7 @@ bool camera_accepts(int place, const std::string& number) {
   return parse_camera(text, &camera).ok;
 }
 bool option_accepts(Quantity quantity, double x) {
-  auto count = static_cast<std::uint32_t>(x);
+  auto count = x >= 0 && x <= 1e9 ? static_cast<std::uint32_t>(x) : 1'000'000'000;
   bool accepted = true;
   switch (quantity) {
     case Quantity::width:
