@@ -11,8 +11,9 @@ namespace {
 
 constexpr std::size_t kOutBytes = 1024;     // of requests that wait to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
-constexpr double kWaitShare = 0.04;         // of a frame's time that the overture may wait: less than the 5 % that a
+constexpr double kWaitShare = 0.03;         // of a frame's time that the overture may wait: less than the 5 % that a
                                             // network may cost
+constexpr double kCertainPart = 0.5;        // of what a row is thought to take: rows are measured several at a time
 constexpr double kLateFactor = 1.03;        // of a frame's predicted time, after which nobody waits for rows; and of
                                             // the device's alone, likewise
 constexpr double kLookNs = 20e6;            // between two looks at the link: a frame that a screen shows
@@ -38,16 +39,19 @@ void mark_dirty(Client* c, std::uint32_t begin, std::uint32_t end) {
 // later.
 bool is_watched(const Client& c) { return c.frames_shared < kWatchedFirst || c.frames_shared % kWatchedEvery == 0; }
 
-// How much longer the device may do nothing in this frame, so that it is done within 1 + `share` times what it takes
+// How much longer the device may do nothing in this frame, so that it is done within 1 + kWaitShare times what it takes
 // alone even if nothing comes any more. What that is has to be certain: rows count as they were in this frame or, by as
-// much as this frame's are cheaper, in the frames before; those that were never measured count for nothing. Rows
-// that have come have saved their time.
-double time_to_spare(const Client& c, double share) {
+// much as this frame's are cheaper, in the frames before; for those that the device never rendered a part of the mean
+// is certain, and `come_share` of the time that rows which have come have saved.
+double time_to_spare(const Client& c, double come_share) {
   auto is_measured = [](const RowModel& row) { return is_known(row.device_ns) && !row.guessed; };
-  double seen = 0, seen_before = 0, others = 0, come = 0;
+  double seen = 0, seen_before = 0, others = 0, come = 0, unknown = 0;
   for (std::uint32_t r = 0; r < c.model.rows.count; ++r) {
     const RowModel& row = c.model.rows[r];
-    if (!is_measured(row)) continue;
+    if (!is_measured(row)) {
+      if (!(row.device_ns_seen > 0)) ++unknown;
+      continue;
+    }
     double before = static_cast<double>(row.device_ns.value);
     if (row.device_ns_seen > 0)
       seen += static_cast<double>(row.device_ns_seen), seen_before += before;
@@ -57,18 +61,28 @@ double time_to_spare(const Client& c, double share) {
   // Rows that were rendered at once have their mean: by a few of them a frame only seems to be dearer than the last.
   double change = seen_before > 0 ? std::min(1.0, seen / seen_before) : 1;
   double alone = std::max(c.device_ns, std::min(c.device_ns + change * others, seen_before + others));
+  alone += kCertainPart * unknown * device_pixel_ns(c) * c.settings.width;
   double idle = static_cast<double>(client_now_ns(c) - c.begin_ns) - c.device_ns;
-  return share * alone + change * come - idle;
+  return kWaitShare * alone + come_share * change * come - idle;
+}
+
+// What the rows that are not done would take the device: as this frame's and as those before, whichever is more.
+double rows_left_ns(const Client& c) {
+  double known = 0, count = c.merge.rows.count - c.merge.row_count_done;
+  for (std::uint32_t r = 0; r < c.model.rows.count; ++r)
+    if (c.merge.rows[r].state == RowState::missing) known += static_cast<double>(c.model.rows[r].device_ns.value);
+  return std::max(known, device_pixel_ns(c) * c.settings.width * count);
 }
 
 // Whether the servers' rows are due before the device could render one, or late by less than that takes; and should
 // none of them come, it is still done about when it would be alone.
 bool is_worth_waiting(const Client& c) {
   double prepare = static_cast<double>(c.prepare_ns), due = c.share.predicted_ns - prepare;
-  double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns);
-  double row = device_pixel_ns(c) * c.settings.width, rows_left = c.merge.rows.count - c.merge.row_count_done;
-  if (elapsed + row * rows_left > kLateFactor * (c.share.local_ns - prepare)) return false;
-  return c.joined && elapsed + row > due && elapsed < std::max(kLateFactor * due, due + row);
+  double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns), row = device_pixel_ns(c) * c.settings.width;
+  if (!c.joined || elapsed + row <= due || elapsed >= std::max(kLateFactor * due, due + row)) return false;
+  bool any_guessed = std::any_of(c.model.rows.begin(), c.model.rows.end(), [](const RowModel& r) { return r.guessed; });
+  double latest = kLateFactor * (c.share.local_ns - prepare);
+  return elapsed + rows_left_ns(c) <= latest && (any_guessed || time_to_spare(c, kCertainPart) > 0);
 }
 
 // Rows that the device may render without a look at the link: while somebody is there to look for, not for long.
@@ -79,8 +93,12 @@ std::uint32_t rows_between_looks(const Client& c) {
   if (c.joined && is_watched(c))
     look_ns = std::min(look_ns, (c.share.predicted_ns - static_cast<double>(c.prepare_ns)) / kLooksWatched);
   look_ns = std::min(look_ns, work_ns_max(c));
-  if (!any || !(row_ns * c.settings.height > look_ns)) return c.settings.height;
-  return row_ns < look_ns ? static_cast<std::uint32_t>(look_ns / row_ns) : 1;
+  if (!any) return c.settings.height;
+  // By this frame's rows so far, and by those of the frames before: what follows the sky costs more.
+  std::uint32_t count = 0;
+  for (double ns = 0; ns < look_ns && c.merge.next_row + count < c.model.rows.count; ++count)
+    ns += std::max(row_ns, static_cast<double>(c.model.rows[c.merge.next_row + count].device_ns.value));
+  return std::max(1u, count);
 }
 
 // Takes what has come, after waiting `timeout_ns` at most for something.
@@ -189,7 +207,7 @@ void advance_client(Client* c, std::uint64_t timeout_ns) {
   while (timeout_ns == 0 && !c->complete) {
     std::uint64_t wanted = wait_wanted_ns(*c);
     if (wanted == 0) return;
-    double left = time_to_spare(*c, kWaitShare);
+    double left = time_to_spare(*c, 0);
     std::uint64_t begin = client_now_ns(*c);
     // What the servers in use have saved is not for others to waste.
     if (c->joined) left = std::min(left, kWaitShare * c->share.predicted_ns - static_cast<double>(c->waited_ns));
@@ -207,14 +225,14 @@ void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
   s->frame.heard_ns = client_now_ns(*c);
-  if (s->frame.first_ns == 0)
-    s->frame.first_ns = s->frame.heard_ns;
-  else
-    s->frame.bytes_behind += byte_count;
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
   if (s->phase == ServerPhase::probing) s->probe_ns_per_pixel = 1e-3 * chunk.pixel_ps;
   double render_ns = 1e-3 * chunk.pixel_ps * c->settings.width * chunk.row_count;
   s->frame.render_ns += render_ns;
+  if (s->frame.first_ns == 0)
+    s->frame.first_ns = s->frame.heard_ns;
+  else
+    s->frame.bytes_behind += byte_count, s->frame.render_behind_ns += render_ns;
   Arrivals* a = &c->arrivals;
   a->last_ns = client_now_ns(*c);
   if (a->first_ns == 0)

@@ -65,6 +65,7 @@ struct ServerFrame {
   std::uint64_t heard_ns = 0;      // when rows came last
   std::uint64_t first_ns = 0;      // and first
   std::uint64_t bytes_behind = 0;  // of the chunks behind the first
+  double render_behind_ns = 0;     //   and what their rows took the server
   bool answers = false;            // it has answered since it was asked, be it a ping
 };
 
@@ -83,7 +84,7 @@ struct RemoteServer {
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
   bool ping_alone = false;  // no rows of any server were under way when it was sent
   double round_trip_ns = 0, ns_per_byte = 0;
-  double scaled = 1;                 // ns_per_byte, with others' since it was measured by itself
+  double scaled = 1;                 // ns_per_byte, by what rows took, since it was measured by itself
   std::uint64_t quiet_until_ns = 0;  // its link is measured meanwhile: no rows are asked of others
   std::uint64_t anew_ns = 0;         // not before then its link is measured anew
   double probe_ns_per_pixel = 0;

@@ -32,6 +32,8 @@ constexpr const char* kUnasked = "it sends what it was not asked for";
 
 // ---- client_ping.cpp
 
+constexpr double kUnsound = 2;  // RemoteServer::scaled of a link that is to be measured anew
+
 void send_ping(Client* client, RemoteServer* server, std::uint32_t reply_bytes);
 void take_pong(Client* client, RemoteServer* server, const Pong& pong);
 // Whether a link is being measured, which rows of others on their way would disturb.

@@ -16,7 +16,8 @@ constexpr double kLongWorkNs = 100e6;            // and while there is none: ser
 constexpr std::uint64_t kQuietNs = 400'000'000;  // that others' rows may be held back while a link is measured,
 constexpr std::uint64_t kAnewQuietNs = 200'000'000, kAnewNs = 3'000'000'000;  // and while it is again, this seldom
 constexpr double kAnewAnswerNs = 100e6;            // that the answer then takes at most, as far as is known
-constexpr double kScaledMax = 1.08;                // beyond which what follows from others is to be measured
+constexpr double kScaledMax = 1.08;                // beyond which what follows from others is to be measured,
+constexpr double kScaledAloneMax = 1.5;            // or from a single server's rows
 constexpr std::uint32_t kPingBytesLeast = 1024;    // of the one that measures the bandwidth; twice as many each time,
 constexpr std::uint32_t kPingBytesMost = 16384;    // until they take
 constexpr double kPingTripsMin = 8;                // times as long as one without
@@ -72,19 +73,23 @@ void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::uint32_t by
   std::uint32_t next = next_ping_bytes(*c, *s);
   if (byte_count == 0 || (!tells && (next == 0 || next > byte_count))) return send_ping(c, s, next);
   s->ns_per_byte = ns_per_byte_of(*s, ns, byte_count);
-  s->scaled = sound ? 1 : 2;
+  s->scaled = sound ? 1 : kUnsound;
   enter(c, s, ServerPhase::probing);
 }
 
-// The link of a server that is in use, measured anew.
+// The link of a server that is in use, measured anew. An answer that was seen late, or that rows held up, still says
+// that the link is no slower.
 void take_ready_pong(Client* c, RemoteServer* s, double ns, std::uint32_t byte_count) {
   s->quiet_until_ns = 0;
-  if (!is_sound(*c, *s, ns, byte_count)) return;
   ServerModel* model = &c->model.servers[index_of(*c, s)];
-  s->ns_per_byte = ns_per_byte_of(*s, ns, byte_count);
+  double ns_per_byte = ns_per_byte_of(*s, ns, byte_count);
+  bool sound = is_sound(*c, *s, ns, byte_count);
+  if (!sound && !(ns_per_byte < static_cast<double>(model->ns_per_byte.value))) return;
+  s->ns_per_byte = ns_per_byte;
   model->ns_per_byte = Smoothed();
-  smooth(&model->ns_per_byte, s->ns_per_byte);
-  s->scaled = 1;
+  smooth(&model->ns_per_byte, ns_per_byte);
+  observe_own_link(&c->model, ns_per_byte);
+  s->scaled = sound ? 1 : kUnsound;
 }
 
 }  // namespace
@@ -133,7 +138,8 @@ void measure_anew(Client* c) {
   std::uint64_t now = client_now_ns(*c);
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     RemoteServer* s = &c->servers[i];
-    bool doubtful = s->scaled > kScaledMax || s->scaled * kScaledMax < 1;
+    double scaled_max = c->server_count == 1 ? kScaledAloneMax : kScaledMax;
+    bool doubtful = s->scaled > scaled_max || s->scaled * scaled_max < 1;
     if (s->phase != ServerPhase::ready || s->ping_id != 0 || now < s->anew_ns || !doubtful) continue;
     double bytes = kAnewAnswerNs / s->ns_per_byte, least = kPingBytesLeast, most = kPingBytesMost;
     s->anew_ns = now + kAnewNs;
@@ -155,7 +161,8 @@ std::uint64_t wait_wanted_ns(const Client& c) {
   std::uint64_t wanted = 0;
   for (std::uint32_t i = 0; i < c.server_count; ++i) {
     const RemoteServer& s = c.servers[i];
-    if (s.phase == ServerPhase::measuring && s.ping_id != 0) {
+    bool is_measured = s.phase == ServerPhase::measuring || (s.phase == ServerPhase::ready && s.ping_bytes > 0);
+    if (is_measured && s.ping_id != 0) {
       std::uint64_t since = client_now_ns(c) - s.ping_ns, wait = s.ping_bytes > 0 ? kSizedPingWaitNs : kPingWaitNs;
       if (since < wait && wait - since > wanted) wanted = wait - since;
     }

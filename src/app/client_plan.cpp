@@ -72,12 +72,7 @@ void finish_probe(Client* c, RemoteServer* s) {
   double bytes_per_pixel = std::max(1e-3, static_cast<double>(s->frame.bytes) / pixels);
   PixelTimes times = {device, s->probe_ns_per_pixel, s->ns_per_byte * bytes_per_pixel};
   observe_overture(&c->model, index_of(*c, s), times, bytes_per_pixel, s->round_trip_ns);
-  // What the radio that all servers share gives to the best of them when it is alone.
-  Smoothed* link = &c->model.link_ns_per_byte;
-  if (!is_known(*link) || s->ns_per_byte < static_cast<double>(link->value)) {
-    *link = Smoothed();
-    smooth(link, s->ns_per_byte);
-  }
+  observe_own_link(&c->model, s->ns_per_byte);
   server_is_ready(c, s);
   c->frames_shared = 0;
 }
@@ -184,9 +179,33 @@ void measure_own_links(Client* c) {
   }
 }
 
+// All of a server's rows came within the frame, however seldom the device looked: its link is no slower than that. How
+// fast it is, is to be measured.
+void bound_own_links(Client* c) {
+  for (std::uint32_t i = 0; i < c->server_count; ++i) {
+    RemoteServer* s = &c->servers[i];
+    Smoothed* ns_per_byte = &c->model.servers[i].ns_per_byte;
+    double ns = static_cast<double>(s->frame.heard_ns - c->begin_ns);
+    double bytes = static_cast<double>(s->frame.bytes_behind);
+    if (s->phase != ServerPhase::ready || bytes == 0 || !(ns < bytes * static_cast<double>(ns_per_byte->value))) continue;
+    *ns_per_byte = Smoothed();
+    smooth(ns_per_byte, ns / bytes);
+    observe_own_link(&c->model, ns / bytes);
+    s->scaled = kUnsound;
+  }
+}
+
+// Bytes per nanosecond that a server makes of the rows behind its first chunk: the arrivals begin with that one, and its
+// rows may be far cheaper than theirs.
+double rate_of(const ServerFrame& f) {
+  if (f.render_behind_ns > 0) return static_cast<double>(f.bytes_behind) / f.render_behind_ns;
+  return f.render_ns > 0 ? static_cast<double>(f.bytes) / f.render_ns : 0;
+}
+
 }  // namespace
 
 void measure_link(Client* c) {
+  bound_own_links(c);
   const Arrivals& a = c->arrivals;
   double ns = static_cast<double>(a.last_ns - a.first_ns), bytes = static_cast<double>(a.bytes);
   if (bytes == 0 || ns < kGapsMin * static_cast<double>(a.gap_ns_max)) return;
@@ -196,7 +215,7 @@ void measure_link(Client* c) {
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     const ServerFrame& f = c->servers[i].frame;
     if (f.rows_come == 0 || c->servers[i].phase != ServerPhase::ready) continue;
-    if (f.render_ns > 0) rate += static_cast<double>(f.bytes) / f.render_ns;
+    rate += rate_of(f);
     ++count, last = i;
   }
   Smoothed* link = &c->model.link_ns_per_byte;
@@ -205,9 +224,13 @@ void measure_link(Client* c) {
   if (count == 0 || !(link_bound || better)) return;
   smooth(link, ns / bytes);
   if (count == 1 && link_bound) observe_transfer(&c->model, last, bytes, ns);
-  if (count == 1 || !(before > 0)) return;
+  if (!(before > 0)) return;
   // What has become of each by itself is measured when it has become doubtful.
   double factor = static_cast<double>(link->value) / before;
+  if (count == 1) {
+    if (link_bound) c->servers[last].scaled *= factor;
+    return;
+  }
   for (std::uint32_t i = 0; i < c->server_count; ++i) {
     scale(&c->model.servers[i].ns_per_byte, factor);
     c->servers[i].scaled *= factor;

@@ -42,6 +42,7 @@ void fold_device_rows(CostModel* model) {
   for (RowModel& row : model->rows) {
     if (!(row.device_ns_seen > 0)) continue;
     double old_value = value_of(row.device_ns, 0);
+    if (row.guessed) row.device_ns = Smoothed();  // beside a guess, what is measured could seem to be an outlier
     smooth(&row.device_ns, static_cast<double>(row.device_ns_seen));
     row.guessed = false;
     if (old_value > 0) before += old_value, after += static_cast<double>(row.device_ns.value);
@@ -63,10 +64,8 @@ void fold_server_rows(CostModel* model, std::uint32_t server) {
   smooth(&model->servers[server].speed, speed);
   if (!(speed > 0)) return;
   for (RowModel& row : model->rows)
-    if (row.server_ns_seen > 0 && row.server_seen == server && !(row.device_ns_seen > 0)) {
+    if (row.server_ns_seen > 0 && row.server_seen == server && !(row.device_ns_seen > 0))
       smooth(&row.device_ns, static_cast<double>(row.server_ns_seen) / speed);
-      row.guessed = false;
-    }
 }
 
 void add_times(ByteTimes* times, double bytes, double ns) {
@@ -166,6 +165,13 @@ void observe_transfer(CostModel* model, std::uint32_t server, double bytes, doub
 void observe_unpack(CostModel* model, double bytes, double ns) { add_times(&model->unpack_seen, bytes, ns); }
 
 void observe_link(CostModel* model, double bytes, double ns) { add_times(&model->link_seen, bytes, ns); }
+
+void observe_own_link(CostModel* model, double ns_per_byte) {
+  Smoothed* link = &model->link_ns_per_byte;
+  if (is_known(*link) && !(ns_per_byte < static_cast<double>(link->value))) return;
+  *link = Smoothed();
+  smooth(link, ns_per_byte);
+}
 
 void observe_server_price(CostModel* model, std::uint32_t server, double ns_per_pixel) {
   CHECK_LT(server, model->server_count);

@@ -31,7 +31,7 @@ struct ServerModel {
 struct RowModel {
   Smoothed device_ns;    // wall time of the device for the row, whether or not it rendered it
   Smoothed bytes;        // as it is sent
-  bool guessed = false;  // device_ns is the mean of other rows
+  bool guessed = false;  // device_ns follows from other rows: the device has never rendered this one
   // Of the current frame; 0: not observed.
   float device_ns_seen = 0, server_ns_seen = 0;
   std::uint8_t server_seen = 0;
@@ -89,6 +89,9 @@ inline void observe_device_start(CostModel* model, double ns) { smooth(&model->d
 void observe_unpack(CostModel* model, double bytes, double ns);
 // Bytes of all servers together and the time they took, while some server had more of them ready.
 void observe_link(CostModel* model, double bytes, double ns);
+
+// What a byte took from one server while it was alone on the link that all share: that is no slower.
+void observe_own_link(CostModel* model, double ns_per_byte);
 
 // Takes over what the frame's rows told. Where all rows of the device changed their price, the rows of the servers are
 // taken to have done the same: a new scene and a throttled device look alike there. What a server's rows then differ by

@@ -122,6 +122,7 @@ void happen(const PlannedEvent& event) {
     Outside outside;
     close_server(place->server);
     place->server = nullptr;
+    world->lost_ns += world->elapsed() - world->disturbed_ns;  // while it says goodbye, nobody else gets to do anything
   }
 }
 
