@@ -100,6 +100,10 @@ FaultPlan draw_hostile_faults(std::uint64_t seed) {
                             1 + static_cast<int>(random.below(3))};
   }
   plan.has_scene = random.below(6) != 0;
+  // What a flood sends comes as soon as what was there is read: the device is in the same house.
+  bool floods = std::any_of(plan.malice, plan.malice + plan.server_count,
+                            [](Malice m) { return m >= Malice::pongs && m <= Malice::repeated_rows; });
+  if (floods && random.below(2)) plan.line.bytes_per_second = plan.line.latency_ns = plan.line.jitter_ns = 0;
   return plan;
 }
 

@@ -13,7 +13,7 @@ namespace {
 // Of the device alone, whatever happens; the pixel by which a check may be longer than it should comes to that.
 constexpr double kTimeMax = 1.05;
 // No frame takes longer. So little is certain only where the device has measured rows one by one: see frames_late.
-constexpr double kTimeLimit = 1.1;
+constexpr double kTimeLimit = 1.2;
 constexpr double kSettledMax = 1.5;  // of the best split, beside two rows that the device begins and nobody needs
 constexpr int kSettleFrames = 12, kJudgedFrames = 5;
 constexpr std::uint64_t kSettlePauseNs = 600 * kMs;  // between them: links are measured anew every few seconds

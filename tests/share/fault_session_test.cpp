@@ -22,7 +22,7 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
 }  // namespace
 
 // Goal: whatever breaks and whoever lies, every frame is complete, the device's own byte for byte, and in time: within
-// 1.05 times what the device takes alone, whatever it waits for, but for one frame in 5,000, which takes 1.10 times at
+// 1.05 times what the device takes alone, whatever it waits for, but for one frame in 5,000, which takes 1.2 times at
 // most; a device without the scene gives up in time; each loss is told once; once there is peace all servers come into
 // use again within a bounded time, frames take about what the best split of them takes in all sessions but one of a
 // thousand, and no server keeps a client that is gone. Method: one to three servers, random costs, rows and lines, up to four faults of the line and four of
