@@ -187,7 +187,8 @@ void bound_own_links(Client* c) {
     Smoothed* ns_per_byte = &c->model.servers[i].ns_per_byte;
     double ns = static_cast<double>(s->frame.heard_ns - c->begin_ns);
     double bytes = static_cast<double>(s->frame.bytes_behind);
-    if (s->phase != ServerPhase::ready || bytes == 0 || !(ns < bytes * static_cast<double>(ns_per_byte->value))) continue;
+    if (s->phase != ServerPhase::ready || bytes == 0 || !(ns < bytes * static_cast<double>(ns_per_byte->value)))
+      continue;
     *ns_per_byte = Smoothed();
     smooth(ns_per_byte, ns / bytes);
     observe_own_link(&c->model, ns / bytes);
@@ -195,8 +196,8 @@ void bound_own_links(Client* c) {
   }
 }
 
-// Bytes per nanosecond that a server makes of the rows behind its first chunk: the arrivals begin with that one, and its
-// rows may be far cheaper than theirs.
+// Bytes per nanosecond that a server makes of the rows behind its first chunk: the arrivals begin with that one, and
+// its rows may be far cheaper than theirs.
 double rate_of(const ServerFrame& f) {
   if (f.render_behind_ns > 0) return static_cast<double>(f.bytes_behind) / f.render_behind_ns;
   return f.render_ns > 0 ? static_cast<double>(f.bytes) / f.render_ns : 0;

@@ -110,8 +110,7 @@ double dearest_row(const FaultPlan& plan) {
 
 // Between two frames.
 void let_client_rest(FaultWorld* w, std::uint64_t ns) {
-  for (std::uint64_t until = w->elapsed() + ns; w->elapsed() < until;)
-    advance_client(&w->client, until - w->elapsed());
+  for (std::uint64_t until = w->elapsed() + ns; w->elapsed() < until;) advance_client(&w->client, until - w->elapsed());
 }
 
 // Whether a server is in use. One whose first rows take most of a frame has no part in frames: it is asked for some in
