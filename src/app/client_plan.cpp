@@ -8,6 +8,7 @@ namespace pocketray {
 namespace {
 
 constexpr double kGapsMin = 4;       // looks in which rows have to come for their time to mean something
+constexpr double kDisproved = 1.25;  // times that a link is faster than it was thought to be, if that is no noise
 constexpr double kLinkBound = 1.15;  // times that rows take on the link beyond what they take on the servers
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
 constexpr double kGrowthMin = 4, kGrowthMax = 32;                // of chunks, in 16ths, where they grow
@@ -187,8 +188,8 @@ void bound_own_links(Client* c) {
     Smoothed* ns_per_byte = &c->model.servers[i].ns_per_byte;
     double ns = static_cast<double>(s->frame.heard_ns - c->begin_ns);
     double bytes = static_cast<double>(s->frame.bytes_behind);
-    if (s->phase != ServerPhase::ready || bytes == 0 || !(ns < bytes * static_cast<double>(ns_per_byte->value)))
-      continue;
+    bool disproved = kDisproved * ns < bytes * static_cast<double>(ns_per_byte->value);
+    if (s->phase != ServerPhase::ready || bytes == 0 || !disproved) continue;
     *ns_per_byte = Smoothed();
     smooth(ns_per_byte, ns / bytes);
     observe_own_link(&c->model, ns / bytes);
