@@ -43,8 +43,10 @@ bool camera_accepts(int place, const std::string& number) {
   Camera camera;
   return parse_camera(text, &camera).ok;
 }
+// What is no count becomes one that is too large for any.
+std::uint32_t count_of(double x) { return x >= 0 && x <= 1e9 ? static_cast<std::uint32_t>(x) : ~std::uint32_t(0); }
 bool option_accepts(Quantity quantity, double x) {
-  auto count = x >= 0 && x <= 1e9 ? static_cast<std::uint32_t>(x) : 1'000'000'000;
+  std::uint32_t count = count_of(x);
   bool accepted = true;
   switch (quantity) {
     case Quantity::width:
@@ -196,7 +198,7 @@ bool receiver_accepts(const Field& field, double x) {
   std::size_t at = kHeaderBytes;
   while (at < bytes.size() && bytes[at] == changed[at]) ++at;
   REQUIRE(at + field.byte_count <= bytes.size());
-  auto integer = static_cast<std::uint32_t>(x);
+  std::uint32_t integer = count_of(x);
   auto single = static_cast<float>(x);
   const void* from = field.byte_count <= 2   ? static_cast<const void*>(&integer)
                      : field.byte_count == 4 ? static_cast<const void*>(&single)
