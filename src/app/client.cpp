@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kOutBytes = 1024;     // of requests that wait to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
-constexpr double kWaitShare = 0.03;         // of a frame's time that the overture may wait: less than the 5 % that a
-                                            // network may cost
+constexpr double kWaitShare = 0.03;         // of a frame's time that the device may wait in vain: less than the 5 %
+                                            // that a network may cost, of which checks take one
 constexpr double kCertainPart = 0.5;        // of what a row is thought to take: rows are measured several at a time
 constexpr double kLateFactor = 1.03;        // of a frame's predicted time, after which nobody waits for rows; and of
                                             // the device's alone, likewise
