@@ -1,0 +1,286 @@
+"""The device's side of the wire, written from src/wire/PROTOCOL.md and in nothing but Python's standard library. What a
+server sends against it is noted by check()."""
+import socket, struct, zlib
+
+MASK = 2**64 - 1
+HELLO, SCENE_LIST, SCENE_QUERY, SCENE_ENTRY, SCENE_FETCH, SCENE_PIECE, FRAME_REQUEST, ROW_CHUNK, CANCEL, ERROR, PING, PONG, \
+    VIEW_QUERY, VIEW_ENTRY, FRAME_CHANGE = range(1, 16)
+WRONG_VERSION, MALFORMED, UNKNOWN_SCENE, TOO_LARGE, BAD_REQUEST, BUSY, CLOSING = range(1, 8)
+RGB565, RGB888 = 0, 1
+EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-mask", "alpha-blend", "emission", "texture",
+           "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
+           "supersampling", "animation", "back-face-culling"]
+
+failures = []
+
+
+def check(condition, what):
+    if not condition:
+        failures.append(what)
+        print("FAILED", what)
+
+
+# ---- Scenes: the hash
+
+
+def rotl(x, r):
+    return (x << r | x >> (64 - r)) & MASK
+
+
+def scene_hash(data):
+    c1, c2 = 0x87c37b91114253d5, 0x4cf5ad432745937f
+    h1 = h2 = 0
+    whole = len(data) // 16 * 16
+    for k1, k2 in struct.iter_unpack("<QQ", data[:whole]):
+        h1 ^= rotl(k1 * c1 & MASK, 31) * c2 & MASK
+        h1 = (rotl(h1, 27) + h2) * 5 + 0x52dce729 & MASK
+        h2 ^= rotl(k2 * c2 & MASK, 33) * c1 & MASK
+        h2 = (rotl(h2, 31) + h1) * 5 + 0x38495ab5 & MASK
+    rest = data[whole:]
+    if len(rest) > 8:
+        h2 ^= rotl(int.from_bytes(rest[8:], "little") * c2 & MASK, 33) * c1 & MASK
+    if rest:
+        h1 ^= rotl(int.from_bytes(rest[:8], "little") * c1 & MASK, 31) * c2 & MASK
+    h1 ^= len(data)
+    h2 ^= len(data)
+    h1 = h1 + h2 & MASK
+    h2 = h2 + h1 & MASK
+
+    def mix(h):
+        h ^= h >> 33
+        h = h * 0xff51afd7ed558ccd & MASK
+        h ^= h >> 33
+        h = h * 0xc4ceb9fe1a85ec53 & MASK
+        return h ^ h >> 33
+
+    h1, h2 = mix(h1), mix(h2)
+    h1 = h1 + h2 & MASK
+    h2 = h2 + h1 & MASK
+    return struct.pack("<QQ", h1, h2)
+
+
+# ---- Chunks
+
+
+class Picture:
+    """The picture as it was last sent, and the deflate stream."""
+
+    def __init__(self, width, height, pixel_format):
+        self.width, self.height, self.format = width, height, pixel_format
+        self.levels = (32, 64, 32) if pixel_format == RGB565 else (256, 256, 256)
+        self.pixels = [(0, 0, 0)] * (width * height)
+        self.inflater = zlib.decompressobj(-15)
+
+    def load(self, body, at):
+        if self.format == RGB888:
+            return body[at], body[at + 1], body[at + 2]
+        value = body[at] | body[at + 1] << 8
+        return value >> 11, value >> 5 & 63, value & 31
+
+    def decode(self, row, row_count, encoding, data):
+        if encoding & 2:
+            data = self.inflater.decompress(data + b"\0\0\xff\xff")
+        at = 0
+
+        def number():
+            nonlocal at
+            value = shift = 0
+            while True:
+                byte = data[at]
+                at += 1
+                value |= (byte & 127) << shift
+                shift += 7
+                if byte < 128:
+                    return value
+
+        run_bytes = number()
+        values = runs_end = at + run_bytes
+        count = row_count * self.width
+        size = 3 if self.format == RGB888 else 2
+        chunk = self.pixels[row * self.width:(row + row_count) * self.width]
+        place = 0
+        while at < runs_end:
+            place += number()
+            given = number()
+            assert given >= 1 and place + given <= count
+            for i in range(place, place + given):
+                pixel = self.load(data, values)
+                values += size
+                chunk[i] = self.undo(pixel, chunk, i) if encoding & 1 else pixel
+            place += given
+        assert at == runs_end and values == len(data), "the body has the length that its runs call for"
+        self.pixels[row * self.width:(row + row_count) * self.width] = chunk
+
+    def undo(self, difference, chunk, i):
+        width = self.width
+        if i < width:
+            guess = chunk[i - 1] if i else (0, 0, 0)
+        elif i % width == 0:
+            guess = chunk[i - width]
+        else:
+            guess = tuple(
+                min(left, up) if corner >= max(left, up) else max(left, up) if corner <= min(left, up) else left + up - corner
+                for left, up, corner in zip(chunk[i - 1], chunk[i - width], chunk[i - width - 1]))
+        red, green, blue = difference
+        share = green >> 1 if self.format == RGB565 else green
+        return tuple((d + g) % n for d, g, n in zip((red + share, green, blue + share), guess, self.levels))
+
+    def compare(self, rgb, rows=None):
+        """Whether it is what `rgb`, bytes of R, G and B, makes in this format."""
+        first, end = rows or (0, self.height)
+        for i in range(first * self.width, end * self.width):
+            level = rgb[3 * i:3 * i + 3]
+            # 565 has the nearest of its values to each of 256 levels.
+            wanted = tuple(level) if self.format == RGB888 else tuple(
+                (2 * x * (n - 1) + 255) // 510 for x, n in zip(level, self.levels))
+            if self.pixels[i] != wanted:
+                return False
+        return True
+
+
+# ---- Messages
+
+
+def message(kind, fields=b""):
+    head = struct.pack("<I", kind | len(fields) << 8)
+    return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
+
+
+def hello(version=4, more=b""):
+    return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
+
+
+CAMERA = dict(eye=(0, 0, 5), target=(0, 0, 0), up=(0, 1, 0), fov=0.8, extent=1.0, projection=0)
+
+
+def pack_camera(camera):
+    return struct.pack("<11fI", *camera["eye"], *camera["target"], *camera["up"], camera["fov"], camera["extent"],
+                       camera["projection"])
+
+
+DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4,
+                cut_off=0.5, filter=0, normals=0, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
+                chunk=4, largest=16, growth=8, level=1, measure=0)
+
+
+def request(scene, kind=FRAME_REQUEST, **changes):
+    r = dict(DEFAULTS, **changes)
+    end = r["height"] if r["end"] is None else r["end"]
+    rows = struct.pack("<HHHHBB", r["first"], end, r["chunk"], r["largest"], r["growth"], r["level"])
+    settings = struct.pack("<HHBBHfBBII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
+                           r["filter"], r["normals"], r["on"], r["off"])
+    view = struct.pack("<BH", r["stated"], r["index"]) + pack_camera(r["camera"])
+    if kind == FRAME_CHANGE:
+        return message(kind, struct.pack("<Id", r["frame"], r["time"]) + pack_camera(r["camera"]) + rows)
+    if kind == VIEW_QUERY:
+        return message(kind, scene + view + settings + struct.pack("<B", r["measure"]))
+    return message(kind, struct.pack("<I", r["frame"]) + scene + struct.pack("<d", r["time"]) + view + settings +
+                   struct.pack("<fBB", r["exposure"], r["dither"], r["format"]) + rows)
+
+
+class Device:
+    def __init__(self, address, greets=True):
+        host, port = address.rsplit(":", 1)
+        self.socket = socket.create_connection((host, int(port)), 60)
+        self.bytes = b""
+        self.chunk_count = 0
+        self.encodings = set()
+        self.picture = None
+        if greets:
+            self.send(hello())
+            kind, fields = self.receive()
+            check(kind == HELLO and fields[:6] == b"PRAY\4\0", "the server says hello first, of version 4")
+            self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
+
+    def send(self, data):
+        try:
+            self.socket.sendall(data)
+        except OSError:
+            pass  # closed; reading tells why
+
+    def take(self, count):
+        while len(self.bytes) < count:
+            try:
+                more = self.socket.recv(65536)
+            except ConnectionResetError:
+                more = b""
+            if not more:
+                return None
+            self.bytes += more
+        taken, self.bytes = self.bytes[:count], self.bytes[count:]
+        return taken
+
+    def receive(self):
+        """The next message; type None: the server has closed."""
+        head = self.take(8)
+        if head is None:
+            return None, b""
+        kind, length = head[0], int.from_bytes(head[1:4], "little")
+        fields = self.take(length)
+        assert struct.unpack("<I", head[4:])[0] == zlib.crc32(head[:4] + fields), "a message has its CRC"
+        return kind, fields
+
+    def ask(self, data, expected):
+        self.send(data)
+        kind, fields = self.receive()
+        check(kind == expected, "type %s answers, expected %d" % (kind, expected))
+        return fields
+
+    def error(self, data, what=""):
+        """Code and frame of the error that answers."""
+        self.send(data)
+        kind, fields = self.receive()
+        while kind not in (ERROR, None):
+            kind, fields = self.receive()
+        check(kind == ERROR, "an error answers: " + what)
+        return struct.unpack("<HI", fields) if kind == ERROR else (0, 0)
+
+    def closed(self, waits=True):
+        """Whether the server closes; one that is told that nothing more comes need not give time to read."""
+        if not waits:
+            self.socket.shutdown(socket.SHUT_WR)
+        kind, _ = self.receive()
+        while kind is not None:
+            kind, _ = self.receive()
+        return True
+
+    def entry(self, data):
+        fields = self.ask(data, SCENE_ENTRY)
+        size, index, count, triangles = struct.unpack("<QHHI", fields[16:32])
+        name = fields[32:].split(b"\0", 1)
+        check(name[1].strip(b"\0") == b"", "a name is filled with zeros")
+        return dict(hash=fields[:16], size=size, index=index, count=count, triangles=triangles, name=name[0].decode())
+
+    def take_chunk(self, fields, frame, r, due, before):
+        number, row, rows, _, encoding = struct.unpack("<IHHIB", fields[:13])
+        data = fields[13:]
+        check(number == frame, "a chunk is of the frame")
+        check(encoding >> 2 == self.chunk_count % 64, "chunks are counted")
+        check(row + rows == due and row >= r["first"], "the lowest rows come first")
+        left, growth = due - r["first"], r["growth"]
+        most = max(min(before * (16 + growth) // 16, left * growth // (16 + growth), r["largest"]), r["chunk"])
+        check(rows <= min(most, left), "a chunk of %d rows grows as asked" % rows)
+        size = 3 if r["format"] == RGB888 else 2
+        count = rows * r["width"]
+        body = 21 + count // 2 + count * size
+        check(len(data) <= body + body // 8 + 64, "a chunk is no longer than its rows can take")
+        self.encodings.add(encoding & 3)
+        self.chunk_count += 1
+        self.picture.decode(row, rows, encoding, data)
+        return row, rows
+
+    def frame(self, scene, kind=FRAME_REQUEST, **changes):
+        """Asks for rows and takes them."""
+        r = dict(DEFAULTS, **changes)
+        p = self.picture
+        if not p or (p.width, p.height, p.format) != (r["width"], r["height"], r["format"]):
+            self.picture = Picture(r["width"], r["height"], r["format"])
+        self.send(request(scene, kind, **changes))
+        due, before = r["height"] if r["end"] is None else r["end"], 0
+        while due > r["first"]:
+            kind, fields = self.receive()
+            if kind != ROW_CHUNK:
+                check(False, "rows come, not %s %s: %s" % (kind, fields[:6], changes))
+                break
+            due, before = self.take_chunk(fields, r["frame"], r, due, before)
+        return self.picture
