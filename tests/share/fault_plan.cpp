@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iterator>
 
+#include "app/client_verify.h"
 #include "fault_random.h"
 
 namespace pocketray {
@@ -37,6 +38,12 @@ void set_size(FaultPlan* plan, std::uint32_t width, std::uint32_t height) {
   plan->device_ns *= smaller;
   for (double& ns : plan->server_ns) ns *= smaller;
   plan->width = width, plan->height = height;
+}
+
+// Not of the kind that only checks reveal.
+Malice draw_malice(FaultRandom* random) {
+  Malice malice = static_cast<Malice>(1 + random->below(kMaliceCount - 2));
+  return malice >= Malice::wrong_pixels ? static_cast<Malice>(static_cast<int>(malice) + 1) : malice;
 }
 
 }  // namespace
@@ -75,6 +82,7 @@ FaultPlan draw_faults(std::uint64_t seed) {
     e->back_frame = e->frame + 1 + static_cast<int>(random.below(4));
   }
   plan.has_scene = true;
+  plan.check_count = kCheckCountAuto;
   plan.rows = "alike";
   for (float& cost : plan.row_costs) cost = 1;
   return plan;
@@ -91,7 +99,7 @@ FaultPlan draw_hostile_faults(std::uint64_t seed) {
   draw_rows(&random, &plan);
   plan.read_ns = random.below(2) ? random.scale(0.1, 10) : 0;
   for (std::uint32_t i = 0; i < plan.server_count; ++i)
-    if (random.below(3) == 0) plan.malice[i] = static_cast<Malice>(1 + random.below(kMaliceCount - 1));
+    if (random.below(3) == 0) plan.malice[i] = draw_malice(&random);
   if (random.below(8) == 0) {
     plan.neighbour_count = 1 + static_cast<int>(random.below(kNeighboursMax));
     for (int i = 0; i < plan.neighbour_count; ++i)
@@ -104,14 +112,19 @@ FaultPlan draw_hostile_faults(std::uint64_t seed) {
   bool floods = std::any_of(plan.malice, plan.malice + plan.server_count,
                             [](Malice m) { return m >= Malice::pongs && m <= Malice::repeated_rows; });
   if (floods && random.below(2)) plan.line.bytes_per_second = plan.line.latency_ns = plan.line.jitter_ns = 0;
+  // Where all pixels of a frame are wrong, one check of each server finds the lie before it is shown.
+  if (plan.has_scene && random.below(6) == 0) {
+    plan.malice[random.below(plan.server_count)] = Malice::wrong_pixels;
+    plan.check_count = static_cast<int>(plan.server_count);
+  }
   return plan;
 }
 
 const char* malice_name(Malice malice) {
   static const char* const kNames[kMaliceCount] = {
-      "none",          "pongs",       "entries",     "errors",    "old rows",           "foreign rows",
-      "repeated rows", "free pixels", "dear pixels", "any price", "another scene",      "another hello",
-      "quick pongs",   "dawdles",     "flaps",       "junk",      "a device's messages"};
+      "none",          "pongs",         "entries",     "errors",      "old rows",  "wrong pixels",
+      "foreign rows",  "repeated rows", "free pixels", "dear pixels", "any price", "another scene",
+      "another hello", "quick pongs",   "dawdles",     "flaps",       "junk",      "a device's messages"};
   return kNames[static_cast<int>(malice)];
 }
 

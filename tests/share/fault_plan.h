@@ -38,6 +38,7 @@ enum class Malice : std::uint8_t {
   entries,          // the same with descriptions of scenes
   errors,           // reports errors, one after the other
   old_rows,         // sends rows of frames that are over, well encoded, without end
+  wrong_pixels,     // sends rows as they should be, but for their pixels, from some frame on
   foreign_rows,     // sends wrong pixels for rows that others are asked for
   repeated_rows,    // sends its rows twice, the second time wrong
   free_pixels,      // says that its pixels take no time
@@ -51,7 +52,7 @@ enum class Malice : std::uint8_t {
   junk,             // sends what is no message
   device_messages,  // sends what only devices send
 };
-constexpr int kMaliceCount = 17;
+constexpr int kMaliceCount = 18;
 const char* malice_name(Malice malice);
 
 // What other clients of the servers do.
@@ -89,6 +90,7 @@ struct FaultPlan {
   float row_costs[kSessionRowsMax];  // over device_ns or server_ns
   double read_ns;                    // of the device for each byte that it takes from the link
   Malice malice[kSessionServersMax];
+  int check_count;  // of servers' pixels in a frame, as ClientOptions has it
   Neighbour neighbours[kNeighboursMax];
   int neighbour_count;
   bool has_scene;  // false: the device leaves all to the servers

@@ -14,6 +14,8 @@ namespace {
 constexpr double kTimeMax = 1.05;
 // No frame takes longer. So little is certain only where the device has measured rows one by one: see frames_late.
 constexpr double kTimeLimit = 1.2;
+// Where a lie is found, what the liar sent is rendered again.
+constexpr double kLieTimeMax = 2 * kTimeLimit;
 constexpr double kSettledMax = 1.5;  // of the best split, beside two rows that the device begins and nobody needs
 constexpr int kSettleFrames = 12, kJudgedFrames = 5;
 constexpr std::uint64_t kSettlePauseNs = 600 * kMs;  // between them: links are measured anew every few seconds
@@ -49,6 +51,18 @@ void begin_frame(FaultWorld* w) {
   w->lost_ns = 0;
 }
 
+// Nobody who keeps to the protocol is taken for a liar, and a liar is not used again.
+std::string check_lies(const FaultWorld& w, SessionResult* result) {
+  result->lies += static_cast<int>(w.client.share.lies);
+  for (std::uint32_t i = 0; i < w.plan.server_count; ++i) {
+    const RemoteServer& s = w.client.servers[i];
+    if (s.lied && w.plan.malice[i] == Malice::none) return fail(w, "an honest server is taken for a liar");
+    if (s.lied && (s.phase != ServerPhase::waiting || w.client.share.server_rows[i] > 0))
+      return fail(w, "a liar is used again");
+  }
+  return "";
+}
+
 // One frame, against the device's own and its time: nothing is taken off but what the device cannot know of. `ratio` is
 // the frame's time over that.
 std::string run_frame(FaultWorld* w, SessionResult* result) {
@@ -67,12 +81,17 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   bool calm = !w->disturbed && (w->disturbed_ns == 0 || w->frame_begin_ns > w->disturbed_ns + kSilenceNs);
   double ratio = (ns - static_cast<double>(w->lost_ns)) / static_cast<double>(w->local_ns);
   ++result->frames, result->frames_disturbed += !calm;
-  double* worst = calm ? &result->worst_calm : &result->worst_disturbed;
-  *worst = std::max(*worst, ratio);
   if (w->stuck) return fail(*w, "a server holds the device", ratio);
-  result->frames_late += ratio > kTimeMax + 1.0 / (plan.width * plan.height);
-  if (ratio > kTimeLimit) return fail(*w, "is late", ratio);
-  if (w->log.size() > lines_before + 2 * plan.server_count) return fail(*w, "is reported too often");
+  std::string failure = check_lies(*w, result);
+  if (!failure.empty()) return failure;
+  bool lies = w->client.share.lies > 0;
+  double* worst = calm ? &result->worst_calm : &result->worst_disturbed;
+  if (!lies) *worst = std::max(*worst, ratio);
+  double check_pixels = std::max(1, plan.check_count);
+  result->frames_late += !lies && ratio > kTimeMax + check_pixels / (plan.width * plan.height);
+  if (ratio > (lies ? kLieTimeMax : kTimeLimit)) return fail(*w, "is late", ratio);
+  if (w->log.size() > lines_before + 2 * plan.server_count + w->client.share.lies)
+    return fail(*w, "is reported too often");
   return "";
 }
 
@@ -117,20 +136,23 @@ void let_client_rest(FaultWorld* w, std::uint64_t ns) {
 // each, and they come too late.
 bool is_back(const FaultWorld& w, std::uint32_t i) {
   const FaultPlan& plan = w.plan;
+  if (w.client.servers[i].lied) return true;  // it stays away
   ServerPhase phase = w.client.servers[i].phase;
   double rows_ns = 2 * static_cast<double>(plan.line.latency_ns + plan.line.jitter_ns) +
                    plan.server_count * (4 * plan.server_ns[i] * dearest_row(plan) + 2e6);
   return phase == ServerPhase::ready || (phase == ServerPhase::probing && rows_ns > w.client.share.measured_ns / 4);
 }
 
-// Lines come in turns: lost, in use again.
+// Lines come in turns: lost, in use again; the last one of a liar says so.
 std::string check_log(const FaultWorld& w, SessionResult* result) {
   for (std::uint32_t i = 0; i < w.plan.server_count; ++i) {
-    bool lost = false;
+    bool lost = false, lied = false;
     for (const std::string& line : w.log) {
       if (line.find(w.places[i].address.text) == std::string::npos) continue;
+      if (lied) return fail(w, "is reported after it was dropped: " + line);
+      lied = line.find("wrong pixels") != std::string::npos;
       bool back = line.find("in use again") != std::string::npos;
-      if (back != lost) return fail(w, "is reported out of turn: " + line);
+      if (back != lost && !lied) return fail(w, "is reported out of turn: " + line);
       lost = !back;
       result->losses += lost;
     }

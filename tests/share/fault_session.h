@@ -12,6 +12,7 @@ struct SessionResult {
   std::string failure;  // empty: none
   int frames = 0, frames_disturbed = 0, faults_struck = 0, losses = 0;
   int frames_late = 0;                         // beyond 1.05 times the device's alone
+  int lies = 0;                                // found
   bool far_from_best = false;                  // in the end: frames take far longer than with the best split
   int struck[platform::kLinkFaultCount] = {};  // drawn, of sessions in which as many struck
   double worst_calm = 0, worst_disturbed = 0;  // time of a frame over the device's alone

@@ -295,6 +295,7 @@ void open_fault_world(const FaultPlan& given, FaultWorld* w) {
   ClientOptions o;
   o.has_scene = plan.has_scene;
   o.format = plan.format, o.dither = plan.dither, o.device_share = plan.device_share;
+  o.check_count = plan.check_count;
   o.pace.ns_per_pixel = plan.device_ns;
   o.row_costs = w->plan.row_costs;
   o.connect_timeout_ns = kConnectNs, o.silence_timeout_ns = o.prepare_timeout_ns = kSilenceNs;

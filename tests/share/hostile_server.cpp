@@ -127,7 +127,8 @@ void send_due_rows(HostileServer* server, Connection* c) {
   if (net.now_ns(server->link) < c->due_ns) return;
   std::uint32_t end = c->row_end, begin = end - c->chunk_rows, height = c->request.settings.height;
   Malice malice = server->settings.malice;
-  say_rows(server, c, c->request.frame, begin, end, false);
+  bool lies = malice == Malice::wrong_pixels && c->request.frame > server->honest_frames;
+  say_rows(server, c, c->request.frame, begin, end, lies);
   if (malice == Malice::repeated_rows) say_rows(server, c, c->request.frame, begin, end, true);
   if (malice == Malice::foreign_rows) {
     if (c->request.row_begin > 0) say_rows(server, c, c->request.frame, 0, 1, true);
@@ -242,6 +243,7 @@ std::unique_ptr<HostileServer> open_hostile_server(platform::Link* link, const p
   auto server = std::make_unique<HostileServer>();
   platform::Error error;
   server->settings = settings, server->link = link, server->random.state = settings.seed;
+  server->honest_frames = static_cast<std::uint32_t>(server->random.below(2) * server->random.below(8));
   server->listener = net.listen(link, address, &error);
   REQUIRE_MESSAGE(server->listener >= 0, error.text);
   return server;

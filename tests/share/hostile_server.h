@@ -39,7 +39,8 @@ struct HostileServer {
   platform::Link* link;
   int listener;
   FaultRandom random;
-  int old_rows_left = 300;  // to encode them is what a session would mostly do
+  std::uint32_t honest_frames = 0;  // of one that sends wrong pixels
+  int old_rows_left = 300;          // to encode them is what a session would mostly do
   std::vector<std::unique_ptr<HostileConnection>> connections;
 };
 
