@@ -73,12 +73,12 @@ mutants: setup-tests
 SESSIONS ?= 100000
 SEED ?= 1
 faults: setup-tests configure
-	cmake --build $(BUILD) -j$(JOBS) --target test_share
+	cmake --build $(BUILD) -j$(JOBS) --target test_remote
 	@share=$$((($(SESSIONS) + $(JOBS) - 1) / $(JOBS))); [ $$share -gt 0 ] || exit 2; \
 	for first in $$(seq $(SEED) $$share $$(($(SEED) + $(SESSIONS) - 1))); do echo $$first; done | \
 	xargs -P $(JOBS) -I {} sh -c 'POCKETRAY_FAULT_SEED={} POCKETRAY_FAULT_SESSIONS='$$share' \
-	  $(BUILD)/test_share --no-intro --test-case="faults_simulated*"'
-	@[ $(SEED) != 1 ] || POCKETRAY_FAULT_SESSIONS=$(SESSIONS) $(BUILD)/test_share --no-intro --test-case="faults_over_sockets*"
+	  $(BUILD)/test_remote --no-intro --test-case="faults_simulated*"'
+	@[ $(SEED) != 1 ] || POCKETRAY_FAULT_SESSIONS=$(SESSIONS) $(BUILD)/test_remote --no-intro --test-case="faults_over_sockets*"
 
 # A render server and an emulated handheld that shares its frames with it. In a window where there is a display; else some
 # frames are rendered and the last one's split is printed, as the display over the picture shows it.
@@ -127,8 +127,8 @@ flips: setup-tests configure
 
 # The chosen split against a sweep of fixed ones: every device, one to three servers, three scenes.
 split-table: setup-tests configure
-	cmake --build $(BUILD) -j$(JOBS) --target test_share
-	$(BUILD)/test_share --no-skip --test-case=split_report_table
+	cmake --build $(BUILD) -j$(JOBS) --target test_split_report
+	$(BUILD)/test_split_report --no-skip --test-case=split_report_table
 
 bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray

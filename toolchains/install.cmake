@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS pocketray RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS pocketray_core EXPORT pocketray ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(FILES src/app/pocketray.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pocketray)
+install(FILES src/engine/pocketray.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pocketray)
 
 # The library asks for libpng where it was built with it.
 if(PNG_FOUND)

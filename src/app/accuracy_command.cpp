@@ -4,13 +4,14 @@
 #include "accuracy/csv.h"
 #include "accuracy/gnuplot.h"
 #include "accuracy/report.h"
-#include "app/accuracy_instructions.h"
-#include "app/accuracy_report.h"
-#include "app/accuracy_sweep.h"
 #include "app/commands.h"
-#include "app/front_file.h"
-#include "app/gnuplot.h"
-#include "app/output.h"
+#include "app/options.h"
+#include "budget/front_file.h"
+#include "session/gnuplot.h"
+#include "session/output.h"
+#include "sweep/instructions.h"
+#include "sweep/report.h"
+#include "sweep/sweep.h"
 
 namespace pocketray {
 namespace {

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "app/commands.h"
-#include "app/heap_scene.h"
-#include "app/note.h"
 #include "app/options.h"
-#include "app/output.h"
-#include "app/report.h"
 #include "platform/file.h"
 #include "scene/baked.h"
+#include "session/heap_scene.h"
+#include "session/note.h"
+#include "session/output.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/front_file.h"
-#include "app/front_prices.h"
-#include "app/interrupt.h"
-#include "app/measure.h"
 #include "app/options.h"
-#include "app/output.h"
-#include "app/report.h"
 #include "base/seal.h"
+#include "budget/front_file.h"
+#include "budget/front_prices.h"
 #include "effect/effect_list.h"
+#include "session/interrupt.h"
+#include "session/measure.h"
+#include "session/output.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

@@ -7,9 +7,6 @@ class App;
 
 namespace pocketray {
 
-// Exit statuses (DESIGN: "Commands").
-constexpr int kExitDone = 0, kExitInput = 1, kExitUsage = 2, kExitInterrupted = 3;
-
 void add_render_command(CLI::App* program, int* exit_status);
 void add_view_command(CLI::App* program, int* exit_status);
 void add_bake_command(CLI::App* program, int* exit_status);

@@ -4,10 +4,10 @@
 #include <cstdlib>
 
 #include "app/commands.h"
-#include "app/interrupt.h"
-#include "app/output.h"
-#include "app/report.h"
 #include "platform/standard_streams.h"
+#include "session/interrupt.h"
+#include "session/output.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

@@ -1,12 +1,9 @@
-// Options that several commands share, and how they become a Renderer.
+// Options that several commands have: their names, their help.
 #pragma once
-#include <functional>
-#include <memory>
-#include <string>
-
-#include "app/source.h"
-#include "base/isa.h"
-#include "platform/devices/device_list.h"
+#include "budget/budget.h"
+#include "remote/client/sharing.h"
+#include "session/open_scene.h"
+#include "viewer/side_by_side.h"
 
 namespace CLI {
 class App;
@@ -14,66 +11,13 @@ class App;
 
 namespace pocketray {
 
-struct CommonOptions {
-  std::string scene;
-  std::string size, memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene", json,
-                            device, emulate, isa, accel = "auto";
-  std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
-  float cut_off = Settings().cut_off_levels;
-};
-
 // Adds them to a command, each with its help.
 void add_scene_options(CLI::App* command, CommonOptions* options);
-
-// A scene opened for rendering; keeps what must stay alive.
-struct OpenScene {
-  Renderer renderer;
-  SceneSource source;
-  void* block = nullptr;
-  OpenScene() = default;
-  OpenScene(const OpenScene&) = delete;
-  OpenScene& operator=(const OpenScene&) = delete;
-  ~OpenScene();
-};
-
-// What a command adds to opening a scene.
-struct OpenHooks {
-  std::function<std::size_t(const Settings&)> output_bytes;  // as plan_memory() takes it
-  std::function<Status(const std::string& name, Renderer*, SceneSource*, SceneStorage*)> load = load_scene;
-  std::function<Status(const SceneSource&, Renderer*)> loaded = {};  // between loading and planning
-  std::function<Status(Renderer*, const SceneStorage&, std::size_t output_bytes)> plan = plan_renderer;
-};
-
-// The settings that the options ask for.
-Status read_settings(const CommonOptions& options, Settings* settings);
-// Reads the options, loads the scene and plans it. Where it fails for want of memory, opened->source.bytes_wanted says
-// so.
-Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScene* opened);
-// Builds it and starts the threads: ready for render_frame().
-Status start_scene(OpenScene* opened, const CommonOptions& options);
-
-// The picture's size: what --size says, else the screen of the emulated device as one holds it, else 320 × 240.
-Status picture_size(const CommonOptions& options, std::uint32_t* width, std::uint32_t* height);
-// The profile --device or --emulate names; null with success() where none was named.
-Status find_device(const CommonOptions& options, const platform::Device** device);
-
-// Threads to trace with: as many as are asked for, 0: one for each of so many cores.
-std::uint32_t choose_thread_count(std::uint32_t asked, unsigned core_count);
-
-// The instruction set --isa names, the best of this CPU where it names none.
-Status parse_isa(const std::string& text, Isa* isa);
-// The accelerator of that name; null for "auto".
-const AccelInfo* find_accel(const std::string& name);
-// "WIDTHxHEIGHT"; "24M", "512K", "1G" or bytes; "ex,ey,ez tx,ty,tz ux,uy,uz VFOV" (degrees).
-Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
-Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option = "--memory");
-Status parse_camera(const std::string& text, Camera* camera);
-// What --exposure says: whether it is to be measured, and by what factor it differs from the scene's or measured one.
-Status parse_exposure(const std::string& text, bool* measured, float* factor);
-// Multiplies; fails where the product is beyond what exposures may be.
-Status change_exposure(float factor, float* exposure);
-
-// Prints the warning of a scene and what it was given, one line each, on stderr.
-void print_notes(const OpenScene& opened);
+// --budget-ms and --front, which take the place of the options that they choose: call it after add_scene_options().
+void add_budget_options(CLI::App* command, BudgetOptions* options);
+// Of builds with a network.
+void add_sharing_options(CLI::App* command, SharingOptions* options);
+// --split-screen, of builds with the reference.
+void add_split_screen_option(CLI::App* command, SplitScreenOptions* options);
 
 }  // namespace pocketray

@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/measure.h"
 #include "app/options.h"
-#include "app/output.h"
-#include "app/picture.h"
-#include "app/report.h"
 #include "effect/effect_list.h"
+#include "session/measure.h"
+#include "session/output.h"
+#include "session/picture.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

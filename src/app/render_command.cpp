@@ -4,19 +4,19 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/budget.h"
-#include "app/camera_control.h"
 #include "app/commands.h"
-#include "app/frame.h"
-#include "app/interrupt.h"
 #include "app/options.h"
-#include "app/output.h"
-#include "app/picture.h"
-#include "app/progress.h"
-#include "app/report.h"
-#include "app/sharing.h"
 #include "base/limit_list.h"
 #include "base/seal.h"
+#include "budget/budget.h"
+#include "engine/frame.h"
+#include "remote/client/sharing.h"
+#include "session/camera_control.h"
+#include "session/interrupt.h"
+#include "session/output.h"
+#include "session/picture.h"
+#include "session/progress.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

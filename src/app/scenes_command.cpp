@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/output.h"
-#include "app/report.h"
-#include "app/sharing.h"
+#include "remote/client/sharing.h"
+#include "session/output.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

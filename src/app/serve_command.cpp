@@ -5,16 +5,16 @@
 #include <thread>
 
 #include "app/commands.h"
-#include "app/interrupt.h"
-#include "app/note.h"
 #include "app/options.h"
-#include "app/report.h"
-#include "app/server.h"
 #include "base/isa.h"
 #include "base/seal.h"
 #include "platform/net/descriptors.h"
 #include "platform/net/tcp.h"
 #include "platform/standard_streams.h"
+#include "remote/server/server.h"
+#include "session/interrupt.h"
+#include "session/note.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

@@ -4,14 +4,14 @@
 
 #include "accuracy/gnuplot.h"
 #include "app/commands.h"
-#include "app/frame.h"
-#include "app/interrupt.h"
-#include "app/measure.h"
 #include "app/options.h"
-#include "app/output.h"
-#include "app/report.h"
-#include "app/scene_identity.h"
-#include "app/split_report_plot.h"
+#include "engine/frame.h"
+#include "session/interrupt.h"
+#include "session/measure.h"
+#include "session/output.h"
+#include "session/report.h"
+#include "session/scene_identity.h"
+#include "split_report/plot.h"
 
 namespace pocketray {
 namespace {

@@ -3,15 +3,15 @@
 #include <chrono>
 #include <thread>
 
-#include "app/budget.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/options.h"
-#include "app/output.h"
-#include "app/report.h"
-#include "app/sharing.h"
-#include "app/viewer.h"
 #include "base/seal.h"
+#include "budget/budget.h"
+#include "remote/client/sharing.h"
+#include "session/interrupt.h"
+#include "session/output.h"
+#include "session/report.h"
+#include "viewer/viewer.h"
 
 namespace pocketray {
 namespace {

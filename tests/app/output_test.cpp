@@ -1,5 +1,5 @@
 // What commands write, asked before their work, by the commands themselves.
-#include "app/output.h"
+#include "session/output.h"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -14,6 +14,7 @@
 
 #include "app/commands.h"
 #include "platform/file.h"
+#include "session/report.h"
 
 using namespace pocketray;
 

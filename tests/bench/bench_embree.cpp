@@ -4,13 +4,12 @@
 #include <cstdio>
 
 #include "accel/accel_list.h"
-#include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/options.h"
-#include "app/report.h"
 #include "bench/build_report.h"
 #include "bench/duel.h"
 #include "bench/duel_report.h"
+#include "session/interrupt.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

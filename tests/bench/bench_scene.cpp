@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "app/frame.h"
+#include "engine/frame.h"
 #include "plan/plan_scene.h"
 #include "platform/file.h"
 

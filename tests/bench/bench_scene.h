@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/source.h"
+#include "session/source.h"
 
 namespace pocketray {
 

@@ -4,8 +4,8 @@
 #include <thread>
 
 #include "accel/accel_list.h"
-#include "app/frame.h"
 #include "bench/statistics.h"
+#include "engine/frame.h"
 
 namespace pocketray {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "app/frame.h"
-#include "app/source.h"
+#include "engine/frame.h"
+#include "session/source.h"
 #include "shade/camera.h"
 
 using namespace pocketray;

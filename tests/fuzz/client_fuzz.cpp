@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <map>
 
-#include "app/client.h"
-#include "app/frame.h"
-#include "app/inquiry.h"
-#include "app/shared_frame.h"
 #include "base/check.h"
+#include "engine/frame.h"
 #include "fuzz/fuzz.h"
 #include "fuzz/virtual_peer.h"
 #include "present/pack.h"
+#include "remote/client/client.h"
+#include "remote/client/inquiry.h"
+#include "remote/client/shared_frame.h"
 #include "wire/codec.h"
 
 POCKETRAY_FUZZ_TARGET(fuzz_client)

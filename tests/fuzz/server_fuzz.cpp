@@ -1,10 +1,10 @@
 // A server against clients that may do anything; afterwards it still greets the next one.
 #include <algorithm>
 
-#include "app/server.h"
 #include "base/check.h"
 #include "fuzz/fuzz.h"
 #include "fuzz/virtual_peer.h"
+#include "remote/server/server.h"
 
 POCKETRAY_FUZZ_TARGET(fuzz_server)
 

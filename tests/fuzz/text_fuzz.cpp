@@ -5,14 +5,14 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "app/options.h"
 #include "base/check.h"
 #include "fuzz/fuzz.h"
 #include "plan/plan_effects.h"
+#include "session/open_scene.h"
 
 #if defined(POCKETRAY_HAVE_ACCURACY)
 #include "accuracy/callgrind.h"
-#include "app/accuracy_state.h"
+#include "sweep/state.h"
 #endif
 
 POCKETRAY_FUZZ_TARGET(fuzz_text)

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "app/scene_store.h"
 #include "platform/null/null_link.h"
+#include "remote/server/scene_store.h"
 #include "support/generated_scene.h"
 #include "wire/message.h"
 

@@ -20,7 +20,7 @@
 #include "support/effort.h"
 #include "support/generated_scene.h"
 #ifdef POCKETRAY_HAVE_IMPORT
-#include "app/source.h"
+#include "session/source.h"
 #endif
 
 using namespace pocketray;

@@ -2,11 +2,11 @@
 #include <vector>
 
 #include "accel/accel_list.h"
-#include "app/heap_scene.h"
 #include "base/rng.h"
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
 #include "scene/baked_file.h"
+#include "session/heap_scene.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
@@ -76,8 +76,9 @@ std::vector<Picture> pictures(const Scene& scene, const AccelInfo* accel) {
 // bit, while a part grows out of a point and goes back.
 TEST_CASE("import_collapsed_triangles_render_as_by_brute_force") {
   TemporaryFolder folder;
-  for (const auto& file : {std::make_pair("grows.glb", growing_part(288)), std::make_pair("points.obj", one_and_points(128)),
-                           std::make_pair("mixed.obj", some_collapsed(1000, 250))}) {
+  for (const auto& file :
+       {std::make_pair("grows.glb", growing_part(288)), std::make_pair("points.obj", one_and_points(128)),
+        std::make_pair("mixed.obj", some_collapsed(1000, 250))}) {
     INFO(file.first);
     ImportedScene imported = load(folder.write(file.first, file.second));
     BakedFile baked = bake(imported.scene);

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <string>
 
-#include "app/progressive.h"
+#include "engine/progressive.h"
 #include "scene/baked.h"
 #include "scene/builtin_helpers.h"
 #include "support/effort.h"

@@ -1,5 +1,5 @@
 // The emulated CPU: frames take its time and are the same frames.
-#include "app/pace.h"
+#include "engine/pace.h"
 
 #include <doctest/doctest.h>
 
@@ -9,11 +9,11 @@
 #include <ctime>
 #include <thread>
 
-#include "app/frame.h"
-#include "app/progressive.h"
-#include "app/report.h"
-#include "app/viewer_hud.h"
+#include "engine/frame.h"
+#include "engine/progressive.h"
+#include "session/report.h"
 #include "support/generated_scene.h"
+#include "viewer/hud.h"
 
 using namespace pocketray;
 

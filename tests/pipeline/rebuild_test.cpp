@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "accel/accel_list.h"
-#include "app/frame.h"
+#include "engine/frame.h"
 #include "scene/baked_file.h"
 #include "support/feature_sets.h"
 #include "support/generated_scene.h"

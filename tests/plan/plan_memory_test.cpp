@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "app/progressive.h"
+#include "engine/progressive.h"
 #include "plan/plan_memory.h"
 #include "support/feature_sets.h"
 #include "support/generated_scene.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "accel/accel_list.h"
-#include "app/frame.h"
 #include "base/rng.h"
+#include "engine/frame.h"
 
 namespace pocketray {
 

@@ -1,6 +1,6 @@
 #include "support/lying_server.h"
 
-#include "app/server_state.h"
+#include "remote/server/state.h"
 
 namespace pocketray {
 namespace {

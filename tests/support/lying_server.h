@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "app/virtual_world.h"
+#include "split_report/virtual_world.h"
 
 namespace pocketray {
 

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cstring>
 
-#include "app/frame.h"
 #include "base/seal.h"
+#include "engine/frame.h"
 #include "present/pack.h"
 
 namespace pocketray {

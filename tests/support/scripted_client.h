@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "app/server.h"
 #include "platform/link.h"
 #include "platform/null/null_link.h"
+#include "remote/server/server.h"
 #include "wire/codec.h"
 
 namespace pocketray {

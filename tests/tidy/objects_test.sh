@@ -40,7 +40,7 @@ expect_found() {  # TEXT FOUND
 }
 
 mapfile -t all < <(find "$folder" -name '*.o' | sort)
-mapfile -t core < <(find "$folder" -name '*.o' -not -path '*/src/app/*' | sort)
+mapfile -t core < <(find "$folder" -name '*.o' -not -path '*/src/engine/workers.cpp.o' | sort)
 [ ${#core[@]} -gt 0 ] || { echo "no objects in $folder"; exit 1; }
 mapfile -t wide < <(find "$folder" -name '*_avx2*.o' -o -name '*_avx512*.o' | sort)
 mapfile -t narrow < <(printf '%s\n' "${all[@]}" | grep -vE '_avx(2|512)')

@@ -4,14 +4,13 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
-#include "app/frame.h"
 #include "app/options.h"
-#include "app/picture.h"
-#include "app/report.h"
 #include "bench/povray/povray_run.h"
 #include "bench/povray/povray_scene.h"
 #include "bench/statistics.h"
+#include "engine/frame.h"
+#include "session/picture.h"
+#include "session/report.h"
 
 namespace pocketray {
 namespace {

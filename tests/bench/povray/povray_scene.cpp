@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "app/frame.h"
-#include "app/picture.h"
+#include "engine/frame.h"
+#include "session/picture.h"
 
 namespace pocketray {
 namespace {

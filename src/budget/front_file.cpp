@@ -1,0 +1,76 @@
+#include "budget/front_file.h"
+
+#include <cinttypes>
+#include <cstdlib>
+
+#include "base/isa.h"
+#include "platform/file.h"
+#include "scene/builtin/builtin.h"
+#include "session/output.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::size_t kFileBytesMax = 1 << 20;  // comments included
+
+std::string folder_of(const std::string& path) {
+  std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "." : path.substr(0, slash);
+}
+
+std::string cache_folder(const std::string& scene) {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  if (cache && *cache == '/') return std::string(cache) + "/pocketray";  // a relative one is to be ignored
+  const char* home = std::getenv("HOME");
+  if (home && *home == '/') return std::string(home) + "/.cache/pocketray";
+  return find_builtin(scene.c_str()) ? "" : folder_of(scene);
+}
+
+}  // namespace
+
+std::string front_path(const std::string& scene, const ContentHash& identity, const std::string& machine) {
+  std::string folder = cache_folder(scene);
+  if (folder.empty()) return "";
+  char hash[40];
+  std::snprintf(hash, sizeof hash, "%016" PRIx64 "%016" PRIx64, identity.high, identity.low);
+  return folder + "/" + hash + (machine.empty() ? "" : "-" + machine) + ".front";
+}
+
+std::string machine_name(const char* emulated, std::uint32_t thread_count) {
+  return std::string(emulated ? emulated : isa_name(active_isa())) + "-" + std::to_string(thread_count);
+}
+
+Status read_front(const std::string& path, Front* front, bool* there) {
+  *front = Front();
+  *there = platform::file_stamp(path.c_str()) != 0;
+  if (!*there) return success();
+  platform::LoadedFile file;
+  platform::FileError error;
+  if (!platform::load_file(path.c_str(), &file, &error)) return failure("%.300s %s", path.c_str(), error.text);
+  Status status = file.byte_count <= kFileBytesMax ? parse_front(file.bytes, file.byte_count, front)
+                                                   : failure("longer than %zu bytes: that is no front", kFileBytesMax);
+  platform::unload_file(&file);
+  return status.ok ? status : failure("%.200s: %.280s", path.c_str(), status.message);
+}
+
+Status write_front(const std::string& path, const Front& front) {
+  std::string text(kFrontTextMax, 0);
+  text.resize(format_front(front, &text[0], text.size()));
+  return write_file(path, text);
+}
+
+Status make_cache(const std::string& path) {
+  platform::FileError error;
+  std::string folder = folder_of(path) + "/";
+  for (std::size_t at = folder.find('/', 1); at != std::string::npos; at = folder.find('/', at + 1))
+    if (platform::file_stamp(folder.substr(0, at).c_str()) == 0)
+      (void)platform::make_folder(folder.substr(0, at).c_str(), &error);
+  return check_outputs({}, {{"--front", path}});
+}
+
+Status cache_front(const std::string& path, const Front& front) {
+  RETURN_IF_ERROR(make_cache(path));
+  return write_front(path, front);
+}
+
+}  // namespace pocketray

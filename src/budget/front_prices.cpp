@@ -1,0 +1,88 @@
+#include "budget/front_prices.h"
+
+#include <algorithm>
+
+#include "engine/frame.h"
+#include "present/pack.h"
+#include "session/interrupt.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kFrameNsMax = 2e9;
+constexpr std::uint32_t kFramesBetweenRounds = 5;  // what moves is seen at several times
+
+// A frame as render and view count it.
+Status time_frame(Renderer* r, double seconds, void* page, double* ns) {
+  std::uint64_t start = clock_ns();
+  RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
+  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
+  pack_rows(r->image.data, width, height, 0, height, r->exposure, kRgb565, Rotation::none, false, page, 2 * width);
+  *ns = static_cast<double>(clock_ns() - start);
+  return success();
+}
+
+Status measure_round(Renderer* r, const Front& front, std::uint32_t round, void* page, FrontPrices* p) {
+  double seconds = round * kFramesBetweenRounds / static_cast<double>(r->scene.info.frames_per_second);
+  double ns = 0, price = 0;  // of the one before
+  for (std::uint32_t i = 0; i < front.count; ++i) {
+    const Candidate& c = front.candidates[i];
+    bool known_long = round > 0 && p->ns_per_pixel[i].empty();
+    if (known_long || (price > 0 && ns * static_cast<double>(c.ns_per_pixel) / price > kFrameNsMax)) break;
+    RETURN_IF_ERROR(change_settings(r, with_candidate(r->settings, c)));
+    RETURN_IF_ERROR(time_frame(r, seconds, page, &ns));
+    if (interrupted) return success();
+    price = static_cast<double>(c.ns_per_pixel);
+    p->ns_per_pixel[i].push_back(ns / pixel_count(*r));
+  }
+  ++p->round_count;
+  return success();
+}
+
+}  // namespace
+
+FrontPrices make_front_prices(const Front& front, std::uint32_t round_count) {
+  FrontPrices p;
+  for (std::uint32_t i = 0; i < front.count; ++i) p.ns_per_pixel[i].reserve(round_count);
+  return p;
+}
+
+std::size_t front_prices_bytes(const Settings& s) { return arena_need(std::size_t(s.width) * s.height * 2); }
+
+Status measure_front(Renderer* r, const Front& front, FrontPrices* p) {
+  const Settings before = r->settings;
+  const Pace pace = r->pace;
+  r->pace = Pace();
+  std::size_t mark = arena_mark(r->frame_arena);
+  auto page = arena_array<std::uint8_t>(&r->frame_arena, std::size_t(before.width) * before.height * 2);
+  double warm_up;
+  Status status = change_settings(r, with_candidate(before, front.candidates[0]));
+  if (status.ok) status = time_frame(r, 0, page.data, &warm_up);
+  std::uint32_t rounds = static_cast<std::uint32_t>(p->ns_per_pixel[0].capacity());
+  for (std::uint32_t round = 0; status.ok && round < rounds && !interrupted; ++round)
+    status = measure_round(r, front, round, page.data, p);
+  arena_release(&r->frame_arena, mark);
+  r->pace = pace;
+  if (!status.ok) return status;
+  for (std::uint32_t i = 0; i < front.count; ++i)
+    for (double& ns : p->ns_per_pixel[i])
+      ns = static_cast<double>(
+               paced_ns(pace, before.width * before.height, static_cast<std::uint64_t>(ns * pixel_count(*r)))) /
+           pixel_count(*r);
+  return change_settings(r, before);
+}
+
+Front measured_front(const Front& front, FrontPrices* p) {
+  Front measured;
+  for (std::uint32_t i = 0; i < front.count; ++i) {
+    if (p->ns_per_pixel[i].empty()) continue;
+    Candidate c = front.candidates[i];
+    double median = range_of(p->ns_per_pixel[i].data(), static_cast<std::uint32_t>(p->ns_per_pixel[i].size())).median;
+    c.ns_per_pixel = clamped_price(median);
+    measured.candidates[measured.count++] = c;
+  }
+  sort_by_price(&measured);  // what is dominated stays: its price is known all the same
+  return measured;
+}
+
+}  // namespace pocketray

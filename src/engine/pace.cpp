@@ -1,0 +1,66 @@
+#include "engine/pace.h"
+
+#include <chrono>
+#include <thread>
+
+namespace pocketray {
+namespace {
+
+constexpr std::int64_t kOwedNsMax = 200'000;       // less is left to the next wait: a sleep overruns by a quarter of it
+constexpr std::int64_t kExcessNsMax = 50'000'000;  // more is not made up for: this CPU is too slow for the pace
+constexpr std::int64_t kSleepNsMax = 20'000'000;   // between two looks at `stop`
+constexpr double kPacedNsMax = 3600e9;             // nothing waits for longer
+
+std::uint64_t to_ns(double ns) { return static_cast<std::uint64_t>(ns < kPacedNsMax ? ns : kPacedNsMax); }
+
+}  // namespace
+
+std::uint64_t paced_ns(const Pace& pace, std::uint64_t pixel_count, std::uint64_t elapsed_ns) {
+  if (pace.ns_per_pixel > 0) return to_ns(static_cast<double>(pixel_count) * pace.ns_per_pixel);
+  return pace.slowdown > 1 ? to_ns(static_cast<double>(elapsed_ns) * pace.slowdown) : elapsed_ns;
+}
+
+void pace_spans(const Pace& pace, const Span* spans, std::uint32_t span_count, std::uint32_t thread_count,
+                std::uint64_t* span_ns) {
+  for (std::uint32_t i = 0; i < span_count; ++i) {
+    std::uint64_t each = paced_ns(pace, span_pixel_count(&spans[i], 1), span_ns[i]);
+    span_ns[i] = pace.ns_per_pixel > 0 ? each * thread_count : each;
+  }
+}
+
+std::uint64_t span_pixel_count(const Span* spans, std::uint32_t span_count) {
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < span_count; ++i) count += std::uint64_t(spans[i].column_end - spans[i].column_begin);
+  return count;
+}
+
+void wait_for_pace(Pace* pace, std::uint64_t pixel_count, std::uint64_t start_ns, const std::atomic<bool>* stop) {
+  if (!is_paced(*pace)) return;
+  std::uint64_t last = clock_ns();
+  pace->owed_ns += static_cast<std::int64_t>(paced_ns(*pace, pixel_count, last - start_ns)) -
+                   static_cast<std::int64_t>(last - start_ns);
+  auto stopped = [&] {
+    return (stop && stop->load(std::memory_order_relaxed)) ||
+           (pace->stop && pace->stop->load(std::memory_order_relaxed));
+  };
+  while (pace->owed_ns > kOwedNsMax && !stopped()) {
+    std::int64_t sleep = pace->owed_ns - kOwedNsMax / 2;
+    std::this_thread::sleep_for(std::chrono::nanoseconds(sleep < kSleepNsMax ? sleep : kSleepNsMax));
+    std::uint64_t now = clock_ns();
+    pace->owed_ns -= static_cast<std::int64_t>(now - last);
+    last = now;
+  }
+  if (pace->owed_ns > kOwedNsMax) pace->owed_ns = 0;
+  if (pace->owed_ns < -kExcessNsMax) pace->owed_ns = -kExcessNsMax;
+}
+
+std::uint32_t trace_paced(Pace* pace, Workers* workers, const TraceJob& job) {
+  if (!is_paced(*pace)) return trace_with(workers, job);
+  std::uint64_t start = clock_ns();
+  std::uint32_t done = trace_with(workers, job);
+  if (job.span_ns) pace_spans(*pace, job.spans, done, worker_thread_count(workers), job.span_ns);
+  wait_for_pace(pace, span_pixel_count(job.spans, done), start, job.stop);
+  return done;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,123 @@
+#include "engine/workers.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace pocketray {
+
+struct Workers {
+  std::vector<std::thread> threads;
+  std::mutex mutex;
+  std::condition_variable begin, end;
+  void (*work)(void* context, std::uint32_t thread) = nullptr;
+  void* context = nullptr;
+  std::uint64_t generation = 0;
+  std::uint32_t busy = 0;
+  bool quit = false;
+};
+
+std::uint64_t clock_ns() {
+  return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1));
+}
+
+namespace {
+
+// Spans to take at once: a tile's rows, fewer towards the end so that all threads end together.
+std::uint32_t spans_at_once(std::uint32_t left, std::uint32_t thread_count) {
+  std::uint32_t share = left / (2 * thread_count), count = kTileRows;
+  if (thread_count > 1)
+    while (count > 1 && count > share) count /= 2;
+  return count < left ? count : left;
+}
+
+struct SpanQueue {
+  const TraceJob& job;
+  std::uint32_t thread_count;
+  std::atomic<std::uint32_t> next_span{0}, done_count{0};
+};
+
+void take_spans(void* context, std::uint32_t thread) {
+  SpanQueue* queue = static_cast<SpanQueue*>(context);
+  const TraceJob& job = queue->job;
+  for (;;) {
+    if (job.stop && job.stop->load(std::memory_order_relaxed)) return;
+    std::uint32_t begin = queue->next_span.load(), count;
+    do {
+      if (begin >= job.span_count) return;
+      count = spans_at_once(job.span_count - begin, queue->thread_count);
+    } while (!queue->next_span.compare_exchange_weak(begin, begin + count));
+    std::uint64_t start = job.span_ns ? clock_ns() : 0;
+    trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image);
+    if (job.span_ns) {
+      std::uint64_t each = (clock_ns() - start) / count;
+      for (std::uint32_t i = 0; i < count; ++i) job.span_ns[begin + i] = each;
+    }
+    queue->done_count.fetch_add(count);
+  }
+}
+
+void run_worker(Workers* w, std::uint32_t thread) {
+  std::uint64_t seen = 0;
+  for (;;) {
+    std::unique_lock<std::mutex> lock(w->mutex);
+    w->begin.wait(lock, [&] { return w->quit || w->generation != seen; });
+    if (w->quit) return;
+    seen = w->generation;
+    auto* work = w->work;
+    void* context = w->context;
+    lock.unlock();
+    work(context, thread);
+    lock.lock();
+    if (--w->busy == 0) w->end.notify_one();
+  }
+}
+
+}  // namespace
+
+Workers* start_workers(std::uint32_t thread_count) {
+  if (thread_count <= 1) return nullptr;
+  Workers* w = new Workers;
+  for (std::uint32_t thread = 1; thread < thread_count; ++thread) w->threads.emplace_back(run_worker, w, thread);
+  return w;
+}
+
+void stop_workers(Workers* workers) {
+  if (!workers) return;
+  {
+    std::lock_guard<std::mutex> lock(workers->mutex);
+    workers->quit = true;
+  }
+  workers->begin.notify_all();
+  for (std::thread& thread : workers->threads) thread.join();
+  delete workers;
+}
+
+std::uint32_t worker_thread_count(const Workers* workers) {
+  return workers ? static_cast<std::uint32_t>(workers->threads.size()) + 1 : 1;
+}
+
+void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), void* context) {
+  if (!w) return work(context, 0);
+  {
+    std::lock_guard<std::mutex> lock(w->mutex);
+    w->work = work;
+    w->context = context;
+    w->busy = static_cast<std::uint32_t>(w->threads.size());
+    ++w->generation;
+  }
+  w->begin.notify_all();
+  work(context, 0);
+  std::unique_lock<std::mutex> lock(w->mutex);
+  w->end.wait(lock, [&] { return w->busy == 0; });
+}
+
+std::uint32_t trace_with(Workers* w, const TraceJob& job) {
+  SpanQueue queue{job, worker_thread_count(w)};
+  run_with(w, take_spans, &queue);
+  return queue.done_count;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,27 @@
+// The text of the head-up display over a picture: lines of a fixed width.
+#pragma once
+#include <cstdint>
+
+#include "present/pack.h"
+
+namespace pocketray {
+
+constexpr int kHudLineMax = 16, kHudColumnMax = 52;
+
+struct HudText {
+  char lines[kHudLineMax][kHudColumnMax + 1] = {};
+  int line_count = 0;
+};
+
+// Adds a line, cut to the display's width, where there is room for one.
+void add_hud_line(HudText* text, const char* format, ...) __attribute__((format(printf, 2, 3)));
+
+// Adds a text in as many lines as it takes, broken between words where it has some.
+void add_hud_text(HudText* text, const char* words);
+
+// Rows of the picture the display covers.
+std::uint32_t hud_rows(const HudText& text);
+void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height,
+                   void* pixels, int line_bytes);
+
+}  // namespace pocketray

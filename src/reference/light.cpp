@@ -1,0 +1,209 @@
+#include "reference/light.h"
+
+#include <limits>
+
+#include "base/fmath.h"
+#include "reference/guide.h"
+#include "shade/lights.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// What one contact lets through, unbent, at a distance; adds what it begins or ends to the absorption.
+Vec3d contact_transmittance(const FrameData& frame, const ReferenceContact& contact, const ReferenceRay& ray,
+                            double distance, Vec3d* absorbed, Vec3d* open) {
+  Vec3d result = {1, 1, 1};
+  double from = 1, to = 1;
+  bool any = false;
+  for (std::uint32_t i = 0; i < contact.count; ++i) {
+    const ReferenceHit& face = contact.face[i];
+    const Material& m = material_of(frame, face.triangle);
+    if (m.alpha_mode == AlphaMode::blend) result = result * (1 - alpha_of(frame, face));
+    if (is_zero(m.transmission)) continue;
+    any = true;
+    bool enters = contact.front[i];
+    if (enters || m.thin) result *= to_double(m.transmission);
+    (enters || m.thin ? to : from) = static_cast<double>(m.ior);
+    if (m.thin) continue;
+    Vec3d absorption = to_double(m.absorption);
+    *absorbed += absorption * (enters ? -distance : distance);
+    *open += absorption * (enters ? 1.0 : -1.0);
+  }
+  if (!any) return result;
+  ReferenceSurface s = reference_surface(frame, contact.face[0], ray.direction);
+  double cosine = std::fabs(dot(s.normal, ray.direction)) / length(ray.direction);
+  double cos_t;
+  return result * (1 - boundary_reflectance(cosine, from / to, &cos_t));
+}
+
+// The share of light that arrives along a ray, unbent.
+Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules) {
+  Obstacle obstacle = find_obstacle(world, ray, rules);
+  if (obstacle == Obstacle::opaque) return {0, 0, 0};
+  if (obstacle == Obstacle::none) return {1, 1, 1};
+  const FrameData& frame = *world.frame;
+  Vec3d result = {1, 1, 1}, absorbed = {0, 0, 0}, open = {0, 0, 0};
+  ReferenceHit hit = next_hit(world, ray, nullptr), after;
+  for (; hit.triangle != kNone; hit = next_hit(world, ray, &after)) {
+    after = hit;
+    if (!casts_shadow(frame, hit.triangle, rules)) continue;
+    ReferenceContact contact = gather_contact(world, ray, hit);
+    for (std::uint32_t i = 0; i < contact.count; ++i) {  // those within rounding behind the light, too
+      std::uint32_t triangle = contact.face[i].triangle;
+      if (casts_shadow(frame, triangle, rules) && blocks(material_of(frame, triangle), rules)) return {0, 0, 0};
+    }
+    result *= contact_transmittance(frame, contact, ray, hit.t * length(ray.direction), &absorbed, &open);
+    if (is_zero(result)) return result;
+    after = contact.last;
+  }
+  for (int c = 0; c < 3; ++c) {
+    double depth = absorbed[c] + (open[c] > 0 ? open[c] * ray.t_max * length(ray.direction) : 0);
+    if (depth > 0) result[c] *= det_exp(-depth);
+  }
+  return result;
+}
+
+// A light of the frame at a point: the way to it, its distance and its irradiance on what faces it.
+bool reach(const LightPoint& light, LightSampler kind, const Vec3d& point, Vec3d* direction, double* distance,
+           Vec3d* irradiance) {
+  if (kind == find_light_sampler(Effect::directional_light)) {
+    *direction = -normalize(to_double(light.direction));
+    *distance = kInfinity, *irradiance = to_double(light.intensity);
+    return true;
+  }
+  Vec3d to_light = to_double(light.position) - point;
+  double square = dot(to_light, to_light), factor = 1 / square, range = static_cast<double>(light.range);
+  if (!(square > 0)) return false;
+  *distance = std::sqrt(square), *direction = to_light / *distance;
+  if (range > 0) {
+    double q = square / (range * range), window = 1 - q * q;
+    if (!(window > 0)) return false;
+    factor *= window;
+  }
+  if (kind == find_light_sampler(Effect::spot_light)) {
+    double cosine = -dot(*direction, to_double(light.direction));
+    double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
+    if (cosine <= outer) return false;
+    double f = cosine >= inner ? 1 : (cosine - outer) / (inner - outer);
+    factor *= f * f;
+  }
+  if (light.material != kNone) {
+    double cosine = -dot(*direction, to_double(light.direction));
+    if (light.two_sided) cosine = std::fabs(cosine);
+    if (!(cosine > 0)) return false;
+    factor *= cosine;
+  }
+  *irradiance = to_double(light.intensity) * factor;
+  return true;
+}
+
+Vec3d area_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
+                 const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples) {
+  const FrameData& frame = *reference.world.frame;
+  if (reference.emitters.empty()) return {0, 0, 0};
+  ReferencePlace place = pick_place(frame, reference.emitters, samples->light());
+  std::uint32_t triangle = place.triangle;
+  bool model = options.transport == Transport::model;
+  std::uint32_t material = material_index(frame, triangle);
+  if (model && &frame.scene->materials[material] == s.material) return {0, 0, 0};  // an emitter does not light itself
+  Vec3d to_light = place.point - s.point;
+  double distance = length(to_light);
+  if (!(distance > 0) || triangle == s.triangle) return {0, 0, 0};
+  Vec3d direction = to_light / distance;
+  double cosine = dot(s.normal, direction);
+  ReferenceSurface light = reference_surface(frame, {distance, place.u, place.v, triangle}, direction);
+  double cos_light = -dot(light.geometric, direction);
+  if (!(cosine > 0) || !(cos_light > 0) || is_zero(light.emission)) return {0, 0, 0};
+  double density = emitter_density(reference, triangle) * distance * distance / cos_light;
+  double weight = model || !goes_on ? 1 : power_heuristic(density, guided_density(s, to_viewer, direction));
+  Vec3d sum = lobe_value(s, to_viewer, direction) * light.emission * (cosine * weight / density);
+  if (is_zero(sum)) return sum;
+  ReferenceRay ray = leave(frame, s, direction, distance * (1 - 0x1p-40));
+  return sum * transmittance(reference.world, ray, {triangle, model ? material : kNone, !model});
+}
+
+}  // namespace
+
+Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
+                       bool with_area_lights) {
+  const FrameData& frame = *reference.world.frame;
+  Vec3d sum = {0, 0, 0};
+  for (int r = 0; r < frame.light_run_count; ++r)
+    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
+      const LightPoint& light = frame.lights[i];
+      if (light.material != kNone) {  // an emitter does not light itself
+        if (!with_area_lights || &frame.scene->materials[light.material] == s.material) continue;
+      }
+      Vec3d direction, irradiance;
+      double distance;
+      if (!reach(light, frame.light_runs[r].sample, s.point, &direction, &distance, &irradiance)) continue;
+      double cosine = dot(s.normal, direction);
+      if (!(cosine > 0)) continue;
+      Vec3d sent = lobe_value(s, to_viewer, direction) * irradiance * cosine;
+      if (is_zero(sent)) continue;
+      sum +=
+          sent * transmittance(reference.world, leave(frame, s, direction, distance), {kNone, light.material, false});
+    }
+  return sum;
+}
+
+double emitted_power(const Material& m) { return m.unlit ? 0 : static_cast<double>(max_component(m.emission)); }
+
+std::uint32_t find_parts(const FrameData& frame, double (*power)(const Material& material), ReferenceEmitter* parts) {
+  std::uint32_t count = 0;
+  double total = 0;
+  for (std::uint32_t i = 0; i < frame.scene->triangles.count; ++i) {
+    double density = power(material_of(frame, i));
+    if (!(density > 0)) continue;
+    double area = 0.5 * length(area_vector(frame, i));
+    if (!(area * density > 0)) continue;
+    total += area * density;
+    parts[count++] = {i, total, area};
+  }
+  for (std::uint32_t i = 0; i < count; ++i) parts[i].share_end /= total;
+  return count;
+}
+
+ReferencePlace pick_place(const FrameData& frame, const Array<ReferenceEmitter>& parts, const Pair& pair) {
+  std::uint32_t low = 0, high = parts.count - 1;
+  while (low < high) {
+    std::uint32_t middle = low + (high - low) / 2;
+    if (pair.u < parts[middle].share_end)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  ReferencePlace place;
+  place.triangle = parts[low].triangle;
+  double before = low > 0 ? parts[low - 1].share_end : 0;  // within the pick lies the place
+  double root = std::sqrt((pair.u - before) / (parts[low].share_end - before));
+  place.v = pair.v * root, place.u = root - place.v;
+  place.point = corner_of(frame, place.triangle, 0) * (1 - place.u - place.v) +
+                corner_of(frame, place.triangle, 1) * place.u + corner_of(frame, place.triangle, 2) * place.v;
+  return place;
+}
+
+double emitter_density(const Reference& reference, std::uint32_t triangle) {
+  std::uint32_t low = 0, high = reference.emitters.count;
+  while (low < high) {
+    std::uint32_t middle = low + (high - low) / 2;
+    if (reference.emitters[middle].triangle < triangle)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  if (low == reference.emitters.count || reference.emitters[low].triangle != triangle) return 0;
+  double before = low > 0 ? reference.emitters[low - 1].share_end : 0;
+  return (reference.emitters[low].share_end - before) / reference.emitters[low].area;
+}
+
+Vec3d sample_direct_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
+                          const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples) {
+  return sum_light_points(reference, s, to_viewer, false) +
+         area_light(reference, options, s, to_viewer, goes_on, samples);
+}
+
+}  // namespace pocketray

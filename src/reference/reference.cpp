@@ -1,0 +1,181 @@
+#include "reference/reference.h"
+
+#include <limits>
+
+#include "base/fmath.h"
+#include "reference/guide.h"
+#include "reference/light.h"
+#include "shade/media.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kSureDepth = 4;  // scatterings before Russian roulette
+constexpr double kSurvivalMax = 0.98;    // with which every path ends some time
+
+struct Path {
+  Vec3d weight = {1, 1, 1};
+  double worth = 1;  // the share of light that surfaces so far send on, however directions were sampled
+  MediumStack media;
+  bool sees_lights = true;  // in full: no next-event estimation has looked for them
+  Vec3d scattered_at;       // the point that next-event estimation looked from,
+  double density = 0;       // and the density with which the path left it
+};
+
+// The face of a contact that the ray is at: one that lies over others as often as it covers them, else what is behind.
+// Null: the ray passes.
+const ReferenceHit* pick_face(const FrameData& frame, const ReferenceContact& contact, ReferenceSamples* samples) {
+  for (std::uint32_t i = 0; i < contact.count; ++i)
+    if (lies_over(frame, contact, i) && samples->next() < alpha_of(frame, contact.face[i])) return &contact.face[i];
+  return face_behind(frame, contact);
+}
+
+// The surface that a ray meets, past what it does not see. False: none. Takes what bodies absorb on the way.
+bool find_surface(const Reference& reference, const ReferenceRay& ray, Path* path, ReferenceSamples* samples,
+                  ReferenceSurface* s, ReferenceContact* contact) {
+  const FrameData& frame = *reference.world.frame;
+  double passed = 0;
+  ReferenceHit hit = next_hit(reference.world, ray, nullptr);
+  for (; hit.triangle != kNone; hit = next_hit(reference.world, ray, &contact->last)) {
+    path->weight *= medium_transmittance(*frame.scene, path->media, hit.t - passed);
+    passed = hit.t;
+    contact->count = 0;
+    contact->last = hit;
+    const ReferenceHit* face = &hit;
+    if (may_be_passed(material_of(frame, hit.triangle))) {
+      *contact = gather_contact(reference.world, ray, hit);
+      face = pick_face(frame, *contact, samples);
+    }
+    if (!face) continue;
+    *s = reference_surface(frame, *face, ray.direction);
+    return true;
+  }
+  return false;
+}
+
+// Where the path goes on, by one of the surface's lobes; false: nowhere. Sets the weight and what the next emitter it
+// meets has to know.
+bool scatter(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
+             const ReferenceContact& contact, ReferenceRay* ray, Path* path, ReferenceSamples* samples) {
+  const FrameData& frame = *reference.world.frame;
+  const Material& m = *s.material;
+  Vec3d mirror = to_double(m.mirror), to_viewer = -ray->direction;
+  double mirror_share = max_component(mirror), glass_share = is_zero(m.transmission) ? 0 : 1, lobe_share = 0;
+  if (options.transport == Transport::physical)
+    lobe_share = max_component(s.diffuse) + static_cast<double>(max_component(m.specular));
+  double total = mirror_share + glass_share + lobe_share;
+  if (!(total > 0)) return false;
+  double choice = samples->choice() * total;  // what is left of it after the choice is uniform again
+  path->worth *= std::fmin(1, total);
+  path->sees_lights = true;
+  Vec3d direction;
+  if (choice < mirror_share) {
+    path->weight *= mirror * (total / mirror_share);
+    direction = mirrored(ray->direction, s);
+  } else if (choice < mirror_share + glass_share) {
+    path->weight = path->weight * (total / glass_share);
+    ReferenceBoundary boundary = meet_boundary(frame, s, contact, ray->direction, path->media);
+    if ((choice - mirror_share) / glass_share < boundary.reflectance) {
+      direction = mirrored(ray->direction, s);
+    } else {
+      direction = boundary.direction;
+      path->weight *= boundary.tint;
+      path->media = boundary.beyond;
+    }
+  } else {
+    choice = (choice - mirror_share - glass_share) / lobe_share;
+    if (!sample_guided(s, to_viewer, choice, samples->direction(), &direction)) return false;
+    path->density = guided_density(s, to_viewer, direction);
+    if (!(path->density > 0)) return false;
+    path->weight *=
+        lobe_value(s, to_viewer, direction) * (dot(s.normal, direction) / path->density * (total / lobe_share));
+    path->sees_lights = false;
+    path->scattered_at = s.point;
+  }
+  *ray = leave(frame, s, direction, kInfinity);
+  return !is_zero(path->weight);
+}
+
+// The share of an emitter's radiance that falls to a path which meets it.
+double emission_weight(const Reference& reference, const ReferenceSurface& s, const Vec3d& direction,
+                       const Path& path) {
+  if (path.sees_lights) return 1;
+  double cos_light = -dot(s.geometric, direction), area_density = emitter_density(reference, s.triangle);
+  if (!(area_density > 0) || !(cos_light > 0)) return 1;
+  Vec3d way = s.point - path.scattered_at;
+  return power_heuristic(path.density, area_density * dot(way, way) / cos_light);
+}
+
+// Radiance that arrives along a ray: one sample of it.
+Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, ReferenceRay ray,
+                 ReferenceSamples* samples) {
+  const FrameData& frame = *reference.world.frame;
+  const SceneInfo& info = frame.scene->info;
+  bool model = options.transport == Transport::model;
+  Vec3d sum = {0, 0, 0};
+  Path path;
+  path.media = frame.eye_media;
+  for (std::uint32_t depth = 0;; ++depth) {
+    ReferenceSurface s;
+    ReferenceContact contact;
+    if (!find_surface(reference, ray, &path, samples, &s, &contact))
+      return sum + path.weight * to_double(info.background);
+    if (s.material->unlit) return sum + path.weight * s.diffuse;
+    if (!is_zero(s.emission)) sum += path.weight * s.emission * emission_weight(reference, s, ray.direction, path);
+    if (model) sum += path.weight * s.diffuse * to_double(info.ambient);
+    if (!model) s.cell = find_cell(reference.guide, s.point);
+    if (!is_zero(s.diffuse) || !is_zero(s.material->specular))
+      sum +=
+          path.weight * sample_direct_light(reference, options, s, -ray.direction, depth < options.depth_max, samples);
+    if (depth >= options.depth_max || !scatter(reference, options, s, contact, &ray, &path, samples)) return sum;
+    if (depth < kSureDepth) continue;
+    double survival = std::fmin(kSurvivalMax, path.worth);
+    if (!(samples->next() < survival)) return sum;
+    path.weight = path.weight / survival, path.worth /= survival;
+  }
+}
+
+}  // namespace
+
+std::size_t reference_need(const FrameData& frame) {
+  std::uint32_t count = frame.scene->triangles.count;
+  return reference_world_need(count) + arena_need<ReferenceEmitter>(count) + reference_guide_need(count);
+}
+
+Reference make_reference(const FrameData& frame, Arena* arena, std::uint32_t guide_path_count) {
+  Reference reference;
+  reference.world = make_reference_world(frame, arena);
+  reference.emitters = arena_array<ReferenceEmitter>(arena, frame.scene->triangles.count);
+  reference.emitters.count = find_parts(frame, emitted_power, reference.emitters.data);
+  make_reference_guide(frame, guide_path_count, arena, &reference);
+  return reference;
+}
+
+Vec3d sample_radiance(const Reference& reference, const ReferenceOptions& options, const Vec3d& origin,
+                      const Vec3d& direction, Rng* rng) {
+  ReferenceSamples samples(*rng);
+  Vec3d radiance = trace_path(reference, options, {origin, direction, 0, kInfinity}, &samples);
+  *rng = samples.rng();
+  return radiance;
+}
+
+void trace_reference(const Reference& reference, const ReferenceOptions& options, std::uint32_t row_begin,
+                     std::uint32_t row_end, Vec3d* means) {
+  const CameraRays& camera = reference.world.frame->camera;
+  std::uint32_t width = static_cast<std::uint32_t>(camera.width), n = options.samples_per_pixel;
+  for (std::uint32_t y = row_begin; y < row_end; ++y)
+    for (std::uint32_t x = 0; x < width; ++x) {
+      ReferenceSamples samples(options.seed, std::uint64_t(y) * width + x);
+      Vec3d sum = {0, 0, 0};
+      for (std::uint32_t i = 0; i < n; ++i) {
+        samples.begin_path(options.first_sample + i);
+        Pair at = samples.pixel();
+        sum += trace_path(reference, options, reference_camera_ray(camera, x + at.u, y + at.v), &samples);
+      }
+      means[std::size_t(y - row_begin) * width + x] = sum / static_cast<double>(n);
+    }
+}
+
+}  // namespace pocketray

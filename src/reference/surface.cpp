@@ -1,0 +1,129 @@
+#include "reference/surface.h"
+
+#include "base/fmath.h"
+#include "brdf/brdf_list.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+// Of coordinates: beyond it lies what rounding cannot tell from the surface itself.
+constexpr double kOwnSurface = 0x1p-40;
+
+static_assert(kBrdfCount == 1, "give the reference the new lobe's value, density and sampling");
+
+// x^y for x in [0, 1].
+double power(double x, double y) { return y == 0 ? 1 : x > 0 ? det_exp(y * det_log(x)) : 0; }
+
+double lobe_cosine(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
+  double c = 2 * dot(s.normal, to_light) * dot(s.normal, to_viewer) - dot(to_light, to_viewer);
+  return c < 1 ? c : 1;
+}
+// How often the glossy lobe is sampled rather than the diffuse one.
+double glossy_share(const ReferenceSurface& s) {
+  double glossy = static_cast<double>(max_component(s.material->specular)), diffuse = max_component(s.diffuse);
+  return glossy > 0 ? glossy / (glossy + diffuse) : 0;
+}
+
+// A direction whose cosine with the axis has the density (n + 1)/2π cosⁿ.
+Vec3d around(const Vec3d& axis, double n, const Pair& pair) {
+  double cosine = n == 1 ? std::sqrt(1 - pair.u) : power(1 - pair.u, 1 / (n + 1)), phi = 2 * kPi * pair.v;
+  double sine = std::sqrt((1 - cosine) * (1 + cosine));
+  Vec3d tangent, bitangent;
+  make_basis(axis, &tangent, &bitangent);
+  return tangent * (sine * det_cos(phi)) + bitangent * (sine * det_sin(phi)) + axis * cosine;
+}
+
+}  // namespace
+
+void make_basis(const Vec3d& n, Vec3d* tangent, Vec3d* bitangent) {
+  double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  *tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  *bitangent = {b, sign + n.y * n.y * a, -n.y};
+}
+
+ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction) {
+  const Scene& scene = *frame.scene;
+  const Triangle& t = scene.triangles[hit.triangle];
+  double weight[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  Vec3d corner[3], normal = {0, 0, 0}, tint = {1, 1, 1};
+  ReferenceSurface s;
+  s.triangle = hit.triangle, s.u = hit.u, s.v = hit.v;
+  s.material = &scene.materials[t.material()];
+  s.point = {0, 0, 0}, s.magnitude = 0;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    corner[i] = to_double(frame.positions[t.vertex(i)]);
+    s.point += corner[i] * weight[i];
+    for (int axis = 0; axis < 3; ++axis) s.magnitude = std::fmax(s.magnitude, std::fabs(corner[i][axis]));
+    if (frame.normals.count) normal += to_double(frame.normals[t.vertex(i)]) * weight[i];
+  }
+  Vec3d outward = normalize(cross(corner[1] - corner[0], corner[2] - corner[0]));
+  s.front = dot(outward, direction) <= 0;
+  s.geometric = s.front ? outward : -outward;
+  normal = frame.settings.normals == NormalMode::flat ? Vec3d{0, 0, 0} : normalize(normal);
+  s.normal = is_zero(normal) ? s.geometric : dot(normal, s.geometric) < 0 ? -normal : normal;
+  Vec2 uv = {0, 0};
+  if (scene.uvs.count) uv = hit_uv(scene, hit.triangle, static_cast<float>(hit.u), static_cast<float>(hit.v));
+  const Material& m = *s.material;
+  auto texel = [&](const TextureUse& use) {
+    return use.texture == kNone ? Vec3d{1, 1, 1}
+                                : to_double(sample_texture(scene, use, uv, frame.settings.texture_filter).rgb);
+  };
+  if (scene.colors.count) {
+    tint = {0, 0, 0};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const Rgba16& c = scene.colors[t.vertex(i)];
+      tint += Vec3d{c.r / 65535.0, c.g / 65535.0, c.b / 65535.0} * weight[i];
+    }
+  }
+  s.diffuse = to_double(m.diffuse) * texel(m.diffuse_texture) * tint;
+  s.emission = {0, 0, 0};
+  if (!is_zero(m.emission) && (s.front || m.double_sided))
+    s.emission = to_double(m.emission) * texel(m.emission_texture);
+  return s;
+}
+
+ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3d& direction, double t_max) {
+  Vec3d origin = s.point;
+  if (frame.normals.count && !(dot(direction, s.geometric) > 0) && dot(direction, s.normal) > 0) {
+    const Triangle& t = frame.scene->triangles[s.triangle];
+    double weight[3] = {1 - s.u - s.v, s.u, s.v};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      Vec3d n = to_double(frame.normals[t.vertex(i)]);
+      if (dot(n, s.normal) < 0) n = -n;
+      double below = dot(s.point - to_double(frame.positions[t.vertex(i)]), n);
+      if (below < 0) origin += n * (-below * weight[i]);
+    }
+  }
+  return {origin, direction, kOwnSurface * s.magnitude / length(direction), t_max};
+}
+
+Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
+  Vec3d value = s.diffuse * (1 / kPi);
+  const Material& m = *s.material;
+  double cosine = lobe_cosine(s, to_viewer, to_light), n = static_cast<double>(m.exponent);
+  if (!is_zero(m.specular) && cosine > 0) value += to_double(m.specular) * ((n + 2) / (2 * kPi) * power(cosine, n));
+  return value;
+}
+
+double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
+  double cosine = dot(s.normal, to_light), share = glossy_share(s), n = static_cast<double>(s.material->exponent);
+  if (!(cosine > 0) || (is_zero(s.diffuse) && share == 0)) return 0;
+  double lobe = lobe_cosine(s, to_viewer, to_light);
+  double glossy = lobe > 0 ? (n + 1) / (2 * kPi) * power(lobe, n) : 0;
+  return (1 - share) * cosine / kPi + share * glossy;
+}
+
+bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choice, const Pair& pair,
+                  Vec3d* direction) {
+  double share = glossy_share(s);
+  if (is_zero(s.diffuse) && share == 0) return false;
+  if (choice < share)
+    *direction = around(normalize(s.normal * (2 * dot(s.normal, to_viewer)) - to_viewer),
+                        static_cast<double>(s.material->exponent), pair);
+  else
+    *direction = around(s.normal, 1, pair);
+  return dot(*direction, s.normal) > 0;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,249 @@
+// The scene that is shared with servers: fetched from them where the device does not have it, left to them where the
+// device has no room for it.
+#include <cstdio>
+
+#include "base/printable.h"
+#include "platform/net/tcp.h"
+#include "remote/client/inquiry.h"
+#include "remote/client/sharing_parts.h"
+#include "scene/baked.h"
+#include "scene/builtin/builtin.h"
+#include "session/heap_scene.h"
+#include "session/interrupt.h"
+#include "session/progress.h"
+#include "session/scene_identity.h"
+#include "shade/camera.h"
+
+namespace pocketray {
+namespace {
+
+double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
+
+// "; 24.0M would hold the scene": what --memory would have to be. Empty where no --memory suffices.
+std::string memory_hint(const char* before, std::size_t wanted, const char* would) {
+  if (wanted > kMemoryBytesMax) return "";
+  char text[80];
+  std::snprintf(text, sizeof text, "%s%.1fM would %s", before, megabytes(wanted), would);
+  return text;
+}
+
+Status ask(Sharing* s, std::size_t server, Inquiry* inquiry) {
+  InquiryOptions options;
+  options.stopped = [s] { return s->stopped.load() || interrupted.load(); };
+  return open_inquiry(options, s->link, s->addresses[server], inquiry);
+}
+
+// "127.0.0.1:7411: it does not answer; …", each server once; the link's own errors begin with its name.
+void add_reason(const Sharing& s, std::size_t server, const std::string& reason, std::string* reasons) {
+  const std::string name = s.addresses[server].text;
+  *reasons += (reasons->empty() ? "" : "; ") + (reason.compare(0, name.size(), name) == 0 ? "" : name + ": ") + reason;
+}
+
+std::string names_of(const std::vector<SceneEntry>& entries) {
+  std::string names;
+  for (const SceneEntry& entry : entries) names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  return names.empty() ? "it has no scene" : "it has " + names;
+}
+
+// The entry of the scene called so in the server's list.
+Status find_on(Inquiry* inquiry, const std::string& name, SceneEntry* entry) {
+  std::vector<SceneEntry> entries;
+  RETURN_IF_ERROR(list_scenes(inquiry, &entries));
+  const SceneEntry* found = find_entry(entries, name);
+  if (!found) return failure("%s", names_of(entries).c_str());
+  *entry = *found;
+  return success();
+}
+
+// Into the scene arena, where there is room. How long the scene is, is the server's word: 64 bits, of which a CPU may
+// address 32.
+Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry, Renderer* r, SceneSource* source) {
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, entry.byte_count));
+  if (!bytes) return scene_too_large(name, entry.byte_count, r->settings.memory_bytes, source);
+  std::size_t byte_count = to_size(entry.byte_count);
+  Progress progress = start_progress("fetching the scene", byte_count);
+  Status status =
+      fetch_scene(inquiry, entry, bytes, byte_count, [&](std::uint64_t done) { show_progress(&progress, done); });
+  end_progress(&progress);
+  RETURN_IF_ERROR(status);
+  RETURN_IF_ERROR(baked_open(bytes, byte_count, &r->scene));
+  source->baked = bytes;
+  source->baked_bytes = byte_count;
+  return success();
+}
+
+// From the first server that has the scene and sends it.
+Status load_from_servers(Sharing* s, const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  std::string reasons;
+  for (std::size_t i = 0; i < s->addresses.size(); ++i) {
+    Inquiry inquiry;
+    SceneEntry entry;
+    std::size_t mark = arena_mark(r->scene_arena);
+    Status status = ask(s, i, &inquiry);
+    if (status.ok) status = find_on(&inquiry, name, &entry);
+    if (status.ok) {
+      s->scene = entry.hash;
+      s->is_named = true;
+      status = fetch(&inquiry, name, entry, r, source);
+    }
+    if (status.ok) storage->arena_bytes = r->scene_arena.used;
+    if (status.ok || source->bytes_wanted > 0) return status;
+    arena_release(&r->scene_arena, mark);
+    s->is_named = false;
+    add_reason(*s, i, status.message, &reasons);
+  }
+  return failure("%.200s is no file, nor a built-in scene, nor to be had from a server; %s", name.c_str(),
+                 reasons.c_str());
+}
+
+Status load_shared(Sharing* s, const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  *storage = SceneStorage();
+  return is_local_scene(name) ? load_scene(name, r, source, storage) : load_from_servers(s, name, r, source, storage);
+}
+
+// Which scene it is, told from where it lies.
+Status name_loaded(Sharing* s, SceneSource* source, Renderer* r) {
+  Status status = identify_scene(*source, r, &s->scene);
+  s->is_named = status.ok;
+  if (!status.ok) source->bytes_wanted = r->settings.memory_bytes - arena_free(r->scene_arena) + baked_size(r->scene);
+  return status;
+}
+
+// The hash of a scene that did not fit: of a file by its bytes, of a built-in scene by a server that has it, too.
+Status name_without_loading(Sharing* s, const std::string& name) {
+  bool is_builtin = find_builtin(name.c_str()) != nullptr;
+  if (!is_builtin && is_baked_name(name)) return hash_file(name, &s->scene);
+  if (!is_builtin) {
+    HeapScene heap;
+    RETURN_IF_ERROR(read_heap_scene(name, ModelOptions(), &heap));
+    std::vector<std::max_align_t> bytes(baked_size(heap.scene) / sizeof(std::max_align_t) + 1);
+    auto* begin = reinterpret_cast<std::uint8_t*>(bytes.data());
+    baked_write(heap.scene, begin);
+    s->scene = content_hash(begin, baked_size(heap.scene));
+    return success();
+  }
+  std::string reasons;
+  for (std::size_t i = 0; i < s->addresses.size(); ++i) {
+    Inquiry inquiry;
+    SceneEntry entry;
+    Status status = ask(s, i, &inquiry);
+    if (status.ok) status = find_on(&inquiry, name, &entry);
+    s->scene = entry.hash;
+    if (status.ok) return status;
+    add_reason(*s, i, status.message, &reasons);
+  }
+  return failure("%s", reasons.c_str());
+}
+
+Status find_view(Sharing* s, const ViewQuery& query) {
+  std::string reasons;
+  for (std::size_t i = 0; i < s->addresses.size(); ++i) {
+    Inquiry inquiry;
+    Status status = ask(s, i, &inquiry);
+    if (status.ok) status = ask_view(&inquiry, query, &s->view);
+    CameraRays rays;
+    if (status.ok) status = make_camera_rays(s->view.camera, query.settings.width, query.settings.height, &rays);
+    if (status.ok) return status;
+    add_reason(*s, i, status.message, &reasons);
+  }
+  return failure("%s", reasons.c_str());
+}
+
+EffectPlan effects_of_servers(EffectMask mask) {
+  EffectPlan plan;
+  plan.mask = mask;
+  for (int i = 0; i < kEffectCount; ++i) {
+    EffectDecision* decision = &plan.decisions[i];
+    decision->on = has(mask, static_cast<Effect>(i));
+    std::snprintf(decision->reason, sizeof decision->reason, "as the servers plan it");
+  }
+  return plan;
+}
+
+// Without the scene: what is shown is what the servers render.
+Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
+  ViewQuery query;
+  query.settings = opened->renderer.settings;
+  query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked
+  query.camera_stated = !o.camera.empty();
+  if (query.camera_stated) RETURN_IF_ERROR(parse_camera(o.camera, &query.camera));
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &query.measure_exposure, &factor));
+  std::size_t wanted = opened->source.bytes_wanted, limit = query.settings.memory_bytes;
+  Status status = s->is_named ? success() : name_without_loading(s, o.scene);
+  query.scene = s->scene;
+  if (status.ok) status = find_view(s, query);
+  if (!status.ok)
+    return failure("%.100s does not fit --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
+                   megabytes(limit), memory_hint(" (", wanted, "be a start)").c_str(), status.message);
+  opened->source = SceneSource();
+
+  Pace pace = opened->renderer.pace;
+  Renderer* r = &opened->renderer;
+  *r = Renderer();
+  start_renderer(opened->block, limit, query.settings, r);
+  RETURN_IF_ERROR(plan_without_scene(r, output_bytes));
+  r->pace = pace;
+  r->camera = s->view.camera;
+  r->camera_index = o.camera_index;
+  r->camera_overridden = query.camera_stated;
+  r->exposure = s->view.exposure;
+  RETURN_IF_ERROR(change_exposure(factor, &r->exposure));
+  r->effects = effects_of_servers(s->view.effects);
+  r->scene.info.frames_per_second = s->view.frames_per_second;
+  r->accel.bounds = s->view.bounds;
+  s->is_named = s->is_thin = true;
+  char line[400];
+  std::snprintf(line, sizeof line,
+                "%.100s does not fit --memory %.1fM: the servers render every pixel, this device shows them%s",
+                o.scene.c_str(), megabytes(limit), memory_hint("; ", wanted, "hold the scene").c_str());
+  opened->source.warning = line;
+  return success();
+}
+
+}  // namespace
+
+Status open_shared_scene(Sharing* s, const CommonOptions& o,
+                         const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened) {
+  OpenHooks hooks;
+  hooks.output_bytes = [&](const Settings& settings) { return output_bytes(settings) + sharing_bytes(s, settings); };
+  if (s) {
+    end_sharing(s);
+    s->is_named = s->is_thin = false;
+    hooks.load = [s](const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+      return load_shared(s, name, r, source, storage);
+    };
+    hooks.loaded = [s, opened](const SceneSource&, Renderer* r) { return name_loaded(s, &opened->source, r); };
+  }
+  Status status = open_scene(o, hooks, opened);
+  if (status.ok) return start_scene(opened, o);
+  if (!s || opened->source.bytes_wanted == 0) return status;
+  return open_thin(s, o, hooks.output_bytes(opened->renderer.settings), opened);
+}
+
+void stop_opening(Sharing* s) {
+  if (s) s->stopped = true;
+}
+
+std::uint32_t shared_triangle_count(const Sharing* s, const Renderer& r) {
+  return s && s->is_thin ? s->view.triangle_count : r.scene.triangles.count;
+}
+
+Status list_shared_scenes(Sharing* s, std::size_t server, std::vector<OfferedScene>* scenes) {
+  scenes->clear();
+  Inquiry inquiry;
+  std::vector<SceneEntry> entries;
+  Status status = ask(s, server, &inquiry);
+  if (status.ok) status = list_scenes(&inquiry, &entries);
+  std::string reason;
+  if (!status.ok) add_reason(*s, server, status.message, &reason);
+  if (!status.ok) return failure("%s", reason.c_str());
+  for (const SceneEntry& entry : entries) {
+    OfferedScene scene = {entry.name, entry.triangle_count, entry.byte_count};
+    make_printable(&scene.name[0], scene.name.size());  // whatever the server sent
+    scenes->push_back(scene);
+  }
+  return success();
+}
+
+}  // namespace pocketray

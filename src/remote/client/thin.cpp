@@ -1,0 +1,130 @@
+// A device without the scene: every row of a frame is a server's, and a pixel that one fails to send another one has
+// to.
+#include <algorithm>
+
+#include "remote/client/parts.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows: longer than a connection may take
+// A server that has been silent for the time of so many of its chunks is taken to have stopped; at least for so long,
+// which is more than a busy system takes to go on.
+constexpr double kSilentChunks = 4, kSilentNsMin = 30e6;
+
+// How many servers have been asked for the row.
+std::uint32_t asked_count(const Client& c, std::uint32_t row) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < c.server_count; ++i) {
+    const ServerFrame& f = c.servers[i].frame;
+    count += f.open && f.row_begin <= row && row < f.row_end;
+  }
+  return count;
+}
+
+struct Run {
+  std::uint32_t begin = 0, end = 0;
+};
+
+// The longest run of missing rows in [begin, end) that so many servers have been asked for.
+Run longest_run(const Client& c, std::uint32_t begin, std::uint32_t end, std::uint32_t count) {
+  Run best, run = {begin, begin};
+  for (std::uint32_t row = begin; row < end; ++row) {
+    if (c.merge.rows[row].state != RowState::missing || asked_count(c, row) != count) {
+      run = {row + 1, row + 1};
+      continue;
+    }
+    run.end = row + 1;
+    if (run.end - run.begin > best.end - best.begin) best = run;
+  }
+  return best;
+}
+
+bool is_idle(const RemoteServer& s) { return s.phase == ServerPhase::ready && !s.frame.open; }
+
+// Rows in a time; all are alike while nothing is known.
+double speed_of(const Client& c, const RemoteServer& s) {
+  double sum = 0, count = 0;
+  for (std::uint32_t i = 0; i < c.server_count; ++i)
+    if (is_known(c.servers[i].row_ns)) sum += 1 / static_cast<double>(c.servers[i].row_ns.value), ++count;
+  if (is_known(s.row_ns)) return 1 / static_cast<double>(s.row_ns.value);
+  return count > 0 ? sum / count : 1;
+}
+
+// Every idle server gets its part of the run, by its speed.
+void divide(Client* c, const Run& run) {
+  double speed_sum = 0, so_far = 0, rows = run.end - run.begin;
+  for (std::uint32_t i = 0; i < c->server_count; ++i)
+    if (is_idle(c->servers[i])) speed_sum += speed_of(*c, c->servers[i]);
+  std::uint32_t begin = run.begin;
+  for (std::uint32_t i = 0; i < c->server_count && begin < run.end; ++i) {
+    RemoteServer* s = &c->servers[i];
+    if (!is_idle(*s)) continue;
+    so_far += speed_of(*c, *s);
+    std::uint32_t end = run.begin + static_cast<std::uint32_t>(rows * std::min(1.0, so_far / speed_sum) + 0.5);
+    if (end > begin) ask_for_rows(c, s, begin, end);
+    begin = end;
+  }
+}
+
+// Rows that the server alone has been asked for and that somebody else had better render: all where it has fallen
+// silent, else the upper half, which it would send last.
+Run rows_to_spare(const Client& c, const RemoteServer& s) {
+  Run run = longest_run(c, s.frame.row_begin, s.frame.row_end, 1);
+  double silent = static_cast<double>(client_now_ns(c) - std::max(s.frame.asked_ns, s.frame.heard_ns));
+  double chunk_ns = static_cast<double>(s.row_ns.value) * kChunkRowsEven;
+  if (silent > std::max(kSilentNsMin, kSilentChunks * chunk_ns)) return run;
+  std::uint32_t rows = run.end - run.begin;
+  if (rows < 2 * kChunkRowsEven || !is_known(s.row_ns)) return Run();
+  return {run.begin, run.begin + rows / 2};
+}
+
+void take_over(Client* c, RemoteServer* idle) {
+  Run best;
+  for (std::uint32_t i = 0; i < c->server_count; ++i) {
+    if (!c->servers[i].frame.open) continue;
+    Run run = rows_to_spare(*c, c->servers[i]);
+    if (run.end - run.begin > best.end - best.begin) best = run;
+  }
+  if (best.begin < best.end) ask_for_rows(c, idle, best.begin, best.end);
+}
+
+}  // namespace
+
+void ask_idle_servers(Client* c) {
+  bool idle = false;
+  for (std::uint32_t i = 0; i < c->server_count; ++i) {
+    RemoteServer* s = &c->servers[i];
+    if (s->phase == ServerPhase::probing) server_is_ready(c, s);  // what it renders is seen as it comes
+    idle = idle || is_idle(*s);
+  }
+  if (!idle || c->complete) return;
+  Run run = longest_run(*c, 0, c->settings.height, 0);
+  if (run.begin < run.end) divide(c, run);
+  for (std::uint32_t i = 0; i < c->server_count; ++i)
+    if (is_idle(c->servers[i])) take_over(c, &c->servers[i]);
+}
+
+void learn_row_times(Client* c) {
+  for (std::uint32_t i = 0; i < c->server_count; ++i) {
+    RemoteServer* s = &c->servers[i];
+    const ServerFrame& f = s->frame;
+    if (f.asked_ns == 0 || s->phase != ServerPhase::ready) continue;
+    std::uint64_t end = f.rows_come > 0 && !f.open ? f.heard_ns : client_now_ns(*c);
+    smooth(&s->row_ns, static_cast<double>(end - f.asked_ns) / std::max(1u, f.rows_come));
+  }
+}
+
+bool is_cut_off(const Client& c) {
+  if (c.options.has_scene || c.complete) return false;
+  std::uint64_t now = client_now_ns(c), since = std::max(c.begin_ns, c.progress_ns);
+  if (now < since + kCutOffNs) return false;
+  if (now >= since + std::max(kCutOffNs, c.options.prepare_timeout_ns)) return true;
+  for (std::uint32_t i = 0; i < c.server_count; ++i) {
+    const RemoteServer& s = c.servers[i];
+    if (s.phase == ServerPhase::ready && s.frame.open && s.frame.answers) return false;  // it lives, and takes its time
+  }
+  return true;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,207 @@
+#include <cstring>
+
+#include "remote/server/state.h"
+
+namespace pocketray {
+namespace {
+
+// Of one client, before the others have their turn.
+constexpr int kMessagesAtOnce = 32;
+constexpr std::uint64_t kMessagesNs = 2'000'000;
+
+void send_scene_entry(Session* session, const SceneStore& store, const ContentHash& hash, const StoredScene* scene) {
+  Message reply;
+  reply.type = MessageType::scene_entry;
+  SceneEntry* entry = &reply.scene_entry;
+  entry->hash = hash;
+  entry->count = static_cast<std::uint16_t>(store.scenes.size());
+  if (scene) {
+    entry->hash = scene->hash;
+    entry->byte_count = scene->byte_count;
+    entry->index = static_cast<std::uint16_t>(scene - store.scenes.data());
+    entry->triangle_count = scene->scene.triangles.count;
+    std::memcpy(entry->name, scene->name, sizeof entry->name);
+  }
+  send_message(session, reply);
+}
+
+void send_scene_piece(Session* session, const SceneFetch& fetch, const StoredScene* scene) {
+  if (!scene) return send_error(session, WireError::unknown_scene, 0);
+  Message reply;
+  reply.type = MessageType::scene_piece;
+  reply.scene_piece.hash = fetch.hash;
+  reply.scene_piece.offset = fetch.offset;
+  std::uint64_t left = fetch.offset < scene->byte_count ? scene->byte_count - fetch.offset : 0;
+  std::uint32_t count = left < fetch.byte_count ? static_cast<std::uint32_t>(left) : fetch.byte_count;
+  reply.scene_piece.bytes = {count ? scene->bytes + fetch.offset : nullptr, count};
+  send_message(session, reply);
+}
+
+void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
+  Message reply;
+  reply.type = MessageType::pong;
+  reply.pong.id = ping.id;
+  reply.pong.pixel_ps = pixel_ps;
+  reply.pong.bytes.count = ping.reply_bytes;
+  std::uint32_t byte_count = message_bytes(reply);
+  std::uint8_t* at = reserve_output(session, byte_count);
+  std::memset(at, 0, byte_count);
+  reply.pong.bytes.data = at + byte_count - ping.reply_bytes;
+  send_message(session, reply);
+}
+
+void begin_job(Session* s, const StoredScene* scene) {
+  s->job = FrameJob();
+  s->job.scene = scene;
+}
+
+// The request takes the place of what is left of the one before, whatever becomes of it.
+void take_request(Server* server, Session* s, const FrameRequest& request) {
+  const Settings& settings = request.settings;
+  if (request.frame == 0) return refuse(server, s, WireError::bad_request, 0, "frames count from 1");
+  bool is_late = request.frame < s->frame_last;  // further rows of the same frame may be asked for
+  if (is_late) return refuse(server, s, WireError::bad_request, request.frame, "a later frame was asked for before");
+  drop_job(s);
+  ++s->job_number;
+  s->frame_last = request.frame;
+  s->request = request;
+  if (settings.width != s->shape.width || settings.height != s->shape.height || request.format != s->shape.format) {
+    s->shape = {settings.width, settings.height, 1, request.format};
+    s->encoder = nullptr;  // both ends begin anew
+  }
+  if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
+    return refuse(server, s, WireError::too_large, request.frame, "the picture is larger than this server allows");
+  const StoredScene* scene = find_scene(*server->store, request.scene);
+  if (!scene) return refuse(server, s, WireError::unknown_scene, request.frame, "its scene is not known here");
+  begin_job(s, scene);
+  s->job.request = request;
+  s->job.traced_begin = s->job.sent_begin = request.row_end;
+}
+
+void take_frame_change(Server* server, Session* s, const FrameRequest& change) {
+  if (s->request.frame == 0 || change.row_end > s->request.settings.height)
+    return refuse(server, s, WireError::bad_request, change.frame, "it changes what was not asked for");
+  FrameRequest request = s->request;
+  take_change(change, &request);
+  take_request(server, s, request);
+}
+
+void take_view_query(Server* server, Session* s, const ViewQuery& query) {
+  drop_job(s);
+  ++s->job_number;
+  const Settings& settings = query.settings;
+  if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
+    return refuse(server, s, WireError::too_large, 0, "the picture is larger than this server allows");
+  const StoredScene* scene = find_scene(*server->store, query.scene);
+  if (!scene) return refuse(server, s, WireError::unknown_scene, 0, "its scene is not known here");
+  begin_job(s, scene);
+  s->job.is_view_query = true;
+  s->job.measure_exposure = query.measure_exposure;
+  FrameRequest* request = &s->job.request;
+  request->scene = query.scene;
+  request->camera_stated = query.camera_stated, request->camera_index = query.camera_index;
+  request->camera = query.camera, request->settings = query.settings;
+}
+
+// False: the session is at its end.
+bool take_message(Server* server, Session* session, const Message& message) {
+  constexpr WireError kMalformed = WireError::malformed;
+  const SceneStore& store = *server->store;
+  switch (message.type) {
+    case MessageType::scene_list: {
+      std::size_t index = message.scene_list.index;
+      send_scene_entry(session, store, ContentHash(), index < store.scenes.size() ? &store.scenes[index] : nullptr);
+      return true;
+    }
+    case MessageType::scene_query:
+      send_scene_entry(session, store, message.scene_query.hash, find_scene(store, message.scene_query.hash));
+      return true;
+    case MessageType::scene_fetch:
+      send_scene_piece(session, message.scene_fetch, find_scene(store, message.scene_fetch.hash));
+      return true;
+    case MessageType::frame_request:
+      take_request(server, session, message.frame_request);
+      return true;
+    case MessageType::frame_change:
+      take_frame_change(server, session, message.frame_request);
+      return true;
+    case MessageType::view_query:
+      take_view_query(server, session, message.view_query);
+      return true;
+    case MessageType::cancel:
+      if (has_job(*session) && session->job.request.frame <= message.cancel.frame) drop_job(session);
+      return true;
+    case MessageType::ping:
+      send_pong(session, message.ping, session->pixel_ps ? session->pixel_ps : server->pixel_ps);
+      return true;
+    case MessageType::error:
+      end_session(server, session, message.error.code == WireError::closing ? "it ended" : "it reported an error");
+      return false;
+    case MessageType::hello:
+    case MessageType::scene_entry:
+    case MessageType::scene_piece:
+    case MessageType::row_chunk:
+    case MessageType::pong:
+    case MessageType::view_entry:
+      break;
+  }
+  leave(server, session, &kMalformed, "it sent what only servers send");
+  return false;
+}
+
+}  // namespace
+
+Message server_hello(const Server& server) {
+  Message message;
+  message.type = MessageType::hello;
+  message.hello.image_side_max = static_cast<std::uint16_t>(server.options.image_side_max);
+  message.hello.message_bytes_max = kRequestBytesMax;
+  return message;
+}
+
+int take_messages(Server* server, Session* s) {
+  constexpr WireError kMalformed = WireError::malformed;
+  std::uint64_t start = now_ns(server);
+  std::size_t begin = 0;
+  int count = 0;
+  while (wants_messages(*s)) {
+    Message message;
+    Decoded decoded = decode_message(s->input.data + begin, s->input_count - begin, kRequestBytesMax, &message);
+    s->more_to_take = decoded.state == DecodeState::message;
+    if (decoded.state == DecodeState::need_more) break;
+    ++count;
+    if (decoded.state == DecodeState::malformed) {
+      leave(server, s, &kMalformed, "it sent what is no message");
+      return count;
+    }
+    begin += decoded.byte_count;
+    std::uint64_t now = now_ns(server);
+    s->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
+    s->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
+    if (!take_message(server, s, message)) return count;
+    if (count == kMessagesAtOnce || now_ns(server) > start + kMessagesNs) break;
+  }
+  s->input_count -= begin;
+  std::memmove(s->input.data, s->input.data + begin, s->input_count);
+  if (s->has_ended && !wants_messages(*s) && s->phase == SessionPhase::serving && !s->more_to_take)
+    end_session(server, s, "it closed the connection");
+  return count;
+}
+
+void read_session(Server* server, Session* s) {
+  bool leaving = s->phase == SessionPhase::leaving;
+  if (leaving) s->input_count = 0;
+  if (s->input_count == 0) s->message_timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
+  std::size_t count = 0;
+  platform::Error error;
+  platform::LinkResult result = server->net->read(server->link, s->stream, s->input.data + s->input_count,
+                                                  s->input.count - s->input_count, &count, &error);
+  s->input_count += count;
+  s->more_to_take = s->more_to_take || (!leaving && count > 0);
+  if (result == platform::LinkResult::failed) return end_session(server, s, error.text);
+  if (result != platform::LinkResult::ended) return;
+  if (leaving || !s->more_to_take) return end_session(server, s, "it closed the connection");
+  s->has_ended = true;  // what it said before counts
+}
+
+}  // namespace pocketray

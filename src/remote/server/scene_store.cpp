@@ -1,0 +1,165 @@
+#include "remote/server/scene_store.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/printable.h"
+#include "platform/file.h"
+#include "scene/baked.h"
+#include "scene/builtin/builtin.h"
+#include "session/heap_scene.h"
+#include "session/progress.h"
+
+namespace pocketray {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// Whether a file's name is that of a scene; those beside them are textures and the like.
+bool is_scene_file(const std::string& name) {
+  if (ends_with(name, ".pray")) return true;
+#ifdef POCKETRAY_HAVE_IMPORT
+  std::string formats = import_formats() + " ";
+  for (std::size_t begin = 0, end; (end = formats.find(' ', begin)) != std::string::npos; begin = end + 1)
+    if (end > begin && ends_with(name, "." + formats.substr(begin, end - begin))) return true;
+#endif
+  return false;
+}
+
+void release(StoredScene* stored) {
+  give_block_back(stored->baked_block);
+  give_block_back(stored->accel_block);
+  stored->baked_block = stored->accel_block = nullptr;
+}
+
+// A block of so many bytes aligned as a baked file must be.
+std::uint8_t* take_aligned(std::uint64_t byte_count, void** block) {
+  if (byte_count > kMemoryBytesMax) return nullptr;
+  *block = take_block(arena_need(byte_count) + kArenaAlignment);
+  if (!*block) return nullptr;
+  Arena arena = make_arena("scene", *block, arena_need(byte_count) + kArenaAlignment);
+  return static_cast<std::uint8_t*>(arena_allocate(&arena, byte_count));
+}
+
+Status too_many_bytes(std::uint64_t bytes_max) {
+  return failure("there is no room for it in the %.0f MiB that all scenes may take",
+                 static_cast<double>(bytes_max) / (1 << 20));
+}
+
+// The baked bytes, from wherever they come.
+Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene* stored) {
+  if (is_baked_name(path)) {
+    // A copy: who writes to the file, or cuts it short, while it is served changes nothing that clients or threads see.
+    auto take = [&](std::uint64_t byte_count) -> std::uint8_t* {
+      return byte_count <= bytes_left ? take_aligned(byte_count, &stored->baked_block) : nullptr;
+    };
+    std::uint8_t* bytes = nullptr;
+    std::uint64_t byte_count = 0;
+    Status status = read_baked(path, take, &bytes, &byte_count);
+    if (byte_count > bytes_left) return too_many_bytes(bytes_left);
+    stored->bytes = bytes;
+    stored->byte_count = bytes ? static_cast<std::size_t>(byte_count) : 0;
+    return status;
+  }
+  HeapScene heap;
+  RETURN_IF_ERROR(read_heap_scene(path, ModelOptions(), &heap));
+  std::size_t byte_count = baked_size(heap.scene);
+  if (byte_count > bytes_left) return too_many_bytes(bytes_left);
+  std::uint8_t* bytes = take_aligned(byte_count, &stored->baked_block);
+  if (!bytes) return failure("%zu bytes of memory cannot be had", byte_count);
+  baked_write(heap.scene, bytes);
+  stored->bytes = bytes;
+  stored->byte_count = byte_count;
+  return success();
+}
+
+Status read_scene(const std::string& path, std::uint64_t bytes_left, StoredScene* stored) {
+  RETURN_IF_ERROR(read_bytes(path, bytes_left, stored));
+  if (stored->byte_count > bytes_left) return too_many_bytes(bytes_left);
+  RETURN_IF_ERROR(baked_open(stored->bytes, stored->byte_count, &stored->scene));
+  stored->hash = content_hash(stored->bytes, stored->byte_count);
+  if (!stored->scene.accel.empty()) return success();
+  Array<const std::uint8_t> accel;
+  stored->accel_block = build_heap_accel(kBvhAccel, stored->scene, &accel);
+  if (!stored->accel_block) return failure("its accelerator needs more memory than can be had");
+  stored->scene.accel = accel;
+  stored->accel_bytes = accel.bytes();
+  if (stored->byte_count + stored->accel_bytes > bytes_left) return too_many_bytes(bytes_left);
+  return success();
+}
+
+// Cut where a character of UTF-8 begins. Clients show it: nothing is in it that a terminal obeys.
+void set_name(const std::string& name, StoredScene* stored) {
+  std::size_t length = std::min(name.size(), std::size_t(kNameBytes - 1));
+  while (length > 0 && length < name.size() && (name[length] & 0xC0) == 0x80) --length;
+  std::memcpy(stored->name, name.data(), length);
+  make_printable(stored->name, length);
+}
+
+std::uint64_t stored_bytes(const SceneStore& store) {
+  std::uint64_t sum = 0;
+  for (const StoredScene& stored : store.scenes) sum += stored.byte_count + stored.accel_bytes;
+  return sum;
+}
+
+}  // namespace
+
+SceneStore::~SceneStore() {
+  for (StoredScene& stored : scenes) release(&stored);
+}
+
+Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store) {
+  StoredScene stored;
+  Status status = read_scene(path, bytes_left, &stored);
+  if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server has no more than 65535 scenes");
+  if (status.ok && !find_scene(*store, stored.hash)) {
+    set_name(name, &stored);
+    store->scenes.push_back(stored);
+  } else {
+    release(&stored);
+  }
+  return status;
+}
+
+Status open_scene_store(const SceneStoreOptions& options, SceneStore* store) {
+  struct Source {
+    std::string name, path;
+  };
+  std::vector<Source> sources;
+  int builtin_count;
+  const BuiltinScene* builtins = builtin_list(&builtin_count);
+  for (int i = 0; i < builtin_count; ++i) sources.push_back({builtins[i].name, builtins[i].name});
+  if (!options.folder.empty()) {
+    std::vector<std::string> names;
+    platform::FileError error;
+    auto add = [](void* context, const char* name) {
+      static_cast<std::vector<std::string>*>(context)->push_back(name);
+    };
+    if (!platform::list_folder(options.folder.c_str(), add, &names, &error))
+      return failure("%.200s %s", options.folder.c_str(), error.text);
+    std::sort(names.begin(), names.end());
+    for (const std::string& name : names)
+      if (is_scene_file(name)) sources.push_back({name, options.folder + "/" + name});
+  }
+
+  std::uint64_t bytes_left = options.bytes_max;
+  Progress progress = start_progress("reading scenes", sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    Status status = store_scene(sources[i].name, sources[i].path, bytes_left, store);
+    if (!status.ok) store->warnings.push_back(sources[i].name + " is left out: " + status.message);
+    bytes_left = options.bytes_max - stored_bytes(*store);
+    show_progress(&progress, i + 1);
+  }
+  end_progress(&progress);
+  return success();
+}
+
+const StoredScene* find_scene(const SceneStore& store, const ContentHash& hash) {
+  for (const StoredScene& stored : store.scenes)
+    if (stored.hash == hash) return &stored;
+  return nullptr;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,277 @@
+#include "remote/server/server.h"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "base/check.h"
+#include "remote/server/state.h"
+#include "session/source.h"
+
+namespace pocketray {
+namespace {
+
+using platform::LinkResult;
+
+constexpr std::uint64_t kLingerNs = 2'000'000'000;  // for who leaves to read why
+constexpr std::uint64_t kFarewellNs = 500'000'000;  // for all to be told that the server ends
+
+bool accepts(Server* server) {
+  return !server->accept_rests || platform::link_timer_left(&server->accept_timer, now_ns(server)) == 0;
+}
+
+void write_session(Server* server, Session* s) {
+  OutputQueue* q = &s->output;
+  while (q->begin < q->end) {
+    std::size_t count = 0;
+    platform::Error error;
+    LinkResult result =
+        server->net->write(server->link, s->stream, q->bytes.data + q->begin, q->end - q->begin, &count, &error);
+    if (result == LinkResult::failed) return end_session(server, s, error.text);
+    if (count == 0) return;
+    q->begin += count;
+    s->byte_count += count;
+    s->stall_timer = platform::link_timer(now_ns(server), server->options.stall_timeout_ns);
+  }
+  q->begin = q->end = 0;
+}
+
+// Sends what there is, and rows that waited for room, unless they have to wait for their turn as well.
+void send_session(Server* server, Session* s) {
+  for (;;) {
+    std::uint64_t start = now_ns(server), queued_before = queued_bytes(*s);
+    write_session(server, s);
+    std::uint64_t now = now_ns(server);
+    if (in_turn(*server) && now > start && queued_before > 0) account_for(server, s, now - start, false);
+    if (s->phase != SessionPhase::serving || in_turn(*server)) return;
+    std::size_t queued = queued_bytes(*s);
+    send_chunks(s);
+    if (queued_bytes(*s) == queued) return;
+  }
+}
+
+// Whether it waits for the rest of a message; for the client to take what it is sent; for nothing.
+bool awaits_message(const Session& s) { return s.phase == SessionPhase::serving && s.input_count > 0; }
+bool awaits_room(const Session& s) { return queued_bytes(s) > 0; }
+bool is_idle(const Session& s) { return s.phase == SessionPhase::serving && !has_job(s) && queued_bytes(s) == 0; }
+
+// Nanoseconds till one of the session's times is over.
+std::uint64_t session_due_ns(Session* s, std::uint64_t now) {
+  std::uint64_t due = ~std::uint64_t(0);
+  auto consider = [&](bool counts, platform::LinkTimer* timer) {
+    if (!counts) return;
+    std::uint64_t left = platform::link_timer_left(timer, now);
+    if (left < due) due = left;
+  };
+  consider(awaits_message(*s), &s->message_timer);
+  consider(awaits_room(*s), &s->stall_timer);
+  consider(is_idle(*s), &s->idle_timer);
+  consider(s->phase == SessionPhase::leaving, &s->leave_timer);
+  return due;
+}
+
+void look_at_clock(Server* server, Session* s) {
+  std::uint64_t now = now_ns(server);
+  auto over = [&](bool counts, platform::LinkTimer* timer) {
+    if (counts) return platform::link_timer_left(timer, now) == 0;
+    timer->last_ns = now;
+    timer->passed_ns = 0;
+    return false;
+  };
+  if (s->phase == SessionPhase::leaving) {
+    if (over(true, &s->leave_timer)) end_session(server, s, s->reason);
+    return;
+  }
+  if (over(awaits_room(*s), &s->stall_timer)) return end_session(server, s, "it takes nothing of what it asked for");
+  if (over(awaits_message(*s), &s->message_timer)) return leave(server, s, nullptr, "it stopped in a message");
+  if (over(is_idle(*s), &s->idle_timer)) return leave(server, s, nullptr, "it has been silent for too long");
+}
+
+// Waits until there is something to do.
+void wait_for_news(Server* server, std::uint64_t timeout_ns) {
+  std::uint64_t due = work_due_ns(server), now = now_ns(server);
+  if (timeout_ns < due) due = timeout_ns;
+  platform::LinkWait* wait = server->waits.data();
+  *wait++ = {server->listener, accepts(server), false};
+  if (server->accept_rests) due = std::min(due, platform::link_timer_left(&server->accept_timer, now));
+  for (Session& s : server->sessions) {
+    *wait = platform::LinkWait();
+    if (s.phase != SessionPhase::unused) {
+      bool has_room = s.input_count < s.input.count;
+      *wait = {s.stream, has_room && !s.has_ended, queued_bytes(s) != 0};
+      std::uint64_t session_due = wants_messages(s) ? 0 : session_due_ns(&s, now);
+      if (session_due < due) due = session_due;
+    }
+    ++wait;
+  }
+  for (Guest& guest : server->guests) {
+    *wait++ = {guest.stream, guest.stream >= 0, guest.stream >= 0 && guest.output_begin < guest.output_end};
+    if (guest.stream < 0) continue;
+    std::uint64_t left = platform::link_timer_left(&guest.timer, now);
+    if (left < due) due = left;
+  }
+  server->net->poll(server->link, server->waits.data(), static_cast<int>(server->waits.size()), due);
+}
+
+// Queues a last word for everybody and sends what can be sent in a moment.
+void say_farewell(Server* server) {
+  for (Session& s : server->sessions)
+    if (s.phase == SessionPhase::serving && output_room(s) >= kReplyBytesMax) send_error(&s, WireError::closing, 0);
+  platform::LinkTimer timer = platform::link_timer(now_ns(server), kFarewellNs);
+  for (;;) {
+    bool waits = false;
+    for (std::size_t i = 0; i < server->sessions.size(); ++i) {
+      Session* s = &server->sessions[i];
+      if (s->phase != SessionPhase::unused) write_session(server, s);
+      if (s->phase != SessionPhase::unused) drop_input(server, s->stream);
+      bool unsent = s->phase != SessionPhase::unused && queued_bytes(*s) > 0;
+      server->waits[i] = {s->stream, false, unsent};
+      waits = waits || unsent;
+    }
+    std::uint64_t left = platform::link_timer_left(&timer, now_ns(server));
+    if (!waits || left == 0) return;
+    server->net->poll(server->link, server->waits.data(), static_cast<int>(server->sessions.size()), left);
+  }
+}
+
+Status check_options(const ServerOptions& o) {
+  if (o.client_count_max < 1 || o.client_count_max > kServerClientsMax)
+    return failure("a server has 1 to %d clients, not %d", kServerClientsMax, o.client_count_max);
+  if (o.guest_count_max < 1 || o.guest_count_max > kServerClientsMax)
+    return failure("a server has room for 1 to %d guests, not %d", kServerClientsMax, o.guest_count_max);
+  if (o.client_memory_bytes < kSessionBytesMin)
+    return failure("a client's memory is %zu bytes: give it %zu or more", o.client_memory_bytes, kSessionBytesMin);
+  if (o.thread_count < 1 || o.thread_count > kThreadCountMax)
+    return failure("%u threads: there can be 1 to %u", o.thread_count, kThreadCountMax);
+  if (o.image_side_max < 1 || o.image_side_max > kImageSideMax)
+    return failure("pictures can have sides of up to %u pixels, not %u", kImageSideMax, o.image_side_max);
+  return success();
+}
+
+Status take_memory(Server* server) {
+  const ServerOptions& o = server->options;
+  server->sessions.resize(static_cast<std::size_t>(o.client_count_max));
+  server->guests.resize(static_cast<std::size_t>(o.guest_count_max));
+  server->addresses.reserve(kAddressCountMax);
+  server->waits.resize(1 + server->sessions.size() + server->guests.size());
+  for (Session& s : server->sessions) {
+    void* block = take_block(o.client_memory_bytes);
+    if (!block)
+      return failure("%d clients of %.0f MiB each cannot be had: allow fewer, or less for each", o.client_count_max,
+                     static_cast<double>(o.client_memory_bytes) / (1 << 20));
+    server->blocks.push_back(block);
+    make_session(block, o.client_memory_bytes, &s);
+  }
+  return success();
+}
+
+void release(Server* server) {
+  if (server->listener >= 0) server->net->close(server->link, server->listener);
+  stop_workers(server->workers);
+  for (void* block : server->blocks) give_block_back(block);
+  delete server;
+}
+
+}  // namespace
+
+void leave(Server* server, Session* s, const WireError* code, const char* reason) {
+  drop_job(s);
+  if (code) send_error(s, *code, 0);
+  std::snprintf(s->reason, sizeof s->reason, "%s", reason);
+  s->phase = SessionPhase::leaving;
+  s->input_count = 0;
+  s->more_to_take = false;
+  s->leave_timer = platform::link_timer(now_ns(server), kLingerNs);
+  if (!code) end_session(server, s, reason);
+}
+
+void end_session(Server* server, Session* s, const char* reason) {
+  server->net->close(server->link, s->stream);
+  if (s->phase == SessionPhase::leaving && s->reason[0]) reason = s->reason;
+  s->phase = SessionPhase::unused;
+  drop_job(s);
+  server->totals.frame_count += s->frame_count;
+  server->totals.row_count += s->row_count;
+  server->totals.byte_count += s->byte_count;
+  log_line(&server->log, now_ns(server), "%s went after %llu frames, %llu rows, %.1f KiB: %s", s->name,
+           static_cast<unsigned long long>(s->frame_count), static_cast<unsigned long long>(s->row_count),
+           static_cast<double>(s->byte_count) / 1024, reason);
+}
+
+int server_stream_count(const ServerOptions& options) { return 2 + options.client_count_max + options.guest_count_max; }
+
+Status open_server(const ServerOptions& options, const SceneStore& store, platform::Link* link,
+                   const platform::LinkAddress& address, Server** result) {
+  *result = nullptr;
+  RETURN_IF_ERROR(check_options(options));
+  Server* server = new Server;
+  server->options = options;
+  server->store = &store;
+  server->link = link;
+  server->net = link->backend;
+  server->log.write = options.log;
+  server->log.context = options.log_context;
+  Status status = take_memory(server);
+  if (status.ok) {
+    platform::Error error;
+    server->listener = server->net->listen(link, address, &error);
+    if (server->listener < 0) status = failure("%s", error.text);
+  }
+  if (!status.ok) {
+    release(server);
+    return status;
+  }
+  server->workers = start_workers(options.thread_count);
+  *result = server;
+  return success();
+}
+
+const char* server_address(const Server& server) { return server.net->stream_name(server.link, server.listener); }
+
+void step_server(Server* server, std::uint64_t timeout_ns) {
+  wait_for_news(server, timeout_ns);
+  const platform::LinkWait* wait = server->waits.data();
+  bool comes = (wait++)->can_read;
+  for (Session& s : server->sessions) {
+    bool has_news = (wait++)->can_read;
+    if (s.phase != SessionPhase::unused && (has_news || s.input_count > 0)) read_session(server, &s);
+    if (s.phase == SessionPhase::serving && !in_turn(*server) && wants_messages(s)) take_messages(server, &s);
+  }
+  for (Guest& guest : server->guests)
+    if (guest.stream >= 0) tend_guest(server, &guest);
+  if (comes) accept_clients(server);
+  do_work(server);
+  for (Session& s : server->sessions) {
+    if (s.phase != SessionPhase::unused) send_session(server, &s);
+    if (s.phase != SessionPhase::unused) look_at_clock(server, &s);
+  }
+}
+
+ServerTotals server_totals(const Server& server) {
+  ServerTotals totals = server.totals;
+  for (const Session& s : server.sessions)
+    if (s.phase != SessionPhase::unused) {
+      totals.frame_count += s.frame_count;
+      totals.row_count += s.row_count;
+      totals.byte_count += s.byte_count;
+    }
+  return totals;
+}
+
+int server_client_count(const Server& server) {
+  int count = 0;
+  for (const Session& s : server.sessions) count += s.phase != SessionPhase::unused;
+  return count;
+}
+
+void close_server(Server* server) {
+  if (!server) return;
+  say_farewell(server);
+  for (Session& s : server->sessions)
+    if (s.phase != SessionPhase::unused) end_session(server, &s, "this server ends");
+  for (Guest& guest : server->guests)
+    if (guest.stream >= 0) close_guest(server, &guest);
+  release(server);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,105 @@
+#include "remote/stream.h"
+
+#include <cstring>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+// Moves what is left to the front.
+void compact(Array<std::uint8_t> bytes, std::size_t* begin, std::size_t* end) {
+  if (*begin == 0) return;
+  std::memmove(bytes.data, bytes.data + *begin, *end - *begin);
+  *end -= *begin, *begin = 0;
+}
+
+bool read_in(MessageStream* s, platform::Error* error) {
+  compact(s->in, &s->in_begin, &s->in_end);
+  while (!s->ended && s->in_end < s->in.count) {
+    std::size_t count = 0;
+    platform::LinkResult result =
+        s->link->backend->read(s->link, s->stream, s->in.data + s->in_end, s->in.count - s->in_end, &count, error);
+    if (result == platform::LinkResult::later) return true;
+    if (result == platform::LinkResult::failed) return false;
+    if (result == platform::LinkResult::ended) s->ended = true;
+    s->in_end += count, s->bytes_in += count;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::size_t message_stream_need(std::size_t in_bytes, std::size_t out_bytes) {
+  return arena_need<std::uint8_t>(in_bytes) + arena_need<std::uint8_t>(out_bytes);
+}
+
+MessageStream make_message_stream(std::size_t in_bytes, std::size_t out_bytes, Arena* arena) {
+  CHECK_GE(in_bytes, kHeaderBytes);
+  MessageStream stream;
+  stream.in = arena_array<std::uint8_t>(arena, in_bytes);
+  stream.out = arena_array<std::uint8_t>(arena, out_bytes);
+  return stream;
+}
+
+void start_message_stream(MessageStream* s, platform::Link* link, int connection) {
+  Array<std::uint8_t> in = s->in, out = s->out;
+  *s = MessageStream();
+  s->in = in, s->out = out;
+  s->link = link, s->stream = connection;
+}
+
+void close_message_stream(MessageStream* s) {
+  if (s->stream >= 0) s->link->backend->close(s->link, s->stream);
+  s->stream = -1;
+}
+
+bool flush_message_stream(MessageStream* s, platform::Error* error) {
+  while (has_output(*s)) {
+    std::size_t count = 0;
+    platform::LinkResult result = s->link->backend->write(s->link, s->stream, s->out.data + s->out_begin,
+                                                          s->out_end - s->out_begin, &count, error);
+    if (result == platform::LinkResult::later) return true;
+    if (result != platform::LinkResult::done) return false;
+    s->out_begin += count, s->bytes_out += count;
+  }
+  s->out_begin = s->out_end = 0;
+  return true;
+}
+
+bool pump_message_stream(MessageStream* s, platform::Error* error) {
+  if (!flush_message_stream(s, error) || !read_in(s, error)) return false;
+  if (!s->ended || s->in_end > s->in_begin) return true;
+  std::snprintf(error->text, sizeof error->text, "the peer has closed the connection");
+  return false;
+}
+
+DecodeState take_message(MessageStream* s, Message* message) {
+  Decoded decoded = decode_message(s->in.data + s->in_begin, s->in_end - s->in_begin,
+                                   static_cast<std::uint32_t>(s->in.count), message);
+  if (decoded.state == DecodeState::message) s->in_begin += decoded.byte_count;
+  // Half a message that no rest can follow.
+  if (decoded.state == DecodeState::need_more && s->ended) s->in_begin = s->in_end;
+  return decoded.state;
+}
+
+bool has_room(const MessageStream& s, std::size_t byte_count) {
+  return byte_count <= s.out.count - (s.out_end - s.out_begin);
+}
+
+bool send_message(MessageStream* s, const Message& message) {
+  std::uint32_t byte_count = message_bytes(message);
+  if (!has_room(*s, byte_count)) return false;
+  if (byte_count > s->out.count - s->out_end) compact(s->out, &s->out_begin, &s->out_end);
+  encode_message(message, s->out.data + s->out_end);
+  s->out_end += byte_count;
+  return true;
+}
+
+Status check_version(const Hello& hello) {
+  if (hello.version == kWireVersion) return success();
+  return failure("it speaks version %u of the protocol and this program version %u: update one", hello.version,
+                 kWireVersion);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,86 @@
+#include "session/camera_control.h"
+
+#include "base/limit_list.h"
+
+namespace pocketray {
+namespace {
+
+// v turned about a unit axis by an angle [Rodrigues' formula].
+Vec3 rotate(const Vec3& v, const Vec3& axis, double angle) {
+  float c = static_cast<float>(det_cos(angle)), s = static_cast<float>(det_sin(angle));
+  return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
+}
+
+// Turns a view vector about up and about the horizontal, staying off the poles.
+Vec3 turn(const Vec3& view, const Vec3& up, double yaw, double pitch) {
+  Vec3 turned = rotate(view, up, yaw);
+  Vec3 right = normalize(cross(turned, up));
+  if (is_zero(right)) return turned;
+  Vec3 tilted = rotate(turned, right, pitch);
+  float sine = dot(normalize(tilted), up);
+  return sine > 0.99f || sine < -0.99f ? turned : tilted;
+}
+
+// Whether a frame can be rendered, here and by servers, as far as limits go.
+bool is_within_limits(const Camera& c) {
+  for (const Vec3& v : {c.eye, c.target, c.up})
+    for (float x : {v.x, v.y, v.z})
+      if (!within(Quantity::coordinate, x)) return false;
+  return within(Quantity::vertical_extent, c.vertical_extent);
+}
+
+}  // namespace
+
+CameraControl make_camera_control(const Camera& camera, const Box& bounds) {
+  CameraControl control;
+  control.home = control.camera = camera;
+  float size = is_empty(bounds) ? 0 : length(extent(bounds));
+  control.size = size > 0 ? size : length(camera.target - camera.eye);
+  // A camera of a file looks along a direction; orbiting wants the point it looks at: as far away as the scene's
+  // centre.
+  Vec3 forward = normalize(camera.target - camera.eye);
+  if (!is_empty(bounds)) {
+    float distance = dot(center(bounds) - camera.eye, forward);
+    if (distance > 0) control.home.target = control.camera.target = camera.eye + forward * distance;
+  }
+  return control;
+}
+
+bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
+  if (in.right == 0 && in.up == 0 && in.forward == 0 && in.sideways == 0 && in.rise == 0) return false;
+  Camera& c = control->camera;
+  const Camera before = c;
+  Vec3 up = normalize(c.up);
+  double quarter = radians(90) * static_cast<double>(seconds);
+  if (control->mode == CameraMode::orbit) {
+    Vec3 view = turn(c.target - c.eye, up, in.right * quarter, -in.up * quarter);
+    float zoom = static_cast<float>(det_exp(-static_cast<double>(in.forward) * static_cast<double>(seconds)));
+    if (length(view) * zoom > control->size * 1e-3f) view = view * zoom;
+    c.eye = c.target - view;
+    c.vertical_extent *= c.projection == Projection::orthographic ? zoom : 1;
+    if (!is_within_limits(c)) c = before;
+    return true;
+  }
+  Vec3 view = turn(c.target - c.eye, up, -in.right * quarter, in.up * quarter);
+  Vec3 ahead = normalize(view), right = normalize(cross(ahead, up));
+  Vec3 step = (ahead * in.forward + right * in.sideways + up * in.rise) * (control->size * 0.5f * seconds);
+  c.eye += step;
+  c.target = c.eye + view;
+  if (!is_within_limits(c)) c = before;
+  return true;
+}
+
+Camera orbited_camera(const CameraControl& control, float degrees) {
+  CameraControl turned = control;
+  reset_camera(&turned);
+  turned.mode = CameraMode::orbit;
+  CameraInput right;
+  right.right = 1;
+  move_camera(&turned, right, degrees / 90);
+  turned.camera.node = kNone;
+  return turned.camera;
+}
+
+void reset_camera(CameraControl* control) { control->camera = control->home; }
+
+}  // namespace pocketray

@@ -1,0 +1,97 @@
+#include "session/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/frame.h"
+#include "session/interrupt.h"
+
+namespace pocketray {
+namespace {
+
+Status render_once(Renderer* r, std::uint32_t frame, double* ns_per_pixel) {
+  double seconds = frame / static_cast<double>(r->scene.info.frames_per_second);
+  RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
+  *ns_per_pixel = r->timings.trace_ms * 1e6 / pixel_count(*r);
+  return success();
+}
+
+Status measure_price(Renderer* r, Effect effect, double* price) {
+  constexpr int kRounds = 3;
+  EffectMask mask = r->effects.mask;
+  std::uint32_t samples = r->settings.samples_per_pixel;
+  double with[kRounds], without[kRounds];
+  for (int round = 0; round < kRounds; ++round) {
+    RETURN_IF_ERROR(render_once(r, 0, &with[round]));
+    r->effects.mask = mask & ~bit(effect);
+    if (effect == Effect::supersampling) r->settings.samples_per_pixel = 1;
+    Status status = render_once(r, 0, &without[round]);
+    r->effects.mask = mask;
+    r->settings.samples_per_pixel = samples;
+    RETURN_IF_ERROR(status);
+    if (interrupted) return success();
+  }
+  *price = range_of(with, kRounds).median - range_of(without, kRounds).median;
+  return success();
+}
+
+}  // namespace
+
+double pixel_count(const Renderer& r) { return static_cast<double>(r.settings.width) * r.settings.height; }
+
+Range range_of(double* values, std::uint32_t count) {
+  std::sort(values, values + count);
+  return {values[0], (values[(count - 1) / 2] + values[count / 2]) / 2, values[count - 1]};
+}
+
+Measurement make_measurement(const Renderer& r, std::uint32_t frame_count_max) {
+  Measurement m;
+  m.frame_count_max = frame_count_max;
+  m.ns_per_pixel.resize(frame_count_max);
+  m.pose_ms.resize(frame_count_max);
+  m.refit_ms.resize(frame_count_max);
+  m.row_ns.resize(static_cast<std::size_t>(r.settings.height) * frame_count_max);
+  std::fill_n(m.effect_price, kEffectCount, std::numeric_limits<double>::quiet_NaN());
+  return m;
+}
+
+Status measure_frames(Renderer* r, Measurement* m) {
+  double warm_up;
+  RETURN_IF_ERROR(render_once(r, 0, &warm_up));
+  for (std::uint32_t frame = 0; frame < m->frame_count_max && !interrupted; ++frame) {
+    RETURN_IF_ERROR(render_once(r, frame, &m->ns_per_pixel[frame]));
+    if (interrupted) break;
+    for (std::uint32_t row = 0; row < r->settings.height; ++row)
+      m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max + frame] = static_cast<double>(r->row_ns[row]);
+    m->trace_ns += r->timings.trace_ms * 1e6;
+    m->pose_ms[frame] = r->timings.pose_ms;
+    m->refit_ms[frame] = r->timings.refit_ms;
+    m->counts = total_counts(*r);
+    m->frame_count = frame + 1;
+  }
+  return success();
+}
+
+Status measure_prices(Renderer* r, Measurement* m) {
+  for (int i = 0; i < kEffectCount; ++i) {
+    Effect effect = static_cast<Effect>(i);
+    if (!has(r->effects.mask, effect) || interrupted) continue;
+    if (effect == Effect::animation) {  // posing and refitting, which come before the tracing
+      double seconds = 1 / static_cast<double>(r->scene.info.frames_per_second);
+      RETURN_IF_ERROR(prepare_frame(r, seconds));
+      m->effect_price[i] = (r->timings.pose_ms + r->timings.refit_ms) * 1e6 / pixel_count(*r);
+      continue;
+    }
+    RETURN_IF_ERROR(measure_price(r, effect, &m->effect_price[i]));
+  }
+  return success();
+}
+
+double rays_per_second(const Measurement& m) {
+  std::uint64_t rays = 0;
+  for (std::uint64_t count : m.counts.rays) rays += count;
+  return m.trace_ns > 0 ? static_cast<double>(rays) * m.frame_count / (m.trace_ns * 1e-9) : 0;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,92 @@
+#include "session/open_scene.h"
+
+#include <cstdio>
+
+#include "base/limit_list.h"
+#include "session/interrupt.h"
+#include "session/note.h"
+
+namespace pocketray {
+namespace {
+
+Status set_pace(const CommonOptions& o, Renderer* r) {
+  const platform::Device* device;
+  RETURN_IF_ERROR(find_device(o, &device));
+  if (o.emulate.empty()) return success();
+  r->pace.slowdown = device->slowdown;
+  r->pace.device = device->name;
+  r->pace.stop = &interrupted;
+  return success();
+}
+
+}  // namespace
+
+Status change_exposure(float factor, float* exposure) {
+  *exposure *= factor;
+  return check_limit(Quantity::exposure, static_cast<double>(*exposure), "the scene's exposure times --exposure");
+}
+
+OpenScene::~OpenScene() {
+  stop_workers(renderer.workers);
+  give_block_back(block);
+}
+
+Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* opened) {
+  Settings settings;
+  RETURN_IF_ERROR(read_settings(o, &settings));
+  Isa isa;
+  RETURN_IF_ERROR(parse_isa(o.isa, &isa));
+  select_isa(isa);
+  opened->block = take_block(settings.memory_bytes);
+  if (!opened->block) return failure("%zu bytes of memory cannot be had: lower --memory", settings.memory_bytes);
+  Renderer* r = &opened->renderer;
+  start_renderer(opened->block, settings.memory_bytes, settings, r);
+  RETURN_IF_ERROR(set_pace(o, r));
+  r->camera_index = o.camera_index;
+  r->accel_info = find_accel(o.accel);
+  SceneStorage storage;
+  RETURN_IF_ERROR(hooks.load(o.scene, r, &opened->source, &storage));
+  if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, r));
+  Status planned = hooks.plan(r, storage, hooks.output_bytes(settings));
+  if (!planned.ok && r->memory.total_bytes > r->memory.limit_bytes) opened->source.bytes_wanted = r->memory.total_bytes;
+  if (opened->source.bytes_wanted > 0 && !planned.ok)
+    return failure("%s: --memory %zuM", planned.message, (opened->source.bytes_wanted >> 20) + 1);
+  RETURN_IF_ERROR(planned);
+  if (!o.camera.empty()) {
+    Camera camera;
+    RETURN_IF_ERROR(parse_camera(o.camera, &camera));
+    RETURN_IF_ERROR(set_camera(r, camera));
+  }
+  return success();
+}
+
+Status start_scene(OpenScene* opened, const CommonOptions& o) {
+  Renderer* r = &opened->renderer;
+  r->workers = start_workers(r->settings.threads);
+  bool measured;
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));
+  if (measured) r->scene.info.auto_exposure = 1;
+  RETURN_IF_ERROR(build_renderer(r));
+  return change_exposure(factor, &r->exposure);
+}
+
+void print_notes(const OpenScene& opened) {
+  if (!opened.source.warning.empty()) print_note(opened.source.warning);
+  if (opened.renderer.accel_is_fallback)
+    std::fprintf(
+        stderr,
+        "pocketray: the accelerator bvh does not fit --memory: compact takes its place, somewhat slower; a larger "
+        "--memory holds bvh\n");
+  const SceneInfo& info = opened.renderer.scene.info;
+  if (info.default_camera != 0 && info.default_lights != 0)
+    std::fprintf(
+        stderr,
+        "pocketray: the scene has no camera and no light: framed by its bounds, lit by a key and a fill light\n");
+  else if (info.default_camera != 0)
+    std::fprintf(stderr, "pocketray: the scene has no camera: framed by its bounds\n");
+  else if (info.default_lights != 0)
+    std::fprintf(stderr, "pocketray: the scene has no light: lit by a key and a fill light\n");
+}
+
+}  // namespace pocketray

@@ -1,0 +1,94 @@
+#include "session/output.h"
+
+#include <cstdio>
+
+#include "platform/file.h"
+#include "scene/builtin/builtin.h"
+#include "session/report.h"
+
+namespace pocketray {
+namespace {
+
+bool is_given(const NamedFile& file) { return !file.path.empty(); }
+
+// Where both go to standard output they mix; else one replaces the other.
+bool is_same(const NamedFile& one, const NamedFile& other) {
+  if (one.path == "-" || other.path == "-") return one.path == other.path;
+  return platform::is_same_file(one.path.c_str(), other.path.c_str());
+}
+
+// Names of built-in scenes and of what servers offer are no files.
+bool is_file(const NamedFile& input) {
+  return is_given(input) && !find_builtin(input.path.c_str()) && platform::file_stamp(input.path.c_str()) != 0;
+}
+
+}  // namespace
+
+Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const NamedFile& output = outputs[i];
+    if (!is_given(output)) continue;
+    for (const NamedFile& input : inputs)
+      if (is_file(input) && is_same(input, output))
+        return failure("%s %.200s would replace %.200s, which is read as %s: name another file", output.option,
+                       output.path.c_str(), input.path.c_str(), input.option);
+    for (std::size_t k = 0; k < i; ++k)
+      if (is_given(outputs[k]) && is_same(outputs[k], output))
+        return failure("%s and %s name the same file, %.300s: name two", outputs[k].option, output.option,
+                       output.path.c_str());
+    platform::FileError error;
+    if (!platform::can_write(output.path.c_str(), &error)) return failure("%.300s %s", output.path.c_str(), error.text);
+  }
+  return success();
+}
+
+Status make_output_folder(const std::string& folder) {
+  platform::FileError error;
+  if (!platform::make_folder(folder.c_str(), &error)) return failure("%.300s %s", folder.c_str(), error.text);
+  if (!platform::can_write((folder + "/pocketray.test").c_str(), &error))
+    return failure("in %.300s no file can be made: %s", folder.c_str(), error.text);
+  return success();
+}
+
+Status write_with(const char* path, Status (*encode)(void* context, const ByteSink& sink), void* context) {
+  platform::FileWriter writer;
+  platform::FileError error;
+  std::fflush(stdout);  // the file may be standard output
+  const char* name = path[0] == '-' && path[1] == 0 ? "standard output" : path;
+  if (!platform::open_writer(path, &writer, &error)) return failure("%.300s %s", name, error.text);
+  auto write = [](void* user, const void* bytes, std::size_t count) {
+    platform::write_bytes(static_cast<platform::FileWriter*>(user), bytes, count);
+  };
+  Status status = encode(context, {write, &writer});
+  if (!status.ok) {
+    platform::discard_writer(&writer);
+    return status;
+  }
+  if (!platform::close_writer(&writer, &error)) return failure("%.300s %s", name, error.text);
+  return success();
+}
+
+Status write_file(const std::string& path, const std::string& bytes) {
+  return write_encoded(path.c_str(), [&](const ByteSink& sink) {
+    sink.write(sink.user, bytes.data(), bytes.size());
+    return success();
+  });
+}
+
+int finish_printing(int exit_status) {
+  bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (arrived || exit_status != kExitDone) return exit_status;  // of what failed before, the reason is told
+  return report(failure("standard output did not take all that was printed: is it full, or closed?"));
+}
+
+Status check_arguments(int argument_count, const char* const* arguments) {
+  for (int i = 1; i < argument_count; ++i) {
+    if (arguments[i][0] != 0) continue;
+    if (arguments[i - 1][0] == '-')
+      return failure("%.100s is followed by an empty text: give it a value, or leave it out", arguments[i - 1]);
+    return failure("argument %d is an empty text: leave it out", i);
+  }
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,75 @@
+#include "session/picture.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "present/image_file.h"
+#include "present/png_file.h"
+#include "present/repack.h"
+#include "session/output.h"
+
+namespace pocketray {
+namespace {
+
+enum class Kind { png, ppm, pfm, raw, unknown };
+
+Kind kind_of(const char* path) {
+  const char* dot = std::strrchr(path, '.');
+  if (!dot) return Kind::unknown;
+  constexpr struct {
+    const char* ending;
+    Kind kind;
+  } kEndings[] = {{".png", Kind::png}, {".ppm", Kind::ppm}, {".pfm", Kind::pfm}, {".raw", Kind::raw}};
+  for (const auto& row : kEndings)
+    if (std::strcmp(dot, row.ending) == 0) return row.kind;
+  return Kind::unknown;
+}
+
+Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& sink) {
+  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
+  const Vec3* radiance = o.radiance ? o.radiance : r->image.data;
+  if (kind == Kind::pfm) {
+    encode_pfm(&radiance->x, 3, width, height, sink);
+    return success();
+  }
+  bool raw = kind == Kind::raw,
+       turned = raw && (o.rotation == Rotation::quarter || o.rotation == Rotation::three_quarters);
+  const PixelFormat& format = raw ? o.raw_format : kRgb888;
+  int row_bytes = (turned ? height : width) * format.bits_per_pixel / 8, rows = turned ? width : height;
+  auto pixels =
+      arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
+  Rotation rotation = raw ? o.rotation : Rotation::none;
+  if (o.packed)
+    repack_rows(o.packed_format, o.packed, o.packed_line_bytes, width, height, 0, height, format, rotation, pixels.data,
+                row_bytes);
+  else
+    pack_rows(radiance, width, height, 0, height, r->exposure, format, rotation, raw && o.dither, pixels.data,
+              row_bytes);
+  if (raw) encode_raw(pixels.data, row_bytes, row_bytes, rows, sink);
+  if (kind == Kind::ppm) encode_ppm(pixels.data, width, height, sink);
+  return kind == Kind::png ? encode_png(pixels.data, width, height, &r->frame_arena, sink) : success();
+}
+
+}  // namespace
+
+std::size_t picture_bytes(const Settings& s) {
+  std::size_t pixels = static_cast<std::size_t>(s.width) * s.height;
+  return arena_need(pixels * 4) + encode_png_need(static_cast<int>(s.width));
+}
+
+Status check_picture_path(const std::string& path) {
+  Kind kind = kind_of(path.c_str());
+  if (kind == Kind::unknown) return failure("-o is '%s': the name must end in .png, .ppm, .pfm or .raw", path.c_str());
+  if (kind == Kind::png && encode_png_need(1) == 0)
+    return failure("this program was built without libpng: write .ppm or .pfm instead of %s", path.c_str());
+  return success();
+}
+
+Status write_picture(const char* path, const PictureOptions& options, Renderer* r) {
+  std::size_t mark = arena_mark(r->frame_arena);
+  Status status = write_encoded(path, [&](const ByteSink& sink) { return encode(kind_of(path), options, r, sink); });
+  arena_release(&r->frame_arena, mark);
+  return status;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,184 @@
+#include "session/scene_options.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "accel/accel_list.h"
+#include "base/fmath.h"
+#include "base/limit_list.h"
+#include "plan/plan_effects.h"
+
+namespace pocketray {
+namespace {
+
+Status parse_texture_filter(const std::string& text, TextureFilter* filter) {
+  if (text == "scene")
+    *filter = TextureFilter::as_scene;
+  else if (text == "nearest")
+    *filter = TextureFilter::nearest;
+  else if (text == "bilinear")
+    *filter = TextureFilter::bilinear;
+  else
+    return failure("--texture-filter is '%s': it must be scene, nearest or bilinear", text.c_str());
+  return success();
+}
+
+// Reads numbers separated by spaces or commas; false when there are not exactly `count` finite ones.
+bool read_numbers(const std::string& text, float* values, int count) {
+  const char* at = text.c_str();
+  for (int i = 0; i < count; ++i) {
+    while (*at == ' ' || *at == ',') ++at;
+    char* end;
+    values[i] = std::strtof(at, &end);
+    if (end == at || !std::isfinite(values[i])) return false;
+    at = end;
+  }
+  while (*at == ' ') ++at;
+  return *at == 0;
+}
+
+}  // namespace
+
+Status read_settings(const CommonOptions& o, Settings* s) {
+  RETURN_IF_ERROR(picture_size(o, &s->width, &s->height));
+  const platform::Device* device;
+  RETURN_IF_ERROR(find_device(o, &device));
+  if (device) s->memory_bytes = device->memory_bytes;
+  if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &s->memory_bytes));
+  RETURN_IF_ERROR(parse_effects(o.effects.c_str(), s));
+  RETURN_IF_ERROR(parse_texture_filter(o.texture_filter, &s->texture_filter));
+  if (o.normals != "scene" && o.normals != "flat")
+    return failure("--normals is '%s': it must be scene or flat", o.normals.c_str());
+  s->normals = o.normals == "flat" ? NormalMode::flat : NormalMode::as_scene;
+  s->samples_per_pixel = o.samples;
+  s->ray_depth = o.depth;
+  s->points_per_area_light = o.area_lights;
+  s->cut_off_levels = o.cut_off;
+  // By the names that were typed; validate_settings() tests the same limits, by the names that a library's user knows.
+  const struct {
+    Quantity quantity;
+    double value;
+    const char* option;
+  } kOptions[] = {
+      {Quantity::width, double(s->width), "the width of --size"},
+      {Quantity::height, double(s->height), "the height of --size"},
+      {Quantity::samples, double(o.samples), "--samples"},
+      {Quantity::depth, double(o.depth), "--depth"},
+      {Quantity::area_light_points, double(o.area_lights), "--area-lights"},
+      {Quantity::cut_off, double(o.cut_off), "--cut-off"},
+      {Quantity::camera_index, double(o.camera_index), "--camera-index"},
+  };
+  for (const auto& row : kOptions) RETURN_IF_ERROR(check_limit(row.quantity, row.value, row.option));
+  bool measured;
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // also of commands that show nothing
+  if (o.threads > kThreadCountMax) return failure("--threads is %u: it must lie in 0 … %u", o.threads, kThreadCountMax);
+  unsigned cores = std::thread::hardware_concurrency();
+  if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
+  s->threads = choose_thread_count(o.threads, cores);
+  return validate_settings(*s);
+}
+
+Status find_device(const CommonOptions& o, const platform::Device** device) {
+  *device = nullptr;
+  if (!o.emulate.empty() && !o.device.empty() && o.emulate != o.device)
+    return failure("--emulate is '%s' and --device '%s': name one of them", o.emulate.c_str(), o.device.c_str());
+  const std::string& name = o.emulate.empty() ? o.device : o.emulate;
+  if (name.empty()) return success();
+  *device = platform::find_device(name.c_str());
+  if (*device) return success();
+  std::string names;
+  for (const platform::Device& d : platform::kDevices) names += std::string(names.empty() ? "" : ", ") + d.name;
+  return failure("--%s is '%s': it must be one of %s", o.emulate.empty() ? "device" : "emulate", name.c_str(),
+                 names.c_str());
+}
+
+Status picture_size(const CommonOptions& o, std::uint32_t* width, std::uint32_t* height) {
+  const platform::Device* device;
+  RETURN_IF_ERROR(find_device(o, &device));
+  *width = 320;
+  *height = 240;
+  if (!o.size.empty()) return parse_size(o.size, width, height);
+  if (o.emulate.empty()) return success();
+  bool turned = device->rotation % 180 != 0;
+  *width = static_cast<std::uint32_t>(turned ? device->screen_height : device->screen_width);
+  *height = static_cast<std::uint32_t>(turned ? device->screen_width : device->screen_height);
+  return success();
+}
+
+std::uint32_t choose_thread_count(std::uint32_t asked, unsigned core_count) {
+  if (asked > 0) return asked;
+  return core_count < 1 ? 1 : core_count > kThreadCountMax ? kThreadCountMax : core_count;
+}
+
+Status parse_isa(const std::string& text, Isa* isa) {
+  *isa = best_isa();
+  if (text.empty()) return success();
+  std::string names;
+  for (int i = 0; i <= static_cast<int>(best_isa()); ++i) {
+    *isa = static_cast<Isa>(i);
+    if (text == isa_name(*isa)) return success();
+    names += std::string(i ? ", " : "") + isa_name(*isa);
+  }
+  return failure("--isa is '%s': this CPU has %s", text.c_str(), names.c_str());
+}
+
+Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height) {
+  int used = 0;
+  if (text.find_first_not_of("0123456789x") != std::string::npos ||  // a sign would wrap around
+      std::sscanf(text.c_str(), "%5ux%5u%n", width, height, &used) != 2 ||
+      static_cast<std::size_t>(used) != text.size())
+    return failure("--size is '%s': write it as 320x240", text.c_str());
+  return success();
+}
+
+Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option) {
+  char* end;
+  double value = std::strtod(text.c_str(), &end);
+  double unit = *end == 'K' || *end == 'k'   ? 1 << 10
+                : *end == 'M' || *end == 'm' ? 1 << 20
+                : *end == 'G' || *end == 'g' ? 1 << 30
+                                             : 1;
+  if (unit > 1) ++end;
+  if (end == text.c_str() || *end || !(value * unit >= kMemoryBytesMin) || !(value * unit <= kMemoryBytesMax))
+    return failure("%s is '%s': write it as 24M (64K … %s)", option, text.c_str(),
+                   sizeof(void*) == 4 ? "2047M" : "64G");
+  *bytes = static_cast<std::size_t>(value * unit);
+  return success();
+}
+
+Status parse_camera(const std::string& text, Camera* camera) {
+  float v[10];
+  if (!read_numbers(text, v, 10))
+    return failure("--camera is '%s': write it as \"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\", the field of view in degrees",
+                   text.c_str());
+  for (int i = 0; i < 9; ++i)
+    RETURN_IF_ERROR(check_limit(Quantity::coordinate, static_cast<double>(v[i]), "a coordinate of --camera"));
+  *camera = Camera();
+  camera->eye = {v[0], v[1], v[2]};
+  camera->target = {v[3], v[4], v[5]};
+  camera->up = {v[6], v[7], v[8]};
+  camera->vertical_fov = static_cast<float>(radians(v[9]));
+  if (!within(Quantity::field_of_view, camera->vertical_fov))
+    return failure("the field of view of --camera is %g degrees: it must lie in 0.001 … 179",
+                   static_cast<double>(v[9]));
+  return success();
+}
+
+Status parse_exposure(const std::string& text, bool* measured, float* factor) {
+  float stops = 0;
+  *measured = text == "auto";
+  if (!*measured && !text.empty() && (!read_numbers(text, &stops, 1) || !(std::fabs(stops) <= kExposureStopsMax)))
+    return failure("--exposure is '%s': write stops as 1.5 or -2, -60 … 60, or auto", text.c_str());
+  *factor = static_cast<float>(det_exp(static_cast<double>(stops) * 0.693147180559945309));
+  return success();
+}
+
+const AccelInfo* find_accel(const std::string& name) {
+  for (const AccelInfo* info : kAccelList)
+    if (name == info->name) return info;
+  return nullptr;
+}
+
+}  // namespace pocketray

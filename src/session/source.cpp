@@ -1,0 +1,149 @@
+#include "session/source.h"
+
+#include <cstdlib>
+#include <vector>
+
+#include "plan/plan_scene.h"
+#include "platform/file.h"
+#include "platform/memory.h"
+#include "scene/baked.h"
+#include "scene/builtin/builtin.h"
+
+namespace pocketray {
+namespace {
+
+Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  if (builtin.need() > arena_free(r->scene_arena))
+    return scene_too_large(builtin.name, builtin.need(), r->settings.memory_bytes, source);
+  builtin.build(&r->scene_arena, &r->scene);
+  storage->arena_bytes = r->scene_arena.used;
+  return success();
+}
+
+Status load_baked(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  auto take = [r](std::uint64_t byte_count) {
+    return static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, byte_count));
+  };
+  std::uint8_t* bytes = nullptr;
+  std::uint64_t byte_count = 0;
+  Status status = read_baked(name, take, &bytes, &byte_count);
+  if (byte_count > 0 && !bytes) return scene_too_large(name, byte_count, r->settings.memory_bytes, source);
+  if (!status.ok) return failure("%.300s %s", name.c_str(), status.message);
+  source->baked = bytes;
+  source->baked_bytes = static_cast<std::size_t>(byte_count);
+  storage->arena_bytes = r->scene_arena.used;
+  status = baked_open(bytes, source->baked_bytes, &r->scene);
+  return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
+}
+
+#ifdef POCKETRAY_HAVE_IMPORT
+Status load_imported(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  ImportedScene imported;
+  RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported));
+  source->warning = imported.warning;
+  // From the heap into the block, in the form a device would map.
+  std::size_t size = baked_size(imported.scene);
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, size));
+  if (!bytes) return scene_too_large(name, size, r->settings.memory_bytes, source);
+  baked_write(imported.scene, bytes);
+  source->baked = bytes;
+  source->baked_bytes = size;
+  storage->arena_bytes = r->scene_arena.used;
+  Status status = baked_open(bytes, size, &r->scene);
+  return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
+}
+#endif
+
+}  // namespace
+
+#ifdef POCKETRAY_HAVE_IMPORT
+Status import_model(const std::string& name, const ImportOptions& options, ImportedScene* imported) {
+  RETURN_IF_ERROR(import_scene(name, options, imported));
+  bool lit = lights_itself(imported->scene);
+  imported->scene.info.default_lights = lit ? 0 : 1;
+  imported->scene.info.auto_exposure = lit ? 1.0f : 0.0f;
+  return success();
+}
+#endif
+
+void* take_block(std::size_t bytes) {
+  void* block = std::malloc(bytes);
+  if (block) platform::wish_large_pages(block, bytes);
+  return block;
+}
+void give_block_back(void* block) { std::free(block); }
+
+bool is_baked_name(const std::string& name) {
+  const std::string end = ".pray";
+  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
+Status read_baked(const std::string& path, const std::function<std::uint8_t*(std::uint64_t byte_count)>& take,
+                  std::uint8_t** bytes, std::uint64_t* byte_count) {
+  platform::FileReader file;
+  platform::FileError error;
+  if (!platform::open_reader(path.c_str(), &file, &error)) return failure("%s", error.text);
+  *byte_count = file.byte_count;
+  *bytes = take(file.byte_count);
+  bool ok = *bytes != nullptr;
+  if (!ok)
+    std::snprintf(error.text, sizeof error.text, "has %llu bytes: there is no memory for them",
+                  static_cast<unsigned long long>(file.byte_count));
+  ok = ok && platform::read_bytes(&file, *bytes, static_cast<std::size_t>(file.byte_count), &error);
+  platform::close_reader(&file);
+  return ok ? success() : failure("%s", error.text);
+}
+
+Status hash_file(const std::string& path, ContentHash* hash) {
+  platform::FileReader file;
+  platform::FileError error;
+  if (!platform::open_reader(path.c_str(), &file, &error)) return failure("%.300s %s", path.c_str(), error.text);
+  std::vector<std::uint8_t> part(1u << 16);
+  ContentHasher hasher;
+  bool ok = true;
+  for (std::uint64_t left = file.byte_count; ok && left > 0;) {
+    std::size_t count = left < part.size() ? static_cast<std::size_t>(left) : part.size();
+    ok = platform::read_bytes(&file, part.data(), count, &error);
+    if (ok) hash_part(&hasher, part.data(), count);
+    left -= count;
+  }
+  platform::close_reader(&file);
+  *hash = hash_end(hasher);
+  return ok ? success() : failure("%.300s %s", path.c_str(), error.text);
+}
+
+Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t limit, SceneSource* source) {
+  std::uint64_t megabytes = (need >> 20) + (need >> 22) + 4;  // and a quarter for what is made of it
+  bool hopeless = megabytes > kMemoryBytesMax >> 20;
+  source->bytes_wanted = hopeless ? SIZE_MAX : static_cast<std::size_t>(megabytes << 20);
+  double needed = static_cast<double>(need) / (1 << 20), allowed = static_cast<double>(limit) / (1 << 20);
+  if (hopeless) return failure("%.200s needs %.1f MiB for the scene alone: no --memory holds it", name.c_str(), needed);
+  return failure(
+      "%.200s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %lluM would be a start",
+      name.c_str(), needed, allowed, static_cast<unsigned long long>(megabytes));
+}
+
+bool is_local_scene(const std::string& name) {
+  return find_builtin(name.c_str()) || platform::file_stamp(name.c_str()) != 0;
+}
+
+Status load_scene(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+  *storage = SceneStorage();
+  if (const BuiltinScene* builtin = find_builtin(name.c_str())) return load_builtin(*builtin, r, source, storage);
+  if (!is_local_scene(name)) {
+    std::string names;
+    int count;
+    const BuiltinScene* list = builtin_list(&count);
+    for (int i = 0; i < count; ++i) names += std::string(i ? ", " : "") + list[i].name;
+    return failure("%.300s is no file, nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
+  }
+  if (is_baked_name(name)) return load_baked(name, r, source, storage);
+#ifdef POCKETRAY_HAVE_IMPORT
+  return load_imported(name, r, source, storage);
+#else
+  return failure("%s is neither a built-in scene nor a .pray file: bake it on a desktop with `pocketray bake`",
+                 name.c_str());
+#endif
+}
+
+}  // namespace pocketray

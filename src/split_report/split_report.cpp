@@ -1,0 +1,232 @@
+#include "split_report/split_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "remote/client/shared_frame.h"
+#include "session/camera_control.h"
+#include "session/interrupt.h"
+#include "session/measure.h"
+#include "split/closed_form.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kSettleFrames = 40;  // in which all servers have to come into use
+constexpr std::uint32_t kSkippedFrames = 2;  // of a lap
+constexpr std::uint32_t kChosenLaps = 2;
+constexpr double kPaperTransferNs = 400;  // T_t of [Aranha07] sec. 4
+constexpr int kRefinements = 2, kPaperRuns = 2, kPaperRows = 6;
+
+struct Experiment {
+  SplitSetup setup;
+  VirtualWorld world;
+  std::vector<unsigned char> memory, whole_memory;
+  Client client;
+  CameraControl camera;
+  RowEncoder* whole = nullptr;
+  std::vector<std::uint8_t> whole_chunk;
+  std::vector<double> times;
+  std::uint32_t frame = 0;  // along the path
+  std::uint64_t* frames_done = nullptr;
+  Progress* progress = nullptr;
+  ~Experiment() {
+    close_client(&client);
+    if (setup.device) setup.device->camera = camera.home;  // for the next one's path
+  }
+};
+
+Status open_whole_encoder(Experiment* e) {
+  const Settings& settings = e->setup.device->settings;
+  CodecShape shape = {settings.width, settings.height, std::min(kChunkRowsMax, settings.height), e->setup.format};
+  e->whole_memory.resize(row_encoder_need(shape) + kArenaAlignment);
+  e->whole_chunk.resize(encoded_bytes_max(shape, shape.chunk_rows_max));
+  Arena arena = make_arena("whole frames", e->whole_memory.data(), e->whole_memory.size());
+  return make_row_encoder(shape, &arena, &e->whole);
+}
+
+Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_t* frames_done, Experiment* e) {
+  e->setup = setup;
+  e->progress = progress, e->frames_done = frames_done;
+  e->times.resize(kChosenLaps * std::size_t(setup.frame_count));
+  Renderer* r = setup.device;
+  r->pace = Pace();
+  e->camera = make_camera_control(r->camera, r->accel.bounds);
+  RETURN_IF_ERROR(open_world(setup.line, *setup.store, setup.server_count, &e->world));
+  ServerOptions server;
+  server.thread_count = r->settings.threads;
+  server.pace.ns_per_pixel = setup.server_ns;
+  for (std::uint32_t i = 0; i < setup.server_count; ++i) RETURN_IF_ERROR(start_server(&e->world, i, server));
+  ClientOptions options;
+  options.format = setup.format;
+  options.pace.ns_per_pixel = setup.device_ns;
+  options.check_count = 0;  // the split alone: checks take another 1 %
+  e->memory.resize(client_need(r->settings, setup.format, setup.server_count) + kArenaAlignment);
+  Arena arena = make_arena("client", e->memory.data(), e->memory.size());
+  RETURN_IF_ERROR(make_client(options, r->settings, setup.scene, e->world.link, e->world.addresses.data(),
+                              setup.server_count, &arena, &e->client));
+  return open_whole_encoder(e);
+}
+
+// The next frame along the path.
+Status next_frame(Experiment* e, bool* complete) {
+  std::uint32_t step = e->frame++ % (kSkippedFrames + e->setup.frame_count);
+  Renderer* r = e->setup.device;
+  if (e->setup.orbit_degrees != 0) {
+    Camera camera = orbited_camera(e->camera, static_cast<float>(step) * e->setup.orbit_degrees);
+    RETURN_IF_ERROR(set_camera(r, camera));
+  }
+  double seconds = step / static_cast<double>(r->scene.info.frames_per_second);
+  RETURN_IF_ERROR(render_shared_frame(r, &e->client, seconds, &interrupted, complete));
+  show_progress(e->progress, ++*e->frames_done);
+  return success();
+}
+
+// What the picture takes where nothing of it has been sent before.
+double whole_bytes(Experiment* e) {
+  restart_row_encoder(e->whole);
+  int level = deflate_level(e->client.servers[0].ns_per_byte);
+  std::uint32_t height = e->client.settings.height;
+  double sum = 0;
+  for (std::uint32_t row = 0; row < height; row += kChunkRowsMax) {
+    std::uint8_t encoding;
+    std::uint32_t count = std::min(kChunkRowsMax, height - row);
+    sum += encode_rows(e->whole, row, count, shared_row(e->client, row), level, e->whole_chunk.data(), &encoding);
+  }
+  return sum;
+}
+
+// Frames until all servers are in use and what they and the link can do is known.
+Status settle(Experiment* e, bool* complete) {
+  *complete = true;
+  for (std::uint32_t i = 0; *complete && !is_settled(e->client); ++i) {
+    if (i == kSettleFrames) return failure("the servers did not come into use within %u frames", kSettleFrames);
+    RETURN_IF_ERROR(next_frame(e, complete));
+  }
+  for (std::uint32_t i = 0; *complete && i < e->setup.frame_count; ++i) RETURN_IF_ERROR(next_frame(e, complete));
+  return success();
+}
+
+// The path from its start, `lap_count` times; the first frames, behind a jump and perhaps another share, do not count.
+// Nor does a lap before: a stream that has seen a small picture's path already compresses it better.
+Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, double* whole) {
+  const Settings& settings = e->client.settings;
+  const std::uint32_t frame_count = lap_count * e->setup.frame_count;
+  *point = SplitPoint();
+  *complete = true;
+  std::uint32_t measured = 0;
+  for (e->frame = 0; *complete && measured < frame_count;) {
+    const std::uint32_t lap = kSkippedFrames + e->setup.frame_count;
+    bool counts = e->frame >= lap && e->frame % lap >= kSkippedFrames;
+    RETURN_IF_ERROR(next_frame(e, complete));
+    if (!*complete || !counts) continue;
+    const FrameShare& share = e->client.share;
+    e->times[measured++] = share.measured_ns / (double(settings.width) * settings.height);
+    point->m += double(share.device_rows) / settings.height / frame_count;
+    point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
+    point->row_bytes += double(share.row_bytes) / frame_count;
+    point->row_count += double(settings.height - share.device_rows) / frame_count;
+    for (std::uint32_t i = 0; i < e->setup.server_count; ++i)
+      point->server_rows[i] += double(share.server_rows[i]) / frame_count;
+    if (whole) *whole += whole_bytes(e) / frame_count;
+  }
+  if (*complete) point->ns_per_pixel = range_of(e->times.data(), frame_count).median;
+  return success();
+}
+
+// A point of the sweep; those that are there already are measured no second time.
+Status measure_share(Experiment* e, double m, std::vector<SplitPoint>* sweep, bool* complete) {
+  double height = e->client.settings.height, row = std::floor(m * height + 0.5);
+  for (const SplitPoint& point : *sweep)
+    if (std::floor(point.m * height + 0.5) == row) return success();
+  e->client.options.device_share = m;
+  e->client.options.device_goes_on = false;
+  SplitPoint point;
+  RETURN_IF_ERROR(measure_point(e, 1, &point, complete, nullptr));
+  if (!*complete) return success();
+  sweep->push_back(point);
+  std::sort(sweep->begin(), sweep->end(), [](const SplitPoint& a, const SplitPoint& b) { return a.m < b.m; });
+  return success();
+}
+
+std::size_t least_of(const std::vector<SplitPoint>& sweep) {
+  auto faster = [](const SplitPoint& a, const SplitPoint& b) { return a.ns_per_pixel < b.ns_per_pixel; };
+  return static_cast<std::size_t>(std::min_element(sweep.begin(), sweep.end(), faster) - sweep.begin());
+}
+
+Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::uint64_t* frames_done,
+                         Progress* progress, PaperRow* row, bool* complete) {
+  SplitSetup setup = given;
+  setup.server_count = 1;
+  setup.device_ns = row->device_ns, setup.server_ns = row->server_ns;
+  setup.line.latency_ns = setup.line.jitter_ns = 0;
+  SplitPoint point;
+  // What the rows take compressed is known after a first run.
+  for (int run = 0; run < kPaperRuns && *complete; ++run) {
+    setup.line.bytes_per_second = static_cast<std::uint64_t>(*bytes_per_pixel * 1e9 / kPaperTransferNs);
+    Experiment e;
+    RETURN_IF_ERROR(open_experiment(setup, progress, frames_done, &e));
+    RETURN_IF_ERROR(settle(&e, complete));
+    if (*complete) RETURN_IF_ERROR(measure_point(&e, 1, &point, complete, nullptr));
+    if (point.row_count > 0) *bytes_per_pixel = point.row_bytes / (point.row_count * e.client.settings.width);
+  }
+  if (!*complete) return success();
+  row->our_share = point.m, row->our_ns = point.ns_per_pixel, row->bytes_per_pixel = *bytes_per_pixel;
+  row->bound_ns = overlapped_split({row->device_ns, row->server_ns, kPaperTransferNs}).ns_per_pixel;
+  return success();
+}
+
+}  // namespace
+
+std::uint64_t split_frame_count(const SplitSetup& setup, std::uint32_t step_count) {
+  std::uint64_t lap = kSkippedFrames + setup.frame_count;
+  return 4 + (2 + kChosenLaps) * lap + (step_count + 2 * kRefinements) * 2 * lap;
+}
+
+std::uint64_t paper_frame_count(const SplitSetup& setup) {
+  return kPaperRows * kPaperRuns * (4 + 3 * std::uint64_t(kSkippedFrames + setup.frame_count));
+}
+
+Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress* progress, SplitFigures* figures) {
+  Experiment e;
+  std::uint64_t frames_done = 0;
+  bool complete;
+  RETURN_IF_ERROR(open_experiment(setup, progress, &frames_done, &e));
+  RETURN_IF_ERROR(settle(&e, &complete));
+  if (complete) RETURN_IF_ERROR(measure_point(&e, kChosenLaps, &figures->chosen, &complete, &figures->whole_bytes));
+  // 1. The ends first, so that an interrupt leaves what the others are compared with.
+  std::vector<SplitPoint>* sweep = &figures->sweep;
+  if (complete) RETURN_IF_ERROR(measure_share(&e, 1, sweep, &complete));
+  if (complete) figures->local = sweep->back();
+  for (std::uint32_t i = 0; complete && i < step_count; ++i)
+    RETURN_IF_ERROR(measure_share(&e, double(i) / (step_count - 1), sweep, &complete));
+  // 2. Halfway to the neighbours of the least, and again.
+  for (int i = 0; complete && i < kRefinements; ++i) {
+    std::size_t least = least_of(*sweep);
+    double m = (*sweep)[least].m, before = least > 0 ? (*sweep)[least - 1].m : m,
+           after = least + 1 < sweep->size() ? (*sweep)[least + 1].m : m;
+    RETURN_IF_ERROR(measure_share(&e, (before + m) / 2, sweep, &complete));
+    if (complete) RETURN_IF_ERROR(measure_share(&e, (m + after) / 2, sweep, &complete));
+  }
+  if (!sweep->empty()) figures->best = (*sweep)[least_of(*sweep)];
+  return success();
+}
+
+Status measure_paper(const SplitSetup& setup, Progress* progress, SplitFigures* figures) {
+  // Table 1: per pixel, the client's share m and the time with it; T_m of the tablet, T_s of a server of so many cores.
+  const PaperRow rows[kPaperRows] = {
+      {"Cornell box", 2, 989, 8841, 0.1358, 1200}, {"Cornell box", 4, 585, 8841, 0.1002, 886},
+      {"Cornell box", 8, 325, 8841, 0.0758, 669},  {"Buddha", 2, 520, 6688, 0.1209, 809},
+      {"Buddha", 4, 390, 6688, 0.1056, 706},       {"Buddha", 8, 208, 6688, 0.0833, 557}};
+  double bytes_per_pixel = 0.8;
+  std::uint64_t frames_done = 0;
+  bool complete = true;
+  for (PaperRow row : rows) {
+    RETURN_IF_ERROR(measure_paper_row(setup, &bytes_per_pixel, &frames_done, progress, &row, &complete));
+    if (!complete) break;
+    figures->paper.push_back(row);
+  }
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,43 @@
+// Render servers and whoever connects to them in one simulated world: one link, one clock, emulated CPUs. While the
+// device waits for something, the servers work, so that everything takes the same course every time, however busy the
+// machine is that it runs on.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "platform/null/null_link.h"
+#include "remote/server/server.h"
+
+namespace pocketray {
+
+struct VirtualWorld;
+
+// The simulated link as the device sees it.
+struct WorldLink : platform::LinkBackend {
+  VirtualWorld* world = nullptr;
+};
+
+struct VirtualWorld {
+  std::vector<std::max_align_t> memory;
+  WorldLink backend;
+  platform::Link* link = nullptr;
+  const SceneStore* store = nullptr;
+  std::vector<Server*> servers;  // null: stopped
+  std::vector<platform::LinkAddress> addresses;
+  bool stepping = false;
+  VirtualWorld() = default;
+  VirtualWorld(const VirtualWorld&) = delete;
+  VirtualWorld& operator=(const VirtualWorld&) = delete;
+  ~VirtualWorld();
+};
+
+// So many servers that have yet to be started. The store stays the caller's and has to outlive the world.
+Status open_world(const platform::NullLinkSettings& line, const SceneStore& store, std::uint32_t server_count,
+                  VirtualWorld* world);
+// A server started anew listens where it did before.
+Status start_server(VirtualWorld* world, std::uint32_t index, const ServerOptions& options);
+void stop_server(VirtualWorld* world, std::uint32_t index);
+
+inline std::uint64_t world_now_ns(const VirtualWorld& world) { return platform::kNullLink.now_ns(world.link); }
+
+}  // namespace pocketray

@@ -1,0 +1,138 @@
+#include "sweep/references.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/display.h"
+#include "base/limits.h"
+#include "engine/frame.h"
+
+namespace pocketray {
+namespace {
+
+// FLIP of half a difference to that of the whole: its exponent for colours [Andersson20, sec. 4.1, q_c].
+constexpr double kFlipExponent = 0.7;
+
+constexpr std::uint32_t kModelSamples = 2048, kPhysicalSamples = 256;
+
+const char* name_of(Transport transport) { return transport == Transport::model ? "model" : "physical"; }
+
+// The scene's own textures and normals, whatever the baseline makes of them.
+Status prepare(const AccuracyOptions& options, Rig* rig) {
+  Settings settings = rig->baseline.settings;
+  settings.texture_filter = TextureFilter::as_scene;
+  settings.normals = NormalMode::as_scene;
+  settings.ray_depth = kRayDepthMax;
+  settings.cut_off_levels = 0;
+  RETURN_IF_ERROR(change_settings(&rig->opened.renderer, settings));
+  return prepare_frame(&rig->opened.renderer, options.seconds);
+}
+
+void compare(const Rig& rig, double pixels_per_degree, const std::vector<Vec3>& one, const std::vector<Vec3>& other,
+             ReferencePictures* p) {
+  const Renderer& r = rig.opened.renderer;
+  std::uint32_t width = r.settings.width, height = r.settings.height;
+  std::vector<Vec3> mean(one.size());
+  for (std::size_t i = 0; i < one.size(); ++i) mean[i] = one[i] * 0.5f + other[i] * 0.5f;
+  p->one = exposed_light(one.data(), one.size(), r.exposure);
+  p->other = exposed_light(other.data(), other.size(), r.exposure);
+  p->mean = exposed_light(mean.data(), mean.size(), r.exposure);
+  p->encoded = encoded_light(p->mean);
+  p->levels = displayed_levels(mean.data(), width, height, r.exposure, kOutputFormats[find_output_format("rgb888")]);
+  p->rmse = reference_error(p->one, p->other);
+  p->flip = std::pow(0.5, kFlipExponent) *
+            mean_of(flip_errors(encoded_light(p->one), encoded_light(p->other), width, height, pixels_per_degree));
+}
+
+}  // namespace
+
+std::uint32_t reference_samples(const AccuracyOptions& options, Transport transport) {
+  std::uint32_t usual = transport == Transport::model ? kModelSamples : kPhysicalSamples;
+  if (options.reference_samples == 0) return usual;
+  return options.reference == name_of(transport) ? options.reference_samples
+                                                 : std::min(usual, options.reference_samples);
+}
+
+namespace {
+
+// The rows of a picture that is begun, in its file; a file may hold rows that the state does not know of yet.
+Status save_begun(const AccuracyOptions& options, const Settings& settings, const std::vector<Vec3>& picture,
+                  const AccuracyState& state) {
+  std::vector<Vec3> there(picture.size(), Vec3{0, 0, 0});  // without what other threads write now
+  std::ptrdiff_t width = settings.width;
+  for (std::ptrdiff_t row = 0; row < static_cast<std::ptrdiff_t>(settings.height); ++row)
+    if (state.begun_rows[static_cast<std::size_t>(row)] == '1')
+      std::copy_n(picture.begin() + row * width, width, there.begin() + row * width);
+  RETURN_IF_ERROR(save_radiance(options.folder, state.begun, settings.width, settings.height, there));
+  return save_state(options.folder, state);
+}
+
+// The rows of a picture that are still to be traced; the others are read.
+Status resume(const AccuracyOptions& options, const Settings& settings, const std::string& name, AccuracyState* state,
+              std::vector<Vec3>* picture, std::vector<std::uint32_t>* rows) {
+  picture->assign(std::size_t(settings.width) * settings.height, Vec3{0, 0, 0});
+  bool ours = state->begun == name && state->begun_rows.size() == settings.height;
+  if (ours && state->begun_rows.find('1') != std::string::npos)
+    RETURN_IF_ERROR(load_radiance(options.folder, name, settings.width, settings.height, picture));
+  if (!ours) state->begun = name, state->begun_rows.assign(settings.height, '0');
+  for (std::uint32_t row = 0; row < settings.height; ++row)
+    if (state->begun_rows[row] != '1') rows->push_back(row);
+  return success();
+}
+
+// Renders a picture, or what is left of it, and saves it now and then. What each path finds follows from seed, pixel
+// and index, so the rows are the same whenever they are traced.
+Status render_seed(const AccuracyOptions& options, const ReferenceOptions& o, const std::string& stage,
+                   const std::string& name, const Rig& rig, AccuracyState* state, std::vector<Vec3>* picture,
+                   bool* whole) {
+  const Settings& settings = rig.opened.renderer.settings;
+  std::vector<std::uint32_t> rows;
+  RETURN_IF_ERROR(resume(options, settings, name, state, picture, &rows));
+  Progress progress = start_progress(stage.c_str(), rows.size());
+  std::uint64_t done = 0, saved_ns = clock_ns();
+  auto row_done = [&](std::uint32_t row) {
+    state->begun_rows[row] = '1';
+    show_progress(&progress, ++done);
+    if (options.row_done) options.row_done(row);
+    if (static_cast<double>(clock_ns() - saved_ns) < options.save_seconds * 1e9) return;
+    // What fails now is tried again, at the latest in the end.
+    if (save_begun(options, settings, *picture, *state).ok) saved_ns = clock_ns();
+  };
+  auto trace_row = [&](std::uint32_t row, Vec3d* means) { trace_reference(rig.reference, o, row, row + 1, means); };
+  *whole = trace_rows(settings, rows, trace_row, row_done, picture->data());
+  end_progress(&progress);
+  if (!*whole) return save_begun(options, settings, *picture, *state);
+  RETURN_IF_ERROR(save_radiance(options.folder, name, settings.width, settings.height, *picture));
+  state->references.push_back(name);
+  state->begun.clear(), state->begun_rows.clear();
+  return save_state(options.folder, *state);
+}
+
+}  // namespace
+
+Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
+                        ReferencePictures* pictures, bool* whole) {
+  const Settings& settings = rig->opened.renderer.settings;
+  std::vector<Vec3> seeds[2];
+  *whole = true;
+  for (int i = 0; i < 2; ++i) {
+    std::string name = std::string("reference-") + name_of(transport) + "-" + std::to_string(i + 1);
+    if (std::find(state->references.begin(), state->references.end(), name) != state->references.end()) {
+      RETURN_IF_ERROR(load_radiance(options.folder, name, settings.width, settings.height, &seeds[i]));
+      continue;
+    }
+    RETURN_IF_ERROR(prepare(options, rig));
+    make_rig_reference(rig);
+    ReferenceOptions o;
+    o.transport = transport;
+    o.samples_per_pixel = std::max(1u, reference_samples(options, transport) / 2);
+    o.seed = static_cast<std::uint64_t>(i) + 1;
+    std::string stage = std::string(name_of(transport)) + " reference, " + std::to_string(i + 1) + " of 2";
+    RETURN_IF_ERROR(render_seed(options, o, stage, name, *rig, state, &seeds[i], whole));
+    if (!*whole) return success();
+  }
+  compare(*rig, options.pixels_per_degree, seeds[0], seeds[1], pictures);
+  return success();
+}
+
+}  // namespace pocketray

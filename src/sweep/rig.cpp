@@ -1,0 +1,221 @@
+// A scene opened for a sweep.
+#include <zlib.h>
+
+#include <mutex>
+#include <thread>
+
+#include "base/limits.h"
+#include "budget/front_file.h"
+#include "engine/frame.h"
+#include "plan/plan_lights.h"
+#include "plan/plan_scene.h"
+#include "platform/instructions.h"
+#include "reference/rendered.h"
+#include "scene/baked.h"
+#include "session/interrupt.h"
+#include "session/scene_identity.h"
+#include "sweep/sweep.h"
+
+namespace pocketray {
+namespace {
+
+// Where no --memory is given, a sweep starts with this: address space, of which it touches what it needs.
+constexpr std::size_t kMemoryFirst = std::size_t(1) << 30;
+
+std::string hash_of(const SceneSource& source, const Scene& scene) {
+  std::vector<std::uint8_t> own;
+  const std::uint8_t* bytes = source.baked;
+  std::size_t byte_count = source.baked_bytes;
+  if (!bytes) {
+    own.resize(baked_size(scene));
+    baked_write(scene, own.data());
+    bytes = own.data(), byte_count = own.size();
+  }
+  char text[48];
+  std::snprintf(text, sizeof text, "%08lx of %zu bytes", crc32_z(0, bytes, byte_count), byte_count);
+  return text;
+}
+
+// The settings that need the most memory of all a sweep tries.
+Settings dearest(const Scene& scene, Settings settings) {
+  std::uint32_t own = settings.points_per_area_light;
+  for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
+    settings.points_per_area_light = points;
+    std::uint32_t count;
+    // Default lights may come in when the scene is planned.
+    if (light_point_count(scene, settings, kAllEffects, &count).ok && count + kDefaultLightCount <= kPointLightCountMax)
+      return settings;
+  }
+  settings.points_per_area_light = own;
+  return settings;
+}
+
+Status load_cornell(std::uint32_t sphere_columns, Renderer* r, SceneStorage* storage) {
+  if (tessellated_cornell_need(sphere_columns) > arena_free(r->scene_arena))
+    return failure("cornell with a sphere of %u columns does not fit --memory: raise it", sphere_columns);
+  build_tessellated_cornell(sphere_columns, &r->scene_arena, &r->scene);
+  *storage = SceneStorage();
+  storage->arena_bytes = r->scene_arena.used;
+  return success();
+}
+
+Status open_with(const AccuracyOptions& options, const CommonOptions& common, std::uint32_t sphere_columns, Rig* rig) {
+  OpenHooks hooks;
+  hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
+  if (sphere_columns != kCornellSphereColumns)
+    hooks.load = [=](const std::string&, Renderer* r, SceneSource*, SceneStorage* storage) {
+      return load_cornell(sphere_columns, r, storage);
+    };
+  hooks.loaded = [&](const SceneSource& source, Renderer* r) {
+    rig->baseline.settings = r->settings;
+    rig->scene_hash = hash_of(source, r->scene);
+    ContentHash identity;
+    if (identify_scene(source, r, &identity).ok) rig->front_path = front_path(common.scene, identity);
+    r->settings = dearest(r->scene, r->settings);
+    return success();
+  };
+  RETURN_IF_ERROR(open_scene(common, hooks, &rig->opened));
+  RETURN_IF_ERROR(start_scene(&rig->opened, common));
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(r, rig->baseline.settings));
+  RETURN_IF_ERROR(prepare_frame(r, options.seconds));
+  bool measured;
+  float factor;
+  RETURN_IF_ERROR(parse_exposure(common.exposure, &measured, &factor));
+  if (r->scene.info.auto_exposure == 0) return success();
+  r->exposure = measure_exposure(r);
+  return change_exposure(factor, &r->exposure);
+}
+
+// Rows of the whole picture that are as many pixels as a frame.
+std::uint32_t row_count(const Rig& rig) {
+  const Settings& s = rig.opened.renderer.settings;
+  return rig.part_pixels ? rig.part_pixels / s.width : s.height;
+}
+
+// As render_frame() does.
+Status render_in_double(Rig* rig, double seconds) {
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(prepare_frame(r, seconds));
+  std::vector<std::uint32_t> all(row_count(*rig));
+  std::uint32_t rows = static_cast<std::uint32_t>(all.size());
+  for (std::uint32_t i = 0; i < rows; ++i) all[i] = i;
+  trace_rows(
+      r->settings, all,
+      [&](std::uint32_t i, Vec3d* radiances) {
+        std::uint32_t row = (2 * i + 1) * r->settings.height / (2 * rows);
+        trace_as_rendered(rig->reference, row, row + 1, radiances);
+      },
+      nullptr, r->image.data);
+  return success();
+}
+
+}  // namespace
+
+Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig) {
+  CommonOptions common = options.common;
+  bool grows = common.memory.empty() && common.device.empty() && common.emulate.empty();
+  std::size_t memory = kMemoryFirst;
+  for (;;) {
+    if (grows) common.memory = std::to_string(memory);
+    *rig = std::make_unique<Rig>();
+    (*rig)->baseline.output = find_output_format(options.output);
+    (*rig)->baseline.sphere_columns = kCornellSphereColumns;
+    Status status = open_with(options, common, sphere_columns, rig->get());
+    std::size_t wanted = (*rig)->opened.source.bytes_wanted;
+    if (status.ok || !grows || wanted <= memory) return status;
+    memory = size_sum(wanted, wanted / 4);
+  }
+}
+
+void make_rig_reference(Rig* rig) {
+  if (!rig->reference_memory.empty()) return;
+  const FrameData& frame = rig->opened.renderer.frame;
+  rig->reference_memory.resize(reference_need(frame) + kArenaAlignment);
+  Arena arena = make_arena("reference", rig->reference_memory.data(), rig->reference_memory.size());
+  rig->reference = make_reference(frame, &arena);
+}
+
+bool trace_rows(const Settings& settings, const std::vector<std::uint32_t>& rows,
+                const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
+                const std::function<void(std::uint32_t)>& row_done, Vec3* picture) {
+  std::atomic<std::size_t> next{0};
+  std::size_t done = 0;
+  std::mutex mutex;
+  auto take_rows = [&] {
+    std::vector<Vec3d> row_of(settings.width);
+    for (std::size_t i; !interrupted && (i = next++) < rows.size();) {
+      trace_row(rows[i], row_of.data());
+      Vec3* out = picture + std::size_t(rows[i]) * settings.width;
+      for (const Vec3d& radiance : row_of)
+        *out++ = {static_cast<float>(radiance.x), static_cast<float>(radiance.y), static_cast<float>(radiance.z)};
+      std::lock_guard<std::mutex> lock(mutex);
+      ++done;
+      if (row_done) row_done(rows[i]);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 1; i < settings.threads; ++i) threads.emplace_back(take_rows);
+  take_rows();
+  for (std::thread& thread : threads) thread.join();
+  return done == rows.size();
+}
+
+std::uint32_t take_part(Rig* rig) {
+  Renderer* r = &rig->opened.renderer;
+  constexpr std::uint32_t kParts = 4;  // along each axis
+  std::uint32_t width = r->settings.width, height = r->settings.height, quarter = width / kParts, count = 0;
+  if (quarter < kTileRows || height < kParts * kTileRows) return width * height;
+  for (std::uint32_t band = kParts / 2; (band + 1) * kTileRows <= height; band += kParts)
+    for (std::uint32_t row = band * kTileRows; row < (band + 1) * kTileRows; ++row) {
+      std::uint32_t begin = band / kParts % kParts * quarter;
+      r->spans[count++] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin),
+                           static_cast<std::uint16_t>(begin + quarter)};
+    }
+  r->spans.count = count;
+  return rig->part_pixels = count * quarter;
+}
+
+Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(r, configuration.settings));
+  RETURN_IF_ERROR(prepare_frame(r, seconds));  // what a change of settings costs is not a frame's
+  if (configuration.double_precision) make_rig_reference(rig);
+  std::uint64_t start = clock_ns();
+  if (configuration.double_precision)
+    RETURN_IF_ERROR(render_in_double(rig, seconds));
+  else
+    RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
+  double frame_ns = static_cast<double>(clock_ns() - start);
+  const OutputFormat& output = kOutputFormats[configuration.output];
+  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height),
+      line_bytes = width * output.format.bits_per_pixel / 8;
+  rig->packed.resize((static_cast<std::size_t>(line_bytes) * r->settings.height + 3) / 4);
+  start = clock_ns();
+  pack_rows(r->image.data, width, height, 0, static_cast<int>(row_count(*rig)), r->exposure, output.format,
+            Rotation::none, output.dither, rig->packed.data(), line_bytes);
+  double pack_ns = static_cast<double>(clock_ns() - start);
+  *ns_per_pixel = (frame_ns + pack_ns) / static_cast<double>(r->image.count);
+  return success();
+}
+
+Status count_instructions(Rig* rig, const Configuration& configuration, double seconds, double* per_pixel) {
+  *per_pixel = kNotMeasured;
+  std::uint64_t start = platform::instruction_count();
+  if (start == 0) return success();
+  Renderer* r = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(r, configuration.settings));
+  RETURN_IF_ERROR(prepare_frame(r, seconds));
+  if (configuration.double_precision) make_rig_reference(rig);
+  start = platform::instruction_count();
+  RETURN_IF_ERROR(prepare_frame(r, seconds));  // the frame does so twice, and it is not counted
+  std::uint64_t prepared = platform::instruction_count();
+  double ns_per_pixel;
+  RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));
+  std::uint64_t end = platform::instruction_count();
+  double traced = static_cast<double>(end - prepared) - 2 * static_cast<double>(prepared - start);
+  if (!interrupted && traced > 0) *per_pixel = traced / static_cast<double>(r->image.count);
+  return success();
+}
+
+}  // namespace pocketray

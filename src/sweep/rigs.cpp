@@ -1,0 +1,53 @@
+#include "sweep/rigs.h"
+
+#include "plan/plan_lights.h"
+
+namespace pocketray {
+namespace {
+
+// What --budget-ms chooses from where no front was measured is measured, too.
+std::vector<Settings> ladder_of(const Renderer& r) {
+  Front front = builtin_front();
+  drop_what_scene_ignores(&front, r.effects.mask);
+  std::vector<Settings> ladder;
+  for (std::uint32_t i = 0; i < front.count; ++i) ladder.push_back(with_candidate(r.settings, front.candidates[i]));
+  return ladder;
+}
+
+}  // namespace
+
+Status plan_rigs(Rigs* rigs, SweepPlan* plan) {
+  const AccuracyOptions& options = rigs->options;
+  std::unique_ptr<Rig>& first = rigs->by_columns[kCornellSphereColumns];
+  RETURN_IF_ERROR(open_rig(options, kCornellSphereColumns, &first));
+  Renderer* r = &first->opened.renderer;
+  // The plan of the scene's own normals, whatever the baseline makes of them.
+  Settings settings = first->baseline.settings;
+  settings.normals = NormalMode::as_scene;
+  RETURN_IF_ERROR(change_settings(r, settings));
+  auto can_be_had = [&](const Settings& s) {
+    std::uint32_t count;
+    return light_point_count(r->scene, s, r->effects.mask, &count);
+  };
+  *plan = plan_sweep(options.common.scene, r->effects, first->baseline, can_be_had, options.price_limit, ladder_of(*r));
+  return success();
+}
+
+Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig) {
+  std::unique_ptr<Rig>& there = rigs->by_columns[configuration.sphere_columns];
+  if (!there) {
+    RETURN_IF_ERROR(open_rig(rigs->options, configuration.sphere_columns, &there));
+    there->opened.renderer.exposure = rigs->by_columns[kCornellSphereColumns]->opened.renderer.exposure;
+  }
+  *rig = there.get();
+  return success();
+}
+
+std::string id_of(const SweepPoint& point) { return point.value.empty() ? point.knob : point.knob + " " + point.value; }
+
+bool is_measured(const SweepPlan& plan, std::size_t point_index) {
+  const SweepPoint& point = plan.points[point_index];
+  return point_index == 0 || (point.missing.empty() && !point.is_default);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,285 @@
+#include "sweep/sweep.h"
+
+#include <zlib.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/display.h"
+#include "base/limit_list.h"
+#include "base/rng.h"
+#include "platform/instructions.h"
+#include "session/interrupt.h"
+#include "session/progress.h"
+#include "sweep/instructions.h"
+#include "sweep/references.h"
+#include "sweep/rigs.h"
+
+namespace pocketray {
+namespace {
+
+// Cornell's sphere in the reference: finer than any that is swept.
+constexpr std::uint32_t kReferenceColumns = 256;
+// Times that a round measures the baseline, which all others are divided by.
+constexpr int kBaselineRuns = 3;
+constexpr std::uint32_t kRoundsMax = 1000;
+
+struct Run {
+  const AccuracyOptions& options;
+  Rigs rigs;
+  SweepPlan plan;
+  AccuracyState state;
+  ReferencePictures reference;
+};
+
+Transport chosen(const AccuracyOptions& o) { return o.reference == "model" ? Transport::model : Transport::physical; }
+Transport other_than(Transport t) { return t == Transport::model ? Transport::physical : Transport::model; }
+
+Json key_of(const Run& run, const Rig& rig) {
+  const AccuracyOptions& o = run.options;
+  const CommonOptions& c = o.common;
+  const Settings& s = rig.baseline.settings;
+  std::string ids;
+  for (const SweepPoint& point : run.plan.points) ids += id_of(point) + "\n";
+  return {{"program", POCKETRAY_VERSION},
+          {"scene", c.scene},
+          {"content", rig.scene_hash},
+          {"size", std::to_string(s.width) + "x" + std::to_string(s.height)},
+          {"camera", c.camera},
+          {"camera-index", c.camera_index},
+          {"time", o.seconds},
+          {"exposure", c.exposure},
+          {"effects", c.effects},
+          {"samples", s.samples_per_pixel},
+          {"depth", s.ray_depth},
+          {"area-lights", s.points_per_area_light},
+          {"cut-off", s.cut_off_levels},
+          {"texture-filter", c.texture_filter},
+          {"normals", c.normals},
+          {"output", o.output},
+          {"reference", o.reference},
+          {"reference-samples", reference_samples(o, chosen(o))},
+          {"other-reference-samples", reference_samples(o, other_than(chosen(o)))},
+          {"ppd", o.pixels_per_degree},
+          {"threads", s.threads},
+          {"isa", isa_name(active_isa())},
+          {"accel", rig.opened.renderer.accel_info->name},
+          {"emulate", c.emulate},
+          {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}};
+}
+
+void find_errors(const Run& run, const Rig& rig, const Configuration& configuration, PointFigures* f) {
+  const Renderer& r = rig.opened.renderer;
+  std::uint32_t width = r.settings.width, height = r.settings.height;
+  std::vector<double> light = exposed_light(r.image.data, r.image.count, r.exposure);
+  Levels levels = displayed_levels(r.image.data, width, height, r.exposure, kOutputFormats[configuration.output]);
+  const ReferencePictures& reference = run.reference;
+  double ppd = run.options.pixels_per_degree;
+  f->flip = mean_of(flip_errors(reference.encoded, encoded_levels(levels), width, height, ppd));
+  f->flip_before = mean_of(flip_errors(reference.encoded, encoded_light(light), width, height, ppd));
+  f->errors = picture_errors(reference.mean, light);
+  f->errors.rmse = unbiased_rmse(reference.one, reference.other, light);
+  f->errors.psnr = f->errors.rmse > 0 ? -20 * std::log10(f->errors.rmse) : std::numeric_limits<double>::infinity();
+  f->has_errors = true;
+}
+
+// The points of a round in the order of it: at random, the baseline several times.
+std::vector<std::size_t> round_order(const SweepPlan& plan, std::uint32_t round) {
+  std::vector<std::size_t> order(kBaselineRuns, 0);
+  for (std::size_t i = 1; i < plan.points.size(); ++i)
+    if (is_measured(plan, i)) order.push_back(i);
+  Rng rng = make_rng(15, round);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(next_double(&rng) * static_cast<double>(i))]);
+  return order;
+}
+
+struct RoundProgress {
+  Progress progress;
+  double done = 0;
+};
+
+// Measures each point once; *whole is false after an interrupt, and then the times of the round are lost.
+Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
+  std::map<std::size_t, std::vector<double>> times;
+  for (std::size_t i : round_order(run->plan, run->state.rounds)) {
+    const SweepPoint& point = run->plan.points[i];
+    Rig* rig;
+    RETURN_IF_ERROR(rig_for(&run->rigs, point.configuration, &rig));
+    double ns_per_pixel = 0;
+    RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
+    *whole = !interrupted;
+    if (!*whole) return success();
+    times[i].push_back(ns_per_pixel);
+    PointFigures* f = &run->state.points[id_of(point)];
+    if (!f->has_errors) find_errors(*run, *rig, point.configuration, f);
+    if (run->state.counted.empty() && std::isnan(f->instructions_per_pixel))
+      RETURN_IF_ERROR(count_instructions(rig, point.configuration, run->options.seconds, &f->instructions_per_pixel));
+    progress->done += 1000 * point.price;
+    show_progress(&progress->progress, static_cast<std::uint64_t>(progress->done));
+  }
+  for (const auto& entry : times)
+    run->state.points[id_of(run->plan.points[entry.first])].ns_per_pixel.push_back(median(entry.second));
+  ++run->state.rounds;
+  return success();
+}
+
+// A state that was read may lack points.
+Status check_state(const Run& run) {
+  bool all = run.state.rounds <= kRoundsMax;
+  for (std::size_t i : round_order(run.plan, 0)) {
+    auto there = run.state.points.find(id_of(run.plan.points[i]));
+    std::size_t rounds = there == run.state.points.end() ? 0 : there->second.ns_per_pixel.size();
+    all = all && rounds == run.state.rounds;
+  }
+  return all ? success()
+             : failure("%.200s holds the state of a sweep that lacks configurations: --restart starts anew",
+                       run.options.folder.c_str());
+}
+
+Status measure_rounds(Run* run, bool* whole) {
+  *whole = true;
+  if (run->state.rounds >= run->options.rounds) return success();
+  double price = 0;
+  for (std::size_t i : round_order(run->plan, 0)) price += 1000 * run->plan.points[i].price;
+  RoundProgress progress;
+  progress.progress =
+      start_progress("configurations", static_cast<std::uint64_t>(price * (run->options.rounds - run->state.rounds)));
+  Status status;
+  while (*whole && status.ok && run->state.rounds < run->options.rounds) {
+    status = measure_round(run, &progress, whole);
+    if (status.ok) status = save_state(run->options.folder, run->state);
+  }
+  end_progress(&progress.progress);
+  return status;
+}
+
+Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
+  Strip strip;
+  strip.knob = swept.knob->name;
+  std::vector<std::size_t> there;
+  for (std::size_t i = swept.first; i < swept.first + swept.count; ++i)
+    if (sweep->measured[i].missing.empty()) there.push_back(i);
+  for (std::size_t i : there) {
+    const SweepPoint& point = run->plan.points[i];
+    if (i != there.front() && i != there.back() && !point.is_default) continue;
+    Rig* rig;
+    RETURN_IF_ERROR(rig_for(&run->rigs, point.configuration, &rig));
+    double ns_per_pixel;
+    RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
+    *whole = !interrupted;
+    if (!*whole) return success();
+    const Renderer& r = rig->opened.renderer;
+    StripRow row;
+    row.label = point.knob + " " + point.value;
+    row.ms = sweep->measured[i].ns_per_pixel.value * 1e-6 * sweep->width * sweep->height;
+    row.flip = sweep->measured[i].flip;
+    row.picture = displayed_levels(r.image.data, sweep->width, sweep->height, r.exposure,
+                                   kOutputFormats[point.configuration.output]);
+    row.flip_map = flip_errors(run->reference.encoded, encoded_levels(row.picture), sweep->width, sweep->height,
+                               run->options.pixels_per_degree);
+    strip.rows.push_back(std::move(row));
+  }
+  sweep->strips.push_back(std::move(strip));
+  return success();
+}
+
+// Both kinds: the one that knobs are compared with, and what the model's limit errs against all transport.
+Status render_references(Run* run, Sweep* sweep, bool* whole) {
+  bool is_cornell = run->options.common.scene == "cornell";
+  Configuration configuration = run->rigs.by_columns[kCornellSphereColumns]->baseline;
+  if (is_cornell) configuration.sphere_columns = kReferenceColumns;
+  Rig* rig;
+  RETURN_IF_ERROR(rig_for(&run->rigs, configuration, &rig));
+  ReferencePictures other;
+  Transport kind = chosen(run->options), other_kind = other_than(kind);
+  RETURN_IF_ERROR(render_reference(run->options, kind, rig, &run->state, &run->reference, whole));
+  if (!*whole) return success();
+  RETURN_IF_ERROR(render_reference(run->options, other_kind, rig, &run->state, &other, whole));
+  if (!*whole) return success();
+  const ReferencePictures& reference = run->reference;
+  sweep->reference_rmse = reference.rmse, sweep->reference_flip = reference.flip;
+  sweep->reference_picture = reference.levels;
+  sweep->model_flip = mean_of(
+      flip_errors(reference.encoded, other.encoded, sweep->width, sweep->height, run->options.pixels_per_degree));
+  sweep->model_flip_error = reference.flip + other.flip;
+  std::vector<double> of_one = reference.one, of_other = reference.other, none(of_one.size(), 0.0);
+  for (std::size_t i = 0; i < none.size(); ++i) of_one[i] -= other.one[i], of_other[i] -= other.other[i];
+  sweep->model_rmse = unbiased_rmse(of_one, of_other, none);
+  if (is_cornell) run->rigs.by_columns.erase(kReferenceColumns);
+  return success();
+}
+
+Status check_options(const AccuracyOptions& o) {
+  if (find_output_format(o.output) < 0)
+    return failure("--output is '%s': it must be rgb565, rgb565-dithered or rgb888", o.output.c_str());
+  if (o.reference != "model" && o.reference != "physical")
+    return failure("--reference is '%s': it must be model or physical", o.reference.c_str());
+  if (o.rounds < 1 || o.rounds > kRoundsMax)
+    return failure("--rounds is %u: it must lie in 1 … %u", o.rounds, kRoundsMax);
+  if (!(o.price_limit >= 1 && o.price_limit <= 1e6))
+    return failure("--price-limit is %g: it must lie in 1 … 1000000", o.price_limit);
+  RETURN_IF_ERROR(check_limit(Quantity::seconds, o.seconds, "--time"));
+  if (o.reference_samples == 1 || o.reference_samples > 1000000)
+    return failure("--reference-samples is %u: it must lie in 2 … 1000000", o.reference_samples);
+  if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))
+    return failure("--ppd is %g: it must lie in 1 … 1000", o.pixels_per_degree);
+  return success();
+}
+
+void describe(const Run& run, const Rig& rig, Sweep* sweep) {
+  const AccuracyOptions& o = run.options;
+  const Settings& s = rig.baseline.settings;
+  sweep->scene = o.common.scene;
+  sweep->machine = std::to_string(s.threads) + (s.threads == 1 ? " thread, " : " threads, ") + isa_name(active_isa()) +
+                   emulation_text(rig.opened.renderer.pace);
+  sweep->width = s.width, sweep->height = s.height;
+  sweep->pixels_per_degree = o.pixels_per_degree;
+  sweep->reference = o.reference, sweep->reference_samples = reference_samples(o, chosen(o)) / 2 * 2;
+  sweep->output = o.output;
+  sweep->notes = run.plan.notes;
+}
+
+// Where the CPU counts none, and has counted none of this sweep before.
+Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool* whole) {
+  for (const auto& point : run->state.points) by_cpu = by_cpu || std::isfinite(point.second.instructions_per_pixel);
+  if (by_cpu && run->state.counted.empty()) return success();
+  std::string note;
+  count_by_valgrind(run->options, rig, run->plan, &run->state, whole, &note);
+  sweep->notes.push_back(note);
+  return save_state(run->options.folder, run->state);
+}
+
+}  // namespace
+
+Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front) {
+  Run run = {options, {options, {}}, {}, {}, {}};
+  *whole = true;
+  RETURN_IF_ERROR(check_options(options));
+  bool counts = platform::start_instruction_count();  // of the threads to come, too
+  RETURN_IF_ERROR(plan_rigs(&run.rigs, &run.plan));
+  const Rig& rig = *run.rigs.by_columns[kCornellSphereColumns];
+  print_notes(rig.opened);
+  describe(run, rig, sweep);
+  RETURN_IF_ERROR(open_state(options.folder, key_of(run, rig), options.restart, &run.state));
+  RETURN_IF_ERROR(check_state(run));
+  RETURN_IF_ERROR(render_references(&run, sweep, whole));
+  if (!*whole) return success();
+  RETURN_IF_ERROR(measure_rounds(&run, whole));
+  if (!*whole) return success();
+  RETURN_IF_ERROR(count_otherwise(&run, rig, counts, sweep, whole));
+  if (!*whole) return success();
+  std::vector<PointFigures> figures;
+  for (const SweepPoint& point : run.plan.points) figures.push_back(run.state.points[id_of(point)]);
+  sweep->rounds = run.state.rounds;
+  sum_up(run.plan, figures, sweep);
+  if (front) *front = {front_of_sweep(run.plan, *sweep), rig.front_path};
+  for (const SweptKnob& swept : run.plan.knobs) {
+    RETURN_IF_ERROR(add_strip(&run, swept, sweep, whole));
+    if (!*whole) return success();
+  }
+  return success();
+}
+
+}  // namespace pocketray

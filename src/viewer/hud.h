@@ -1,0 +1,19 @@
+// What the display over the picture says, and its drawing.
+#pragma once
+#include "engine/progressive.h"
+#include "present/hud_text.h"
+#include "session/camera_control.h"
+
+namespace pocketray {
+
+// Something to be told over the picture for some seconds, or until there is something else.
+struct HudNote {
+  char text[600] = {0};
+  std::uint64_t until_ns = 0;  // by the screen's clock
+  std::uint32_t number = 0;    // how many there have been
+};
+
+// Milliseconds per frame, nanoseconds per pixel, rays, memory, effects on.
+void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text);
+void write_waiting(const char* what, double seconds, HudText* text);
+}  // namespace pocketray

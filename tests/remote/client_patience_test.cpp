@@ -1,0 +1,156 @@
+// How long a device waits for servers that begin well and give nothing, and what it says of them.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "engine/frame.h"
+#include "hostile_rig.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr double kSecond = 1e9;
+
+struct Failing {
+  const char* what;
+  double patience_s;  // that a device without the scene has with it
+  // Instead of an answer. Empty: nothing is said; `hangs_up`: and the connection ends.
+  bool (*fails)(const Message& message);
+  bool hangs_up, errs, dies;  // dies: from then on nothing is answered in this connection
+};
+bool after_hello(const Message& m) { return m.type != MessageType::hello; }
+bool after_pings(const Message& m) {
+  return after_hello(m) && m.type != MessageType::scene_query && m.type != MessageType::ping;
+}
+
+constexpr Failing kFailing[] = {
+    {"hangs up after its hello", 5, after_hello, true, false},
+    {"falls silent after its hello", 5, after_hello, false, false},
+    {"hangs up when it is asked for rows", 5, after_pings, true, false},
+    {"refuses rows", 5, after_pings, false, true},
+    {"falls silent when it is asked for rows", 5, after_pings, false, false, true},
+    {"answers pings alone", 30, after_pings, false, false},
+};
+
+// Seconds until the device gives up its frame; or until the end.
+double wait_for_rows(HostileRig* rig, double seconds) {
+  std::uint64_t begin = rig->fake.now(), end = begin + static_cast<std::uint64_t>(seconds * kSecond);
+  REQUIRE(begin_shared_frame(&rig->device->renderer, &rig->client, 0).ok);
+  while (!is_cut_off(rig->client) && rig->fake.now() < end)
+    if (advance_shared_frame(&rig->device->renderer, &rig->client, rig->fake.now() + 100 * kMs)) break;
+  return static_cast<double>(rig->fake.now() - begin) / kSecond;
+}
+
+}  // namespace
+
+// Goal: without the scene a device gives up on a server that gives no rows after five seconds, after thirty where it
+// lives; what is wrong is told once, and it is tried again ever more seldom. Method: a server that greets it and then
+// fails, in each way there is; the time until it is given up, connections and lines in 45 s.
+TEST_CASE("thin_client_gives_up_on_a_server_that_gives_no_rows") {
+  for (const Failing& failing : kFailing) {
+    CAPTURE(failing.what);
+    HostileRig rig(false);
+    bool dead = false;
+    rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
+      dead = dead && message.type != MessageType::hello;
+      if (!dead && !failing.fails(message)) return r->answer(message);
+      dead = failing.dies;
+      if (failing.hangs_up) r->fake.hang_up();
+      if (!failing.errs) return {};
+      Message error;
+      error.type = MessageType::error;
+      error.error.code = WireError::too_large;
+      return {error};
+    };
+    double took = wait_for_rows(&rig, 45);
+    CHECK(took >= failing.patience_s);
+    CHECK(took < failing.patience_s + 0.5);
+    while (rig.fake.now() < static_cast<std::uint64_t>(46 * kSecond) + 1'000'000'000)
+      advance_client(&rig.client, 100 * kMs);
+    CHECK(rig.fake.connection_count <= 9);
+    CHECK(rig.log.size() <= 1);
+    // It sends rows at last, and is used.
+    rig.act = nullptr;
+    CHECK(wait_for_rows(&rig, 60) < 45);
+    CHECK(has_all_rows(rig.client));
+    CHECK(rig.log.size() % 2 == 0);
+  }
+}
+
+// Goal: a slow server is no dead one. Method: a chunk each four seconds, pings in between, with the rows of a frame on
+// their way for longer than any patience.
+TEST_CASE("thin_client_is_patient_with_a_slow_server") {
+  HostileRig rig(false);
+  std::vector<Message> kept;
+  std::uint64_t next_ns = 0;
+  std::size_t sent = 0;
+  rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
+    if (!r->note_request(message)) return r->answer(message);
+    kept = r->rows.rows(r->request);
+    sent = 0, next_ns = r->fake.now() + 4000 * kMs;
+    return {};
+  };
+  rig.fake.flood = [&]() -> std::vector<std::uint8_t> {
+    if (sent == kept.size() || rig.fake.now() < next_ns) return {};
+    next_ns = rig.fake.now() + 4000 * kMs;
+    return bytes_of(kept[sent++]);
+  };
+  CHECK(wait_for_rows(&rig, 60) > 25);
+  CHECK(has_all_rows(rig.client));
+  CHECK(rig.log.empty());
+}
+
+// Goal: a server that comes and goes is told of ever more seldom. Method: one that gives the rows of a frame or two and
+// hangs up, again and again, with the scene on the device and without.
+TEST_CASE("client_backs_off_from_a_server_that_comes_and_goes") {
+  for (bool has_scene : {true, false}) {
+    CAPTURE(has_scene);
+    HostileRig rig(has_scene);
+    int frames = 0;
+    rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
+      if (message.type != MessageType::frame_request && message.type != MessageType::frame_change)
+        return r->answer(message);
+      if (++frames % 3 == 0) return r->fake.hang_up(), std::vector<Message>();
+      return r->answer(message);
+    };
+    std::uint64_t end = rig.fake.now() + 45'000 * kMs;
+    while (rig.fake.now() < end) {
+      REQUIRE(begin_shared_frame(&rig.device->renderer, &rig.client, 0).ok);
+      while (!advance_shared_frame(&rig.device->renderer, &rig.client, rig.fake.now() + 100 * kMs) &&
+             rig.fake.now() < end) {
+      }
+    }
+    CHECK(rig.fake.connection_count >= 3);
+    CHECK(rig.fake.connection_count <= 9);
+    CHECK(rig.log.size() <= 18);
+  }
+}
+
+// Goal: how much faster a frame is with servers than alone counts what the device does before it, which no server
+// takes off it; and who renders what does not depend on it, as nobody renders meanwhile. Method: frames of which the
+// preparation takes half a minute, by the device's word.
+TEST_CASE("client_counts_preparation") {
+  constexpr std::uint64_t kPrepareNs = 30'000'000'000;
+  std::uint32_t rows[2];
+  for (std::uint64_t prepare_ns : {std::uint64_t(0), kPrepareNs}) {
+    SplitRigOptions options;
+    SplitRig rig(options);
+    Renderer* r = &rig.device->renderer;
+    double alone_ns = options.device_ns * options.width * options.height;
+    for (int i = 0; i < 8; ++i) {
+      REQUIRE(prepare_frame(r, 0).ok);
+      for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
+      begin_client_frame(&rig.client, *r, 0, prepare_ns);
+      REQUIRE(advance_shared_frame(r, &rig.client, ~std::uint64_t(0)));
+    }
+    const FrameShare& share = rig.client.share;
+    rows[prepare_ns > 0] = share.device_rows;
+    double prepare = static_cast<double>(prepare_ns);
+    CHECK(share.measured_ns > prepare);
+    CHECK(share.measured_ns < prepare + alone_ns);
+    CHECK(std::fabs(share.predicted_ns - share.measured_ns) < 0.2 * alone_ns);
+    CHECK(std::fabs(share.local_ns - prepare - alone_ns) < 0.1 * alone_ns);
+  }
+  CHECK(rows[0] == rows[1]);
+}

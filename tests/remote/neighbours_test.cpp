@@ -1,0 +1,300 @@
+// What other clients can do to one that asks for light frames, in virtual time: the CPU is emulated, pixels and
+// messages are counted, so that it does not matter how busy the machine is that this runs on.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "remote/server/state.h"
+#include "support/effort.h"
+#include "support/scripted_client.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr std::uint64_t kPixelNs = 50'000;
+constexpr std::uint32_t kGoodWidth = 40, kGoodHeight = 30;
+
+// Addresses of connections, by the order in which they are made: the simulated link has but one.
+std::vector<int>* address_of = nullptr;
+const char* named_by_address(const platform::Link* link, int stream) {
+  static char name[48];
+  const char* own = platform::kNullLink.stream_name(link, stream);
+  int port = std::atoi(std::strrchr(own, ':') + 1);
+  std::size_t connection = static_cast<std::size_t>(port - 49152);
+  if (connection >= address_of->size()) return own;
+  std::snprintf(name, sizeof name, "10.0.0.%d:%d", (*address_of)[connection], port);
+  return name;
+}
+
+enum class Attack {
+  none,
+  heavy_frames,  // of 8 s each
+  given_up,      // that are replaced after a while
+  views,         // with measured exposure
+  pings,         // with as much to answer as can be asked for
+  fetches,       // of a scene
+  small_messages,
+  silence,       // a place and nothing else
+  light_frames,  // as light as the good client's: it is one of many then
+};
+
+struct Attacker {
+  std::unique_ptr<ScriptedClient> client;
+  std::uint32_t frame = 0;
+  std::uint64_t asked_ns = 0;
+  std::size_t waiting = 0;
+};
+
+void attack(Attack kind, ServerRig* rig, Attacker* a) {
+  ScriptedClient* c = a->client.get();
+  c->poll();
+  if (c->closed || c->has(MessageType::error)) FAIL("an attacker was refused");
+  Message message;
+  message.type = MessageType::ping;
+  bool is_flood = kind == Attack::pings || kind == Attack::fetches || kind == Attack::small_messages;
+  if (is_flood) {
+    a->waiting -= std::min(a->waiting, c->received.size());
+    c->received.clear();
+    message.ping = {1, kPingBytesMax};
+    if (kind == Attack::fetches) {
+      message.type = MessageType::scene_fetch;
+      message.scene_fetch = {builtin_hash("cornell"), 0, kPieceBytesMax};
+    }
+    if (kind == Attack::small_messages) message.type = MessageType::scene_list;
+    for (; a->waiting < 8; ++a->waiting) c->send(message);
+    return;
+  }
+  bool first = a->frame == 0, done = c->rows_come > 0;
+  if (kind == Attack::views && (first || c->has(MessageType::view_entry))) {
+    c->received.clear();
+    message.type = MessageType::view_query;
+    message.view_query.scene = builtin_hash("cube");
+    message.view_query.measure_exposure = true;
+    message.view_query.settings.width = 999;
+    message.view_query.settings.height = 500;
+    c->send(message);
+    a->frame = 1;
+  }
+  if (kind == Attack::heavy_frames) done = c->rows_come == 320;
+  if (kind == Attack::light_frames) done = c->rows_come == kGoodHeight;
+  if (kind == Attack::given_up) done = rig->now() - a->asked_ns > 150 * kMs;
+  if (kind < Attack::views || kind == Attack::light_frames)
+    if (kind != Attack::none && (first || done)) {
+      FrameRequest request = frame_request("cube", ++a->frame, 480, 320);
+      if (kind == Attack::light_frames) request = frame_request("cube", a->frame, kGoodWidth, kGoodHeight);
+      c->request(request);
+      a->asked_ns = rig->now();
+    }
+}
+
+// Median time of a frame of the good client, in ms, with so many attackers from so many addresses.
+double median_ms(Attack kind, int attacker_count, int address_count, bool hidden_among_them = false) {
+  ServerOptions options;
+  options.pace.ns_per_pixel = static_cast<double>(kPixelNs);
+  options.message_ns = 50'000, options.byte_ps = 10'000;
+  options.client_count_max = 24;
+  options.client_memory_bytes = 12u << 20;
+  ServerRig rig(options);
+  std::vector<int> addresses = {hidden_among_them ? 2 : 1};
+  address_of = &addresses;
+  platform::LinkBackend net = platform::kNullLink;
+  net.stream_name = named_by_address;
+  rig.server->net = &net;
+
+  ScriptedClient good(&rig);
+  good.wait_for(MessageType::hello);
+  std::vector<Attacker> attackers(static_cast<std::size_t>(attacker_count));
+  for (int i = 0; i < attacker_count; ++i) {
+    addresses.push_back(2 + i % address_count);
+    attackers[static_cast<std::size_t>(i)].client = std::make_unique<ScriptedClient>(&rig);
+  }
+  FrameRequest request = frame_request("cornell", 0, kGoodWidth, kGoodHeight);
+  std::vector<double> times;
+  std::uint64_t start = rig.now(), begin = 0, settled = start + (attacker_count > 0 ? 7'000 * kMs : 0);
+  const std::size_t wanted = 9;
+  rig.run_until(
+      [&] {
+        for (Attacker& a : attackers) attack(kind, &rig, &a);
+        good.poll();
+        if (good.closed) FAIL("the good client was closed");
+        if (request.frame > 0 && good.rows_come < kGoodHeight) return false;
+        std::uint64_t now = rig.now();
+        if (request.frame > 0 && begin >= settled) times.push_back(static_cast<double>(now - begin) * 1e-6);
+        ++request.frame;
+        good.request(request);
+        begin = now;
+        return times.size() >= wanted;
+      },
+      200'000 * kMs);
+  rig.server->net = &platform::kNullLink;
+  std::sort(times.begin(), times.end());
+  return times[times.size() / 2];
+}
+
+}  // namespace
+
+// Goal: whatever twenty others do, from one address or from twenty, a client whose frames are light waits at most twice
+// as long for them as alone; but where they ask for frames as light as its own, it is one of twenty-one. Method: the
+// median of its frames, asked for one after the other, against what it is alone, once it is known who is who.
+TEST_CASE("neighbours_cost_a_light_client_half_its_frames_at_most") {
+  double alone = median_ms(Attack::none, 0, 1);
+  CHECK(alone == doctest::Approx(kGoodWidth * kGoodHeight * kPixelNs * 1e-6).epsilon(0.05));
+  struct Case {
+    Attack kind;
+    const char* name;
+    int addresses;
+    bool quick;
+    bool from_the_same_address = false;
+  };
+  const Case cases[] = {{Attack::heavy_frames, "heavy frames", 20, true},
+                        {Attack::given_up, "frames given up", 20, false},
+                        {Attack::views, "view queries", 20, true},
+                        {Attack::pings, "pings", 20, true},
+                        {Attack::small_messages, "small messages", 20, false},
+                        {Attack::light_frames, "light frames", 1, false},
+                        {Attack::heavy_frames, "heavy frames, the client's own", 1, false, true}};
+  for (const Case& c : cases) {
+    if (!c.quick && kEffortDivisor > 1) continue;
+    double ms = median_ms(c.kind, 20, c.addresses, c.from_the_same_address);
+    MESSAGE("20 neighbours, " << std::string(c.name) << ", of " << c.addresses << " address(es): " << ms / alone
+                              << " times as long");
+    CHECK_MESSAGE(ms <= (c.kind == Attack::light_frames ? 2.1 : 2.0) * alone, c.name);
+  }
+}
+
+// Goal: what a view_query measures is measured in slices, so that nobody waits for the whole of it. Method: the longest
+// that the emulated CPU is busy at once, for an exposure of 125 s; a ping that is answered meanwhile.
+TEST_CASE("server_measures_exposures_in_slices") {
+  ServerOptions options;
+  options.pace.ns_per_pixel = 25e6;
+  ServerRig rig(options);
+  ScriptedClient client(&rig);
+  client.wait_for(MessageType::hello);
+  Message query, ping;
+  query.type = MessageType::view_query;
+  query.view_query.scene = builtin_hash("cube");
+  query.view_query.measure_exposure = true;
+  query.view_query.settings.width = 999;
+  query.view_query.settings.height = 500;
+  client.send(query);
+  ping.type = MessageType::ping;
+  std::uint64_t longest_ns = 0;
+  rig.run_until(
+      [&] {
+        const Work& work = rig.server->work;
+        if (work.session >= 0) longest_ns = std::max(longest_ns, work.end_ns - work.begin_ns);
+        client.poll();
+        return client.has(MessageType::view_entry);
+      },
+      200'000 * kMs);
+  CHECK(longest_ns <= 8 * 25'000'000ull);  // the first ones, of which nothing is known
+  client.send(ping);
+  client.wait_for(MessageType::pong);
+}
+
+// Goal: silent clients hold no place that another wants. Method: eight that say hello and no more, from eight
+// addresses; a ninth is told that the server is busy, and let in when they have been silent for ten seconds.
+TEST_CASE("server_gives_the_place_of_who_is_silent_to_who_comes") {
+  ServerRig rig;
+  std::vector<int> addresses = {1, 2, 3, 4, 5, 6, 7, 8, 9, 9};
+  address_of = &addresses;
+  platform::LinkBackend net = platform::kNullLink;
+  net.stream_name = named_by_address;
+  rig.server->net = &net;
+  std::vector<std::unique_ptr<ScriptedClient>> silent;
+  for (int i = 0; i < 8; ++i) silent.push_back(std::make_unique<ScriptedClient>(&rig));
+  rig.run_until([&] { return server_client_count(*rig.server) == 8; });
+  ScriptedClient early(&rig);
+  CHECK(early.wait_for(MessageType::error)->message.error.code == WireError::busy);
+  std::uint64_t later = rig.now() + 10'000 * kMs;
+  rig.run_until([&] { return rig.now() >= later; });
+  ScriptedClient ninth(&rig);
+  ninth.request(frame_request("cube", 1, 16, 12));
+  ninth.wait_for_rows(12);
+  CHECK(server_client_count(*rig.server) == 8);
+  rig.run_until([&] { return silent[0]->poll(), silent[0]->closed; });
+  CHECK(silent[0]->has_error(WireError::busy));
+  rig.server->net = &platform::kNullLink;
+}
+
+// Goal: one address does not keep the others out, however busy its clients are. Method: eight from one address with
+// frames under way; two from others come, and a third from the first address does not.
+TEST_CASE("server_gives_no_address_all_places_for_long") {
+  ServerOptions options;
+  options.pace.ns_per_pixel = 100'000;
+  ServerRig rig(options);
+  std::vector<int> addresses = {1, 1, 1, 1, 1, 1, 1, 1, 2, 3, 1};
+  address_of = &addresses;
+  platform::LinkBackend net = platform::kNullLink;
+  net.stream_name = named_by_address;
+  rig.server->net = &net;
+  std::vector<std::unique_ptr<ScriptedClient>> many;
+  for (int i = 0; i < 8; ++i) {
+    many.push_back(std::make_unique<ScriptedClient>(&rig));
+    many.back()->request(frame_request("cube", 1, 320, 240));
+  }
+  rig.run_until([&] { return server_client_count(*rig.server) == 8; });
+  for (int i = 0; i < 2; ++i) {
+    many.push_back(std::make_unique<ScriptedClient>(&rig));
+    many.back()->request(frame_request("cube", 1, 16, 12));
+    many.back()->wait_for_rows(12);
+  }
+  ScriptedClient late(&rig);
+  CHECK(late.wait_for(MessageType::error)->message.error.code == WireError::busy);
+  CHECK(server_client_count(*rig.server) == 8);
+  rig.server->net = &platform::kNullLink;
+}
+
+// Goal: a listener that cannot accept is left alone for a while. Method: a link whose accept() fails, with a peer that
+// waits; how often it is called in ten seconds, and what the log says.
+TEST_CASE("server_rests_where_it_cannot_accept") {
+  static int calls = 0;
+  calls = 0;
+  ServerRig rig;
+  platform::LinkBackend net = platform::kNullLink;
+  net.accept = [](platform::Link*, int, int*, platform::Error* error) {
+    std::snprintf(error->text, sizeof error->text, "too many files are open");
+    ++calls;
+    return platform::LinkResult::failed;
+  };
+  rig.server->net = &net;
+  ScriptedClient waiting(&rig);
+  std::uint64_t later = rig.now() + 10'000 * kMs;
+  rig.run_until([&] { return rig.now() >= later; });
+  CHECK(calls >= 9);
+  CHECK(calls <= 12);
+  CHECK(rig.log.size() <= 12);
+  rig.server->net = &platform::kNullLink;
+  waiting.wait_for(MessageType::hello);
+}
+
+// Goal: frame 0, which stands for none in an error, cannot be asked for. Method: a request for it.
+TEST_CASE("server_refuses_frame_zero") {
+  ServerRig rig;
+  ScriptedClient client(&rig);
+  client.request(frame_request("cube", 0, 16, 12));
+  CHECK(client.wait_for(MessageType::error)->message.error.code == WireError::bad_request);
+}
+
+// Goal: pixels that suddenly are dear do not make a slice long: cheap ones that come before them tell little. Method:
+// what a slice takes of a room behind a background that costs a thousandth, with settings that make rooms dear; cheap
+// settings, of which slices are as long as they should be.
+TEST_CASE("server_slices_expect_dear_pixels_behind_cheap_ones") {
+  constexpr std::uint64_t kSliceNs = 20 * kMs;
+  constexpr double kRoomNs = 650'000, kBackgroundNs = 650;
+  Settings dear, cheap;
+  dear.samples_per_pixel = 16;
+  CHECK(slice_pixels(dear, 512, kBackgroundNs, kSliceNs) * kRoomNs < 2.0 * kSliceNs);
+  CHECK(slice_pixels(dear, 512, 10 * kRoomNs, kSliceNs) * 10 * kRoomNs <= kSliceNs);
+  CHECK(slice_pixels(dear, 512, 1e12, kSliceNs) == 1);
+  CHECK(slice_pixels(cheap, 8, 2'000, kSliceNs) == kSliceNs / 2'000);
+  double known = kRoomNs;
+  for (int i = 0; i < 3; ++i) known = dear_pixel_ns(known, kBackgroundNs);  // to the left and right of the room
+  CHECK(known > 0.6 * kRoomNs);
+  CHECK(dear_pixel_ns(known, kRoomNs) == kRoomNs);
+}

@@ -1,0 +1,119 @@
+// Whose turn it is: the rules alone, with work that is counted.
+#include "remote/server/share.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+using namespace pocketray;
+
+namespace {
+
+constexpr std::uint64_t kMs = 1'000'000;
+
+// Accounts that share one CPU. Each asks for work of `piece_ns` at once, as one of its frames or in vain.
+struct Player {
+  Account account;
+  std::uint64_t frame_ns = 0;  // of each of its frames; 0: messages
+  bool gives_up = false;       // before a row is sent
+  std::uint64_t done_ns = 0, got_ns = 0;
+};
+
+void play(std::vector<Player>* players, Lanes* lanes, std::uint64_t ns, std::uint64_t piece_ns = 10 * kMs) {
+  for (std::uint64_t now = 0; now < ns; now += piece_ns) {
+    int first[2] = {-1, -1};
+    for (std::size_t i = 0; i < players->size(); ++i) {
+      Player* p = &(*players)[i];
+      forgive(&p->account, piece_ns, players->size());
+      note(lanes, &p->account, true);
+      int* best = &first[p->account.heavy ? 1 : 0];
+      if (*best < 0 || goes_before(p->account, (*players)[static_cast<std::size_t>(*best)].account))
+        *best = static_cast<int>(i);
+    }
+    Player* p = &(*players)[static_cast<std::size_t>(first[choose_lane(lanes, first[0] >= 0, first[1] >= 0)])];
+    charge(lanes, &p->account, piece_ns);
+    p->got_ns += piece_ns;
+    if (p->frame_ns == 0) {
+      owe(&p->account, piece_ns);
+      continue;
+    }
+    p->account.job_ns += piece_ns;
+    p->done_ns += piece_ns;
+    if (p->done_ns < p->frame_ns) continue;
+    end_frame(&p->account, p->done_ns, p->gives_up ? 0 : p->done_ns);
+    p->done_ns = 0;
+  }
+}
+
+double share_of(const Player& p, std::uint64_t ns) { return static_cast<double>(p.got_ns) / static_cast<double>(ns); }
+
+}  // namespace
+
+// Goal: whoever asks for what is done soon gets three quarters of the CPU, however many ask for more than that. Method:
+// frames of 100 ms against twenty that ask for frames of 10 s, for frames that they give up, or send messages alone;
+// after the time that it takes to know them.
+TEST_CASE("share_of_light_frames_does_not_depend_on_heavy_neighbours") {
+  struct Case {
+    std::uint64_t frame_ns;
+    bool gives_up;
+  };
+  for (const Case& c : {Case{10'000 * kMs, false}, Case{200 * kMs, true}, Case{0, false}}) {
+    CAPTURE(c.frame_ns);
+    std::vector<Player> players(21);
+    Lanes lanes;
+    for (Player& p : players) p.frame_ns = c.frame_ns, p.gives_up = c.gives_up;
+    players[0].frame_ns = 100 * kMs, players[0].gives_up = false;
+    play(&players, &lanes, 10'000 * kMs);
+    for (Player& p : players) p.got_ns = 0;
+    play(&players, &lanes, 20'000 * kMs);
+    CHECK(share_of(players[0], 20'000 * kMs) > 0.65);
+    for (std::size_t i = 1; i < players.size(); ++i) CHECK(share_of(players[i], 20'000 * kMs) > 0.005);
+  }
+}
+
+// Goal: equals get equal shares, in either lane, and so do those who come later. Method: five with light frames of
+// unequal sizes; five with heavy ones; then a sixth.
+TEST_CASE("share_is_equal_among_equals") {
+  for (std::uint64_t frame_ns : {20 * kMs, 5'000 * kMs}) {
+    CAPTURE(frame_ns);
+    std::vector<Player> players(5);
+    Lanes lanes;
+    for (std::size_t i = 0; i < players.size(); ++i) players[i].frame_ns = frame_ns * (1 + i);
+    play(&players, &lanes, 10'000 * kMs);
+    for (Player& p : players) p.got_ns = 0;
+    players.push_back(players[0]);
+    players[5].account = Account();
+    play(&players, &lanes, 12'000 * kMs);
+    for (const Player& p : players) CHECK(share_of(p, 12'000 * kMs) == doctest::Approx(1.0 / 6).epsilon(0.1));
+  }
+}
+
+// Goal: who has been heavy is so no longer once it asks for light frames, and one heavy frame in between does not pay
+// off. Method: what is owed after each.
+TEST_CASE("share_forgives_who_asks_for_less") {
+  Account a;
+  end_frame(&a, 5'000 * kMs, 5'000 * kMs);
+  CHECK(a.owed_ns == kOwedNsMax);
+  CHECK(is_heavy(a));
+  for (int i = 0; i < 3; ++i) end_frame(&a, 100 * kMs, 100 * kMs);
+  CHECK_FALSE(is_heavy(a));
+  for (int i = 0; i < 2; ++i) end_frame(&a, 200 * kMs, 10 * kMs);  // given up
+  CHECK(is_heavy(a));
+  forgive(&a, 1'000'000 * kMs, 4);
+  CHECK(a.owed_ns == 0);
+}
+
+// Goal: the ports of one address, and the hosts of one IPv6 network, are one; other addresses are not. Method: names as
+// the link gives them.
+TEST_CASE("share_knows_addresses") {
+  CHECK(address_key("127.0.0.1:80") == address_key("127.0.0.1:7411"));
+  CHECK(address_key("127.0.0.1:80") != address_key("127.0.0.2:80"));
+  CHECK(address_key("[::1]:80") == address_key("[::1]:81"));
+  CHECK(address_key("[2001:db8:1:2::7]:80") == address_key("[2001:db8:1:2:3:4:5:6]:80"));
+  CHECK(address_key("[2001:db8:1:2::7]:80") != address_key("[2001:db8:1:3::7]:80"));
+  CHECK(address_key("[2001:db8::3:0:0:7]:80") == address_key("[2001:db8:0:0:9::]:80"));
+  CHECK(address_key("[2001::3:4:5:6:7]:80") == address_key("[2001:0:0:3::]:80"));
+  CHECK(address_key("[::]:80") != address_key("[1::]:80"));
+  for (const char* odd : {"", ":", "[", "[]", "[:::]", "[zz]:1", "[1:2:3:4:5:6:7:8:9:a]:1", "[::::::::::]"})
+    (void)address_key(odd);
+}

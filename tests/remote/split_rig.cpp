@@ -1,0 +1,74 @@
+#include "split_rig.h"
+
+#include <algorithm>
+
+#include "engine/frame.h"
+#include "present/pack.h"
+#include "scene/builtin_helpers.h"
+
+namespace pocketray {
+
+SplitRig::SplitRig(const SplitRigOptions& given) : options(given) {
+  Status status = open_world(options.line, builtin_store(), options.server_count, &world);
+  REQUIRE_MESSAGE(status.ok, status.message);
+  for (std::uint32_t i = 0; i < options.server_count; ++i) start_server(i);
+
+  built = build_builtin(options.scene);
+  Settings settings;
+  settings.width = options.width, settings.height = options.height;
+  device = make_renderer(built->scene, settings);
+  ClientOptions o = options.client;
+  o.pace.ns_per_pixel = options.device_ns;
+  o.log = [](void* rig, const char* line) { static_cast<SplitRig*>(rig)->log.push_back(line); };
+  o.log_context = this;
+  client_memory.resize(client_need(settings, o.format, options.server_count) + kArenaAlignment);
+  Arena arena = make_arena("client", client_memory.data(), client_memory.size());
+  status = make_client(o, settings, builtin_hash(options.scene), world.link, world.addresses.data(),
+                       options.server_count, &arena, &client);
+  REQUIRE_MESSAGE(status.ok, status.message);
+}
+
+SplitRig::~SplitRig() { close_client(&client); }
+
+void SplitRig::start_server(std::uint32_t i) {
+  ServerOptions o;
+  o.client_memory_bytes = 16u << 20;
+  o.client_count_max = 4;
+  o.pace.ns_per_pixel = options.server_ns.empty()      ? 100
+                        : i < options.server_ns.size() ? options.server_ns[i]
+                                                       : options.server_ns.back();
+  Status status = pocketray::start_server(&world, i, o);
+  REQUIRE_MESSAGE(status.ok, status.message);
+}
+
+void SplitRig::stop_server(std::uint32_t i) { pocketray::stop_server(&world, i); }
+
+std::vector<std::uint8_t> SplitRig::local_pixels() {
+  const Renderer& r = device->renderer;
+  std::vector<std::uint8_t> pixels(client.pixels.count);
+  int width = static_cast<int>(options.width), height = static_cast<int>(options.height);
+  bool small = options.client.format == WireFormat::rgb565;
+  pack_rows(r.image.data, width, height, 0, height, r.exposure, small ? kRgb565 : kRgb888, Rotation::none,
+            options.client.dither, pixels.data(), width * (small ? 2 : 3));
+  return pixels;
+}
+
+const FrameShare& SplitRig::frame(double seconds) {
+  REQUIRE(render_shared_frame(&device->renderer, &client, seconds).ok);
+  if (!options.compares) return client.share;
+  std::vector<std::uint8_t> merged(client.pixels.begin(), client.pixels.end());
+  REQUIRE(render_frame(&device->renderer, seconds).ok);
+  CHECK(merged == local_pixels());
+  return client.share;
+}
+
+void SplitRig::idle(std::uint64_t ns) {
+  for (std::uint64_t end = now() + ns; now() < end;) advance_client(&client, end - now());
+}
+
+bool SplitRig::logged(const std::string& text) const {
+  return std::any_of(log.begin(), log.end(),
+                     [&](const std::string& line) { return line.find(text) != std::string::npos; });
+}
+
+}  // namespace pocketray

@@ -1,0 +1,60 @@
+// A device and its servers in one simulated world, so that a frame takes the same course every time.
+#pragma once
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "remote/client/shared_frame.h"
+#include "scene/builtin_helpers.h"
+#include "split_report/virtual_world.h"
+#include "support/generated_scene.h"
+#include "support/scripted_client.h"
+
+namespace pocketray {
+
+inline platform::NullLinkSettings fine_clock() {
+  platform::NullLinkSettings line;
+  line.clock_step_ns = 50;
+  return line;
+}
+
+struct SplitRigOptions {
+  const char* scene = "cornell";
+  std::uint32_t width = 64, height = 48;
+  std::uint32_t server_count = 1;
+  double device_ns = 1000;             // per pixel
+  std::vector<double> server_ns = {};  // per pixel; fewer than servers: the last one's, none: 100
+  platform::NullLinkSettings line = fine_clock();
+  bool compares = true;  // every frame with the device's own
+  ClientOptions client;
+};
+
+struct SplitRig {
+  SplitRigOptions options;
+  VirtualWorld world;
+  std::vector<unsigned char> client_memory;
+  std::unique_ptr<BuiltScene> built;
+  std::unique_ptr<TestRenderer> device;
+  Client client;
+  std::vector<std::string> log;
+
+  explicit SplitRig(const SplitRigOptions& options);
+  ~SplitRig();
+  SplitRig(const SplitRig&) = delete;
+  SplitRig& operator=(const SplitRig&) = delete;
+
+  std::uint64_t now() { return world_now_ns(world); }
+  void stop_server(std::uint32_t index);
+  void start_server(std::uint32_t index);
+  // A frame by client and servers; it is compared with the device's own where the options say so.
+  const FrameShare& frame(double seconds);
+  // Lets time pass without a frame.
+  void idle(std::uint64_t ns);
+  bool logged(const std::string& text) const;
+  // The frame as the device alone renders it.
+  std::vector<std::uint8_t> local_pixels();
+};
+
+}  // namespace pocketray

@@ -1,0 +1,111 @@
+// The viewer with servers in reach and without.
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "base/seal.h"
+#include "platform/net/tcp.h"
+#include "remote/client/sharing_parts.h"
+#include "session/open_scene.h"
+#include "split_report/virtual_world.h"
+#include "support/scripted_client.h"
+#include "viewer/viewer.h"
+
+using namespace pocketray;
+
+namespace {
+
+// Views finished frames of a scene that moves, on no screen.
+ShareTotals view(const std::string& server, std::uint32_t frame_count, Viewer* viewer) {
+  CommonOptions common;
+  common.scene = "seesaw", common.size = "32x24", common.threads = 1;
+  SharingOptions sharing;
+  sharing.servers = {server};
+  ViewOptions options;
+  options.backend = "null", options.rotation = 0, options.frame_count = frame_count;
+  REQUIRE(open_viewer(options, "seesaw", 32, 24, viewer).ok);
+  REQUIRE(open_sharing(sharing, nullptr, &viewer->sharing).ok);
+  OpenScene opened;
+  REQUIRE(open_shared_scene(viewer->sharing, common, viewer_bytes, &opened).ok);
+  REQUIRE(start_sharing(viewer->sharing, &opened.renderer, false, false).ok);
+  bool again;
+  REQUIRE(run_viewer(viewer, &opened.renderer, &again).ok);
+  ShareTotals totals = share_totals(*viewer->sharing);
+  close_sharing(viewer->sharing);
+  close_viewer(viewer);
+  return totals;
+}
+
+}  // namespace
+
+// Goal: with no server in reach pictures are refined as without sharing, and one that comes into reach takes its share
+// of them from then on. Method: a port at which nobody listens; a server on a thread of its own, and as many frames as
+// its overture takes.
+TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
+  ServerRig rig(ServerOptions(), platform::NullLinkSettings(), platform::kTcpLink);
+  std::string address = server_address(*rig.server);
+  std::atomic<bool> stop{false};
+  std::thread serving([&] {
+    while (!stop) step_server(rig.server, kMs);
+  });
+  Viewer with;
+  ShareTotals shared;
+  std::uint32_t frame_count = 600;
+  for (; shared.frames == 0 && frame_count < 600'000; frame_count *= 4) {  // a busy server takes its time
+    with = Viewer();
+    shared = view(address, frame_count, &with);
+    CHECK(with.frames_finished == frame_count);
+    CHECK(shared.frames < frame_count);  // the first ones were the device's own
+  }
+  stop = true;
+  serving.join();
+  unseal_memory();  // the rig's log seals
+  CHECK(with.picture_shared);
+  CHECK(shared.frames > 0);
+  CHECK(shared.server_rows > 0);
+
+  rig.close();
+  Viewer without;
+  ShareTotals alone = view(address, 20, &without);
+  CHECK(without.frames_finished == 20);
+  CHECK_FALSE(without.picture_shared);
+  CHECK(alone.frames == 0);
+}
+
+// Goal: a slow device does not render its first picture by itself to the end when a server comes into reach meanwhile:
+// both finish it. Method: an emulated device and its server by a virtual clock, no screen. What the device refines
+// before takes few milliseconds a pixel of the wall clock; each finished picture is a shared one.
+TEST_CASE("view_leaves_its_first_picture_to_servers") {
+  VirtualWorld world;
+  REQUIRE(open_world(platform::NullLinkSettings(), builtin_store(), 1, &world).ok);
+  ServerOptions server;
+  server.client_memory_bytes = 16u << 20;
+  REQUIRE(start_server(&world, 0, server).ok);
+  auto sharing = std::make_unique<Sharing>();
+  sharing->link = world.link;
+  sharing->addresses = world.addresses;
+
+  CommonOptions common;
+  common.scene = "seesaw", common.size = "16x64", common.threads = 1;
+  ViewOptions options;
+  options.backend = "null", options.rotation = 0, options.frame_count = 3;
+  Viewer viewer;
+  REQUIRE(open_viewer(options, "seesaw", 16, 64, &viewer).ok);
+  viewer.sharing = sharing.get();
+  OpenScene opened;
+  REQUIRE(open_shared_scene(sharing.get(), common, viewer_bytes, &opened).ok);
+  opened.renderer.pace.ns_per_pixel = 5e8;  // a picture alone takes eight minutes
+  REQUIRE(start_sharing(sharing.get(), &opened.renderer, false, false).ok);
+  opened.renderer.pace.ns_per_pixel = 3e6;
+  std::uint64_t begin = world_now_ns(world);
+  bool again;
+  REQUIRE(run_viewer(&viewer, &opened.renderer, &again).ok);
+  ShareTotals totals = share_totals(*sharing);
+  CHECK(viewer.frames_finished == 3);
+  CHECK(totals.frames == 3);
+  CHECK(totals.server_rows > totals.device_rows);
+  CHECK(world_now_ns(world) - begin < 512'000 * kMs);  // three pictures in less than the time of one
+  close_client(&sharing->client);
+  close_viewer(&viewer);
+}

@@ -1,0 +1,185 @@
+// The report on the split: the program's choice against the best of a sweep.
+#include "split_report/split_report.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "platform/devices/device_list.h"
+#include "session/interrupt.h"
+#include "support/effort.h"
+#include "support/generated_scene.h"
+#include "support/scripted_client.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr std::uint32_t kSteps = 5;
+constexpr double kServerNs = 700;  // of a pixel; the device's is as many times that as its profile says
+
+struct Reporting {
+  std::unique_ptr<TestRenderer> device;
+  SplitSetup setup;
+};
+
+const StoredScene& stored_scene(const SceneStore& store, const std::string& name) {
+  for (const StoredScene& stored : store.scenes)
+    if (name == stored.name) return stored;
+  FAIL("no such scene");
+  return store.scenes[0];
+}
+
+// A narrow picture in the time of one of 320 columns, so that latency weighs no more than there.
+void make_reporting(const SceneStore& store, const char* scene, const char* device_name, std::uint32_t server_count,
+                    Reporting* r) {
+  const StoredScene& stored = stored_scene(store, scene);
+  Settings settings;
+  settings.width = 64, settings.height = 240;
+  r->device = make_renderer(stored.scene, settings);
+  const platform::Device* device = platform::find_device(device_name);
+  REQUIRE(device != nullptr);
+  r->setup.device = &r->device->renderer;
+  r->setup.store = &store;
+  r->setup.scene = stored.hash;
+  r->setup.format = device->bits_per_pixel == 16 ? WireFormat::rgb565 : WireFormat::rgb888;
+  r->setup.line.latency_ns = device->link_latency_ns;
+  r->setup.line.jitter_ns = device->link_jitter_ns;
+  r->setup.line.clock_step_ns = 50;
+  r->setup.server_count = server_count;
+  double widths = 320.0 / settings.width;
+  r->setup.device_ns = kServerNs * device->slowdown / std::max(1, device->core_count) * widths,
+  r->setup.server_ns = kServerNs * widths;
+  r->setup.frame_count = 4;
+  r->setup.line.bytes_per_second = static_cast<std::uint64_t>(device->link_bytes_per_second / widths);
+}
+
+}  // namespace
+
+// Goal: a frame with the split that the program chooses takes at most 5 % longer than with the best fixed share; the
+// network makes none slower than the device alone. Method: three of the profiles, a sweep and more
+// shares around the best; split_report_table has the others.
+TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
+  struct Case {
+    const char *scene, *device;
+    std::uint32_t server_count;
+  };
+  const Case cases[] = {{"cornell", "tablet", 1}, {"statue", "miyoo-mini", 2}, {"cornell", "gp2x", 3}};
+  for (const Case& c : cases) {
+    if (kEffortDivisor > 1 && &c != &cases[0]) break;
+    Reporting r;
+    make_reporting(builtin_store(), c.scene, c.device, c.server_count, &r);
+    SplitFigures figures;
+    Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
+    Status status = measure_split(r.setup, kSteps, &progress, &figures);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    std::printf("%-8s %-10s %u servers: chosen m %.3f %8.1f ns a pixel, best m %.3f %8.1f, alone %10.1f\n", c.scene,
+                c.device, c.server_count, figures.chosen.m, figures.chosen.ns_per_pixel, figures.best.m,
+                figures.best.ns_per_pixel, figures.local.ns_per_pixel);
+    CAPTURE(c.device);
+    CHECK(figures.sweep.size() >= kSteps);
+    CHECK(figures.sweep.front().m == 0);
+    CHECK(figures.sweep.back().m == 1);
+    CHECK(figures.chosen.ns_per_pixel <= 1.05 * figures.best.ns_per_pixel);
+    CHECK(figures.chosen.ns_per_pixel <= 1.05 * figures.local.ns_per_pixel);
+    CHECK(figures.local.ns_per_pixel >= r.setup.device_ns);
+    CHECK(figures.local.ns_per_pixel <= 1.05 * r.setup.device_ns);
+  }
+}
+
+// Goal: every server that is ready gets rows, and each makes the frame faster. Method: a device to which the link costs
+// next to nothing, where each server is worth the same; the second and third servers are still measured when the first
+// frame is shared. A sweep alone would not tell: it has the same servers.
+TEST_CASE("split_report_every_ready_server_gets_rows") {
+  double before = 0;
+  for (std::uint32_t server_count : {1u, 3u}) {
+    if (kEffortDivisor > 1 && server_count != 3) continue;
+    Reporting r;
+    make_reporting(builtin_store(), "cornell", "desktop", server_count, &r);
+    SplitFigures figures;
+    Progress progress = start_progress("split", split_frame_count(r.setup, 2));
+    REQUIRE(measure_split(r.setup, 2, &progress, &figures).ok);
+    std::printf("desktop, %u servers: %.0f ns a pixel, rows", server_count, figures.chosen.ns_per_pixel);
+    for (std::uint32_t i = 0; i < server_count; ++i) std::printf(" %.1f", figures.chosen.server_rows[i]);
+    std::printf("\n");
+    CAPTURE(server_count);
+    double even = 240.0 / (1 + server_count);
+    for (std::uint32_t i = 0; i < server_count; ++i) {
+      CAPTURE(i);
+      CHECK(figures.chosen.server_rows[i] > even / 2);
+      CHECK(figures.sweep.front().server_rows[i] > even / 2);
+    }
+    if (before > 0) CHECK(figures.chosen.ns_per_pixel < 0.6 * before);
+    before = figures.chosen.ns_per_pixel;
+  }
+}
+
+// Goal: the same report every time, whatever the machine does meanwhile. Method: twice, bit for bit.
+TEST_CASE("split_report_repeats_itself") {
+  SplitFigures figures[2];
+  for (SplitFigures& f : figures) {
+    Reporting r;
+    make_reporting(builtin_store(), "cornell", "tablet", 1, &r);
+    Progress progress = start_progress("split", split_frame_count(r.setup, 3));
+    REQUIRE(measure_split(r.setup, 3, &progress, &f).ok);
+  }
+  REQUIRE(figures[0].sweep.size() == figures[1].sweep.size());
+  for (std::size_t i = 0; i < figures[0].sweep.size(); ++i) {
+    CHECK(figures[0].sweep[i].m == figures[1].sweep[i].m);
+    CHECK(figures[0].sweep[i].ns_per_pixel == figures[1].sweep[i].ns_per_pixel);
+    CHECK(figures[0].sweep[i].bytes == figures[1].sweep[i].bytes);
+  }
+  CHECK(figures[0].chosen.ns_per_pixel == figures[1].chosen.ns_per_pixel);
+}
+
+// Goal: an interrupt keeps the points that are finished. Method: interrupted before the first.
+TEST_CASE("split_report_interrupt_leaves_no_half_point") {
+  Reporting r;
+  make_reporting(builtin_store(), "cornell", "tablet", 1, &r);
+  SplitFigures figures;
+  Progress progress = start_progress("split", split_frame_count(r.setup, 3));
+  interrupted = true;
+  Status status = measure_split(r.setup, 3, &progress, &figures);
+  interrupted = false;
+  CHECK(status.ok);
+  CHECK(figures.sweep.empty());
+  CHECK(figures.chosen.ns_per_pixel == 0);
+}
+
+// Goal: within 5 % of the best for every device, with one to three servers, on two built-in scenes and the Buddha.
+// Method: as above, all of them, or those of the device that POCKETRAY_SPLIT_DEVICE names; `make split-table` runs it.
+// Pixels cost the same on every scene here: what differs is how they compress.
+TEST_CASE("split_report_table" * doctest::skip()) {
+  SceneStore store;
+  for (const char* name : {"cornell", "statue"}) REQUIRE(store_scene(name, name, ~std::uint64_t(0), &store).ok);
+  std::string buddha = std::string(POCKETRAY_SHARED) + "/scenes/mesh/happy_vrip_res3.ply";
+  if (!store_scene("Buddha", buddha, ~std::uint64_t(0), &store).ok) std::printf("no Buddha: %s\n", buddha.c_str());
+  std::printf(
+      "| scene | device | servers | m chosen | m best | chosen / best | times as fast as alone | rows of each |\n");
+  std::printf("|---|---|---|---|---|---|---|---|\n");
+  double worst = 0;
+  for (const StoredScene& scene : store.scenes)
+    for (const platform::Device& device : platform::kDevices)
+      for (std::uint32_t server_count : {1u, 2u, 3u}) {
+        const char* only = std::getenv("POCKETRAY_SPLIT_DEVICE");
+        if (only && std::string(only) != device.name) continue;
+        Reporting r;
+        make_reporting(store, scene.name, device.name, server_count, &r);
+        r.setup.frame_count = 8;
+        SplitFigures f;
+        Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
+        REQUIRE(measure_split(r.setup, kSteps, &progress, &f).ok);
+        double ratio = f.chosen.ns_per_pixel / f.best.ns_per_pixel;
+        std::printf("| %s | %s | %u | %.3f | %.3f | %.3f | %.4g |", scene.name, device.name, server_count, f.chosen.m,
+                    f.best.m, ratio, f.local.ns_per_pixel / f.chosen.ns_per_pixel);
+        for (std::uint32_t i = 0; i < server_count; ++i) std::printf(" %.0f", f.chosen.server_rows[i]);
+        std::printf(" |\n");
+        std::fflush(stdout);
+        CHECK(ratio <= 1.05);
+        worst = std::max(worst, ratio);
+      }
+  std::printf("worst: %.3f\n", worst);
+}

@@ -1,0 +1,357 @@
+// The sweep as a whole, on a picture of a few pixels.
+#include <doctest/doctest.h>
+#include <stdlib.h>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+#include "platform/file.h"
+#include "session/interrupt.h"
+#include "sweep/sweep.h"
+
+using namespace pocketray;
+
+namespace {
+
+struct Folder {
+  char path[32] = "/tmp/pocketray_XXXXXX";
+  Folder() { REQUIRE(mkdtemp(path) != nullptr); }
+  ~Folder() {
+    for (const char* name : {"accuracy.state", "reference-model-1.pfm", "reference-model-2.pfm",
+                             "reference-physical-1.pfm", "reference-physical-2.pfm"})
+      std::remove(file(name).c_str());
+    std::remove(path);
+  }
+  std::string file(const char* name) const { return std::string(path) + "/" + name; }
+};
+
+AccuracyOptions small(const Folder& folder) {
+  AccuracyOptions o;
+  o.common.scene = "cube";
+  o.common.size = "32x24";
+  o.common.threads = 2;
+  o.common.memory = "16M";
+  o.folder = folder.path;
+  o.reference_samples = 8;
+  o.rounds = 2;
+  return o;
+}
+
+Sweep measure(const AccuracyOptions& options) {
+  Sweep sweep;
+  bool whole;
+  Status status = measure_sweep(options, &sweep, &whole);
+  REQUIRE_MESSAGE(status.ok, status.message);
+  CHECK(whole);
+  return sweep;
+}
+
+void check_same_errors(const Sweep& a, const Sweep& b) {
+  CHECK(a.reference_rmse == b.reference_rmse);
+  CHECK(a.reference_flip == b.reference_flip);
+  CHECK(a.model_flip == b.model_flip);
+  CHECK(a.reference_picture.rgb == b.reference_picture.rgb);
+  REQUIRE(a.measured.size() == b.measured.size());
+  for (std::size_t i = 0; i < a.measured.size(); ++i) {
+    const Measured &m = a.measured[i], &n = b.measured[i];
+    CAPTURE(m.value);
+    CHECK(m.value == n.value);
+    CHECK(m.missing == n.missing);
+    CHECK(m.flip == n.flip);
+    CHECK(m.flip_before == n.flip_before);
+    CHECK(m.errors.rmse == n.errors.rmse);
+    CHECK(m.errors.rel_mse == n.errors.rel_mse);
+    CHECK(m.errors.max == n.errors.max);
+    CHECK(m.errors.bias == n.errors.bias);
+  }
+}
+
+void copy_file(const std::string& from, const std::string& to) {
+  platform::LoadedFile file;
+  platform::FileError error;
+  REQUIRE(platform::load_file(from.c_str(), &file, &error));
+  platform::FileWriter writer;
+  REQUIRE(platform::open_writer(to.c_str(), &writer, &error));
+  platform::write_bytes(&writer, file.bytes, file.byte_count);
+  REQUIRE(platform::close_writer(&writer, &error));
+  platform::unload_file(&file);
+}
+
+// Ends what is being measured as soon as one round is whole.
+void interrupt_after_a_round(const Folder& folder, const std::atomic<bool>& done) {
+  while (!done) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    platform::LoadedFile file;
+    platform::FileError error;
+    if (!platform::load_file(folder.file("accuracy.state").c_str(), &file, &error)) continue;
+    std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
+    platform::unload_file(&file);
+    if (text.find("\"rounds\": 0") != std::string::npos) continue;
+    interrupted = true;
+    return;
+  }
+}
+
+}  // namespace
+
+// Goal: the sweep has every knob of the scene with figures, a strip of each, and samples reduce errors. Method: `cube`,
+// which has no mirror: depth and cut-off are left out and said to be.
+TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
+  Folder folder;
+  Sweep sweep = measure(small(folder));
+  CHECK(sweep.rounds == 2);
+  CHECK(sweep.width == 32);
+  CHECK(sweep.reference_samples == 8);
+  CHECK(sweep.reference_rmse > 0);
+  CHECK(sweep.reference_flip > 0);
+  CHECK(sweep.model_rmse > 0);
+  std::string names, notes;
+  for (const KnobFigures& k : sweep.knobs) names += k.name + " ";
+  for (const std::string& note : sweep.notes) notes += note + "\n";
+  CHECK(names == "samples area-lights normals arithmetic output ");
+  CHECK(notes.find("depth is left out") != std::string::npos);
+  CHECK(sweep.strips.size() == sweep.knobs.size());
+  for (const Strip& strip : sweep.strips) {
+    CHECK(strip.rows.size() >= 2);
+    for (const StripRow& row : strip.rows) {
+      CHECK(row.picture.rgb.size() == 3u * 32 * 24);
+      CHECK(row.flip_map.size() == 32u * 24);
+      CHECK(row.ms > 0);
+      double sum = 0;
+      for (float e : row.flip_map) sum += static_cast<double>(e);
+      CHECK(sum / (32 * 24) == doctest::Approx(row.flip));  // the picture that was measured
+    }
+  }
+  double one = 0, sixteen = 0;
+  for (const Measured& m : sweep.measured) {
+    CAPTURE(m.value);
+    CHECK(m.missing.empty());
+    CHECK(m.ns_per_pixel.value > 0);
+    CHECK(m.ns_per_pixel.low <= m.ns_per_pixel.value);
+    CHECK(m.flip > 0);
+    if (m.knob == "samples" && m.value == "1") one = m.errors.rmse;
+    if (m.knob == "samples" && m.value == "16") sixteen = m.errors.rmse;
+    if (m.knob == "arithmetic") CHECK(std::fabs(m.errors.rmse - sweep.measured[0].errors.rmse) < 1e-3 * m.errors.rmse);
+  }
+  CHECK(sixteen < 0.7 * one);
+}
+
+// Goal: the time of a frame is that of all that a frame takes. Method: a moving scene and a few pixels, so that posing
+// and refitting take longer than packing: no less than the renderer's own times of that frame together.
+TEST_CASE("accuracy_times_whole_frames") {
+  Folder folder;
+  AccuracyOptions o = small(folder);
+  o.common.scene = "seesaw", o.common.size = "8x6", o.common.memory = "64M";
+  std::unique_ptr<Rig> rig;
+  REQUIRE(open_rig(o, kCornellSphereColumns, &rig).ok);
+  double ns_per_pixel = 0;
+  REQUIRE(time_frame(rig.get(), rig->baseline, 0.5, &ns_per_pixel).ok);
+  const Timings& t = rig->opened.renderer.timings;
+  CHECK(t.refit_ms > 0);
+  CHECK(ns_per_pixel * 8 * 6 * 1e-6 >= t.pose_ms + t.refit_ms + t.trace_ms);
+}
+
+// Goal: interrupted and resumed, a sweep ends with the errors of one that was not. Method: an interrupt amid the
+// rounds; then as many rounds as are whole and one; against a fresh folder with one round.
+TEST_CASE("accuracy_resumes_where_it_was_interrupted") {
+  Folder stopped, fresh;
+  AccuracyOptions o = small(stopped);
+  o.rounds = 1000;
+  std::atomic<bool> done{false};
+  std::thread interrupter(interrupt_after_a_round, std::ref(stopped), std::ref(done));
+  Sweep sweep;
+  bool whole = true;
+  Status status = measure_sweep(o, &sweep, &whole);
+  done = true;
+  interrupter.join();
+  interrupted = false;
+  REQUIRE_MESSAGE(status.ok, status.message);
+  CHECK_FALSE(whole);
+  o.rounds = 1;  // those that are whole suffice
+  Sweep resumed = measure(o);
+  CHECK(resumed.rounds >= 1);
+  CHECK(resumed.rounds < 1000);
+  AccuracyOptions other = small(fresh);
+  other.rounds = 1;
+  check_same_errors(resumed, measure(other));
+  // One more round is measured, none again.
+  o.rounds = resumed.rounds + 1;
+  Sweep more = measure(o);
+  CHECK(more.rounds == resumed.rounds + 1);
+  check_same_errors(more, resumed);
+}
+
+// Goal: an interrupt at once keeps the folder usable, and half a reference is none. Method: the flag is up before the
+// first picture; then the same command, against a fresh folder.
+TEST_CASE("accuracy_interrupted_in_a_reference_goes_on") {
+  Folder folder;
+  AccuracyOptions o = small(folder);
+  o.rounds = 1;
+  interrupted = true;
+  Sweep sweep;
+  bool whole = true;
+  Status status = measure_sweep(o, &sweep, &whole);
+  interrupted = false;
+  CHECK(status.ok);
+  CHECK_FALSE(whole);
+  Folder fresh;
+  AccuracyOptions other = small(fresh);
+  other.rounds = 1;
+  check_same_errors(measure(o), measure(other));
+}
+
+// Goal: what is traced of a reference is not lost, and its picture is that of one that was never interrupted. Method:
+// an interrupt after seven rows of the second picture; each row is traced once over both runs. Then a program that was
+// killed after it had saved some rows: its files, copied at that time, against the fresh folder.
+TEST_CASE("accuracy_goes_on_within_a_reference") {
+  constexpr std::uint32_t kRows = 24, kPictures = 4;  // two seeds of each kind
+  Folder folder, fresh, killed;
+  AccuracyOptions o = small(folder), other = small(fresh);
+  o.rounds = other.rounds = 1;
+  std::uint32_t traced = 0, again = 0;
+  o.row_done = [&](std::uint32_t) {
+    if (++traced == kRows + 7) interrupted = true;
+  };
+  Sweep sweep;
+  bool whole = true;
+  Status status = measure_sweep(o, &sweep, &whole);
+  interrupted = false;
+  REQUIRE_MESSAGE(status.ok, status.message);
+  CHECK_FALSE(whole);
+  CHECK((traced >= kRows + 7 && traced <= kRows + 7 + o.common.threads));
+  o.row_done = [&](std::uint32_t) { ++again; };
+  other.row_done = [&](std::uint32_t) {
+    static int rows = 0;
+    if (++rows != 9) return;
+    for (const char* name : {"accuracy.state", "reference-model-1.pfm"}) copy_file(fresh.file(name), killed.file(name));
+  };
+  other.save_seconds = 0;
+  Sweep resumed = measure(o), never_stopped = measure(other);
+  CHECK(traced + again == kPictures * kRows);
+  check_same_errors(resumed, never_stopped);
+
+  AccuracyOptions after = small(killed);
+  after.rounds = 1;
+  std::uint32_t left = 0;
+  after.row_done = [&](std::uint32_t) { ++left; };
+  check_same_errors(measure(after), never_stopped);
+  CHECK(left == kPictures * kRows - 8);  // the ninth was not saved yet
+  after.restart = true, left = 0;
+  measure(after);
+  CHECK(left == kPictures * kRows);
+}
+
+// Goal: what another sweep measured is not taken for this one's. Method: other options in the same folder; the message
+// names what differs and how to mend it; --restart starts anew.
+TEST_CASE("accuracy_refuses_the_state_of_another_sweep") {
+  Folder folder;
+  AccuracyOptions o = small(folder);
+  o.rounds = 1;
+  measure(o);
+  struct Case {
+    void (*change)(AccuracyOptions*);
+    const char* named;
+  };
+  const Case cases[] = {{[](AccuracyOptions* a) { a->common.size = "24x24"; }, "size"},
+                        {[](AccuracyOptions* a) { a->common.scene = "furnace"; }, "scene"},
+                        {[](AccuracyOptions* a) { a->common.samples = 2; }, "samples"},
+                        {[](AccuracyOptions* a) { a->reference_samples = 16; }, "reference-samples"},
+                        {[](AccuracyOptions* a) { a->reference = "physical"; }, "reference"},
+                        {[](AccuracyOptions* a) { a->output = "rgb888"; }, "output"},
+                        {[](AccuracyOptions* a) { a->price_limit = 4; }, "configurations"}};
+  for (const Case& c : cases) {
+    CAPTURE(c.named);
+    AccuracyOptions changed = o;
+    c.change(&changed);
+    Sweep sweep;
+    bool whole;
+    Status status = measure_sweep(changed, &sweep, &whole);
+    CHECK_FALSE(status.ok);
+    std::string message = status.message;
+    CHECK(message.find(c.named) != std::string::npos);
+    CHECK(message.find("--restart") != std::string::npos);
+  }
+  AccuracyOptions changed = o;
+  changed.common.size = "24x24", changed.restart = true;
+  CHECK(measure(changed).width == 24);
+}
+
+// Goal: damaged files are refused in one line. Method: the state cut off at many lengths and with bytes changed; a
+// reference of another length.
+TEST_CASE("accuracy_refuses_damaged_files") {
+  Folder folder;
+  AccuracyState state, read;
+  Json key = {{"scene", "cube"}, {"samples", 4}};
+  REQUIRE(open_state(folder.path, key, false, &state).ok);
+  state.rounds = 2;
+  state.references = {"reference-model-1"};
+  state.begun = "reference-model-2", state.begun_rows = "0110";
+  PointFigures f;
+  f.has_errors = true;
+  f.errors.psnr = std::numeric_limits<double>::infinity();
+  f.ns_per_pixel = {12.25, 1e9 / 3};
+  state.points["samples 4"] = f;
+  f.instructions_per_pixel = 7654.5;
+  state.points["samples 9"] = f;
+  state.counted = "by hand";
+  REQUIRE(save_state(folder.path, state).ok);
+  REQUIRE(open_state(folder.path, key, false, &read).ok);
+  CHECK(read.rounds == 2);
+  CHECK(read.references == state.references);
+  CHECK((read.begun == state.begun && read.begun_rows == state.begun_rows));
+  CHECK(read.points.at("samples 4").ns_per_pixel == f.ns_per_pixel);
+  CHECK(std::isinf(read.points.at("samples 4").errors.psnr));
+  CHECK(std::isnan(read.points.at("samples 4").instructions_per_pixel));
+  CHECK(read.points.at("samples 9").instructions_per_pixel == 7654.5);
+  CHECK(read.counted == "by hand");
+
+  platform::LoadedFile file;
+  platform::FileError error;
+  REQUIRE(platform::load_file(folder.file("accuracy.state").c_str(), &file, &error));
+  std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
+  platform::unload_file(&file);
+  for (std::size_t length = 0; length + 3 < text.size(); length += 7) {
+    REQUIRE(save_text(folder.path, "accuracy.state", text.substr(0, length)).ok);
+    Status status = open_state(folder.path, key, false, &read);
+    CHECK_FALSE(status.ok);
+    CHECK(std::string(status.message).find("--restart") != std::string::npos);
+  }
+  const std::pair<const char*, const char*> senseless[] = {// what no sweep gives
+                                                           {"12.25", "1e300"},    {"12.25", "-1.0"},
+                                                           {"12.25", "\"none\""}, {"12.25", "0"},
+                                                           {"7654.5", "1e300"},   {"7654.5", "-1.0"}};
+  for (const auto& change : senseless) {
+    const char *figure = change.first, *other = change.second;
+    CAPTURE(other);
+    std::string changed = text;
+    std::size_t at = changed.find(figure);
+    REQUIRE(at != std::string::npos);
+    REQUIRE(save_text(folder.path, "accuracy.state", changed.replace(at, std::strlen(figure), other)).ok);
+    Status status = open_state(folder.path, key, false, &read);
+    CHECK_FALSE(status.ok);
+    CHECK(std::string(status.message).find("--restart") != std::string::npos);
+  }
+  for (std::size_t at = 0; at < text.size(); at += 3) {  // whatever comes of it, it ends well
+    std::string changed = text;
+    changed[at] = changed[at] == '9' ? '"' : '9';
+    REQUIRE(save_text(folder.path, "accuracy.state", changed).ok);
+    Status status = open_state(folder.path, key, false, &read);
+    CHECK((status.ok || std::string(status.message).find("--restart") != std::string::npos));
+  }
+
+  std::vector<Vec3> picture(6, Vec3{1, 2, 3}), back;
+  picture[1].y = 7;
+  REQUIRE(save_radiance(folder.path, "reference-model-1", 3, 2, picture).ok);
+  REQUIRE(load_radiance(folder.path, "reference-model-1", 3, 2, &back).ok);
+  CHECK(back[1].y == 7);
+  CHECK(back[5].z == 3);
+  CHECK_FALSE(load_radiance(folder.path, "reference-model-1", 2, 3, &back).ok);
+  REQUIRE(save_text(folder.path, "reference-model-1.pfm", "PF\n3 2\n-1.0\n").ok);
+  CHECK_FALSE(load_radiance(folder.path, "reference-model-1", 3, 2, &back).ok);
+}

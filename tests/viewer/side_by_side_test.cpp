@@ -1,0 +1,180 @@
+// The reference beside the picture.
+#include "viewer/side_by_side.h"
+
+#include <doctest/doctest.h>
+
+#include "engine/frame.h"
+#include "platform/null/null.h"
+#include "reference/reference.h"
+#include "viewer/viewer.h"
+
+using namespace pocketray;
+
+namespace {
+
+struct Scenery {
+  OpenScene opened;
+  SplitScreen* split = nullptr;
+  Renderer* r = &opened.renderer;
+
+  Scenery(const char* scene, const char* reference, std::uint32_t threads) {
+    CommonOptions common;
+    common.scene = scene, common.size = "24x16", common.threads = threads, common.area_lights = 1;
+    OpenHooks hooks;
+    hooks.output_bytes = viewer_bytes;
+    REQUIRE(open_scene(common, hooks, &opened).ok);
+    REQUIRE(start_scene(&opened, common).ok);
+    SplitScreenOptions options;
+    options.reference = reference;
+    split = open_split_screen(options, *r, 32, false);
+    REQUIRE(split != nullptr);
+  }
+  ~Scenery() { close_split_screen(split); }
+
+  // Until the reference has so many samples of each seed; the deadlines are too short for a whole pass.
+  void refine(std::uint32_t samples, double seconds, std::uint64_t slice_ns = 200'000) {
+    do REQUIRE(advance_split_screen(split, r, seconds, 1, clock_ns() + slice_ns).ok);
+    while (split_screen_samples(*split) < 2 * samples);
+  }
+};
+
+// The mean of both seeds, as the reference gives it in one go.
+std::vector<Vec3d> whole_reference(Renderer* r, Transport transport, std::uint32_t samples) {
+  std::vector<std::uint8_t> memory(reference_need(r->frame) + kArenaAlignment);
+  Arena arena = make_arena("reference", memory.data(), memory.size());
+  Reference reference = make_reference(r->frame, &arena, transport == Transport::physical ? kGuidePathCount : 0);
+  ReferenceOptions o;
+  o.transport = transport, o.samples_per_pixel = samples;
+  std::vector<Vec3d> sum(r->image.count), mean(r->image.count);
+  for (std::uint64_t seed : {1u, 2u}) {
+    o.seed = seed;
+    trace_reference(reference, o, 0, r->settings.height, mean.data());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += mean[i] * 0.5;
+  }
+  return sum;
+}
+
+bool is_near(const Vec3& a, const Vec3d& b) {
+  auto near = [](float x, double y) { return std::fabs(static_cast<double>(x) - y) <= 1e-6 * (1 + std::fabs(y)); };
+  return near(a.x, b.x) && near(a.y, b.y) && near(a.z, b.z);
+}
+
+// Pixels of the right half that are not those of the reference of the frame as it is prepared.
+std::uint32_t unlike_reference(const Scenery& s, Transport transport, const Vec3* shown) {
+  std::uint32_t samples = split_screen_samples(*s.split) / 2, count = 0;
+  std::vector<Vec3d> before = whole_reference(s.r, transport, samples),
+                     after = whole_reference(s.r, transport, samples + 1);
+  for (std::uint32_t i = 0; i < s.r->image.count; ++i)  // the upper rows may have a sample more, of an unfinished pass
+    if (i % 24 > 12) count += !is_near(shown[i], before[i]) && !is_near(shown[i], after[i]);
+  return count;
+}
+
+}  // namespace
+
+// Goal: the left half is the picture, the right half the reference, however its rows came to be. Method: slices of time
+// too short for all rows, by one and by three threads, on both kinds; the reference traced in one go, of the same view
+// and time with the scene's own settings, though the picture's are others.
+TEST_CASE("split_screen_shows_picture_and_reference") {
+  for (const char* kind : {"model", "physical"})
+    for (std::uint32_t threads : {1u, 3u}) {
+      Scenery s("seesaw", kind, threads);
+      Settings plain = s.r->settings;
+      plain.normals = NormalMode::flat, plain.ray_depth = 0;
+      REQUIRE(change_settings(s.r, plain).ok);
+      REQUIRE(render_frame(s.r, 0.4).ok);
+      std::vector<Vec3> picture(s.r->image.begin(), s.r->image.end());
+      s.refine(3, 0.4);
+      CHECK(s.r->settings.normals == NormalMode::flat);
+      CHECK(s.r->settings.ray_depth == 0);
+      const Vec3* shown = split_picture(s.split, *s.r);
+      Settings own = plain;
+      own.normals = NormalMode::as_scene;
+      REQUIRE(change_settings(s.r, own).ok);
+      REQUIRE(prepare_frame(s.r, 0.4).ok);
+      std::uint32_t other = 0;
+      for (std::uint32_t y = 0; y < 16; ++y)
+        for (std::uint32_t x = 0; x < 24; ++x) {
+          std::size_t i = y * 24 + x;
+          if (x < 12) other += shown[i].x != picture[i].x || shown[i].y != picture[i].y || shown[i].z != picture[i].z;
+        }
+      CHECK(other == 0);
+      CHECK(unlike_reference(s, kind[0] == 'm' ? Transport::model : Transport::physical, shown) == 0);
+      HudText text;
+      write_split_lines(*s.split, &text);
+      CHECK(text.line_count == 2);
+    }
+}
+
+// Goal: what is seen from elsewhere or at another time is never mixed with what was. Method: the camera moves, then
+// time passes; the samples begin anew.
+TEST_CASE("split_screen_begins_anew_when_the_view_changes") {
+  Scenery s("seesaw", "model", 1);
+  REQUIRE(render_frame(s.r, 0).ok);
+  s.refine(40, 0);
+  std::uint32_t before = split_screen_samples(*s.split);
+  REQUIRE(advance_split_screen(s.split, s.r, 0, 2, 0).ok);
+  CHECK(split_screen_samples(*s.split) >= before);
+  Camera camera = s.r->camera;
+  camera.eye.x += 0.5f;
+  REQUIRE(set_camera(s.r, camera).ok);
+  REQUIRE(advance_split_screen(s.split, s.r, 0, 3, 0).ok);
+  CHECK(split_screen_samples(*s.split) == 0);
+  s.refine(4, 0);
+  const Vec3* shown = split_picture(s.split, *s.r);
+  REQUIRE(prepare_frame(s.r, 0).ok);
+  CHECK(unlike_reference(s, Transport::model, shown) == 0);
+  forget_split_screen(s.split);
+  shown = split_picture(s.split, *s.r);
+  std::uint32_t other = 0;
+  for (std::size_t i = 0; i < s.r->image.count; ++i) other += i % 24 != 12 && shown[i].y != s.r->image[i].y;
+  CHECK(other == 0);
+  REQUIRE(advance_split_screen(s.split, s.r, 1.5, 4, 0).ok);
+  CHECK(split_screen_samples(*s.split) == 0);
+}
+
+// Goal: the user sees it, can put it away, and time stands still while it shows. Method: a screen in memory and a
+// script: two frames, in both of which the right half is the reference; then the key.
+TEST_CASE("split_screen_is_shown_by_the_viewer") {
+  CommonOptions common;
+  common.scene = "seesaw", common.size = "24x16", common.threads = 1;
+  std::vector<std::uint32_t> screens[2];
+  for (bool put_away : {false, true}) {
+    std::vector<std::uint32_t>* screen = &screens[put_away];
+    screen->resize(24 * 16);
+    platform::Event script[2];
+    script[0].type = platform::EventType::button_down, script[0].button = platform::Button::hud;
+    script[1].type = platform::EventType::button_down, script[1].button = platform::Button::split;
+    platform::NullSettings settings;
+    settings.screen = screen->data(), settings.screen_bytes = screen->size() * 4;
+    settings.script = script, settings.script_count = put_away ? 2 : 1;
+    platform::null_configure(settings);
+    ViewOptions options;
+    options.backend = "null", options.rotation = 0, options.frame_count = 2;
+    Viewer viewer;
+    REQUIRE(open_viewer(options, "seesaw", 24, 16, &viewer).ok);
+    OpenScene opened;
+    OpenHooks hooks;
+    hooks.output_bytes = viewer_bytes;
+    REQUIRE(open_scene(common, hooks, &opened).ok);
+    REQUIRE(start_scene(&opened, common).ok);
+    SplitScreenOptions split;
+    split.reference = "model";
+    viewer.split = open_split_screen(split, opened.renderer, 32, false);
+    bool again;
+    REQUIRE(run_viewer(&viewer, &opened.renderer, &again).ok);
+    CHECK(viewer.frames_finished == 2);
+    CHECK((split_screen_samples(*viewer.split) > 0) == !put_away);
+    close_split_screen(viewer.split);
+    close_viewer(&viewer);
+    platform::null_configure(platform::NullSettings());
+  }
+  std::uint32_t line = 0;
+  for (std::uint32_t y = 0; y < 16; ++y) line += (screens[0][y * 24 + 12] & 0xFFFFFF) == 0xFFFFFF;
+  CHECK(line == 16);
+  std::uint32_t left = 0, right = 0;
+  for (std::uint32_t y = 0; y < 16; ++y)
+    for (std::uint32_t x = 0; x < 24; ++x)
+      (x < 12 ? left : right) += x != 12 && screens[0][y * 24 + x] != screens[1][y * 24 + x];
+  CHECK(left == 0);
+  CHECK(right > 16);
+}

@@ -1,0 +1,256 @@
+// The viewer on no screen, by a script of buttons and a clock of its own.
+#include "viewer/viewer.h"
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "platform/file.h"
+#include "platform/null/null.h"
+#include "session/open_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr std::uint64_t kSecond = 1'000'000'000;
+
+// Frames of a still that are rendered within a budget, where the user leaves at a time.
+std::uint32_t frames_until(std::uint64_t quit_ns, double budget_ms) {
+  platform::Event script[1];
+  script[0].type = platform::EventType::quit, script[0].time_ns = quit_ns;
+  platform::NullSettings settings;
+  settings.script = script, settings.script_count = 1;
+  platform::null_configure(settings);
+  CommonOptions common;
+  common.scene = "cube", common.size = "8x8", common.threads = 1;
+  ViewOptions options;
+  options.backend = "null", options.rotation = 0;
+  Viewer viewer;
+  REQUIRE(open_viewer(options, "cube", 8, 8, &viewer).ok);
+  OpenScene opened;
+  OpenFront front;
+  FrontSource ladder;
+  ladder.file = "no-such.front", ladder.may_be_new = true;
+  REQUIRE(open_scene_with_front(common, ladder, viewer_bytes, &opened, &front).ok);
+  BudgetOptions budgeted;
+  budgeted.ms = budget_ms;
+  Budget budget;
+  start_budget(budgeted, front, opened.renderer, 16, &budget);
+  viewer.budget = &budget;
+  bool again;
+  REQUIRE(run_viewer(&viewer, &opened.renderer, &again).ok);
+  CHECK(viewer.quit);
+  close_viewer(&viewer);
+  platform::null_configure(platform::NullSettings());
+  return viewer.frames_finished;
+}
+
+}  // namespace
+
+// Goal: a still with a budget is rendered again until its settings are settled, and no longer. Method: a user who
+// leaves after ten seconds of the screen's clock, and one who leaves after a hundred; a frame takes a sixtieth of one.
+TEST_CASE("viewer_settles_a_still_within_a_budget") {
+  std::uint32_t early = frames_until(10 * kSecond, 1e6), late = frames_until(100 * kSecond, 1e6);
+  CHECK(early > 1);
+  CHECK(early == late);
+  std::uint32_t too_dear = frames_until(100 * kSecond, 1e-3);
+  CHECK(too_dear > 1);
+  CHECK(too_dear <= 100);
+}
+
+namespace {
+
+// A viewer on a screen in memory, with a script of buttons.
+struct Stage {
+  std::vector<platform::Event> script;
+  std::vector<std::uint32_t> screen = std::vector<std::uint32_t>(kWidth * kHeight);
+  Viewer viewer;
+  static constexpr int kWidth = 320, kHeight = 60;
+
+  void press(double seconds, platform::Button button, bool down = true) {
+    platform::Event event;
+    event.type = down ? platform::EventType::button_down : platform::EventType::button_up;
+    event.button = button, event.time_ns = static_cast<std::uint64_t>(seconds * 1e9);
+    script.push_back(event);
+  }
+  void leave(double seconds) {
+    platform::Event event;
+    event.time_ns = static_cast<std::uint64_t>(seconds * 1e9);
+    script.push_back(event);
+  }
+  void open(const std::string& scene, const std::string& screenshots = ".") {
+    platform::NullSettings settings;
+    settings.screen = screen.data(), settings.screen_bytes = screen.size() * 4;
+    settings.script = script.data(), settings.script_count = static_cast<int>(script.size());
+    platform::null_configure(settings);
+    ViewOptions options;
+    options.backend = "null", options.rotation = 0, options.screenshot_folder = screenshots;
+    REQUIRE(open_viewer(options, scene.c_str(), kWidth, kHeight, &viewer).ok);
+  }
+  // Shows a built-in scene; true: it is to be loaded anew.
+  bool show(const char* scene, OpenScene* opened) {
+    CommonOptions common;
+    common.scene = scene, common.size = "320x60", common.threads = 1;
+    OpenHooks hooks;
+    hooks.output_bytes = viewer_bytes;
+    REQUIRE(open_scene(common, hooks, opened).ok);
+    REQUIRE(start_scene(opened, common).ok);
+    bool again;
+    REQUIRE(run_viewer(&viewer, &opened->renderer, &again).ok);
+    return again;
+  }
+  ~Stage() {
+    close_viewer(&viewer);
+    platform::null_configure(platform::NullSettings());
+  }
+};
+
+bool is_equal(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+}  // namespace
+
+// Goal: each button says what came of it, for a while. Method: buttons that this run has no use for, and a screenshot;
+// what is on the screen two seconds later, and eight.
+TEST_CASE("viewer_answers_each_button") {
+  char folder[] = "/tmp/pocketray_XXXXXX";
+  REQUIRE(mkdtemp(folder) != nullptr);
+  const struct {
+    platform::Button button;
+    std::string answer;
+  } kAnswers[] = {{platform::Button::screenshot, std::string("saved ") + folder + "/pocketray-0001.p"},
+                  {platform::Button::split, "V shows "},
+                  {platform::Button::finer, "--budget-ms"},
+                  {platform::Button::faster, "--budget-ms"}};
+  for (const auto& row : kAnswers) {
+    for (bool soon : {true, false}) {
+      CAPTURE(row.answer);
+      Stage stage;
+      stage.press(0, platform::Button::hud);  // away with what is always there
+      stage.press(1, row.button);
+      stage.leave(soon ? 3 : 9);
+      stage.open("cube", folder);
+      OpenScene opened;
+      CHECK_FALSE(stage.show("cube", &opened));
+      CHECK_MESSAGE(std::strstr(stage.viewer.note.text, row.answer.c_str()), stage.viewer.note.text);
+      CHECK(stage.viewer.note.number == 1);
+      CHECK(stage.viewer.note_shown == (soon ? 1 : 0));
+      CHECK((stage.viewer.hud_rows_shown > 0) == soon);
+      platform::remove_folder(folder);
+      REQUIRE(mkdir(folder, 0777) == 0);
+    }
+  }
+  rmdir(folder);
+}
+
+// Goal: a screen without a note is the picture again. Method: pixels before a note and after it.
+TEST_CASE("viewer_takes_its_note_away") {
+  std::vector<std::uint32_t> screens[2];
+  for (bool told : {false, true}) {
+    Stage stage;
+    stage.press(0, platform::Button::hud);
+    if (told) stage.press(1, platform::Button::split);
+    stage.leave(9);
+    stage.open("cube");
+    OpenScene opened;
+    stage.show("cube", &opened);
+    screens[told] = stage.screen;
+  }
+  CHECK(screens[0] == screens[1]);
+}
+
+// Goal: a scene that is loaded anew is seen from where the user was; one that he did not move away from, from its own
+// camera; another scene from its own. Method: the camera is turned, or not, and the scene loaded again.
+TEST_CASE("viewer_keeps_the_camera") {
+  for (bool moved : {true, false}) {
+    for (bool other : {false, true}) {
+      CAPTURE(moved);
+      CAPTURE(other);
+      Stage stage;
+      if (moved) stage.press(1, platform::Button::right), stage.press(2, platform::Button::right, false);
+      stage.press(2.5, platform::Button::select);
+      stage.press(3, platform::Button::reload);
+      stage.leave(4);
+      stage.open("seesaw");
+      OpenScene first, second;
+      CHECK(stage.show("seesaw", &first));
+      CHECK(stage.viewer.kept.camera_moved == moved);
+      CHECK(stage.viewer.kept.seconds > 2);
+      if (other) stage.viewer.scene_path = "cube";
+      CHECK_FALSE(stage.show(other ? "cube" : "seesaw", &second));
+      CHECK(second.renderer.camera_overridden == (moved && !other));
+      if (moved && !other) CHECK(is_equal(first.renderer.camera.eye, second.renderer.camera.eye));
+    }
+  }
+}
+
+// Goal: while there is no scene its last picture is seen, and the user is told why; the file's change ends the wait
+// when it is written no more, as do the buttons. Method: a scene is to be loaded again; pixels below the text; a file
+// that has changed, the button, and leaving.
+TEST_CASE("viewer_keeps_the_picture_without_a_scene") {
+  char path[] = "/tmp/pocketray_XXXXXX";
+  int file = mkstemp(path);
+  REQUIRE(file >= 0);
+  Stage stage;
+  stage.press(0, platform::Button::hud);
+  stage.press(2, platform::Button::reload);
+  stage.press(20, platform::Button::reload);
+  stage.leave(30);
+  stage.open(path);
+  OpenScene opened;
+  CHECK(stage.show("cube", &opened));
+  std::vector<std::uint32_t> before = stage.screen;
+  auto unlike = [&](int first_row) {
+    int count = 0;
+    for (std::size_t i = static_cast<std::size_t>(first_row * Stage::kWidth); i < before.size(); ++i)
+      count += before[i] != stage.screen[i];
+    return count;
+  };
+  CHECK(unlike(0) == 0);
+  REQUIRE(show_waiting(&stage.viewer, "loading"));
+  CHECK(unlike(0) > 0);
+  CHECK(unlike(static_cast<int>(stage.viewer.hud_rows_shown)) == 0);
+  // The file changes.
+  watch_scene(&stage.viewer);
+  REQUIRE(write(file, "changed", 7) == 7);
+  std::uint64_t start = stage.viewer.backend->now_ns();
+  CHECK(wait_for_another(&stage.viewer, "it is broken"));
+  CHECK(unlike(static_cast<int>(stage.viewer.hud_rows_shown)) == 0);
+  std::uint64_t waited = stage.viewer.backend->now_ns() - start;
+  CHECK(waited > kSecond);  // two looks
+  CHECK(waited < 3 * kSecond);
+  // Nothing changes: the button, then the user leaves.
+  watch_scene(&stage.viewer);
+  CHECK(wait_for_another(&stage.viewer, "it is broken"));
+  CHECK(stage.viewer.backend->now_ns() > 19 * kSecond);
+  CHECK_FALSE(wait_for_another(&stage.viewer, "it is broken"));
+  CHECK(stage.viewer.quit);
+  close(file);
+  std::remove(path);
+}
+
+// Goal: nobody is shown a picture on no screen who did not ask for that. Method: no display and no framebuffer.
+TEST_CASE("viewer_wants_a_screen") {
+  if (access("/dev/fb0", F_OK) == 0) return;
+  std::string kept[3];
+  const char* const names[] = {"DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"};
+  for (int i = 0; i < 3; ++i) {
+    if (const char* value = std::getenv(names[i])) kept[i] = value;
+    unsetenv(names[i]);
+  }
+  Viewer viewer;
+  ViewOptions options;
+  options.rotation = 0;
+  Status status = open_viewer(options, "cube", 32, 24, &viewer);
+  CHECK_FALSE(status.ok);
+  CHECK(std::strstr(status.message, "no screen was found") != nullptr);
+  CHECK(std::strstr(status.message, "linux needs a framebuffer") != nullptr);
+  CHECK(std::strstr(status.message, "--screen") != nullptr);
+  close_viewer(&viewer);
+  for (int i = 0; i < 3; ++i)
+    if (!kept[i].empty()) setenv(names[i], kept[i].c_str(), 1);
+}
