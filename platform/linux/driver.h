@@ -9,6 +9,8 @@
 
 namespace platform {
 
+constexpr std::uint64_t kVsyncTimeoutNs = 100'000'000;  // two frames of 20 Hz: no screen is slower
+
 struct Driver {
   int (*open)(const char* path, int flags);
   int (*close)(int file);
@@ -21,6 +23,7 @@ struct Driver {
   int (*poll)(pollfd* files, int count);  // does not wait
   std::uint64_t (*now_ns)();
   void (*sleep_ns)(std::uint64_t duration);
+  std::uint64_t vsync_timeout_ns = kVsyncTimeoutNs;  // by the system's clock
 };
 
 extern const Driver kSystemDriver;

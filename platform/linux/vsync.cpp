@@ -71,7 +71,7 @@ bool start_helper() {
 VsyncKind wait_bounded() {
   timespec deadline;
   clock_gettime(CLOCK_MONOTONIC, &deadline);
-  std::uint64_t nanoseconds = static_cast<std::uint64_t>(deadline.tv_nsec) + kVsyncTimeoutNs;
+  std::uint64_t nanoseconds = static_cast<std::uint64_t>(deadline.tv_nsec) + waiter.driver->vsync_timeout_ns;
   deadline.tv_sec += static_cast<time_t>(nanoseconds / 1'000'000'000);
   deadline.tv_nsec = static_cast<long>(nanoseconds % 1'000'000'000);
 

@@ -15,13 +15,11 @@ enum class VsyncKind : std::uint8_t {
   never,    // it did not return in time; the helper thread may still be stuck in it
 };
 
-constexpr std::uint64_t kVsyncTimeoutNs = 100'000'000;  // two frames of 20 Hz: no screen is slower
-
 // Starts the helper and times a few waits. Takes up to four frames, or the timeout.
 VsyncKind vsync_start(const Driver& driver, int file);
 // The frame period measured by vsync_start(); 0 unless the wait works.
 std::uint64_t vsync_period_ns();
-// Waits for the next vertical blank, at most kVsyncTimeoutNs; from the first time it fails on, it returns at once.
+// Waits for the next vertical blank, at most the driver's time-out; from the first time it fails on, it returns at once.
 VsyncKind vsync_wait();
 void vsync_stop();
 

@@ -47,7 +47,7 @@ std::uint32_t accept_rows(Merge* merge, std::uint32_t frame, std::uint32_t row_b
   std::uint32_t count = 0;
   for (std::uint32_t r = row_begin; r < row_end; ++r) {
     MergeRow* row = &merge->rows[r];
-    if (row->state == RowState::device || row->state == RowState::server) continue;
+    if (is_done(*row)) continue;
     *row = {RowState::server, static_cast<std::uint8_t>(server)};
     ++count;
   }

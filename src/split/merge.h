@@ -17,6 +17,8 @@ struct MergeRow {
   std::uint8_t server = 0;  // which one, of state server
 };
 
+inline bool is_done(const MergeRow& row) { return row.state == RowState::device || row.state == RowState::server; }
+
 struct Merge {
   std::uint32_t frame = 0;
   Array<MergeRow> rows;

@@ -52,8 +52,8 @@ struct Stage {
   void connect(FuzzClient* client) {
     platform::Error error;
     hang_up(client);
+    // Fails while the server has not seen yet that earlier connections are gone: the link has only so many.
     client->stream = net.connect(link.link, link.address, 100 * kMs, &error);
-    CHECK_GE(client->stream, 0);
   }
 };
 

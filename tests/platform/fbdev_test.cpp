@@ -36,15 +36,19 @@ const Geometry kGeometries[] = {
     {"128 x 96: smaller than the picture", 128, 96, 192, 16, 256, {11, 5}, {5, 6}, {0, 5}, {}, 1},
 };
 
+constexpr std::uint64_t kPatienceNs = 60'000'000'000;  // with a driver that answers, on a machine that is busy
+
 struct Screen {
   Machine machine;
+  Driver driver = recorded::kDriver;
   std::vector<std::uint32_t> memory = std::vector<std::uint32_t>(320 * 240);
   ScreenOptions options;
   ScreenFormat format;
   Error error;
   explicit Screen(const Geometry& geometry, Vsync vsync = Vsync::absent) {
     recorded::reset(&machine, geometry, vsync);
-    linux_set_driver(&recorded::kDriver);
+    driver.vsync_timeout_ns = vsync == Vsync::never ? kVsyncTimeoutNs : kPatienceNs;
+    linux_set_driver(&driver);
     options.memory = memory.data();
     options.memory_bytes = memory.size() * 4;
   }
@@ -218,10 +222,8 @@ TEST_CASE("fbdev_survives_every_kind_of_vsync") {
     CHECK(screen.machine.vsync_calls == calls);
     CHECK(screen.machine.slept_ns == 4 * 20'000'000);
     kLinuxBackend.close();
-    std::uint64_t elapsed = kSystemDriver.now_ns() - start;
-    CHECK(elapsed < 2'000'000'000);
     if (kind == Vsync::never) {
-      CHECK(elapsed > kVsyncTimeoutNs);
+      CHECK(kSystemDriver.now_ns() - start > kVsyncTimeoutNs);
       REQUIRE(screen.open());  // while the helper is still stuck
       CHECK(vsync_period_ns() == 0);
       CHECK(screen.machine.vsync_calls == calls);
@@ -238,16 +240,16 @@ TEST_CASE("fbdev_bounds_a_vsync_that_hangs_later") {
   Screen screen(kGeometries[3], Vsync::works);
   REQUIRE(screen.open());
   for (int frame = 1; frame <= 6; ++frame) {
-    if (frame == 3) screen.machine.vsync = Vsync::never;
+    if (frame == 3) screen.machine.vsync = Vsync::never, screen.driver.vsync_timeout_ns = kVsyncTimeoutNs;
     draw(screen, kLinuxBackend.begin_frame(), frame, 0, 240);
     kLinuxBackend.end_frame(0, 240);
     CHECK(wrong_pixels(screen, frame, 0, 240) == 0);
   }
   CHECK(screen.machine.vsync_calls == 4 + 1 + 1);
   CHECK(vsync_period_ns() == 0);
-  std::uint64_t start = kSystemDriver.now_ns();
+  screen.driver.vsync_timeout_ns = kPatienceNs;  // a wait now would never end
   CHECK(vsync_wait() == VsyncKind::never);
-  CHECK(kSystemDriver.now_ns() - start < kVsyncTimeoutNs / 2);
+  CHECK(screen.machine.vsync_calls == 4 + 1 + 1);
 }
 
 // Goal: panning that is refused, at once or later, ends in copying, without losing a frame. Method: a driver that

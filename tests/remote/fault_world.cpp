@@ -14,7 +14,7 @@
 namespace pocketray {
 namespace {
 
-constexpr int kStreams = 72;
+constexpr int kStreams = 128;
 constexpr std::uint64_t kNeighbourStepNs = 10 * kMs;
 constexpr double kStuckTimes = 10;  // of the device's own time for a frame,
 constexpr int kStuckReads = 1000;   // or reads between two waits, by which a flood has shown what it can do

@@ -243,10 +243,13 @@ void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32
   if (!agrees_with_device(c, s, begin, end)) return;
   if (!c->options.has_scene) compare_with_others(c, s, begin, end);
   if (s->useful_ns == 0 || s->told) server_is_useful(c, s);
+  // Rows that are done keep their pixels: a row's sender answers for it.
+  std::size_t row_bytes = std::size_t(c->settings.width) * pixel_bytes(c->options.format);
+  for (std::uint32_t row = begin; row < end; ++row)
+    if (!is_done(c->merge.rows[row]))
+      std::memcpy(shared_row(*c, row), picture_row(s->decoder->state, row), row_bytes);
   if (accept_rows(&c->merge, chunk.frame, begin, end, server) == 0) return;
   c->progress_ns = a->last_ns;
-  std::size_t row_bytes = std::size_t(c->settings.width) * pixel_bytes(c->options.format);
-  std::memcpy(shared_row(*c, begin), picture_row(s->decoder->state, begin), row_bytes * chunk.row_count);
   mark_dirty(c, begin, end);
 }
 
