@@ -26,7 +26,7 @@ required() {
 optional() {
   case $1 in
     armhf | armel | aarch64) echo ninja=ninja-build ;;
-    tests) echo libembree-dev ;; # the ray caster that depth is compared with
+    tests) echo libembree-dev valgrind=valgrind ;; # the ray caster that depth is compared with; it counts instructions
     desktop) echo ninja=ninja-build libpng-dev libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }

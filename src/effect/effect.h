@@ -29,7 +29,16 @@ constexpr int kEffectCount = 19;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }
-constexpr bool has(EffectMask mask, Effect effect) { return (mask & bit(effect)) != 0; }
 constexpr EffectMask kAllEffects = (1u << kEffectCount) - 1;
+
+// The effects that this build has. tests/absence builds the core without those that a scene does not call for, to prove
+// that they cost nothing where they are built in.
+#ifdef POCKETRAY_EFFECTS_BUILT
+constexpr EffectMask kEffectsBuilt = POCKETRAY_EFFECTS_BUILT;
+#else
+constexpr EffectMask kEffectsBuilt = kAllEffects;
+#endif
+
+constexpr bool has(EffectMask mask, Effect effect) { return (mask & kEffectsBuilt & bit(effect)) != 0; }
 
 }  // namespace pocketray

@@ -18,7 +18,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::absorption, "absorption", "a transparent body that absorbs"},
     {Effect::alpha_mask, "alpha-mask", "a material with cut-out holes"},
     {Effect::alpha_blend, "alpha-blend", "a material that lets the background through"},
-    {Effect::emission, "emission", "a material that emits"},
+    {Effect::emission, "emission", "a material that emits, or shows its colour unlit"},
     {Effect::texture, "texture", "a material with a texture"},
     {Effect::vertex_color, "vertex-color", "a mesh with colours at its vertices"},
     {Effect::smooth_normal, "smooth-normal", "a mesh with normals at its vertices"},

@@ -11,7 +11,7 @@ namespace {
 // How many of the materials that triangles use have a property.
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
-                emissive = 0, textured = 0, scattering = 0, one_sided = 0;
+                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
@@ -24,13 +24,14 @@ Census take_census(const Scene& scene) {
     const Material& m = scene.materials[i];
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
-    c.specular += !is_zero(m.specular) && !m.unlit;
-    c.mirror += !is_zero(m.mirror) && !m.unlit;
-    c.transmitting += transmits && !m.unlit;
-    c.absorbing += transmits && !m.thin && !is_zero(m.absorption) && !m.unlit;
+    c.specular += !is_zero(m.specular);
+    c.mirror += !is_zero(m.mirror);
+    c.transmitting += transmits;
+    c.absorbing += transmits && !m.thin && !is_zero(m.absorption);
     c.masked += m.alpha_mode == AlphaMode::mask;
     c.blended += m.alpha_mode == AlphaMode::blend;
     c.emissive += !is_zero(m.emission);
+    c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
     c.one_sided += !m.double_sided && !transmits;
     c.scattering += !m.unlit && (!is_zero(m.diffuse) || !is_zero(m.specular));
@@ -77,7 +78,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::absorption, c.absorbing, "absorb inside");
   w.set_by_materials(Effect::alpha_mask, c.masked, "have cut-out holes");
   w.set_by_materials(Effect::alpha_blend, c.blended, "blend with what is behind");
-  w.set_by_materials(Effect::emission, c.emissive, "emit");
+  w.set_by_materials(Effect::emission, c.emissive + c.unlit, c.unlit ? "emit or are unlit" : "emit");
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
   w.set_by_materials(Effect::back_face_culling, c.one_sided, "hide their backs");
   w.set_by_materials(Effect::area_light, c.emissive, "emit onto others");

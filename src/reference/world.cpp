@@ -14,8 +14,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 bool is_hole(const FrameData& frame, std::uint32_t triangle, double u, double v) {
   const Material& m = material_of(frame, triangle);
   return m.alpha_mode == AlphaMode::mask &&
-         hit_alpha(*frame.scene, m, triangle, static_cast<float>(u), static_cast<float>(v),
-                   frame.settings.texture_filter) < m.alpha_cutoff;
+         material_alpha(*frame.scene, m, triangle, static_cast<float>(u), static_cast<float>(v),
+                        frame.settings.texture_filter) < m.alpha_cutoff;
 }
 
 // A ray as boxes see it, in floats. What its rounding may err by is given to the boxes: near faces are moved towards

@@ -79,7 +79,7 @@ struct Material {
   std::uint32_t brdf = 0;  // index into brdf_list(): the glossy lobe
   AlphaMode alpha_mode = AlphaMode::opaque;
   std::uint8_t double_sided = 1;
-  std::uint8_t unlit = 0;  // shows its diffuse colour as it is (KHR_materials_unlit)
+  std::uint8_t unlit = 0;  // shows its diffuse colour as it is, and nothing else (KHR_materials_unlit)
   std::uint8_t thin = 0;   // transmits without bending and encloses nothing (glTF without KHR_materials_volume)
 };
 

@@ -97,6 +97,8 @@ Status validate_material(const Scene& scene, std::uint32_t index) {
   if (m.alpha_mode > AlphaMode::blend) return failure("materials[%u] has an unknown alpha mode", index);
   if (m.double_sided > 1 || m.unlit > 1 || m.thin > 1)
     return failure("materials[%u]: double_sided, unlit and thin must be 0 or 1", index);
+  if (m.unlit && !(is_zero(m.specular) && is_zero(m.mirror) && is_zero(m.transmission) && is_zero(m.emission)))
+    return failure("materials[%u] is unlit: it has no highlight, mirror, transmission or emission", index);
   return success();
 }
 

@@ -54,8 +54,7 @@ struct Tracer;
 // The instantiated parts of the kernel, chosen once per frame for the plan.
 using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
 // What comes along a ray, given what it hits first, and the surface there where it is known already (else null).
-using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface,
-                                  const MediumStack& media);
+using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
 using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                                  TraceStats* stats);
 

@@ -2,6 +2,8 @@
 // that the plan has; an absent one is not a branch, it is not there.
 #include "shade/shade.h"
 
+#include <type_traits>
+
 #include "shade/contact.h"
 #include "shade/direct.h"
 #include "shade/instantiate.h"
@@ -9,22 +11,28 @@
 namespace pocketray {
 namespace {
 
+// Where nothing refracts there is nothing to be inside of.
+struct NoMedia {};
+template <EffectMask mask>
+using Media = std::conditional_t<has(mask, Effect::refraction), MediumStack, NoMedia>;
+
+template <EffectMask mask>
 struct Path {
   Vec3 weight;          // what the path so far lets through: bounds what a ray can still add to the sample
   std::uint32_t depth;  // reflections and refractions so far
-  MediumStack media;
+  Media<mask> media;
 };
 
 template <EffectMask mask>
-Vec3 radiance(Tracer* tracer, const Ray& ray, const Path& path);
+Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path);
 
 // Radiance along a spawned ray, or nothing where it could not matter or the path is long enough.
 template <EffectMask mask>
-Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path& path,
+Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path<mask>& path,
            const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
   if (path.depth >= frame.settings.ray_depth) return {0, 0, 0};
-  Path next = path;
+  Path<mask> next = path;
   next.weight = path.weight * weight;
   next.depth = path.depth + 1;
   float most = max_component(next.weight);
@@ -35,7 +43,8 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
 
 // The perfect mirror. Where the shading normal would send the ray under the surface, the geometric one is used.
 template <EffectMask mask>
-Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, const Path& path, const Vec3& weight) {
+Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, const Path<mask>& path,
+            const Vec3& weight) {
   Vec3 direction = reflect(ray.direction, s.normal);
   if (!(dot(direction, s.geometric) > 0)) direction = reflect(ray.direction, s.geometric);
   return spawn<mask>(tracer, kind, s, normalize(direction), 1, path, weight);
@@ -43,11 +52,11 @@ Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, cons
 
 // A dielectric boundary: reflects by Fresnel, transmits the rest, bent by Snell.
 template <EffectMask mask>
-Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path& path) {
+Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path<mask>& path) {
   effect_entered<Effect::refraction>();
   const Scene& scene = *tracer->frame->scene;
   const Material& m = *s.material;
-  Path beyond = path;
+  Path<mask> beyond = path;
   float eta;
   if (m.thin) {
     eta = 1 / m.ior;
@@ -78,10 +87,9 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
 
 // What leaves the surface against the ray. `contact` is needed where it transmits.
 template <EffectMask mask>
-Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path& path) {
+Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
   const Material& m = *s.material;
   Vec3 sum = s.glow;
-  if (m.unlit) return sum;
   bool scatters = !is_zero(s.diffuse);
   if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
   if (scatters) sum += direct_light<mask>(tracer, s, -ray.direction, path.weight);
@@ -99,7 +107,7 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
 
 // Adds the blending surfaces of a contact, one upon the other. False where what is behind them does not matter.
 template <EffectMask mask>
-bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* sum, Vec3* carried, Path* path) {
+bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* sum, Vec3* carried, Path<mask>* path) {
   const FrameData& frame = *tracer->frame;
   const Scene& scene = *frame.scene;
   bool any = false;
@@ -107,13 +115,12 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
     const Face& face = contact.face[i];
     const Material& m = scene.materials[face.material];
     if (!blends(m, mask) || culls(m, face.front, mask)) continue;
-    effect_entered<Effect::alpha_blend>();
     any = true;
     Surface s;
     frame.surface(frame, ray, face.hit, &s);
-    float alpha =
-        hit_alpha(scene, *s.material, face.hit.triangle, face.hit.u, face.hit.v, frame.settings.texture_filter);
-    Path covered = *path;
+    float alpha = hit_alpha<Effect::alpha_blend>(scene, *s.material, face.hit.triangle, face.hit.u, face.hit.v,
+                                                 frame.settings.texture_filter);
+    Path<mask> covered = *path;
     covered.weight = path->weight * alpha;
     if (alpha > 0) *sum += *carried * alpha * shade<mask>(tracer, ray, s, &contact, covered);
     *carried = *carried * (1 - alpha);
@@ -140,7 +147,7 @@ const Face* face_behind_layers(const Scene& scene, const Contact& contact, Effec
 
 // What comes along a ray that was found to hit first what `hit` says; `first` is the surface there, or null.
 template <EffectMask mask>
-Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path path) {
+Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<mask> path) {
   const FrameData& frame = *tracer->frame;
   const Scene& scene = *frame.scene;
   const HitFilter* filter = visible_filter(frame);
@@ -187,7 +194,7 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path 
 }
 
 template <EffectMask mask>
-Vec3 radiance(Tracer* tracer, const Ray& ray, const Path& path) {
+Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path) {
   const FrameData& frame = *tracer->frame;
   Hit hit;
   frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
@@ -195,9 +202,10 @@ Vec3 radiance(Tracer* tracer, const Ray& ray, const Path& path) {
 }
 
 template <EffectMask mask>
-Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface,
-                      const MediumStack& media) {
-  return radiance_from<mask>(tracer, ray, hit, surface, {{1, 1, 1}, 0, media});
+Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
+  Path<mask> path = {{1, 1, 1}, 0, {}};
+  if constexpr (has(mask, Effect::refraction)) path.media = tracer->frame->eye_media;
+  return radiance_from<mask>(tracer, ray, hit, surface, path);
 }
 
 struct RadiancePart {
@@ -207,7 +215,10 @@ struct RadiancePart {
                                         Effect::back_face_culling};
   template <EffectMask mask>
   static constexpr Function instance() {  // nothing absorbs where there is nothing to be inside of
-    return has(mask, Effect::refraction) ? primary_radiance<mask> : primary_radiance<(mask & ~bit(Effect::absorption))>;
+    if constexpr (has(mask, Effect::refraction))
+      return primary_radiance<mask>;
+    else
+      return primary_radiance<(mask & ~bit(Effect::absorption))>;
   }
 };
 

@@ -74,10 +74,17 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
       s->diffuse *= vertex_color(scene, t, w, u, v);
     }
   }
-  s->glow = m.unlit ? s->diffuse : Vec3{0, 0, 0};
+  s->glow = {0, 0, 0};
+  if constexpr (has(mask, Effect::emission)) {
+    if (m.unlit) {
+      effect_entered<Effect::emission>();
+      s->glow = s->diffuse;
+      s->diffuse = {0, 0, 0};
+    }
+  }
   if constexpr (has(mask, Effect::ambient)) {
     effect_entered<Effect::ambient>();
-    if (!m.unlit) s->glow += s->diffuse * scene.info.ambient;
+    s->glow += s->diffuse * scene.info.ambient;
   }
   if constexpr (has(mask, Effect::emission)) {
     if (!is_zero(m.emission) && (s->front || m.double_sided)) {

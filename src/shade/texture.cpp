@@ -55,8 +55,8 @@ Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureF
                blend(texel(scene, t, x0, y1), texel(scene, t, x1, y1), fx), fy);
 }
 
-float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                TextureFilter filter) {
+float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
+                     TextureFilter filter) {
   float alpha = material.opacity;
   if (material.diffuse_texture.texture != kNone && scene.uvs.count)
     alpha *= sample_texture(scene, material.diffuse_texture, hit_uv(scene, triangle, u, v), filter).alpha;

@@ -1,5 +1,6 @@
 // Texture look-ups. Texels are sRGB bytes; a look-up returns linear colour and alpha.
 #pragma once
+#include "effect/effect_probe.h"
 #include "scene/scene.h"
 
 namespace pocketray {
@@ -23,7 +24,16 @@ inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v)
 }
 
 // Alpha of a material at a hit: opacity × texture alpha × vertex alpha.
+float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
+                     TextureFilter filter);
+
+// The same, for the effect that needs it: alpha_mask or alpha_blend.
+template <Effect effect>
 float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                TextureFilter filter);
+                TextureFilter filter) {
+  static_assert(effect == Effect::alpha_mask || effect == Effect::alpha_blend, "no other effect reads alpha");
+  effect_entered<effect>();
+  return material_alpha(scene, material, triangle, u, v, filter);
+}
 
 }  // namespace pocketray

@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-bool receives(const Surface& s) { return !s.material->unlit && !(is_zero(s.diffuse) && is_zero(s.material->specular)); }
+bool receives(const Surface& s) { return !(is_zero(s.diffuse) && is_zero(s.material->specular)); }
 
 // Whether direct_light() is likely to leave the ray out; highlights are not estimated.
 bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& sample) {

@@ -22,7 +22,7 @@ Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surfa
   const FrameData& frame = *tracer->frame;
   tracer->budget = frame.left_out_max;
   ++tracer->rays[static_cast<int>(RayKind::primary)];
-  Vec3 radiance = frame.radiance(tracer, ray, hit, surface, frame.eye_media);
+  Vec3 radiance = frame.radiance(tracer, ray, hit, surface);
   float left_out = frame.left_out_max - tracer->budget;
   if (left_out > tracer->left_out_max) tracer->left_out_max = left_out;
   return radiance;

@@ -149,6 +149,7 @@ TEST_CASE("validate_scene_refuses_bad_materials") {
   refuses("alpha mode", [](FullScene* f) { f->materials[0].alpha_mode = unknown<AlphaMode>(3); });
   refuses("0 or 1", [](FullScene* f) { f->materials[0].double_sided = 2; });
   refuses("0 or 1", [](FullScene* f) { f->materials[0].unlit = 255; });
+  refuses("unlit", [](FullScene* f) { f->materials[1].unlit = 1; });
   refuses("0 or 1", [](FullScene* f) { f->materials[0].thin = 2; });
   refuses("materials[1].diffuse_texture", [](FullScene* f) { f->materials[1].diffuse_texture.texture = 2; });
   refuses("materials[0].emission_texture", [](FullScene* f) { f->materials[0].emission_texture.texture = 2; });

@@ -58,7 +58,7 @@ Vec3 trace_ray(const Renderer& renderer, const Vec3& origin, const Vec3& directi
   Ray ray = {origin, direction, __builtin_inff()};
   Hit hit;
   frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, nullptr);
-  return frame.radiance(tracer, ray, hit, nullptr, frame.eye_media);
+  return frame.radiance(tracer, ray, hit, nullptr);
 }
 
 }  // namespace pocketray

@@ -1,0 +1,27 @@
+// absence_SCENE FRAMES : renders a built-in scene FRAMES times in a build of the effects that it calls for alone, or
+// (absence_all SCENE FRAMES) of all. Prints the plan's effects and the bytes of every part of memory. absence_test.sh has
+// valgrind count its instructions.
+#include <cstdio>
+#include <cstdlib>
+
+#include "engine/frame.h"
+#include "scene/builtin_helpers.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+int main(int argument_count, char** arguments) {
+  if (argument_count != 3) return std::fprintf(stderr, "usage: %s SCENE FRAMES\n", arguments[0]), 2;
+  auto built = build_builtin(arguments[1]);
+  Settings settings;
+  settings.width = 64, settings.height = 48;
+  auto test = make_renderer(built->scene, settings);
+  Renderer* renderer = &test->renderer;
+  std::printf("effects 0x%x of 0x%x\n", renderer->effects.mask, kEffectsBuilt);
+  for (int i = 0; i < renderer->memory.part_count; ++i)
+    std::printf("%s %zu bytes\n", renderer->memory.parts[i].name, renderer->memory.parts[i].bytes);
+  for (int frame = std::atoi(arguments[2]); frame > 0; --frame)
+    if (!render_frame(renderer, 0.5).ok) return 1;
+  std::printf("picture %08x\n", picture_hash(renderer->image.data, renderer->image.count));
+  return 0;
+}
