@@ -222,7 +222,7 @@ void attach_changes(pocketray_instance* instance) {
 pocketray_result build(const Request& q, pocketray_instance* instance) {
   Renderer* r = &instance->renderer;
   if (instance->lights.count) {
-    std::memcpy(static_cast<void*>(instance->lights.data), r->scene.lights.data, r->scene.lights.bytes());
+    for (std::uint32_t i = 0; i < r->scene.lights.count; ++i) instance->lights[i] = r->scene.lights[i];
     r->scene.lights = {instance->lights.data, r->scene.lights.count};
   }
   if (q.options.camera) {

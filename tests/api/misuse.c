@@ -93,6 +93,10 @@ static void parts_that_do_not_fit(void) {
   wrong_open("far beyond", &cube, &options, "parts[2] reaches beyond");
   parts[2].vertex_begin = 7;
   wrong_open("overlap", &cube, &options, "in common");
+  parts[2].vertex_begin = 8;
+  parts[0].vertex_begin = 5; /* and of which the first starts behind the second */
+  wrong_open("overlap", &cube, &options, "in common");
+  parts[0].vertex_begin = 0;
   parts[2].vertex_begin = 0;
   parts[2].vertex_count = 0;
   parts[2].material = 77;
