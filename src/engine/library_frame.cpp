@@ -196,10 +196,11 @@ pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketr
 pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, std::uint64_t* nanoseconds,
                                          std::uint32_t row_count) {
   Status status = check_instance(instance);
-  if (status.ok && !nanoseconds) status = failure("nanoseconds: a null pointer");
-  if (status.ok && row_count != instance->renderer.settings.height)
-    status = failure("row_count is %u, and the picture has %u rows", row_count, instance->renderer.settings.height);
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  if (!nanoseconds) return refuse(POCKETRAY_ERROR_ARGUMENT, failure("nanoseconds: a null pointer"));
+  if (row_count != instance->renderer.settings.height)
+    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("row_count is %u, and the picture has %u rows", row_count,
+                                                    instance->renderer.settings.height));
   Array<std::uint64_t> row_ns = instance->renderer.row_ns;
   std::memcpy(nanoseconds, row_ns.data, row_ns.bytes());
   return POCKETRAY_OK;

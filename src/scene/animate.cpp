@@ -89,8 +89,10 @@ Transform blended(const Transform* joints, const SkinWeight& skin_weight) {
 }
 
 bool is_identity(const Transform& t) {
-  const Transform identity;
-  return std::memcmp(&t, &identity, sizeof t) == 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j)
+      if (t.m[i][j] != (i == j ? 1.0f : 0.0f)) return false;
+  return true;
 }
 
 // Where a mesh's rest pose is its place in the world and nothing moved it, it stays as it was, to the bit: normals are
