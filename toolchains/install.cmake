@@ -20,6 +20,15 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/package/pocketrayConfig.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/package/pocketrayConfigVersion.cmake DESTINATION ${package_folder})
 install(EXPORT pocketray NAMESPACE pocketray:: DESTINATION ${package_folder} FILE pocketrayTargets.cmake)
 
+# What a program in C must link beside it: the C++ library, as a C++ compiler would.
+foreach(name stdc++ c++)
+  if(name IN_LIST CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
+    set(POCKETRAY_PC_CXX "-l${name} -lm")
+  endif()
+endforeach()
+if(NOT POCKETRAY_ATOMIC_64)
+  string(APPEND POCKETRAY_PC_CXX " -latomic")
+endif()
 file(RELATIVE_PATH POCKETRAY_PC_TO_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 string(REGEX REPLACE "/$" "" POCKETRAY_PC_TO_PREFIX "${POCKETRAY_PC_TO_PREFIX}")
 configure_file(toolchains/pocketray.pc.in ${CMAKE_CURRENT_BINARY_DIR}/package/pocketray.pc @ONLY)

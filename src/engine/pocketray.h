@@ -1,56 +1,333 @@
-// libpocketray: render a scene into your own pixels, in memory you give. Nothing else is allocated but the threads.
-//
-//   static unsigned char memory[24 << 20];
-//   pocketray::Instance* instance;
-//   pocketray::Options options;
-//   pocketray::Result result = pocketray::open_builtin("cornell", options, memory, sizeof memory, &instance);
-//   if (result.ok) result = pocketray::render(instance, 0.0, pixels, 320 * 4);
-//   pocketray::close(instance);
-#pragma once
-#include <cstddef>
-#include <cstdint>
+/* libpocketray: renders a scene into your pixels, in memory that you give it. C99 and C++.
+ *
+ *   static unsigned char memory[24 << 20];
+ *   static uint32_t screen[240 * 320];
+ *   pocketray_source source = POCKETRAY_SOURCE_INIT;
+ *   pocketray_options options = POCKETRAY_OPTIONS_INIT;
+ *   pocketray_pixels pixels = POCKETRAY_PIXELS_INIT;
+ *   pocketray_instance* instance;
+ *   source.builtin = "cornell";
+ *   pixels.data = screen, pixels.byte_count = sizeof screen, pixels.line_bytes = 320 * sizeof screen[0];
+ *   if (pocketray_open(&source, &options, memory, sizeof memory, &instance) || pocketray_render(instance, 0, &pixels))
+ *     puts(pocketray_error_message());
+ *   pocketray_close(instance);
+ *
+ * Conventions
+ *   Units      Distances in scene units, angles in degrees, times in seconds, colours linear with sRGB primaries; +Y is
+ *              up, right-handed. Vectors are float[3]: x, y, z or red, green, blue. Row 0 is the top of the picture.
+ *   Results    Every call that can fail returns a pocketray_result: 0 or above is no error. Null pointers, NaN, numbers
+ *              out of range and damaged files are refused with an error; a call that fails changes nothing.
+ *   Memory     The library allocates nothing but its threads (options.threads − 1 of them). What you pass in is copied
+ *              or used during the call; only `memory`, and the bytes of a scene that is not copied, must stay in place
+ *              until pocketray_close().
+ *   Threads    Several instances may be used by several threads. One instance takes one call at a time;
+ *              pocketray_set_stop() alone may be called at any time, from any thread or signal handler.
+ *   Versions   A structure that may grow starts with struct_size, which its _INIT sets together with the defaults. A
+ *              library takes the structures of all earlier versions with the same POCKETRAY_VERSION_MAJOR and, while
+ *              that is 0, the same POCKETRAY_VERSION_MINOR.
+ *   Pictures   The same scene, settings, camera and time give the same pixels on every CPU, with any number of threads,
+ *              and from the program `pocketray`.
+ */
+#ifndef POCKETRAY_H
+#define POCKETRAY_H
 
-namespace pocketray {
+#include <stddef.h>
+#include <stdint.h>
 
-struct Result {
-  bool ok = true;
-  char message[508] = {0};  // what is wrong and how to mend it
-};
+#define POCKETRAY_VERSION_MAJOR 0
+#define POCKETRAY_VERSION_MINOR 2
+#define POCKETRAY_VERSION_PATCH 0
+#define POCKETRAY_VERSION_NUMBER \
+  (POCKETRAY_VERSION_MAJOR * 65536u + POCKETRAY_VERSION_MINOR * 256u + POCKETRAY_VERSION_PATCH)
 
-enum class PixelOrder { rgb565, bgr565, xrgb8888, xbgr8888, rgb888 };
+#if defined(__GNUC__)
+#define POCKETRAY_API __attribute__((visibility("default")))
+#else
+#define POCKETRAY_API
+#endif
 
-struct Options {
-  int width = 320, height = 240;  // pixels
-  PixelOrder order = PixelOrder::xrgb8888;
-  int samples_per_pixel = 1;      // 1 … 16
-  int ray_depth = 8;              // 0 … 16
-  int points_per_area_light = 4;  // 1 … 256
-  int threads = 1;
-  bool dither = false;
-};
+#ifdef __cplusplus
+extern "C" {
+#endif
 
-struct View {
+/* POCKETRAY_VERSION_NUMBER of the library, to be compared with that of this header. */
+POCKETRAY_API uint32_t pocketray_version(void);
+
+typedef enum pocketray_result {
+  POCKETRAY_OK = 0,
+  POCKETRAY_UNFINISHED = 1,      /* pocketray_refine(): the deadline came first */
+  POCKETRAY_STOPPED = 2,         /* by pocketray_set_stop() or the progress function */
+  POCKETRAY_ERROR_ARGUMENT = -1, /* a null pointer, a number out of range, a name that does not exist */
+  POCKETRAY_ERROR_SCENE = -2,    /* the scene's bytes are damaged, or it cannot be rendered */
+  POCKETRAY_ERROR_MEMORY = -3,   /* the memory given is too small */
+  POCKETRAY_ERROR_LIMIT = -4     /* more than what was reserved by the options of pocketray_open() */
+} pocketray_result;
+
+/* What was wrong with the calling thread's last call that returned an error, and how to mend it: one line of UTF-8.
+ * Yours until the thread's next call. Empty before the first error. */
+POCKETRAY_API const char* pocketray_error_message(void);
+
+/* ---- Scenes, options, plan ----------------------------------------------------------------------------------------*/
+
+#define POCKETRAY_NONE 0xFFFFFFFFu /* no such index */
+
+/* Names of the built-in scenes, 0 upward; null beyond the last one. */
+POCKETRAY_API const char* pocketray_builtin_name(uint32_t index);
+
+/* What to render: either a built-in scene, or the bytes of a .pray file (`pocketray bake` makes one of a model). */
+typedef struct pocketray_source {
+  size_t struct_size;
+  const char* builtin; /* null: `bytes` */
+  const void* bytes;   /* aligned to 64, and unchanged until pocketray_close(), unless copied */
+  size_t byte_count;
+  int copy; /* 1: pocketray_open() copies the bytes to its memory; they need no alignment */
+} pocketray_source;
+#define POCKETRAY_SOURCE_INIT \
+  { sizeof(pocketray_source), NULL, NULL, 0, 0 }
+
+enum { POCKETRAY_FILTER_AS_SCENE = 0, POCKETRAY_FILTER_NEAREST = 1, POCKETRAY_FILTER_BILINEAR = 2 };
+enum { POCKETRAY_NORMALS_AS_SCENE = 0, POCKETRAY_NORMALS_FLAT = 1 };
+
+/* What trades accuracy for time; may change between frames. */
+typedef struct pocketray_settings {
+  size_t struct_size;
+  int samples_per_pixel;     /* 1 … 16 */
+  int ray_depth;             /* reflections and refractions along a path, 0 … 16 */
+  int points_per_area_light; /* 1 … 256; reserved is memory for as many as there were at pocketray_open() */
+  float cut_off_levels;      /* largest error per sample from skipped rays, in displayed levels, 0 … 64 */
+  int texture_filter;        /* POCKETRAY_FILTER_… */
+  int normals;               /* POCKETRAY_NORMALS_… */
+} pocketray_settings;
+#define POCKETRAY_SETTINGS_INIT \
+  { sizeof(pocketray_settings), 1, 8, 4, 0.5f, 0, 0 }
+
+enum { POCKETRAY_PERSPECTIVE = 0, POCKETRAY_ORTHOGRAPHIC = 1 };
+
+typedef struct pocketray_camera {
+  size_t struct_size;
   float eye[3], target[3], up[3];
-  float vertical_fov_degrees;
+  int projection;              /* POCKETRAY_PERSPECTIVE or _ORTHOGRAPHIC */
+  double vertical_fov_degrees; /* perspective: 0.001 … 179 */
+  float vertical_extent;       /* orthographic: scene units from the bottom to the top of the picture */
+  int reserved;
+} pocketray_camera;
+#define POCKETRAY_CAMERA_INIT \
+  { sizeof(pocketray_camera), {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0, 45, 1, 0 }
+
+/* A part of a scene without animation that is to be moved: a run of its vertices. Triangles between vertices of two
+ * parts stretch. */
+typedef struct pocketray_part {
+  uint32_t vertex_begin, vertex_count; /* in the file's order; count 0: the run of vertices that `material` uses, */
+  uint32_t material;                   /* which must belong to it alone */
+} pocketray_part;
+
+/* What is fixed from pocketray_open() on. */
+typedef struct pocketray_options {
+  size_t struct_size;
+  int width, height;                  /* pixels, 1 … 8192 */
+  int threads;                        /* to trace with, the caller's included: 1 … 64 */
+  int measure_exposure;               /* 1: measured from the first picture, whatever the scene says */
+  const pocketray_settings* settings; /* null: POCKETRAY_SETTINGS_INIT */
+  const pocketray_camera* camera;     /* null: the scene's camera `camera_index` */
+  uint32_t camera_index;
+  uint32_t light_count_max;    /* reserve memory for pocketray_set_lights(); 0: lights stay as they are */
+  const char* effects;         /* "auto" less or more some: "auto,-shadow"; null: auto, what the scene calls for */
+  const char* accelerator;     /* "bvh", "compact", …; null: the file's, else the fastest that fits */
+  const pocketray_part* parts; /* of a scene without animation: each becomes a node, in this order */
+  uint32_t part_count;
+  int movable; /* 1: reserve memory for pocketray_set_node() on the nodes of an animated scene */
+} pocketray_options;
+#define POCKETRAY_OPTIONS_INIT \
+  { sizeof(pocketray_options), 320, 240, 1, 0, NULL, NULL, 0, 0, NULL, NULL, NULL, 0, 0 }
+
+typedef struct pocketray_effect {
+  const char* name;          /* as options.effects takes it; never freed */
+  const char* called_for_by; /* what in a scene calls for it; never freed */
+  int on;                    /* whether it is simulated */
+  char reason[96];           /* and why, or why not */
+} pocketray_effect;
+
+typedef struct pocketray_memory_part {
+  const char* name; /* never freed */
+  size_t bytes;
+} pocketray_memory_part;
+
+#define POCKETRAY_EFFECTS_MAX 32
+#define POCKETRAY_MEMORY_PARTS_MAX 16
+
+/* What was decided for a scene, options and settings. */
+typedef struct pocketray_plan {
+  size_t struct_size;
+  size_t memory_bytes;     /* that pocketray_open() needs; where they end lower, it may fall back on a smaller
+                              accelerator */
+  size_t scratch_bytes;    /* that pocketray_make_plan() needs, 0 for a .pray file aligned to 64 and without parts */
+  const char* accelerator; /* never freed */
+  uint32_t vertex_count, triangle_count, material_count, light_count, camera_count, node_count;
+  int default_camera, default_lights; /* 1: the scene has none, and was given some */
+  uint32_t frame_count;               /* as the scene says */
+  float frames_per_second;
+  double duration_seconds; /* of its animation, which then starts again; 0: nothing moves by itself */
+  uint32_t effect_count, memory_part_count;
+  pocketray_effect effects[POCKETRAY_EFFECTS_MAX];
+  pocketray_memory_part memory_parts[POCKETRAY_MEMORY_PARTS_MAX];
+} pocketray_plan;
+
+/* Plans without rendering: which effects are simulated and why, and how much memory pocketray_open() needs with the
+ * same arguments. plan->struct_size must be set. `scratch` is used during the call; it may be null where
+ * plan->scratch_bytes turns out to be 0. Where it is too small, the call returns POCKETRAY_ERROR_MEMORY and sets
+ * plan->scratch_bytes. */
+POCKETRAY_API pocketray_result pocketray_make_plan(const pocketray_source* source, const pocketray_options* options,
+                                                   void* scratch, size_t scratch_bytes, pocketray_plan* plan);
+
+/* ---- Instances ----------------------------------------------------------------------------------------------------*/
+
+typedef struct pocketray_instance pocketray_instance; /* one scene, ready to render; lies in the memory given */
+
+/* Opens a scene. `memory` belongs to the instance until pocketray_close() and is all that it uses. *instance is null
+ * after an error. */
+POCKETRAY_API pocketray_result pocketray_open(const pocketray_source* source, const pocketray_options* options,
+                                              void* memory, size_t memory_bytes, pocketray_instance** instance);
+/* Ends the instance's threads; the memory is yours again. Null is allowed. */
+POCKETRAY_API void pocketray_close(pocketray_instance* instance);
+/* What was planned, and holds with the changes made since. plan->struct_size must be set. */
+POCKETRAY_API pocketray_result pocketray_get_plan(const pocketray_instance* instance, pocketray_plan* plan);
+
+/* Settings for the coming frames. POCKETRAY_ERROR_LIMIT: the area lights would take more points than were reserved. */
+POCKETRAY_API pocketray_result pocketray_get_settings(const pocketray_instance* instance, pocketray_settings* settings);
+POCKETRAY_API pocketray_result pocketray_set_settings(pocketray_instance* instance, const pocketray_settings* settings);
+
+/* The camera: that of the last frame or the one set since; one that replaces the scene's; the scene's camera
+ * `camera_index` again, which moves where it is animated. Of a scene without cameras, index 0 is the default camera. */
+POCKETRAY_API pocketray_result pocketray_get_camera(const pocketray_instance* instance, pocketray_camera* camera);
+POCKETRAY_API pocketray_result pocketray_set_camera(pocketray_instance* instance, const pocketray_camera* camera);
+POCKETRAY_API pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, uint32_t camera_index);
+
+enum { POCKETRAY_POINT_LIGHT = 0, POCKETRAY_SPOT_LIGHT = 1, POCKETRAY_DIRECTIONAL_LIGHT = 2 };
+
+/* A light that is no surface; emissive materials are area lights by themselves. */
+typedef struct pocketray_light {
+  int kind;                   /* POCKETRAY_…_LIGHT */
+  float position[3];          /* point, spot */
+  float direction[3];         /* spot, directional: the way the light travels, of length 1 */
+  float intensity[3];         /* point, spot: radiant intensity; directional: irradiance on a surface that faces it */
+  float range;                /* beyond this it gives nothing; 0: no limit */
+  float cos_inner, cos_outer; /* spot: cosines of the angles of full light and of none */
+  uint32_t node;              /* that carries it: position and direction are in its space; POCKETRAY_NONE: none */
+} pocketray_light;
+#define POCKETRAY_LIGHT_INIT \
+  { 0, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0, 1, 0, POCKETRAY_NONE }
+
+/* The lights as the scene states them, before nodes carry them. Writes the first `capacity` of them to `lights`, which
+ * may be null where that is 0, and how many there are to *light_count. */
+POCKETRAY_API pocketray_result pocketray_get_lights(const pocketray_instance* instance, pocketray_light* lights,
+                                                    uint32_t capacity, uint32_t* light_count);
+/* Replaces all of them, by options.light_count_max lights at most. */
+POCKETRAY_API pocketray_result pocketray_set_lights(pocketray_instance* instance, const pocketray_light* lights,
+                                                    uint32_t light_count);
+
+/* Radiance where a ray hits nothing, and constant indirect light: radiance from everywhere; 0 … 1e18. */
+POCKETRAY_API pocketray_result pocketray_get_surroundings(const pocketray_instance* instance, float background[3],
+                                                          float ambient[3]);
+POCKETRAY_API pocketray_result pocketray_set_surroundings(pocketray_instance* instance, const float background[3],
+                                                          const float ambient[3]);
+
+/* A node: of an animated scene, or one of options.parts. Transforms are affine, three rows of four: p' = A·p + t with t
+ * in the last column. */
+typedef struct pocketray_node {
+  size_t struct_size;
+  uint32_t parent;     /* a lower index, or POCKETRAY_NONE */
+  int overridden;      /* 1: by pocketray_set_node() */
+  float to_parent[12]; /* for the coming frame where overridden, else as of the last one */
+  float to_world[12];  /* as of the last frame */
+} pocketray_node;
+#define POCKETRAY_NODE_INIT                               \
+  {                                                       \
+    sizeof(pocketray_node), POCKETRAY_NONE, 0, {0}, { 0 } \
+  }
+
+POCKETRAY_API pocketray_result pocketray_get_node(const pocketray_instance* instance, uint32_t node,
+                                                  pocketray_node* result);
+/* Places a node in its parent's space (a part: in the scene's) in all coming frames, whatever its animation says; null
+ * gives it back to the animation, and a part back to its place. Its children, meshes, skins, lights and cameras follow.
+ * A transform that mirrors turns surfaces inside out. POCKETRAY_ERROR_LIMIT: neither options.movable nor
+ * options.parts asked for this. */
+POCKETRAY_API pocketray_result pocketray_set_node(pocketray_instance* instance, uint32_t node,
+                                                  const float to_parent[12]);
+
+/* Displayed is exposure × radiance: 2⁻⁶⁰ … 2⁶⁰. Measuring takes what shows the scene's geometric mean as middle grey,
+ * as the camera sees it at a time, and sets it; `exposure` may be null there. */
+POCKETRAY_API pocketray_result pocketray_get_exposure(const pocketray_instance* instance, float* exposure);
+POCKETRAY_API pocketray_result pocketray_set_exposure(pocketray_instance* instance, float exposure);
+POCKETRAY_API pocketray_result pocketray_measure_exposure(pocketray_instance* instance, double seconds,
+                                                          float* exposure);
+
+/* ---- Frames -------------------------------------------------------------------------------------------------------*/
+
+enum {
+  POCKETRAY_XRGB8888 = 0, /* 32 bits in the CPU's byte order, red in bits 16 … 23; the upper 8 are 0 */
+  POCKETRAY_XBGR8888 = 1, /* 32 bits, blue in bits 16 … 23 */
+  POCKETRAY_RGB565 = 2,   /* 16 bits in the CPU's byte order, red uppermost */
+  POCKETRAY_BGR565 = 3,   /* 16 bits, blue uppermost */
+  POCKETRAY_RGB888 = 4,   /* bytes red, green, blue */
+  POCKETRAY_BGR888 = 5,   /* bytes blue, green, red */
+  POCKETRAY_RGB_FLOAT = 6 /* three floats: linear radiance, before exposure */
 };
 
-struct Instance;  // lies in the memory given
+/* Where a picture is written, and how. */
+typedef struct pocketray_pixels {
+  size_t struct_size;
+  void* data;           /* top left of the screen; aligned as its pixels, to 1, 2 or 4 bytes */
+  size_t byte_count;    /* there are in all: line_bytes for every row but the last, which may end with its pixels */
+  size_t line_bytes;    /* from one screen row to the next; a multiple of that alignment */
+  int format;           /* POCKETRAY_XRGB8888, … */
+  int rotation_degrees; /* of the picture, clockwise: 0, 90, 180 or 270; a quarter turn puts width × height pixels on a
+                           screen of height × width. POCKETRAY_RGB_FLOAT: 0 */
+  int dither;           /* 1: ordered, 8 × 8 */
+  int reserved;
+} pocketray_pixels;
+#define POCKETRAY_PIXELS_INIT \
+  { sizeof(pocketray_pixels), NULL, 0, 0, 0, 0, 0, 0 }
 
-// What is wrong with an argument, be it out of range, not a number or null, comes back as a Result; nothing aborts. An
-// instance that could not be opened is null.
+/* Renders the scene at a time, within ±1e9 seconds. POCKETRAY_STOPPED: the rows that were finished are written, from
+ * the top; pocketray_get_frame() says how many. */
+POCKETRAY_API pocketray_result pocketray_render(pocketray_instance* instance, double seconds,
+                                                const pocketray_pixels* pixels);
 
-// Opens a built-in scene (cornell, statue, seesaw, cube, furnace), or a .pray file's bytes, which must be aligned to 64
-// and outlive the instance. `memory` must too; it is all the instance ever uses.
-Result open_builtin(const char* name, const Options& options, void* memory, std::size_t memory_bytes,
-                    Instance** instance);
-Result open_baked(const void* bytes, std::size_t byte_count, const Options& options, void* memory,
-                  std::size_t memory_bytes, Instance** instance);
-// Looks from elsewhere from now on.
-Result look(Instance* instance, const View& view);
-// Renders the scene at a time in seconds into `pixels`, `line_bytes` from row to row, row 0 on top. Times lie within
-// ±10⁹ seconds.
-Result render(Instance* instance, double seconds, void* pixels, int line_bytes);
-// Ends its threads. The memory is the caller's again. Null is allowed.
-void close(Instance* instance);
+/* The same picture, coarse first: begins a frame, then refines it for some milliseconds a call, at least by one row.
+ * Pass the same pixels each time: only rows that changed are written. POCKETRAY_OK: the frame is finished;
+ * POCKETRAY_UNFINISHED: call again; POCKETRAY_STOPPED: call again, once the stop flag is cleared. Any change of the
+ * instance and pocketray_render() end a frame that was begun. */
+POCKETRAY_API pocketray_result pocketray_begin(pocketray_instance* instance, double seconds);
+POCKETRAY_API pocketray_result pocketray_refine(pocketray_instance* instance, double milliseconds,
+                                                const pocketray_pixels* pixels);
 
-}  // namespace pocketray
+/* 1: rendering stops within a few rows, and does not start, until it is set to 0. From any thread or signal handler. A
+ * null instance is allowed. */
+POCKETRAY_API void pocketray_set_stop(pocketray_instance* instance, int stop);
+
+/* Called by pocketray_render() after some rows, on its thread; anything but 0 stops the frame. It may call
+ * pocketray_set_stop() and nothing else of the instance. `user` is passed on. Null: none. */
+typedef int (*pocketray_progress)(void* user, uint32_t rows_done, uint32_t row_count);
+POCKETRAY_API pocketray_result pocketray_set_progress(pocketray_instance* instance, pocketray_progress progress,
+                                                      void* user);
+
+/* What the last frame cost. */
+typedef struct pocketray_frame {
+  size_t struct_size;
+  double build_ms; /* of the accelerator, when the scene was opened */
+  double pose_ms, refit_ms, trace_ms;
+  uint64_t ray_count, rays_skipped; /* rays_skipped: could not have changed a displayed level */
+  uint32_t rows_done, row_count;    /* of a frame being refined: rows of its finest grid */
+} pocketray_frame;
+#define POCKETRAY_FRAME_INIT \
+  { sizeof(pocketray_frame), 0, 0, 0, 0, 0, 0, 0, 0 }
+POCKETRAY_API pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketray_frame* frame);
+/* What each row of the last frame took, in nanoseconds of one thread; 0 where it was not traced. Rows traced together
+ * count alike. `row_count` must be the picture's height. */
+POCKETRAY_API pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, uint64_t* nanoseconds,
+                                                       uint32_t row_count);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

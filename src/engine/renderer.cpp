@@ -107,6 +107,7 @@ Status plan_renderer(Renderer* r, const SceneStorage& storage, std::size_t outpu
   r->effects = plan_effects(r->scene, r->settings);
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(r->scene, r->settings, r->effects.mask, &point_count));
+  if (r->light_count_max > r->scene.lights.count) point_count += r->light_count_max - r->scene.lights.count;
   r->light_points.count = r->light_point_count_max = point_count;
   return choose_accel(r, storage, output_bytes);
 }

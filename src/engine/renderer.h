@@ -25,6 +25,7 @@ struct Renderer {
   Pose pose;
   Array<LightPoint> light_points;
   std::uint32_t light_point_count_max = 0;  // planned for
+  std::uint32_t light_count_max = 0;        // lights that may be set later: their points are planned for, too
   FrameData frame;
   Array<Span> spans;            // one per scanline
   Array<std::uint64_t> row_ns;  // what each cost in the last frame

@@ -58,7 +58,8 @@ void apply_channels(const Scene& scene, const Animation& animation, double time,
 void place_nodes(const Scene& scene, Pose* pose) {
   for (std::uint32_t n = 0; n < scene.nodes.count; ++n) {
     const Node& node = pose->local_nodes[n];
-    Transform local = compose(node.translation, node.rotation, node.scale);
+    bool overridden = pose->overrides.count && pose->overrides[n].on;
+    Transform local = overridden ? pose->overrides[n].to_parent : compose(node.translation, node.rotation, node.scale);
     pose->nodes[n] = hold(node.parent == kNone ? local : pose->nodes[node.parent] * hold(local));
   }
   for (std::uint32_t j = 0; j < scene.joints.count; ++j)
@@ -87,6 +88,27 @@ Transform blended(const Transform* joints, const SkinWeight& skin_weight) {
   return sum;
 }
 
+bool is_identity(const Transform& t) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j)
+      if (t.m[i][j] != (i == j ? 1.0f : 0.0f)) return false;
+  return true;
+}
+
+// Where a mesh's rest pose is its place in the world and nothing moved it, it stays as it was, to the bit: normals are
+// not normalized once more.
+bool stays_at_rest(const Scene& scene, const MovingMesh& mesh, const Transform& placed) {
+  return scene.rest_positions.data == scene.positions.data && mesh.rest_begin == mesh.vertex_begin &&
+         mesh.skin == kNone && mesh.morph_count == 0 && is_identity(placed);
+}
+
+void rest_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
+  std::uint32_t begin = mesh.vertex_begin, count = mesh.vertex_count;
+  copy(Array<const Vec3>{scene.positions.data + begin, count}, Array<Vec3>{pose->positions.data + begin, count});
+  if (pose->normals.count)
+    copy(Array<const Vec3>{scene.normals.data + begin, count}, Array<Vec3>{pose->normals.data + begin, count});
+}
+
 void place_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
   bool with_normals = pose->normals.count > 0;
   bool skinned = mesh.skin != kNone;
@@ -94,6 +116,7 @@ void place_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
   const Transform* joints = skinned ? pose->joints.data + scene.skins[mesh.skin].joint_begin : nullptr;
   Transform placed;
   if (!skinned) placed = hold(pose->nodes[mesh.node] * mesh.instance);
+  if (stays_at_rest(scene, mesh, placed)) return rest_mesh(scene, mesh, pose);
   NormalTransform placed_normal = normal_transform(placed);
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     if (skinned) {
@@ -176,6 +199,7 @@ void pose_at(const Scene& scene, std::uint32_t animation_index, double seconds, 
   if (!is_animated(scene)) return;
   CHECK_LT(animation_index, scene.animations.count);
   CHECK_EQ(pose->nodes.count, scene.nodes.count);
+  CHECK(pose->overrides.empty() || pose->overrides.count == scene.nodes.count);
   const Animation& animation = scene.animations[animation_index];
   apply_channels(scene, animation, wrapped(seconds, animation.duration), pose);
   place_nodes(scene, pose);

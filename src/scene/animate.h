@@ -5,22 +5,29 @@
 
 namespace pocketray {
 
+// What a caller says of a node in place of its animation.
+struct NodeOverride {
+  Transform to_parent;
+  bool on = false;
+};
+
 // What moves, at one time. All arrays are empty for a static scene; otherwise they are writable and as long as the
 // scene's.
 struct Pose {
-  Array<Vec3> positions;    // world space; empty when no vertex moves: use Scene::positions
-  Array<Vec3> normals;      // world space; empty when no vertex moves or the scene has none
-  Array<Transform> nodes;   // node → world
-  Array<Light> lights;      // world space; their node is kNone
-  Array<Camera> cameras;    // world space; their node is kNone
-  Array<Node> local_nodes;  // nodes as the animation sets them, before their parents
-  Array<float> weights;     // morph weights as the animation sets them
-  Array<Transform> joints;  // rest pose → world, one per Scene::joints
+  Array<Vec3> positions;                // world space; empty when no vertex moves: use Scene::positions
+  Array<Vec3> normals;                  // world space; empty when no vertex moves or the scene has none
+  Array<Transform> nodes;               // node → world
+  Array<Light> lights;                  // world space; their node is kNone
+  Array<Camera> cameras;                // world space; their node is kNone
+  Array<Node> local_nodes;              // nodes as the animation sets them, before their parents
+  Array<float> weights;                 // morph weights as the animation sets them
+  Array<Transform> joints;              // rest pose → world, one per Scene::joints
+  Array<const NodeOverride> overrides;  // one per node, the caller's; empty: the animation alone moves them
 };
 
 // Bytes make_pose() takes from its arena, exactly. 0 for a scene that is not animated.
 std::size_t pose_need(const Scene& scene);
-// Allocates and poses animation 0 at time 0; call once. For a static scene all arrays stay empty.
+// Allocates and poses animation 0 at time 0, without overrides; call once. For a static scene all arrays stay empty.
 Pose make_pose(const Scene& scene, Arena* arena);
 // Evaluates animation `animation_index` at `seconds` (wraps at its duration, so the duration itself shows time 0) into
 // `pose`, whatever it held before. Before a channel's first key and after its last one, that key holds. Allocates

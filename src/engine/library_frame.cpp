@@ -1,0 +1,207 @@
+// Frames for the library's caller: whole or refined, packed into his pixels.
+#include <climits>
+#include <cstring>
+
+#include "base/limit_list.h"
+#include "engine/frame.h"
+#include "engine/library.h"
+#include "present/pack.h"
+
+namespace pocketray {
+namespace {
+
+constexpr PixelFormat kFormats[] = {kXrgb8888, kXbgr8888, kRgb565, kBgr565, kRgb888, kBgr888};
+constexpr int kFormatCount = POCKETRAY_RGB_FLOAT + 1;
+static_assert(sizeof kFormats / sizeof kFormats[0] == POCKETRAY_RGB_FLOAT, "one for each but floats");
+
+// A caller's pixels, checked.
+struct Target {
+  void* data;
+  int line_bytes;
+  int format;
+  Rotation rotation;
+  bool dither;
+};
+
+Status read_pixels(const pocketray_pixels* given, const Settings& settings, Target* target) {
+  pocketray_pixels p = POCKETRAY_PIXELS_INIT;
+  RETURN_IF_ERROR(read_struct("the pixels", given, &p));
+  if (!p.data) return failure("the pixels' data is a null pointer: pass room for the picture");
+  RETURN_IF_ERROR(check_choice("the pixels' format", p.format, kFormatCount));
+  RETURN_IF_ERROR(check_choice("dither", p.dither, 2));
+  if (!rotation_from_degrees(p.rotation_degrees, &target->rotation))
+    return failure("the picture is rotated by %d degrees: it must be 0, 90, 180 or 270", p.rotation_degrees);
+  bool floats = p.format == POCKETRAY_RGB_FLOAT;
+  if (floats && target->rotation != Rotation::none) return failure("linear radiance is not rotated: pass 0 degrees");
+  bool turned = target->rotation == Rotation::quarter || target->rotation == Rotation::three_quarters;
+  std::size_t columns = turned ? settings.height : settings.width, rows = turned ? settings.width : settings.height;
+  std::size_t bits = floats ? 8 * sizeof(Vec3) : static_cast<std::size_t>(kFormats[p.format].bits_per_pixel);
+  std::size_t row_bytes = columns * bits / 8, alignment = floats ? sizeof(float) : bits == 24 ? 1 : bits / 8;
+  if (p.line_bytes < row_bytes || p.line_bytes > INT_MAX)
+    return failure("a row of %zu pixels takes %zu bytes and line_bytes is %zu", columns, row_bytes, p.line_bytes);
+  if (p.line_bytes % alignment || reinterpret_cast<std::uintptr_t>(p.data) % alignment)
+    return failure("rows of these pixels must be aligned to %zu bytes", alignment);
+  std::uint64_t needed = std::uint64_t(p.line_bytes) * (rows - 1) + row_bytes;
+  if (p.byte_count < needed)
+    return failure("%zu rows take %llu bytes and byte_count is %zu", rows, static_cast<unsigned long long>(needed),
+                   p.byte_count);
+  target->data = p.data;
+  target->line_bytes = static_cast<int>(p.line_bytes);
+  target->format = p.format;
+  target->dither = p.dither != 0;
+  return success();
+}
+
+void write_pixels(const Renderer& r, std::uint32_t row_begin, std::uint32_t row_end, const Target& target) {
+  int width = static_cast<int>(r.settings.width), height = static_cast<int>(r.settings.height);
+  if (target.format != POCKETRAY_RGB_FLOAT) {
+    pack_rows(r.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end), r.exposure,
+              kFormats[target.format], target.rotation, target.dither, target.data, target.line_bytes);
+    return;
+  }
+  std::size_t row_pixels = r.settings.width;
+  for (std::size_t row = row_begin; row < row_end; ++row)
+    std::memcpy(static_cast<std::uint8_t*>(target.data) + row * static_cast<std::size_t>(target.line_bytes),
+                r.image.data + row * row_pixels, row_pixels * sizeof(Vec3));
+}
+
+Status check_rendering(const pocketray_instance* instance, double seconds) {
+  RETURN_IF_ERROR(check_instance(instance));
+  return check_limit(Quantity::seconds, seconds);
+}
+
+void clear_costs(pocketray_instance* instance) {
+  Renderer* r = &instance->renderer;
+  std::memset(r->row_ns.data, 0, r->row_ns.bytes());
+  r->timings.trace_ms = 0;
+  instance->rows_done = 0;
+  instance->refining = false;
+}
+
+// Bands of rows, as high as makes all threads busy, with a call after each.
+Status render_bands(pocketray_instance* instance, double seconds) {
+  Renderer* r = &instance->renderer;
+  RETURN_IF_ERROR(prepare_frame(r, seconds));
+  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
+  const std::uint32_t band = 4 * kTileRows * r->settings.threads, height = r->settings.height;
+  std::uint64_t start = clock_ns();
+  bool stopped = false;
+  while (instance->rows_done < height && !stopped) {
+    std::uint32_t row = instance->rows_done, rows = height - row < band ? height - row : band;
+    std::uint32_t done = trace_paced(
+        &r->pace, r->workers,
+        {r->spans.data + row, rows, Aov::none, r->image.data, r->tracers.data, r->row_ns.data + row, &instance->stop});
+    instance->rows_done += done;
+    stopped = done < rows;
+    if (!stopped) stopped = instance->progress(instance->progress_user, instance->rows_done, height) != 0;
+  }
+  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  return success();
+}
+
+}  // namespace
+}  // namespace pocketray
+
+using namespace pocketray;
+
+pocketray_result pocketray_render(pocketray_instance* instance, double seconds, const pocketray_pixels* pixels) {
+  Status status = check_rendering(instance, seconds);
+  Target target;
+  if (status.ok) status = read_pixels(pixels, instance->renderer.settings, &target);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  Renderer* r = &instance->renderer;
+  clear_costs(instance);
+  status = instance->progress ? render_bands(instance, seconds)
+                              : render_frame(r, seconds, Aov::none, &instance->stop, &instance->rows_done);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
+  write_pixels(*r, 0, instance->rows_done, target);
+  return instance->rows_done < r->settings.height ? POCKETRAY_STOPPED : POCKETRAY_OK;
+}
+
+pocketray_result pocketray_begin(pocketray_instance* instance, double seconds) {
+  Status status = check_rendering(instance, seconds);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  clear_costs(instance);
+  status = prepare_frame(&instance->renderer, seconds);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
+  start_progressive(&instance->renderer, &instance->progressive);
+  instance->refining = true;
+  return POCKETRAY_OK;
+}
+
+pocketray_result pocketray_refine(pocketray_instance* instance, double milliseconds, const pocketray_pixels* pixels) {
+  constexpr double kMillisecondsMax = 1e12;
+  Status status = check_instance(instance);
+  if (status.ok && !(milliseconds >= 0 && milliseconds <= kMillisecondsMax))
+    status = failure("a frame cannot be refined for %g milliseconds: the number must lie in 0 … %g", milliseconds,
+                     kMillisecondsMax);
+  Target target;
+  if (status.ok) status = read_pixels(pixels, instance->renderer.settings, &target);
+  if (status.ok && !instance->refining) status = failure("there is no frame to refine: begin one after every change");
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+
+  Renderer* r = &instance->renderer;
+  Progressive* p = &instance->progressive;
+  std::uint64_t deadline = clock_ns() + static_cast<std::uint64_t>(milliseconds * 1e6);
+  pocketray_result result = POCKETRAY_UNFINISHED;
+  while (result == POCKETRAY_UNFINISHED) {
+    if (instance->stop.load(std::memory_order_relaxed)) {
+      result = POCKETRAY_STOPPED;
+      break;
+    }
+    bool finest = p->step == 1;
+    std::uint32_t row = p->row;
+    std::uint64_t before = p->trace_ns;
+    bool finished = p->step == 0 || advance_progressive(r, instance->row_spans, 0, p);  // a row
+    if (row < r->row_ns.count) r->row_ns[row] += p->trace_ns - before;
+    if (finest && p->trace_ns > before) ++instance->rows_done;
+    if (finished) result = POCKETRAY_OK;
+    if (clock_ns() >= deadline) break;
+  }
+  r->timings.trace_ms = static_cast<double>(p->trace_ns) * 1e-6;
+  std::uint32_t begin, end;
+  if (take_dirty_rows(p, &begin, &end)) write_pixels(*r, begin, end, target);
+  return result;
+}
+
+void pocketray_set_stop(pocketray_instance* instance, int stop) {
+  if (instance) instance->stop.store(stop != 0, std::memory_order_relaxed);
+}
+
+pocketray_result pocketray_set_progress(pocketray_instance* instance, pocketray_progress progress, void* user) {
+  Status status = check_instance(instance);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  instance->progress = progress;
+  instance->progress_user = user;
+  return POCKETRAY_OK;
+}
+
+pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketray_frame* frame) {
+  Status status = check_instance(instance);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  const Renderer& r = instance->renderer;
+  Tracer counts = total_counts(r);
+  pocketray_frame result = POCKETRAY_FRAME_INIT;
+  result.build_ms = r.timings.build_ms;
+  result.pose_ms = r.timings.pose_ms;
+  result.refit_ms = r.timings.refit_ms;
+  result.trace_ms = r.timings.trace_ms;
+  for (std::uint64_t rays : counts.rays) result.ray_count += rays;
+  result.rays_skipped = counts.rays_left_out;
+  result.rows_done = instance->rows_done;
+  result.row_count = r.settings.height;
+  return to_result(write_struct("the frame", result, frame), POCKETRAY_ERROR_ARGUMENT);
+}
+
+pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, std::uint64_t* nanoseconds,
+                                         std::uint32_t row_count) {
+  Status status = check_instance(instance);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  if (!nanoseconds) return refuse(POCKETRAY_ERROR_ARGUMENT, failure("nanoseconds: a null pointer"));
+  if (row_count != instance->renderer.settings.height)
+    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("row_count is %u, and the picture has %u rows", row_count,
+                                                    instance->renderer.settings.height));
+  Array<std::uint64_t> row_ns = instance->renderer.row_ns;
+  std::memcpy(nanoseconds, row_ns.data, row_ns.bytes());
+  return POCKETRAY_OK;
+}

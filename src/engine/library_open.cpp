@@ -1,0 +1,369 @@
+// Opening scenes: what the caller asks for → a planned and built renderer in his memory.
+#include <cstring>
+#include <new>
+
+#include "accel/accel_list.h"
+#include "base/limit_list.h"
+#include "effect/effect_list.h"
+#include "engine/library.h"
+#include "plan/plan_effects.h"
+#include "scene/baked.h"
+#include "scene/builtin/builtin.h"
+
+namespace pocketray {
+namespace {
+
+static_assert(kEffectCount <= POCKETRAY_EFFECTS_MAX, "a plan holds all effects");
+static_assert(kMemoryPartMax <= POCKETRAY_MEMORY_PARTS_MAX, "and all parts of the memory");
+static_assert(kNone == POCKETRAY_NONE, "no such index");
+
+// What was asked for, read and checked.
+struct Request {
+  pocketray_source source;
+  pocketray_options options;
+  Settings settings;
+  Camera camera;
+  const AccelInfo* accel = nullptr;       // null: the plan is to choose
+  const BuiltinScene* builtin = nullptr;  // null: source.bytes
+};
+
+bool is_aligned(const void* bytes) { return reinterpret_cast<std::uintptr_t>(bytes) % kArenaAlignment == 0; }
+
+Status read_source(const pocketray_source* given, Request* q) {
+  RETURN_IF_ERROR(read_struct("the source", given, &q->source));
+  const pocketray_source& s = q->source;
+  RETURN_IF_ERROR(check_choice("the source's copy", s.copy, 2));
+  if (s.builtin) {
+    q->builtin = find_builtin(s.builtin);
+    if (!q->builtin) return failure("there is no built-in scene '%.60s'", s.builtin);
+    return success();
+  }
+  if (!s.bytes)
+    return failure("the scene's bytes are a null pointer: pass those of a .pray file, or a built-in's name");
+  if (!s.copy && !is_aligned(s.bytes))
+    return failure("the scene's bytes are not aligned to %zu: align them, or set copy", kArenaAlignment);
+  return success();
+}
+
+Status read_effects(const char* text, Settings* settings) {
+  if (!text) return success();
+  if (parse_effects(text, settings).ok) return success();
+  return failure(
+      "effects are '%.60s': write auto, all or names, each with an optional '-' before it, and commas between", text);
+}
+
+Status read_accelerator(const char* name, const AccelInfo** accel) {
+  if (!name) return success();
+  for (const AccelInfo* info : kAccelList)
+    if (std::strcmp(info->name, name) == 0) return *accel = info, success();
+  return failure("there is no accelerator '%.60s'", name);
+}
+
+Status read_options(const pocketray_options* given, Request* q) {
+  RETURN_IF_ERROR(read_struct("the options", given, &q->options));
+  const pocketray_options& o = q->options;
+  Settings* s = &q->settings;
+  RETURN_IF_ERROR(check_limit(Quantity::width, o.width));
+  RETURN_IF_ERROR(check_limit(Quantity::height, o.height));
+  if (o.threads < 1 || o.threads > static_cast<int>(kThreadCountMax))
+    return failure("the number of threads is %d: it must lie in 1 … %u", o.threads, kThreadCountMax);
+  s->width = static_cast<std::uint32_t>(o.width);
+  s->height = static_cast<std::uint32_t>(o.height);
+  s->threads = static_cast<std::uint32_t>(o.threads);
+  RETURN_IF_ERROR(check_choice("measure_exposure", o.measure_exposure, 2));
+  RETURN_IF_ERROR(check_choice("movable", o.movable, 2));
+  RETURN_IF_ERROR(check_limit(Quantity::camera_index, o.camera_index));
+  if (o.light_count_max > kLightCountMax)
+    return failure("light_count_max is %u: at most %u lights fit", o.light_count_max, kLightCountMax);
+  if (o.part_count > kNodeCountMax) return failure("%u parts, at most %u fit", o.part_count, kNodeCountMax);
+  if (o.part_count && !o.parts) return failure("the parts are a null pointer, and there are %u", o.part_count);
+  pocketray_settings settings = POCKETRAY_SETTINGS_INIT;
+  if (o.settings) RETURN_IF_ERROR(read_struct("the settings", o.settings, &settings));
+  RETURN_IF_ERROR(read_settings(settings, s));
+  if (o.camera) RETURN_IF_ERROR(read_camera(o.camera, *s, &q->camera));
+  RETURN_IF_ERROR(read_effects(o.effects, s));
+  return read_accelerator(o.accelerator, &q->accel);
+}
+
+Status read_request(const pocketray_source* source, const pocketray_options* options, Request* q) {
+  q->source = POCKETRAY_SOURCE_INIT;
+  q->options = POCKETRAY_OPTIONS_INIT;
+  RETURN_IF_ERROR(read_source(source, q));
+  return read_options(options, q);
+}
+
+std::size_t parts_need(const Request& q) {
+  if (!q.options.part_count) return 0;
+  return arena_need<Node>(q.options.part_count) + arena_need<MovingMesh>(q.options.part_count) +
+         arena_need<Animation>(1);
+}
+
+// What load_scene() takes from the scene arena.
+std::size_t load_need(const Request& q, bool copies) {
+  std::size_t scene = q.builtin ? q.builtin->need() : copies ? arena_need(q.source.byte_count) : 0;
+  return size_sum(scene, parts_need(q));
+}
+std::size_t lights_need(const Request& q) { return 2 * arena_need<Light>(q.options.light_count_max); }
+bool moves_nodes(const Request& q) { return q.options.movable || q.options.part_count; }
+std::size_t overrides_need(const Request& q, const Scene& scene) {
+  return moves_nodes(q) ? arena_need<NodeOverride>(scene.nodes.count) : 0;
+}
+
+// The run of vertices that the triangles of a material use.
+Status find_run(const Scene& scene, std::uint32_t part, std::uint32_t material, MovingMesh* mesh) {
+  std::uint32_t first = kNone, last = 0;
+  for (const Triangle& t : scene.triangles) {
+    if (t.material() != material) continue;
+    for (std::uint32_t v : t.vertices()) first = v < first ? v : first, last = v > last ? v : last;
+  }
+  if (first == kNone) return failure("parts[%u]: no triangle is of material %u", part, material);
+  for (const Triangle& t : scene.triangles)
+    for (std::uint32_t v : t.vertices())
+      if (t.material() != material && v >= first && v <= last)
+        return failure("parts[%u]: vertex %u, within those of material %u, is another's, too: state a run of vertices",
+                       part, v, material);
+  mesh->vertex_begin = first;
+  mesh->vertex_count = last - first + 1;
+  return success();
+}
+
+Status read_part(const Scene& scene, const Request& q, std::uint32_t part, MovingMesh* mesh) {
+  const pocketray_part& p = q.options.parts[part];
+  *mesh = MovingMesh();
+  mesh->node = part;
+  mesh->vertex_begin = p.vertex_begin;
+  mesh->vertex_count = p.vertex_count;
+  if (p.vertex_count == 0) RETURN_IF_ERROR(find_run(scene, part, p.material, mesh));
+  std::uint32_t count = scene.positions.count;
+  if (mesh->vertex_begin > count || mesh->vertex_count > count - mesh->vertex_begin)
+    return failure("parts[%u] reaches beyond the %u vertices there are", part, count);
+  mesh->rest_begin = mesh->vertex_begin;
+  return success();
+}
+
+// Makes nodes of the parts, and an animation without channels: their rest pose is their place in the world.
+Status add_parts(const Request& q, Renderer* r) {
+  std::uint32_t count = q.options.part_count;
+  Scene* scene = &r->scene;
+  if (count == 0) return success();
+  if (scene->nodes.count || scene->animations.count)
+    return failure("the scene is animated, and its nodes are what moves: leave parts out and set movable");
+  Array<Node> nodes = arena_array<Node>(&r->scene_arena, count);
+  Array<MovingMesh> meshes = arena_array<MovingMesh>(&r->scene_arena, count);
+  Array<Animation> animation = arena_array_zeroed<Animation>(&r->scene_arena, 1);
+  for (std::uint32_t part = 0; part < count; ++part) {
+    nodes[part] = Node();
+    MovingMesh mesh;
+    RETURN_IF_ERROR(read_part(*scene, q, part, &mesh));
+    std::uint32_t at = part;  // runs ascend
+    for (; at > 0 && meshes[at - 1].vertex_begin > mesh.vertex_begin; --at) meshes[at] = meshes[at - 1];
+    meshes[at] = mesh;
+  }
+  for (std::uint32_t i = 1; i < count; ++i)
+    if (meshes[i].vertex_begin - meshes[i - 1].vertex_begin < meshes[i - 1].vertex_count)
+      return failure("parts[%u] and parts[%u] have vertices in common", meshes[i - 1].node, meshes[i].node);
+  scene->nodes = nodes;
+  scene->moving_meshes = meshes;
+  scene->animations = animation;
+  scene->rest_positions = scene->positions;
+  scene->rest_normals = scene->normals;
+  return success();
+}
+
+pocketray_result load_scene(const Request& q, bool copies, Renderer* r) {
+  Arena* arena = &r->scene_arena;
+  if (q.builtin) {
+    q.builtin->build(arena, &r->scene);
+  } else {
+    const std::uint8_t* bytes = static_cast<const std::uint8_t*>(q.source.bytes);
+    if (copies) {
+      void* copy = arena_allocate(arena, q.source.byte_count);
+      std::memcpy(copy, bytes, q.source.byte_count);
+      bytes = static_cast<std::uint8_t*>(copy);
+    }
+    Status status = baked_open(bytes, q.source.byte_count, &r->scene);
+    if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
+  }
+  if (q.options.measure_exposure) r->scene.info.auto_exposure = 1;
+  return to_result(add_parts(q, r), POCKETRAY_ERROR_ARGUMENT);
+}
+
+pocketray_result plan_request(const Request& q, const SceneStorage& storage, Renderer* r) {
+  const Scene& scene = r->scene;
+  std::uint32_t index = q.options.camera_index;
+  if (index > 0 && index >= scene.cameras.count)
+    return refuse(POCKETRAY_ERROR_ARGUMENT,
+                  failure("there is no camera %u: the scene has %u", index, scene.cameras.count));
+  r->camera_index = index;
+  r->accel_info = q.accel;
+  r->light_count_max = q.options.light_count_max;
+  Status status = plan_renderer(r, storage, progressive_need(q.settings));
+  if (r->memory.total_bytes == SIZE_MAX) status = failure("the scene needs more memory than this CPU addresses");
+  bool too_small = r->memory.total_bytes == SIZE_MAX || r->memory.total_bytes > r->memory.limit_bytes;
+  if (!status.ok) return refuse(too_small ? POCKETRAY_ERROR_MEMORY : POCKETRAY_ERROR_SCENE, status);
+  if (r->light_count_max && r->light_count_max < scene.lights.count)
+    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("light_count_max is %u, and the scene has %u lights already",
+                                                    r->light_count_max, scene.lights.count));
+  return POCKETRAY_OK;
+}
+
+pocketray_result need_more(const char* what, std::size_t needed, std::size_t given) {
+  return refuse(POCKETRAY_ERROR_MEMORY, failure("%s needs %zu bytes of memory and %zu are given", what, needed, given));
+}
+
+// Gives the caller's lights and transforms the room that was planned for them. The first frame's pose was made without.
+void attach_changes(pocketray_instance* instance) {
+  Pose* pose = &instance->renderer.pose;
+  if (pose->nodes.empty()) return;  // nothing moves
+  if (instance->posed_lights.count) pose->lights = {instance->posed_lights.data, instance->renderer.scene.lights.count};
+  pose->overrides = instance->overrides;
+}
+
+pocketray_result build(const Request& q, pocketray_instance* instance) {
+  Renderer* r = &instance->renderer;
+  if (instance->lights.count) {
+    for (std::uint32_t i = 0; i < r->scene.lights.count; ++i) instance->lights[i] = r->scene.lights[i];
+    r->scene.lights = {instance->lights.data, r->scene.lights.count};
+  }
+  if (q.options.camera) {
+    Status status = set_camera(r, q.camera);
+    if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  }
+  r->workers = start_workers(q.settings.threads);
+  Status status = build_renderer(r);
+  if (!status.ok) {
+    stop_workers(r->workers);
+    return refuse(POCKETRAY_ERROR_SCENE, status);
+  }
+  instance->row_spans = arena_array<Span>(&r->frame_arena, q.settings.width);
+  attach_changes(instance);
+  return POCKETRAY_OK;
+}
+
+pocketray_result open_request(const Request& q, void* memory, std::size_t memory_bytes, pocketray_instance** result) {
+  constexpr std::size_t least = kArenaAlignment + arena_need(sizeof(pocketray_instance));
+  if (memory_bytes < least) return need_more("an instance alone", least, memory_bytes);
+  Arena block = make_arena("instance", memory, memory_bytes);
+  auto* instance = new (arena_allocate(&block, sizeof(pocketray_instance))) pocketray_instance;
+  Renderer* r = &instance->renderer;
+  std::size_t room = arena_free(block), scene_bytes = load_need(q, q.source.copy != 0);
+  start_renderer(block.base + block.used, room, q.settings, r);
+  if (scene_bytes > room) return need_more("the scene alone", size_sum(least, scene_bytes), memory_bytes);
+  pocketray_result loaded = load_scene(q, q.source.copy != 0, r);
+  if (loaded != POCKETRAY_OK) return loaded;
+  std::size_t change_bytes = lights_need(q) + overrides_need(q, r->scene);
+  if (change_bytes > arena_free(r->scene_arena))
+    return need_more("what may be changed", size_sum(memory_bytes, change_bytes), memory_bytes);
+  if (q.options.light_count_max) {
+    instance->lights = arena_array<Light>(&r->scene_arena, q.options.light_count_max);
+    instance->posed_lights = arena_array<Light>(&r->scene_arena, q.options.light_count_max);
+  }
+  if (moves_nodes(q)) {
+    instance->overrides = arena_array<NodeOverride>(&r->scene_arena, r->scene.nodes.count);
+    for (NodeOverride& o : instance->overrides) o = NodeOverride();
+  }
+  SceneStorage storage;
+  storage.arena_bytes = r->scene_arena.used;
+  pocketray_result planned = plan_request(q, storage, r);
+  if (planned != POCKETRAY_OK) return planned;
+  pocketray_result built = build(q, instance);
+  if (built == POCKETRAY_OK) *result = instance;
+  return built;
+}
+
+}  // namespace
+
+std::size_t instance_need(const Renderer& r) {
+  return size_sum(kArenaAlignment + arena_need(sizeof(pocketray_instance)), r.memory.total_bytes);
+}
+
+void write_plan(const Renderer& r, std::size_t scratch_bytes, pocketray_plan* plan) {
+  const Scene& scene = r.scene;
+  std::memset(static_cast<void*>(plan), 0, sizeof *plan);
+  plan->memory_bytes = instance_need(r);
+  plan->scratch_bytes = scratch_bytes;
+  plan->accelerator = r.accel_info->name;
+  plan->vertex_count = scene.positions.count;
+  plan->triangle_count = scene.triangles.count;
+  plan->material_count = scene.materials.count;
+  plan->light_count = scene.lights.count;
+  plan->camera_count = scene.cameras.count;
+  plan->node_count = scene.nodes.count;
+  plan->default_camera = scene.info.default_camera != 0;
+  plan->default_lights = scene.info.default_lights != 0;
+  plan->frame_count = scene.info.frame_count;
+  plan->frames_per_second = scene.info.frames_per_second;
+  plan->duration_seconds = scene.animations.count ? static_cast<double>(scene.animations[0].duration) : 0;
+  plan->effect_count = kEffectCount;
+  for (int i = 0; i < kEffectCount; ++i) {
+    pocketray_effect* e = &plan->effects[i];
+    const EffectDecision& d = r.effects.decisions[i];
+    e->name = kEffectList[i].name;
+    e->called_for_by = kEffectList[i].called_for_by;
+    e->on = d.on;
+    static_assert(sizeof e->reason == sizeof d.reason, "a reason is copied whole");
+    std::memcpy(e->reason, d.reason, sizeof e->reason);
+  }
+  plan->memory_part_count = static_cast<std::uint32_t>(r.memory.part_count);
+  for (int i = 0; i < r.memory.part_count; ++i)
+    plan->memory_parts[i] = {r.memory.parts[i].name, r.memory.parts[i].bytes};
+}
+
+}  // namespace pocketray
+
+using namespace pocketray;
+
+pocketray_result pocketray_make_plan(const pocketray_source* source, const pocketray_options* options, void* scratch,
+                                     std::size_t scratch_bytes, pocketray_plan* plan) {
+  Status sized = check_struct("the plan", plan, sizeof *plan, sizeof *plan);
+  if (!sized.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, sized);
+  Request q;
+  Status status = read_request(source, options, &q);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  // Bytes that need not be copied to be read stay where they are, and only their copy's memory is planned.
+  bool copies = !q.builtin && !is_aligned(q.source.bytes);
+  std::size_t need = load_need(q, copies);
+  if (need > 0) need = size_sum(need, kArenaAlignment);
+  plan->scratch_bytes = need;
+  if (need > 0 && (!scratch || scratch_bytes < need)) return need_more("planning", need, scratch ? scratch_bytes : 0);
+  Renderer r;
+  start_renderer(need > 0 ? scratch : nullptr, need, q.settings, &r);
+  r.settings.memory_bytes = SIZE_MAX;
+  pocketray_result loaded = load_scene(q, copies, &r);
+  if (loaded != POCKETRAY_OK) return loaded;
+  SceneStorage storage;
+  storage.arena_bytes = size_sum(q.builtin ? r.scene_arena.used : load_need(q, q.source.copy != 0),
+                                 lights_need(q) + overrides_need(q, r.scene));
+  pocketray_result planned = plan_request(q, storage, &r);
+  if (planned != POCKETRAY_OK) return planned;
+  pocketray_plan made;
+  write_plan(r, need, &made);
+  return to_result(write_struct("the plan", made, plan), POCKETRAY_ERROR_ARGUMENT);
+}
+
+pocketray_result pocketray_open(const pocketray_source* source, const pocketray_options* options, void* memory,
+                                std::size_t memory_bytes, pocketray_instance** instance) {
+  if (!instance)
+    return refuse(POCKETRAY_ERROR_ARGUMENT,
+                  failure("there is nowhere to put the instance: pass the address of a pointer"));
+  *instance = nullptr;
+  if (!memory)
+    return refuse(POCKETRAY_ERROR_ARGUMENT,
+                  failure("the memory is a null pointer: pass a block for the instance to lie in"));
+  Request q;
+  Status status = read_request(source, options, &q);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  return open_request(q, memory, memory_bytes, instance);
+}
+
+void pocketray_close(pocketray_instance* instance) {
+  if (instance) stop_workers(instance->renderer.workers);
+}
+
+pocketray_result pocketray_get_plan(const pocketray_instance* instance, pocketray_plan* plan) {
+  Status status = check_instance(instance);
+  if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
+  pocketray_plan made;
+  write_plan(instance->renderer, 0, &made);
+  return to_result(write_struct("the plan", made, plan), POCKETRAY_ERROR_ARGUMENT);
+}
