@@ -25,12 +25,12 @@ std::uint64_t clock_ns() {
 
 namespace {
 
-// Spans to take at once: a tile's rows, fewer towards the end so that all threads end together.
-std::uint32_t spans_at_once(std::uint32_t left, std::uint32_t thread_count) {
-  std::uint32_t share = left / (2 * thread_count), count = kTileRows;
+// Spans to take at once: those of a strip of tiles, fewer towards the end so that all threads end together.
+std::uint32_t spans_at_once(const Span* spans, std::uint32_t left, std::uint32_t thread_count) {
+  std::uint32_t share = left / (2 * thread_count), count = strip_span_count(spans, left);
   if (thread_count > 1)
     while (count > 1 && count > share) count /= 2;
-  return count < left ? count : left;
+  return count;
 }
 
 struct SpanQueue {
@@ -47,7 +47,7 @@ void take_spans(void* context, std::uint32_t thread) {
     std::uint32_t begin = queue->next_span.load(), count;
     do {
       if (begin >= job.span_count) return;
-      count = spans_at_once(job.span_count - begin, queue->thread_count);
+      count = spans_at_once(job.spans + begin, job.span_count - begin, queue->thread_count);
     } while (!queue->next_span.compare_exchange_weak(begin, begin + count));
     std::uint64_t start = job.span_ns ? clock_ns() : 0;
     trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image);
