@@ -1,15 +1,27 @@
 #include "engine/workers.h"
 
+#include <pthread.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
-#include <thread>
-#include <vector>
+#include <new>
+
+#include "base/check.h"
+#include "base/limits.h"
 
 namespace pocketray {
 
+// Threads of POSIX: std::thread throws where the system has none to give, and the library has no exceptions.
+struct Worker {
+  pthread_t thread;
+  Workers* workers;
+  std::uint32_t index;
+};
+
 struct Workers {
-  std::vector<std::thread> threads;
+  Worker threads[kThreadCountMax];
+  std::uint32_t count = 0;  // beside the caller's
   std::mutex mutex;
   std::condition_variable begin, end;
   void (*work)(void* context, std::uint32_t thread) = nullptr;
@@ -75,13 +87,29 @@ void run_worker(Workers* w, std::uint32_t thread) {
   }
 }
 
+void* run_thread(void* context) {
+  const Worker* worker = static_cast<Worker*>(context);
+  run_worker(worker->workers, worker->index);
+  return nullptr;
+}
+
 }  // namespace
 
 Workers* start_workers(std::uint32_t thread_count) {
+  CHECK_LE(thread_count, kThreadCountMax);
   if (thread_count <= 1) return nullptr;
-  Workers* w = new Workers;
-  for (std::uint32_t thread = 1; thread < thread_count; ++thread) w->threads.emplace_back(run_worker, w, thread);
-  return w;
+  Workers* w = new (std::nothrow) Workers;
+  if (!w) return nullptr;
+  while (w->count + 1 < thread_count) {
+    Worker* worker = &w->threads[w->count];
+    worker->workers = w;
+    worker->index = w->count + 1;
+    if (pthread_create(&worker->thread, nullptr, run_thread, worker) != 0) break;
+    ++w->count;
+  }
+  if (w->count > 0) return w;
+  delete w;
+  return nullptr;
 }
 
 void stop_workers(Workers* workers) {
@@ -91,13 +119,11 @@ void stop_workers(Workers* workers) {
     workers->quit = true;
   }
   workers->begin.notify_all();
-  for (std::thread& thread : workers->threads) thread.join();
+  for (std::uint32_t i = 0; i < workers->count; ++i) pthread_join(workers->threads[i].thread, nullptr);
   delete workers;
 }
 
-std::uint32_t worker_thread_count(const Workers* workers) {
-  return workers ? static_cast<std::uint32_t>(workers->threads.size()) + 1 : 1;
-}
+std::uint32_t worker_thread_count(const Workers* workers) { return workers ? workers->count + 1 : 1; }
 
 void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), void* context) {
   if (!w) return work(context, 0);
@@ -105,7 +131,7 @@ void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), voi
     std::lock_guard<std::mutex> lock(w->mutex);
     w->work = work;
     w->context = context;
-    w->busy = static_cast<std::uint32_t>(w->threads.size());
+    w->busy = w->count;
     ++w->generation;
   }
   w->begin.notify_all();
