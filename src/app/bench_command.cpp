@@ -80,7 +80,24 @@ void print_table(const CommonOptions& options, const Renderer& r, Measurement* m
   print_memory(r.memory);
 }
 
-int run(const CommonOptions& options, std::uint32_t frame_count, bool prices) {
+Json sparse_json(const SparseCost* costs) {
+  auto range = [](const Range& ns) { return Json{{"min", ns.min}, {"median", ns.median}, {"max", ns.max}}; };
+  Json list = Json::array();
+  for (int i = 0; i < kSparseFractionCount; ++i)
+    list.push_back({{"fraction", costs[i].fraction},
+                    {"scattered_ns_per_pixel", range(costs[i].scattered_ns_per_pixel)},
+                    {"patch_ns_per_pixel", range(costs[i].patch_ns_per_pixel)}});
+  return list;
+}
+
+void print_sparse(const SparseCost* costs) {
+  std::printf("where some pixels are traced, ns for each\n  %-22s %10s %10s\n", "", "scattered", "patches");
+  for (int i = 0; i < kSparseFractionCount; ++i)
+    std::printf("  %3.0f %% of them %20.0f %10.0f\n", 100 * costs[i].fraction, costs[i].scattered_ns_per_pixel.median,
+                costs[i].patch_ns_per_pixel.median);
+}
+
+int run(const CommonOptions& options, std::uint32_t frame_count, bool prices, bool sparse) {
   OpenScene opened;
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
   if (status.ok) status = open_scene(options, {[](const Settings&) -> std::size_t { return 0; }}, &opened);
@@ -95,10 +112,18 @@ int run(const CommonOptions& options, std::uint32_t frame_count, bool prices) {
   status = measure_frames(r, &m);
   if (status.ok && prices) status = measure_prices(r, &m);
   unseal_memory();
+  SparseCost costs[kSparseFractionCount];
+  if (status.ok && sparse) status = measure_sparse(r, static_cast<int>(frame_count), costs);
   if (!status.ok) return report(status);
   if (m.frame_count == 0) return kExitInterrupted;
+  sparse = sparse && costs[0].fraction > 0;  // not interrupted
   if (options.json != "-") print_table(options, *r, &m);
-  if (!options.json.empty()) status = write_json(options.json, to_json(options, *r, &m));
+  if (options.json != "-" && sparse) print_sparse(costs);
+  if (!options.json.empty()) {
+    Json json = to_json(options, *r, &m);
+    if (sparse) json["sparse"] = sparse_json(costs);
+    status = write_json(options.json, json);
+  }
   return status.ok && interrupted ? kExitInterrupted : report(status);
 }
 
@@ -167,11 +192,14 @@ void add_bench_command(CLI::App* program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto frames = std::make_shared<std::uint32_t>(9);
   auto no_prices = std::make_shared<bool>(false);
+  auto sparse = std::make_shared<bool>(false);
   auto front = std::make_shared<std::string>();
   CLI::App* command = program->add_subcommand("bench", "measure what a pixel, a scanline, a ray and an effect cost");
   add_scene_options(command, options.get());
   command->add_option("--frames", *frames, "frames to measure, after one to warm up")->capture_default_str();
   command->add_flag("--no-prices", *no_prices, "leave out the price of each effect");
+  command->add_flag("--sparse", *sparse,
+                    "also what a pixel costs where some of them are traced, lone ones or patches: 2, 10, 50, 100 %");
   command->add_option("--json", options->json, "also write it as JSON to FILE, or - for standard output");
   CLI::Option* priced = command->add_option(
       "--front", *front,
@@ -181,7 +209,8 @@ void add_bench_command(CLI::App* program, int* exit_status) {
   for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
     priced->excludes(command->get_option(chosen));
   command->callback([=] {
-    *exit_status = priced->count() > 0 ? run_front(*options, *front, *frames) : run(*options, *frames, !*no_prices);
+    *exit_status =
+        priced->count() > 0 ? run_front(*options, *front, *frames) : run(*options, *frames, !*no_prices, *sparse);
   });
 }
 

@@ -132,21 +132,21 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
       job.sequence.numbered ? frame / static_cast<double>(r->scene.info.frames_per_second) : job.options.seconds;
   std::uint64_t rows_before = std::uint64_t(frame - job.sequence.first) * r->settings.height;
   if (job.sharing) return render_shared_with_progress(r, job, seconds, rows_before, progress, complete);
-  RETURN_IF_ERROR(prepare_frame(r, seconds));
-  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
-  const std::uint32_t band = 4 * kTileRows * r->settings.threads;
-  std::uint64_t start = clock_ns();
-  *complete = true;
-  for (std::uint32_t row = 0; row < r->settings.height && *complete; row += band) {
-    std::uint32_t rows = r->settings.height - row < band ? r->settings.height - row : band;
-    std::uint32_t done = trace_paced(
-        &r->pace, r->workers,
-        {r->spans.data + row, rows, job.aov, r->image.data, r->tracers.data, r->row_ns.data + row, &interrupted});
-    *complete = done == rows;
-    show_progress(progress, rows_before + row + rows);
-  }
-  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
-  return success();
+  struct Shown {
+    Progress* progress;
+    std::uint64_t rows_before;
+  } shown = {progress, rows_before};
+  SpanList bands = whole_frame(r);
+  bands.batch_spans = 4 * kTileRows * r->settings.threads;
+  bands.progress_context = &shown;
+  bands.progress = [](void* context, std::uint32_t row_count) {
+    const Shown& s = *static_cast<Shown*>(context);
+    show_progress(s.progress, s.rows_before + row_count);
+  };
+  SpanSource source = list_source(&bands);
+  source.aov = job.aov;
+  source.stop = &interrupted;
+  return render_frame(r, seconds, source, complete);
 }
 
 void pack_page(Renderer* r, const Job& job) {

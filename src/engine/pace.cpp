@@ -54,13 +54,4 @@ void wait_for_pace(Pace* pace, std::uint64_t pixel_count, std::uint64_t start_ns
   if (pace->owed_ns < -kExcessNsMax) pace->owed_ns = -kExcessNsMax;
 }
 
-std::uint32_t trace_paced(Pace* pace, Workers* workers, const TraceJob& job) {
-  if (!is_paced(*pace)) return trace_with(workers, job);
-  std::uint64_t start = clock_ns();
-  std::uint32_t done = trace_with(workers, job);
-  if (job.span_ns) pace_spans(*pace, job.spans, done, worker_thread_count(workers), job.span_ns);
-  wait_for_pace(pace, span_pixel_count(job.spans, done), start, job.stop);
-  return done;
-}
-
 }  // namespace pocketray

@@ -26,7 +26,4 @@ std::uint64_t span_pixel_count(const Span* spans, std::uint32_t span_count);
 void wait_for_pace(Pace* pace, std::uint64_t pixel_count, std::uint64_t start_ns,
                    const std::atomic<bool>* stop = nullptr);
 
-// trace_with() at that pace: one comparison where nothing is emulated.
-std::uint32_t trace_paced(Pace* pace, Workers* workers, const TraceJob& job);
-
 }  // namespace pocketray

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "engine/trace_frame.h"
 
 namespace pocketray {
 namespace {
@@ -25,49 +26,61 @@ std::uint32_t list_row(const Settings& s, std::uint32_t row, std::uint32_t step,
   return count;
 }
 
+struct Refinement {
+  Renderer* renderer;
+  Array<Span> row_spans;
+  Progressive* progressive;
+};
+
+void next_row(void* context, SpanBatch* batch) {
+  const Refinement& r = *static_cast<Refinement*>(context);
+  batch->spans = r.row_spans.data;
+  batch->span_count = list_row(r.renderer->settings, r.progressive->row, r.progressive->step, r.row_spans);
+}
+
 // Spreads each traced pixel over its cell.
-void fill_cells(Renderer* r, Array<Span> spans, std::uint32_t count, std::uint32_t step) {
-  const Settings& s = r->settings;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Span span = spans[i];
-    Vec3 value = r->image[static_cast<std::size_t>(span.row) * s.width + span.column_begin];
+void fill_cells(void* context, const SpanBatch& batch) {
+  const Renderer& r = *static_cast<Refinement*>(context)->renderer;
+  const std::uint32_t step = static_cast<Refinement*>(context)->progressive->step;
+  if (step == 1) return;
+  const Settings& s = r.settings;
+  for (std::uint32_t i = 0; i < batch.span_count; ++i) {
+    Span span = batch.spans[i];
+    Vec3 value = r.image[static_cast<std::size_t>(span.row) * s.width + span.column_begin];
     std::uint32_t bottom = std::min(span.row + step, s.height), right = std::min(span.column_begin + step, s.width);
     for (std::uint32_t y = span.row; y < bottom; ++y)
       for (std::uint32_t x = span.column_begin; x < right; ++x)
-        r->image[static_cast<std::size_t>(y) * s.width + x] = value;
+        r.image[static_cast<std::size_t>(y) * s.width + x] = value;
   }
+}
+
+bool finish_row(void* context, const SpanBatch& batch) {
+  const Refinement& r = *static_cast<Refinement*>(context);
+  Progressive* p = r.progressive;
+  const std::uint32_t height = r.renderer->settings.height;
+  p->pixels_traced += span_pixel_count(batch.spans, batch.span_count);
+  p->trace_ns += batch.took_ns;
+  if (p->dirty_begin == p->dirty_end) p->dirty_begin = p->row;
+  p->dirty_begin = std::min(p->dirty_begin, p->row);
+  p->dirty_end = std::max(p->dirty_end, std::min(p->row + p->step, height));
+  p->row += p->step;
+  if (p->row >= height) {
+    p->row = 0;
+    p->shown_coarse = true;
+    p->step /= 2;
+  }
+  return p->step == 0;
 }
 
 }  // namespace
 
-void start_progressive(Renderer* r, Progressive* p) {
-  *p = Progressive();
-  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
-}
-
 bool advance_progressive(Renderer* r, Array<Span> row_spans, std::uint64_t deadline_ns, Progressive* p) {
   CHECK_GE(row_spans.count, r->settings.width);
-  while (p->step > 0) {
-    std::uint64_t start = clock_ns();
-    std::uint32_t count = list_row(r->settings, p->row, p->step, row_spans);
-    trace_paced(&r->pace, r->workers,
-                {row_spans.data, count, Aov::none, r->image.data, r->tracers.data, nullptr, nullptr});
-    if (p->step > 1) fill_cells(r, row_spans, count, p->step);
-    for (std::uint32_t i = 0; i < count; ++i) p->pixels_traced += row_spans[i].column_end - row_spans[i].column_begin;
-    if (p->dirty_begin == p->dirty_end) p->dirty_begin = p->row;
-    p->dirty_begin = std::min(p->dirty_begin, p->row);
-    p->dirty_end = std::max(p->dirty_end, std::min(p->row + p->step, r->settings.height));
-    p->row += p->step;
-    if (p->row >= r->settings.height) {
-      p->row = 0;
-      p->shown_coarse = true;
-      p->step /= 2;
-    }
-    std::uint64_t now = clock_ns();
-    p->trace_ns += now - start;
-    if (now >= deadline_ns) break;
-  }
-  return p->step == 0;
+  if (p->step == 0) return true;
+  Refinement refinement = {r, row_spans, p};
+  SpanSource source = {&refinement, next_row, finish_row, fill_cells};
+  source.deadline_ns = deadline_ns;
+  return trace_frame(r, source);
 }
 
 bool take_dirty_rows(Progressive* p, std::uint32_t* begin, std::uint32_t* end) {

@@ -1,15 +1,27 @@
 #include "engine/workers.h"
 
+#include <pthread.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
-#include <thread>
-#include <vector>
+#include <new>
+
+#include "base/check.h"
+#include "base/limits.h"
 
 namespace pocketray {
 
+// Threads of POSIX: std::thread throws where the system has none to give, and the library has no exceptions.
+struct Worker {
+  pthread_t thread;
+  Workers* workers;
+  std::uint32_t index;
+};
+
 struct Workers {
-  std::vector<std::thread> threads;
+  Worker threads[kThreadCountMax];
+  std::uint32_t count = 0;  // beside the caller's
   std::mutex mutex;
   std::condition_variable begin, end;
   void (*work)(void* context, std::uint32_t thread) = nullptr;
@@ -25,12 +37,12 @@ std::uint64_t clock_ns() {
 
 namespace {
 
-// Spans to take at once: a tile's rows, fewer towards the end so that all threads end together.
-std::uint32_t spans_at_once(std::uint32_t left, std::uint32_t thread_count) {
-  std::uint32_t share = left / (2 * thread_count), count = kTileRows;
+// Spans to take at once: those of a strip of tiles, fewer towards the end so that all threads end together.
+std::uint32_t spans_at_once(const Span* spans, std::uint32_t left, std::uint32_t thread_count) {
+  std::uint32_t share = left / (2 * thread_count), count = strip_span_count(spans, left);
   if (thread_count > 1)
     while (count > 1 && count > share) count /= 2;
-  return count < left ? count : left;
+  return count;
 }
 
 struct SpanQueue {
@@ -47,7 +59,7 @@ void take_spans(void* context, std::uint32_t thread) {
     std::uint32_t begin = queue->next_span.load(), count;
     do {
       if (begin >= job.span_count) return;
-      count = spans_at_once(job.span_count - begin, queue->thread_count);
+      count = spans_at_once(job.spans + begin, job.span_count - begin, queue->thread_count);
     } while (!queue->next_span.compare_exchange_weak(begin, begin + count));
     std::uint64_t start = job.span_ns ? clock_ns() : 0;
     trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image);
@@ -75,13 +87,29 @@ void run_worker(Workers* w, std::uint32_t thread) {
   }
 }
 
+void* run_thread(void* context) {
+  const Worker* worker = static_cast<Worker*>(context);
+  run_worker(worker->workers, worker->index);
+  return nullptr;
+}
+
 }  // namespace
 
 Workers* start_workers(std::uint32_t thread_count) {
+  CHECK_LE(thread_count, kThreadCountMax);
   if (thread_count <= 1) return nullptr;
-  Workers* w = new Workers;
-  for (std::uint32_t thread = 1; thread < thread_count; ++thread) w->threads.emplace_back(run_worker, w, thread);
-  return w;
+  Workers* w = new (std::nothrow) Workers;
+  if (!w) return nullptr;
+  while (w->count + 1 < thread_count) {
+    Worker* worker = &w->threads[w->count];
+    worker->workers = w;
+    worker->index = w->count + 1;
+    if (pthread_create(&worker->thread, nullptr, run_thread, worker) != 0) break;
+    ++w->count;
+  }
+  if (w->count > 0) return w;
+  delete w;
+  return nullptr;
 }
 
 void stop_workers(Workers* workers) {
@@ -91,13 +119,11 @@ void stop_workers(Workers* workers) {
     workers->quit = true;
   }
   workers->begin.notify_all();
-  for (std::thread& thread : workers->threads) thread.join();
+  for (std::uint32_t i = 0; i < workers->count; ++i) pthread_join(workers->threads[i].thread, nullptr);
   delete workers;
 }
 
-std::uint32_t worker_thread_count(const Workers* workers) {
-  return workers ? static_cast<std::uint32_t>(workers->threads.size()) + 1 : 1;
-}
+std::uint32_t worker_thread_count(const Workers* workers) { return workers ? workers->count + 1 : 1; }
 
 void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), void* context) {
   if (!w) return work(context, 0);
@@ -105,7 +131,7 @@ void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), voi
     std::lock_guard<std::mutex> lock(w->mutex);
     w->work = work;
     w->context = context;
-    w->busy = static_cast<std::uint32_t>(w->threads.size());
+    w->busy = w->count;
     ++w->generation;
   }
   w->begin.notify_all();

@@ -9,7 +9,8 @@ namespace pocketray {
 
 struct Workers;
 
-// Starts thread_count − 1 threads beside the caller's.
+// Starts thread_count − 1 threads beside the caller's, at most kThreadCountMax in all; fewer where the system has no
+// more to give: worker_thread_count() tells. Null where it gives none, or one is enough.
 Workers* start_workers(std::uint32_t thread_count);
 void stop_workers(Workers* workers);
 // The caller's included.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/rng.h"
 #include "engine/frame.h"
 #include "session/interrupt.h"
 
@@ -34,6 +35,21 @@ Status measure_price(Renderer* r, Effect effect, double* price) {
   }
   *price = range_of(with, kRounds).median - range_of(without, kRounds).median;
   return success();
+}
+
+// Time per pixel of the list, traced so often that it takes about as long as a frame.
+double trace_list(Renderer* r, const std::vector<Span>& spans, double fraction) {
+  std::uint32_t span_count = static_cast<std::uint32_t>(spans.size());
+  std::uint64_t pixels = 0, begin_ns = clock_ns();
+  for (int repeat = 0; repeat < static_cast<int>(1 / fraction); ++repeat) {
+    SpanList list;
+    list.spans = spans.data(), list.span_count = span_count;
+    SpanSource source = list_source(&list);
+    source.stop = &interrupted;
+    trace_frame(r, source);
+    pixels += span_pixel_count(spans.data(), span_count);
+  }
+  return pixels > 0 ? static_cast<double>(clock_ns() - begin_ns) / static_cast<double>(pixels) : 0;
 }
 
 }  // namespace
@@ -84,6 +100,49 @@ Status measure_prices(Renderer* r, Measurement* m) {
       continue;
     }
     RETURN_IF_ERROR(measure_price(r, effect, &m->effect_price[i]));
+  }
+  return success();
+}
+
+std::vector<Span> sparse_spans(const Settings& s, double fraction, bool patches) {
+  constexpr std::uint32_t kSeed = 1;
+  const std::uint32_t side = patches ? kPatchSide : 1, offset = side / 3;
+  const std::uint32_t cells = (s.width + offset) / side + 1;
+  std::vector<bool> chosen(cells);
+  std::vector<Span> spans;
+  Rng rng = make_rng(kSeed);
+  for (std::uint32_t row = 0; row < s.height; ++row) {
+    if (row == 0 || (row + offset) % side == 0)
+      for (std::uint32_t i = 0; i < cells; ++i) chosen[i] = static_cast<double>(next_float(&rng)) < fraction;
+    std::uint32_t end = 0;
+    for (std::uint32_t begin = 0; begin < s.width; begin = end + 1) {
+      for (end = begin; end < s.width && chosen[(end + offset) / side]; ++end) {
+      }
+      if (end > begin)
+        spans.push_back(
+            {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)});
+    }
+  }
+  return spans;
+}
+
+Status measure_sparse(Renderer* r, int round_count, SparseCost* costs) {
+  std::vector<Span> spans[kSparseFractionCount][2];
+  std::vector<double> ns[kSparseFractionCount][2];
+  for (int i = 0; i < kSparseFractionCount; ++i)
+    for (bool patches : {false, true}) {
+      spans[i][patches] = sparse_spans(r->settings, kSparseFractions[i], patches);
+      ns[i][patches].resize(static_cast<std::size_t>(round_count));
+    }
+  RETURN_IF_ERROR(prepare_frame(r, 0));
+  for (int round = 0; round < round_count; ++round)
+    for (int i = 0; i < kSparseFractionCount; ++i)
+      for (bool patches : {false, true})
+        ns[i][patches][static_cast<std::size_t>(round)] = trace_list(r, spans[i][patches], kSparseFractions[i]);
+  if (interrupted) return success();
+  for (int i = 0; i < kSparseFractionCount; ++i) {
+    std::uint32_t count = static_cast<std::uint32_t>(round_count);
+    costs[i] = {kSparseFractions[i], range_of(ns[i][0].data(), count), range_of(ns[i][1].data(), count)};
   }
   return success();
 }

@@ -30,6 +30,20 @@ Status measure_frames(Renderer* renderer, Measurement* measurement);
 // The price of every effect that is on: the median of frames with it minus the median of frames without it, in turn.
 Status measure_prices(Renderer* renderer, Measurement* measurement);
 
+// What a pixel costs where only some are traced, as after a small change of the picture.
+struct SparseCost {
+  double fraction = 0;                               // of the pixels, about
+  Range scattered_ns_per_pixel, patch_ns_per_pixel;  // each by itself at random; in squares of kPatchSide pixels
+};
+constexpr double kSparseFractions[] = {0.02, 0.1, 0.5, 1};
+constexpr int kSparseFractionCount = 4;
+constexpr std::uint32_t kPatchSide = 20;  // no multiple of a tile's, nor are they aligned to tiles
+
+// The spans of such pixels, from the top, left to right; `patches` or scattered. The same ones for the same size.
+std::vector<Span> sparse_spans(const Settings& settings, double fraction, bool patches);
+// Traces them `round_count` times each at time 0, kSparseFractions in turn. An interrupt leaves zeros.
+Status measure_sparse(Renderer* renderer, int round_count, SparseCost* costs);
+
 double pixel_count(const Renderer& renderer);
 double rays_per_second(const Measurement& measurement);
 

@@ -73,6 +73,9 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
 
 void print_notes(const OpenScene& opened) {
   if (!opened.source.warning.empty()) print_note(opened.source.warning);
+  std::uint32_t threads = worker_thread_count(opened.renderer.workers), asked = opened.renderer.settings.threads;
+  if (!opened.renderer.image.empty() && threads < asked)
+    std::fprintf(stderr, "pocketray: the system gives %u of %u threads; rendering goes on with fewer\n", threads, asked);
   if (opened.renderer.accel_is_fallback)
     std::fprintf(
         stderr,

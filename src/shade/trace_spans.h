@@ -11,9 +11,11 @@ enum class Aov { none, depth, normal, triangle, cost };
 // Makes a tracer ready for a frame.
 Tracer make_tracer(const FrameData& frame);
 
-// Rows that are best handed over together: spans of following rows over the same columns are traced in tiles of up to
-// 8 × 8 pixels. The picture is the same however spans are handed over.
+// Spans that are best handed over together: those of as many rows are traced in tiles of up to 8 × 8 pixels, whichever
+// pixels they have of them. The picture is the same however spans are handed over.
 constexpr std::uint32_t kTileRows = 8;
+// How many of the spans, from the first on, lie within kTileRows rows from its row on.
+std::uint32_t strip_span_count(const Span* spans, std::uint32_t span_count);
 
 // Traces the spans into `image`: width × height linear radiances, row 0 on top, whole frame addressed. With an AOV:
 // depth is the distance along the ray (0 where nothing is hit), normal the world shading normal, triangle the id + 1

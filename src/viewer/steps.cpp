@@ -84,7 +84,7 @@ Status step_picture(Viewer* v, Renderer* r, ViewerLoop* loop) {
   bool follow = loop->moved && loop->progressive.shown_coarse && v->options.frame_count == 0;
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
     RETURN_IF_ERROR(prepare_frame(r, loop->seconds));
-    start_progressive(r, &loop->progressive);
+    loop->progressive = Progressive();
     loop->moved = loop->passed = loop->finished = false;
   }
   if (loop->finished && is_text_shown(*v)) return idle(v, r, loop);

@@ -49,5 +49,16 @@ expect plan_map 0 'persistent +accelerator' plan "$subject"
 expect plan_json 0 '"total_bytes"' plan "$subject" --json -
 expect bench 0 'per pixel' bench cube "${small[@]}" --frames 2
 expect bench_json 0 '"scanline_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --json -
+expect bench_sparse 0 ' 10 % of them' bench cube "${small[@]}" --frames 2 --no-prices --sparse
+expect bench_sparse_json 0 '"patch_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --no-prices --sparse --json -
+
+# Goal: a system that has no thread to give costs time and not the picture. Method: stacks of 60 TB for threads, where the
+# shell may ask for them.
+huge_stacks() { (ulimit -s 60000000000 && "$program" "$@") 2>&1; }
+if [ ${#run[@]} -eq 1 ] && huge_stacks --version >/dev/null; then
+  check few_threads_are_told grep -q 'gives 1 of 2 threads' <<<"$(huge_stacks render cube "${small[@]}" -o few.ppm)"
+  expect all_threads 0 few render cube "${small[@]}" -o all_but_few.ppm
+  check few_threads_render_the_same cmp few.ppm all_but_few.ppm
+fi
 
 finish

@@ -113,7 +113,6 @@ TEST_CASE("picture_is_independent_of_progressive_refinement") {
     std::vector<Span> row_spans(settings.width);
     REQUIRE(prepare_frame(&r, 0.3).ok);
     Progressive progressive;
-    start_progressive(&r, &progressive);
     int steps = 0;
     while (!advance_progressive(&r, {row_spans.data(), settings.width}, 0, &progressive)) ++steps;
     CHECK(steps > 10);

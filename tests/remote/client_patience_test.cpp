@@ -140,7 +140,6 @@ TEST_CASE("client_counts_preparation") {
     double alone_ns = options.device_ns * options.width * options.height;
     for (int i = 0; i < 8; ++i) {
       REQUIRE(prepare_frame(r, 0).ok);
-      for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
       begin_client_frame(&rig.client, *r, 0, prepare_ns);
       REQUIRE(advance_shared_frame(r, &rig.client, ~std::uint64_t(0)));
     }

@@ -263,6 +263,7 @@ void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint6
   c->share.measured_ns = last.measured_ns;
   c->complete = c->joined = false;
   c->waited_ns = 0, c->device_ns = 0, c->device_rows = 0;
+  c->device_row = DeviceRow();
   c->begin_ns = client_now_ns(*c);
   c->prepare_ns = prepare_ns;
   c->arrivals = Arrivals();

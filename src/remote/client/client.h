@@ -125,6 +125,14 @@ struct Arrivals {
   std::uint64_t gap_ns_max = 0;                        // between two looks at the link
 };
 
+// The row that the device renders in parts, as it takes longer than the device may work at once.
+struct DeviceRow {
+  bool in_parts = false;  // there is one
+  std::uint32_t row = 0, columns_done = 0;
+  double pixel_ns = 0;        // of the last part, or of earlier rows; 0: not known
+  std::uint64_t took_ns = 0;  // so far
+};
+
 struct Client {
   ClientOptions options;
   platform::Link* link = nullptr;
@@ -147,6 +155,7 @@ struct Client {
   mutable platform::LinkClock clock;
   std::uint64_t unwatched_ns = 0;  // before the latest look: by so much what came may have come earlier
   Arrivals arrivals;
+  DeviceRow device_row;
   double device_ns = 0;  // that its rows took, in this frame
   std::uint32_t device_rows = 0;
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_shared_rows()

@@ -38,56 +38,89 @@ std::uint64_t take_row_time(Client* c, std::uint32_t row_begin, std::uint32_t ro
                       begin_ns);
 }
 
-// Pixels of a row, about as many for each thread.
-void trace_part(Renderer* r, std::uint32_t row, std::uint32_t begin, std::uint32_t end) {
-  std::uint32_t parts = std::min(r->settings.threads, end - begin), count = end - begin;
-  Span spans[kThreadCountMax];
-  for (std::uint32_t i = 0; i < parts; ++i)
-    spans[i] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin + count * i / parts),
-                static_cast<std::uint16_t>(begin + count * (i + 1) / parts)};
-  trace_with(r->workers, {spans, parts, Aov::none, r->image.data, r->tracers.data, nullptr});
+// Rows that are shared with servers, as spans: those that the client has the device render, where there are none a
+// look at the servers.
+struct SharedRows {
+  Renderer* renderer;
+  Client* client;
+  std::uint32_t row_begin = 0, row_end = 0;  // of the batch; of a row that is rendered in parts
+  std::uint32_t column_end = 0;              //   the part's
+  Span parts[kThreadCountMax];
+};
+
+// The next part of a row that takes longer than the device may work at once. Between parts it looks at the servers:
+// they are not to take the device for lost, nor it them.
+void next_part(SharedRows* s, SpanBatch* batch) {
+  const Client& c = *s->client;
+  const DeviceRow& row = c.device_row;
+  const std::uint32_t width = c.settings.width;
+  double pixels = row.pixel_ns > 0 ? work_ns_max(c) / row.pixel_ns : kFirstPixels;
+  std::uint32_t count = pixels < width ? std::max(1u, static_cast<std::uint32_t>(pixels)) : width;
+  s->row_begin = row.row, s->row_end = row.row + 1;
+  s->column_end = row.columns_done + std::min(count, width - row.columns_done);
+  batch->span_count = std::min(s->renderer->settings.threads, s->column_end - row.columns_done);
+  divide_row(row.row, row.columns_done, s->column_end, batch->span_count, s->parts);
+  batch->spans = s->parts;
 }
 
-// A row that takes longer than the device may work at once, in parts, with looks at the servers in between: they are
-// not to take the device for lost, nor it them. It is left when a server sends it meanwhile.
-void render_long_row(Renderer* r, Client* c, std::uint32_t row) {
-  const std::uint32_t width = r->settings.width;
-  double pixel_ns = device_pixel_ns(*c);
-  std::uint32_t begin = 0;
-  std::uint64_t row_ns = 0;
-  for (;;) {
-    double pixels = pixel_ns > 0 ? work_ns_max(*c) / pixel_ns : kFirstPixels;
-    std::uint32_t count = pixels < width ? std::max(1u, static_cast<std::uint32_t>(pixels)) : width;
-    std::uint32_t end = begin + std::min(count, width - begin);
-    std::uint64_t begin_ns = client_now_ns(*c);
-    trace_part(r, row, begin, end);
-    std::uint64_t part_ns = take_row_time(c, row, row + 1, end - begin, begin_ns);
-    row_ns += part_ns;
-    pixel_ns = static_cast<double>(part_ns + 1) / (end - begin);
-    begin = end;
-    if (begin == width) break;
-    advance_client(c, 0);
-    if (c->merge.rows[row].state != RowState::taken) return;
-  }
-  pack_device_rows(*r, c, row, row + 1);
-  finish_device_rows(c, row, row + 1, row_ns);
-}
-
-bool render_rows(Renderer* r, Client* c) {
-  std::uint32_t begin, end, row_count_max = kTileRows * r->settings.threads;
-  double row_ns = device_pixel_ns(*c) * r->settings.width;
+void next_rows(void* context, SpanBatch* batch) {
+  SharedRows* s = static_cast<SharedRows*>(context);
+  const Renderer& r = *s->renderer;
+  Client* c = s->client;
+  DeviceRow* row = &c->device_row;
+  // A server may have sent it meanwhile.
+  if (row->in_parts && c->merge.rows[row->row].state != RowState::taken) row->in_parts = false;
+  if (row->in_parts) return next_part(s, batch);
+  if (has_all_rows(*c)) return;
+  double pixel_ns = device_pixel_ns(*c), row_ns = pixel_ns * r.settings.width;
   bool is_long = row_ns == 0 || row_ns > work_ns_max(*c);
-  if (!take_device_rows(c, is_long ? 1 : row_count_max, &begin, &end)) return false;
+  if (!take_device_rows(c, is_long ? 1 : kTileRows * r.settings.threads, &s->row_begin, &s->row_end)) return;
   if (is_long) {
-    render_long_row(r, c, begin);
+    *row = {true, s->row_begin, 0, pixel_ns, 0};
+    return next_part(s, batch);
+  }
+  batch->spans = r.spans.data + s->row_begin;
+  batch->span_count = s->row_end - s->row_begin;
+}
+
+void pack_batch(void* context, const SpanBatch&) {
+  const SharedRows& s = *static_cast<SharedRows*>(context);
+  if (s.client->device_row.in_parts && s.column_end < s.client->settings.width) return;
+  pack_device_rows(*s.renderer, s.client, s.row_begin, s.row_end);
+}
+
+std::uint64_t pace_batch(void* context, const SpanBatch& batch, std::uint64_t begin_ns) {
+  const SharedRows& s = *static_cast<SharedRows*>(context);
+  return take_row_time(s.client, s.row_begin, s.row_end, span_pixel_count(batch.spans, batch.span_count), begin_ns);
+}
+
+// Notes what the batch took. True: all of its rows are rendered.
+bool finish_batch(const SharedRows& s, const SpanBatch& batch) {
+  Client* c = s.client;
+  DeviceRow* row = &c->device_row;
+  std::uint64_t rows_ns = batch.took_ns;
+  if (row->in_parts) {
+    rows_ns = row->took_ns += batch.took_ns;
+    row->pixel_ns = static_cast<double>(batch.took_ns + 1) / (s.column_end - row->columns_done);
+    row->columns_done = s.column_end;
+    row->in_parts = s.column_end < c->settings.width;
+    if (row->in_parts) return false;
+  }
+  finish_device_rows(c, s.row_begin, s.row_end, rows_ns);
+  return true;
+}
+
+// Merges what has come.
+bool merge_rows(void* context, const SpanBatch& batch) {
+  const SharedRows& s = *static_cast<SharedRows*>(context);
+  Client* c = s.client;
+  bool busy = batch.span_count > 0;
+  if ((!busy || finish_batch(s, batch)) && has_all_rows(*c) && is_verified(s.renderer, c)) {
+    end_client_frame(c);
     return true;
   }
-  std::uint64_t begin_ns = client_now_ns(*c);
-  trace_with(r->workers, {r->spans.data + begin, end - begin, Aov::none, r->image.data, r->tracers.data, nullptr});
-  pack_device_rows(*r, c, begin, end);
-  std::uint64_t pixel_count = std::uint64_t(end - begin) * r->settings.width;
-  finish_device_rows(c, begin, end, take_row_time(c, begin, end, pixel_count, begin_ns));
-  return true;
+  advance_client(c, busy ? 0 : kWaitNs);
+  return false;
 }
 
 }  // namespace
@@ -99,10 +132,7 @@ std::uint64_t take_time(Client* c, std::uint64_t pixel_count, std::uint64_t begi
 Status begin_shared_frame(Renderer* r, Client* c, double seconds) {
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   std::uint64_t begin_ns = client_now_ns(*c);
-  if (c->options.has_scene) {
-    RETURN_IF_ERROR(prepare_frame(r, seconds));
-    for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
-  }
+  if (c->options.has_scene) RETURN_IF_ERROR(prepare_frame(r, seconds));
   // What emulates a CPU has taken its time for that already.
   std::uint64_t prepare_ns = is_paced(r->pace) ? client_now_ns(*c) - begin_ns : take_time(c, 0, begin_ns);
   begin_client_frame(c, *r, seconds, prepare_ns);
@@ -110,17 +140,15 @@ Status begin_shared_frame(Renderer* r, Client* c, double seconds) {
 }
 
 bool advance_shared_frame(Renderer* r, Client* c, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
-  while (!c->complete) {
-    if (stop && stop->load(std::memory_order_relaxed)) return false;
-    bool busy = !has_all_rows(*c) && render_rows(r, c);
-    if (has_all_rows(*c) && is_verified(r, c)) {
-      end_client_frame(c);
-      break;
-    }
-    advance_client(c, busy ? 0 : kWaitNs);
-    if (client_now_ns(*c) >= deadline_ns) return false;
-  }
-  return true;
+  if (c->complete) return true;
+  SharedRows rows;
+  rows.renderer = r, rows.client = c;
+  SpanSource source = {&rows, next_rows, merge_rows, pack_batch};
+  source.deadline_ns = deadline_ns;
+  source.stop = stop;
+  source.now_ns = [](void* context) { return client_now_ns(*static_cast<SharedRows*>(context)->client); };
+  source.pace = pace_batch;
+  return trace_frame(r, source);
 }
 
 Status render_shared_frame(Renderer* r, Client* c, double seconds, const std::atomic<bool>* stop, bool* complete) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "engine/trace_frame.h"
 #include "present/pack.h"
 #include "remote/client/parts.h"
 
@@ -63,14 +64,36 @@ std::uint32_t pick_pixels(Client* c, std::uint32_t server, std::uint32_t count, 
   return span_count;
 }
 
-// Renders the pixels of v->spans into v->pixels, as the frame has them.
+// Renders the first `count` pixels of v->spans into v->pixels, as the frame has them.
+struct PixelCheck {
+  Renderer* renderer;
+  Client* client;
+  std::uint32_t count;
+};
+
 void render_pixels(Renderer* r, Client* c, std::uint32_t count) {
-  Verifier* v = &c->verifier;
-  std::uint64_t begin_ns = client_now_ns(*c);
-  trace_with(r->workers, {v->spans.data, count, Aov::none, r->image.data, r->tracers.data, nullptr});
-  pack_spans(r->image.data, static_cast<int>(c->settings.width), v->spans.data, count, c->request.exposure,
-             pixel_format(c->options.format), c->options.dither, v->pixels.data);
-  smooth(&v->check_ns, static_cast<double>(take_time(c, count, begin_ns)) / count);
+  PixelCheck check = {r, c, count};
+  SpanSource source = {&check};
+  source.next = [](void* context, SpanBatch* batch) {
+    const PixelCheck& p = *static_cast<PixelCheck*>(context);
+    batch->spans = p.client->verifier.spans.data, batch->span_count = p.count;
+  };
+  source.pack = [](void* context, const SpanBatch& batch) {
+    const PixelCheck& p = *static_cast<PixelCheck*>(context);
+    const Client& own = *p.client;
+    pack_spans(p.renderer->image.data, static_cast<int>(own.settings.width), batch.spans, batch.span_count,
+               own.request.exposure, pixel_format(own.options.format), own.options.dither, own.verifier.pixels.data);
+  };
+  source.finished = [](void* context, const SpanBatch& batch) {
+    smooth(&static_cast<PixelCheck*>(context)->client->verifier.check_ns,
+           static_cast<double>(batch.took_ns) / batch.span_count);
+    return true;
+  };
+  source.now_ns = [](void* context) { return client_now_ns(*static_cast<PixelCheck*>(context)->client); };
+  source.pace = [](void* context, const SpanBatch& batch, std::uint64_t begin_ns) {
+    return take_time(static_cast<PixelCheck*>(context)->client, batch.span_count, begin_ns);
+  };
+  trace_frame(r, source);
 }
 
 // The first of these pixels that the server sent wrong, or `end`.

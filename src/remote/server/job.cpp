@@ -123,9 +123,7 @@ Status aim(Session* s) {
     return job->measure_exposure || wants_exposure(*r) ? success() : answer_view_query(s);
   }
   r->exposure = job->request.exposure > 0 ? job->request.exposure : s->own_exposure;
-  RETURN_IF_ERROR(prepare_frame(r, job->request.seconds));
-  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
-  return success();
+  return prepare_frame(r, job->request.seconds);
 }
 
 // The next pixels of an exposure, for about `slice_ns`.

@@ -4,6 +4,8 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "engine/span_list.h"
+#include "engine/trace_frame.h"
 #include "present/pack.h"
 
 namespace pocketray {
@@ -51,26 +53,46 @@ std::uint32_t next_chunk_rows(const Session& s) {
   return next_chunk_rows(job.request, job.chunk_rows, job.sent_begin - job.request.row_begin);
 }
 
-void trace(Session* s, const Span* spans, std::uint32_t span_count) {
-  Renderer* r = &s->renderer;
-  trace_with(r->workers, {spans, span_count, Aov::none, r->image.data, r->tracers.data, nullptr});
-}
+// A slice of a job as spans: one batch.
+struct SliceSource {
+  Session* session;
+  std::uint64_t slice_ns;
+  Slice slice = {};
+  Span parts[kThreadCountMax];
+};
 
 // The next pixels of a row, about as many for each thread.
-Slice trace_part(Session* s, std::uint32_t pixels_max) {
-  const FrameJob& job = s->job;
-  const Settings& settings = s->renderer.settings;
+void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) {
+  const FrameJob& job = source->session->job;
+  const Settings& settings = source->session->renderer.settings;
   std::uint32_t begin = job.traced_columns, left = settings.width - begin;
   std::uint32_t part_pixels = pixels_max < kPartPixels ? 1 : kPartPixels;
   std::uint32_t count = std::min(std::max(pixels_max, part_pixels), left);
-  std::uint32_t parts = std::min(settings.threads, (count + part_pixels - 1) / part_pixels);
-  Span spans[kThreadCountMax];
-  for (std::uint32_t i = 0; i < parts; ++i)
-    spans[i] = {static_cast<std::uint16_t>(job.traced_begin - 1), static_cast<std::uint16_t>(begin + count * i / parts),
-                static_cast<std::uint16_t>(begin + count * (i + 1) / parts)};
-  trace(s, spans, parts);
-  if (count == left) return {1, 0, count, false};
-  return {0, begin + count, count, false};
+  batch->span_count = std::min(settings.threads, (count + part_pixels - 1) / part_pixels);
+  divide_row(job.traced_begin - 1, begin, begin + count, batch->span_count, source->parts);
+  batch->spans = source->parts;
+  source->slice = {0, begin + count, count, false};
+  if (count == left) source->slice = {1, 0, count, false};
+}
+
+void next_slice(void* context, SpanBatch* batch) {
+  SliceSource* source = static_cast<SliceSource*>(context);
+  const Session& s = *source->session;
+  const FrameJob& job = s.job;
+  const Settings& settings = s.renderer.settings;
+  // trace_ns is of all threads together.
+  std::uint32_t pixels_max = kFirstPixels * settings.threads;
+  if (s.trace_ns > 0)
+    pixels_max = slice_pixels(settings, s.renderer.light_points.count, s.trace_ns * settings.threads,
+                              source->slice_ns * settings.threads);
+  if (job.traced_columns > 0 || pixels_max < settings.width) return next_part(source, pixels_max, batch);
+  // The rest of a chunk, but enough rows for all threads to be busy to the end.
+  std::uint32_t rest = next_chunk_rows(s) - (job.sent_begin - job.traced_begin);
+  std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
+  std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});
+  batch->spans = s.renderer.spans.data + job.traced_begin - rows;
+  batch->span_count = rows;
+  source->slice = {rows, 0, rows * settings.width, false};
 }
 
 }  // namespace
@@ -151,20 +173,10 @@ std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_c
 }
 
 Slice trace_slice(Session* s, std::uint64_t slice_ns) {
-  const FrameJob& job = s->job;
-  const Settings& settings = s->renderer.settings;
-  // trace_ns is of all threads together.
-  std::uint32_t pixels_max = kFirstPixels * settings.threads;
-  if (s->trace_ns > 0)
-    pixels_max = slice_pixels(settings, s->renderer.light_points.count, s->trace_ns * settings.threads,
-                              slice_ns * settings.threads);
-  if (job.traced_columns > 0 || pixels_max < settings.width) return trace_part(s, pixels_max);
-  // The rest of a chunk, but enough rows for all threads to be busy to the end.
-  std::uint32_t rest = next_chunk_rows(*s) - (job.sent_begin - job.traced_begin);
-  std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
-  std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});
-  trace(s, s->renderer.spans.data + job.traced_begin - rows, rows);
-  return {rows, 0, rows * settings.width, false};
+  SliceSource source;
+  source.session = s, source.slice_ns = slice_ns;
+  trace_frame(&s->renderer, {&source, next_slice, [](void*, const SpanBatch&) { return true; }});
+  return source.slice;
 }
 
 void end_slice(Session* s, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns) {

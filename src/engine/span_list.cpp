@@ -1,0 +1,50 @@
+#include "engine/span_list.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+void next_spans(void* context, SpanBatch* batch) {
+  const SpanList& list = *static_cast<const SpanList*>(context);
+  batch->spans = list.spans + list.done_count;
+  batch->span_count = std::min(list.batch_spans, list.span_count - list.done_count);
+  batch->span_ns = list.span_ns ? list.span_ns + list.done_count : nullptr;
+  batch->stoppable = true;
+}
+
+bool finish_spans(void* context, const SpanBatch& batch) {
+  SpanList* list = static_cast<SpanList*>(context);
+  list->done_count += batch.done_count;
+  CHECK_LE(list->done_count, list->span_count);
+  if (list->progress) list->progress(list->progress_context, list->done_count);
+  return list->done_count == list->span_count;
+}
+
+}  // namespace
+
+SpanSource list_source(SpanList* list) {
+  CHECK_LT(0u, list->batch_spans);
+  return {list, next_spans, finish_spans};
+}
+
+SpanList whole_frame(Renderer* r) {
+  SpanList list;
+  list.spans = r->spans.data;
+  list.span_count = static_cast<std::uint32_t>(r->spans.count);
+  list.span_ns = r->row_ns.data;
+  return list;
+}
+
+void divide_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end, std::uint32_t part_count, Span* spans) {
+  CHECK_LE(begin, end);
+  CHECK_LT(0u, part_count);
+  std::uint32_t count = end - begin;
+  for (std::uint32_t i = 0; i < part_count; ++i)
+    spans[i] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin + count * i / part_count),
+                static_cast<std::uint16_t>(begin + count * (i + 1) / part_count)};
+}
+
+}  // namespace pocketray

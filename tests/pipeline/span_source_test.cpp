@@ -1,0 +1,244 @@
+// The frame loop and its sources.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/progressive.h"
+#include "scene/builtin_helpers.h"
+#include "session/measure.h"
+#include "support/feature_sets.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr Vec3 kUntraced = {-1, -2, -3};
+
+void clear(Renderer* r) {
+  for (Vec3& pixel : r->image) pixel = kUntraced;
+}
+
+// Spans of random pixels, a share of them in runs, from the top.
+std::vector<Span> random_spans(const Settings& s, Rng* rng, double fraction) {
+  std::vector<Span> spans;
+  std::uint32_t run_max = 1 + next_u32(rng) % 12;
+  for (std::uint32_t row = 0; row < s.height; ++row)
+    for (std::uint32_t begin = 0; begin < s.width;) {
+      std::uint32_t end = std::min(begin + 1 + next_u32(rng) % run_max, s.width);
+      if (next_double(rng) < fraction)
+        spans.push_back(
+            {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)});
+      begin = end;
+    }
+  return spans;
+}
+
+// The picture with the list's pixels alone.
+Picture masked(const Settings& s, const Picture& picture, const std::vector<Span>& spans) {
+  Picture out(picture.size(), kUntraced);
+  for (const Span& span : spans)
+    for (std::size_t column = span.column_begin; column < span.column_end; ++column)
+      out[span.row * std::size_t(s.width) + column] = picture[span.row * std::size_t(s.width) + column];
+  return out;
+}
+
+Picture picture_of(const Renderer& r) { return Picture(r.image.begin(), r.image.end()); }
+
+void check_sparse_lists(const Scene& scene, Settings settings, Rng* rng) {
+  Picture expected = render_picture(scene, settings, 0.3);
+  for (std::uint32_t threads : {1u, 2u, 4u}) {
+    settings.threads = threads;
+    auto test = make_renderer(scene, settings);
+    Renderer* r = &test->renderer;
+    REQUIRE(prepare_frame(r, 0.3).ok);
+    for (double fraction : {0.02, 0.1, 0.5, 0.9}) {
+      std::vector<Span> spans = random_spans(settings, rng, fraction);
+      CAPTURE(threads);
+      CAPTURE(fraction);
+      clear(r);
+      SpanList list;
+      list.spans = spans.data(), list.span_count = static_cast<std::uint32_t>(spans.size());
+      CHECK(trace_frame(r, list_source(&list)));
+      CHECK(list.done_count == spans.size());
+      CHECK(same_picture(picture_of(*r), masked(settings, expected, spans)));
+    }
+  }
+}
+
+// A source by hand: rows one by one, empty batches between them, and a clock of its own.
+struct ByHand {
+  Renderer* renderer;
+  std::uint64_t now_ns = 1000, pace_ns = 0;
+  std::uint32_t row = 0, next_count = 0, empty_every = 0;
+  std::uint64_t took_ns = 0;
+  std::atomic<bool> stop{false};
+  std::uint32_t stop_after = ~0u;
+};
+
+SpanSource by_hand(ByHand* hand) {
+  SpanSource source = {hand};
+  source.next = [](void* context, SpanBatch* batch) {
+    ByHand* h = static_cast<ByHand*>(context);
+    if (h->empty_every && ++h->next_count % h->empty_every == 0) return;
+    batch->spans = &h->renderer->spans[h->row];
+    batch->span_count = 1;
+  };
+  source.finished = [](void* context, const SpanBatch& batch) {
+    ByHand* h = static_cast<ByHand*>(context);
+    h->row += batch.done_count;
+    h->took_ns += batch.took_ns;
+    if (h->row >= h->stop_after) h->stop = true;
+    return h->row == h->renderer->settings.height;
+  };
+  source.now_ns = [](void* context) { return static_cast<ByHand*>(context)->now_ns; };
+  source.pace = [](void* context, const SpanBatch& batch, std::uint64_t begin_ns) {
+    ByHand* h = static_cast<ByHand*>(context);
+    CHECK(begin_ns == h->now_ns);
+    std::uint64_t took = h->pace_ns * span_pixel_count(batch.spans, batch.done_count);
+    h->now_ns += took;
+    return took;
+  };
+  source.stop = &hand->stop;
+  return source;
+}
+
+struct Subject {
+  Settings settings;
+  std::unique_ptr<GeneratedScene> generated = generate_scene(kAllFeatures, 21);
+  Picture expected;
+  std::unique_ptr<TestRenderer> test;
+  Renderer* r;
+
+  Subject() {
+    settings = settings_for(kAllFeatures, 37, 29);
+    expected = render_picture(generated->scene, settings, 0);
+    test = make_renderer(generated->scene, settings);
+    r = &test->renderer;
+    REQUIRE(prepare_frame(r, 0).ok);
+    clear(r);
+  }
+};
+
+}  // namespace
+
+// Goal: any list of pixels is traced to the pixels of the whole frame, and no others are touched: temporal coherence
+// rests on that. Method: differential, random lists of every built-in scene at odd sizes, by 1, 2 and 4 threads, with 1
+// and with 3 samples.
+TEST_CASE("sparse_lists_equal_the_whole_frame_on_builtin_scenes") {
+  int count;
+  const BuiltinScene* list = builtin_list(&count);
+  Rng rng = make_rng(5);
+  for (int i = 0; i < count; ++i)
+    for (std::uint32_t samples : {1u, 3u}) {
+      auto built = build_builtin(list[i]);
+      Settings settings;
+      settings.width = 61, settings.height = 43;
+      settings.samples_per_pixel = samples;
+      CAPTURE(std::string(list[i].name));
+      CAPTURE(samples);
+      check_sparse_lists(built->scene, settings, &rng);
+    }
+}
+
+// Goal: the same of scenes with every feature. Method: as above, generated scenes.
+TEST_CASE("sparse_lists_equal_the_whole_frame_on_generated_scenes") {
+  Rng rng = make_rng(6);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    auto generated = generate_scene(kAllFeatures, seed);
+    check_sparse_lists(generated->scene, settings_for(kAllFeatures, 45, 34), &rng);
+  }
+}
+
+// Goal: the benchmark's lists are what they are said to be. Method: pixels in order and about the fraction.
+TEST_CASE("sparse_spans_of_the_benchmark_have_the_fraction") {
+  Settings settings;
+  settings.width = 317, settings.height = 241;
+  for (bool patches : {false, true})
+    for (double fraction : kSparseFractions) {
+      std::vector<Span> spans = sparse_spans(settings, fraction, patches);
+      std::uint32_t end = 0;
+      for (const Span& span : spans) {
+        CHECK(span.row * settings.width + span.column_begin >= end);
+        CHECK(span.column_begin < span.column_end);
+        CHECK(span.column_end <= settings.width);
+        end = span.row * settings.width + span.column_end;
+      }
+      double pixels = static_cast<double>(span_pixel_count(spans.data(), static_cast<std::uint32_t>(spans.size())));
+      double share = pixels / (317 * 241);
+      CHECK(std::fabs(share - fraction) < (patches ? 0.08 : 0.01));
+      if (fraction == 1) CHECK(spans.size() == settings.height);
+    }
+}
+
+// Goal: a source that has nothing for the moment is asked again, until it says that the frame is complete. Method: rows
+// one by one with empty batches between them.
+TEST_CASE("frame_loop_asks_on_after_empty_batches") {
+  Subject subject;
+  ByHand hand;
+  hand.renderer = subject.r, hand.empty_every = 3;
+  CHECK(trace_frame(subject.r, by_hand(&hand)));
+  CHECK(hand.next_count > subject.settings.height);
+  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+}
+
+// Goal: a deadline ends a call after at least one batch, by the source's clock and pace, and the next call goes on; a
+// batch takes what the pace says. Method: a virtual clock, batches of 37 pixels of 10 ns.
+TEST_CASE("frame_loop_keeps_a_virtual_deadline_and_pace") {
+  Subject subject;
+  ByHand hand;
+  hand.renderer = subject.r, hand.pace_ns = 10;
+  SpanSource source = by_hand(&hand);
+  source.deadline_ns = 0;  // long gone
+  CHECK_FALSE(trace_frame(subject.r, source));
+  CHECK(hand.row == 1);
+  source.deadline_ns = hand.now_ns + 3 * 370;
+  CHECK_FALSE(trace_frame(subject.r, source));
+  CHECK(hand.row == 4);
+  source.deadline_ns = kNoDeadline;
+  CHECK(trace_frame(subject.r, source));
+  CHECK(hand.took_ns == 370 * subject.settings.height);
+  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+}
+
+// Goal: a stop ends the loop before the next batch, and a frame that is gone on with is the same. Method: a source that
+// stops itself after some rows; a list that is stopped before it begins.
+TEST_CASE("frame_loop_stops_and_goes_on") {
+  Subject subject;
+  ByHand hand;
+  hand.renderer = subject.r, hand.stop_after = 5;
+  CHECK_FALSE(trace_frame(subject.r, by_hand(&hand)));
+  CHECK(hand.row == 5);
+  hand.stop = false, hand.stop_after = ~0u;
+  CHECK(trace_frame(subject.r, by_hand(&hand)));
+  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+
+  clear(subject.r);
+  hand.stop = true;
+  SpanList list = whole_frame(subject.r);
+  SpanSource source = list_source(&list);
+  source.stop = &hand.stop;
+  CHECK_FALSE(trace_frame(subject.r, source));
+  CHECK(list.done_count == 0);
+  hand.stop = false;
+  CHECK(trace_frame(subject.r, source));
+  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+}
+
+// Goal: bands tell how far they have come, and are the frame. Method: bands of five rows.
+TEST_CASE("bands_tell_their_progress") {
+  Subject subject;
+  std::vector<std::uint32_t> told;
+  SpanList bands = whole_frame(subject.r);
+  bands.batch_spans = 5;
+  bands.progress_context = &told;
+  bands.progress = [](void* context, std::uint32_t done) {
+    static_cast<std::vector<std::uint32_t>*>(context)->push_back(done);
+  };
+  CHECK(trace_frame(subject.r, list_source(&bands)));
+  CHECK(told == std::vector<std::uint32_t>{5, 10, 15, 20, 25, 29});
+  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+}
