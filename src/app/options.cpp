@@ -21,16 +21,25 @@ std::string scene_help() {
   return text;
 }
 
+CLI::Option* add_setting_option(CLI::App* command, const SettingRow& row, SettingOption* option) {
+  char range[128];
+  describe_range(row, range, sizeof range);
+  std::string name = std::string("--") + row.name;
+  std::string help = row.what + std::string(row.field.kind == SettingKind::choice ? ": " : ", ") + range;
+  if (*row.note) help += std::string("; ") + row.note;
+  if (row.field.kind == SettingKind::count) return command->add_option(name, option->count, help);
+  if (row.field.kind == SettingKind::real) return command->add_option(name, option->real, help);
+  return command->add_option(name, option->choice, help);
+}
+
 }  // namespace
 
 void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("SCENE", o->scene, scene_help())->required();
   command->add_option("--size", o->size, "picture size in pixels, WIDTHxHEIGHT")
       ->default_str("320x240, or the emulated device's");
-  command->add_option("--samples", o->samples, "rays through each pixel, 1 … 16")->capture_default_str();
-  command->add_option("--depth", o->depth, "reflections and refractions along a path, 0 … 16")->capture_default_str();
-  command->add_option("--area-lights", o->area_lights, "points that each area light is taken as, 1 … 256")
-      ->capture_default_str();
+  for (int i = 0; i < kSettingCount; ++i)
+    add_setting_option(command, kSettingList[i], &o->settings.options[i])->capture_default_str();
   command
       ->add_option("--effects", o->effects,
                    "what to simulate: auto (what the scene calls for), all, or names; \"auto,-shadow\" leaves one out")
@@ -59,25 +68,20 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
                       "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up, degrees from top to bottom");
   command->add_option("--camera-index", o->camera_index, "which of the scene's cameras")->capture_default_str();
   command->add_option("--exposure", o->exposure, "stops brighter or darker than the scene's own, or auto");
-  command->add_option("--texture-filter", o->texture_filter, "scene, nearest or bilinear")->capture_default_str();
-  command->add_option("--normals", o->normals, "scene (smooth where it has normals) or flat")->capture_default_str();
-  command
-      ->add_option("--cut-off", o->cut_off,
-                   "displayed levels that the rays left out of a pixel may be worth together; 0: trace every ray")
-      ->capture_default_str();
 }
 
 void add_budget_options(CLI::App* command, BudgetOptions* o) {
-  CLI::Option* budget = command->add_option(
-      "--budget-ms", o->ms,
-      "milliseconds a frame may take: samples, depth, area lights, cut-off, filter and normals are chosen for it, with "
-      "the least error, by what frames take; prices are kept per scene and machine (see `bench --front`)");
+  std::string names;
+  for (const SettingRow& row : kSettingList) names += std::string(names.empty() ? "" : ", ") + row.name;
+  CLI::Option* budget = command->add_option("--budget-ms", o->ms,
+                                            "milliseconds a frame may take: " + names +
+                                                " are chosen for it, with the least error, by what frames take; "
+                                                "prices are kept per scene and machine (see `bench --front`)");
   budget->check([](const std::string& text) {
     double ms = std::strtod(text.c_str(), nullptr);
     return ms >= kBudgetMsMin && ms <= kBudgetMsMax ? "" : "must lie in 0.001 … 10000000 milliseconds";
   });
-  for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
-    budget->excludes(command->get_option(chosen));
+  for (const SettingRow& row : kSettingList) budget->excludes(command->get_option(std::string("--") + row.name));
   command->add_option("--front", o->front, "the file of settings to choose from")
       ->default_str("the scene's in the cache")
       ->needs(budget);
