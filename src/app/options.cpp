@@ -21,6 +21,13 @@ std::string scene_help() {
   return text;
 }
 
+std::string device_names() {
+  std::string names;
+  for (const platform::Device& device : platform::kDevices)
+    names += std::string(names.empty() ? "" : ", ") + device.name;
+  return names;
+}
+
 CLI::Option* add_setting_option(CLI::App* command, const SettingRow& row, SettingOption* option) {
   char range[128];
   describe_range(row, range, sizeof range);
@@ -46,22 +53,25 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
       ->capture_default_str();
   command->add_option("--memory", o->memory, "the block everything must fit in, as 24M")
       ->default_str("64M, or the device's");
-  command->add_option(
-      "--device", o->device,
-      "take memory, and in view rotation and buttons, from a handheld's profile: gp2x, miyoo, miyoo-mini, pi-zero, …");
+  command->add_option("--device", o->device,
+                      "take memory, and in view rotation and buttons, from a device's profile: " + device_names());
   command->add_option("--emulate", o->emulate,
                       "trace as slowly as a handheld would, with its memory, cores and screen: see --device");
   command->add_option("--threads", o->threads, "threads that trace; 0: one per core")->capture_default_str();
   command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
       ->default_str("the best of this CPU");
   std::vector<std::string> accels = {"auto"};
-  for (const AccelInfo* info : kAccelList) accels.push_back(info->name);
+  std::string known, automatic;
+  for (const AccelInfo* info : kAccelList) {
+    accels.push_back(info->name);
+    known +=
+        std::string(known.empty() ? "" : ", ") + info->name + (*info->help ? std::string(" (") + info->help + ")" : "");
+    if (info->is_automatic)
+      automatic += std::string(automatic.empty() ? ", else " : ", or where that does not fit ") + info->name;
+  }
   command
-      ->add_option(
-          "--accel", o->accel,
-          "what finds a ray's triangles: bvh, compact (16 bytes a triangle instead of 52, at 0.6 to 0.95 of the "
-          "speed), brute (for "
-          "comparisons), or auto: what the scene was baked with, else bvh, else compact where that does not fit")
+      ->add_option("--accel", o->accel,
+                   "what finds a ray's triangles: " + known + ", or auto: what the scene was baked with" + automatic)
       ->check(CLI::IsMember(accels))
       ->capture_default_str();
   command->add_option("--camera", o->camera,

@@ -74,10 +74,10 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
 void print_notes(const OpenScene& opened) {
   if (!opened.source.warning.empty()) print_note(opened.source.warning);
   if (opened.renderer.accel_is_fallback)
-    std::fprintf(
-        stderr,
-        "pocketray: the accelerator bvh does not fit --memory: compact takes its place, somewhat slower; a larger "
-        "--memory holds bvh\n");
+    std::fprintf(stderr,
+                 "pocketray: the accelerator %s does not fit --memory: %s takes its place, somewhat slower; a larger "
+                 "--memory holds %s\n",
+                 kAccelList[0]->name, opened.renderer.accel_info->name, kAccelList[0]->name);
   const SceneInfo& info = opened.renderer.scene.info;
   if (info.default_camera != 0 && info.default_lights != 0)
     std::fprintf(
