@@ -128,6 +128,7 @@ Status build_renderer_unexposed(Renderer* r) {
   r->timings.build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
 
   if (moves(*r)) r->pose = make_pose(r->scene, &r->persistent_arena);
+  r->frame.indirect = prepare_indirect(r->scene, r->effects.mask, &r->persistent_arena);
   if (r->light_points.count) r->light_points = arena_array<LightPoint>(&r->persistent_arena, r->light_points.count);
   r->tracers = arena_array<Tracer>(&r->persistent_arena, r->settings.threads);
   r->spans = arena_array<Span>(&r->persistent_arena, r->settings.height);

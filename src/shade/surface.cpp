@@ -75,9 +75,9 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
     }
   }
   s->glow = m.unlit ? s->diffuse : Vec3{0, 0, 0};
-  if constexpr (has(mask, Effect::ambient)) {
-    effect_entered<Effect::ambient>();
-    if (!m.unlit) s->glow += s->diffuse * scene.info.ambient;
+  if constexpr ((mask & IndirectList::kEffects) != 0) {
+    if (!m.unlit)
+      IndirectList::add_radiance<mask>(scene, frame.indirect.prepared, s->point, s->normal, s->diffuse, &s->glow);
   }
   if constexpr (has(mask, Effect::emission)) {
     if (!is_zero(m.emission) && (s->front || m.double_sided)) {
@@ -96,8 +96,9 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
 
 struct SurfacePart {
   using Function = SurfaceFunction;
-  static constexpr Effect kEffects[] = {Effect::smooth_normal, Effect::texture, Effect::vertex_color, Effect::ambient,
-                                        Effect::emission};
+  static constexpr EffectsOf<bit(Effect::smooth_normal) | bit(Effect::texture) | bit(Effect::vertex_color) |
+                             bit(Effect::emission) | IndirectList::kEffects>
+      kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
     return evaluate_surface<mask>;
