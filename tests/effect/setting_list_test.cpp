@@ -65,7 +65,7 @@ Status read_line(std::vector<std::string> words, Settings* settings) {
 // in turn and read all rows.
 TEST_CASE("settings_are_set_one_at_a_time") {
   for (const SettingRow& row : kSettingList) {
-    CAPTURE(row.name);
+    CAPTURE(std::string(row.name));
     CHECK(find_setting(row.name) == &row);
     CHECK(*row.what);
     CHECK(within_setting(row, row.field.get(Quality())));
@@ -97,7 +97,7 @@ TEST_CASE("settings_are_options") {
   add_budget_options(&app, &budget);
   const auto excluded = app.get_option("--budget-ms")->get_excludes();
   for (const SettingRow& row : kSettingList) {
-    CAPTURE(row.name);
+    CAPTURE(std::string(row.name));
     const std::string option = std::string("--") + row.name;
     CLI::Option* there = app.get_option_no_throw(option);
     REQUIRE(there != nullptr);
@@ -126,7 +126,7 @@ TEST_CASE("settings_are_options") {
 // with a value beyond the limits, are refused; what people read of a change names it.
 TEST_CASE("settings_are_in_fronts") {
   for (const SettingRow& row : kSettingList) {
-    CAPTURE(row.name);
+    CAPTURE(std::string(row.name));
     Front front, back;
     front.count = 1;
     row.field.set(&front.candidates[0], other_value(row));
@@ -165,7 +165,7 @@ TEST_CASE("settings_are_on_the_wire") {
   const std::uint32_t header = kHeaderBytes;
   std::uint32_t place = header + 83;  // frame to height
   for (const SettingRow& row : kSettingList) {
-    CAPTURE(row.name);
+    CAPTURE(std::string(row.name));
     Message message;
     message.type = MessageType::frame_request;
     message.frame_request.row_end = 1;
@@ -189,7 +189,7 @@ TEST_CASE("settings_are_on_the_wire") {
   while (std::getline(file, line) && line.rfind("| width, height |", 0) != 0) {
   }
   for (const SettingRow& row : kSettingList) {
-    CAPTURE(row.name);
+    CAPTURE(std::string(row.name));
     REQUIRE(std::getline(file, line));
     std::istringstream cells(line);
     std::string cell[3];
@@ -212,7 +212,7 @@ TEST_CASE("settings_are_on_the_wire") {
 // knows effect, theory and price.
 TEST_CASE("settings_are_knobs") {
   for (const SettingRow& row : kSettingList) {
-    CAPTURE(row.name);
+    CAPTURE(std::string(row.name));
     const Knob* knob = nullptr;
     for (const Knob& any : knob_list())
       if (std::strcmp(any.name, row.name) == 0) knob = &any;

@@ -102,7 +102,7 @@ TEST_CASE("server_frames_follow_every_setting") {
   };
   check(plain, false);
   for (const SettingRow& row : kSettingList) {
-    CAPTURE(row.name);
+    CAPTURE(std::string(row.name));
     double usual = row.field.get(plain.settings);
     double coarse = row.sweep.values[row.sweep.values[0] == usual ? row.sweep.count / 2 : 0];
     check_and_back([&](FrameRequest* r) { row.field.set(&r->settings, coarse); });
