@@ -20,6 +20,8 @@ struct Accel {
 
 struct AccelInfo {
   const char* name;
+  const char* help;     // what sets it apart; may be empty
+  bool is_automatic;    // taken unasked where those before it in the list do not fit
   std::uint32_t magic;  // first word of its data; 0 where there is none
   // Upper bounds of the bytes build() keeps in its arena, and of the scratch that it releases again. build() gives back
   // at once what it does not use of the former, but has to have it while it runs.
@@ -35,7 +37,7 @@ struct AccelInfo {
   // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none. `filter` and
   // `stats` may be null.
   void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
-  // closest() for every ray of the packet: the same bits, in hits[0 .. rays.count).
+  // closest() for every ray of the packet: the same bits, in hits[0 .. rays.count). by_rays.h has one for any.
   void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
                          TraceStats* stats);
   // Whether anything is hit in (0, ray.t_max).

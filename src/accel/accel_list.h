@@ -1,4 +1,5 @@
-// One line per accelerator. The first is the default.
+// One line per accelerator. The first is the default; the next that are automatic take its place in their order where
+// it does not fit the memory.
 #pragma once
 #include <cstring>
 

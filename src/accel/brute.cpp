@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "accel/accel_list.h"
+#include "accel/by_rays.h"
 #include "accel/point_distance.h"
 #include "accel/triangle.h"
 
@@ -62,14 +63,6 @@ void brute_closest(const Accel& accel, const Ray& ray, const HitFilter* filter, 
   });
 }
 
-void brute_closest_packet(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
-                          TraceStats* stats) {
-  for (std::uint32_t i = 0; i < rays.count; ++i) {
-    Vec3 direction = {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
-    brute_closest(accel, {rays.origin, direction, rays.t_max}, filter, &hits[i], stats);
-  }
-}
-
 bool brute_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
   bool any = false;
   for_each_hit(accel, ray, filter, stats, [&](std::uint32_t, const Hit&) {
@@ -77,14 +70,6 @@ bool brute_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter,
     return false;
   });
   return any;
-}
-
-std::uint64_t brute_occluded_packet(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
-                                    TraceStats* stats) {
-  std::uint64_t blocked = 0;
-  for (std::uint32_t i = 0; i < rays.count; ++i)
-    blocked |= static_cast<std::uint64_t>(brute_occluded(accel, ray_of(rays, i), filter, stats)) << i;
-  return blocked;
 }
 
 float brute_nearest_distance(const Accel& accel, const Vec3& point) {
@@ -104,6 +89,8 @@ float brute_nearest_distance(const Accel& accel, const Vec3& point) {
 
 const AccelInfo kBruteAccel = {
     "brute",
+    "for comparisons",
+    false,
     0,
     brute_need,
     brute_scratch_need,
@@ -111,9 +98,9 @@ const AccelInfo kBruteAccel = {
     brute_refit,
     brute_adopt,
     brute_closest,
-    brute_closest_packet,
+    closest_by_rays<brute_closest>,
     brute_occluded,
-    brute_occluded_packet,
+    occluded_by_rays<brute_occluded>,
     brute_nearest_distance,
 };
 

@@ -43,15 +43,16 @@ struct Hierarchy {
   static float nearest_distance(const Accel& accel, const Vec3& point) {
     return bvh_nearest_distance(kLeaves, accel, point);
   }
-  static constexpr AccelInfo info(const char* name, std::uint32_t magic) {
-    return {name,  magic,   need,           bvh_scratch_need, build,           refit,
-            adopt, closest, closest_packet, occluded,         occluded_packet, nearest_distance};
+  static constexpr AccelInfo info(const char* name, const char* help, std::uint32_t magic) {
+    return {name,  help,  true,    magic,          need,     bvh_scratch_need, build,
+            refit, adopt, closest, closest_packet, occluded, occluded_packet,  nearest_distance};
   }
 };
 
 }  // namespace
 
-const AccelInfo kBvhAccel = Hierarchy<kBlockLeaves, kBlockKernels>::info("bvh", kBvhMagic);
-const AccelInfo kCompactAccel = Hierarchy<kCompactLeaves, kCompactKernels>::info("compact", kCompactMagic);
+const AccelInfo kBvhAccel = Hierarchy<kBlockLeaves, kBlockKernels>::info("bvh", "", kBvhMagic);
+const AccelInfo kCompactAccel = Hierarchy<kCompactLeaves, kCompactKernels>::info(
+    "compact", "16 bytes a triangle instead of 52, at 0.6 to 0.95 of the speed", kCompactMagic);
 
 }  // namespace pocketray

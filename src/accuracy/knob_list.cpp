@@ -4,95 +4,46 @@
 #include <cstdio>
 
 #include "effect/effect_list.h"
+#include "effect/setting_list.h"
 
 namespace pocketray {
 namespace {
 
-double itself(double value) { return value; }
-double with_the_rest(double points) {
-  return points + 1;
-}  // what a pixel takes without lights is about a point's worth
-
 std::uint32_t whole(double value) { return static_cast<std::uint32_t>(value); }
 
+std::string names_of(EffectMask effects) {
+  std::string names;
+  for (const EffectRow& row : kEffectList)
+    if (has(effects, row.effect)) names += std::string(names.empty() ? "" : ", ") + row.name;
+  return names;
+}
+
+// A choice's values are places in the row's list, which goes by accuracy, and not the enumerators.
+Knob knob_of(const SettingRow& row) {
+  Knob knob;
+  knob.name = row.name, knob.what = row.what, knob.theory = row.theory;
+  knob.effect = names_of(row.effects);
+  knob.needs = row.seen_with == kAlways ? 0 : row.effects;
+  knob.price = row.price;
+  bool is_choice = row.field.kind == SettingKind::choice;
+  for (int i = 0; i < row.sweep.count; ++i) {
+    knob.values.push_back(is_choice ? i : row.sweep.values[i]);
+    if (is_choice) knob.labels.push_back(row.field.names[static_cast<int>(row.sweep.values[i])]);
+  }
+  knob.get = [&row, is_choice](const Configuration& c) {
+    const double value = row.field.get(c.settings), *values = row.sweep.values;
+    return is_choice ? static_cast<double>(std::find(values, values + row.sweep.count, value) - values) : value;
+  };
+  knob.set = [&row, is_choice](Configuration* c, double value) {
+    row.field.set(&c->settings, is_choice ? row.sweep.values[whole(value)] : value);
+  };
+  return knob;
+}
+
 std::vector<Knob> make_knobs() {
-  constexpr EffectMask spawning = bit(Effect::mirror) | bit(Effect::refraction),
-                       left_out = spawning | bit(Effect::alpha_blend);
-  return {
-      {"samples",
-       "rays through each pixel",
-       "supersampling",
-       0,
-       nullptr,
-       "between -1/2, random points on an edge, and -1, a regular grid on straight edges",
-       {1, 2, 4, 6, 9, 12, 16},
-       {},
-       [](const Configuration& c) { return static_cast<double>(c.settings.samples_per_pixel); },
-       [](Configuration* c, double v) { c->settings.samples_per_pixel = whole(v); },
-       itself},
-      {"depth",
-       "reflections and refractions along a path",
-       "mirror, refraction",
-       spawning,
-       nullptr,
-       "error falls as reflectance to the power of depth, faster than any power of time",
-       {0, 1, 2, 3, 4, 5, 6, 7, 8},
-       {},
-       [](const Configuration& c) { return static_cast<double>(c.settings.ray_depth); },
-       [](Configuration* c, double v) { c->settings.ray_depth = whole(v); },
-       nullptr},
-      {"cut-off",
-       "displayed levels that left-out rays may be worth",
-       "mirror, refraction, alpha-blend",
-       left_out,
-       nullptr,
-       "",
-       {16, 8, 4, 2, 1, 0.5, 0.25, 0},
-       {},
-       [](const Configuration& c) { return static_cast<double>(c.settings.cut_off_levels); },
-       [](Configuration* c, double v) { c->settings.cut_off_levels = static_cast<float>(v); },
-       nullptr},
-      {"area-lights",
-       "points that each area light is taken as",
-       "area-light",
-       bit(Effect::area_light),
-       nullptr,
-       "-1/2 for random points; a grid of n points errs by one shadow edge of n, down to -1",
-       {1, 4, 9, 16, 36, 64, 144, 256},
-       {},
-       [](const Configuration& c) { return static_cast<double>(c.settings.points_per_area_light); },
-       [](Configuration* c, double v) { c->settings.points_per_area_light = whole(v); },
-       with_the_rest},
-      {"texture-filter",
-       "how textures are read between texels",
-       "texture",
-       bit(Effect::texture),
-       nullptr,
-       "",
-       {0, 1, 2},
-       {"nearest", "scene", "bilinear"},
-       [](const Configuration& c) {
-         return c.settings.texture_filter == TextureFilter::nearest    ? 0.0
-                : c.settings.texture_filter == TextureFilter::as_scene ? 1.0
-                                                                       : 2.0;
-       },
-       [](Configuration* c, double v) {
-         c->settings.texture_filter = v == 0   ? TextureFilter::nearest
-                                      : v == 1 ? TextureFilter::as_scene
-                                               : TextureFilter::bilinear;
-       },
-       nullptr},
-      {"normals",
-       "normals across a triangle",
-       "smooth-normal",
-       bit(Effect::smooth_normal),
-       nullptr,
-       "",
-       {0, 1},
-       {"flat", "scene"},
-       [](const Configuration& c) { return c.settings.normals == NormalMode::flat ? 0.0 : 1.0; },
-       [](Configuration* c, double v) { c->settings.normals = v == 0 ? NormalMode::flat : NormalMode::as_scene; },
-       nullptr},
+  std::vector<Knob> knobs;
+  for (const SettingRow& row : kSettingList) knobs.push_back(knob_of(row));
+  const std::vector<Knob> others = {
       {"tessellation",
        "columns of triangles around the sphere",
        "geometry",
@@ -133,6 +84,8 @@ std::vector<Knob> make_knobs() {
        false,
        false},
   };
+  knobs.insert(knobs.end(), others.begin(), others.end());
+  return knobs;
 }
 
 }  // namespace

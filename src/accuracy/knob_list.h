@@ -1,6 +1,7 @@
-// The knobs: one row for each setting that trades accuracy for time. A sweep turns every one of them that the scene has
-// a use for; a new row is swept, priced and drawn without further code.
+// The knobs: each row of effect/setting_list.h and what else trades accuracy for time. A sweep turns every one of them
+// that the scene has a use for; a new row is swept, priced and drawn without further code.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,19 +33,20 @@ struct Configuration {
 };
 
 struct Knob {
-  const char* name;                 // "samples"
-  const char* what;                 // "rays through each pixel"
-  const char* effect;               // it belongs to, as people read it
-  EffectMask needs;                 // it turns something where any of these effects is on; 0: always
-  const char* scene;                // the only built-in scene that has it; null: every one
-  const char* theory;               // of the slope of RMSE over time; empty: theory gives no number
+  const char* name = nullptr;       // "samples"
+  const char* what = nullptr;       // "rays through each pixel"
+  std::string effect;               // it belongs to, as people read it
+  EffectMask needs = 0;             // it turns something where any of these effects is on; 0: always
+  const char* scene = nullptr;      // the only built-in scene that has it; null: every one
+  const char* theory = nullptr;     // of the slope of RMSE over time; empty: theory gives no number
   std::vector<double> values;       // the least accurate first
   std::vector<const char*> labels;  // one for each value; empty: the numbers themselves
-  double (*get)(const Configuration& configuration);
-  void (*set)(Configuration* configuration, double value);
-  double (*price)(double value);  // what a frame takes, roughly, up to a factor; null: the value matters little
-  bool alone = false;             // it is not turned together with others
-  bool is_setting = true;         // one can choose it from frame to frame
+  std::function<double(const Configuration& configuration)> get;
+  std::function<void(Configuration* configuration, double value)> set;
+  double (*price)(double value) =
+      nullptr;             // what a frame takes, roughly, up to a factor; null: the value matters little
+  bool alone = false;      // it is not turned together with others
+  bool is_setting = true;  // one can choose it from frame to frame
 };
 
 const std::vector<Knob>& knob_list();

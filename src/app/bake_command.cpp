@@ -96,11 +96,16 @@ void add_bake_command(CLI::App* program, int* exit_status) {
                    "degrees: models that come without normals are smooth below it (glTF: flat)")
       ->capture_default_str()
       ->check(CLI::Range(0.0f, 180.0f));
-  command
-      ->add_option("--accel", options->accel,
-                   "accelerator to put into it: bvh, or compact, which takes 16 bytes a triangle instead of 52, at 0.6 "
-                   "to 0.95 of the speed")
-      ->check(CLI::IsMember({kBvhAccel.name, kCompactAccel.name}))
+  std::vector<std::string> names;
+  std::string help;
+  for (const AccelInfo* info : kAccelList) {
+    if (!info->magic) continue;  // it has no data
+    names.push_back(info->name);
+    help += std::string(help.empty() ? "" : ", or ") + info->name +
+            (*info->help ? std::string(" (") + info->help + ")" : "");
+  }
+  command->add_option("--accel", options->accel, "accelerator to put into it: " + help)
+      ->check(CLI::IsMember(names))
       ->capture_default_str();
   command->add_option("--json", options->json, "also write figures as JSON to FILE, or - for standard output");
   command->callback([=] { *exit_status = report(bake(*options)); });

@@ -21,63 +21,77 @@ std::string scene_help() {
   return text;
 }
 
+std::string device_names() {
+  std::string names;
+  for (const platform::Device& device : platform::kDevices)
+    names += std::string(names.empty() ? "" : ", ") + device.name;
+  return names;
+}
+
+CLI::Option* add_setting_option(CLI::App* command, const SettingRow& row, SettingOption* option) {
+  char range[128];
+  describe_range(row, range, sizeof range);
+  std::string name = std::string("--") + row.name;
+  std::string help = row.what + std::string(row.field.kind == SettingKind::choice ? ": " : ", ") + range;
+  if (*row.note) help += std::string("; ") + row.note;
+  if (row.field.kind == SettingKind::count) return command->add_option(name, option->count, help);
+  if (row.field.kind == SettingKind::real) return command->add_option(name, option->real, help);
+  return command->add_option(name, option->choice, help);
+}
+
 }  // namespace
 
 void add_scene_options(CLI::App* command, CommonOptions* o) {
   command->add_option("SCENE", o->scene, scene_help())->required();
   command->add_option("--size", o->size, "picture size in pixels, WIDTHxHEIGHT")
       ->default_str("320x240, or the emulated device's");
-  command->add_option("--samples", o->samples, "rays through each pixel, 1 … 16")->capture_default_str();
-  command->add_option("--depth", o->depth, "reflections and refractions along a path, 0 … 16")->capture_default_str();
-  command->add_option("--area-lights", o->area_lights, "points that each area light is taken as, 1 … 256")
-      ->capture_default_str();
+  for (int i = 0; i < kSettingCount; ++i)
+    add_setting_option(command, kSettingList[i], &o->settings.options[i])->capture_default_str();
   command
       ->add_option("--effects", o->effects,
                    "what to simulate: auto (what the scene calls for), all, or names; \"auto,-shadow\" leaves one out")
       ->capture_default_str();
   command->add_option("--memory", o->memory, "the block everything must fit in, as 24M")
       ->default_str("64M, or the device's");
-  command->add_option(
-      "--device", o->device,
-      "take memory, and in view rotation and buttons, from a handheld's profile: gp2x, miyoo, miyoo-mini, pi-zero, …");
+  command->add_option("--device", o->device,
+                      "take memory, and in view rotation and buttons, from a device's profile: " + device_names());
   command->add_option("--emulate", o->emulate,
                       "trace as slowly as a handheld would, with its memory, cores and screen: see --device");
   command->add_option("--threads", o->threads, "threads that trace; 0: one per core")->capture_default_str();
   command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
       ->default_str("the best of this CPU");
   std::vector<std::string> accels = {"auto"};
-  for (const AccelInfo* info : kAccelList) accels.push_back(info->name);
+  std::string known, automatic;
+  for (const AccelInfo* info : kAccelList) {
+    accels.push_back(info->name);
+    known +=
+        std::string(known.empty() ? "" : ", ") + info->name + (*info->help ? std::string(" (") + info->help + ")" : "");
+    if (info->is_automatic)
+      automatic += std::string(automatic.empty() ? ", else " : ", or where that does not fit ") + info->name;
+  }
   command
-      ->add_option(
-          "--accel", o->accel,
-          "what finds a ray's triangles: bvh, compact (16 bytes a triangle instead of 52, at 0.6 to 0.95 of the "
-          "speed), brute (for "
-          "comparisons), or auto: what the scene was baked with, else bvh, else compact where that does not fit")
+      ->add_option("--accel", o->accel,
+                   "what finds a ray's triangles: " + known + ", or auto: what the scene was baked with" + automatic)
       ->check(CLI::IsMember(accels))
       ->capture_default_str();
   command->add_option("--camera", o->camera,
                       "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up, degrees from top to bottom");
   command->add_option("--camera-index", o->camera_index, "which of the scene's cameras")->capture_default_str();
   command->add_option("--exposure", o->exposure, "stops brighter or darker than the scene's own, or auto");
-  command->add_option("--texture-filter", o->texture_filter, "scene, nearest or bilinear")->capture_default_str();
-  command->add_option("--normals", o->normals, "scene (smooth where it has normals) or flat")->capture_default_str();
-  command
-      ->add_option("--cut-off", o->cut_off,
-                   "displayed levels that the rays left out of a pixel may be worth together; 0: trace every ray")
-      ->capture_default_str();
 }
 
 void add_budget_options(CLI::App* command, BudgetOptions* o) {
-  CLI::Option* budget = command->add_option(
-      "--budget-ms", o->ms,
-      "milliseconds a frame may take: samples, depth, area lights, cut-off, filter and normals are chosen for it, with "
-      "the least error, by what frames take; prices are kept per scene and machine (see `bench --front`)");
+  std::string names;
+  for (const SettingRow& row : kSettingList) names += std::string(names.empty() ? "" : ", ") + row.name;
+  CLI::Option* budget = command->add_option("--budget-ms", o->ms,
+                                            "milliseconds a frame may take: " + names +
+                                                " are chosen for it, with the least error, by what frames take; "
+                                                "prices are kept per scene and machine (see `bench --front`)");
   budget->check([](const std::string& text) {
     double ms = std::strtod(text.c_str(), nullptr);
     return ms >= kBudgetMsMin && ms <= kBudgetMsMax ? "" : "must lie in 0.001 … 10000000 milliseconds";
   });
-  for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
-    budget->excludes(command->get_option(chosen));
+  for (const SettingRow& row : kSettingList) budget->excludes(command->get_option(std::string("--") + row.name));
   command->add_option("--front", o->front, "the file of settings to choose from")
       ->default_str("the scene's in the cache")
       ->needs(budget);

@@ -2,6 +2,7 @@
 // f = specular · (n + 2)/2π · max(0, r·v)^n, r the mirror direction of the light [Lafortune & Willems 1994, eq. 4].
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
+#include "brdf/directions.h"
 
 namespace pocketray {
 namespace {
@@ -17,8 +18,29 @@ Vec3 value(const Material& material, const Vec3& normal, const Vec3& to_viewer, 
 
 Vec3 peak(const Material& material) { return material.specular * scale(material); }
 
+double exact_cosine(const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light) {
+  double c = 2 * dot(normal, to_light) * dot(normal, to_viewer) - dot(to_light, to_viewer);
+  return c < 1 ? c : 1;
+}
+
+Vec3d exact_value(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light) {
+  double cosine = exact_cosine(normal, to_viewer, to_light), n = static_cast<double>(material.exponent);
+  if (!(cosine > 0)) return {0, 0, 0};
+  return to_double(material.specular) * ((n + 2) / (2 * kPi) * unit_power(cosine, n));
+}
+
+Vec3d sample(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, double u, double v) {
+  Vec3d mirrored = normalize(normal * (2 * dot(normal, to_viewer)) - to_viewer);
+  return power_cosine_direction(mirrored, static_cast<double>(material.exponent), u, v);
+}
+
+double density(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light) {
+  double cosine = exact_cosine(normal, to_viewer, to_light), n = static_cast<double>(material.exponent);
+  return cosine > 0 ? (n + 1) / (2 * kPi) * unit_power(cosine, n) : 0;
+}
+
 }  // namespace
 
-const BrdfInfo kPhongBrdf = {"phong", value, peak};
+const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density};
 
 }  // namespace pocketray

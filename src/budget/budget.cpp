@@ -212,8 +212,9 @@ void write_budget_lines(const Budget& b, HudText* text) {
   const Candidate &now = g.front.candidates[g.current], &before = g.front.candidates[b.previous];
   add_hud_line(text, "%s %.7g ms: %" PRIu32 " of %" PRIu32 "%s", b.pinned ? "by hand, not" : "budget", b.ms,
                g.current + 1, g.front.count, budget_too_small(g) ? ", too small" : "");
-  add_hud_line(text, "samples %" PRIu32 " depth %" PRIu32 " lights %" PRIu32 " cut-off %.2g", now.samples_per_pixel,
-               now.ray_depth, now.points_per_area_light, static_cast<double>(now.cut_off_levels));
+  char shown[kFrontLineMax];
+  format_hud_quality(now, shown, sizeof shown);
+  add_hud_line(text, "%s", shown);
   if (g.current == b.previous) return;
   char change[kFrontLineMax], gain[64];
   describe_change(before, now, change, sizeof change);

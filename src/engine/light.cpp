@@ -1,5 +1,6 @@
 // Kernels, lights and camera of a frame.
 #include "base/color.h"
+#include "effect/setting_list.h"
 #include "engine/prepare.h"
 #include "plan/plan_lights.h"
 #include "shade/camera.h"
@@ -15,10 +16,8 @@ namespace {
 // Whether the lights of the last frame are this one's, too: nothing moves, and nothing that they follow from has
 // changed.
 bool is_lit(const Renderer& r) {
-  const Settings &before = r.lit_settings, &now = r.settings;
   return r.lit_mask == r.effects.mask && !r.pose.positions.count && !r.pose.lights.count &&
-         before.points_per_area_light == now.points_per_area_light && before.ray_depth == now.ray_depth &&
-         before.texture_filter == now.texture_filter;
+         same_lights(r.lit_settings, r.settings);
 }
 
 }  // namespace

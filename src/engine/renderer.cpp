@@ -71,19 +71,22 @@ Status plan_with(Renderer* r, const AccelInfo& accel, const SceneStorage& storag
 }
 
 // Settles the accelerator and plans the memory with it: what was asked for, else what the scene was baked with, else
-// the default, else, where that does not fit, the compact one.
+// the default, else, where that does not fit, the first automatic one that does.
 Status choose_accel(Renderer* r, const SceneStorage& storage, std::size_t output_bytes) {
   const AccelInfo* baked = accel_of(r->scene.accel);
   if (r->accel_info) {
     if (r->accel_info != baked) r->scene.accel = {};
     return plan_with(r, *r->accel_info, storage, output_bytes);
   }
-  const AccelInfo& first = baked ? *baked : kBvhAccel;
-  Status status = plan_with(r, first, storage, output_bytes);
-  if (status.ok || &first != &kBvhAccel) return status;
-  r->scene.accel = {};
-  status = plan_with(r, kCompactAccel, storage, output_bytes);
-  r->accel_is_fallback = status.ok;
+  const AccelInfo* first = baked ? baked : kAccelList[0];
+  Status status = plan_with(r, *first, storage, output_bytes);
+  if (first != kAccelList[0]) return status;
+  for (const AccelInfo* info : kAccelList) {
+    if (status.ok || info == first || !info->is_automatic) continue;
+    r->scene.accel = {};
+    status = plan_with(r, *info, storage, output_bytes);
+    r->accel_is_fallback = status.ok;
+  }
   return status;
 }
 
@@ -126,6 +129,7 @@ Status build_renderer_unexposed(Renderer* r) {
   r->timings.build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
 
   if (moves(*r)) r->pose = make_pose(r->scene, &r->persistent_arena);
+  r->frame.indirect = prepare_indirect(r->scene, r->effects.mask, &r->persistent_arena);
   if (r->light_points.count) r->light_points = arena_array<LightPoint>(&r->persistent_arena, r->light_points.count);
   r->tracers = arena_array<Tracer>(&r->persistent_arena, r->settings.threads);
   r->spans = arena_array<Span>(&r->persistent_arena, r->settings.height);

@@ -16,26 +16,9 @@ void drop(Front* front, std::uint32_t index) {
   --front->count;
 }
 
-// Calls f with what can be chosen, a member of each at a time; candidates and settings name them alike.
-template <class Function, class One, class Other>
-void for_each_choice(Function f, One& one, Other& other) {
-  f(one.samples_per_pixel, other.samples_per_pixel);
-  f(one.ray_depth, other.ray_depth);
-  f(one.points_per_area_light, other.points_per_area_light);
-  f(one.cut_off_levels, other.cut_off_levels);
-  f(one.texture_filter, other.texture_filter);
-  f(one.normals, other.normals);
-}
-
 }  // namespace
 
-bool same_quality(const Candidate& a, const Candidate& b) {
-  bool same = true;
-  for_each_choice([&](auto& x, auto& y) { same = same && x == y; }, a, b);
-  return same;
-}
-
-const Candidate* find_candidate(const Front& front, const Candidate& quality) {
+const Candidate* find_candidate(const Front& front, const Quality& quality) {
   for (std::uint32_t i = 0; i < front.count; ++i)
     if (same_quality(front.candidates[i], quality)) return &front.candidates[i];
   return nullptr;
@@ -46,15 +29,15 @@ float clamped_price(double ns) {
   return static_cast<float>(ns > kMin ? ns < kMax ? ns : kMax : kMin);  // NaN: the least
 }
 
-Candidate candidate_of(const Settings& settings) {
+Candidate candidate_of(const Quality& quality) {
   Candidate c;
-  for_each_choice([](auto& to, auto& from) { to = from; }, c, settings);
+  static_cast<Quality&>(c) = quality;
   return c;
 }
 
-Settings with_candidate(const Settings& settings, const Candidate& c) {
+Settings with_candidate(const Settings& settings, const Quality& quality) {
   Settings s = settings;
-  for_each_choice([](auto& to, auto& from) { to = from; }, s, c);
+  static_cast<Quality&>(s) = quality;
   return s;
 }
 
@@ -134,16 +117,11 @@ Front builtin_front() {
 }
 
 void drop_what_scene_ignores(Front* front, EffectMask effects) {
-  const Candidate usual;
-  bool spawns = has(effects, Effect::mirror) || has(effects, Effect::refraction) || has(effects, Effect::alpha_blend);
-  for (std::uint32_t i = 0; i < front->count; ++i) {
-    Candidate& c = front->candidates[i];
-    if (!has(effects, Effect::area_light)) c.points_per_area_light = usual.points_per_area_light;
-    if (!spawns) c.ray_depth = usual.ray_depth;
-    if (!spawns && !has(effects, Effect::shadow)) c.cut_off_levels = usual.cut_off_levels;
-    if (!has(effects, Effect::texture)) c.texture_filter = usual.texture_filter;
-    if (!has(effects, Effect::smooth_normal)) c.normals = usual.normals;
-  }
+  const Quality usual;
+  for (std::uint32_t i = 0; i < front->count; ++i)
+    for (const SettingRow& row : kSettingList)
+      if (row.seen_with != kAlways && !(row.seen_with & effects))
+        row.field.set(&front->candidates[i], row.field.get(usual));
   for (std::uint32_t i = 1; i < front->count;) {  // of the same pictures the first is the cheapest
     std::uint32_t k = 0;
     while (k < i && !same_quality(front->candidates[k], front->candidates[i])) ++k;

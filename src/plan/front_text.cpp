@@ -1,5 +1,4 @@
 // Fronts as text. A file's bytes are hostile until read: nothing is looked at beyond them, every length is bounded.
-#include <cinttypes>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -7,18 +6,16 @@
 #include <cstring>
 
 #include "plan/front.h"
-#include "plan/plan_effects.h"
 
 namespace pocketray {
 namespace {
 
 constexpr char kFirstLine[] = "pocketray-front 1";
 constexpr char kFirstWord[] = "pocketray-front";
-constexpr const char* kFilterNames[] = {"scene", "nearest", "bilinear"};
-constexpr const char* kNormalNames[] = {"scene", "flat"};
-constexpr const char* kKeys[] = {"samples",        "depth",   "area-lights", "cut-off",
-                                 "texture-filter", "normals", "flip",        "ns"};
-enum Key : int { samples, depth, area_lights, cut_off, texture_filter, normals, flip, ns, kKeyCount };
+// Settings come first, in the order of their list.
+enum Key : int { flip = kSettingCount, ns, kKeyCount };
+static_assert(kKeyCount <= 32, "one bit each for those that a line has");
+const char* key_name(int key) { return key == flip ? "flip" : key == ns ? "ns" : kSettingList[key].name; }
 
 struct Text {
   const char* begin;
@@ -62,32 +59,26 @@ bool read_real(const Text& text, float* value) {
   return *end == 0 && end != digits && std::isfinite(*value);
 }
 
-template <class T, std::size_t n>
-bool read_name(const Text& text, const char* const (&names)[n], T* value) {
-  for (std::size_t i = 0; i < n; ++i)
-    if (equals(text, names[i])) return *value = static_cast<T>(i), true;
+// False where the text is no value of the setting's kind; whether it is within the limits is for check_setting().
+bool read_setting(const SettingRow& row, const Text& text, double* value) {
+  std::uint32_t count;
+  float real;
+  switch (row.field.kind) {
+    case SettingKind::count:
+      return read_count(text, &count) && (*value = count, true);
+    case SettingKind::real:
+      return read_real(text, &real) && (*value = static_cast<double>(real), true);
+    case SettingKind::choice:
+      return find_choice(row, text.begin, text.count, value);
+  }
   return false;
 }
 
-bool read_value(int key, const Text& text, Candidate* c) {
-  switch (key) {
-    case samples:
-      return read_count(text, &c->samples_per_pixel);
-    case depth:
-      return read_count(text, &c->ray_depth);
-    case area_lights:
-      return read_count(text, &c->points_per_area_light);
-    case cut_off:
-      return read_real(text, &c->cut_off_levels);
-    case texture_filter:
-      return read_name(text, kFilterNames, &c->texture_filter);
-    case normals:
-      return read_name(text, kNormalNames, &c->normals);
-    case flip:
-      return read_real(text, &c->flip) && c->flip >= 0 && c->flip <= 1;
-    default:
-      return read_real(text, &c->ns_per_pixel) && c->ns_per_pixel >= kPriceNsMin && c->ns_per_pixel <= kPriceNsMax;
-  }
+bool read_value(int key, const Text& text, Candidate* c, double* setting) {
+  if (key == flip) return read_real(text, &c->flip) && c->flip >= 0 && c->flip <= 1;
+  if (key == ns)
+    return read_real(text, &c->ns_per_pixel) && c->ns_per_pixel >= kPriceNsMin && c->ns_per_pixel <= kPriceNsMax;
+  return read_setting(kSettingList[key], text, setting);
 }
 
 // For messages: what a file says may be anything.
@@ -102,6 +93,7 @@ struct Printable {
 
 Status read_candidate(Text line, unsigned line_number, Candidate* c) {
   unsigned seen = 0;
+  double settings[kKeyCount] = {};
   *c = Candidate();
   while (line.count > 0) {
     Text value = cut(&line, ' ');
@@ -109,17 +101,21 @@ Status read_candidate(Text line, unsigned line_number, Candidate* c) {
     Printable shown(value);
     Text name = cut(&value, '=');
     int key = 0;
-    while (key < kKeyCount && !equals(name, kKeys[key])) ++key;
+    while (key < kKeyCount && !equals(name, key_name(key))) ++key;
     if (key == kKeyCount || (seen >> key & 1u))
       return failure("line %u: '%s' is no setting, or the second of its name", line_number, shown.text);
-    if (!read_value(key, value, c))
+    if (!read_value(key, value, c, &settings[key]))
       return failure("line %u: '%s' has no value that it may have", line_number, shown.text);
     seen |= 1u << key;
   }
   for (int key = 0; key < kKeyCount; ++key)
-    if (key != flip && !(seen >> key & 1u)) return failure("line %u: %s= is missing", line_number, kKeys[key]);
-  Status status = validate_settings(with_candidate(Settings(), *c));
-  return status.ok ? status : failure("line %u: %.300s", line_number, status.message);
+    if (key != flip && !(seen >> key & 1u)) return failure("line %u: %s= is missing", line_number, key_name(key));
+  for (int i = 0; i < kSettingCount; ++i) {
+    Status status = check_setting(kSettingList[i], settings[i]);
+    if (!status.ok) return failure("line %u: %.300s", line_number, status.message);
+    kSettingList[i].field.set(c, settings[i]);
+  }
+  return success();
 }
 
 Status parse_lines(Text rest, Front* front) {
@@ -162,11 +158,18 @@ __attribute__((format(printf, 4, 5))) void append(char* text, std::size_t size, 
   if (*length >= size) *length = size - 1;
 }
 
-void append_quality(const Candidate& c, char* text, std::size_t size, std::size_t* length) {
-  append(text, size, length, "samples=%" PRIu32 " depth=%" PRIu32 " area-lights=%" PRIu32, c.samples_per_pixel,
-         c.ray_depth, c.points_per_area_light);
-  append(text, size, length, " cut-off=%.9g texture-filter=%s normals=%s", static_cast<double>(c.cut_off_levels),
-         kFilterNames[static_cast<int>(c.texture_filter)], kNormalNames[static_cast<int>(c.normals)]);
+struct Value {
+  char text[32];
+  Value(const SettingRow& row, const Quality& quality, int digits) {
+    describe_value(row, row.field.get(quality), digits, text, sizeof text);
+  }
+};
+
+void append_quality(const Quality& quality, char* text, std::size_t size, std::size_t* length) {
+  constexpr int kDigits = 9;  // a float's, all of them
+  for (const SettingRow& row : kSettingList)
+    append(text, size, length, "%s%s=%s", *length && text[*length - 1] != '\n' ? " " : "", row.name,
+           Value(row, quality, kDigits).text);
 }
 
 }  // namespace
@@ -190,30 +193,28 @@ std::size_t format_front(const Front& front, char* text, std::size_t size) {
   return length;
 }
 
-void format_quality(const Candidate& c, char* text, std::size_t size) {
+void format_quality(const Quality& quality, char* text, std::size_t size) {
   std::size_t length = 0;
-  append_quality(c, text, size, &length);
+  append_quality(quality, text, size, &length);
 }
 
-void describe_change(const Candidate& before, const Candidate& after, char* text, std::size_t size) {
+void format_hud_quality(const Quality& quality, char* text, std::size_t size) {
+  constexpr int kDigits = 2;
   std::size_t length = 0;
   text[0] = 0;
-  auto comma = [&] { return length ? ", " : ""; };
-  auto count = [&](const char* name, std::uint32_t a, std::uint32_t b) {
-    if (a != b) append(text, size, &length, "%s%s %" PRIu32 " to %" PRIu32, comma(), name, a, b);
-  };
-  count("samples", before.samples_per_pixel, after.samples_per_pixel);
-  count("depth", before.ray_depth, after.ray_depth);
-  count("area-lights", before.points_per_area_light, after.points_per_area_light);
-  if (before.cut_off_levels != after.cut_off_levels)
-    append(text, size, &length, "%scut-off %.3g to %.3g", comma(), static_cast<double>(before.cut_off_levels),
-           static_cast<double>(after.cut_off_levels));
-  if (before.texture_filter != after.texture_filter)
-    append(text, size, &length, "%stexture-filter %s to %s", comma(),
-           kFilterNames[static_cast<int>(before.texture_filter)], kFilterNames[static_cast<int>(after.texture_filter)]);
-  if (before.normals != after.normals)
-    append(text, size, &length, "%snormals %s to %s", comma(), kNormalNames[static_cast<int>(before.normals)],
-           kNormalNames[static_cast<int>(after.normals)]);
+  for (const SettingRow& row : kSettingList)
+    if (row.hud_name)
+      append(text, size, &length, "%s%s %s", length ? " " : "", row.hud_name, Value(row, quality, kDigits).text);
+}
+
+void describe_change(const Quality& before, const Quality& after, char* text, std::size_t size) {
+  constexpr int kDigits = 3;
+  std::size_t length = 0;
+  text[0] = 0;
+  for (const SettingRow& row : kSettingList)
+    if (row.field.get(before) != row.field.get(after))
+      append(text, size, &length, "%s%s %s to %s", length ? ", " : "", row.name, Value(row, before, kDigits).text,
+             Value(row, after, kDigits).text);
   if (length == 0) append(text, size, &length, "nothing");
 }
 

@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "base/limit_list.h"
 #include "effect/effect_list.h"
+#include "effect/setting_list.h"
 
 namespace pocketray {
 namespace {
@@ -159,10 +159,7 @@ Status parse_effects(const char* text, Settings* settings) {
 Status validate_settings(const Settings& s) {
   RETURN_IF_ERROR(check_limit(Quantity::width, s.width));
   RETURN_IF_ERROR(check_limit(Quantity::height, s.height));
-  RETURN_IF_ERROR(check_limit(Quantity::samples, s.samples_per_pixel));
-  RETURN_IF_ERROR(check_limit(Quantity::depth, s.ray_depth));
-  RETURN_IF_ERROR(check_limit(Quantity::area_light_points, s.points_per_area_light));
-  RETURN_IF_ERROR(check_limit(Quantity::cut_off, static_cast<double>(s.cut_off_levels)));
+  for (const SettingRow& row : kSettingList) RETURN_IF_ERROR(check_setting(row, row.field.get(s)));
   if (s.threads >= 1 && s.threads <= kThreadCountMax) return success();
   return failure("the number of threads is %u: it must lie in 1 … %u", s.threads, kThreadCountMax);
 }

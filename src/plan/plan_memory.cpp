@@ -54,6 +54,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   }
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
+  add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
   add_part(plan, "lights", ArenaKind::persistent, light_point_count ? arena_need<LightPoint>(light_point_count) : 0);
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
   add_part(plan, "spans", ArenaKind::persistent,

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/fmath.h"
+#include "brdf/directions.h"
 
 namespace pocketray {
 namespace {

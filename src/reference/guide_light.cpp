@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "base/fmath.h"
+#include "brdf/directions.h"
 #include "reference/guide.h"
 #include "reference/light.h"
 #include "shade/lights.h"

@@ -124,7 +124,7 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
       return sum + path.weight * to_double(info.background);
     if (s.material->unlit && has(frame.mask, Effect::emission)) return sum + path.weight * s.diffuse;
     if (!is_zero(s.emission)) sum += path.weight * s.emission * emission_weight(reference, s, ray.direction, path);
-    if (model) sum += path.weight * s.diffuse * to_double(info.ambient);
+    sum += exact_indirect(*frame.scene, path.weight * s.diffuse, model);
     if (!model) s.cell = find_cell(reference.guide, s.point);
     if (!is_zero(s.diffuse) || !is_zero(s.material->specular))
       sum +=

@@ -2,6 +2,7 @@
 
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
+#include "brdf/directions.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -10,37 +11,15 @@ namespace {
 // Of coordinates: beyond it lies what rounding cannot tell from the surface itself.
 constexpr double kOwnSurface = 0x1p-40;
 
-static_assert(kBrdfCount == 1, "give the reference the new lobe's value, density and sampling");
+const BrdfInfo& glossy_lobe(const ReferenceSurface& s) { return *kBrdfList[s.material->brdf]; }
 
-// x^y for x in [0, 1].
-double power(double x, double y) { return y == 0 ? 1 : x > 0 ? det_exp(y * det_log(x)) : 0; }
-
-double lobe_cosine(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
-  double c = 2 * dot(s.normal, to_light) * dot(s.normal, to_viewer) - dot(to_light, to_viewer);
-  return c < 1 ? c : 1;
-}
 // How often the glossy lobe is sampled rather than the diffuse one.
 double glossy_share(const ReferenceSurface& s) {
   double glossy = static_cast<double>(max_component(s.material->specular)), diffuse = max_component(s.diffuse);
   return glossy > 0 ? glossy / (glossy + diffuse) : 0;
 }
 
-// A direction whose cosine with the axis has the density (n + 1)/2π cosⁿ.
-Vec3d around(const Vec3d& axis, double n, const Pair& pair) {
-  double cosine = n == 1 ? std::sqrt(1 - pair.u) : power(1 - pair.u, 1 / (n + 1)), phi = 2 * kPi * pair.v;
-  double sine = std::sqrt((1 - cosine) * (1 + cosine));
-  Vec3d tangent, bitangent;
-  make_basis(axis, &tangent, &bitangent);
-  return tangent * (sine * det_cos(phi)) + bitangent * (sine * det_sin(phi)) + axis * cosine;
-}
-
 }  // namespace
-
-void make_basis(const Vec3d& n, Vec3d* tangent, Vec3d* bitangent) {
-  double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-  *tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-  *bitangent = {b, sign + n.y * n.y * a, -n.y};
-}
 
 ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction) {
   const Scene& scene = *frame.scene;
@@ -100,17 +79,14 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   Vec3d value = s.diffuse * (1 / kPi);
-  const Material& m = *s.material;
-  double cosine = lobe_cosine(s, to_viewer, to_light), n = static_cast<double>(m.exponent);
-  if (!is_zero(m.specular) && cosine > 0) value += to_double(m.specular) * ((n + 2) / (2 * kPi) * power(cosine, n));
+  if (!is_zero(s.material->specular)) value += glossy_lobe(s).exact_value(*s.material, s.normal, to_viewer, to_light);
   return value;
 }
 
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
-  double cosine = dot(s.normal, to_light), share = glossy_share(s), n = static_cast<double>(s.material->exponent);
+  double cosine = dot(s.normal, to_light), share = glossy_share(s);
   if (!(cosine > 0) || (is_zero(s.diffuse) && share == 0)) return 0;
-  double lobe = lobe_cosine(s, to_viewer, to_light);
-  double glossy = lobe > 0 ? (n + 1) / (2 * kPi) * power(lobe, n) : 0;
+  double glossy = share > 0 ? glossy_lobe(s).density(*s.material, s.normal, to_viewer, to_light) : 0;
   return (1 - share) * cosine / kPi + share * glossy;
 }
 
@@ -118,11 +94,8 @@ bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choi
                   Vec3d* direction) {
   double share = glossy_share(s);
   if (is_zero(s.diffuse) && share == 0) return false;
-  if (choice < share)
-    *direction = around(normalize(s.normal * (2 * dot(s.normal, to_viewer)) - to_viewer),
-                        static_cast<double>(s.material->exponent), pair);
-  else
-    *direction = around(s.normal, 1, pair);
+  *direction = choice < share ? glossy_lobe(s).sample(*s.material, s.normal, to_viewer, pair.u, pair.v)
+                              : power_cosine_direction(s.normal, 1, pair.u, pair.v);
   return dot(*direction, s.normal) > 0;
 }
 

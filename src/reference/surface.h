@@ -31,7 +31,4 @@ double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec
 // False where it leads under the surface or there are none.
 bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choice, const Pair& pair, Vec3d* direction);
 
-// Two unit vectors that span the plane normal to the unit vector n [Duff et al. 2017, listing 3].
-void make_basis(const Vec3d& n, Vec3d* tangent, Vec3d* bitangent);
-
 }  // namespace pocketray

@@ -77,10 +77,10 @@ void print_notes(const OpenScene& opened) {
   if (!opened.renderer.image.empty() && threads < asked)
     std::fprintf(stderr, "pocketray: the system gives %u of %u threads; rendering goes on with fewer\n", threads, asked);
   if (opened.renderer.accel_is_fallback)
-    std::fprintf(
-        stderr,
-        "pocketray: the accelerator bvh does not fit --memory: compact takes its place, somewhat slower; a larger "
-        "--memory holds bvh\n");
+    std::fprintf(stderr,
+                 "pocketray: the accelerator %s does not fit --memory: %s takes its place, somewhat slower; a larger "
+                 "--memory holds %s\n",
+                 kAccelList[0]->name, opened.renderer.accel_info->name, kAccelList[0]->name);
   const SceneInfo& info = opened.renderer.scene.info;
   if (info.default_camera != 0 && info.default_lights != 0)
     std::fprintf(

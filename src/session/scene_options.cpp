@@ -5,22 +5,24 @@
 #include <thread>
 
 #include "accel/accel_list.h"
+#include "base/check.h"
 #include "base/fmath.h"
-#include "base/limit_list.h"
 #include "plan/plan_effects.h"
 
 namespace pocketray {
 namespace {
 
-Status parse_texture_filter(const std::string& text, TextureFilter* filter) {
-  if (text == "scene")
-    *filter = TextureFilter::as_scene;
-  else if (text == "nearest")
-    *filter = TextureFilter::nearest;
-  else if (text == "bilinear")
-    *filter = TextureFilter::bilinear;
-  else
-    return failure("--texture-filter is '%s': it must be scene, nearest or bilinear", text.c_str());
+// By the name that was typed; validate_settings() tests the same limits, by the names that a library's user knows.
+Status read_setting(const SettingRow& row, const SettingOption& option, Quality* quality) {
+  const std::string name = std::string("--") + row.name;
+  double value = row.field.kind == SettingKind::count ? double(option.count) : double(option.real);
+  if (row.field.kind == SettingKind::choice && !find_choice(row, option.choice.data(), option.choice.size(), &value)) {
+    char names[128];
+    describe_range(row, names, sizeof names);
+    return failure("%s is '%.200s': it must be %s", name.c_str(), option.choice.c_str(), names);
+  }
+  RETURN_IF_ERROR(check_setting(row, value, name.c_str()));
+  row.field.set(quality, value);
   return success();
 }
 
@@ -40,6 +42,23 @@ bool read_numbers(const std::string& text, float* values, int count) {
 
 }  // namespace
 
+SettingOptions::SettingOptions() {
+  const Quality usual;
+  for (int i = 0; i < kSettingCount; ++i) {
+    const SettingField& field = kSettingList[i].field;
+    double value = field.get(usual);
+    if (field.kind == SettingKind::count) options[i].count = static_cast<std::uint32_t>(value);
+    if (field.kind == SettingKind::real) options[i].real = static_cast<float>(value);
+    if (field.kind == SettingKind::choice) options[i].choice = field.names[static_cast<int>(value)];
+  }
+}
+
+SettingOption& SettingOptions::operator[](const char* name) {
+  const SettingRow* row = find_setting(name);
+  CHECK(row != nullptr);
+  return options[row - kSettingList];
+}
+
 Status read_settings(const CommonOptions& o, Settings* s) {
   RETURN_IF_ERROR(picture_size(o, &s->width, &s->height));
   const platform::Device* device;
@@ -47,29 +66,10 @@ Status read_settings(const CommonOptions& o, Settings* s) {
   if (device) s->memory_bytes = device->memory_bytes;
   if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &s->memory_bytes));
   RETURN_IF_ERROR(parse_effects(o.effects.c_str(), s));
-  RETURN_IF_ERROR(parse_texture_filter(o.texture_filter, &s->texture_filter));
-  if (o.normals != "scene" && o.normals != "flat")
-    return failure("--normals is '%s': it must be scene or flat", o.normals.c_str());
-  s->normals = o.normals == "flat" ? NormalMode::flat : NormalMode::as_scene;
-  s->samples_per_pixel = o.samples;
-  s->ray_depth = o.depth;
-  s->points_per_area_light = o.area_lights;
-  s->cut_off_levels = o.cut_off;
-  // By the names that were typed; validate_settings() tests the same limits, by the names that a library's user knows.
-  const struct {
-    Quantity quantity;
-    double value;
-    const char* option;
-  } kOptions[] = {
-      {Quantity::width, double(s->width), "the width of --size"},
-      {Quantity::height, double(s->height), "the height of --size"},
-      {Quantity::samples, double(o.samples), "--samples"},
-      {Quantity::depth, double(o.depth), "--depth"},
-      {Quantity::area_light_points, double(o.area_lights), "--area-lights"},
-      {Quantity::cut_off, double(o.cut_off), "--cut-off"},
-      {Quantity::camera_index, double(o.camera_index), "--camera-index"},
-  };
-  for (const auto& row : kOptions) RETURN_IF_ERROR(check_limit(row.quantity, row.value, row.option));
+  RETURN_IF_ERROR(check_limit(Quantity::width, double(s->width), "the width of --size"));
+  RETURN_IF_ERROR(check_limit(Quantity::height, double(s->height), "the height of --size"));
+  RETURN_IF_ERROR(check_limit(Quantity::camera_index, double(o.camera_index), "--camera-index"));
+  for (int i = 0; i < kSettingCount; ++i) RETURN_IF_ERROR(read_setting(kSettingList[i], o.settings.options[i], s));
   bool measured;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // also of commands that show nothing

@@ -4,18 +4,30 @@
 
 #include "accel/accel_list.h"
 #include "base/isa.h"
-#include "effect/settings.h"
+#include "effect/setting_list.h"
 #include "platform/devices/device_list.h"
 #include "scene/scene.h"
 
 namespace pocketray {
 
+// What an option of setting_list.h says, in the member of the setting's kind.
+struct SettingOption {
+  std::uint32_t count = 0;
+  float real = 0;
+  std::string choice;
+};
+// One for each row, the defaults at first.
+struct SettingOptions {
+  SettingOption options[kSettingCount];
+  SettingOptions();
+  SettingOption& operator[](const char* name);  // of the row of that name, which there must be
+};
+
 struct CommonOptions {
   std::string scene;
-  std::string size, memory, effects = "auto", camera, exposure, texture_filter = "scene", normals = "scene", json,
-                            device, emulate, isa, accel = "auto";
-  std::uint32_t samples = 1, depth = 8, area_lights = 4, threads = 0, camera_index = 0;
-  float cut_off = Settings().cut_off_levels;
+  std::string size, memory, effects = "auto", camera, exposure, json, device, emulate, isa, accel = "auto";
+  std::uint32_t threads = 0, camera_index = 0;
+  SettingOptions settings;
 };
 
 // The settings that the options ask for.

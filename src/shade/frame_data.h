@@ -4,6 +4,7 @@
 #include "base/limits.h"
 #include "effect/effect.h"
 #include "effect/settings.h"
+#include "indirect/indirect_list.h"
 #include "scene/scene.h"
 
 namespace pocketray {
@@ -78,6 +79,7 @@ struct FrameData {
   bool filter_every_shadow = false;  // false: only area lights' shadow rays need the filter
   float radiance_bound = 0;          // no ray brings more
   float left_out_max = 0;            // what may be left out of one sample, in radiance
+  IndirectData indirect;
 };
 
 // What a ray that looks may see: null where nothing is cut out.

@@ -8,6 +8,24 @@
 
 namespace pocketray {
 
+constexpr std::size_t effect_count(EffectMask mask) {
+  std::size_t n = 0;
+  for (; mask; mask &= mask - 1) ++n;
+  return n;
+}
+
+// The effects of a mask as an array.
+template <EffectMask mask>
+struct EffectsOf {
+  Effect effects[effect_count(mask)] = {};
+  constexpr EffectsOf() {
+    std::size_t n = 0;
+    for (int i = 0; i < kEffectCount; ++i)
+      if (has(mask, static_cast<Effect>(i))) effects[n++] = static_cast<Effect>(i);
+  }
+  constexpr const Effect& operator[](std::size_t i) const { return effects[i]; }
+};
+
 // Part has Function, kEffects (an array of Effect) and instance<mask>(), the function for a mask of those effects.
 template <class Part>
 struct Instantiations {

@@ -82,9 +82,8 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
       s->diffuse = {0, 0, 0};
     }
   }
-  if constexpr (has(mask, Effect::ambient)) {
-    effect_entered<Effect::ambient>();
-    s->glow += s->diffuse * scene.info.ambient;
+  if constexpr ((mask & kEffectsBuilt & IndirectList::kEffects) != 0) {
+    IndirectList::add_radiance<mask>(scene, frame.indirect.prepared, s->point, s->normal, s->diffuse, &s->glow);
   }
   if constexpr (has(mask, Effect::emission)) {
     if (!is_zero(m.emission) && (s->front || m.double_sided)) {
@@ -103,8 +102,9 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
 
 struct SurfacePart {
   using Function = SurfaceFunction;
-  static constexpr Effect kEffects[] = {Effect::smooth_normal, Effect::texture, Effect::vertex_color, Effect::ambient,
-                                        Effect::emission};
+  static constexpr EffectsOf<bit(Effect::smooth_normal) | bit(Effect::texture) | bit(Effect::vertex_color) |
+                             bit(Effect::emission) | IndirectList::kEffects>
+      kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
     return evaluate_surface<mask>;

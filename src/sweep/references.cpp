@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "accuracy/display.h"
-#include "base/limits.h"
+#include "effect/setting_list.h"
 #include "engine/frame.h"
 
 namespace pocketray {
@@ -17,14 +17,8 @@ constexpr std::uint32_t kModelSamples = 2048, kPhysicalSamples = 256;
 
 const char* name_of(Transport transport) { return transport == Transport::model ? "model" : "physical"; }
 
-// The scene's own textures and normals, whatever the baseline makes of them.
 Status prepare(const AccuracyOptions& options, Rig* rig) {
-  Settings settings = rig->baseline.settings;
-  settings.texture_filter = TextureFilter::as_scene;
-  settings.normals = NormalMode::as_scene;
-  settings.ray_depth = kRayDepthMax;
-  settings.cut_off_levels = 0;
-  RETURN_IF_ERROR(change_settings(&rig->opened.renderer, settings));
+  RETURN_IF_ERROR(change_settings(&rig->opened.renderer, reference_settings(rig->baseline.settings)));
   return prepare_frame(&rig->opened.renderer, options.seconds);
 }
 

@@ -9,6 +9,7 @@
 #include "accuracy/display.h"
 #include "base/limit_list.h"
 #include "base/rng.h"
+#include "effect/setting_list.h"
 #include "platform/instructions.h"
 #include "session/interrupt.h"
 #include "session/progress.h"
@@ -36,37 +37,44 @@ struct Run {
 Transport chosen(const AccuracyOptions& o) { return o.reference == "model" ? Transport::model : Transport::physical; }
 Transport other_than(Transport t) { return t == Transport::model ? Transport::physical : Transport::model; }
 
+Json settings_json(const Quality& quality) {
+  Json settings;
+  for (const SettingRow& row : kSettingList) {
+    double value = row.field.get(quality);
+    if (row.field.kind == SettingKind::count) settings[row.name] = static_cast<std::uint32_t>(value);
+    if (row.field.kind == SettingKind::real) settings[row.name] = value;
+    if (row.field.kind == SettingKind::choice) settings[row.name] = row.field.names[static_cast<int>(value)];
+  }
+  return settings;
+}
+
 Json key_of(const Run& run, const Rig& rig) {
   const AccuracyOptions& o = run.options;
   const CommonOptions& c = o.common;
   const Settings& s = rig.baseline.settings;
   std::string ids;
   for (const SweepPoint& point : run.plan.points) ids += id_of(point) + "\n";
-  return {{"program", POCKETRAY_VERSION},
-          {"scene", c.scene},
-          {"content", rig.scene_hash},
-          {"size", std::to_string(s.width) + "x" + std::to_string(s.height)},
-          {"camera", c.camera},
-          {"camera-index", c.camera_index},
-          {"time", o.seconds},
-          {"exposure", c.exposure},
-          {"effects", c.effects},
-          {"samples", s.samples_per_pixel},
-          {"depth", s.ray_depth},
-          {"area-lights", s.points_per_area_light},
-          {"cut-off", s.cut_off_levels},
-          {"texture-filter", c.texture_filter},
-          {"normals", c.normals},
-          {"output", o.output},
-          {"reference", o.reference},
-          {"reference-samples", reference_samples(o, chosen(o))},
-          {"other-reference-samples", reference_samples(o, other_than(chosen(o)))},
-          {"ppd", o.pixels_per_degree},
-          {"threads", s.threads},
-          {"isa", isa_name(active_isa())},
-          {"accel", rig.opened.renderer.accel_info->name},
-          {"emulate", c.emulate},
-          {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}};
+  Json key = settings_json(s);
+  key.update({{"program", POCKETRAY_VERSION},
+              {"scene", c.scene},
+              {"content", rig.scene_hash},
+              {"size", std::to_string(s.width) + "x" + std::to_string(s.height)},
+              {"camera", c.camera},
+              {"camera-index", c.camera_index},
+              {"time", o.seconds},
+              {"exposure", c.exposure},
+              {"effects", c.effects},
+              {"output", o.output},
+              {"reference", o.reference},
+              {"reference-samples", reference_samples(o, chosen(o))},
+              {"other-reference-samples", reference_samples(o, other_than(chosen(o)))},
+              {"ppd", o.pixels_per_degree},
+              {"threads", s.threads},
+              {"isa", isa_name(active_isa())},
+              {"accel", rig.opened.renderer.accel_info->name},
+              {"emulate", c.emulate},
+              {"configurations", crc32_z(0, reinterpret_cast<const Bytef*>(ids.data()), ids.size())}});
+  return key;
 }
 
 void find_errors(const Run& run, const Rig& rig, const Configuration& configuration, PointFigures* f) {

@@ -7,6 +7,7 @@
 #include "accuracy/flip.h"
 #include "base/limits.h"
 #include "base/seal.h"
+#include "effect/setting_list.h"
 #include "engine/frame.h"
 #include "reference/reference.h"
 
@@ -52,12 +53,7 @@ namespace {
 // The frame of a picture with everything as the scene has it.
 Status prepare_reference(SplitScreen* s, Renderer* r, double seconds) {
   const Settings before = r->settings;
-  Settings own = before;
-  own.texture_filter = TextureFilter::as_scene;
-  own.normals = NormalMode::as_scene;
-  own.ray_depth = kRayDepthMax;
-  own.cut_off_levels = 0;
-  RETURN_IF_ERROR(change_settings(r, own));
+  RETURN_IF_ERROR(change_settings(r, reference_settings(before)));
   Status status = prepare_frame(r, seconds);
   if (status.ok) {
     s->frame = r->frame;

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/check.h"
-#include "base/limit_list.h"
+#include "effect/setting_list.h"
 
 namespace pocketray {
 namespace {
@@ -166,15 +166,30 @@ void fields(Io& io, Camera* c) {
   choice(io, &c->projection, Projection::orthographic);
 }
 
+// A count or a choice is an integer of the row's bytes.
+template <class Io>
+void setting(Io& io, const SettingRow& row, Settings* s) {
+  double value = row.field.get(*s);
+  if (row.field.kind == SettingKind::real) {
+    float real = static_cast<float>(value);
+    raw_real(io, &real);
+    value = static_cast<double>(real);
+  } else {
+    std::uint64_t bits = static_cast<std::uint64_t>(value);
+    io.integer(&bits, row.wire_bytes);
+    value = static_cast<double>(bits);
+  }
+  bool valid = within_setting(row, value);
+  io.require(valid);
+  if (valid) row.field.set(s, value);
+}
+
 // Those that change pixels.
+constexpr std::uint32_t kSettingsBytes = 2 * 2 + setting_wire_bytes() + 2 * sizeof(EffectMask);
 template <class Io>
 void fields(Io& io, Settings* s) {
   count(io, &s->width, Quantity::width, 2), count(io, &s->height, Quantity::height, 2);
-  count(io, &s->samples_per_pixel, Quantity::samples, 1), count(io, &s->ray_depth, Quantity::depth, 1);
-  count(io, &s->points_per_area_light, Quantity::area_light_points, 2);
-  real(io, &s->cut_off_levels, Quantity::cut_off);
-  choice(io, &s->texture_filter, TextureFilter::bilinear);
-  choice(io, &s->normals, NormalMode::flat);
+  for (const SettingRow& row : kSettingList) setting(io, row, s);
   number(io, &s->forced_on), number(io, &s->forced_off);
   io.require((s->forced_on & ~kAllEffects) == 0 && (s->forced_off & ~kAllEffects) == 0);
 }
@@ -298,22 +313,22 @@ struct PayloadSize {
   std::uint32_t fields, tail_max;
 };
 constexpr PayloadSize kPayloadSizes[] = {
-    {0, 0},                // no type
-    {20, 0},               // hello
-    {2, 0},                // scene_list
-    {16, 0},               // scene_query
-    {96, 0},               // scene_entry
-    {28, 0},               // scene_fetch
-    {24, kPieceBytesMax},  // scene_piece
-    {117, 0},              // frame_request
-    {13, kChunkBytesMax},  // row_chunk
-    {4, 0},                // cancel
-    {6, 0},                // error
-    {8, 0},                // ping
-    {8, kPingBytesMax},    // pong
-    {90, 0},               // view_query
-    {104, 0},              // view_entry
-    {70, 0},               // frame_change
+    {0, 0},                    // no type
+    {20, 0},                   // hello
+    {2, 0},                    // scene_list
+    {16, 0},                   // scene_query
+    {96, 0},                   // scene_entry
+    {28, 0},                   // scene_fetch
+    {24, kPieceBytesMax},      // scene_piece
+    {95 + kSettingsBytes, 0},  // frame_request
+    {13, kChunkBytesMax},      // row_chunk
+    {4, 0},                    // cancel
+    {6, 0},                    // error
+    {8, 0},                    // ping
+    {8, kPingBytesMax},        // pong
+    {68 + kSettingsBytes, 0},  // view_query
+    {104, 0},                  // view_entry
+    {70, 0},                   // frame_change
 };
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
 static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::frame_change) + 1, "one for each type");

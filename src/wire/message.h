@@ -6,13 +6,14 @@
 
 #include "base/array.h"
 #include "base/box.h"
-#include "effect/settings.h"
+#include "effect/setting_list.h"
 #include "scene/scene.h"
 #include "wire/content_hash.h"
 
 namespace pocketray {
 
-constexpr std::uint16_t kWireVersion = 4;
+// Each setting more in a request is a version more; what else changes bytes raises the other number.
+constexpr std::uint16_t kWireVersion = 4 + (kSettingCount - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, in one message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload

@@ -12,8 +12,8 @@
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-all_suites="base brdf accel hard shade reference present plan golden pipeline split remote split_report accuracy session
-  app budget sweep viewer platform api"
+all_suites="base effect brdf indirect accel hard shade reference present plan golden pipeline split remote split_report
+  accuracy session app budget sweep viewer platform api"
 import_suites="import fuzz"  # with the importers built in, which takes longer: where a fault names one of them
 seconds_max=240  # what takes longer hangs
 jobs=$(nproc 2>/dev/null || echo 2) build=$root/build-mutants mode=run

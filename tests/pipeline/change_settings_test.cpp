@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <functional>
 
+#include "effect/setting_list.h"
 #include "support/feature_sets.h"
 #include "support/generated_scene.h"
 
@@ -25,16 +27,20 @@ bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 // started with as many points per area light as there are and turned, one setting after the other and in both
 // directions; the bits of the picture against those of a fresh renderer.
 TEST_CASE("change_settings_equals_a_fresh_start") {
-  using Change = void (*)(Settings*);
-  const Change changes[] = {[](Settings* s) { s->samples_per_pixel = 4; },
-                            [](Settings* s) { s->ray_depth = 1; },
-                            [](Settings* s) { s->points_per_area_light = 3; },
-                            [](Settings* s) { s->cut_off_levels = 8; },
-                            [](Settings* s) { s->texture_filter = TextureFilter::nearest; },
-                            [](Settings* s) { s->normals = NormalMode::flat; },
-                            [](Settings* s) { s->samples_per_pixel = 1; },
-                            [](Settings* s) { s->normals = NormalMode::as_scene; },
-                            [](Settings* s) { s->points_per_area_light = 7; }};
+  using Change = std::function<void(Settings*)>;
+  std::vector<Change> changes = {[](Settings* s) { s->samples_per_pixel = 4; },
+                                 [](Settings* s) { s->ray_depth = 1; },
+                                 [](Settings* s) { s->points_per_area_light = 3; },
+                                 [](Settings* s) { s->cut_off_levels = 8; },
+                                 [](Settings* s) { s->texture_filter = TextureFilter::nearest; },
+                                 [](Settings* s) { s->normals = NormalMode::flat; },
+                                 [](Settings* s) { s->samples_per_pixel = 1; },
+                                 [](Settings* s) { s->normals = NormalMode::as_scene; },
+                                 [](Settings* s) { s->points_per_area_light = 7; }};
+  for (const SettingRow& row : kSettingList) {  // each to its least accurate value and back
+    changes.push_back([&row](Settings* s) { row.field.set(s, row.sweep.values[0]); });
+    changes.push_back([&row](Settings* s) { row.field.set(s, row.field.get(Quality())); });
+  }
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     std::uint32_t features = kAllFeatures & ~bit(Feature::supersampling);
     auto generated = generate_scene(features, seed);
@@ -43,7 +49,7 @@ TEST_CASE("change_settings_equals_a_fresh_start") {
     auto changed = make_renderer(generated->scene, settings);
     std::vector<Vec3> before = picture_of(&changed->renderer);
     int differing = 0;
-    for (Change change : changes) {
+    for (const Change& change : changes) {
       change(&settings);
       REQUIRE(change_settings(&changed->renderer, settings).ok);
       auto fresh = make_renderer(generated->scene, settings);

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "base/fmath.h"
+#include "brdf/brdf_list.h"
+#include "brdf/directions.h"
 #include "reference/light.h"
-#include "reference/rendered.h"
 #include "reference/reference_helpers.h"
+#include "reference/rendered.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 
@@ -72,13 +74,15 @@ TEST_CASE("reference_boundary_reflects_by_fresnel") {
 }
 
 // Goal: directions of the lobes come with the density that is claimed. Method: chi² over the cosine and the azimuth
-// about the mirror direction, exponents from blunt to sharp; 99.9 % bound for the cells.
+// about the mirror direction, every lobe listed, exponents from blunt to sharp; 99.9 % bound for the cells.
 TEST_CASE("reference_density_is_that_of_its_samples") {
   // Written with the surface alone: no scene is needed.
   constexpr int kRings = 12, kSectors = 8;
-  for (float exponent : {0.0f, 1.0f, 20.0f, 400.0f}) {
+  constexpr float kExponents[] = {0, 1, 20, 400};
+  for (std::uint32_t row = 0; row < 4 * kBrdfCount; ++row) {
+    const float exponent = kExponents[row % 4];
     Material m;
-    m.specular = {0.4f, 0.4f, 0.4f}, m.exponent = exponent;
+    m.specular = {0.4f, 0.4f, 0.4f}, m.brdf = row / 4, m.exponent = exponent;
     ReferenceSurface s = {};
     s.material = &m;
     s.normal = s.geometric = normalize(Vec3d{0.1, 1, 0.2});

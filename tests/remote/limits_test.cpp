@@ -45,22 +45,25 @@ bool camera_accepts(int place, const std::string& number) {
 }
 // What is no count becomes one that is too large for any.
 std::uint32_t count_of(double x) { return x >= 0 && x <= 1e9 ? static_cast<std::uint32_t>(x) : ~std::uint32_t(0); }
+// The setting with these limits; null where no setting has them.
+const SettingRow* setting_of(Quantity quantity) {
+  for (const SettingRow& row : kSettingList)
+    if (row.field.kind != SettingKind::choice && row.field.quantity == quantity) return &row;
+  return nullptr;
+}
 bool option_accepts(Quantity quantity, double x) {
   std::uint32_t count = count_of(x);
   bool accepted = true;
+  if (const SettingRow* row = setting_of(quantity))
+    return settings_accept([&](CommonOptions* o) {
+      o->settings[row->name].count = count;
+      o->settings[row->name].real = static_cast<float>(x);
+    });
   switch (quantity) {
     case Quantity::width:
       return settings_accept([&](CommonOptions* o) { o->size = text_of(x) + "x1"; });
     case Quantity::height:
       return settings_accept([&](CommonOptions* o) { o->size = "1x" + text_of(x); });
-    case Quantity::samples:
-      return settings_accept([&](CommonOptions* o) { o->samples = count; });
-    case Quantity::depth:
-      return settings_accept([&](CommonOptions* o) { o->depth = count; });
-    case Quantity::area_light_points:
-      return settings_accept([&](CommonOptions* o) { o->area_lights = count; });
-    case Quantity::cut_off:
-      return settings_accept([&](CommonOptions* o) { o->cut_off = static_cast<float>(x); });
     case Quantity::camera_index:
       return settings_accept([&](CommonOptions* o) { o->camera_index = count; });
     case Quantity::coordinate:
@@ -128,13 +131,10 @@ std::vector<Field> message_fields() {
     };
     fields.push_back({Quantity::width, type, [=](Message* m, double x) { take(&settings(m)->width, x); }, 2});
     fields.push_back({Quantity::height, type, [=](Message* m, double x) { take(&settings(m)->height, x); }, 2});
-    fields.push_back(
-        {Quantity::samples, type, [=](Message* m, double x) { take(&settings(m)->samples_per_pixel, x); }, 1});
-    fields.push_back({Quantity::depth, type, [=](Message* m, double x) { take(&settings(m)->ray_depth, x); }, 1});
-    fields.push_back({Quantity::area_light_points, type,
-                      [=](Message* m, double x) { take(&settings(m)->points_per_area_light, x); }, 2});
-    fields.push_back(
-        {Quantity::cut_off, type, [=](Message* m, double x) { take(&settings(m)->cut_off_levels, x); }, 4});
+    for (const SettingRow& row : kSettingList)
+      if (row.field.kind != SettingKind::choice)
+        fields.push_back({row.field.quantity, type, [=, &row](Message* m, double x) { row.field.set(settings(m), x); },
+                          row.wire_bytes});
   }
   fields.push_back({Quantity::camera_index, MessageType::frame_request,
                     [](Message* m, double x) { take(&m->frame_request.camera_index, x); }, 2});

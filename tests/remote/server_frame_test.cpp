@@ -94,18 +94,19 @@ TEST_CASE("server_frames_follow_every_setting") {
     if (differs) CHECK(picture != before);
     before = picture;
   };
-  auto check_and_back = [&](void (*change)(FrameRequest*)) {
+  auto check_and_back = [&](const std::function<void(FrameRequest*)>& change) {
     request = plain;
     change(&request);
     check(request, true);
     check(plain, true);
   };
   check(plain, false);
-  check_and_back([](FrameRequest* r) { r->settings.samples_per_pixel = 4; });
-  check_and_back([](FrameRequest* r) { r->settings.ray_depth = 0; });
-  check_and_back([](FrameRequest* r) { r->settings.points_per_area_light = 1; });
-  check_and_back([](FrameRequest* r) { r->settings.texture_filter = TextureFilter::nearest; });
-  check_and_back([](FrameRequest* r) { r->settings.normals = NormalMode::flat; });
+  for (const SettingRow& row : kSettingList) {
+    CAPTURE(std::string(row.name));
+    double usual = row.field.get(plain.settings);
+    double coarse = row.sweep.values[row.sweep.values[0] == usual ? row.sweep.count / 2 : 0];
+    check_and_back([&](FrameRequest* r) { row.field.set(&r->settings, coarse); });
+  }
   check_and_back([](FrameRequest* r) { r->settings.forced_off = bit(Effect::shadow); });
   check_and_back([](FrameRequest* r) { r->camera_index = 1; });
   check_and_back([](FrameRequest* r) { r->camera_index = 2, r->seconds = 0.6; });

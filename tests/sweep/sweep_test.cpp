@@ -255,16 +255,22 @@ TEST_CASE("accuracy_refuses_the_state_of_another_sweep") {
   o.rounds = 1;
   measure(o);
   struct Case {
-    void (*change)(AccuracyOptions*);
+    std::function<void(AccuracyOptions*)> change;
     const char* named;
   };
-  const Case cases[] = {{[](AccuracyOptions* a) { a->common.size = "24x24"; }, "size"},
-                        {[](AccuracyOptions* a) { a->common.scene = "furnace"; }, "scene"},
-                        {[](AccuracyOptions* a) { a->common.samples = 2; }, "samples"},
-                        {[](AccuracyOptions* a) { a->reference_samples = 16; }, "reference-samples"},
-                        {[](AccuracyOptions* a) { a->reference = "physical"; }, "reference"},
-                        {[](AccuracyOptions* a) { a->output = "rgb888"; }, "output"},
-                        {[](AccuracyOptions* a) { a->price_limit = 4; }, "configurations"}};
+  std::vector<Case> cases = {{[](AccuracyOptions* a) { a->common.size = "24x24"; }, "size"},
+                             {[](AccuracyOptions* a) { a->common.scene = "furnace"; }, "scene"},
+                             {[](AccuracyOptions* a) { a->reference_samples = 16; }, "reference-samples"},
+                             {[](AccuracyOptions* a) { a->reference = "physical"; }, "reference"},
+                             {[](AccuracyOptions* a) { a->output = "rgb888"; }, "output"},
+                             {[](AccuracyOptions* a) { a->price_limit = 4; }, "configurations"}};
+  for (const SettingRow& row : kSettingList)
+    cases.push_back({[&row](AccuracyOptions* a) {
+                       SettingOption* option = &a->common.settings[row.name];
+                       option->count += 1, option->real += 1;
+                       if (row.field.names) option->choice = row.field.names[1];
+                     },
+                     row.name});
   for (const Case& c : cases) {
     CAPTURE(c.named);
     AccuracyOptions changed = o;

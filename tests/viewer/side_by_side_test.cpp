@@ -19,7 +19,8 @@ struct Scenery {
 
   Scenery(const char* scene, const char* reference, std::uint32_t threads) {
     CommonOptions common;
-    common.scene = scene, common.size = "24x16", common.threads = threads, common.area_lights = 1;
+    common.scene = scene, common.size = "24x16", common.threads = threads;
+    common.settings["area-lights"].count = 1;
     OpenHooks hooks;
     hooks.output_bytes = viewer_bytes;
     REQUIRE(open_scene(common, hooks, &opened).ok);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effect/setting_list.h"
 #include "engine/frame.h"
 #include "plan/plan_effects.h"
 #include "remote/server/session.h"
@@ -32,10 +33,8 @@ Status make_codec(Session* s) {
 }
 
 bool same_pixels(const Settings& a, const Settings& b) {
-  return a.width == b.width && a.height == b.height && a.samples_per_pixel == b.samples_per_pixel &&
-         a.ray_depth == b.ray_depth && a.points_per_area_light == b.points_per_area_light &&
-         a.cut_off_levels == b.cut_off_levels && a.texture_filter == b.texture_filter && a.normals == b.normals &&
-         a.forced_on == b.forced_on && a.forced_off == b.forced_off;
+  return a.width == b.width && a.height == b.height && same_quality(a, b) && a.forced_on == b.forced_on &&
+         a.forced_off == b.forced_off;
 }
 
 bool is_built_for(const Session& s) {

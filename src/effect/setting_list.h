@@ -1,0 +1,149 @@
+// One row per setting that trades accuracy for time. The command line, its validation, fronts, the settings on the
+// wire, the server's reuse of a renderer, sweeps and the budget's choice all follow from the rows: a new setting is a
+// member of Quality and a row here. Its default is the member's, its limits are those of base/limit_list.h.
+#pragma once
+#include "effect/setting.h"
+
+namespace pocketray {
+
+constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear"};
+constexpr const char* kNormalNames[] = {"scene", "flat"};
+
+constexpr EffectMask kReflecting = bit(Effect::mirror) | bit(Effect::refraction);
+constexpr EffectMask kSpawning = kReflecting | bit(Effect::alpha_blend);
+
+inline double samples_price(double samples) { return samples; }
+// What a pixel takes without lights is about a point's worth.
+inline double points_price(double points) { return points + 1; }
+
+inline constexpr SettingRow kSettingList[] = {
+    {"samples",
+     "rays through each pixel",
+     "",
+     "samples",
+     count_field<&Quality::samples_per_pixel>(Quantity::samples),
+     1,
+     bit(Effect::supersampling),
+     kAlways,
+     false,
+     kAsAsked,
+     {1, 2, 4, 6, 9, 12, 16},
+     samples_price,
+     "between -1/2, random points on an edge, and -1, a regular grid on straight edges"},
+    {"depth",
+     "reflections and refractions along a path",
+     "",
+     "depth",
+     count_field<&Quality::ray_depth>(Quantity::depth),
+     1,
+     kReflecting,
+     kSpawning,
+     true,
+     kRayDepthMax,
+     {0, 1, 2, 3, 4, 5, 6, 7, 8},
+     nullptr,
+     "error falls as reflectance to the power of depth, faster than any power of time"},
+    {"area-lights",
+     "points that each area light is taken as",
+     "",
+     "lights",
+     count_field<&Quality::points_per_area_light>(Quantity::area_light_points),
+     2,
+     bit(Effect::area_light),
+     bit(Effect::area_light),
+     true,
+     kAsAsked,
+     {1, 4, 9, 16, 36, 64, 144, 256},
+     points_price,
+     "-1/2 for random points; a grid of n points errs by one shadow edge of n, down to -1"},
+    {"cut-off",
+     "displayed levels that left-out rays may be worth",
+     "0: trace every ray",
+     "cut-off",
+     real_field<&Quality::cut_off_levels>(Quantity::cut_off),
+     4,
+     kSpawning,
+     kSpawning | bit(Effect::shadow),
+     false,
+     0,
+     {16, 8, 4, 2, 1, 0.5, 0.25, 0},
+     nullptr,
+     ""},
+    {"texture-filter",
+     "how textures are read between texels",
+     "",
+     nullptr,
+     choice_field<&Quality::texture_filter>(kTextureFilterNames),
+     1,
+     bit(Effect::texture),
+     bit(Effect::texture),
+     true,
+     double(TextureFilter::as_scene),
+     {double(TextureFilter::nearest), double(TextureFilter::as_scene), double(TextureFilter::bilinear)},
+     nullptr,
+     ""},
+    {"normals",
+     "normals across a triangle",
+     "scene: smooth where it has normals",
+     nullptr,
+     choice_field<&Quality::normals>(kNormalNames),
+     1,
+     bit(Effect::smooth_normal),
+     bit(Effect::smooth_normal),
+     false,
+     double(NormalMode::as_scene),
+     {double(NormalMode::flat), double(NormalMode::as_scene)},
+     nullptr,
+     ""},
+};
+constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];
+
+// Bytes of the rows together on the wire.
+constexpr std::uint32_t setting_wire_bytes() {
+  std::uint32_t sum = 0;
+  for (const SettingRow& row : kSettingList) sum += row.wire_bytes;
+  return sum;
+}
+
+// The row of that name; null where there is none.
+const SettingRow* find_setting(const char* name);
+
+// Whether the setting may have the value; never NaN.
+bool within_setting(const SettingRow& row, double value);
+// "the number of samples per pixel is 99: it must lie in 1 … 16"; `name` as check_limit() takes it.
+Status check_setting(const SettingRow& row, double value, const char* name = nullptr);
+// The choice of that name, which need not be terminated; false where there is none.
+bool find_choice(const SettingRow& row, const char* name, std::size_t name_bytes, double* value);
+// Writes "1 … 16", or "scene, nearest or bilinear"; terminated, cut to the size.
+void describe_range(const SettingRow& row, char* text, std::size_t size);
+// Writes "4", "0.5" or "nearest"; a real with so many significant digits. Terminated, cut to the size.
+void describe_value(const SettingRow& row, double value, int digits, char* text, std::size_t size);
+
+bool same_quality(const Quality& a, const Quality& b);
+// Whether light points and the bound on radiance are the same with both, scene and effects being the same.
+bool same_lights(const Quality& a, const Quality& b);
+// What a reference is rendered with: each setting exact where there is such a value, else as it was asked for.
+Settings reference_settings(const Settings& asked);
+
+constexpr bool setting_rows_valid() {
+  for (const SettingRow& row : kSettingList) {
+    const SettingField& field = row.field;
+    if (field.kind == SettingKind::count) {
+      if (row.wire_bytes != 1 && row.wire_bytes != 2) return false;
+      if (limit_of(field.quantity).low < 0 || limit_of(field.quantity).high >= double(1u << 8 * row.wire_bytes))
+        return false;
+    }
+    if (field.kind == SettingKind::real && row.wire_bytes != 4) return false;
+    if (field.kind == SettingKind::choice && (row.wire_bytes != 1 || row.sweep.count != field.name_count)) return false;
+    if (row.sweep.count < 2) return false;
+    for (int i = 0; i < row.sweep.count; ++i) {
+      double low = field.names ? 0 : limit_of(field.quantity).low;
+      double high = field.names ? field.name_count - 1 : limit_of(field.quantity).high;
+      if (!(row.sweep.values[i] >= low && row.sweep.values[i] <= high)) return false;
+    }
+  }
+  return true;
+}
+static_assert(setting_rows_valid(), "each row's values are within its limits and fit its bytes; all choices are swept");
+
+}  // namespace pocketray

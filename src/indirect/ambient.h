@@ -1,0 +1,24 @@
+// The ambient term: the same radiance from everywhere, which a diffuse surface reflects by its albedo.
+#pragma once
+#include "effect/effect_probe.h"
+#include "indirect/indirect.h"
+
+namespace pocketray {
+
+struct AmbientIndirect {
+  static constexpr const char* kName = "ambient";
+  static constexpr EffectMask kEffects = bit(Effect::ambient);
+  static constexpr IndirectReference kReference = IndirectReference::model;
+  static std::size_t need(const Scene&) { return 0; }
+  static const void* prepare(const Scene&, Arena*) { return nullptr; }
+  static Vec3 radiance(const IndirectPoint& at) {
+    effect_entered<Effect::ambient>();
+    return at.diffuse * at.scene.info.ambient;
+  }
+  static Vec3d exact(const Scene& scene, const Vec3d& diffuse) { return diffuse * to_double(scene.info.ambient); }
+  static float bound(const Scene& scene, const Material& material) {
+    return max_component(material.diffuse * scene.info.ambient);
+  }
+};
+
+}  // namespace pocketray

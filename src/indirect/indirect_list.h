@@ -1,0 +1,48 @@
+// One line per method of indirect light.
+#pragma once
+#include "indirect/ambient.h"
+#include "indirect/none.h"
+
+namespace pocketray {
+
+using IndirectList = IndirectMethods<  //
+    NoIndirect,                        //
+    AmbientIndirect                    //
+    >;
+
+// What the methods read, in the list's order; null where a method is off or has nothing.
+struct IndirectData {
+  const void* prepared[IndirectList::kCount] = {};
+};
+
+// Bytes of the persistent arena that the methods of a plan take.
+inline std::size_t indirect_need(const Scene& scene, EffectMask mask) {
+  std::size_t bytes = 0;
+  for (const IndirectInfo& info : IndirectList::kInfos)
+    if (mask & info.effects) bytes += info.need(scene);
+  return bytes;
+}
+
+inline IndirectData prepare_indirect(const Scene& scene, EffectMask mask, Arena* keep) {
+  IndirectData data;
+  for (int i = 0; i < IndirectList::kCount; ++i)
+    if (mask & IndirectList::kInfos[i].effects) data.prepared[i] = IndirectList::kInfos[i].prepare(scene, keep);
+  return data;
+}
+
+inline float indirect_bound(const Scene& scene, const Material& material) {
+  float bound = 0;
+  for (const IndirectInfo& info : IndirectList::kInfos) bound += info.bound(scene, material);
+  return bound;
+}
+
+// For the reference. `is_model`: of the lighting model, else of the transport of light.
+inline Vec3d exact_indirect(const Scene& scene, const Vec3d& diffuse, bool is_model) {
+  Vec3d sum = {0, 0, 0};
+  for (const IndirectInfo& info : IndirectList::kInfos)
+    if (info.reference == IndirectReference::always || (is_model && info.reference == IndirectReference::model))
+      sum += info.exact(scene, diffuse);
+  return sum;
+}
+
+}  // namespace pocketray

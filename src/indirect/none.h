@@ -1,0 +1,18 @@
+// No indirect light: what no light reaches is black.
+#pragma once
+#include "indirect/indirect.h"
+
+namespace pocketray {
+
+struct NoIndirect {
+  static constexpr const char* kName = "none";
+  static constexpr EffectMask kEffects = 0;
+  static constexpr IndirectReference kReference = IndirectReference::nothing;
+  static std::size_t need(const Scene&) { return 0; }
+  static const void* prepare(const Scene&, Arena*) { return nullptr; }
+  static Vec3 radiance(const IndirectPoint&) { return {0, 0, 0}; }
+  static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }
+  static float bound(const Scene&, const Material&) { return 0; }
+};
+
+}  // namespace pocketray

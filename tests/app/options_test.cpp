@@ -1,0 +1,34 @@
+// Options whose help is written from a list.
+#include "app/options.h"
+
+#include <doctest/doctest.h>
+
+#include <CLI/CLI.hpp>
+
+using namespace pocketray;
+
+// Goal: what can be named is listed. Method: every device, and every accelerator with what sets it apart, in the help
+// of its option; the automatic ones after one another, the default first.
+TEST_CASE("options_list_devices_and_accelerators") {
+  CLI::App app;
+  CommonOptions options;
+  add_scene_options(&app, &options);
+  const std::string devices = app.get_option("--device")->get_description();
+  for (const platform::Device& device : platform::kDevices) {
+    CAPTURE(device.name);
+    CHECK(devices.find(device.name) != std::string::npos);
+  }
+  const std::string accels = app.get_option("--accel")->get_description();
+  std::size_t place = accels.find("auto:");
+  REQUIRE(place != std::string::npos);
+  for (const AccelInfo* info : kAccelList) {
+    CAPTURE(info->name);
+    CHECK(accels.find(info->name) < place);
+    CHECK(accels.find(info->help) < place);
+    if (!info->is_automatic) continue;
+    std::size_t next = accels.find(info->name, place);
+    CHECK(next != std::string::npos);
+    place = next;
+  }
+  CHECK(kAccelList[0]->is_automatic);
+}

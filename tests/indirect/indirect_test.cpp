@@ -1,0 +1,117 @@
+// Methods of indirect light: what holds for every one of the list, and for those to come.
+#include <doctest/doctest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/rng.h"
+#include "indirect/indirect_list.h"
+
+using namespace pocketray;
+
+namespace {
+
+Vec3 random_color(Rng* rng) { return {next_float(rng), next_float(rng), next_float(rng)}; }
+
+}  // namespace
+
+// Goal: a method keeps to what it says. Method: random ambient terms, albedos and normals; the radiance is no more than
+// the bound, the same in double precision but for rounding, and none without an effect; prepare() takes what need()
+// says.
+TEST_CASE("indirect_methods_keep_their_promises") {
+  std::set<std::string> names;
+  EffectMask effects = 0;
+  for (const IndirectInfo& info : IndirectList::kInfos) {
+    CAPTURE(info.name);
+    CHECK(names.insert(info.name).second);
+    CHECK((effects & info.effects) == 0);  // one bit each, nobody else's
+    CHECK((info.effects & (info.effects - 1)) == 0);
+    CHECK((info.effects == 0) == (info.reference == IndirectReference::nothing));
+    effects |= info.effects;
+    Rng rng = make_rng(31);
+    for (int i = 0; i < 1000; ++i) {
+      Scene scene;
+      scene.info.ambient = random_color(&rng) * 3.0f;
+      Material material;
+      material.diffuse = random_color(&rng);
+      std::vector<unsigned char> block(info.need(scene) + 2 * kArenaAlignment);
+      Arena arena = make_arena("indirect", block.data(), block.size());
+      const std::size_t before = arena.used;
+      const void* prepared = info.prepare(scene, &arena);
+      CHECK(arena.used - before <= info.need(scene));
+      Vec3 point = random_color(&rng), normal = normalize(random_color(&rng));
+      Vec3 radiance = info.radiance({scene, prepared, point, normal, material.diffuse});
+      Vec3d exact = info.exact(scene, to_double(material.diffuse));
+      for (int axis = 0; axis < 3; ++axis) {
+        CHECK(radiance[axis] >= 0);
+        CHECK(radiance[axis] <= info.bound(scene, material));
+        CHECK(static_cast<double>(radiance[axis]) == doctest::Approx(exact[axis]).epsilon(1e-6));
+        if (!info.effects) CHECK(radiance[axis] == 0);
+      }
+    }
+  }
+  CHECK(effects == IndirectList::kEffects);
+  CHECK(names.count("none") == 1);
+}
+
+// Goal: a plan has the methods of its effects and no others. Method: a white surface in ambient light, with the effect
+// and without; the reference's lighting model has it, the transport of light does not.
+TEST_CASE("indirect_light_follows_the_plan") {
+  Scene scene;
+  scene.info.ambient = {0.25f, 0.5f, 1};
+  const Vec3 point = {0, 0, 0}, normal = {0, 1, 0}, white = {1, 1, 1};
+  IndirectData data = prepare_indirect(scene, kAllEffects, nullptr);
+  Vec3 with = {0, 0, 0}, without = {0, 0, 0};
+  IndirectList::add_radiance<bit(Effect::ambient)>(scene, data.prepared, point, normal, white, &with);
+  IndirectList::add_radiance<bit(Effect::texture)>(scene, data.prepared, point, normal, white, &without);
+  CHECK(with == scene.info.ambient);
+  CHECK(is_zero(without));
+  CHECK(indirect_need(scene, 0) == 0);
+  CHECK(exact_indirect(scene, {1, 1, 1}, true) == to_double(scene.info.ambient));
+  CHECK(is_zero(exact_indirect(scene, {1, 1, 1}, false)));
+  Material material;
+  material.diffuse = {0.5f, 0.5f, 0.5f};
+  CHECK(indirect_bound(scene, material) == 0.5f);
+}
+
+namespace {
+
+// A method for the test alone, with data of its own and an effect that has no other method.
+struct StoredIndirect {
+  static constexpr const char* kName = "stored";
+  static constexpr EffectMask kEffects = bit(Effect::animation);
+  static constexpr IndirectReference kReference = IndirectReference::always;
+  static std::size_t need(const Scene&) { return arena_need<Vec3>(1); }
+  static const void* prepare(const Scene&, Arena* keep) {
+    Array<Vec3> stored = arena_array<Vec3>(keep, 1);
+    stored[0] = {1, 2, 3};
+    return stored.data;
+  }
+  static Vec3 radiance(const IndirectPoint& at) { return at.diffuse * *static_cast<const Vec3*>(at.prepared); }
+  static Vec3d exact(const Scene&, const Vec3d& diffuse) { return diffuse * Vec3d{1, 2, 3}; }
+  static float bound(const Scene&, const Material&) { return 3; }
+};
+
+}  // namespace
+
+// Goal: a method more is a struct and a line. Method: a list of three; each plan has its own methods' light, and the
+// third reads what it prepared.
+TEST_CASE("indirect_method_more_is_a_line_more") {
+  using Longer = IndirectMethods<NoIndirect, AmbientIndirect, StoredIndirect>;
+  Scene scene;
+  scene.info.ambient = {0.5f, 0.5f, 0.5f};
+  alignas(kArenaAlignment) unsigned char block[4 * kArenaAlignment];
+  Arena arena = make_arena("indirect", block, sizeof block);
+  const void* prepared[Longer::kCount] = {};
+  for (int i = 0; i < Longer::kCount; ++i) prepared[i] = Longer::kInfos[i].prepare(scene, &arena);
+  CHECK(Longer::kEffects == (bit(Effect::ambient) | bit(Effect::animation)));
+  const Vec3 point = {0, 0, 0}, normal = {0, 1, 0}, white = {1, 1, 1};
+  Vec3 both = {0, 0, 0}, ambient = both, stored = both;
+  Longer::add_radiance<bit(Effect::ambient) | bit(Effect::animation)>(scene, prepared, point, normal, white, &both);
+  Longer::add_radiance<bit(Effect::ambient)>(scene, prepared, point, normal, white, &ambient);
+  Longer::add_radiance<bit(Effect::animation)>(scene, prepared, point, normal, white, &stored);
+  CHECK(both == Vec3{1.5f, 2.5f, 3.5f});
+  CHECK(ambient == scene.info.ambient);
+  CHECK(stored == Vec3{1, 2, 3});
+}
