@@ -223,8 +223,9 @@ float radiance_bound(const FrameData& frame) {
   const Scene& scene = *frame.scene;
   float glow = 0, reflectance = 0, scattering = 0;
   for (const Material& m : scene.materials) {
-    float own = max_component(m.emission) +
-                (m.unlit ? max_component(m.diffuse) : max_component(m.diffuse * scene.info.ambient));
+    float own = max_component(m.emission) + (m.unlit && has(frame.mask, Effect::emission)
+                                                 ? max_component(m.diffuse)
+                                                 : max_component(m.diffuse * scene.info.ambient));
     if (own > glow) glow = own;
     float passes =
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));
