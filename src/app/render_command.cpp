@@ -136,8 +136,7 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
     Progress* progress;
     std::uint64_t rows_before;
   } shown = {progress, rows_before};
-  SpanList bands = whole_frame(r);
-  bands.batch_spans = 4 * kTileRows * r->settings.threads;
+  SpanList bands = row_bands(r);
   bands.progress_context = &shown;
   bands.progress = [](void* context, std::uint32_t row_count) {
     const Shown& s = *static_cast<Shown*>(context);

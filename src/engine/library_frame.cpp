@@ -78,22 +78,20 @@ void clear_costs(pocketray_instance* instance) {
   instance->refining = false;
 }
 
-// Bands of rows, as high as makes all threads busy, with a call after each.
+// Bands of rows with a call after each, which may end the frame.
 Status render_bands(pocketray_instance* instance, double seconds) {
   Renderer* r = &instance->renderer;
   RETURN_IF_ERROR(prepare_frame(r, seconds));
-  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
-  const std::uint32_t band = 4 * kTileRows * r->settings.threads, height = r->settings.height;
+  SpanList bands = row_bands(r);
+  SpanSource source = list_source(&bands);
+  source.stop = &instance->stop;
+  source.deadline_ns = 0;  // a call of trace_frame() traces one band
   std::uint64_t start = clock_ns();
-  bool stopped = false;
-  while (instance->rows_done < height && !stopped) {
-    std::uint32_t row = instance->rows_done, rows = height - row < band ? height - row : band;
-    std::uint32_t done = trace_paced(
-        &r->pace, r->workers,
-        {r->spans.data + row, rows, Aov::none, r->image.data, r->tracers.data, r->row_ns.data + row, &instance->stop});
-    instance->rows_done += done;
-    stopped = done < rows;
-    if (!stopped) stopped = instance->progress(instance->progress_user, instance->rows_done, height) != 0;
+  for (bool ended = false; !ended;) {
+    ended = trace_frame(r, source);
+    instance->rows_done = bands.done_count;
+    if (!ended && instance->stop.load(std::memory_order_relaxed)) break;
+    ended |= instance->progress(instance->progress_user, bands.done_count, r->settings.height) != 0;
   }
   r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
@@ -124,7 +122,7 @@ pocketray_result pocketray_begin(pocketray_instance* instance, double seconds) {
   clear_costs(instance);
   status = prepare_frame(&instance->renderer, seconds);
   if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
-  start_progressive(&instance->renderer, &instance->progressive);
+  instance->progressive = Progressive();
   instance->refining = true;
   return POCKETRAY_OK;
 }

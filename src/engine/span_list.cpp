@@ -38,6 +38,12 @@ SpanList whole_frame(Renderer* r) {
   return list;
 }
 
+SpanList row_bands(Renderer* r) {
+  SpanList list = whole_frame(r);
+  list.batch_spans = 4 * kTileRows * r->settings.threads;
+  return list;
+}
+
 void divide_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end, std::uint32_t part_count, Span* spans) {
   CHECK_LE(begin, end);
   CHECK_LT(0u, part_count);

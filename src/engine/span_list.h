@@ -23,6 +23,8 @@ SpanSource list_source(SpanList* list);
 
 // All of the renderer's spans: one per scanline, timed in row_ns.
 SpanList whole_frame(Renderer* renderer);
+// The same in bands of rows, each as high as keeps all threads busy.
+SpanList row_bands(Renderer* renderer);
 
 // Divides pixels [begin, end) of a row into `part_count` spans of about the same length, one at least. No span is empty
 // where there are as many pixels.

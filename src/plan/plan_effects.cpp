@@ -15,7 +15,9 @@ struct Census {
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
-Census take_census(const Scene& scene) {
+// Where emission is forced off, unlit materials scatter like others.
+Census take_census(const Scene& scene, const Settings& settings) {
+  bool shows_unlit = !has(settings.forced_off, Effect::emission);
   Census c;
   std::uint32_t used[kMaterialCountMax / 32] = {};
   for (const Triangle& t : scene.triangles) used[t.material() / 32] |= 1u << t.material() % 32;
@@ -34,7 +36,7 @@ Census take_census(const Scene& scene) {
     c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
     c.one_sided += !m.double_sided && !transmits;
-    c.scattering += !m.unlit && (!is_zero(m.diffuse) || !is_zero(m.specular));
+    c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular));
   }
   for (const Light& light : scene.lights) ++c.lights[static_cast<int>(light.kind)];
   return c;
@@ -69,7 +71,7 @@ struct PlanWriter {
 }  // namespace
 
 EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
-  Census c = take_census(scene);
+  Census c = take_census(scene, settings);
   EffectPlan plan;
   PlanWriter w = {&plan, c.materials};
   w.set_by_materials(Effect::specular, c.specular, "shine");

@@ -223,7 +223,8 @@ float radiance_bound(const FrameData& frame) {
   const Scene& scene = *frame.scene;
   float glow = 0, reflectance = 0, scattering = 0;
   for (const Material& m : scene.materials) {
-    float own = max_component(m.emission) + (m.unlit ? max_component(m.diffuse) : indirect_bound(scene, m));
+    bool shines = m.unlit && has(frame.mask, Effect::emission);
+    float own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m));
     if (own > glow) glow = own;
     float passes =
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));

@@ -17,6 +17,7 @@ collected() {  # PROGRAM SCENE FRAMES
 frame_of() {  # PROGRAM SCENE : instructions of a frame
   local one three
   one=$(collected "$1" "$2" 1) three=$(collected "$1" "$2" 3)
+  [ "${one:-0}" -gt 0 ] && [ "${three:-0}" -gt "$one" ] || { echo "valgrind did not count $*" >&2; exit 1; }
   echo $(((three - one) / 2))
 }
 

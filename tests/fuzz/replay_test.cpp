@@ -53,13 +53,17 @@ void damage(const std::vector<FuzzSeed>& seeds, Target target, int rounds) {
   }
 }
 
-// With POCKETRAY_WRITE_CORPUS=1 the seeds are written to the corpus, which the fuzzer starts from.
-void write_seeds(const char* folder, const std::vector<FuzzSeed>& seeds) {
-  if (!std::getenv("POCKETRAY_WRITE_CORPUS")) return;
+// The corpus, which the fuzzer starts from, holds the seeds; POCKETRAY_WRITE_CORPUS=1 writes them anew.
+void check_committed(const char* folder, const std::vector<FuzzSeed>& seeds) {
   for (const FuzzSeed& seed : seeds) {
-    std::ofstream file(std::string(POCKETRAY_CORPUS) + "/" + folder + "/" + seed.name, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(seed.bytes.data()), static_cast<std::streamsize>(seed.bytes.size()));
-    REQUIRE(file.good());
+    std::string path = std::string(POCKETRAY_CORPUS) + "/" + folder + "/" + seed.name;
+    if (std::getenv("POCKETRAY_WRITE_CORPUS")) {
+      std::ofstream file(path, std::ios::binary);
+      file.write(reinterpret_cast<const char*>(seed.bytes.data()), static_cast<std::streamsize>(seed.bytes.size()));
+      REQUIRE(file.good());
+    }
+    INFO(path);
+    CHECK(read_file(path) == seed.bytes);
   }
 }
 
@@ -67,7 +71,7 @@ void write_seeds(const char* folder, const std::vector<FuzzSeed>& seeds) {
 
 // Goal: no input of a hostile peer aborts the decoders; the seeds reach all of them.
 TEST_CASE("fuzz_message_corpus_and_damaged_seeds") {
-  write_seeds("message", message_seeds());
+  check_committed("message", message_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : message_seeds()) fuzz_message(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.messages == 30);
@@ -79,7 +83,7 @@ TEST_CASE("fuzz_message_corpus_and_damaged_seeds") {
 
 // Goal: no .pray file makes the program abort; the seeds are opened and rendered, damaged ones at times.
 TEST_CASE("fuzz_pray_corpus_and_damaged_seeds") {
-  write_seeds("pray", pray_seeds());
+  check_committed("pray", pray_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : pray_seeds()) fuzz_pray(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.scenes == 2);
@@ -93,7 +97,7 @@ TEST_CASE("fuzz_pray_corpus_and_damaged_seeds") {
 // Goal: no model makes the program abort, hang or allocate without bounds, whatever its format; seeds of several
 // formats are read and rendered.
 TEST_CASE("fuzz_import_corpus_and_damaged_seeds") {
-  write_seeds("import", import_seeds());
+  check_committed("import", import_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : import_seeds()) fuzz_import(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.imports >= (import_seeds().size() > 10 ? 10 : 4));
@@ -105,7 +109,7 @@ TEST_CASE("fuzz_import_corpus_and_damaged_seeds") {
 
 // Goal: no file of a front or of prices makes the program abort, and what is read can be used and written again.
 TEST_CASE("fuzz_front_corpus_and_damaged_seeds") {
-  write_seeds("front", front_seeds());
+  check_committed("front", front_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : front_seeds()) fuzz_front(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.fronts == 4);
@@ -115,7 +119,7 @@ TEST_CASE("fuzz_front_corpus_and_damaged_seeds") {
 
 // Goal: no text of an option, of a state or of another program's makes the program abort.
 TEST_CASE("fuzz_text_corpus_and_damaged_seeds") {
-  write_seeds("text", text_seeds());
+  check_committed("text", text_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : text_seeds()) fuzz_text(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.texts >= 5);
@@ -130,7 +134,7 @@ TEST_CASE("fuzz_text_corpus_and_damaged_seeds") {
 // Goal: whatever a server does, a device goes on: its frames are complete, and it keeps to the protocol itself. The
 // seeds get as far as rows, scenes and views.
 TEST_CASE("fuzz_client_corpus_and_damaged_seeds") {
-  write_seeds("client", client_seeds());
+  check_committed("client", client_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : client_seeds()) fuzz_client(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.frames > 30);
@@ -143,7 +147,7 @@ TEST_CASE("fuzz_client_corpus_and_damaged_seeds") {
 
 // Goal: whatever clients do, a server goes on and greets the next one. The seeds get answers of every kind.
 TEST_CASE("fuzz_server_corpus_and_damaged_seeds") {
-  write_seeds("server", server_seeds());
+  check_committed("server", server_seeds());
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : server_seeds()) fuzz_server(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.answers > 20);

@@ -107,6 +107,32 @@ TEST_CASE("texture_shows_on_a_square") {
   CHECK(look(*ray_renderer(&s), {-.5f, -.5f, 1}, {-.5f, -.5f, 0}) == Vec3{0, 1, 0});
 }
 
+// Goal: with emission forced off, an unlit surface is lit like any other. Method: the same square with and without the
+// flag, in a light and its shadow, bit for bit; with emission it shows its colour.
+TEST_CASE("unlit_without_emission_is_lit_like_others") {
+  auto square = [](std::uint8_t is_unlit, EffectMask forced_off) {
+    GeneratedScene s;
+    Material m;
+    m.unlit = is_unlit;
+    m.diffuse = {0.5f, 1, 0.25f};
+    add_sheet(&s, 0, add_material(&s, m), false, 1);
+    add_sheet(&s, 1, add_material(&s, m), false, 0.3f);
+    Light light;
+    light.position = {1, 0.5f, 3}, light.intensity = {9, 9, 9};
+    s.lights.push_back(light);
+    s.scene.info.ambient = {2, 2, 2};
+    aim(&s, {0, 0, 4}, {0, 0, 0}, 60);
+    s.bind();
+    Settings settings;
+    settings.width = 24, settings.height = 18, settings.forced_off = forced_off;
+    return render_picture(s.scene, settings, 0);
+  };
+  Picture lit = square(0, 0);
+  CHECK(same_picture(square(1, bit(Effect::emission)), square(0, bit(Effect::emission))));
+  CHECK_FALSE(same_picture(square(1, 0), lit));
+  CHECK(square(1, 0)[24 * 9 + 12] == Vec3{0.5f, 1, 0.25f});
+}
+
 // Goal: vertex colours interpolate. Method: closed form at vertices' mean.
 TEST_CASE("vertex_colors_interpolate") {
   GeneratedScene s;
