@@ -1,5 +1,5 @@
 // The link contract: byte streams to peers, as one struct of functions per backend. Standard types only; net/tcp.h has
-// the real one, null/null_link.h one with a virtual clock and faults.
+// the real one, null/net/null_link.h one with a virtual clock and faults.
 //
 // A Link lives in memory the caller gives, is used from one thread and takes no other memory after open(); there may be
 // several. No call waits, but poll() up to its timeout and resolve() as long as the system's resolver does. A stream is
@@ -90,7 +90,7 @@ struct LinkBackend {
 };
 
 // Splits "HOST:PORT" as resolve() reads it; of an IPv6 address without its brackets. False: `error` says why.
-bool link_split_address(const char* text, char* host, std::size_t host_bytes, int* port, Error* error);
+bool link_parse_address(const char* text, char* host, std::size_t host_bytes, int* port, Error* error);
 
 // Time that passes towards a deadline by a clock that may be set back: only its steps forward count.
 struct LinkTimer {

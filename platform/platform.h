@@ -27,7 +27,7 @@ enum class Button : std::uint8_t {
   reload,
   finer,
   faster,
-  split
+  side_by_side
 };
 constexpr int kPadButtonCount = 12;  // up … select: what a handheld has
 constexpr int kButtonCount = 18;     // with the keys of a desktop keyboard

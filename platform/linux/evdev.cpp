@@ -36,7 +36,7 @@ constexpr KeyButton kMoreKeys[] = {
     {KEY_SYSRQ, Button::screenshot},
     {KEY_PAGEUP, Button::finer},
     {KEY_PAGEDOWN, Button::faster},
-    {KEY_V, Button::split},
+    {KEY_V, Button::side_by_side},
 };
 
 constexpr std::uint16_t kAxisCodes[4] = {ABS_X, ABS_Y, ABS_HAT0X, ABS_HAT0Y};

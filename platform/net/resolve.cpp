@@ -90,7 +90,7 @@ bool resolve_address(const char* text, LinkAddress* address, Error* error) {
   snprintf(address->text, sizeof address->text, "%s", text);
   char host[256];
   int port;
-  if (!link_split_address(text, host, sizeof host, &port, error)) return false;
+  if (!link_parse_address(text, host, sizeof host, &port, error)) return false;
   if (add_number(address, host, port)) return true;
   if (strcmp(host, "localhost") == 0) return add_number(address, "127.0.0.1", port) && add_number(address, "::1", port);
   return add_name(address, host, port, error);

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "platform/link_slots.h"
+#include "platform/net/link_slots.h"
 
 namespace platform {
 namespace {

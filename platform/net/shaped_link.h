@@ -1,12 +1,12 @@
 // The radio of an emulated device: a link over another one that lets bytes pass only as a wireless link would. They are
 // taken from the inner link in any call that polls, cross the line in their turn, and come out when they are due.
 //
-// Whoever connects is the device, as in null/null_link.h: its connections share one radio, which sends and receives at
-// once. Peers that are accepted here pass as they are.
+// Whoever connects is the device, as in null/net/null_link.h: its connections share one radio, which sends and receives
+// at once. Peers that are accepted here pass as they are.
 #pragma once
 #include "platform/devices/device.h"
 #include "platform/link.h"
-#include "platform/link_pipe.h"
+#include "platform/net/link_pipe.h"
 
 namespace platform {
 

@@ -9,8 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "platform/link_slots.h"
 #include "platform/net/descriptors.h"
+#include "platform/net/link_slots.h"
 #include "platform/net/resolve.h"
 
 namespace platform {

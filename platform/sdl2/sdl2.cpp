@@ -18,16 +18,25 @@ struct KeyButton {
 };
 // By place on the keyboard, whatever is printed there. The same as evdev's.
 constexpr KeyButton kKeys[] = {
-    {SDL_SCANCODE_UP, Button::up},        {SDL_SCANCODE_DOWN, Button::down},
-    {SDL_SCANCODE_LEFT, Button::left},    {SDL_SCANCODE_RIGHT, Button::right},
-    {SDL_SCANCODE_X, Button::a},          {SDL_SCANCODE_Z, Button::b},
-    {SDL_SCANCODE_S, Button::x},          {SDL_SCANCODE_A, Button::y},
-    {SDL_SCANCODE_Q, Button::l},          {SDL_SCANCODE_W, Button::r},
-    {SDL_SCANCODE_RETURN, Button::start}, {SDL_SCANCODE_RSHIFT, Button::select},
-    {SDL_SCANCODE_F1, Button::hud},       {SDL_SCANCODE_F12, Button::screenshot},
-    {SDL_SCANCODE_F5, Button::reload},    {SDL_SCANCODE_PRINTSCREEN, Button::screenshot},
-    {SDL_SCANCODE_PAGEUP, Button::finer}, {SDL_SCANCODE_PAGEDOWN, Button::faster},
-    {SDL_SCANCODE_V, Button::split},
+    {SDL_SCANCODE_UP, Button::up},
+    {SDL_SCANCODE_DOWN, Button::down},
+    {SDL_SCANCODE_LEFT, Button::left},
+    {SDL_SCANCODE_RIGHT, Button::right},
+    {SDL_SCANCODE_X, Button::a},
+    {SDL_SCANCODE_Z, Button::b},
+    {SDL_SCANCODE_S, Button::x},
+    {SDL_SCANCODE_A, Button::y},
+    {SDL_SCANCODE_Q, Button::l},
+    {SDL_SCANCODE_W, Button::r},
+    {SDL_SCANCODE_RETURN, Button::start},
+    {SDL_SCANCODE_RSHIFT, Button::select},
+    {SDL_SCANCODE_F1, Button::hud},
+    {SDL_SCANCODE_F12, Button::screenshot},
+    {SDL_SCANCODE_F5, Button::reload},
+    {SDL_SCANCODE_PRINTSCREEN, Button::screenshot},
+    {SDL_SCANCODE_PAGEUP, Button::finer},
+    {SDL_SCANCODE_PAGEDOWN, Button::faster},
+    {SDL_SCANCODE_V, Button::side_by_side},
 };
 
 struct ControllerButton {

@@ -1,13 +1,13 @@
-// Builds the BVH from the top: a node takes a range of triangles and splits the part with the largest surface until it
+// Builds the BVH from the top: a node takes a range of triangles and divides the part with the largest surface until it
 // has four. Ranges of few triangles go to a treelet, which becomes several nodes at once.
 //
-// Ours: every range has a number of leaves that it may take, little above what its triangles fill, and no split goes
+// Ours: every range has a number of leaves that it may take, little above what its triangles fill, and no division goes
 // beyond it. So memory stays below a bound that can be planned with.
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
-#include "accel/bvh_split.h"
+#include "accel/bvh_divide.h"
 #include "accel/bvh_treelet.h"
 #include "base/check.h"
 
@@ -27,8 +27,8 @@ constexpr std::size_t leaf_count_max(std::size_t triangles) {
 // Nodes above the treelets have four children, treelets or leaves at their ends. So with E ends there are (E - 1) / 3
 // of them, and an end of L leaves accounts for treelet_node_count(L) nodes (a leaf among such nodes for none) and a
 // third of one, which for the L that there are, 1 and at least 4, is at most 7/15 L. Where the root is a treelet, it
-// alone counts. None of that depends on where triangles lie: part_to_split() has a part to split until there are four,
-// split_part() a split for it, and only what is left to choose follows the boxes.
+// alone counts. None of that depends on where triangles lie: part_to_divide() has a part to divide until there are
+// four, divide_part() a division for it, and only what is left to choose follows the boxes.
 constexpr std::size_t node_count_max(std::size_t leaves) { return 7 * leaves / 15 + 1; }
 constexpr bool ends_are_bounded() {
   for (std::size_t leaves = kSideLeavesMin; leaves <= kTreeletLeafMax; ++leaves)
@@ -38,7 +38,7 @@ constexpr bool ends_are_bounded() {
   return true;
 }
 static_assert(ends_are_bounded(), "as above");
-static_assert(kSideLeavesMin < kTreeletLeafMax / 3, "among three parts of more than a treelet one can be split");
+static_assert(kSideLeavesMin < kTreeletLeafMax / 3, "among three parts of more than a treelet one can be divided");
 static_assert(bvh_bytes(node_count_max(leaf_count_max(kTriangleCountMax)), leaf_count_max(kTriangleCountMax)) +
                       2 * kArenaAlignment <=
                   0xFFFFFFFFu,
@@ -52,14 +52,14 @@ std::uint32_t levels_when_halved(std::uint32_t n) {
   return levels;
 }
 
-// The part to split next: the one with the largest surface, or with the most triangles when the range is halved. -1
-// where none can be split: never among fewer than four parts of more triangles than a treelet has.
-int part_to_split(const BuildPart* parts, int count, bool halve) {
+// The part to divide next: the one with the largest surface, or with the most triangles when the range is halved. -1
+// where none can be divided: never among fewer than four parts of more triangles than a treelet has.
+int part_to_divide(const BuildPart* parts, int count, bool halve) {
   int best = -1;
   double best_weight = -1;
   for (int i = 0; i < count; ++i) {
     std::uint32_t n = parts[i].count;
-    if (!can_be_split(n)) continue;
+    if (!can_be_divided(n)) continue;
     double weight = halve ? n : half_area(parts[i].box);
     if (weight > best_weight || (weight == best_weight && n > parts[best].count)) best = i, best_weight = weight;
   }
@@ -147,10 +147,10 @@ std::uint32_t build_node(Builder* builder, const Task& task, Task* stack, std::u
   }
   BuildPart parts[4] = {task.part};
   int part_count = 1;
-  bool halve = !has_split_axis(task.part) || task.depth + levels_when_halved(task.part.count) >= kBvhDepthMax;
-  for (int i; part_count < 4 && (i = part_to_split(parts, part_count, halve)) >= 0; ++part_count) {
+  bool halve = !has_division_axis(task.part) || task.depth + levels_when_halved(task.part.count) >= kBvhDepthMax;
+  for (int i; part_count < 4 && (i = part_to_divide(parts, part_count, halve)) >= 0; ++part_count) {
     BuildPart whole = parts[i];
-    split_part(builder->primitives, whole, halve, &parts[i], &parts[part_count]);
+    divide_part(builder->primitives, whole, halve, &parts[i], &parts[part_count]);
   }
   BvhNode* node = clear_node(builder, task.node);
   for (int lane = 0; lane < part_count; ++lane) {

@@ -1,4 +1,4 @@
-// What the builder of the BVH splits: boxes of triangles, in the lanes of a vector.
+// What the builder of the BVH divides: boxes of triangles, in the lanes of a vector.
 #pragma once
 #include "accel/bvh.h"
 #include "base/simd.h"

@@ -19,7 +19,7 @@ constexpr bool halves_are_full(std::uint32_t a, std::uint32_t b) {
 }
 
 // The proof that a treelet of L leaves becomes at most treelet_node_count(L) nodes, whatever its boxes are. nodes[L][r]
-// bounds what a subtree of L leaves needs below or as up to r roots, for the worst of the splits that are allowed:
+// bounds what a subtree of L leaves needs below or as up to r roots, for the worst of the divisions that are allowed:
 // choose_roots() takes the fewest nodes, of the subtree as one root or of its halves with r roots between them.
 struct TreeletBound {
   std::uint32_t nodes[kTreeletLeafMax + 1][5] = {};
@@ -50,7 +50,7 @@ constexpr bool treelets_are_bounded() {
 }
 static_assert(treelets_are_bounded(), "for every shape of the binary tree");
 
-struct SweepSplit {
+struct SweepDivision {
   double cost = kInfinite;
   int axis = 0;
   std::uint32_t left_count = 0;
@@ -74,19 +74,19 @@ void sort_primitives(Treelet* treelet, std::uint32_t count) {
   }
 }
 
-// Whether a split leaves full leaves, and lets nodes be full: see halves_are_full().
-bool split_is_full(std::uint32_t left, std::uint32_t right) {
+// Whether a division leaves full leaves, and lets nodes be full: see halves_are_full().
+bool side_by_side_is_full(std::uint32_t left, std::uint32_t right) {
   std::uint32_t left_leaves = leaves_for(left), right_leaves = leaves_for(right);
   return left_leaves + right_leaves == leaves_for(left + right) && halves_are_full(left_leaves, right_leaves);
 }
 
-// The cheapest full split of a node, among all positions on all axes. There is one: four primitives on the left.
-SweepSplit sweep(const Treelet& treelet, const TreeletNode& node) {
-  SweepSplit best;
+// The cheapest full division of a node, among all positions on all axes. There is one: four primitives on the left.
+SweepDivision sweep(const Treelet& treelet, const TreeletNode& node) {
+  SweepDivision best;
   double right_cost[kTreeletMax];
   bool allowed[kTreeletMax];
   std::uint32_t count = node.count;
-  for (std::uint32_t left = 1; left < count; ++left) allowed[left] = split_is_full(left, count - left);
+  for (std::uint32_t left = 1; left < count; ++left) allowed[left] = side_by_side_is_full(left, count - left);
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint8_t* order = treelet.order[axis] + node.begin;
     WideBox box = empty_wide_box();
@@ -106,11 +106,11 @@ SweepSplit sweep(const Treelet& treelet, const TreeletNode& node) {
 }
 
 // Brings the primitives of the left half to the front in the orders of all axes.
-void partition_orders(Treelet* treelet, const TreeletNode& node, const SweepSplit& split) {
+void partition_orders(Treelet* treelet, const TreeletNode& node, const SweepDivision& division) {
   std::uint8_t in_left[kTreeletMax] = {0};
-  for (std::uint32_t i = 0; i < split.left_count; ++i) in_left[treelet->order[split.axis][node.begin + i]] = 1;
+  for (std::uint32_t i = 0; i < division.left_count; ++i) in_left[treelet->order[division.axis][node.begin + i]] = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    if (axis == split.axis) continue;
+    if (axis == division.axis) continue;
     std::uint8_t* order = treelet->order[axis] + node.begin;
     std::uint8_t right[kTreeletMax];
     std::uint32_t left_count = 0, right_count = 0;
@@ -134,11 +134,11 @@ std::uint32_t add_node(Treelet* treelet, std::uint32_t begin, std::uint32_t coun
   return treelet->node_count++;
 }
 
-void split_node(Treelet* treelet, TreeletNode* node) {
-  SweepSplit split = sweep(*treelet, *node);
-  partition_orders(treelet, *node, split);
-  node->left = add_node(treelet, node->begin, split.left_count);
-  node->right = add_node(treelet, node->begin + split.left_count, node->count - split.left_count);
+void divide_node(Treelet* treelet, TreeletNode* node) {
+  SweepDivision division = sweep(*treelet, *node);
+  partition_orders(treelet, *node, division);
+  node->left = add_node(treelet, node->begin, division.left_count);
+  node->right = add_node(treelet, node->begin + division.left_count, node->count - division.left_count);
 }
 
 // What roots cost: the fewest nodes first, which keeps to the planned memory, then the least surface. Two numbers and
@@ -156,21 +156,21 @@ void choose_roots(TreeletNode* node, const Treelet& treelet) {
     return;
   }
   const TreeletNode &left = treelet.nodes[node->left], &right = treelet.nodes[node->right];
-  TreeletCost split_cost[5];
-  std::uint8_t split_left[5];
+  TreeletCost division_cost[5];
+  std::uint8_t division_left[5];
   for (int roots = 2; roots <= 4; ++roots)
     for (int i = 1; i < roots; ++i) {
       const TreeletCost &a = left.cost[i], &b = right.cost[roots - i];
       TreeletCost cost = {a.node_count + b.node_count, a.surface + b.surface};
-      if (i == 1 || is_cheaper(cost, split_cost[roots]))
-        split_cost[roots] = cost, split_left[roots] = static_cast<std::uint8_t>(i);
+      if (i == 1 || is_cheaper(cost, division_cost[roots]))
+        division_cost[roots] = cost, division_left[roots] = static_cast<std::uint8_t>(i);
     }
-  node->cost[1] = {1 + split_cost[4].node_count, area + split_cost[4].surface};
-  node->left_roots[1] = split_left[4];
+  node->cost[1] = {1 + division_cost[4].node_count, area + division_cost[4].surface};
+  node->left_roots[1] = division_left[4];
   for (int roots = 2; roots <= 4; ++roots) {
-    bool whole = !is_cheaper(split_cost[roots], node->cost[1]);
-    node->cost[roots] = whole ? node->cost[1] : split_cost[roots];
-    node->left_roots[roots] = whole ? 0 : split_left[roots];
+    bool whole = !is_cheaper(division_cost[roots], node->cost[1]);
+    node->cost[roots] = whole ? node->cost[1] : division_cost[roots];
+    node->left_roots[roots] = whole ? 0 : division_left[roots];
   }
 }
 
@@ -194,7 +194,7 @@ void build_treelet(const BuildPrimitive* primitives, std::uint32_t count, Treele
   sort_primitives(treelet, count);
   add_node(treelet, 0, count);
   for (std::uint32_t i = 0; i < treelet->node_count; ++i)
-    if (treelet->nodes[i].count > kBvhLeafSize) split_node(treelet, &treelet->nodes[i]);
+    if (treelet->nodes[i].count > kBvhLeafSize) divide_node(treelet, &treelet->nodes[i]);
   for (std::uint32_t i = treelet->node_count; i-- > 0;) choose_roots(&treelet->nodes[i], *treelet);
   CHECK_LE(treelet->nodes[0].cost[1].node_count, treelet_node_count(leaves_for(count)));
 }

@@ -1,4 +1,4 @@
-// The lower end of the BVH: small subtrees, split with care into full leaves and collapsed into the fewest nodes.
+// The lower end of the BVH: small subtrees, divided with care into full leaves and collapsed into the fewest nodes.
 #pragma once
 #include "accel/bvh_primitive.h"
 

@@ -17,25 +17,25 @@
 namespace pocketray {
 namespace {
 
-Json to_json(const CommonOptions& options, const Renderer& r, Measurement* m) {
+Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement* m) {
   Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
   Json rows = Json::array();
-  for (std::uint32_t row = 0; row < r.settings.height; ++row)
+  for (std::uint32_t row = 0; row < renderer.settings.height; ++row)
     rows.push_back(range_of(&m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max], m->frame_count).median /
-                   r.settings.width);
+                   renderer.settings.width);
   Json rays = Json::object();
   for (int kind = 0; kind < kRayKindCount; ++kind) rays[kRayKindNames[kind]] = m->counts.rays[kind];
-  Json effects = effects_json(r.effects);
+  Json effects = effects_json(renderer.effects);
   for (int i = 0; i < kEffectCount; ++i)
     if (std::isfinite(m->effect_price[i]))
       effects[static_cast<std::size_t>(i)]["price_ns_per_pixel"] = m->effect_price[i];
   return {{"scene", options.scene},
-          {"triangles", r.scene.triangles.count},
-          {"width", r.settings.width},
-          {"height", r.settings.height},
-          {"threads", r.settings.threads},
+          {"triangles", renderer.scene.triangles.count},
+          {"width", renderer.settings.width},
+          {"height", renderer.settings.height},
+          {"threads", renderer.settings.threads},
           {"isa", isa_name(active_isa())},
-          {"emulated", r.pace.device ? Json(r.pace.device) : Json()},
+          {"emulated", renderer.pace.device ? Json(renderer.pace.device) : Json()},
           {"frames", m->frame_count},
           {"ns_per_pixel", {{"min", pixel.min}, {"median", pixel.median}, {"max", pixel.max}}},
           {"scanline_ns_per_pixel", rows},
@@ -45,22 +45,22 @@ Json to_json(const CommonOptions& options, const Renderer& r, Measurement* m) {
           {"rays_per_second", rays_per_second(*m)},
           {"nodes_visited", m->counts.stats.nodes},
           {"triangles_tested", m->counts.stats.triangles},
-          {"memory", memory_json(r.memory)},
+          {"memory", memory_json(renderer.memory)},
           {"effects", effects},
-          {"build_ms", r.timings.build_ms},
+          {"build_ms", renderer.timings.build_ms},
           {"pose_ms", range_of(m->pose_ms.data(), m->frame_count).median},
           {"refit_ms", range_of(m->refit_ms.data(), m->frame_count).median}};
 }
 
-void print_table(const CommonOptions& options, const Renderer& r, Measurement* m) {
+void print_table(const CommonOptions& options, const Renderer& renderer, Measurement* m) {
   Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
   std::printf("%s: %s triangles, %u×%u, %u thread%s, %s, %u frame%s%s\n", options.scene.c_str(),
-              grouped(r.scene.triangles.count).c_str(), r.settings.width, r.settings.height, r.settings.threads,
-              r.settings.threads == 1 ? "" : "s", isa_name(active_isa()), m->frame_count,
-              m->frame_count == 1 ? "" : "s", emulation_text(r.pace).c_str());
+              grouped(renderer.scene.triangles.count).c_str(), renderer.settings.width, renderer.settings.height,
+              renderer.settings.threads, renderer.settings.threads == 1 ? "" : "s", isa_name(active_isa()),
+              m->frame_count, m->frame_count == 1 ? "" : "s", emulation_text(renderer.pace).c_str());
   std::printf("  %-22s %10.0f ns   (%.0f … %.0f)\n", "per pixel", pixel.median, pixel.min, pixel.max);
-  std::printf("  %-22s %10.1f ms   (%.1f frames per second)\n", "per frame", pixel.median * pixel_count(r) * 1e-6,
-              1e9 / (pixel.median * pixel_count(r)));
+  std::printf("  %-22s %10.1f ms   (%.1f frames per second)\n", "per frame",
+              pixel.median * pixel_count(renderer) * 1e-6, 1e9 / (pixel.median * pixel_count(renderer)));
   std::printf("  %-22s %10.2f million\n", "rays per second", rays_per_second(*m) * 1e-6);
   for (int kind = 0; kind < kRayKindCount; ++kind)
     if (m->counts.rays[kind])
@@ -68,8 +68,8 @@ void print_table(const CommonOptions& options, const Renderer& r, Measurement* m
                   grouped(m->counts.rays[kind]).c_str());
   std::printf("  %-22s %10s per frame, at most %.2g of radiance a sample\n", "rays left out",
               grouped(m->counts.rays_left_out).c_str(), static_cast<double>(m->counts.left_out_max));
-  std::printf("  %-22s %10.1f ms\n", "build", r.timings.build_ms);
-  if (has(r.effects.mask, Effect::animation))
+  std::printf("  %-22s %10.1f ms\n", "build", renderer.timings.build_ms);
+  if (has(renderer.effects.mask, Effect::animation))
     std::printf("  %-22s %10.2f ms and %.2f ms\n", "pose and refit", range_of(m->pose_ms.data(), m->frame_count).median,
                 range_of(m->refit_ms.data(), m->frame_count).median);
   std::printf("price of each effect, ns per pixel (by switching it off)\n");
@@ -77,7 +77,7 @@ void print_table(const CommonOptions& options, const Renderer& r, Measurement* m
     double price = m->effect_price[static_cast<int>(row.effect)];
     if (std::isfinite(price)) std::printf("  %-22s %10.0f\n", row.name, price);
   }
-  print_memory(r.memory);
+  print_memory(renderer.memory);
 }
 
 Json sparse_json(const SparseCost* costs) {
@@ -104,30 +104,30 @@ int run(const CommonOptions& options, std::uint32_t frame_count, bool prices, bo
   if (status.ok) status = start_scene(&opened, options);
   if (!status.ok) return report(status);
   print_notes(opened);
-  Renderer* r = &opened.renderer;
+  Renderer* renderer = &opened.renderer;
   if (frame_count == 0 || frame_count > kFrameCountMax)
     return report(failure("--frames is %u: it must lie in 1 … %u", frame_count, kFrameCountMax));
-  Measurement m = make_measurement(*r, frame_count);
+  Measurement m = make_measurement(*renderer, frame_count);
   seal_memory();
-  status = measure_frames(r, &m);
-  if (status.ok && prices) status = measure_prices(r, &m);
+  status = measure_frames(renderer, &m);
+  if (status.ok && prices) status = measure_prices(renderer, &m);
   unseal_memory();
   SparseCost costs[kSparseFractionCount];
-  if (status.ok && sparse) status = measure_sparse(r, static_cast<int>(frame_count), costs);
+  if (status.ok && sparse) status = measure_sparse(renderer, static_cast<int>(frame_count), costs);
   if (!status.ok) return report(status);
   if (m.frame_count == 0) return kExitInterrupted;
   sparse = sparse && costs[0].fraction > 0;  // not interrupted
-  if (options.json != "-") print_table(options, *r, &m);
+  if (options.json != "-") print_table(options, *renderer, &m);
   if (options.json != "-" && sparse) print_sparse(costs);
   if (!options.json.empty()) {
-    Json json = to_json(options, *r, &m);
+    Json json = to_json(options, *renderer, &m);
     if (sparse) json["sparse"] = sparse_json(costs);
     status = write_json(options.json, json);
   }
   return status.ok && interrupted ? kExitInterrupted : report(status);
 }
 
-Json front_json(const CommonOptions& options, const Renderer& r, const OpenFront& front, const Front& measured,
+Json front_json(const CommonOptions& options, const Renderer& renderer, const OpenFront& front, const Front& measured,
                 std::uint32_t rounds) {
   Json candidates = Json::array();
   for (std::uint32_t i = 0; i < measured.count; ++i) {
@@ -137,26 +137,27 @@ Json front_json(const CommonOptions& options, const Renderer& r, const OpenFront
     candidates.push_back({{"settings", quality}, {"flip", c.flip}, {"ns_per_pixel", c.ns_per_pixel}});
   }
   return {{"scene", options.scene},
-          {"width", r.settings.width},
-          {"height", r.settings.height},
-          {"threads", r.settings.threads},
-          {"emulated", r.pace.device ? Json(r.pace.device) : Json()},
+          {"width", renderer.settings.width},
+          {"height", renderer.settings.height},
+          {"threads", renderer.settings.threads},
+          {"emulated", renderer.pace.device ? Json(renderer.pace.device) : Json()},
           {"rounds", rounds},
           {"front", front.path},
           {"candidates", candidates}};
 }
 
-void print_front(const CommonOptions& options, const Renderer& r, const OpenFront& front, const Front& measured,
+void print_front(const CommonOptions& options, const Renderer& renderer, const OpenFront& front, const Front& measured,
                  std::uint32_t rounds) {
-  std::printf("%s: %u×%u, %u thread%s, %u round%s%s; prices kept in %s\n", options.scene.c_str(), r.settings.width,
-              r.settings.height, r.settings.threads, r.settings.threads == 1 ? "" : "s", rounds, rounds == 1 ? "" : "s",
-              emulation_text(r.pace).c_str(), front.path.empty() ? "no file" : front.path.c_str());
+  std::printf("%s: %u×%u, %u thread%s, %u round%s%s; prices kept in %s\n", options.scene.c_str(),
+              renderer.settings.width, renderer.settings.height, renderer.settings.threads,
+              renderer.settings.threads == 1 ? "" : "s", rounds, rounds == 1 ? "" : "s",
+              emulation_text(renderer.pace).c_str(), front.path.empty() ? "no file" : front.path.c_str());
   for (std::uint32_t i = 0; i < measured.count; ++i) {
     const Candidate& c = measured.candidates[i];
     char quality[kFrontLineMax];
     format_quality(c, quality, sizeof quality);
     std::printf("  %10.0f ns a pixel %10.1f ms   ꟻLIP %-8s %s\n", static_cast<double>(c.ns_per_pixel),
-                static_cast<double>(c.ns_per_pixel) * pixel_count(r) * 1e-6, error_text(c).c_str(), quality);
+                static_cast<double>(c.ns_per_pixel) * pixel_count(renderer) * 1e-6, error_text(c).c_str(), quality);
   }
 }
 

@@ -8,6 +8,14 @@
 #include "session/interrupt.h"
 #include "session/output.h"
 #include "session/report.h"
+#ifdef POCKETRAY_HAVE_ACCURACY
+#include "app/accuracy/accuracy_command.h"
+#include "viewer/reference/reference_view.h"
+#endif
+#ifdef POCKETRAY_HAVE_NETWORK
+#include "app/network/network_commands.h"
+#include "remote/client/servers.h"
+#endif
 
 namespace pocketray {
 namespace {
@@ -42,8 +50,15 @@ int run(int argument_count, char** arguments) {
   program.set_version_flag("--version", POCKETRAY_VERSION);
   program.require_subcommand(1);
   program.footer("Exit status: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 3 interrupted.");
-  add_render_command(&program, &exit_status);
-  add_view_command(&program, &exit_status);
+  OptionalParts parts;
+#ifdef POCKETRAY_HAVE_NETWORK
+  parts.servers = &kRenderServers;
+#endif
+#ifdef POCKETRAY_HAVE_ACCURACY
+  parts.side_by_side = &kReferenceView;
+#endif
+  add_render_command(&program, parts, &exit_status);
+  add_view_command(&program, parts, &exit_status);
   add_bake_command(&program, &exit_status);
   add_plan_command(&program, &exit_status);
   add_bench_command(&program, &exit_status);

@@ -97,11 +97,10 @@ void add_budget_options(CLI::App* command, BudgetOptions* o) {
       ->needs(budget);
 }
 
-#ifdef POCKETRAY_HAVE_NETWORK
-void add_sharing_options(CLI::App* command, SharingOptions* o) {
-  const char* group = "Sharing frames with render servers";
+void add_servers_options(CLI::App* command, ServersOptions* o) {
+  const char* group = "Servers frames with render servers";
   command
-      ->add_option("--server", o->servers,
+      ->add_option("--server", o->addresses,
                    "HOST:PORT of a `pocketray serve` that takes a share of every frame; may be given several times")
       ->allow_extra_args(false)
       ->group(group);
@@ -123,20 +122,13 @@ void add_sharing_options(CLI::App* command, SharingOptions* o) {
   command->add_option("--cost-cap", o->cost_cap, "cost that a frame may have: the fastest that keeps to it")
       ->group(group);
 }
-#else
-void add_sharing_options(CLI::App*, SharingOptions*) {}
-#endif
 
-#ifdef POCKETRAY_HAVE_ACCURACY
-void add_split_screen_option(CLI::App* command, SplitScreenOptions* o) {
+void add_side_by_side_option(CLI::App* command, SideBySideOptions* o) {
   command
-      ->add_option("--split-screen", o->reference,
+      ->add_option("--side-by-side", o->reference,
                    "show the reference on the right half, model (the lighting model at its limit) or physical (all "
                    "transport), refined for as long as nothing moves; time stands still meanwhile")
       ->check(CLI::IsMember({"model", "physical"}));
 }
-#else
-void add_split_screen_option(CLI::App*, SplitScreenOptions*) {}
-#endif
 
 }  // namespace pocketray

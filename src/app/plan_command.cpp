@@ -31,23 +31,23 @@ int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
   if (status.ok) status = open_scene(options, {picture_bytes}, &opened);
-  const Renderer& r = opened.renderer;
-  if (r.memory.total_bytes > 0) {  // planned, even if it does not fit
+  const Renderer& renderer = opened.renderer;
+  if (renderer.memory.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);
     if (options.json != "-") {
       std::printf("%s: %s triangles, %u materials, %u textures, %u lights; accelerator %s\n", options.scene.c_str(),
-                  grouped(r.scene.triangles.count).c_str(), r.scene.materials.count, r.scene.textures.count,
-                  r.scene.lights.count, r.accel_info->name);
-      print_effects(r.effects);
-      print_memory(r.memory);
+                  grouped(renderer.scene.triangles.count).c_str(), renderer.scene.materials.count,
+                  renderer.scene.textures.count, renderer.scene.lights.count, renderer.accel_info->name);
+      print_effects(renderer.effects);
+      print_memory(renderer.memory);
     }
     if (!options.json.empty()) {
       Json json = {{"scene", options.scene},
-                   {"triangles", r.scene.triangles.count},
+                   {"triangles", renderer.scene.triangles.count},
                    {"fits", status.ok},
-                   {"accelerator", r.accel_info->name},
-                   {"effects", effects_json(r.effects)},
-                   {"memory", memory_json(r.memory)}};
+                   {"accelerator", renderer.accel_info->name},
+                   {"effects", effects_json(renderer.effects)},
+                   {"memory", memory_json(renderer.memory)}};
       Status written = write_json(options.json, json);
       if (!written.ok) return report(written);
     }

@@ -10,13 +10,13 @@
 #include "base/seal.h"
 #include "budget/budget.h"
 #include "engine/frame.h"
-#include "remote/client/sharing.h"
 #include "session/camera_control.h"
 #include "session/interrupt.h"
 #include "session/output.h"
 #include "session/picture.h"
 #include "session/progress.h"
 #include "session/report.h"
+#include "session/servers.h"
 
 namespace pocketray {
 namespace {
@@ -28,7 +28,8 @@ struct RenderOptions {
   float orbit_degrees = 0;
   int rotation = 0;
   bool dither = false, plan = false;
-  SharingOptions sharing;
+  ServersOptions servers;
+  OptionalParts parts;
   BudgetOptions budget;
 };
 
@@ -82,12 +83,12 @@ std::string numbered_path(const std::string& path, std::uint32_t number) {
 }
 
 // Scales an AOV so that a picture of levels shows it: radiance formats keep the values.
-void fit_for_levels(Aov aov, const std::string& path, Renderer* r) {
+void fit_for_levels(Aov aov, const std::string& path, Renderer* renderer) {
   if (aov == Aov::none || path.rfind(".pfm") == path.size() - 4) return;
-  r->exposure = 1;
+  renderer->exposure = 1;
   float most = 0;
-  for (const Vec3& p : r->image) most = max_component(p) > most ? max_component(p) : most;
-  for (Vec3& p : r->image) {
+  for (const Vec3& p : renderer->image) most = max_component(p) > most ? max_component(p) : most;
+  for (Vec3& p : renderer->image) {
     if (aov == Aov::normal) {
       if (!is_zero(p)) p = (p + Vec3{1, 1, 1}) * 0.5f;
     } else if (most > 0) {
@@ -102,7 +103,7 @@ struct Job {
   std::vector<std::string> paths;  // a picture each
   Aov aov;
   PictureOptions picture;
-  Sharing* sharing = nullptr;
+  Servers* servers = nullptr;
   Budget* budget = nullptr;
   std::uint8_t* page = nullptr;  // the frame packed, where there is a budget: that is part of its time
   CameraControl camera;          // for --orbit
@@ -110,33 +111,36 @@ struct Job {
 
 constexpr std::uint64_t kProgressNs = 100'000'000;
 
-Status render_shared_with_progress(Renderer* r, const Job& job, double seconds, std::uint64_t rows_before,
-                                   Progress* progress, bool* complete) {
+Status render_with_servers(Renderer* renderer, const Job& job, double seconds, std::uint64_t rows_before,
+                           Progress* progress, bool* complete) {
+  const ServersBackend& servers = *job.servers->backend;
   std::uint64_t start = clock_ns();
-  RETURN_IF_ERROR(begin_shared(job.sharing, r, seconds));
+  RETURN_IF_ERROR(servers.begin_frame(job.servers, renderer, seconds));
   do {
-    if (is_cut_off(*job.sharing))
+    if (servers.state(*job.servers).cut_off)
       return failure("no server sends rows, and this device has no room for the scene: start one, or raise --memory");
-    *complete = advance_shared(job.sharing, r, clock_ns() + kProgressNs, &interrupted);
-    if (is_disputed(*job.sharing))
+    *complete = servers.advance_frame(job.servers, renderer, clock_ns() + kProgressNs, &interrupted);
+    ServersState state = servers.state(*job.servers);
+    if (state.disputed)
       return failure("the frame is not kept: two of the servers disagree about its pixels (--verify 0 does not ask)");
-    show_progress(progress, rows_before + shared_rows_done(*job.sharing));
+    show_progress(progress, rows_before + state.rows_done);
   } while (!*complete && !interrupted);
-  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
 }
 
 // Renders row by row bands, so that progress can be shown and an interrupt loses no more than a frame.
-Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
+Status render_with_progress(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress,
+                            bool* complete) {
   double seconds =
-      job.sequence.numbered ? frame / static_cast<double>(r->scene.info.frames_per_second) : job.options.seconds;
-  std::uint64_t rows_before = std::uint64_t(frame - job.sequence.first) * r->settings.height;
-  if (job.sharing) return render_shared_with_progress(r, job, seconds, rows_before, progress, complete);
+      job.sequence.numbered ? frame / static_cast<double>(renderer->scene.info.frames_per_second) : job.options.seconds;
+  std::uint64_t rows_before = std::uint64_t(frame - job.sequence.first) * renderer->settings.height;
+  if (job.servers) return render_with_servers(renderer, job, seconds, rows_before, progress, complete);
   struct Shown {
     Progress* progress;
     std::uint64_t rows_before;
   } shown = {progress, rows_before};
-  SpanList bands = row_bands(r);
+  SpanList bands = row_bands(renderer);
   bands.progress_context = &shown;
   bands.progress = [](void* context, std::uint32_t row_count) {
     const Shown& s = *static_cast<Shown*>(context);
@@ -145,87 +149,89 @@ Status render_with_progress(Renderer* r, const Job& job, std::uint32_t frame, Pr
   SpanSource source = list_source(&bands);
   source.aov = job.aov;
   source.stop = &interrupted;
-  return render_frame(r, seconds, source, complete);
+  return render_frame(renderer, seconds, source, complete);
 }
 
-void pack_page(Renderer* r, const Job& job) {
+void pack_page(Renderer* renderer, const Job& job) {
   const PictureOptions& p = job.picture;
   std::uint64_t start = clock_ns();
-  pack_rows(r->image.data, static_cast<int>(r->settings.width), static_cast<int>(r->settings.height), 0,
-            static_cast<int>(r->settings.height), r->exposure, p.packed_format, Rotation::none, p.dither, job.page,
-            p.packed_line_bytes);
-  wait_for_pace(&r->pace, 0, start);
+  pack_rows(renderer->image.data, static_cast<int>(renderer->settings.width),
+            static_cast<int>(renderer->settings.height), 0, static_cast<int>(renderer->settings.height),
+            renderer->exposure, p.packed_format, Rotation::none, p.dither, job.page, p.packed_line_bytes);
+  wait_for_pace(&renderer->pace, 0, start);
 }
 
 // A lone frame is rendered until its settings are settled; one of a sequence once.
-Status render_budgeted(Renderer* r, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
+Status render_budgeted(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
   constexpr int kSettleFrames = 12;
-  RETURN_IF_ERROR(begin_budget_frame(job.budget, r));
+  RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
   for (int i = 0; i < kSettleFrames; ++i) {
     std::uint32_t chosen = job.budget->governor.current;
     std::uint64_t start = clock_ns();
-    RETURN_IF_ERROR(render_with_progress(r, job, frame, progress, complete));
+    RETURN_IF_ERROR(render_with_progress(renderer, job, frame, progress, complete));
     if (!*complete) break;
-    pack_page(r, job);
+    pack_page(renderer, job);
     end_budget_frame(job.budget, clock_ns() - start);
     if (job.sequence.numbered || i + 1 == kSettleFrames) break;
-    RETURN_IF_ERROR(begin_budget_frame(job.budget, r));
+    RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
     if (job.budget->governor.current == chosen) break;
   }
   return success();
 }
 
-Status render_one(Renderer* r, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
+Status render_one(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
   if (job.options.orbit_degrees != 0) {
     float degrees = static_cast<float>(frame - job.sequence.first) * job.options.orbit_degrees;
-    RETURN_IF_ERROR(set_camera(r, orbited_camera(job.camera, degrees)));
+    RETURN_IF_ERROR(set_camera(renderer, orbited_camera(job.camera, degrees)));
   }
-  return job.budget ? render_budgeted(r, job, frame, progress, complete)
-                    : render_with_progress(r, job, frame, progress, complete);
+  return job.budget ? render_budgeted(renderer, job, frame, progress, complete)
+                    : render_with_progress(renderer, job, frame, progress, complete);
 }
 
-Json to_json(const Job& job, const Renderer& r, const std::vector<std::string>& files, double trace_ms) {
-  Tracer counts = total_counts(r);
+Json to_json(const Job& job, const Renderer& renderer, const std::vector<std::string>& files, double trace_ms) {
+  Tracer counts = total_counts(renderer);
   Json rays = Json::object();
   for (int kind = 0; kind < kRayKindCount; ++kind) rays[kRayKindNames[kind]] = counts.rays[kind];
-  double pixels =
-      static_cast<double>(r.settings.width) * r.settings.height * static_cast<double>(files.empty() ? 1 : files.size());
+  double pixels = static_cast<double>(renderer.settings.width) * renderer.settings.height *
+                  static_cast<double>(files.empty() ? 1 : files.size());
   return {{"scene", job.options.common.scene},
           {"files", files},
-          {"triangles", shared_triangle_count(job.sharing, r)},
-          {"width", r.settings.width},
-          {"height", r.settings.height},
+          {"triangles", triangle_count(job.servers, renderer)},
+          {"width", renderer.settings.width},
+          {"height", renderer.settings.height},
           {"ns_per_pixel", trace_ms * 1e6 / pixels},
-          {"emulated", r.pace.device ? Json(r.pace.device) : Json()},
+          {"emulated", renderer.pace.device ? Json(renderer.pace.device) : Json()},
           {"rays", rays},
           {"rays_left_out", counts.rays_left_out},
           {"left_out_radiance_max", counts.left_out_max},
-          {"exposure", r.exposure},
-          {"memory", memory_json(r.memory)},
-          {"effects", effects_json(r.effects)},
+          {"exposure", renderer.exposure},
+          {"memory", memory_json(renderer.memory)},
+          {"effects", effects_json(renderer.effects)},
           {"budget", job.budget ? budget_json(*job.budget) : Json()}};
 }
 
-void print_summary(const Job& job, const Renderer& r, std::size_t file_count, const std::string& last,
+void print_summary(const Job& job, const Renderer& renderer, std::size_t file_count, const std::string& last,
                    double trace_ms) {
-  double pixels = static_cast<double>(r.settings.width) * r.settings.height * static_cast<double>(file_count);
+  double pixels =
+      static_cast<double>(renderer.settings.width) * renderer.settings.height * static_cast<double>(file_count);
   if (job.options.plan) {
-    print_effects(r.effects);
-    print_memory(r.memory);
+    print_effects(renderer.effects);
+    print_memory(renderer.memory);
   }
-  std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s%s\n", last.c_str(), r.settings.width,
-              r.settings.height, grouped(shared_triangle_count(job.sharing, r)).c_str(),
+  std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s%s\n", last.c_str(),
+              renderer.settings.width, renderer.settings.height, grouped(triangle_count(job.servers, renderer)).c_str(),
               trace_ms / static_cast<double>(file_count), file_count > 1 ? " a frame" : "", trace_ms * 1e6 / pixels,
-              r.settings.threads, r.settings.threads == 1 ? "" : "s", emulation_text(r.pace).c_str());
-  Tracer counts = total_counts(r);
+              renderer.settings.threads, renderer.settings.threads == 1 ? "" : "s",
+              emulation_text(renderer.pace).c_str());
+  Tracer counts = total_counts(renderer);
   if (counts.rays_left_out)
     std::printf("  %s rays left out; what they could have added stays below %.2g of a displayed level\n",
                 grouped(counts.rays_left_out).c_str(),
-                static_cast<double>(counts.left_out_max * r.exposure) * 255 * 12.92);
+                static_cast<double>(counts.left_out_max * renderer.exposure) * 255 * 12.92);
 }
 
-void print_share(const Sharing& sharing) {
-  ShareTotals t = share_totals(sharing);
+void print_share(const Servers& servers) {
+  ServersTotals t = servers.backend->totals(servers);
   if (t.frames == 0) return;
   double rows = static_cast<double>(t.device_rows + t.server_rows), frames = static_cast<double>(t.frames);
   std::printf("  shared: the device rendered %.0f %% of the rows, servers sent %.1f kB a frame",
@@ -236,39 +242,41 @@ void print_share(const Sharing& sharing) {
                 static_cast<double>(t.checked) / frames, t.checks_rows ? "rows" : "pixels", 100 * t.caught_row);
   std::printf("; the last frame:\n");
   HudText lines;
-  write_share_lines(sharing, &lines);
+  servers.backend->write_lines(servers, false, &lines);
   for (int i = 0; i < lines.line_count; ++i) std::printf("    %s\n", lines.lines[i]);
 }
 
 // Pictures that servers cannot send are for the device alone.
 Status check_shareable(const RenderOptions& o, Aov aov) {
-  if (o.sharing.servers.empty()) return success();
+  if (o.servers.addresses.empty()) return success();
   if (aov != Aov::none) return failure("--server sends colours alone: leave it out, or --aov");
   if (o.output.rfind(".pfm") == o.output.size() - 4)
     return failure("--server sends displayed levels and .pfm takes radiance: leave it out, or write .png or .ppm");
   return success();
 }
 
-Status start_sharing_for(const RenderOptions& o, Renderer* r, Job* job) {
-  if (!job->sharing) return success();
+Status start_servers_for(const RenderOptions& o, Renderer* renderer, Job* job) {
+  if (!job->servers) return success();
   bool raw = o.output.rfind(".raw") == o.output.size() - 4;
-  RETURN_IF_ERROR(start_sharing(job->sharing, r, raw && job->picture.raw_format.bits_per_pixel == 16, raw && o.dither));
-  SharedPicture shared = shared_picture(*job->sharing);
-  job->picture.packed = shared.pixels;
-  job->picture.packed_line_bytes = shared.line_bytes;
-  job->picture.packed_format = shared.format;
+  const ServersBackend& servers = *job->servers->backend;
+  bool small_pixels = raw && job->picture.raw_format.bits_per_pixel == 16;
+  RETURN_IF_ERROR(servers.start(job->servers, renderer, small_pixels, raw && o.dither));
+  MergedPicture merged = servers.picture(*job->servers);
+  job->picture.packed = merged.pixels;
+  job->picture.packed_line_bytes = merged.line_bytes;
+  job->picture.packed_format = merged.format;
   return success();
 }
 
 // Pictures of a budget are packed as a screen takes them, as part of the frame.
-std::size_t budget_bytes(const Settings& s) {
-  return picture_bytes(s) + arena_need(std::size_t(s.width) * s.height * 4);
+std::size_t budget_bytes(const Settings& settings) {
+  return picture_bytes(settings) + arena_need(std::size_t(settings.width) * settings.height * 4);
 }
 
 Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
   if (o.orbit_degrees != 0 && o.frames.empty()) return failure("--orbit turns from frame to frame: add --frames 0:359");
   if (o.budget.ms == 0) return success();
-  if (!o.sharing.servers.empty())
+  if (!o.servers.addresses.empty())
     return failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
   if (aov != Aov::none) return failure("--budget-ms is for colours: leave it out, or --aov");
   return success();
@@ -279,17 +287,17 @@ Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget
   OpenFront front;
   RETURN_IF_ERROR(open_scene_with_front(o.common, {o.budget.front}, budget_bytes, opened, &front));
   print_notes(front);
-  Renderer* r = &opened->renderer;
-  start_budget(o.budget, front, *r, job->sequence.last - job->sequence.first + 12, budget);
+  Renderer* renderer = &opened->renderer;
+  start_budget(o.budget, front, *renderer, job->sequence.last - job->sequence.first + 12, budget);
   job->budget = budget;
   PictureOptions* p = &job->picture;
   bool raw = o.output.rfind(".raw") == o.output.size() - 4;
   p->packed_format = raw ? p->raw_format : kRgb888;
   p->dither = raw && o.dither;
-  p->packed_line_bytes = static_cast<int>(r->settings.width) * p->packed_format.bits_per_pixel / 8;
-  job->page =
-      arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(p->packed_line_bytes) * r->settings.height)
-          .data;
+  p->packed_line_bytes = static_cast<int>(renderer->settings.width) * p->packed_format.bits_per_pixel / 8;
+  job->page = arena_array<std::uint8_t>(&renderer->frame_arena,
+                                        static_cast<std::size_t>(p->packed_line_bytes) * renderer->settings.height)
+                  .data;
   p->packed = job->page;
   return success();
 }
@@ -306,23 +314,24 @@ Status check_paths(const RenderOptions& o, Job* job) {
   return success();
 }
 
-Status render_files(Renderer* r, const Job& job, std::vector<std::string>* files, double* trace_ms, bool* stopped) {
+Status render_files(Renderer* renderer, const Job& job, std::vector<std::string>* files, double* trace_ms,
+                    bool* stopped) {
   const Sequence& s = job.sequence;
-  Progress progress = start_progress("rendering", std::uint64_t(s.last - s.first + 1) * r->settings.height);
+  Progress progress = start_progress("rendering", std::uint64_t(s.last - s.first + 1) * renderer->settings.height);
   Status status;
   seal_memory();
   std::size_t written = 0;
   for (std::uint32_t frame = s.first; frame <= s.last; ++frame, ++written) {
     bool complete;
-    float exposure = r->exposure;
-    status = render_one(r, job, frame, &progress, &complete);
+    float exposure = renderer->exposure;
+    status = render_one(renderer, job, frame, &progress, &complete);
     if (!status.ok) break;
     *stopped = !complete;
     if (*stopped) break;
-    *trace_ms += r->timings.trace_ms;
-    fit_for_levels(job.aov, job.paths[written], r);
-    status = write_picture(job.paths[written].c_str(), job.picture, r);
-    r->exposure = exposure;
+    *trace_ms += renderer->timings.trace_ms;
+    fit_for_levels(job.aov, job.paths[written], renderer);
+    status = write_picture(job.paths[written].c_str(), job.picture, renderer);
+    renderer->exposure = exposure;
     if (!status.ok) break;
   }
   unseal_memory();
@@ -349,16 +358,17 @@ int run(const RenderOptions& options) {
   const platform::Device* device = nullptr;
   if (status.ok) status = find_device(options.common, &device);
   if (status.ok)
-    status = open_sharing(options.sharing, options.common.emulate.empty() ? nullptr : device, &job.sharing);
-  std::unique_ptr<Sharing, void (*)(Sharing*)> closing(job.sharing, close_sharing);
+    status =
+        open_servers(options.parts, options.servers, options.common.emulate.empty() ? nullptr : device, &job.servers);
+  ServersHandle closing(job.servers);
   OpenScene opened;
   Budget budget;
   if (status.ok)
     status = options.budget.ms > 0 ? open_budgeted(options, &job, &opened, &budget)
-                                   : open_shared_scene(job.sharing, options.common, picture_bytes, &opened);
+                                   : open_scene_with(job.servers, options.common, picture_bytes, &opened);
   if (status.ok && options.orbit_degrees != 0)
     job.camera = make_camera_control(opened.renderer.camera, opened.renderer.accel.bounds);
-  if (status.ok) status = start_sharing_for(options, &opened.renderer, &job);
+  if (status.ok) status = start_servers_for(options, &opened.renderer, &job);
   if (!status.ok && interrupted) return kExitInterrupted;
   if (!status.ok) return report(status);
   print_notes(opened);
@@ -368,7 +378,7 @@ int run(const RenderOptions& options) {
   status = render_files(&opened.renderer, job, &files, &trace_ms, &stopped);
   if (!files.empty() && options.common.json != "-")
     print_summary(job, opened.renderer, files.size(), files.back(), trace_ms);
-  if (!files.empty() && options.common.json != "-" && job.sharing) print_share(*job.sharing);
+  if (!files.empty() && options.common.json != "-" && job.servers) print_share(*job.servers);
   if (!files.empty() && options.common.json != "-" && job.budget) print_budget(budget, !job.sequence.numbered);
   if (status.ok && job.budget) status = finish_budget(budget);
   if (status.ok && !options.common.json.empty())
@@ -383,11 +393,12 @@ int run(const RenderOptions& options) {
 
 }  // namespace
 
-void add_render_command(CLI::App* program, int* exit_status) {
+void add_render_command(CLI::App* program, const OptionalParts& parts, int* exit_status) {
   auto o = std::make_shared<RenderOptions>();
+  o->parts = parts;
   CLI::App* command = program->add_subcommand("render", "render a frame or a sequence into files");
   add_scene_options(command, &o->common);
-  add_sharing_options(command, &o->sharing);
+  if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
   command
       ->add_option("-o,--output", o->output,

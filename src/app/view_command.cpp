@@ -7,10 +7,10 @@
 #include "app/options.h"
 #include "base/seal.h"
 #include "budget/budget.h"
-#include "remote/client/sharing.h"
 #include "session/interrupt.h"
 #include "session/output.h"
 #include "session/report.h"
+#include "session/servers.h"
 #include "viewer/viewer.h"
 
 namespace pocketray {
@@ -26,12 +26,12 @@ struct Loading {
 
   Loading(const CommonOptions& options, const BudgetOptions& budget, Viewer* viewer)
       : thread([this, &options, &budget, viewer] {
-          Sharing* sharing = viewer->sharing;
+          Servers* servers = viewer->servers;
           status = budget.ms > 0 ? open_scene_with_front(options, {budget.front}, viewer_bytes, opened.get(), &front)
-                                 : open_shared_scene(sharing, options, viewer_bytes, opened.get());
-          if (status.ok && sharing)
-            status =
-                start_sharing(sharing, &opened->renderer, viewer->format.bits_per_pixel == 16, viewer->options.dither);
+                                 : open_scene_with(servers, options, viewer_bytes, opened.get());
+          if (status.ok && servers)
+            status = servers->backend->start(servers, &opened->renderer, viewer->format.bits_per_pixel == 16,
+                                             viewer->options.dither);
           done = true;
         }) {}
   ~Loading() { thread.join(); }
@@ -48,9 +48,10 @@ bool wait_for(Viewer* viewer, Loading* loading) {
 struct ViewCommand {
   CommonOptions common;
   ViewOptions view;
-  SharingOptions sharing;
+  ServersOptions servers;
   BudgetOptions budget;
-  SplitScreenOptions split;
+  SideBySideOptions side_by_side;
+  OptionalParts parts;
 };
 
 // Shows what was loaded until the user leaves, or it is to be loaded anew.
@@ -61,16 +62,20 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   Budget budget;
   if (o.budget.ms > 0) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
   viewer->budget = o.budget.ms > 0 ? &budget : nullptr;
-  viewer->split = open_split_screen(o.split, *renderer, viewer->format.bits_per_pixel, o.view.dither);
+  if (!o.side_by_side.reference.empty())
+    viewer->side_by_side =
+        o.parts.side_by_side->open(o.side_by_side, *renderer, viewer->format.bits_per_pixel, o.view.dither);
   seal_memory();
   Status status = run_viewer(viewer, renderer, again);
   unseal_memory();
   if (viewer->budget) print_budget(budget, false);
   if (status.ok && viewer->budget) status = finish_budget(budget);
-  if (viewer->split) print_split_screen(*viewer->split);
-  close_split_screen(viewer->split);
+  if (viewer->side_by_side) {
+    viewer->side_by_side->backend->print(*viewer->side_by_side);
+    viewer->side_by_side->backend->close(viewer->side_by_side);
+  }
   viewer->budget = nullptr;
-  viewer->split = nullptr;
+  viewer->side_by_side = nullptr;
   return status;
 }
 
@@ -79,7 +84,7 @@ bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer
   watch_scene(viewer);
   Loading loading(o.common, o.budget, viewer);
   if (!wait_for(viewer, &loading)) {
-    stop_opening(viewer->sharing);
+    if (viewer->servers) viewer->servers->backend->stop_opening(viewer->servers);
     return false;
   }
   *status = loading.status;
@@ -130,12 +135,12 @@ Status view_scenes(ViewCommand* o, Viewer* viewer) {
 
 // Whether the options go together.
 Status check_options(const ViewCommand& o) {
-  if (!o.sharing.servers.empty()) {
+  if (!o.servers.addresses.empty()) {
     if (o.budget.ms > 0)
       return failure(
           "--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
-    if (!o.split.reference.empty())
-      return failure("--split-screen shows the reference of what is rendered here alone: leave it out, or --server");
+    if (!o.side_by_side.reference.empty())
+      return failure("--side-by-side shows the reference of what is rendered here alone: leave it out, or --server");
   }
   bool asked = o.view.screenshot_folder != ViewOptions().screenshot_folder;
   return asked ? make_output_folder(o.view.screenshot_folder) : success();
@@ -154,9 +159,9 @@ int run(ViewCommand o) {
   if (status.ok)
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),
                          &viewer);
-  if (status.ok) status = open_sharing(o.sharing, o.view.emulated, &viewer.sharing);
+  if (status.ok) status = open_servers(o.parts, o.servers, o.view.emulated, &viewer.servers);
   std::unique_ptr<Viewer, void (*)(Viewer*)> closing_screen(&viewer, close_viewer);
-  std::unique_ptr<Sharing, void (*)(Sharing*)> closing_sharing(viewer.sharing, close_sharing);
+  ServersHandle closing_servers(viewer.servers);
   if (status.ok) status = view_scenes(&o, &viewer);
   closing_screen.reset();
   if (!status.ok) return report(status);
@@ -165,14 +170,16 @@ int run(ViewCommand o) {
 
 }  // namespace
 
-void add_view_command(CLI::App* program, int* exit_status) {
+void add_view_command(CLI::App* program, const OptionalParts& parts, int* exit_status) {
   auto o = std::make_shared<ViewCommand>();
+  o->parts = parts;
+  o->view.has_reference = parts.side_by_side != nullptr;
   CLI::App* command =
       program->add_subcommand("view", "show a scene in the emulator's window, or on the framebuffer of a device");
   add_scene_options(command, &o->common);
-  add_sharing_options(command, &o->sharing);
+  if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
-  add_split_screen_option(command, &o->split);
+  if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);
   command
       ->add_option("--screen", o->view.backend,
                    "sdl2 (window), linux (framebuffer), null (none, for tests); auto picks a window or the "
@@ -192,7 +199,7 @@ void add_view_command(CLI::App* program, int* exit_status) {
           "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and "
           "fly,\nstart goes back to the scene's camera, page up and down along the front of --budget-ms (start: as the "
           "budget has it),\n") +
-      split_screen_key_help() +
+      (parts.side_by_side ? "V shows the reference of --side-by-side or not, " : "") +
       "X pauses, Y or F1 shows the display,\nF12 saves a screenshot, F5 reloads, Esc leaves.");
   command->callback([=] { *exit_status = run(*o); });
 }

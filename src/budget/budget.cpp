@@ -20,7 +20,7 @@ constexpr double kGuessDoubt = 4, kElsewhereDoubt = 1.5, kMeasuredDoubt = 1.25;
 constexpr double kPriceTolerance = 1.2;
 
 // What is known of the scene: the file named, else what the cache has of it, else the ladder.
-Status load_front(const Renderer& r, const FrontSource& source, const ContentHash* identity, OpenFront* f) {
+Status load_front(const Renderer& renderer, const FrontSource& source, const ContentHash* identity, OpenFront* f) {
   bool there;
   if (!source.file.empty()) {
     f->path = source.file;
@@ -34,7 +34,7 @@ Status load_front(const Renderer& r, const FrontSource& source, const ContentHas
       return failure("--front is %.300s: there is no such folder; make it, or name another", f->path.c_str());
     f->file = there ? f->front : builtin_front();
   } else if (identity) {
-    f->path = front_path(f->scene, *identity, machine_name(r.pace.device, r.settings.threads));
+    f->path = front_path(f->scene, *identity, machine_name(renderer.pace.device, renderer.settings.threads));
     if (f->path.empty()) f->notes.push_back("neither XDG_CACHE_HOME nor HOME names a folder: prices are not kept");
     Status status = read_front(front_path(f->scene, *identity), &f->front, &there);
     if (!status.ok) f->notes.push_back(std::string(status.message) + "; it is not used");
@@ -43,7 +43,7 @@ Status load_front(const Renderer& r, const FrontSource& source, const ContentHas
   }
   f->is_guess = f->front.count == 0;
   if (f->is_guess) f->front = builtin_front();
-  f->effects = r.effects.mask;
+  f->effects = renderer.effects.mask;
   sort_front(&f->front);
   drop_what_scene_ignores(&f->front, f->effects);
   f->is_priced = adopt_prices(&f->front, f->measured);
@@ -52,19 +52,19 @@ Status load_front(const Renderer& r, const FrontSource& source, const ContentHas
 }
 
 // Plans with the most points per area light that fit; what asks for more is left out.
-Status plan_front(Renderer* r, const SceneStorage& storage, std::size_t output_bytes, const FrontSource& source,
+Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
-  r->settings.points_per_area_light = 1;
-  RETURN_IF_ERROR(plan_renderer(r, storage, output_bytes));
-  RETURN_IF_ERROR(load_front(*r, source, identity, f));
+  renderer->settings.points_per_area_light = 1;
+  RETURN_IF_ERROR(plan_renderer(renderer, storage, output_bytes));
+  RETURN_IF_ERROR(load_front(*renderer, source, identity, f));
   const Front all = f->front;
   std::uint32_t left_out = 0;
   while (true) {
     std::uint32_t most = 0;
     for (std::uint32_t i = 0; i < f->front.count; ++i)
       most = std::max(most, f->front.candidates[i].points_per_area_light);
-    r->settings.points_per_area_light = most;
-    Status status = plan_renderer(r, storage, output_bytes);
+    renderer->settings.points_per_area_light = most;
+    Status status = plan_renderer(renderer, storage, output_bytes);
     Front rest;
     for (std::uint32_t i = 0; i < f->front.count && !status.ok; ++i)
       if (f->front.candidates[i].points_per_area_light < most) rest.candidates[rest.count++] = f->front.candidates[i];
@@ -98,14 +98,14 @@ Status open_scene_with_front(const CommonOptions& common, const FrontSource& fro
   bool identified = false;
   OpenHooks hooks;
   hooks.output_bytes = output_bytes;
-  hooks.loaded = [&](const SceneSource& source, Renderer* r) {
+  hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
     if (!from.file.empty()) return success();
-    identified = identify_scene(source, r, &identity).ok;
+    identified = identify_scene(source, renderer, &identity).ok;
     if (!identified) f->notes.push_back("there is no room to name the scene by its content: its prices are not kept");
     return success();
   };
-  hooks.plan = [&](Renderer* r, const SceneStorage& storage, std::size_t bytes) {
-    return plan_front(r, storage, bytes, from, identified ? &identity : nullptr, f);
+  hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, std::size_t bytes) {
+    return plan_front(renderer, storage, bytes, from, identified ? &identity : nullptr, f);
   };
   RETURN_IF_ERROR(open_scene(common, hooks, opened));
   return start_scene(opened, common);
@@ -135,67 +135,67 @@ Status keep_measured(const OpenFront& f, const Front& measured) {
   return f.is_whole ? write_front(f.path, with_prices(f, measured)) : cache_front(f.path, prices_alone(measured));
 }
 
-void start_budget(const BudgetOptions& options, const OpenFront& front, const Renderer& r, std::size_t frame_count,
-                  Budget* b) {
-  *b = Budget();
-  b->front = front;
-  b->ms = options.ms;
-  b->frame_ms.reserve(frame_count);
-  start_governor(front.front, options.ms * 1e6, pixel_count(r), front.is_guess ? kGuessDoubt : kElsewhereDoubt,
-                 front.is_priced, &b->governor);
-  b->previous = b->governor.current;
+void start_budget(const BudgetOptions& options, const OpenFront& front, const Renderer& renderer,
+                  std::size_t frame_count, Budget* budget) {
+  *budget = Budget();
+  budget->front = front;
+  budget->ms = options.ms;
+  budget->frame_ms.reserve(frame_count);
+  start_governor(front.front, options.ms * 1e6, pixel_count(renderer), front.is_guess ? kGuessDoubt : kElsewhereDoubt,
+                 front.is_priced, &budget->governor);
+  budget->previous = budget->governor.current;
   for (std::uint32_t i = 0; i < front.front.count; ++i)
-    if (find_candidate(front.measured, front.front.candidates[i])) set_doubt(&b->governor, i, kMeasuredDoubt);
+    if (find_candidate(front.measured, front.front.candidates[i])) set_doubt(&budget->governor, i, kMeasuredDoubt);
 }
 
-Status begin_budget_frame(Budget* b, Renderer* r) {
-  std::uint32_t before = b->governor.current;
-  std::uint32_t chosen = b->pinned ? before : next_candidate(&b->governor);
-  if (chosen != before) b->previous = before;
-  return change_settings(r, with_candidate(r->settings, b->governor.front.candidates[chosen]));
+Status begin_budget_frame(Budget* budget, Renderer* renderer) {
+  std::uint32_t before = budget->governor.current;
+  std::uint32_t chosen = budget->pinned ? before : next_candidate(&budget->governor);
+  if (chosen != before) budget->previous = before;
+  return change_settings(renderer, with_candidate(renderer->settings, budget->governor.front.candidates[chosen]));
 }
 
-void move_along_front(Budget* b, int steps) {
-  Governor* g = &b->governor;
-  b->pinned = steps != 0;
+void move_along_front(Budget* budget, int steps) {
+  Governor* g = &budget->governor;
+  budget->pinned = steps != 0;
   int last = static_cast<int>(g->front.count) - 1;
   int to = std::min(std::max(static_cast<int>(g->current) + steps, 0), last);
   if (steps == 0 || to == static_cast<int>(g->current)) return;
-  b->previous = g->current;
+  budget->previous = g->current;
   force_candidate(g, static_cast<std::uint32_t>(to));
 }
 
-void end_budget_frame(Budget* b, std::uint64_t ns) {
+void end_budget_frame(Budget* budget, std::uint64_t ns) {
   double ms = static_cast<double>(ns) * 1e-6;
-  observe_frame(&b->governor, static_cast<double>(ns));
-  ++b->frames;
-  b->last = b->governor.current;
-  ++b->uses[b->last];
-  b->late += ms > 1.1 * b->ms;
-  if (b->frame_ms.size() < b->frame_ms.capacity()) b->frame_ms.push_back(ms);
+  observe_frame(&budget->governor, static_cast<double>(ns));
+  ++budget->frames;
+  budget->last = budget->governor.current;
+  ++budget->uses[budget->last];
+  budget->late += ms > 1.1 * budget->ms;
+  if (budget->frame_ms.size() < budget->frame_ms.capacity()) budget->frame_ms.push_back(ms);
 }
 
-Status finish_budget(const Budget& b) {
-  const Governor& g = b.governor;
+Status finish_budget(const Budget& budget) {
+  const Governor& g = budget.governor;
   Front learnt;
   bool wrong = false;
   for (std::uint32_t i = 0; i < g.front.count; ++i) {
-    if (b.uses[i] == 0 && !b.front.is_whole) continue;
+    if (budget.uses[i] == 0 && !budget.front.is_whole) continue;
     Candidate c = g.front.candidates[i];
     double price = learnt_price(g, i), stated = static_cast<double>(c.ns_per_pixel);
-    bool is_new = !b.front.is_whole && !find_candidate(b.front.measured, c);
+    bool is_new = !budget.front.is_whole && !find_candidate(budget.front.measured, c);
     wrong = wrong || is_new || price > kPriceTolerance * stated || stated > kPriceTolerance * price;
     c.ns_per_pixel = clamped_price(price);
     learnt.candidates[learnt.count++] = c;
   }
-  if (!wrong || b.frames == 0 || b.front.path.empty()) return success();
-  if (b.front.is_whole) return write_front(b.front.path, with_prices(b.front, learnt));
-  for (std::uint32_t i = 0; i < b.front.measured.count && learnt.count < kFrontCandidateMax; ++i) {
-    const Candidate& old = b.front.measured.candidates[i];
+  if (!wrong || budget.frames == 0 || budget.front.path.empty()) return success();
+  if (budget.front.is_whole) return write_front(budget.front.path, with_prices(budget.front, learnt));
+  for (std::uint32_t i = 0; i < budget.front.measured.count && learnt.count < kFrontCandidateMax; ++i) {
+    const Candidate& old = budget.front.measured.candidates[i];
     if (!find_candidate(learnt, old)) learnt.candidates[learnt.count++] = old;
   }
   sort_by_price(&learnt);
-  Status status = cache_front(b.front.path, prices_alone(learnt));
+  Status status = cache_front(budget.front.path, prices_alone(learnt));
   if (!status.ok) std::fprintf(stderr, "pocketray: %s; prices are not kept\n", status.message);
   return success();
 }
@@ -207,19 +207,19 @@ std::string error_text(const Candidate& c) {
   return text;
 }
 
-void write_budget_lines(const Budget& b, HudText* text) {
-  const Governor& g = b.governor;
-  const Candidate &now = g.front.candidates[g.current], &before = g.front.candidates[b.previous];
-  add_hud_line(text, "%s %.7g ms: %" PRIu32 " of %" PRIu32 "%s", b.pinned ? "by hand, not" : "budget", b.ms,
+void write_budget_lines(const Budget& budget, HudText* text) {
+  const Governor& g = budget.governor;
+  const Candidate &now = g.front.candidates[g.current], &before = g.front.candidates[budget.previous];
+  add_hud_line(text, "%s %.7g ms: %" PRIu32 " of %" PRIu32 "%s", budget.pinned ? "by hand, not" : "budget", budget.ms,
                g.current + 1, g.front.count, budget_too_small(g) ? ", too small" : "");
   char shown[kFrontLineMax];
   format_hud_quality(now, shown, sizeof shown);
   add_hud_line(text, "%s", shown);
-  if (g.current == b.previous) return;
+  if (g.current == budget.previous) return;
   char change[kFrontLineMax], gain[64];
   describe_change(before, now, change, sizeof change);
   add_hud_line(text, "%s", change);
-  double ms = (expected_ns(g, g.current) - expected_ns(g, b.previous)) * 1e-6;
+  double ms = (expected_ns(g, g.current) - expected_ns(g, budget.previous)) * 1e-6;
   float flip = now.flip - before.flip;
   if (std::isnan(flip))
     std::snprintf(gain, sizeof gain, "%+.1f ms", ms);
@@ -228,46 +228,46 @@ void write_budget_lines(const Budget& b, HudText* text) {
   add_hud_line(text, "  %s", gain);
 }
 
-Json budget_json(const Budget& b) {
+Json budget_json(const Budget& budget) {
   Json candidates = Json::array();
-  for (std::uint32_t i = 0; i < b.governor.front.count; ++i) {
-    const Candidate& c = b.governor.front.candidates[i];
+  for (std::uint32_t i = 0; i < budget.governor.front.count; ++i) {
+    const Candidate& c = budget.governor.front.candidates[i];
     char quality[kFrontLineMax];
     format_quality(c, quality, sizeof quality);
     candidates.push_back({{"settings", quality},
                           {"flip", c.flip},  // null where it was not measured
-                          {"ns_per_pixel", learnt_price(b.governor, i)},
-                          {"frames", b.uses[i]}});
+                          {"ns_per_pixel", learnt_price(budget.governor, i)},
+                          {"frames", budget.uses[i]}});
   }
-  return {{"ms", b.ms},
-          {"frames", b.frames},
-          {"frames_within_110_percent", b.frames - b.late},
-          {"too_small", budget_too_small(b.governor)},
-          {"switches", b.governor.switch_count},
-          {"front", b.front.path},
+  return {{"ms", budget.ms},
+          {"frames", budget.frames},
+          {"frames_within_110_percent", budget.frames - budget.late},
+          {"too_small", budget_too_small(budget.governor)},
+          {"switches", budget.governor.switch_count},
+          {"front", budget.front.path},
           {"candidates", candidates},
-          {"frame_ms", b.frame_ms}};
+          {"frame_ms", budget.frame_ms}};
 }
 
-void print_budget(const Budget& b, bool last_alone) {
-  if (b.frames == 0) return;
-  const Governor& g = b.governor;
-  std::uint32_t most = b.last;
+void print_budget(const Budget& budget, bool last_alone) {
+  if (budget.frames == 0) return;
+  const Governor& g = budget.governor;
+  std::uint32_t most = budget.last;
   for (std::uint32_t i = 0; i < g.front.count && !last_alone; ++i)
-    if (b.uses[i] > b.uses[most]) most = i;
+    if (budget.uses[i] > budget.uses[most]) most = i;
   const Candidate &chosen = g.front.candidates[most], &best = g.front.candidates[g.front.count - 1];
   char quality[kFrontLineMax], change[kFrontLineMax];
   format_quality(chosen, quality, sizeof quality);
   describe_change(best, chosen, change, sizeof change);
-  std::printf("  %.7g ms: %s: expected ꟻLIP %s; gave up: %s\n", b.ms, quality, error_text(chosen).c_str(), change);
+  std::printf("  %.7g ms: %s: expected ꟻLIP %s; gave up: %s\n", budget.ms, quality, error_text(chosen).c_str(), change);
   Range range;
-  if (!b.frame_ms.empty()) {
-    std::vector<double> sorted = b.frame_ms;
+  if (!budget.frame_ms.empty()) {
+    std::vector<double> sorted = budget.frame_ms;
     range = range_of(sorted.data(), static_cast<std::uint32_t>(sorted.size()));
   }
   std::printf("  %.1f %% of %u frame%s within 110 %%, median %.1f ms, longest %.1f ms; %u change%s of settings\n",
-              100.0 * (b.frames - b.late) / b.frames, b.frames, b.frames == 1 ? "" : "s", range.median, range.max,
-              g.switch_count, g.switch_count == 1 ? "" : "s");
+              100.0 * (budget.frames - budget.late) / budget.frames, budget.frames, budget.frames == 1 ? "" : "s",
+              range.median, range.max, g.switch_count, g.switch_count == 1 ? "" : "s");
   if (budget_too_small(g)) std::printf("  even the fastest settings of the front take longer than the budget\n");
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "plan/front.h"
-#include "wire/content_hash.h"
+#include "scene/content_hash.h"
 
 namespace pocketray {
 

@@ -13,27 +13,28 @@ constexpr double kFrameNsMax = 2e9;
 constexpr std::uint32_t kFramesBetweenRounds = 5;  // what moves is seen at several times
 
 // A frame as render and view count it.
-Status time_frame(Renderer* r, double seconds, void* page, double* ns) {
+Status time_frame(Renderer* renderer, double seconds, void* page, double* ns) {
   std::uint64_t start = clock_ns();
-  RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
-  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
-  pack_rows(r->image.data, width, height, 0, height, r->exposure, kRgb565, Rotation::none, false, page, 2 * width);
+  RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
+  int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
+  pack_rows(renderer->image.data, width, height, 0, height, renderer->exposure, kRgb565, Rotation::none, false, page,
+            2 * width);
   *ns = static_cast<double>(clock_ns() - start);
   return success();
 }
 
-Status measure_round(Renderer* r, const Front& front, std::uint32_t round, void* page, FrontPrices* p) {
-  double seconds = round * kFramesBetweenRounds / static_cast<double>(r->scene.info.frames_per_second);
+Status measure_round(Renderer* renderer, const Front& front, std::uint32_t round, void* page, FrontPrices* p) {
+  double seconds = round * kFramesBetweenRounds / static_cast<double>(renderer->scene.info.frames_per_second);
   double ns = 0, price = 0;  // of the one before
   for (std::uint32_t i = 0; i < front.count; ++i) {
     const Candidate& c = front.candidates[i];
     bool known_long = round > 0 && p->ns_per_pixel[i].empty();
     if (known_long || (price > 0 && ns * static_cast<double>(c.ns_per_pixel) / price > kFrameNsMax)) break;
-    RETURN_IF_ERROR(change_settings(r, with_candidate(r->settings, c)));
-    RETURN_IF_ERROR(time_frame(r, seconds, page, &ns));
+    RETURN_IF_ERROR(change_settings(renderer, with_candidate(renderer->settings, c)));
+    RETURN_IF_ERROR(time_frame(renderer, seconds, page, &ns));
     if (interrupted) return success();
     price = static_cast<double>(c.ns_per_pixel);
-    p->ns_per_pixel[i].push_back(ns / pixel_count(*r));
+    p->ns_per_pixel[i].push_back(ns / pixel_count(*renderer));
   }
   ++p->round_count;
   return success();
@@ -47,29 +48,31 @@ FrontPrices make_front_prices(const Front& front, std::uint32_t round_count) {
   return p;
 }
 
-std::size_t front_prices_bytes(const Settings& s) { return arena_need(std::size_t(s.width) * s.height * 2); }
+std::size_t front_prices_bytes(const Settings& settings) {
+  return arena_need(std::size_t(settings.width) * settings.height * 2);
+}
 
-Status measure_front(Renderer* r, const Front& front, FrontPrices* p) {
-  const Settings before = r->settings;
-  const Pace pace = r->pace;
-  r->pace = Pace();
-  std::size_t mark = arena_mark(r->frame_arena);
-  auto page = arena_array<std::uint8_t>(&r->frame_arena, std::size_t(before.width) * before.height * 2);
+Status measure_front(Renderer* renderer, const Front& front, FrontPrices* p) {
+  const Settings before = renderer->settings;
+  const Pace pace = renderer->pace;
+  renderer->pace = Pace();
+  std::size_t mark = arena_mark(renderer->frame_arena);
+  auto page = arena_array<std::uint8_t>(&renderer->frame_arena, std::size_t(before.width) * before.height * 2);
   double warm_up;
-  Status status = change_settings(r, with_candidate(before, front.candidates[0]));
-  if (status.ok) status = time_frame(r, 0, page.data, &warm_up);
+  Status status = change_settings(renderer, with_candidate(before, front.candidates[0]));
+  if (status.ok) status = time_frame(renderer, 0, page.data, &warm_up);
   std::uint32_t rounds = static_cast<std::uint32_t>(p->ns_per_pixel[0].capacity());
   for (std::uint32_t round = 0; status.ok && round < rounds && !interrupted; ++round)
-    status = measure_round(r, front, round, page.data, p);
-  arena_release(&r->frame_arena, mark);
-  r->pace = pace;
+    status = measure_round(renderer, front, round, page.data, p);
+  arena_release(&renderer->frame_arena, mark);
+  renderer->pace = pace;
   if (!status.ok) return status;
   for (std::uint32_t i = 0; i < front.count; ++i)
     for (double& ns : p->ns_per_pixel[i])
       ns = static_cast<double>(
-               paced_ns(pace, before.width * before.height, static_cast<std::uint64_t>(ns * pixel_count(*r)))) /
-           pixel_count(*r);
-  return change_settings(r, before);
+               paced_ns(pace, before.width * before.height, static_cast<std::uint64_t>(ns * pixel_count(*renderer)))) /
+           pixel_count(*renderer);
+  return change_settings(renderer, before);
 }
 
 Front measured_front(const Front& front, FrontPrices* p) {

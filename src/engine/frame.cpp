@@ -7,33 +7,34 @@
 
 namespace pocketray {
 
-Status prepare_frame(Renderer* r, double seconds) {
+Status prepare_frame(Renderer* renderer, double seconds) {
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
-  r->pace.owed_ns = 0;
-  pose_scene(r, seconds);
-  accelerate(r);
-  choose_kernels(r);
-  light_scene(r);
-  RETURN_IF_ERROR(aim_camera(r));
-  for (Tracer& tracer : r->tracers) tracer = make_tracer(r->frame);
+  renderer->pace.owed_ns = 0;
+  pose_scene(renderer, seconds);
+  accelerate(renderer);
+  choose_kernels(renderer);
+  light_scene(renderer);
+  RETURN_IF_ERROR(aim_camera(renderer));
+  for (Tracer& tracer : renderer->tracers) tracer = make_tracer(renderer->frame);
   return success();
 }
 
-Status render_frame(Renderer* r, double seconds, const SpanSource& source, bool* complete) {
-  RETURN_IF_ERROR(prepare_frame(r, seconds));
+Status render_frame(Renderer* renderer, double seconds, const SpanSource& source, bool* complete) {
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   std::uint64_t start = clock_ns();
-  bool done = trace_frame(r, source);
-  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  bool done = trace_frame(renderer, source);
+  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   if (complete) *complete = done;
   return success();
 }
 
-Status render_frame(Renderer* r, double seconds, Aov aov, const std::atomic<bool>* stop, std::uint32_t* rows_done) {
-  SpanList list = whole_frame(r);
+Status render_frame(Renderer* renderer, double seconds, Aov aov, const std::atomic<bool>* stop,
+                    std::uint32_t* rows_done) {
+  SpanList list = whole_frame(renderer);
   SpanSource source = list_source(&list);
   source.aov = aov;
   source.stop = stop;
-  RETURN_IF_ERROR(render_frame(r, seconds, source));
+  RETURN_IF_ERROR(render_frame(renderer, seconds, source));
   if (rows_done) *rows_done = list.done_count;
   return success();
 }

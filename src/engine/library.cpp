@@ -77,9 +77,9 @@ Status read_camera(const pocketray_camera* given, const Settings& settings, Came
 }
 
 Status plan_again(pocketray_instance* instance, const Settings& settings) {
-  Renderer* r = &instance->renderer;
-  RETURN_IF_ERROR(change_settings(r, settings));
-  r->lit_mask = ~EffectMask(0);  // lights are placed anew
+  Renderer* renderer = &instance->renderer;
+  RETURN_IF_ERROR(change_settings(renderer, settings));
+  renderer->lit_mask = ~EffectMask(0);  // lights are placed anew
   instance->refining = false;
   return success();
 }

@@ -52,17 +52,18 @@ Status read_pixels(const pocketray_pixels* given, const Settings& settings, Targ
   return success();
 }
 
-void write_pixels(const Renderer& r, std::uint32_t row_begin, std::uint32_t row_end, const Target& target) {
-  int width = static_cast<int>(r.settings.width), height = static_cast<int>(r.settings.height);
+void write_pixels(const Renderer& renderer, std::uint32_t row_begin, std::uint32_t row_end, const Target& target) {
+  int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
   if (target.format != POCKETRAY_RGB_FLOAT) {
-    pack_rows(r.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end), r.exposure,
-              kFormats[target.format], target.rotation, target.dither, target.data, target.line_bytes);
+    pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
+              renderer.exposure, kFormats[target.format], target.rotation, target.dither, target.data,
+              target.line_bytes);
     return;
   }
-  std::size_t row_pixels = r.settings.width;
+  std::size_t row_pixels = renderer.settings.width;
   for (std::size_t row = row_begin; row < row_end; ++row)
     std::memcpy(static_cast<std::uint8_t*>(target.data) + row * static_cast<std::size_t>(target.line_bytes),
-                r.image.data + row * row_pixels, row_pixels * sizeof(Vec3));
+                renderer.image.data + row * row_pixels, row_pixels * sizeof(Vec3));
 }
 
 Status check_rendering(const pocketray_instance* instance, double seconds) {
@@ -71,29 +72,29 @@ Status check_rendering(const pocketray_instance* instance, double seconds) {
 }
 
 void clear_costs(pocketray_instance* instance) {
-  Renderer* r = &instance->renderer;
-  std::memset(r->row_ns.data, 0, r->row_ns.bytes());
-  r->timings.trace_ms = 0;
+  Renderer* renderer = &instance->renderer;
+  std::memset(renderer->row_ns.data, 0, renderer->row_ns.bytes());
+  renderer->timings.trace_ms = 0;
   instance->rows_done = 0;
   instance->refining = false;
 }
 
 // Bands of rows with a call after each, which may end the frame.
 Status render_bands(pocketray_instance* instance, double seconds) {
-  Renderer* r = &instance->renderer;
-  RETURN_IF_ERROR(prepare_frame(r, seconds));
-  SpanList bands = row_bands(r);
+  Renderer* renderer = &instance->renderer;
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  SpanList bands = row_bands(renderer);
   SpanSource source = list_source(&bands);
   source.stop = &instance->stop;
   source.deadline_ns = 0;  // a call of trace_frame() traces one band
   std::uint64_t start = clock_ns();
   for (bool ended = false; !ended;) {
-    ended = trace_frame(r, source);
+    ended = trace_frame(renderer, source);
     instance->rows_done = bands.done_count;
     if (!ended && instance->stop.load(std::memory_order_relaxed)) break;
-    ended |= instance->progress(instance->progress_user, bands.done_count, r->settings.height) != 0;
+    ended |= instance->progress(instance->progress_user, bands.done_count, renderer->settings.height) != 0;
   }
-  r->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
 }
 
@@ -107,13 +108,13 @@ pocketray_result pocketray_render(pocketray_instance* instance, double seconds, 
   Target target;
   if (status.ok) status = read_pixels(pixels, instance->renderer.settings, &target);
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
-  Renderer* r = &instance->renderer;
+  Renderer* renderer = &instance->renderer;
   clear_costs(instance);
   status = instance->progress ? render_bands(instance, seconds)
-                              : render_frame(r, seconds, Aov::none, &instance->stop, &instance->rows_done);
+                              : render_frame(renderer, seconds, Aov::none, &instance->stop, &instance->rows_done);
   if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
-  write_pixels(*r, 0, instance->rows_done, target);
-  return instance->rows_done < r->settings.height ? POCKETRAY_STOPPED : POCKETRAY_OK;
+  write_pixels(*renderer, 0, instance->rows_done, target);
+  return instance->rows_done < renderer->settings.height ? POCKETRAY_STOPPED : POCKETRAY_OK;
 }
 
 pocketray_result pocketray_begin(pocketray_instance* instance, double seconds) {
@@ -138,8 +139,8 @@ pocketray_result pocketray_refine(pocketray_instance* instance, double milliseco
   if (status.ok && !instance->refining) status = failure("there is no frame to refine: begin one after every change");
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
 
-  Renderer* r = &instance->renderer;
-  Progressive* p = &instance->progressive;
+  Renderer* renderer = &instance->renderer;
+  Progressive* progressive = &instance->progressive;
   std::uint64_t deadline = clock_ns() + static_cast<std::uint64_t>(milliseconds * 1e6);
   pocketray_result result = POCKETRAY_UNFINISHED;
   while (result == POCKETRAY_UNFINISHED) {
@@ -147,18 +148,19 @@ pocketray_result pocketray_refine(pocketray_instance* instance, double milliseco
       result = POCKETRAY_STOPPED;
       break;
     }
-    bool finest = p->step == 1;
-    std::uint32_t row = p->row;
-    std::uint64_t before = p->trace_ns;
-    bool finished = p->step == 0 || advance_progressive(r, instance->row_spans, 0, p);  // a row
-    if (row < r->row_ns.count) r->row_ns[row] += p->trace_ns - before;
-    if (finest && p->trace_ns > before) ++instance->rows_done;
+    bool finest = progressive->step == 1;
+    std::uint32_t row = progressive->row;
+    std::uint64_t before = progressive->trace_ns;
+    bool finished =
+        progressive->step == 0 || advance_progressive(renderer, instance->row_spans, 0, progressive);  // a row
+    if (row < renderer->row_ns.count) renderer->row_ns[row] += progressive->trace_ns - before;
+    if (finest && progressive->trace_ns > before) ++instance->rows_done;
     if (finished) result = POCKETRAY_OK;
     if (clock_ns() >= deadline) break;
   }
-  r->timings.trace_ms = static_cast<double>(p->trace_ns) * 1e-6;
+  renderer->timings.trace_ms = static_cast<double>(progressive->trace_ns) * 1e-6;
   std::uint32_t begin, end;
-  if (take_dirty_rows(p, &begin, &end)) write_pixels(*r, begin, end, target);
+  if (take_dirty_rows(progressive, &begin, &end)) write_pixels(*renderer, begin, end, target);
   return result;
 }
 
@@ -177,17 +179,17 @@ pocketray_result pocketray_set_progress(pocketray_instance* instance, pocketray_
 pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketray_frame* frame) {
   Status status = check_instance(instance);
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
-  const Renderer& r = instance->renderer;
-  Tracer counts = total_counts(r);
+  const Renderer& renderer = instance->renderer;
+  Tracer counts = total_counts(renderer);
   pocketray_frame result = POCKETRAY_FRAME_INIT;
-  result.build_ms = r.timings.build_ms;
-  result.pose_ms = r.timings.pose_ms;
-  result.refit_ms = r.timings.refit_ms;
-  result.trace_ms = r.timings.trace_ms;
+  result.build_ms = renderer.timings.build_ms;
+  result.pose_ms = renderer.timings.pose_ms;
+  result.refit_ms = renderer.timings.refit_ms;
+  result.trace_ms = renderer.timings.trace_ms;
   for (std::uint64_t rays : counts.rays) result.ray_count += rays;
   result.rays_skipped = counts.rays_left_out;
   result.rows_done = instance->rows_done;
-  result.row_count = r.settings.height;
+  result.row_count = renderer.settings.height;
   return to_result(write_struct("the frame", result, frame), POCKETRAY_ERROR_ARGUMENT);
 }
 

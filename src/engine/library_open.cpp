@@ -142,15 +142,15 @@ Status read_part(const Scene& scene, const Request& q, std::uint32_t part, Movin
 }
 
 // Makes nodes of the parts, and an animation without channels: their rest pose is their place in the world.
-Status add_parts(const Request& q, Renderer* r) {
+Status add_parts(const Request& q, Renderer* renderer) {
   std::uint32_t count = q.options.part_count;
-  Scene* scene = &r->scene;
+  Scene* scene = &renderer->scene;
   if (count == 0) return success();
   if (scene->nodes.count || scene->animations.count)
     return failure("the scene is animated, and its nodes are what moves: leave parts out and set movable");
-  Array<Node> nodes = arena_array<Node>(&r->scene_arena, count);
-  Array<MovingMesh> meshes = arena_array<MovingMesh>(&r->scene_arena, count);
-  Array<Animation> animation = arena_array_zeroed<Animation>(&r->scene_arena, 1);
+  Array<Node> nodes = arena_array<Node>(&renderer->scene_arena, count);
+  Array<MovingMesh> meshes = arena_array<MovingMesh>(&renderer->scene_arena, count);
+  Array<Animation> animation = arena_array_zeroed<Animation>(&renderer->scene_arena, 1);
   for (std::uint32_t part = 0; part < count; ++part) {
     nodes[part] = Node();
     MovingMesh mesh;
@@ -170,10 +170,10 @@ Status add_parts(const Request& q, Renderer* r) {
   return success();
 }
 
-pocketray_result load_scene(const Request& q, bool copies, Renderer* r) {
-  Arena* arena = &r->scene_arena;
+pocketray_result load_scene(const Request& q, bool copies, Renderer* renderer) {
+  Arena* arena = &renderer->scene_arena;
   if (q.builtin) {
-    q.builtin->build(arena, &r->scene);
+    q.builtin->build(arena, &renderer->scene);
   } else {
     const std::uint8_t* bytes = static_cast<const std::uint8_t*>(q.source.bytes);
     if (copies) {
@@ -181,29 +181,30 @@ pocketray_result load_scene(const Request& q, bool copies, Renderer* r) {
       std::memcpy(copy, bytes, q.source.byte_count);
       bytes = static_cast<std::uint8_t*>(copy);
     }
-    Status status = baked_open(bytes, q.source.byte_count, &r->scene);
+    Status status = baked_open(bytes, q.source.byte_count, &renderer->scene);
     if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
   }
-  if (q.options.measure_exposure) r->scene.info.auto_exposure = 1;
-  return to_result(add_parts(q, r), POCKETRAY_ERROR_ARGUMENT);
+  if (q.options.measure_exposure) renderer->scene.info.auto_exposure = 1;
+  return to_result(add_parts(q, renderer), POCKETRAY_ERROR_ARGUMENT);
 }
 
-pocketray_result plan_request(const Request& q, const SceneStorage& storage, Renderer* r) {
-  const Scene& scene = r->scene;
+pocketray_result plan_request(const Request& q, const SceneStorage& storage, Renderer* renderer) {
+  const Scene& scene = renderer->scene;
   std::uint32_t index = q.options.camera_index;
   if (index > 0 && index >= scene.cameras.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT,
                   failure("there is no camera %u: the scene has %u", index, scene.cameras.count));
-  r->camera_index = index;
-  r->accel_info = q.accel;
-  r->light_count_max = q.options.light_count_max;
-  Status status = plan_renderer(r, storage, progressive_need(q.settings));
-  if (r->memory.total_bytes == SIZE_MAX) status = failure("the scene needs more memory than this CPU addresses");
-  bool too_small = r->memory.total_bytes == SIZE_MAX || r->memory.total_bytes > r->memory.limit_bytes;
+  renderer->camera_index = index;
+  renderer->accel_info = q.accel;
+  renderer->light_count_max = q.options.light_count_max;
+  Status status = plan_renderer(renderer, storage, progressive_need(q.settings));
+  if (renderer->memory.total_bytes == SIZE_MAX) status = failure("the scene needs more memory than this CPU addresses");
+  bool too_small =
+      renderer->memory.total_bytes == SIZE_MAX || renderer->memory.total_bytes > renderer->memory.limit_bytes;
   if (!status.ok) return refuse(too_small ? POCKETRAY_ERROR_MEMORY : POCKETRAY_ERROR_SCENE, status);
-  if (r->light_count_max && r->light_count_max < scene.lights.count)
+  if (renderer->light_count_max && renderer->light_count_max < scene.lights.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT, failure("light_count_max is %u, and the scene has %u lights already",
-                                                    r->light_count_max, scene.lights.count));
+                                                    renderer->light_count_max, scene.lights.count));
   return POCKETRAY_OK;
 }
 
@@ -220,22 +221,22 @@ void attach_changes(pocketray_instance* instance) {
 }
 
 pocketray_result build(const Request& q, pocketray_instance* instance) {
-  Renderer* r = &instance->renderer;
+  Renderer* renderer = &instance->renderer;
   if (instance->lights.count) {
-    for (std::uint32_t i = 0; i < r->scene.lights.count; ++i) instance->lights[i] = r->scene.lights[i];
-    r->scene.lights = {instance->lights.data, r->scene.lights.count};
+    for (std::uint32_t i = 0; i < renderer->scene.lights.count; ++i) instance->lights[i] = renderer->scene.lights[i];
+    renderer->scene.lights = {instance->lights.data, renderer->scene.lights.count};
   }
   if (q.options.camera) {
-    Status status = set_camera(r, q.camera);
+    Status status = set_camera(renderer, q.camera);
     if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
   }
-  r->workers = start_workers(q.settings.threads);
-  Status status = build_renderer(r);
+  renderer->workers = start_workers(q.settings.threads);
+  Status status = build_renderer(renderer);
   if (!status.ok) {
-    stop_workers(r->workers);
+    stop_workers(renderer->workers);
     return refuse(POCKETRAY_ERROR_SCENE, status);
   }
-  instance->row_spans = arena_array<Span>(&r->frame_arena, q.settings.width);
+  instance->row_spans = arena_array<Span>(&renderer->frame_arena, q.settings.width);
   attach_changes(instance);
   return POCKETRAY_OK;
 }
@@ -245,26 +246,26 @@ pocketray_result open_request(const Request& q, void* memory, std::size_t memory
   if (memory_bytes < least) return need_more("an instance alone", least, memory_bytes);
   Arena block = make_arena("instance", memory, memory_bytes);
   auto* instance = new (arena_allocate(&block, sizeof(pocketray_instance))) pocketray_instance;
-  Renderer* r = &instance->renderer;
+  Renderer* renderer = &instance->renderer;
   std::size_t room = arena_free(block), scene_bytes = load_need(q, q.source.copy != 0);
-  start_renderer(block.base + block.used, room, q.settings, r);
+  start_renderer(block.base + block.used, room, q.settings, renderer);
   if (scene_bytes > room) return need_more("the scene alone", size_sum(least, scene_bytes), memory_bytes);
-  pocketray_result loaded = load_scene(q, q.source.copy != 0, r);
+  pocketray_result loaded = load_scene(q, q.source.copy != 0, renderer);
   if (loaded != POCKETRAY_OK) return loaded;
-  std::size_t change_bytes = lights_need(q) + overrides_need(q, r->scene);
-  if (change_bytes > arena_free(r->scene_arena))
+  std::size_t change_bytes = lights_need(q) + overrides_need(q, renderer->scene);
+  if (change_bytes > arena_free(renderer->scene_arena))
     return need_more("what may be changed", size_sum(memory_bytes, change_bytes), memory_bytes);
   if (q.options.light_count_max) {
-    instance->lights = arena_array<Light>(&r->scene_arena, q.options.light_count_max);
-    instance->posed_lights = arena_array<Light>(&r->scene_arena, q.options.light_count_max);
+    instance->lights = arena_array<Light>(&renderer->scene_arena, q.options.light_count_max);
+    instance->posed_lights = arena_array<Light>(&renderer->scene_arena, q.options.light_count_max);
   }
   if (moves_nodes(q)) {
-    instance->overrides = arena_array<NodeOverride>(&r->scene_arena, r->scene.nodes.count);
+    instance->overrides = arena_array<NodeOverride>(&renderer->scene_arena, renderer->scene.nodes.count);
     for (NodeOverride& o : instance->overrides) o = NodeOverride();
   }
   SceneStorage storage;
-  storage.arena_bytes = r->scene_arena.used;
-  pocketray_result planned = plan_request(q, storage, r);
+  storage.arena_bytes = renderer->scene_arena.used;
+  pocketray_result planned = plan_request(q, storage, renderer);
   if (planned != POCKETRAY_OK) return planned;
   pocketray_result built = build(q, instance);
   if (built == POCKETRAY_OK) *result = instance;
@@ -273,16 +274,16 @@ pocketray_result open_request(const Request& q, void* memory, std::size_t memory
 
 }  // namespace
 
-std::size_t instance_need(const Renderer& r) {
-  return size_sum(kArenaAlignment + arena_need(sizeof(pocketray_instance)), r.memory.total_bytes);
+std::size_t instance_need(const Renderer& renderer) {
+  return size_sum(kArenaAlignment + arena_need(sizeof(pocketray_instance)), renderer.memory.total_bytes);
 }
 
-void write_plan(const Renderer& r, std::size_t scratch_bytes, pocketray_plan* plan) {
-  const Scene& scene = r.scene;
+void write_plan(const Renderer& renderer, std::size_t scratch_bytes, pocketray_plan* plan) {
+  const Scene& scene = renderer.scene;
   std::memset(static_cast<void*>(plan), 0, sizeof *plan);
-  plan->memory_bytes = instance_need(r);
+  plan->memory_bytes = instance_need(renderer);
   plan->scratch_bytes = scratch_bytes;
-  plan->accelerator = r.accel_info->name;
+  plan->accelerator = renderer.accel_info->name;
   plan->vertex_count = scene.positions.count;
   plan->triangle_count = scene.triangles.count;
   plan->material_count = scene.materials.count;
@@ -297,16 +298,16 @@ void write_plan(const Renderer& r, std::size_t scratch_bytes, pocketray_plan* pl
   plan->effect_count = kEffectCount;
   for (int i = 0; i < kEffectCount; ++i) {
     pocketray_effect* e = &plan->effects[i];
-    const EffectDecision& d = r.effects.decisions[i];
+    const EffectDecision& d = renderer.effects.decisions[i];
     e->name = kEffectList[i].name;
     e->called_for_by = kEffectList[i].called_for_by;
     e->on = d.on;
     static_assert(sizeof e->reason == sizeof d.reason, "a reason is copied whole");
     std::memcpy(e->reason, d.reason, sizeof e->reason);
   }
-  plan->memory_part_count = static_cast<std::uint32_t>(r.memory.part_count);
-  for (int i = 0; i < r.memory.part_count; ++i)
-    plan->memory_parts[i] = {r.memory.parts[i].name, r.memory.parts[i].bytes};
+  plan->memory_part_count = static_cast<std::uint32_t>(renderer.memory.part_count);
+  for (int i = 0; i < renderer.memory.part_count; ++i)
+    plan->memory_parts[i] = {renderer.memory.parts[i].name, renderer.memory.parts[i].bytes};
 }
 
 }  // namespace pocketray
@@ -326,18 +327,18 @@ pocketray_result pocketray_make_plan(const pocketray_source* source, const pocke
   if (need > 0) need = size_sum(need, kArenaAlignment);
   plan->scratch_bytes = need;
   if (need > 0 && (!scratch || scratch_bytes < need)) return need_more("planning", need, scratch ? scratch_bytes : 0);
-  Renderer r;
-  start_renderer(need > 0 ? scratch : nullptr, need, q.settings, &r);
-  r.settings.memory_bytes = SIZE_MAX;
-  pocketray_result loaded = load_scene(q, copies, &r);
+  Renderer renderer;
+  start_renderer(need > 0 ? scratch : nullptr, need, q.settings, &renderer);
+  renderer.settings.memory_bytes = SIZE_MAX;
+  pocketray_result loaded = load_scene(q, copies, &renderer);
   if (loaded != POCKETRAY_OK) return loaded;
   SceneStorage storage;
-  storage.arena_bytes = size_sum(q.builtin ? r.scene_arena.used : load_need(q, q.source.copy != 0),
-                                 lights_need(q) + overrides_need(q, r.scene));
-  pocketray_result planned = plan_request(q, storage, &r);
+  storage.arena_bytes = size_sum(q.builtin ? renderer.scene_arena.used : load_need(q, q.source.copy != 0),
+                                 lights_need(q) + overrides_need(q, renderer.scene));
+  pocketray_result planned = plan_request(q, storage, &renderer);
   if (planned != POCKETRAY_OK) return planned;
   pocketray_plan made;
-  write_plan(r, need, &made);
+  write_plan(renderer, need, &made);
   return to_result(write_struct("the plan", made, plan), POCKETRAY_ERROR_ARGUMENT);
 }
 

@@ -51,19 +51,19 @@ Light from_caller(const pocketray_light& light) {
 }
 
 pocketray_result change_lights(pocketray_instance* instance, const pocketray_light* lights, std::uint32_t count) {
-  Renderer* r = &instance->renderer;
+  Renderer* renderer = &instance->renderer;
   Array<Light> changed = {instance->posed_lights.data, count};  // which every frame fills anew
   for (std::uint32_t i = 0; i < count; ++i) changed[i] = from_caller(lights[i]);
-  const Array<const Light> before = r->scene.lights;
-  r->scene.lights = changed;
-  Status status = validate_lights_and_cameras(r->scene);
+  const Array<const Light> before = renderer->scene.lights;
+  renderer->scene.lights = changed;
+  Status status = validate_lights_and_cameras(renderer->scene);
   pocketray_result result = to_result(status, POCKETRAY_ERROR_ARGUMENT);
-  if (result == POCKETRAY_OK) result = to_result(plan_again(instance, r->settings), POCKETRAY_ERROR_LIMIT);
-  r->scene.lights = before;
+  if (result == POCKETRAY_OK) result = to_result(plan_again(instance, renderer->settings), POCKETRAY_ERROR_LIMIT);
+  renderer->scene.lights = before;
   if (result != POCKETRAY_OK) return result;
   if (count) std::memcpy(static_cast<void*>(instance->lights.data), changed.data, changed.bytes());
-  r->scene.lights = {instance->lights.data, count};
-  if (r->pose.nodes.count) r->pose.lights.count = count;
+  renderer->scene.lights = {instance->lights.data, count};
+  if (renderer->pose.nodes.count) renderer->pose.lights.count = count;
   return POCKETRAY_OK;
 }
 
@@ -136,15 +136,15 @@ pocketray_result pocketray_set_camera(pocketray_instance* instance, const pocket
 
 pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, std::uint32_t camera_index) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
-  Renderer* r = &instance->renderer;
-  Array<const Camera> cameras = r->scene.cameras;
+  Renderer* renderer = &instance->renderer;
+  Array<const Camera> cameras = renderer->scene.cameras;
   if (camera_index > 0 && camera_index >= cameras.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT,
                   failure("there is no camera %u: the scene has %u", camera_index, cameras.count));
-  float aspect = static_cast<float>(r->settings.width) / static_cast<float>(r->settings.height);
-  r->camera = cameras.empty() ? default_camera(r->scene, aspect) : cameras[camera_index];
-  r->camera_index = camera_index;
-  r->camera_overridden = false;
+  float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
+  renderer->camera = cameras.empty() ? default_camera(renderer->scene, aspect) : cameras[camera_index];
+  renderer->camera_index = camera_index;
+  renderer->camera_overridden = false;
   instance->refining = false;
   return POCKETRAY_OK;
 }
@@ -185,27 +185,27 @@ pocketray_result pocketray_set_surroundings(pocketray_instance* instance, const 
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_changing(instance, "ambient", ambient));
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_radiance("background", background));
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_radiance("ambient", ambient));
-  Renderer* r = &instance->renderer;
-  const SceneInfo before = r->scene.info;
-  r->scene.info.background = to_vec3(background);
-  r->scene.info.ambient = to_vec3(ambient);
-  Status status = plan_again(instance, r->settings);
-  if (!status.ok) r->scene.info = before;
+  Renderer* renderer = &instance->renderer;
+  const SceneInfo before = renderer->scene.info;
+  renderer->scene.info.background = to_vec3(background);
+  renderer->scene.info.ambient = to_vec3(ambient);
+  Status status = plan_again(instance, renderer->settings);
+  if (!status.ok) renderer->scene.info = before;
   return to_result(status, POCKETRAY_ERROR_LIMIT);
 }
 
 pocketray_result pocketray_get_node(const pocketray_instance* instance, std::uint32_t node, pocketray_node* result) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_changing(instance, "the node", result));
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_node(instance, node));
-  const Renderer& r = instance->renderer;
+  const Renderer& renderer = instance->renderer;
   pocketray_node read = POCKETRAY_NODE_INIT;
-  bool posed = r.pose.nodes.count > 0;
-  const Node& local = posed ? r.pose.local_nodes[node] : r.scene.nodes[node];
+  bool posed = renderer.pose.nodes.count > 0;
+  const Node& local = posed ? renderer.pose.local_nodes[node] : renderer.scene.nodes[node];
   Transform to_parent = compose(local.translation, local.rotation, local.scale), to_world;
   read.parent = local.parent;
   read.overridden = instance->overrides.count && instance->overrides[node].on;
   if (read.overridden) to_parent = instance->overrides[node].to_parent;
-  if (posed) to_world = r.pose.nodes[node];
+  if (posed) to_world = renderer.pose.nodes[node];
   std::memcpy(read.to_parent, to_parent.m, sizeof read.to_parent);
   std::memcpy(read.to_world, to_world.m, sizeof read.to_world);
   return to_result(write_struct("the node", read, result), POCKETRAY_ERROR_ARGUMENT);
@@ -244,10 +244,10 @@ pocketray_result pocketray_set_exposure(pocketray_instance* instance, float expo
 pocketray_result pocketray_measure_exposure(pocketray_instance* instance, double seconds, float* exposure) {
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_limit(Quantity::seconds, seconds));
-  Renderer* r = &instance->renderer;
+  Renderer* renderer = &instance->renderer;
   instance->refining = false;
-  REFUSE_IF_ERROR(POCKETRAY_ERROR_SCENE, prepare_frame(r, seconds));
-  r->exposure = measure_exposure(r);
-  if (exposure) *exposure = r->exposure;
+  REFUSE_IF_ERROR(POCKETRAY_ERROR_SCENE, prepare_frame(renderer, seconds));
+  renderer->exposure = measure_exposure(renderer);
+  if (exposure) *exposure = renderer->exposure;
   return POCKETRAY_OK;
 }

@@ -15,43 +15,45 @@ namespace {
 
 // Whether the lights of the last frame are this one's, too: nothing moves, and nothing that they follow from has
 // changed.
-bool is_lit(const Renderer& r) {
-  return r.lit_mask == r.effects.mask && !r.pose.positions.count && !r.pose.lights.count &&
-         same_lights(r.lit_settings, r.settings);
+bool is_lit(const Renderer& renderer) {
+  return renderer.lit_mask == renderer.effects.mask && !renderer.pose.positions.count && !renderer.pose.lights.count &&
+         same_lights(renderer.lit_settings, renderer.settings);
 }
 
 }  // namespace
 
-void choose_kernels(Renderer* r) {
-  r->frame.scene = &r->scene;
-  r->frame.accel_info = r->accel_info;
-  r->frame.settings = r->settings;
-  r->frame.mask = r->effects.mask;
-  r->frame.surface = find_surface_function(r->effects.mask);
-  r->frame.radiance = find_radiance_function(r->effects.mask);
-  r->frame.find_shadows = has(r->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
-  make_filters(&r->frame);
+void choose_kernels(Renderer* renderer) {
+  renderer->frame.scene = &renderer->scene;
+  renderer->frame.accel_info = renderer->accel_info;
+  renderer->frame.settings = renderer->settings;
+  renderer->frame.mask = renderer->effects.mask;
+  renderer->frame.surface = find_surface_function(renderer->effects.mask);
+  renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
+  renderer->frame.find_shadows = has(renderer->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
+  make_filters(&renderer->frame);
 }
 
-void light_scene(Renderer* r) {
-  if (!is_lit(*r)) {
-    place_lights(r->pose.lights.count ? Array<const Light>(r->pose.lights) : r->scene.lights, r->light_points,
-                 &r->frame);
-    bool spawns = has(r->effects.mask, Effect::mirror) || has(r->effects.mask, Effect::refraction) ||
-                  has(r->effects.mask, Effect::alpha_blend);
-    r->frame.radiance_bound = spawns ? radiance_bound(r->frame) : 0;
-    r->lit_settings = r->settings;
-    r->lit_mask = r->effects.mask;
+void light_scene(Renderer* renderer) {
+  if (!is_lit(*renderer)) {
+    place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
+                 renderer->light_points, &renderer->frame);
+    bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
+                  has(renderer->effects.mask, Effect::alpha_blend);
+    renderer->frame.radiance_bound = spawns ? radiance_bound(renderer->frame) : 0;
+    renderer->lit_settings = renderer->settings;
+    renderer->lit_mask = renderer->effects.mask;
   }
-  r->frame.left_out_max = 2 * kHalfLevel * r->settings.cut_off_levels / r->exposure;
+  renderer->frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->exposure;
 }
 
-Status aim_camera(Renderer* r) {
-  if (!r->camera_overridden && r->pose.cameras.count) r->camera = r->pose.cameras[r->camera_index];
-  RETURN_IF_ERROR(make_camera_rays(r->camera, r->settings.width, r->settings.height, &r->frame.camera));
-  r->frame.eye_media = MediumStack();
-  if (has(r->effects.mask, Effect::refraction))
-    r->frame.eye_media = media_at(r->frame, r->frame.camera.eye, r->frame.camera.forward);
+Status aim_camera(Renderer* renderer) {
+  if (!renderer->camera_overridden && renderer->pose.cameras.count)
+    renderer->camera = renderer->pose.cameras[renderer->camera_index];
+  RETURN_IF_ERROR(
+      make_camera_rays(renderer->camera, renderer->settings.width, renderer->settings.height, &renderer->frame.camera));
+  renderer->frame.eye_media = MediumStack();
+  if (has(renderer->effects.mask, Effect::refraction))
+    renderer->frame.eye_media = media_at(renderer->frame, renderer->frame.camera.eye, renderer->frame.camera.forward);
   return success();
 }
 

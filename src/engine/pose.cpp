@@ -6,38 +6,39 @@ namespace pocketray {
 namespace {
 
 // An accelerator that cannot be refitted is built anew, in the memory that plan_memory() set aside for that.
-void follow_motion(Renderer* r) {
-  r->accel.positions = r->frame.positions;
-  if (r->accel_info->refit) return r->accel_info->refit(&r->accel, r->accel_data);
-  Arena keep = make_arena("accelerator", r->accel_data.data, r->accel_data.bytes());
-  r->accel_info->build(&r->accel, &keep, &r->frame_arena);
+void follow_motion(Renderer* renderer) {
+  renderer->accel.positions = renderer->frame.positions;
+  if (renderer->accel_info->refit) return renderer->accel_info->refit(&renderer->accel, renderer->accel_data);
+  Arena keep = make_arena("accelerator", renderer->accel_data.data, renderer->accel_data.bytes());
+  renderer->accel_info->build(&renderer->accel, &keep, &renderer->frame_arena);
 }
 
-void pose_at_time(Renderer* r, double seconds) {
-  r->frame.positions = r->scene.positions;
-  r->frame.normals = has(r->effects.mask, Effect::smooth_normal) ? r->scene.normals : Array<const Vec3>();
-  if (!has(r->effects.mask, Effect::animation) || !is_animated(r->scene)) return;
+void pose_at_time(Renderer* renderer, double seconds) {
+  renderer->frame.positions = renderer->scene.positions;
+  renderer->frame.normals =
+      has(renderer->effects.mask, Effect::smooth_normal) ? renderer->scene.normals : Array<const Vec3>();
+  if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene)) return;
   effect_entered<Effect::animation>();
-  pose_at(r->scene, 0, seconds, &r->pose);
-  if (r->pose.positions.count) r->frame.positions = r->pose.positions;
-  if (r->frame.normals.count && r->pose.normals.count) r->frame.normals = r->pose.normals;
+  pose_at(renderer->scene, 0, seconds, &renderer->pose);
+  if (renderer->pose.positions.count) renderer->frame.positions = renderer->pose.positions;
+  if (renderer->frame.normals.count && renderer->pose.normals.count) renderer->frame.normals = renderer->pose.normals;
 }
 
 }  // namespace
 
-void pose_scene(Renderer* r, double seconds) {
+void pose_scene(Renderer* renderer, double seconds) {
   std::uint64_t start = clock_ns();
-  pose_at_time(r, seconds);
-  wait_for_pace(&r->pace, 0, start);
-  r->timings.pose_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  pose_at_time(renderer, seconds);
+  wait_for_pace(&renderer->pace, 0, start);
+  renderer->timings.pose_ms = static_cast<double>(clock_ns() - start) * 1e-6;
 }
 
-void accelerate(Renderer* r) {
+void accelerate(Renderer* renderer) {
   std::uint64_t start = clock_ns();
-  if (r->pose.positions.count) follow_motion(r);
-  wait_for_pace(&r->pace, 0, start);
-  r->timings.refit_ms = static_cast<double>(clock_ns() - start) * 1e-6;
-  r->frame.accel = r->accel;
+  if (renderer->pose.positions.count) follow_motion(renderer);
+  wait_for_pace(&renderer->pace, 0, start);
+  renderer->timings.refit_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  renderer->frame.accel = renderer->accel;
 }
 
 }  // namespace pocketray

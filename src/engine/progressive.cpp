@@ -11,17 +11,18 @@ namespace {
 constexpr std::uint32_t kChunk = 32;  // pixels a thread takes at a time on the finest grid
 
 // The pixels of a row that are on this grid and on no coarser one, as spans.
-std::uint32_t list_row(const Settings& s, std::uint32_t row, std::uint32_t step, Array<Span> spans) {
+std::uint32_t list_row(const Settings& settings, std::uint32_t row, std::uint32_t step, Array<Span> spans) {
   std::uint32_t count = 0;
   auto y = static_cast<std::uint16_t>(row);
   bool coarser_row = step < kCoarsestStep && row % (2 * step) == 0;
   if (step == 1 && !coarser_row) {
-    for (std::uint32_t x = 0; x < s.width; x += kChunk)
-      spans[count++] = {y, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(std::min(x + kChunk, s.width))};
+    for (std::uint32_t x = 0; x < settings.width; x += kChunk)
+      spans[count++] = {y, static_cast<std::uint16_t>(x),
+                        static_cast<std::uint16_t>(std::min(x + kChunk, settings.width))};
     return count;
   }
   std::uint32_t first = coarser_row ? step : 0, stride = coarser_row ? 2 * step : step;
-  for (std::uint32_t x = first; x < s.width; x += stride)
+  for (std::uint32_t x = first; x < settings.width; x += stride)
     spans[count++] = {y, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(x + 1)};
   return count;
 }
@@ -40,54 +41,56 @@ void next_row(void* context, SpanBatch* batch) {
 
 // Spreads each traced pixel over its cell.
 void fill_cells(void* context, const SpanBatch& batch) {
-  const Renderer& r = *static_cast<Refinement*>(context)->renderer;
+  const Renderer& renderer = *static_cast<Refinement*>(context)->renderer;
   const std::uint32_t step = static_cast<Refinement*>(context)->progressive->step;
   if (step == 1) return;
-  const Settings& s = r.settings;
+  const Settings& settings = renderer.settings;
   for (std::uint32_t i = 0; i < batch.span_count; ++i) {
     Span span = batch.spans[i];
-    Vec3 value = r.image[static_cast<std::size_t>(span.row) * s.width + span.column_begin];
-    std::uint32_t bottom = std::min(span.row + step, s.height), right = std::min(span.column_begin + step, s.width);
+    Vec3 value = renderer.image[static_cast<std::size_t>(span.row) * settings.width + span.column_begin];
+    std::uint32_t bottom = std::min(span.row + step, settings.height),
+                  right = std::min(span.column_begin + step, settings.width);
     for (std::uint32_t y = span.row; y < bottom; ++y)
       for (std::uint32_t x = span.column_begin; x < right; ++x)
-        r.image[static_cast<std::size_t>(y) * s.width + x] = value;
+        renderer.image[static_cast<std::size_t>(y) * settings.width + x] = value;
   }
 }
 
 bool finish_row(void* context, const SpanBatch& batch) {
   const Refinement& r = *static_cast<Refinement*>(context);
-  Progressive* p = r.progressive;
+  Progressive* progressive = r.progressive;
   const std::uint32_t height = r.renderer->settings.height;
-  p->pixels_traced += span_pixel_count(batch.spans, batch.span_count);
-  p->trace_ns += batch.took_ns;
-  if (p->dirty_begin == p->dirty_end) p->dirty_begin = p->row;
-  p->dirty_begin = std::min(p->dirty_begin, p->row);
-  p->dirty_end = std::max(p->dirty_end, std::min(p->row + p->step, height));
-  p->row += p->step;
-  if (p->row >= height) {
-    p->row = 0;
-    p->shown_coarse = true;
-    p->step /= 2;
+  progressive->pixels_traced += span_pixel_count(batch.spans, batch.span_count);
+  progressive->trace_ns += batch.took_ns;
+  if (progressive->dirty_begin == progressive->dirty_end) progressive->dirty_begin = progressive->row;
+  progressive->dirty_begin = std::min(progressive->dirty_begin, progressive->row);
+  progressive->dirty_end = std::max(progressive->dirty_end, std::min(progressive->row + progressive->step, height));
+  progressive->row += progressive->step;
+  if (progressive->row >= height) {
+    progressive->row = 0;
+    progressive->shown_coarse = true;
+    progressive->step /= 2;
   }
-  return p->step == 0;
+  return progressive->step == 0;
 }
 
 }  // namespace
 
-bool advance_progressive(Renderer* r, Array<Span> row_spans, std::uint64_t deadline_ns, Progressive* p) {
-  CHECK_GE(row_spans.count, r->settings.width);
-  if (p->step == 0) return true;
-  Refinement refinement = {r, row_spans, p};
+bool advance_progressive(Renderer* renderer, Array<Span> row_spans, std::uint64_t deadline_ns,
+                         Progressive* progressive) {
+  CHECK_GE(row_spans.count, renderer->settings.width);
+  if (progressive->step == 0) return true;
+  Refinement refinement = {renderer, row_spans, progressive};
   SpanSource source = {&refinement, next_row, finish_row, fill_cells};
   source.deadline_ns = deadline_ns;
-  return trace_frame(r, source);
+  return trace_frame(renderer, source);
 }
 
-bool take_dirty_rows(Progressive* p, std::uint32_t* begin, std::uint32_t* end) {
-  if (p->dirty_begin >= p->dirty_end) return false;
-  *begin = p->dirty_begin;
-  *end = p->dirty_end;
-  p->dirty_begin = p->dirty_end = 0;
+bool take_dirty_rows(Progressive* progressive, std::uint32_t* begin, std::uint32_t* end) {
+  if (progressive->dirty_begin >= progressive->dirty_end) return false;
+  *begin = progressive->dirty_begin;
+  *end = progressive->dirty_end;
+  progressive->dirty_begin = progressive->dirty_end = 0;
   return true;
 }
 

@@ -30,17 +30,17 @@ SpanSource list_source(SpanList* list) {
   return {list, next_spans, finish_spans};
 }
 
-SpanList whole_frame(Renderer* r) {
+SpanList whole_frame(Renderer* renderer) {
   SpanList list;
-  list.spans = r->spans.data;
-  list.span_count = static_cast<std::uint32_t>(r->spans.count);
-  list.span_ns = r->row_ns.data;
+  list.spans = renderer->spans.data;
+  list.span_count = static_cast<std::uint32_t>(renderer->spans.count);
+  list.span_ns = renderer->row_ns.data;
   return list;
 }
 
-SpanList row_bands(Renderer* r) {
-  SpanList list = whole_frame(r);
-  list.batch_spans = 4 * kTileRows * r->settings.threads;
+SpanList row_bands(Renderer* renderer) {
+  SpanList list = whole_frame(renderer);
+  list.batch_spans = 4 * kTileRows * renderer->settings.threads;
   return list;
 }
 

@@ -8,36 +8,37 @@ namespace {
 std::uint64_t now_ns(const SpanSource& source) { return source.now_ns ? source.now_ns(source.context) : clock_ns(); }
 
 // Waits until the batch, begun at `begin_ns`, has lasted as long as on the emulated device; returns how long that is.
-std::uint64_t keep_pace(Renderer* r, const SpanSource& source, const SpanBatch& batch, std::uint64_t begin_ns) {
-  if (is_paced(r->pace)) {
+std::uint64_t keep_pace(Renderer* renderer, const SpanSource& source, const SpanBatch& batch, std::uint64_t begin_ns) {
+  if (is_paced(renderer->pace)) {
     std::uint64_t pixel_count = span_pixel_count(batch.spans, batch.done_count);
     if (batch.span_ns)
-      pace_spans(r->pace, batch.spans, batch.done_count, worker_thread_count(r->workers), batch.span_ns);
-    wait_for_pace(&r->pace, pixel_count, begin_ns, source.stop);
+      pace_spans(renderer->pace, batch.spans, batch.done_count, worker_thread_count(renderer->workers), batch.span_ns);
+    wait_for_pace(&renderer->pace, pixel_count, begin_ns, source.stop);
   }
   return clock_ns() - begin_ns;
 }
 
-void trace_batch(Renderer* r, const SpanSource& source, SpanBatch* batch) {
-  CHECK_LE(worker_thread_count(r->workers), r->tracers.count);
+void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch) {
+  CHECK_LE(worker_thread_count(renderer->workers), renderer->tracers.count);
   std::uint64_t begin_ns = now_ns(source);
   batch->done_count =
-      trace_with(r->workers, {batch->spans, batch->span_count, source.aov, r->image.data, r->tracers.data,
-                              batch->span_ns, batch->stoppable ? source.stop : nullptr});
+      trace_with(renderer->workers, {batch->spans, batch->span_count, source.aov, renderer->image.data,
+                                     renderer->tracers.data, batch->span_ns, batch->stoppable ? source.stop : nullptr});
   CHECK(batch->done_count == batch->span_count || batch->stoppable);
   if (source.pack) source.pack(source.context, *batch);
-  batch->took_ns = source.pace ? source.pace(source.context, *batch, begin_ns) : keep_pace(r, source, *batch, begin_ns);
+  batch->took_ns =
+      source.pace ? source.pace(source.context, *batch, begin_ns) : keep_pace(renderer, source, *batch, begin_ns);
 }
 
 }  // namespace
 
-bool trace_frame(Renderer* r, const SpanSource& source) {
+bool trace_frame(Renderer* renderer, const SpanSource& source) {
   CHECK(!source.pace == !source.now_ns);
   do {
     if (source.stop && source.stop->load(std::memory_order_relaxed)) return false;
     SpanBatch batch;
     source.next(source.context, &batch);
-    if (batch.span_count > 0) trace_batch(r, source, &batch);
+    if (batch.span_count > 0) trace_batch(renderer, source, &batch);
     if (source.finished(source.context, batch)) return true;
   } while (source.deadline_ns == kNoDeadline || now_ns(source) < source.deadline_ns);
   return false;

@@ -28,7 +28,7 @@ std::uint32_t little_endian_32(const std::uint8_t* p) {
 }
 
 // Splits a .glb into its JSON text and its binary chunk (sec. 4.4).
-std::string split_glb(GltfFile* file, const Bytes& bytes) {
+std::string read_glb_chunks(GltfFile* file, const Bytes& bytes) {
   constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
   if (bytes.size() < 20) fail_import("the .glb ends within its header; copy the file again");
   std::uint32_t version = little_endian_32(&bytes[4]), total = little_endian_32(&bytes[8]);
@@ -145,7 +145,7 @@ const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t*
 
 void gltf_parse(GltfFile* file, Bytes bytes) {
   bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
-  std::string text = binary ? split_glb(file, bytes) : std::string(bytes.begin(), bytes.end());
+  std::string text = binary ? read_glb_chunks(file, bytes) : std::string(bytes.begin(), bytes.end());
   Bytes().swap(bytes);
   require_bytes(*file->builder, text.size(), 16, "the JSON");
   gltf_check_json(text);

@@ -6,8 +6,8 @@ namespace pocketray {
 
 // Gives every corner the mean normal of the triangles around its position whose planes meet the corner's own at less
 // than `crease_degrees`, each weighted by its angle there [Thürmer & Wüthrich 1998]. Corners at equal positions count
-// as one, however they are indexed; vertices whose corners differ are split. A mesh that is flat everywhere keeps no
-// normals.
+// as one, however they are indexed; vertices whose corners differ are duplicated. A mesh that is flat everywhere keeps
+// no normals.
 void smooth_normals(MeshData* mesh, float crease_degrees);
 
 }  // namespace pocketray

@@ -158,12 +158,12 @@ Status parse_effects(const char* text, Settings* settings) {
   return success();
 }
 
-Status validate_settings(const Settings& s) {
-  RETURN_IF_ERROR(check_limit(Quantity::width, s.width));
-  RETURN_IF_ERROR(check_limit(Quantity::height, s.height));
-  for (const SettingRow& row : kSettingList) RETURN_IF_ERROR(check_setting(row, row.field.get(s)));
-  if (s.threads >= 1 && s.threads <= kThreadCountMax) return success();
-  return failure("the number of threads is %u: it must lie in 1 … %u", s.threads, kThreadCountMax);
+Status validate_settings(const Settings& settings) {
+  RETURN_IF_ERROR(check_limit(Quantity::width, settings.width));
+  RETURN_IF_ERROR(check_limit(Quantity::height, settings.height));
+  for (const SettingRow& row : kSettingList) RETURN_IF_ERROR(check_setting(row, row.field.get(settings)));
+  if (settings.threads >= 1 && settings.threads <= kThreadCountMax) return success();
+  return failure("the number of threads is %u: it must lie in 1 … %u", settings.threads, kThreadCountMax);
 }
 
 }  // namespace pocketray

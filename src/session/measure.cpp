@@ -11,25 +11,25 @@
 namespace pocketray {
 namespace {
 
-Status render_once(Renderer* r, std::uint32_t frame, double* ns_per_pixel) {
-  double seconds = frame / static_cast<double>(r->scene.info.frames_per_second);
-  RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
-  *ns_per_pixel = r->timings.trace_ms * 1e6 / pixel_count(*r);
+Status render_once(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel) {
+  double seconds = frame / static_cast<double>(renderer->scene.info.frames_per_second);
+  RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
+  *ns_per_pixel = renderer->timings.trace_ms * 1e6 / pixel_count(*renderer);
   return success();
 }
 
-Status measure_price(Renderer* r, Effect effect, double* price) {
+Status measure_price(Renderer* renderer, Effect effect, double* price) {
   constexpr int kRounds = 3;
-  EffectMask mask = r->effects.mask;
-  std::uint32_t samples = r->settings.samples_per_pixel;
+  EffectMask mask = renderer->effects.mask;
+  std::uint32_t samples = renderer->settings.samples_per_pixel;
   double with[kRounds], without[kRounds];
   for (int round = 0; round < kRounds; ++round) {
-    RETURN_IF_ERROR(render_once(r, 0, &with[round]));
-    r->effects.mask = mask & ~bit(effect);
-    if (effect == Effect::supersampling) r->settings.samples_per_pixel = 1;
-    Status status = render_once(r, 0, &without[round]);
-    r->effects.mask = mask;
-    r->settings.samples_per_pixel = samples;
+    RETURN_IF_ERROR(render_once(renderer, 0, &with[round]));
+    renderer->effects.mask = mask & ~bit(effect);
+    if (effect == Effect::supersampling) renderer->settings.samples_per_pixel = 1;
+    Status status = render_once(renderer, 0, &without[round]);
+    renderer->effects.mask = mask;
+    renderer->settings.samples_per_pixel = samples;
     RETURN_IF_ERROR(status);
     if (interrupted) return success();
   }
@@ -38,7 +38,7 @@ Status measure_price(Renderer* r, Effect effect, double* price) {
 }
 
 // Time per pixel of the list, traced so often that it takes about as long as a frame.
-double trace_list(Renderer* r, const std::vector<Span>& spans, double fraction) {
+double trace_list(Renderer* renderer, const std::vector<Span>& spans, double fraction) {
   std::uint32_t span_count = static_cast<std::uint32_t>(spans.size());
   std::uint64_t pixels = 0, begin_ns = clock_ns();
   for (int repeat = 0; repeat < static_cast<int>(1 / fraction); ++repeat) {
@@ -46,7 +46,7 @@ double trace_list(Renderer* r, const std::vector<Span>& spans, double fraction) 
     list.spans = spans.data(), list.span_count = span_count;
     SpanSource source = list_source(&list);
     source.stop = &interrupted;
-    trace_frame(r, source);
+    trace_frame(renderer, source);
     pixels += span_pixel_count(spans.data(), span_count);
   }
   return pixels > 0 ? static_cast<double>(clock_ns() - begin_ns) / static_cast<double>(pixels) : 0;
@@ -54,69 +54,72 @@ double trace_list(Renderer* r, const std::vector<Span>& spans, double fraction) 
 
 }  // namespace
 
-double pixel_count(const Renderer& r) { return static_cast<double>(r.settings.width) * r.settings.height; }
+double pixel_count(const Renderer& renderer) {
+  return static_cast<double>(renderer.settings.width) * renderer.settings.height;
+}
 
 Range range_of(double* values, std::uint32_t count) {
   std::sort(values, values + count);
   return {values[0], (values[(count - 1) / 2] + values[count / 2]) / 2, values[count - 1]};
 }
 
-Measurement make_measurement(const Renderer& r, std::uint32_t frame_count_max) {
+Measurement make_measurement(const Renderer& renderer, std::uint32_t frame_count_max) {
   Measurement m;
   m.frame_count_max = frame_count_max;
   m.ns_per_pixel.resize(frame_count_max);
   m.pose_ms.resize(frame_count_max);
   m.refit_ms.resize(frame_count_max);
-  m.row_ns.resize(static_cast<std::size_t>(r.settings.height) * frame_count_max);
+  m.row_ns.resize(static_cast<std::size_t>(renderer.settings.height) * frame_count_max);
   std::fill_n(m.effect_price, kEffectCount, std::numeric_limits<double>::quiet_NaN());
   return m;
 }
 
-Status measure_frames(Renderer* r, Measurement* m) {
+Status measure_frames(Renderer* renderer, Measurement* m) {
   double warm_up;
-  RETURN_IF_ERROR(render_once(r, 0, &warm_up));
+  RETURN_IF_ERROR(render_once(renderer, 0, &warm_up));
   for (std::uint32_t frame = 0; frame < m->frame_count_max && !interrupted; ++frame) {
-    RETURN_IF_ERROR(render_once(r, frame, &m->ns_per_pixel[frame]));
+    RETURN_IF_ERROR(render_once(renderer, frame, &m->ns_per_pixel[frame]));
     if (interrupted) break;
-    for (std::uint32_t row = 0; row < r->settings.height; ++row)
-      m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max + frame] = static_cast<double>(r->row_ns[row]);
-    m->trace_ns += r->timings.trace_ms * 1e6;
-    m->pose_ms[frame] = r->timings.pose_ms;
-    m->refit_ms[frame] = r->timings.refit_ms;
-    m->counts = total_counts(*r);
+    for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
+      m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max + frame] =
+          static_cast<double>(renderer->row_ns[row]);
+    m->trace_ns += renderer->timings.trace_ms * 1e6;
+    m->pose_ms[frame] = renderer->timings.pose_ms;
+    m->refit_ms[frame] = renderer->timings.refit_ms;
+    m->counts = total_counts(*renderer);
     m->frame_count = frame + 1;
   }
   return success();
 }
 
-Status measure_prices(Renderer* r, Measurement* m) {
+Status measure_prices(Renderer* renderer, Measurement* m) {
   for (int i = 0; i < kEffectCount; ++i) {
     Effect effect = static_cast<Effect>(i);
-    if (!has(r->effects.mask, effect) || interrupted) continue;
+    if (!has(renderer->effects.mask, effect) || interrupted) continue;
     if (effect == Effect::animation) {  // posing and refitting, which come before the tracing
-      double seconds = 1 / static_cast<double>(r->scene.info.frames_per_second);
-      RETURN_IF_ERROR(prepare_frame(r, seconds));
-      m->effect_price[i] = (r->timings.pose_ms + r->timings.refit_ms) * 1e6 / pixel_count(*r);
+      double seconds = 1 / static_cast<double>(renderer->scene.info.frames_per_second);
+      RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+      m->effect_price[i] = (renderer->timings.pose_ms + renderer->timings.refit_ms) * 1e6 / pixel_count(*renderer);
       continue;
     }
-    RETURN_IF_ERROR(measure_price(r, effect, &m->effect_price[i]));
+    RETURN_IF_ERROR(measure_price(renderer, effect, &m->effect_price[i]));
   }
   return success();
 }
 
-std::vector<Span> sparse_spans(const Settings& s, double fraction, bool patches) {
+std::vector<Span> sparse_spans(const Settings& settings, double fraction, bool patches) {
   constexpr std::uint32_t kSeed = 1;
   const std::uint32_t side = patches ? kPatchSide : 1, offset = side / 3;
-  const std::uint32_t cells = (s.width + offset) / side + 1;
+  const std::uint32_t cells = (settings.width + offset) / side + 1;
   std::vector<bool> chosen(cells);
   std::vector<Span> spans;
   Rng rng = make_rng(kSeed);
-  for (std::uint32_t row = 0; row < s.height; ++row) {
+  for (std::uint32_t row = 0; row < settings.height; ++row) {
     if (row == 0 || (row + offset) % side == 0)
       for (std::uint32_t i = 0; i < cells; ++i) chosen[i] = static_cast<double>(next_float(&rng)) < fraction;
     std::uint32_t end = 0;
-    for (std::uint32_t begin = 0; begin < s.width; begin = end + 1) {
-      for (end = begin; end < s.width && chosen[(end + offset) / side]; ++end) {
+    for (std::uint32_t begin = 0; begin < settings.width; begin = end + 1) {
+      for (end = begin; end < settings.width && chosen[(end + offset) / side]; ++end) {
       }
       if (end > begin)
         spans.push_back(
@@ -126,19 +129,19 @@ std::vector<Span> sparse_spans(const Settings& s, double fraction, bool patches)
   return spans;
 }
 
-Status measure_sparse(Renderer* r, int round_count, SparseCost* costs) {
+Status measure_sparse(Renderer* renderer, int round_count, SparseCost* costs) {
   std::vector<Span> spans[kSparseFractionCount][2];
   std::vector<double> ns[kSparseFractionCount][2];
   for (int i = 0; i < kSparseFractionCount; ++i)
     for (bool patches : {false, true}) {
-      spans[i][patches] = sparse_spans(r->settings, kSparseFractions[i], patches);
+      spans[i][patches] = sparse_spans(renderer->settings, kSparseFractions[i], patches);
       ns[i][patches].resize(static_cast<std::size_t>(round_count));
     }
-  RETURN_IF_ERROR(prepare_frame(r, 0));
+  RETURN_IF_ERROR(prepare_frame(renderer, 0));
   for (int round = 0; round < round_count; ++round)
     for (int i = 0; i < kSparseFractionCount; ++i)
       for (bool patches : {false, true})
-        ns[i][patches][static_cast<std::size_t>(round)] = trace_list(r, spans[i][patches], kSparseFractions[i]);
+        ns[i][patches][static_cast<std::size_t>(round)] = trace_list(renderer, spans[i][patches], kSparseFractions[i]);
   if (interrupted) return success();
   for (int i = 0; i < kSparseFractionCount; ++i) {
     std::uint32_t count = static_cast<std::uint32_t>(round_count);

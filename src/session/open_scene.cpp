@@ -9,13 +9,13 @@
 namespace pocketray {
 namespace {
 
-Status set_pace(const CommonOptions& o, Renderer* r) {
+Status set_pace(const CommonOptions& o, Renderer* renderer) {
   const platform::Device* device;
   RETURN_IF_ERROR(find_device(o, &device));
   if (o.emulate.empty()) return success();
-  r->pace.slowdown = device->slowdown;
-  r->pace.device = device->name;
-  r->pace.stop = &interrupted;
+  renderer->pace.slowdown = device->slowdown;
+  renderer->pace.device = device->name;
+  renderer->pace.stop = &interrupted;
   return success();
 }
 
@@ -39,43 +39,45 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   select_isa(isa);
   opened->block = take_block(settings.memory_bytes);
   if (!opened->block) return failure("%zu bytes of memory cannot be had: lower --memory", settings.memory_bytes);
-  Renderer* r = &opened->renderer;
-  start_renderer(opened->block, settings.memory_bytes, settings, r);
-  RETURN_IF_ERROR(set_pace(o, r));
-  r->camera_index = o.camera_index;
-  r->accel_info = find_accel(o.accel);
+  Renderer* renderer = &opened->renderer;
+  start_renderer(opened->block, settings.memory_bytes, settings, renderer);
+  RETURN_IF_ERROR(set_pace(o, renderer));
+  renderer->camera_index = o.camera_index;
+  renderer->accel_info = find_accel(o.accel);
   SceneStorage storage;
-  RETURN_IF_ERROR(hooks.load(o.scene, r, &opened->source, &storage));
-  if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, r));
-  Status planned = hooks.plan(r, storage, hooks.output_bytes(settings));
-  if (!planned.ok && r->memory.total_bytes > r->memory.limit_bytes) opened->source.bytes_wanted = r->memory.total_bytes;
+  RETURN_IF_ERROR(hooks.load(o.scene, renderer, &opened->source, &storage));
+  if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, renderer));
+  Status planned = hooks.plan(renderer, storage, hooks.output_bytes(settings));
+  if (!planned.ok && renderer->memory.total_bytes > renderer->memory.limit_bytes)
+    opened->source.bytes_wanted = renderer->memory.total_bytes;
   if (opened->source.bytes_wanted > 0 && !planned.ok)
     return failure("%s: --memory %zuM", planned.message, (opened->source.bytes_wanted >> 20) + 1);
   RETURN_IF_ERROR(planned);
   if (!o.camera.empty()) {
     Camera camera;
     RETURN_IF_ERROR(parse_camera(o.camera, &camera));
-    RETURN_IF_ERROR(set_camera(r, camera));
+    RETURN_IF_ERROR(set_camera(renderer, camera));
   }
   return success();
 }
 
 Status start_scene(OpenScene* opened, const CommonOptions& o) {
-  Renderer* r = &opened->renderer;
-  r->workers = start_workers(r->settings.threads);
+  Renderer* renderer = &opened->renderer;
+  renderer->workers = start_workers(renderer->settings.threads);
   bool measured;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));
-  if (measured) r->scene.info.auto_exposure = 1;
-  RETURN_IF_ERROR(build_renderer(r));
-  return change_exposure(factor, &r->exposure);
+  if (measured) renderer->scene.info.auto_exposure = 1;
+  RETURN_IF_ERROR(build_renderer(renderer));
+  return change_exposure(factor, &renderer->exposure);
 }
 
 void print_notes(const OpenScene& opened) {
   if (!opened.source.warning.empty()) print_note(opened.source.warning);
   std::uint32_t threads = worker_thread_count(opened.renderer.workers), asked = opened.renderer.settings.threads;
   if (!opened.renderer.image.empty() && threads < asked)
-    std::fprintf(stderr, "pocketray: the system gives %u of %u threads; rendering goes on with fewer\n", threads, asked);
+    std::fprintf(stderr, "pocketray: the system gives %u of %u threads; rendering goes on with fewer\n", threads,
+                 asked);
   if (opened.renderer.accel_is_fallback)
     std::fprintf(stderr,
                  "pocketray: the accelerator %s does not fit --memory: %s takes its place, somewhat slower; a larger "

@@ -25,9 +25,9 @@ Kind kind_of(const char* path) {
   return Kind::unknown;
 }
 
-Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& sink) {
-  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height);
-  const Vec3* radiance = o.radiance ? o.radiance : r->image.data;
+Status encode(Kind kind, const PictureOptions& o, Renderer* renderer, const ByteSink& sink) {
+  int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
+  const Vec3* radiance = o.radiance ? o.radiance : renderer->image.data;
   if (kind == Kind::pfm) {
     encode_pfm(&radiance->x, 3, width, height, sink);
     return success();
@@ -36,25 +36,25 @@ Status encode(Kind kind, const PictureOptions& o, Renderer* r, const ByteSink& s
        turned = raw && (o.rotation == Rotation::quarter || o.rotation == Rotation::three_quarters);
   const PixelFormat& format = raw ? o.raw_format : kRgb888;
   int row_bytes = (turned ? height : width) * format.bits_per_pixel / 8, rows = turned ? width : height;
-  auto pixels =
-      arena_array<std::uint8_t>(&r->frame_arena, static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
+  auto pixels = arena_array<std::uint8_t>(&renderer->frame_arena,
+                                          static_cast<std::size_t>(row_bytes) * static_cast<std::size_t>(rows));
   Rotation rotation = raw ? o.rotation : Rotation::none;
   if (o.packed)
     repack_rows(o.packed_format, o.packed, o.packed_line_bytes, width, height, 0, height, format, rotation, pixels.data,
                 row_bytes);
   else
-    pack_rows(radiance, width, height, 0, height, r->exposure, format, rotation, raw && o.dither, pixels.data,
+    pack_rows(radiance, width, height, 0, height, renderer->exposure, format, rotation, raw && o.dither, pixels.data,
               row_bytes);
   if (raw) encode_raw(pixels.data, row_bytes, row_bytes, rows, sink);
   if (kind == Kind::ppm) encode_ppm(pixels.data, width, height, sink);
-  return kind == Kind::png ? encode_png(pixels.data, width, height, &r->frame_arena, sink) : success();
+  return kind == Kind::png ? encode_png(pixels.data, width, height, &renderer->frame_arena, sink) : success();
 }
 
 }  // namespace
 
-std::size_t picture_bytes(const Settings& s) {
-  std::size_t pixels = static_cast<std::size_t>(s.width) * s.height;
-  return arena_need(pixels * 4) + encode_png_need(static_cast<int>(s.width));
+std::size_t picture_bytes(const Settings& settings) {
+  std::size_t pixels = static_cast<std::size_t>(settings.width) * settings.height;
+  return arena_need(pixels * 4) + encode_png_need(static_cast<int>(settings.width));
 }
 
 Status check_picture_path(const std::string& path) {
@@ -65,10 +65,11 @@ Status check_picture_path(const std::string& path) {
   return success();
 }
 
-Status write_picture(const char* path, const PictureOptions& options, Renderer* r) {
-  std::size_t mark = arena_mark(r->frame_arena);
-  Status status = write_encoded(path, [&](const ByteSink& sink) { return encode(kind_of(path), options, r, sink); });
-  arena_release(&r->frame_arena, mark);
+Status write_picture(const char* path, const PictureOptions& options, Renderer* renderer) {
+  std::size_t mark = arena_mark(renderer->frame_arena);
+  Status status =
+      write_encoded(path, [&](const ByteSink& sink) { return encode(kind_of(path), options, renderer, sink); });
+  arena_release(&renderer->frame_arena, mark);
   return status;
 }
 

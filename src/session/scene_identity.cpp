@@ -4,21 +4,21 @@
 
 namespace pocketray {
 
-Status identify_scene(const SceneSource& source, Renderer* r, ContentHash* hash) {
+Status identify_scene(const SceneSource& source, Renderer* renderer, ContentHash* hash) {
   if (source.baked) {
     *hash = content_hash(source.baked, source.baked_bytes);
     return success();
   }
-  std::size_t byte_count = baked_size(r->scene), mark = arena_mark(r->scene_arena);
-  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, byte_count));
+  std::size_t byte_count = baked_size(renderer->scene), mark = arena_mark(renderer->scene_arena);
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, byte_count));
   if (!bytes)
-    return failure("naming the scene to a server takes %.1f MiB and --memory leaves %.1f MiB: --memory %zuM would do",
-                   static_cast<double>(byte_count) / (1 << 20),
-                   static_cast<double>(arena_free(r->scene_arena)) / (1 << 20),
-                   (r->settings.memory_bytes - arena_free(r->scene_arena) + byte_count + (1 << 20) - 1) >> 20);
-  baked_write(r->scene, bytes);
+    return failure(
+        "naming the scene to a server takes %.1f MiB and --memory leaves %.1f MiB: --memory %zuM would do",
+        static_cast<double>(byte_count) / (1 << 20), static_cast<double>(arena_free(renderer->scene_arena)) / (1 << 20),
+        (renderer->settings.memory_bytes - arena_free(renderer->scene_arena) + byte_count + (1 << 20) - 1) >> 20);
+  baked_write(renderer->scene, bytes);
   *hash = content_hash(bytes, byte_count);
-  arena_release(&r->scene_arena, mark);
+  arena_release(&renderer->scene_arena, mark);
   return success();
 }
 

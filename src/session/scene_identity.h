@@ -1,7 +1,7 @@
 // Which scene it is, wherever it came from: what device and server call it by, and its front's files.
 #pragma once
+#include "scene/content_hash.h"
 #include "session/source.h"
-#include "wire/content_hash.h"
 
 namespace pocketray {
 

@@ -59,25 +59,26 @@ SettingOption& SettingOptions::operator[](const char* name) {
   return options[row - kSettingList];
 }
 
-Status read_settings(const CommonOptions& o, Settings* s) {
-  RETURN_IF_ERROR(picture_size(o, &s->width, &s->height));
+Status read_settings(const CommonOptions& o, Settings* settings) {
+  RETURN_IF_ERROR(picture_size(o, &settings->width, &settings->height));
   const platform::Device* device;
   RETURN_IF_ERROR(find_device(o, &device));
-  if (device) s->memory_bytes = device->memory_bytes;
-  if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &s->memory_bytes));
-  RETURN_IF_ERROR(parse_effects(o.effects.c_str(), s));
-  RETURN_IF_ERROR(check_limit(Quantity::width, double(s->width), "the width of --size"));
-  RETURN_IF_ERROR(check_limit(Quantity::height, double(s->height), "the height of --size"));
+  if (device) settings->memory_bytes = device->memory_bytes;
+  if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &settings->memory_bytes));
+  RETURN_IF_ERROR(parse_effects(o.effects.c_str(), settings));
+  RETURN_IF_ERROR(check_limit(Quantity::width, double(settings->width), "the width of --size"));
+  RETURN_IF_ERROR(check_limit(Quantity::height, double(settings->height), "the height of --size"));
   RETURN_IF_ERROR(check_limit(Quantity::camera_index, double(o.camera_index), "--camera-index"));
-  for (int i = 0; i < kSettingCount; ++i) RETURN_IF_ERROR(read_setting(kSettingList[i], o.settings.options[i], s));
+  for (int i = 0; i < kSettingCount; ++i)
+    RETURN_IF_ERROR(read_setting(kSettingList[i], o.settings.options[i], settings));
   bool measured;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // also of commands that show nothing
   if (o.threads > kThreadCountMax) return failure("--threads is %u: it must lie in 0 … %u", o.threads, kThreadCountMax);
   unsigned cores = std::thread::hardware_concurrency();
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
-  s->threads = choose_thread_count(o.threads, cores);
-  return validate_settings(*s);
+  settings->threads = choose_thread_count(o.threads, cores);
+  return validate_settings(*settings);
 }
 
 Status find_device(const CommonOptions& o, const platform::Device** device) {

@@ -12,44 +12,44 @@
 namespace pocketray {
 namespace {
 
-Status load_builtin(const BuiltinScene& builtin, Renderer* r, SceneSource* source, SceneStorage* storage) {
-  if (builtin.need() > arena_free(r->scene_arena))
-    return scene_too_large(builtin.name, builtin.need(), r->settings.memory_bytes, source);
-  builtin.build(&r->scene_arena, &r->scene);
-  storage->arena_bytes = r->scene_arena.used;
+Status load_builtin(const BuiltinScene& builtin, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+  if (builtin.need() > arena_free(renderer->scene_arena))
+    return scene_too_large(builtin.name, builtin.need(), renderer->settings.memory_bytes, source);
+  builtin.build(&renderer->scene_arena, &renderer->scene);
+  storage->arena_bytes = renderer->scene_arena.used;
   return success();
 }
 
-Status load_baked(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
-  auto take = [r](std::uint64_t byte_count) {
-    return static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, byte_count));
+Status load_baked(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+  auto take = [renderer](std::uint64_t byte_count) {
+    return static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, byte_count));
   };
   std::uint8_t* bytes = nullptr;
   std::uint64_t byte_count = 0;
   Status status = read_baked(name, take, &bytes, &byte_count);
-  if (byte_count > 0 && !bytes) return scene_too_large(name, byte_count, r->settings.memory_bytes, source);
+  if (byte_count > 0 && !bytes) return scene_too_large(name, byte_count, renderer->settings.memory_bytes, source);
   if (!status.ok) return failure("%.300s %s", name.c_str(), status.message);
   source->baked = bytes;
   source->baked_bytes = static_cast<std::size_t>(byte_count);
-  storage->arena_bytes = r->scene_arena.used;
-  status = baked_open(bytes, source->baked_bytes, &r->scene);
+  storage->arena_bytes = renderer->scene_arena.used;
+  status = baked_open(bytes, source->baked_bytes, &renderer->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
 }
 
 #ifdef POCKETRAY_HAVE_IMPORT
-Status load_imported(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+Status load_imported(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   ImportedScene imported;
   RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported));
   source->warning = imported.warning;
   // From the heap into the block, in the form a device would map.
   std::size_t size = baked_size(imported.scene);
-  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, size));
-  if (!bytes) return scene_too_large(name, size, r->settings.memory_bytes, source);
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, size));
+  if (!bytes) return scene_too_large(name, size, renderer->settings.memory_bytes, source);
   baked_write(imported.scene, bytes);
   source->baked = bytes;
   source->baked_bytes = size;
-  storage->arena_bytes = r->scene_arena.used;
-  Status status = baked_open(bytes, size, &r->scene);
+  storage->arena_bytes = renderer->scene_arena.used;
+  Status status = baked_open(bytes, size, &renderer->scene);
   return status.ok ? status : failure("%s: %.400s", name.c_str(), status.message);
 }
 #endif
@@ -127,9 +127,10 @@ bool is_local_scene(const std::string& name) {
   return find_builtin(name.c_str()) || platform::file_stamp(name.c_str()) != 0;
 }
 
-Status load_scene(const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+Status load_scene(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
   *storage = SceneStorage();
-  if (const BuiltinScene* builtin = find_builtin(name.c_str())) return load_builtin(*builtin, r, source, storage);
+  if (const BuiltinScene* builtin = find_builtin(name.c_str()))
+    return load_builtin(*builtin, renderer, source, storage);
   if (!is_local_scene(name)) {
     std::string names;
     int count;
@@ -137,9 +138,9 @@ Status load_scene(const std::string& name, Renderer* r, SceneSource* source, Sce
     for (int i = 0; i < count; ++i) names += std::string(i ? ", " : "") + list[i].name;
     return failure("%.300s is no file, nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
   }
-  if (is_baked_name(name)) return load_baked(name, r, source, storage);
+  if (is_baked_name(name)) return load_baked(name, renderer, source, storage);
 #ifdef POCKETRAY_HAVE_IMPORT
-  return load_imported(name, r, source, storage);
+  return load_imported(name, renderer, source, storage);
 #else
   return failure("%s is neither a built-in scene nor a .pray file: bake it on a desktop with `pocketray bake`",
                  name.c_str());

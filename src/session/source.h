@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/renderer.h"
-#include "wire/content_hash.h"
+#include "scene/content_hash.h"
 #ifdef POCKETRAY_HAVE_IMPORT
 #include "import/import.h"
 #endif

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "remote/client/shared_frame.h"
+#include "remote/client/frame.h"
 #include "session/camera_control.h"
 #include "session/interrupt.h"
 #include "session/measure.h"
@@ -49,21 +49,21 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   e->setup = setup;
   e->progress = progress, e->frames_done = frames_done;
   e->times.resize(kChosenLaps * std::size_t(setup.frame_count));
-  Renderer* r = setup.device;
-  r->pace = Pace();
-  e->camera = make_camera_control(r->camera, r->accel.bounds);
+  Renderer* renderer = setup.device;
+  renderer->pace = Pace();
+  e->camera = make_camera_control(renderer->camera, renderer->accel.bounds);
   RETURN_IF_ERROR(open_world(setup.line, *setup.store, setup.server_count, &e->world));
   ServerOptions server;
-  server.thread_count = r->settings.threads;
+  server.thread_count = renderer->settings.threads;
   server.pace.ns_per_pixel = setup.server_ns;
   for (std::uint32_t i = 0; i < setup.server_count; ++i) RETURN_IF_ERROR(start_server(&e->world, i, server));
   ClientOptions options;
   options.format = setup.format;
   options.pace.ns_per_pixel = setup.device_ns;
   options.check_count = 0;  // the split alone: checks take another 1 %
-  e->memory.resize(client_need(r->settings, setup.format, setup.server_count) + kArenaAlignment);
+  e->memory.resize(client_need(renderer->settings, setup.format, setup.server_count) + kArenaAlignment);
   Arena arena = make_arena("client", e->memory.data(), e->memory.size());
-  RETURN_IF_ERROR(make_client(options, r->settings, setup.scene, e->world.link, e->world.addresses.data(),
+  RETURN_IF_ERROR(make_client(options, renderer->settings, setup.scene, e->world.link, e->world.addresses.data(),
                               setup.server_count, &arena, &e->client));
   return open_whole_encoder(e);
 }
@@ -71,13 +71,13 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
 // The next frame along the path.
 Status next_frame(Experiment* e, bool* complete) {
   std::uint32_t step = e->frame++ % (kSkippedFrames + e->setup.frame_count);
-  Renderer* r = e->setup.device;
+  Renderer* renderer = e->setup.device;
   if (e->setup.orbit_degrees != 0) {
     Camera camera = orbited_camera(e->camera, static_cast<float>(step) * e->setup.orbit_degrees);
-    RETURN_IF_ERROR(set_camera(r, camera));
+    RETURN_IF_ERROR(set_camera(renderer, camera));
   }
-  double seconds = step / static_cast<double>(r->scene.info.frames_per_second);
-  RETURN_IF_ERROR(render_shared_frame(r, &e->client, seconds, &interrupted, complete));
+  double seconds = step / static_cast<double>(renderer->scene.info.frames_per_second);
+  RETURN_IF_ERROR(render_frame(renderer, &e->client, seconds, &interrupted, complete));
   show_progress(e->progress, ++*e->frames_done);
   return success();
 }
@@ -91,7 +91,7 @@ double whole_bytes(Experiment* e) {
   for (std::uint32_t row = 0; row < height; row += kChunkRowsMax) {
     std::uint8_t encoding;
     std::uint32_t count = std::min(kChunkRowsMax, height - row);
-    sum += encode_rows(e->whole, row, count, shared_row(e->client, row), level, e->whole_chunk.data(), &encoding);
+    sum += encode_rows(e->whole, row, count, merged_row(e->client, row), level, e->whole_chunk.data(), &encoding);
   }
   return sum;
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 #include "remote/server/server.h"
 
 namespace pocketray {

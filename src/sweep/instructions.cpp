@@ -53,12 +53,12 @@ struct Counting {
 };
 
 Status write_job(const Rig& rig, const Counting& counting) {
-  const Renderer& r = rig.opened.renderer;
+  const Renderer& renderer = rig.opened.renderer;
   std::vector<std::string> ids;
   for (const SweepPoint* point : counting.points) ids.push_back(id_of(*point));
-  Json job = {{"size", std::to_string(r.settings.width) + "x" + std::to_string(r.settings.height)},
-              {"exposure", r.exposure},
-              {"accel", r.accel_info->name},
+  Json job = {{"size", std::to_string(renderer.settings.width) + "x" + std::to_string(renderer.settings.height)},
+              {"exposure", renderer.exposure},
+              {"accel", renderer.accel_info->name},
               {"configurations", ids}};
   return save_text(counting.folder.path, kJobName, job.dump(1, ' ', false, Json::error_handler_t::replace));
 }

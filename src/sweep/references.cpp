@@ -24,15 +24,16 @@ Status prepare(const AccuracyOptions& options, Rig* rig) {
 
 void compare(const Rig& rig, double pixels_per_degree, const std::vector<Vec3>& one, const std::vector<Vec3>& other,
              ReferencePictures* p) {
-  const Renderer& r = rig.opened.renderer;
-  std::uint32_t width = r.settings.width, height = r.settings.height;
+  const Renderer& renderer = rig.opened.renderer;
+  std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
   std::vector<Vec3> mean(one.size());
   for (std::size_t i = 0; i < one.size(); ++i) mean[i] = one[i] * 0.5f + other[i] * 0.5f;
-  p->one = exposed_light(one.data(), one.size(), r.exposure);
-  p->other = exposed_light(other.data(), other.size(), r.exposure);
-  p->mean = exposed_light(mean.data(), mean.size(), r.exposure);
+  p->one = exposed_light(one.data(), one.size(), renderer.exposure);
+  p->other = exposed_light(other.data(), other.size(), renderer.exposure);
+  p->mean = exposed_light(mean.data(), mean.size(), renderer.exposure);
   p->encoded = encoded_light(p->mean);
-  p->levels = displayed_levels(mean.data(), width, height, r.exposure, kOutputFormats[find_output_format("rgb888")]);
+  p->levels =
+      displayed_levels(mean.data(), width, height, renderer.exposure, kOutputFormats[find_output_format("rgb888")]);
   p->rmse = reference_error(p->one, p->other);
   p->flip = std::pow(0.5, kFlipExponent) *
             mean_of(flip_errors(encoded_light(p->one), encoded_light(p->other), width, height, pixels_per_degree));

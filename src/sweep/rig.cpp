@@ -50,12 +50,12 @@ Settings dearest(const Scene& scene, Settings settings) {
   return settings;
 }
 
-Status load_cornell(std::uint32_t sphere_columns, Renderer* r, SceneStorage* storage) {
-  if (tessellated_cornell_need(sphere_columns) > arena_free(r->scene_arena))
+Status load_cornell(std::uint32_t sphere_columns, Renderer* renderer, SceneStorage* storage) {
+  if (tessellated_cornell_need(sphere_columns) > arena_free(renderer->scene_arena))
     return failure("cornell with a sphere of %u columns does not fit --memory: raise it", sphere_columns);
-  build_tessellated_cornell(sphere_columns, &r->scene_arena, &r->scene);
+  build_tessellated_cornell(sphere_columns, &renderer->scene_arena, &renderer->scene);
   *storage = SceneStorage();
-  storage->arena_bytes = r->scene_arena.used;
+  storage->arena_bytes = renderer->scene_arena.used;
   return success();
 }
 
@@ -63,50 +63,50 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   OpenHooks hooks;
   hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
   if (sphere_columns != kCornellSphereColumns)
-    hooks.load = [=](const std::string&, Renderer* r, SceneSource*, SceneStorage* storage) {
-      return load_cornell(sphere_columns, r, storage);
+    hooks.load = [=](const std::string&, Renderer* renderer, SceneSource*, SceneStorage* storage) {
+      return load_cornell(sphere_columns, renderer, storage);
     };
-  hooks.loaded = [&](const SceneSource& source, Renderer* r) {
-    rig->baseline.settings = r->settings;
-    rig->scene_hash = hash_of(source, r->scene);
+  hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
+    rig->baseline.settings = renderer->settings;
+    rig->scene_hash = hash_of(source, renderer->scene);
     ContentHash identity;
-    if (identify_scene(source, r, &identity).ok) rig->front_path = front_path(common.scene, identity);
-    r->settings = dearest(r->scene, r->settings);
+    if (identify_scene(source, renderer, &identity).ok) rig->front_path = front_path(common.scene, identity);
+    renderer->settings = dearest(renderer->scene, renderer->settings);
     return success();
   };
   RETURN_IF_ERROR(open_scene(common, hooks, &rig->opened));
   RETURN_IF_ERROR(start_scene(&rig->opened, common));
-  Renderer* r = &rig->opened.renderer;
-  RETURN_IF_ERROR(change_settings(r, rig->baseline.settings));
-  RETURN_IF_ERROR(prepare_frame(r, options.seconds));
+  Renderer* renderer = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(renderer, rig->baseline.settings));
+  RETURN_IF_ERROR(prepare_frame(renderer, options.seconds));
   bool measured;
   float factor;
   RETURN_IF_ERROR(parse_exposure(common.exposure, &measured, &factor));
-  if (r->scene.info.auto_exposure == 0) return success();
-  r->exposure = measure_exposure(r);
-  return change_exposure(factor, &r->exposure);
+  if (renderer->scene.info.auto_exposure == 0) return success();
+  renderer->exposure = measure_exposure(renderer);
+  return change_exposure(factor, &renderer->exposure);
 }
 
 // Rows of the whole picture that are as many pixels as a frame.
 std::uint32_t row_count(const Rig& rig) {
-  const Settings& s = rig.opened.renderer.settings;
-  return rig.part_pixels ? rig.part_pixels / s.width : s.height;
+  const Settings& settings = rig.opened.renderer.settings;
+  return rig.part_pixels ? rig.part_pixels / settings.width : settings.height;
 }
 
 // As render_frame() does.
 Status render_in_double(Rig* rig, double seconds) {
-  Renderer* r = &rig->opened.renderer;
-  RETURN_IF_ERROR(prepare_frame(r, seconds));
+  Renderer* renderer = &rig->opened.renderer;
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   std::vector<std::uint32_t> all(row_count(*rig));
   std::uint32_t rows = static_cast<std::uint32_t>(all.size());
   for (std::uint32_t i = 0; i < rows; ++i) all[i] = i;
   trace_rows(
-      r->settings, all,
+      renderer->settings, all,
       [&](std::uint32_t i, Vec3d* radiances) {
-        std::uint32_t row = (2 * i + 1) * r->settings.height / (2 * rows);
+        std::uint32_t row = (2 * i + 1) * renderer->settings.height / (2 * rows);
         trace_as_rendered(rig->reference, row, row + 1, radiances);
       },
-      nullptr, r->image.data);
+      nullptr, renderer->image.data);
   return success();
 }
 
@@ -162,40 +162,41 @@ bool trace_rows(const Settings& settings, const std::vector<std::uint32_t>& rows
 }
 
 std::uint32_t take_part(Rig* rig) {
-  Renderer* r = &rig->opened.renderer;
+  Renderer* renderer = &rig->opened.renderer;
   constexpr std::uint32_t kParts = 4;  // along each axis
-  std::uint32_t width = r->settings.width, height = r->settings.height, quarter = width / kParts, count = 0;
+  std::uint32_t width = renderer->settings.width, height = renderer->settings.height, quarter = width / kParts,
+                count = 0;
   if (quarter < kTileRows || height < kParts * kTileRows) return width * height;
   for (std::uint32_t band = kParts / 2; (band + 1) * kTileRows <= height; band += kParts)
     for (std::uint32_t row = band * kTileRows; row < (band + 1) * kTileRows; ++row) {
       std::uint32_t begin = band / kParts % kParts * quarter;
-      r->spans[count++] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin),
-                           static_cast<std::uint16_t>(begin + quarter)};
+      renderer->spans[count++] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin),
+                                  static_cast<std::uint16_t>(begin + quarter)};
     }
-  r->spans.count = count;
+  renderer->spans.count = count;
   return rig->part_pixels = count * quarter;
 }
 
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
-  Renderer* r = &rig->opened.renderer;
-  RETURN_IF_ERROR(change_settings(r, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(r, seconds));  // what a change of settings costs is not a frame's
+  Renderer* renderer = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // what a change of settings costs is not a frame's
   if (configuration.double_precision) make_rig_reference(rig);
   std::uint64_t start = clock_ns();
   if (configuration.double_precision)
     RETURN_IF_ERROR(render_in_double(rig, seconds));
   else
-    RETURN_IF_ERROR(render_frame(r, seconds, Aov::none, &interrupted));
+    RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   double frame_ns = static_cast<double>(clock_ns() - start);
   const OutputFormat& output = kOutputFormats[configuration.output];
-  int width = static_cast<int>(r->settings.width), height = static_cast<int>(r->settings.height),
+  int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height),
       line_bytes = width * output.format.bits_per_pixel / 8;
-  rig->packed.resize((static_cast<std::size_t>(line_bytes) * r->settings.height + 3) / 4);
+  rig->packed.resize((static_cast<std::size_t>(line_bytes) * renderer->settings.height + 3) / 4);
   start = clock_ns();
-  pack_rows(r->image.data, width, height, 0, static_cast<int>(row_count(*rig)), r->exposure, output.format,
-            Rotation::none, output.dither, rig->packed.data(), line_bytes);
+  pack_rows(renderer->image.data, width, height, 0, static_cast<int>(row_count(*rig)), renderer->exposure,
+            output.format, Rotation::none, output.dither, rig->packed.data(), line_bytes);
   double pack_ns = static_cast<double>(clock_ns() - start);
-  *ns_per_pixel = (frame_ns + pack_ns) / static_cast<double>(r->image.count);
+  *ns_per_pixel = (frame_ns + pack_ns) / static_cast<double>(renderer->image.count);
   return success();
 }
 
@@ -203,18 +204,18 @@ Status count_instructions(Rig* rig, const Configuration& configuration, double s
   *per_pixel = kNotMeasured;
   std::uint64_t start = platform::instruction_count();
   if (start == 0) return success();
-  Renderer* r = &rig->opened.renderer;
-  RETURN_IF_ERROR(change_settings(r, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(r, seconds));
+  Renderer* renderer = &rig->opened.renderer;
+  RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   if (configuration.double_precision) make_rig_reference(rig);
   start = platform::instruction_count();
-  RETURN_IF_ERROR(prepare_frame(r, seconds));  // the frame does so twice, and it is not counted
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // the frame does so twice, and it is not counted
   std::uint64_t prepared = platform::instruction_count();
   double ns_per_pixel;
   RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));
   std::uint64_t end = platform::instruction_count();
   double traced = static_cast<double>(end - prepared) - 2 * static_cast<double>(prepared - start);
-  if (!interrupted && traced > 0) *per_pixel = traced / static_cast<double>(r->image.count);
+  if (!interrupted && traced > 0) *per_pixel = traced / static_cast<double>(renderer->image.count);
   return success();
 }
 

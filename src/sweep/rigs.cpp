@@ -6,11 +6,12 @@ namespace pocketray {
 namespace {
 
 // What --budget-ms chooses from where no front was measured is measured, too.
-std::vector<Settings> ladder_of(const Renderer& r) {
+std::vector<Settings> ladder_of(const Renderer& renderer) {
   Front front = builtin_front();
-  drop_what_scene_ignores(&front, r.effects.mask);
+  drop_what_scene_ignores(&front, renderer.effects.mask);
   std::vector<Settings> ladder;
-  for (std::uint32_t i = 0; i < front.count; ++i) ladder.push_back(with_candidate(r.settings, front.candidates[i]));
+  for (std::uint32_t i = 0; i < front.count; ++i)
+    ladder.push_back(with_candidate(renderer.settings, front.candidates[i]));
   return ladder;
 }
 
@@ -20,16 +21,17 @@ Status plan_rigs(Rigs* rigs, SweepPlan* plan) {
   const AccuracyOptions& options = rigs->options;
   std::unique_ptr<Rig>& first = rigs->by_columns[kCornellSphereColumns];
   RETURN_IF_ERROR(open_rig(options, kCornellSphereColumns, &first));
-  Renderer* r = &first->opened.renderer;
+  Renderer* renderer = &first->opened.renderer;
   // The plan of the scene's own normals, whatever the baseline makes of them.
   Settings settings = first->baseline.settings;
   settings.normals = NormalMode::as_scene;
-  RETURN_IF_ERROR(change_settings(r, settings));
-  auto can_be_had = [&](const Settings& s) {
+  RETURN_IF_ERROR(change_settings(renderer, settings));
+  auto can_be_had = [&](const Settings& wanted) {
     std::uint32_t count;
-    return light_point_count(r->scene, s, r->effects.mask, &count);
+    return light_point_count(renderer->scene, wanted, renderer->effects.mask, &count);
   };
-  *plan = plan_sweep(options.common.scene, r->effects, first->baseline, can_be_had, options.price_limit, ladder_of(*r));
+  *plan = plan_sweep(options.common.scene, renderer->effects, first->baseline, can_be_had, options.price_limit,
+                     ladder_of(*renderer));
   return success();
 }
 

@@ -51,14 +51,14 @@ Json settings_json(const Quality& quality) {
 Json key_of(const Run& run, const Rig& rig) {
   const AccuracyOptions& o = run.options;
   const CommonOptions& c = o.common;
-  const Settings& s = rig.baseline.settings;
+  const Settings& settings = rig.baseline.settings;
   std::string ids;
   for (const SweepPoint& point : run.plan.points) ids += id_of(point) + "\n";
-  Json key = settings_json(s);
+  Json key = settings_json(settings);
   key.update({{"program", POCKETRAY_VERSION},
               {"scene", c.scene},
               {"content", rig.scene_hash},
-              {"size", std::to_string(s.width) + "x" + std::to_string(s.height)},
+              {"size", std::to_string(settings.width) + "x" + std::to_string(settings.height)},
               {"camera", c.camera},
               {"camera-index", c.camera_index},
               {"time", o.seconds},
@@ -69,7 +69,7 @@ Json key_of(const Run& run, const Rig& rig) {
               {"reference-samples", reference_samples(o, chosen(o))},
               {"other-reference-samples", reference_samples(o, other_than(chosen(o)))},
               {"ppd", o.pixels_per_degree},
-              {"threads", s.threads},
+              {"threads", settings.threads},
               {"isa", isa_name(active_isa())},
               {"accel", rig.opened.renderer.accel_info->name},
               {"emulate", c.emulate},
@@ -78,10 +78,11 @@ Json key_of(const Run& run, const Rig& rig) {
 }
 
 void find_errors(const Run& run, const Rig& rig, const Configuration& configuration, PointFigures* f) {
-  const Renderer& r = rig.opened.renderer;
-  std::uint32_t width = r.settings.width, height = r.settings.height;
-  std::vector<double> light = exposed_light(r.image.data, r.image.count, r.exposure);
-  Levels levels = displayed_levels(r.image.data, width, height, r.exposure, kOutputFormats[configuration.output]);
+  const Renderer& renderer = rig.opened.renderer;
+  std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
+  std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.exposure);
+  Levels levels =
+      displayed_levels(renderer.image.data, width, height, renderer.exposure, kOutputFormats[configuration.output]);
   const ReferencePictures& reference = run.reference;
   double ppd = run.options.pixels_per_degree;
   f->flip = mean_of(flip_errors(reference.encoded, encoded_levels(levels), width, height, ppd));
@@ -178,12 +179,12 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
     RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
     if (!*whole) return success();
-    const Renderer& r = rig->opened.renderer;
+    const Renderer& renderer = rig->opened.renderer;
     StripRow row;
     row.label = point.knob + " " + point.value;
     row.ms = sweep->measured[i].ns_per_pixel.value * 1e-6 * sweep->width * sweep->height;
     row.flip = sweep->measured[i].flip;
-    row.picture = displayed_levels(r.image.data, sweep->width, sweep->height, r.exposure,
+    row.picture = displayed_levels(renderer.image.data, sweep->width, sweep->height, renderer.exposure,
                                    kOutputFormats[point.configuration.output]);
     row.flip_map = flip_errors(run->reference.encoded, encoded_levels(row.picture), sweep->width, sweep->height,
                                run->options.pixels_per_degree);
@@ -238,11 +239,11 @@ Status check_options(const AccuracyOptions& o) {
 
 void describe(const Run& run, const Rig& rig, Sweep* sweep) {
   const AccuracyOptions& o = run.options;
-  const Settings& s = rig.baseline.settings;
+  const Settings& settings = rig.baseline.settings;
   sweep->scene = o.common.scene;
-  sweep->machine = std::to_string(s.threads) + (s.threads == 1 ? " thread, " : " threads, ") + isa_name(active_isa()) +
-                   emulation_text(rig.opened.renderer.pace);
-  sweep->width = s.width, sweep->height = s.height;
+  sweep->machine = std::to_string(settings.threads) + (settings.threads == 1 ? " thread, " : " threads, ") +
+                   isa_name(active_isa()) + emulation_text(rig.opened.renderer.pace);
+  sweep->width = settings.width, sweep->height = settings.height;
   sweep->pixels_per_degree = o.pixels_per_degree;
   sweep->reference = o.reference, sweep->reference_samples = reference_samples(o, chosen(o)) / 2 * 2;
   sweep->output = o.output;

@@ -21,20 +21,22 @@ struct ViewerLoop {
   std::uint64_t last_ns = 0;
 };
 
-inline bool quarter_turned(const Viewer& v) {
-  return v.rotation == Rotation::quarter || v.rotation == Rotation::three_quarters;
+inline bool quarter_turned(const Viewer& viewer) {
+  return viewer.rotation == Rotation::quarter || viewer.rotation == Rotation::three_quarters;
 }
-inline int screen_width(const Viewer& v) { return quarter_turned(v) ? v.height : v.width; }
-inline int screen_height(const Viewer& v) { return quarter_turned(v) ? v.width : v.height; }
+inline int screen_width(const Viewer& viewer) { return quarter_turned(viewer) ? viewer.height : viewer.width; }
+inline int screen_height(const Viewer& viewer) { return quarter_turned(viewer) ? viewer.width : viewer.height; }
 
 // The reference is on the screen, too.
-inline bool shows_split(const Viewer& v) { return v.split && v.split_shown; }
+inline bool shows_side_by_side(const Viewer& viewer) { return viewer.side_by_side && viewer.side_by_side_shown; }
 
 // A window system takes memory when it likes; the seal is lifted while it is called. Screens of devices are not spared.
 bool takes_memory(const platform::Backend& screen);
 
 // The number of the note to be shown now; 0: none.
-inline std::uint32_t note_now(const Viewer& v) { return v.backend->now_ns() < v.note.until_ns ? v.note.number : 0; }
+inline std::uint32_t note_now(const Viewer& viewer) {
+  return viewer.backend->now_ns() < viewer.note.until_ns ? viewer.note.number : 0;
+}
 
 // Packs rows of the picture as it is, radiance or what servers sent, for the screen.
 void pack_picture(const Viewer& viewer, const Renderer& renderer, const Vec3* radiance, int row_begin, int row_end,

@@ -25,35 +25,35 @@ PixelFormat to_pixel_format(const platform::ScreenFormat& f) {
   return {f.bits_per_pixel, channel(f.red), channel(f.green), channel(f.blue), channel(f.alpha)};
 }
 
-void take_events(Viewer* v) {
-  SealPause pause(takes_memory(*v->backend));
+void take_events(Viewer* viewer) {
+  SealPause pause(takes_memory(*viewer->backend));
   platform::Event event;
-  while (v->backend->poll(&event)) {
+  while (viewer->backend->poll(&event)) {
     bool down = event.type == platform::EventType::button_down;
-    if (event.type == platform::EventType::quit) v->quit = true;
+    if (event.type == platform::EventType::quit) viewer->quit = true;
     if (event.type == platform::EventType::file_drop && event.path) {
-      std::snprintf(v->dropped, sizeof v->dropped, "%s", event.path);
-      v->reload = true;
+      std::snprintf(viewer->dropped, sizeof viewer->dropped, "%s", event.path);
+      viewer->reload = true;
     }
     if (!down && event.type != platform::EventType::button_up) continue;
-    v->held[static_cast<int>(event.button)] = down;
+    viewer->held[static_cast<int>(event.button)] = down;
     if (!down) continue;
-    if (event.button == Button::hud || event.button == Button::y) v->hud = !v->hud;
-    if (event.button == Button::x) v->paused = !v->paused;
-    if (event.button == Button::screenshot) v->screenshot = true;
-    if (event.button == Button::reload) v->reload = true;
-    if (event.button == Button::start) v->home = v->front_home = true;
-    if (event.button == Button::finer) ++v->front_steps;
-    if (event.button == Button::faster) --v->front_steps;
-    if (event.button == Button::split) ++v->split_presses;
-    if (event.button == Button::select) v->change_mode = true;
+    if (event.button == Button::hud || event.button == Button::y) viewer->hud = !viewer->hud;
+    if (event.button == Button::x) viewer->paused = !viewer->paused;
+    if (event.button == Button::screenshot) viewer->screenshot = true;
+    if (event.button == Button::reload) viewer->reload = true;
+    if (event.button == Button::start) viewer->home = viewer->front_home = true;
+    if (event.button == Button::finer) ++viewer->front_steps;
+    if (event.button == Button::faster) --viewer->front_steps;
+    if (event.button == Button::side_by_side) ++viewer->side_by_side_presses;
+    if (event.button == Button::select) viewer->change_mode = true;
   }
-  if (interrupted) v->quit = true;
+  if (interrupted) viewer->quit = true;
 }
 
-CameraInput read_input(const Viewer& v) {
+CameraInput read_input(const Viewer& viewer) {
   auto axis = [&](Button plus, Button minus) {
-    return (v.held[static_cast<int>(plus)] ? 1.0f : 0.0f) - (v.held[static_cast<int>(minus)] ? 1.0f : 0.0f);
+    return (viewer.held[static_cast<int>(plus)] ? 1.0f : 0.0f) - (viewer.held[static_cast<int>(minus)] ? 1.0f : 0.0f);
   };
   CameraInput in;
   in.right = axis(Button::right, Button::left);
@@ -63,155 +63,164 @@ CameraInput read_input(const Viewer& v) {
   return in;
 }
 
-void save_screenshot(Viewer* v, Renderer* r) {
+void save_screenshot(Viewer* viewer, Renderer* renderer) {
   char path[600], told[640];
   const char* ending = encode_png_need(1) > 0 ? "png" : "ppm";  // built without libpng
   do {
-    std::snprintf(path, sizeof path, "%.500s/pocketray-%04u.%s", v->options.screenshot_folder.c_str(),
-                  ++v->screenshot_count, ending);
-  } while (platform::file_stamp(path) != 0 && v->screenshot_count < 9999);
+    std::snprintf(path, sizeof path, "%.500s/pocketray-%04u.%s", viewer->options.screenshot_folder.c_str(),
+                  ++viewer->screenshot_count, ending);
+  } while (platform::file_stamp(path) != 0 && viewer->screenshot_count < 9999);
   PictureOptions picture;
-  if (shows_split(*v)) picture.radiance = split_picture(v->split, *r);
-  if (v->picture_shared) {
-    SharedPicture shared = shared_picture(*v->sharing);
-    picture.packed = shared.pixels, picture.packed_line_bytes = shared.line_bytes;
-    picture.packed_format = shared.format;
+  if (shows_side_by_side(*viewer))
+    picture.radiance = viewer->side_by_side->backend->picture(viewer->side_by_side, *renderer);
+  if (viewer->picture_merged) {
+    MergedPicture merged = viewer->servers->backend->picture(*viewer->servers);
+    picture.packed = merged.pixels, picture.packed_line_bytes = merged.line_bytes;
+    picture.packed_format = merged.format;
   }
-  Status status = write_picture(path, picture, r);
+  Status status = write_picture(path, picture, renderer);
   std::snprintf(told, sizeof told, "saved %s", path);
-  tell(v, status.ok ? told : status.message);
+  tell(viewer, status.ok ? told : status.message);
 }
 
 // What was asked for by buttons that not every run has a use for.
-void answer_buttons(Viewer* v, Renderer* r) {
-  if (v->screenshot) save_screenshot(v, r);
-  v->screenshot = false;
-  bool toggled = v->split_presses % 2 != 0;
-  if (v->split && toggled) v->split_shown = !v->split_shown, v->split_changed = true;
-  if (!v->split && v->split_presses > 0) tell(v, split_screen_hint());
-  v->split_presses = 0;
-  if (!v->budget && v->front_steps != 0)
-    tell(v, "page up and down choose settings within a budget: start with --budget-ms to have one");
-  if (!v->budget) v->front_steps = 0, v->front_home = false;
+void answer_buttons(Viewer* viewer, Renderer* renderer) {
+  if (viewer->screenshot) save_screenshot(viewer, renderer);
+  viewer->screenshot = false;
+  bool toggled = viewer->side_by_side_presses % 2 != 0;
+  if (viewer->side_by_side && toggled)
+    viewer->side_by_side_shown = !viewer->side_by_side_shown, viewer->side_by_side_changed = true;
+  if (!viewer->side_by_side && viewer->side_by_side_presses > 0)
+    tell(viewer, viewer->options.has_reference
+                     ? "V shows the reference beside the picture: start with --side-by-side model to have one"
+                     : "V shows a reference on the desktop: this program was built without it");
+  viewer->side_by_side_presses = 0;
+  if (!viewer->budget && viewer->front_steps != 0)
+    tell(viewer, "page up and down choose settings within a budget: start with --budget-ms to have one");
+  if (!viewer->budget) viewer->front_steps = 0, viewer->front_home = false;
 }
 
-bool is_file_changed(const Viewer& v, FileWatch* watch) {
-  std::uint64_t now = v.backend->now_ns();
+bool is_file_changed(const Viewer& viewer, FileWatch* watch) {
+  std::uint64_t now = viewer.backend->now_ns();
   if (now - watch->last_look_ns <= kFileCheckNs) return false;
   watch->last_look_ns = now;
-  std::uint64_t stamp = platform::file_stamp(v.scene_path.c_str());
+  std::uint64_t stamp = platform::file_stamp(viewer.scene_path.c_str());
   bool changed = stamp != 0 && stamp != watch->loaded && stamp == watch->seen;
   watch->seen = stamp;
   return changed;
 }
 
-std::ptrdiff_t row_bytes(const Viewer& v) { return screen_width(v) * (v.format.bits_per_pixel / 8); }
+std::ptrdiff_t row_bytes(const Viewer& viewer) { return screen_width(viewer) * (viewer.format.bits_per_pixel / 8); }
 
 // The last picture, or black, and a text over it; takes events. False: the user wants to leave.
-bool show_text(Viewer* v, const HudText& text) {
-  take_events(v);
-  if (v->quit) return false;
-  platform::Page page = v->backend->begin_frame();
+bool show_text(Viewer* viewer, const HudText& text) {
+  take_events(viewer);
+  if (viewer->quit) return false;
+  platform::Page page = viewer->backend->begin_frame();
   if (page.pixels) {
-    std::ptrdiff_t bytes = row_bytes(*v);
-    for (int y = 0; y < screen_height(*v); ++y) {
+    std::ptrdiff_t bytes = row_bytes(*viewer);
+    for (int y = 0; y < screen_height(*viewer); ++y) {
       auto* row = static_cast<std::uint8_t*>(page.pixels) + static_cast<std::ptrdiff_t>(y) * page.line_bytes;
-      if (v->has_picture)
-        std::memcpy(row, static_cast<const std::uint8_t*>(v->picture_memory) + y * bytes,
+      if (viewer->has_picture)
+        std::memcpy(row, static_cast<const std::uint8_t*>(viewer->picture_memory) + y * bytes,
                     static_cast<std::size_t>(bytes));
       else
         std::memset(row, 0, static_cast<std::size_t>(bytes));
     }
-    draw_hud_text(text, v->format, v->rotation, v->width, v->height, page.pixels, page.line_bytes);
-    v->hud_rows_shown = std::min(hud_rows(text), static_cast<std::uint32_t>(v->height));
-    v->backend->end_frame(0, screen_height(*v));
+    draw_hud_text(text, viewer->format, viewer->rotation, viewer->width, viewer->height, page.pixels, page.line_bytes);
+    viewer->hud_rows_shown = std::min(hud_rows(text), static_cast<std::uint32_t>(viewer->height));
+    viewer->backend->end_frame(0, screen_height(*viewer));
   }
-  v->backend->sleep_ns(50 * kMillisecond);
+  viewer->backend->sleep_ns(50 * kMillisecond);
   return true;
 }
 
 // Keeps the picture as it is on the screen, but for the text over it.
-void keep_picture(Viewer* v, const Renderer& r) {
-  const Vec3* radiance = shows_split(*v) ? split_picture(v->split, r) : r.image.data;
-  if (!v->picture_shared && !radiance) return;
-  pack_picture(*v, r, radiance, 0, v->height, {v->picture_memory, static_cast<int>(row_bytes(*v)), 0});
-  v->has_picture = true;
+void keep_picture(Viewer* viewer, const Renderer& renderer) {
+  const Vec3* radiance = shows_side_by_side(*viewer)
+                             ? viewer->side_by_side->backend->picture(viewer->side_by_side, renderer)
+                             : renderer.image.data;
+  if (!viewer->picture_merged && !radiance) return;
+  pack_picture(*viewer, renderer, radiance, 0, viewer->height,
+               {viewer->picture_memory, static_cast<int>(row_bytes(*viewer)), 0});
+  viewer->has_picture = true;
 }
 
-void keep_view(Viewer* v, const ViewerLoop& loop) {
-  std::snprintf(v->kept.scene_path, sizeof v->kept.scene_path, "%s", v->scene_path.c_str());
-  v->kept.control = loop.control;
-  v->kept.control.camera.node = kNone;  // it stands where the user put it, whatever moves in the scene
-  v->kept.camera_moved = loop.camera_moved;
-  v->kept.seconds = loop.seconds;
+void keep_view(Viewer* viewer, const ViewerLoop& loop) {
+  std::snprintf(viewer->kept.scene_path, sizeof viewer->kept.scene_path, "%s", viewer->scene_path.c_str());
+  viewer->kept.control = loop.control;
+  viewer->kept.control.camera.node = kNone;  // it stands where the user put it, whatever moves in the scene
+  viewer->kept.camera_moved = loop.camera_moved;
+  viewer->kept.seconds = loop.seconds;
 }
 
 // A view that the scene as it is now cannot have is dropped.
-void take_kept_view(const Viewer& v, Renderer* r, ViewerLoop* loop) {
-  if (v.kept.scene_path != v.scene_path) return;
-  loop->seconds = v.kept.seconds;
-  loop->control.mode = v.kept.control.mode;
-  loop->camera_moved = v.kept.camera_moved && set_camera(r, v.kept.control.camera).ok;
-  if (loop->camera_moved) loop->control.camera = v.kept.control.camera;
+void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) {
+  if (viewer.kept.scene_path != viewer.scene_path) return;
+  loop->seconds = viewer.kept.seconds;
+  loop->control.mode = viewer.kept.control.mode;
+  loop->camera_moved = viewer.kept.camera_moved && set_camera(renderer, viewer.kept.control.camera).ok;
+  if (loop->camera_moved) loop->control.camera = viewer.kept.control.camera;
 }
 
 // Where none is named: the first that opens. The one that shows nothing must be asked for.
-Status open_any_screen(const platform::ScreenOptions& options, Viewer* v, platform::ScreenFormat* format) {
+Status open_any_screen(const platform::ScreenOptions& options, Viewer* viewer, platform::ScreenFormat* format) {
   std::string tried;
   for (int i = 0; i + 1 < platform::kBackendCount; ++i) {
     const platform::Backend* backend = platform::kBackends[i];
     platform::Error error;
     std::snprintf(error.text, sizeof error.text, "needs %s", backend->needs);
-    v->backend = backend;
+    viewer->backend = backend;
     if (backend->usable() && backend->open(options, format, &error)) return success();
     tried += std::string(tried.empty() ? "" : "; ") + backend->name + " " + std::string(error.text).substr(0, 120);
   }
-  v->backend = nullptr;
+  viewer->backend = nullptr;
   return failure("no screen was found (%.300s): choose one by --screen, or write pictures with `pocketray render`",
                  tried.c_str());
 }
 
-Status open_screen(const platform::ScreenOptions& options, Viewer* v, platform::ScreenFormat* format) {
-  const std::string& name = v->options.backend;
-  if (name == "auto" && !options.device) return open_any_screen(options, v, format);
-  v->backend = platform::platform_find(name == "auto" ? "linux" : name.c_str());  // whose a framebuffer is
-  if (!v->backend) return failure("--screen is '%s': this program has sdl2, linux or null, as built", name.c_str());
+Status open_screen(const platform::ScreenOptions& options, Viewer* viewer, platform::ScreenFormat* format) {
+  const std::string& name = viewer->options.backend;
+  if (name == "auto" && !options.device) return open_any_screen(options, viewer, format);
+  viewer->backend = platform::platform_find(name == "auto" ? "linux" : name.c_str());  // whose a framebuffer is
+  if (!viewer->backend)
+    return failure("--screen is '%s': this program has sdl2, linux or null, as built", name.c_str());
   platform::Error error;
-  if (v->backend->open(options, format, &error)) return success();
-  v->backend = nullptr;
+  if (viewer->backend->open(options, format, &error)) return success();
+  viewer->backend = nullptr;
   return failure("%s", error.text);
 }
 
 // Moves camera and time on; marks the picture as changed.
-Status step_scene(Viewer* v, Renderer* r, ViewerLoop* loop) {
-  std::uint64_t now = v->backend->now_ns();
+Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
+  std::uint64_t now = viewer->backend->now_ns();
   float elapsed = static_cast<float>(std::min<std::uint64_t>(now - loop->last_ns, 250 * kMillisecond)) * 1e-9f;
   loop->last_ns = now;
-  bool moved = move_camera(&loop->control, read_input(*v), elapsed);
-  if (v->change_mode)
+  bool moved = move_camera(&loop->control, read_input(*viewer), elapsed);
+  if (viewer->change_mode)
     loop->control.mode = loop->control.mode == CameraMode::orbit ? CameraMode::fly : CameraMode::orbit;
-  loop->camera_moved = (loop->camera_moved || moved) && !v->home;
-  if (v->home) reset_camera(&loop->control), moved = true;
-  v->change_mode = v->home = false;
+  loop->camera_moved = (loop->camera_moved || moved) && !viewer->home;
+  if (viewer->home) reset_camera(&loop->control), moved = true;
+  viewer->change_mode = viewer->home = false;
   if (moved) {
-    RETURN_IF_ERROR(set_camera(r, loop->control.camera));
+    RETURN_IF_ERROR(set_camera(renderer, loop->control.camera));
     loop->moved = true;
   }
-  bool passes = has(r->effects.mask, Effect::animation) && !v->paused && !shows_split(*v);
+  bool passes = has(renderer->effects.mask, Effect::animation) && !viewer->paused && !shows_side_by_side(*viewer);
   if (passes) {
     loop->seconds += static_cast<double>(elapsed);
     loop->passed = true;
   }
-  if (v->split && (moved || passes)) forget_split_screen(v->split);
+  if (viewer->side_by_side && (moved || passes)) viewer->side_by_side->backend->forget(viewer->side_by_side);
   return success();
 }
 
 // Takes memory for pages and opens the screen; what has been taken stays so on failure.
-Status take_screen(const ViewOptions& options, int width, int height, Viewer* v) {
+Status take_screen(const ViewOptions& options, int width, int height, Viewer* viewer) {
   std::size_t page_bytes = platform::page_bytes_max(width, height);
-  v->page_memory = std::malloc(page_bytes);
-  v->picture_memory = std::malloc(page_bytes);
-  if (!v->page_memory || !v->picture_memory)
+  viewer->page_memory = std::malloc(page_bytes);
+  viewer->picture_memory = std::malloc(page_bytes);
+  if (!viewer->page_memory || !viewer->picture_memory)
     return failure("no memory for a page of %dx%d pixels: lower --size", width, height);
   platform::ScreenOptions screen;
   screen.width = width;
@@ -227,102 +236,104 @@ Status take_screen(const ViewOptions& options, int width, int height, Viewer* v)
     screen.title = device->name;
   }
   screen.device = options.device.empty() ? nullptr : options.device.c_str();
-  screen.memory = v->page_memory;
+  screen.memory = viewer->page_memory;
   screen.memory_bytes = page_bytes;
   platform::ScreenFormat format;
-  RETURN_IF_ERROR(open_screen(screen, v, &format));
-  v->format = to_pixel_format(format);
-  if (format.width >= screen_width(*v) && format.height >= screen_height(*v)) return success();
+  RETURN_IF_ERROR(open_screen(screen, viewer, &format));
+  viewer->format = to_pixel_format(format);
+  if (format.width >= screen_width(*viewer) && format.height >= screen_height(*viewer)) return success();
   return failure("the screen has %dx%d pixels, too few for the picture: use --size %dx%d", format.width, format.height,
-                 quarter_turned(*v) ? format.height : format.width, quarter_turned(*v) ? format.width : format.height);
+                 quarter_turned(*viewer) ? format.height : format.width,
+                 quarter_turned(*viewer) ? format.width : format.height);
 }
 
 }  // namespace
 
 std::size_t viewer_bytes(const Settings& settings) { return picture_bytes(settings) + progressive_need(settings); }
 
-Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* v) {
-  v->options = options;
-  v->scene_path = scene;
-  v->width = width;
-  v->height = height;
-  if (!rotation_from_degrees(options.rotation, &v->rotation))
+Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* viewer) {
+  viewer->options = options;
+  viewer->scene_path = scene;
+  viewer->width = width;
+  viewer->height = height;
+  if (!rotation_from_degrees(options.rotation, &viewer->rotation))
     return failure("--rotate is %d: it must be 0, 90, 180 or 270", options.rotation);
-  Status status = take_screen(options, width, height, v);
+  Status status = take_screen(options, width, height, viewer);
   if (!status.ok) {
-    close_viewer(v);
+    close_viewer(viewer);
     return status;
   }
-  v->waiting_since_ns = v->backend->now_ns();
-  watch_scene(v);
+  viewer->waiting_since_ns = viewer->backend->now_ns();
+  watch_scene(viewer);
   return success();
 }
 
-void watch_scene(Viewer* v) {
-  std::uint64_t stamp = platform::file_stamp(v->scene_path.c_str());
-  v->watch = {stamp, stamp, v->backend->now_ns()};
+void watch_scene(Viewer* viewer) {
+  std::uint64_t stamp = platform::file_stamp(viewer->scene_path.c_str());
+  viewer->watch = {stamp, stamp, viewer->backend->now_ns()};
 }
 
-void tell(Viewer* v, const char* text) {
-  std::snprintf(v->note.text, sizeof v->note.text, "%s", text);
-  make_printable(v->note.text, std::strlen(v->note.text));
-  std::fprintf(stderr, "pocketray: %s\n", v->note.text);
-  v->note.until_ns = v->backend->now_ns() + kNoteNs;
-  ++v->note.number;
+void tell(Viewer* viewer, const char* text) {
+  std::snprintf(viewer->note.text, sizeof viewer->note.text, "%s", text);
+  make_printable(viewer->note.text, std::strlen(viewer->note.text));
+  std::fprintf(stderr, "pocketray: %s\n", viewer->note.text);
+  viewer->note.until_ns = viewer->backend->now_ns() + kNoteNs;
+  ++viewer->note.number;
 }
 
-bool show_waiting(Viewer* v, const char* text) {
+bool show_waiting(Viewer* viewer, const char* text) {
   HudText hud;
-  write_waiting(text, static_cast<double>(v->backend->now_ns() - v->waiting_since_ns) * 1e-9, &hud);
-  return show_text(v, hud);
+  write_waiting(text, static_cast<double>(viewer->backend->now_ns() - viewer->waiting_since_ns) * 1e-9, &hud);
+  return show_text(viewer, hud);
 }
 
-bool wait_for_another(Viewer* v, const char* why) {
+bool wait_for_another(Viewer* viewer, const char* why) {
   HudText hud;
   add_hud_text(&hud, why);
-  for (v->reload = false; !v->reload; v->reload = v->reload || is_file_changed(*v, &v->watch))
-    if (!show_text(v, hud)) return false;
-  v->waiting_since_ns = v->backend->now_ns();
+  for (viewer->reload = false; !viewer->reload;
+       viewer->reload = viewer->reload || is_file_changed(*viewer, &viewer->watch))
+    if (!show_text(viewer, hud)) return false;
+  viewer->waiting_since_ns = viewer->backend->now_ns();
   return true;
 }
 
-Status run_viewer(Viewer* v, Renderer* r, bool* again) {
+Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
   ViewerLoop loop;
-  std::size_t mark = arena_mark(r->frame_arena);
-  loop.row_spans = arena_array<Span>(&r->frame_arena, r->settings.width);
-  loop.control = make_camera_control(r->camera, r->accel.bounds);
-  take_kept_view(*v, r, &loop);
-  loop.last_ns = v->backend->now_ns();
+  std::size_t mark = arena_mark(renderer->frame_arena);
+  loop.row_spans = arena_array<Span>(&renderer->frame_arena, renderer->settings.width);
+  loop.control = make_camera_control(renderer->camera, renderer->accel.bounds);
+  take_kept_view(*viewer, renderer, &loop);
+  loop.last_ns = viewer->backend->now_ns();
   loop.finished = true;  // nothing under way
-  v->picture_shared = false;
+  viewer->picture_merged = false;
   *again = false;
-  v->reload = v->dropped[0] != 0;  // while this one was loading
+  viewer->reload = viewer->dropped[0] != 0;  // while this one was loading
   Status status;
   while (status.ok) {
-    take_events(v);
-    bool enough = v->options.frame_count > 0 && v->frames_finished >= v->options.frame_count;
-    if (v->quit || enough) break;
-    if (v->reload || is_file_changed(*v, &v->watch)) {
+    take_events(viewer);
+    bool enough = viewer->options.frame_count > 0 && viewer->frames_finished >= viewer->options.frame_count;
+    if (viewer->quit || enough) break;
+    if (viewer->reload || is_file_changed(*viewer, &viewer->watch)) {
       *again = true;
-      keep_view(v, loop);
-      keep_picture(v, *r);
-      v->waiting_since_ns = v->backend->now_ns();
+      keep_view(viewer, loop);
+      keep_picture(viewer, *renderer);
+      viewer->waiting_since_ns = viewer->backend->now_ns();
       break;
     }
-    answer_buttons(v, r);
-    status = step_scene(v, r, &loop);
-    if (status.ok) status = step_viewer(v, r, &loop);
+    answer_buttons(viewer, renderer);
+    status = step_scene(viewer, renderer, &loop);
+    if (status.ok) status = step_viewer(viewer, renderer, &loop);
   }
-  arena_release(&r->frame_arena, mark);
+  arena_release(&renderer->frame_arena, mark);
   return status;
 }
 
-void close_viewer(Viewer* v) {
-  if (v->backend) v->backend->close();
-  v->backend = nullptr;
-  std::free(v->page_memory);
-  std::free(v->picture_memory);
-  v->page_memory = v->picture_memory = nullptr;
+void close_viewer(Viewer* viewer) {
+  if (viewer->backend) viewer->backend->close();
+  viewer->backend = nullptr;
+  std::free(viewer->page_memory);
+  std::free(viewer->picture_memory);
+  viewer->page_memory = viewer->picture_memory = nullptr;
 }
 
 }  // namespace pocketray

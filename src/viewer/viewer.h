@@ -8,8 +8,9 @@
 #include "platform/devices/device.h"
 #include "platform/platform.h"
 #include "present/pack.h"
-#include "remote/client/sharing.h"
 #include "session/camera_control.h"
+#include "session/open_scene.h"
+#include "session/servers.h"
 #include "viewer/hud.h"
 #include "viewer/side_by_side.h"
 
@@ -22,6 +23,7 @@ struct ViewOptions {
   bool dither = false;
   const platform::Device* emulated = nullptr;  // whose pixels to show, upright; null: the screen's own
   std::uint32_t frame_count = 0;
+  bool has_reference = false;  // the build has it: side_by_side can be asked for
 };
 
 // A file that is loaded anew when it has changed, and nobody is writing it any more: it looks the same twice in a row.
@@ -45,12 +47,12 @@ struct Viewer {
   int width = 0, height = 0;
   Rotation rotation = Rotation::none;
   PixelFormat format;
-  Sharing* sharing = nullptr;    // null: the device renders alone
-  Budget* budget = nullptr;      // null: frames take what they take, and are refined
-  SplitScreen* split = nullptr;  // null: no reference to show
-  bool split_shown = true;       // the user wants to see it
-  std::uint64_t pack_ns = 0;     // of the last picture shown
-  bool picture_shared = false;   // the picture under way, or shown: by servers, too
+  Servers* servers = nullptr;          // null: the device renders alone
+  Budget* budget = nullptr;            // null: frames take what they take, and are refined
+  SideBySide* side_by_side = nullptr;  // null: no reference to show
+  bool side_by_side_shown = true;      // the user wants to see it
+  std::uint64_t pack_ns = 0;           // of the last picture shown
+  bool picture_merged = false;         // the picture under way, or shown: by servers, too
   void* page_memory = nullptr;
   FileWatch watch;
   KeptView kept;
@@ -61,9 +63,9 @@ struct Viewer {
   bool held[platform::kButtonCount] = {};
   bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // asked for
   int front_steps = 0;                                                                       // asked for
-  int split_presses = 0;                                                                     // asked for
-  bool split_changed = false;  // split_shown has, and the screen not yet
-  bool front_home = false;     //   as the budget has it
+  int side_by_side_presses = 0;                                                              // asked for
+  bool side_by_side_changed = false;  // side_by_side_shown has, and the screen not yet
+  bool front_home = false;            //   as the budget has it
   bool hud = true, hud_shown = false, paused = false;
   std::uint32_t note_shown = 0, hud_rows_shown = 0;  // on the screen: the note's number, and what the text covers
   std::uint64_t waiting_since_ns = 0;
@@ -86,7 +88,7 @@ bool wait_for_another(Viewer* viewer, const char* why);
 void tell(Viewer* viewer, const char* text);
 // Runs until the user leaves (*again false), the scene is to be loaded anew (*again true), or options.frame_count
 // frames are finished. Camera and time go on from viewer->kept where that is of this scene; the view and the picture
-// are kept for the next one. Allocates nothing but for the split screen.
+// are kept for the next one. Allocates nothing but for the reference side by side.
 Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again);
 // Of one that is closed, or that was never opened, too.
 void close_viewer(Viewer* viewer);

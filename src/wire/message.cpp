@@ -168,8 +168,8 @@ void fields(Io& io, Camera* c) {
 
 // A count or a choice is an integer of the row's bytes.
 template <class Io>
-void setting(Io& io, const SettingRow& row, Settings* s) {
-  double value = row.field.get(*s);
+void setting(Io& io, const SettingRow& row, Settings* settings) {
+  double value = row.field.get(*settings);
   if (row.field.kind == SettingKind::real) {
     float real = static_cast<float>(value);
     raw_real(io, &real);
@@ -181,17 +181,17 @@ void setting(Io& io, const SettingRow& row, Settings* s) {
   }
   bool valid = within_setting(row, value);
   io.require(valid);
-  if (valid) row.field.set(s, value);
+  if (valid) row.field.set(settings, value);
 }
 
 // Those that change pixels.
 constexpr std::uint32_t kSettingsBytes = 2 * 2 + setting_wire_bytes() + 2 * sizeof(EffectMask);
 template <class Io>
-void fields(Io& io, Settings* s) {
-  count(io, &s->width, Quantity::width, 2), count(io, &s->height, Quantity::height, 2);
-  for (const SettingRow& row : kSettingList) setting(io, row, s);
-  number(io, &s->forced_on), number(io, &s->forced_off);
-  io.require((s->forced_on & ~kAllEffects) == 0 && (s->forced_off & ~kAllEffects) == 0);
+void fields(Io& io, Settings* settings) {
+  count(io, &settings->width, Quantity::width, 2), count(io, &settings->height, Quantity::height, 2);
+  for (const SettingRow& row : kSettingList) setting(io, row, settings);
+  number(io, &settings->forced_on), number(io, &settings->forced_off);
+  io.require((settings->forced_on & ~kAllEffects) == 0 && (settings->forced_off & ~kAllEffects) == 0);
 }
 
 template <class Io>

@@ -7,8 +7,8 @@
 #include "base/array.h"
 #include "base/box.h"
 #include "effect/setting_list.h"
+#include "scene/content_hash.h"
 #include "scene/scene.h"
-#include "wire/content_hash.h"
 
 namespace pocketray {
 

@@ -54,17 +54,17 @@ if [ $# -eq 0 ]; then
   check view_is_left test $? -eq 3
 fi
 
-if "${run[@]}" view --help | grep -q split-screen; then
+if "${run[@]}" view --help | grep -q side-by-side; then
   for reference in model physical; do
-    expect split_screen_$reference 0 "RMSE [0-9.]+ from the $reference reference of (1[6-9]|[2-9][0-9]|[1-9][0-9]{2,}) samples" \
-      view seesaw "${small[@]}" --screen null --frames 2 --split-screen $reference
+    expect side_by_side_$reference 0 "RMSE [0-9.]+ from the $reference reference of (1[6-9]|[2-9][0-9]|[1-9][0-9]{2,}) samples" \
+      view seesaw "${small[@]}" --screen null --frames 2 --side-by-side $reference
   done
-  expect split_screen_budget 0 'from the model reference' \
-    view cube "${small[@]}" --screen null --frames 2 --split-screen model --budget-ms 1000000
-  expect split_screen_unknown 2 'split-screen' view cube --screen null --split-screen none
+  expect side_by_side_budget 0 'from the model reference' \
+    view cube "${small[@]}" --screen null --frames 2 --side-by-side model --budget-ms 1000000
+  expect side_by_side_unknown 2 'side-by-side' view cube --screen null --side-by-side none
   ! "${run[@]}" view --help | grep -q -- --server ||
-    expect split_screen_of_servers 1 'leave it out, or --server' \
-      view cube --screen null --split-screen model --server 127.0.0.1:1
+    expect side_by_side_of_servers 1 'leave it out, or --server' \
+      view cube --screen null --side-by-side model --server 127.0.0.1:1
 fi
 expect view_budget 0 '% of 4 frames within' view seesaw "${small[@]}" --screen null --frames 4 --budget-ms 1000
 

@@ -13,6 +13,9 @@
 #include <functional>
 
 #include "app/commands.h"
+#ifdef POCKETRAY_HAVE_NETWORK
+#include "app/network/network_commands.h"
+#endif
 #include "platform/file.h"
 #include "session/report.h"
 
@@ -31,7 +34,7 @@ struct Folder {
 int run(const std::vector<std::string>& words, const char* out = "/dev/null") {
   int exit_status = kExitDone;
   CLI::App program;
-  add_render_command(&program, &exit_status);
+  add_render_command(&program, OptionalParts(), &exit_status);
   add_bake_command(&program, &exit_status);
   add_plan_command(&program, &exit_status);
   add_bench_command(&program, &exit_status);

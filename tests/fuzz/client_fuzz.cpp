@@ -9,8 +9,8 @@
 #include "fuzz/virtual_peer.h"
 #include "present/pack.h"
 #include "remote/client/client.h"
+#include "remote/client/frame.h"
 #include "remote/client/inquiry.h"
-#include "remote/client/shared_frame.h"
 #include "wire/codec.h"
 
 POCKETRAY_FUZZ_TARGET(fuzz_client)
@@ -229,9 +229,9 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   CHECK(net.resolve("127.0.0.1:4000", &address, &error));
   CHECK(make_client(o, r->settings, fuzz_store().scenes[0].hash, peer->link, &address, 1, &arena, &client).ok);
   for (int frame = 0; frame < kFrames || (input->left > 0 && frame < 10 * kFrames); ++frame) {
-    CHECK(begin_shared_frame(r, &client, 0.25 * (frame % 4)).ok);
+    CHECK(begin_frame(r, &client, 0.25 * (frame % 4)).ok);
     std::uint64_t begin = client_now_ns(client);
-    while (!advance_shared_frame(r, &client, client_now_ns(client) + 5 * kMs, nullptr)) {
+    while (!advance_frame(r, &client, client_now_ns(client) + 5 * kMs, nullptr)) {
       std::uint64_t took = client_now_ns(client) - begin;
       if (!o.has_scene && took > 500 * kMs) break;
       CHECK_LT(took, 20'000 * kMs);

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 #include "remote/server/scene_store.h"
 #include "support/generated_scene.h"
 #include "wire/message.h"

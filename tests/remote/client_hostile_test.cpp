@@ -123,7 +123,7 @@ TEST_CASE("client_look_is_bounded") {
   RemoteServer* s = &rig.client.servers[0];
   std::uint64_t owed = s->late_rows;
   REQUIRE(owed > 4 * kHeight);
-  REQUIRE(begin_shared_frame(&rig.device->renderer, &rig.client, 0).ok);
+  REQUIRE(begin_frame(&rig.device->renderer, &rig.client, 0).ok);
   std::uint32_t before = s->chunk_count, most = 0, looks = 0;
   std::uint64_t begin = rig.fake.now();
   for (; s->late_rows > 0 && looks < 1000 && s->phase == ServerPhase::ready; ++looks) {

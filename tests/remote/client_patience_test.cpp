@@ -36,9 +36,9 @@ constexpr Failing kFailing[] = {
 // Seconds until the device gives up its frame; or until the end.
 double wait_for_rows(HostileRig* rig, double seconds) {
   std::uint64_t begin = rig->fake.now(), end = begin + static_cast<std::uint64_t>(seconds * kSecond);
-  REQUIRE(begin_shared_frame(&rig->device->renderer, &rig->client, 0).ok);
+  REQUIRE(begin_frame(&rig->device->renderer, &rig->client, 0).ok);
   while (!is_cut_off(rig->client) && rig->fake.now() < end)
-    if (advance_shared_frame(&rig->device->renderer, &rig->client, rig->fake.now() + 100 * kMs)) break;
+    if (advance_frame(&rig->device->renderer, &rig->client, rig->fake.now() + 100 * kMs)) break;
   return static_cast<double>(rig->fake.now() - begin) / kSecond;
 }
 
@@ -116,9 +116,8 @@ TEST_CASE("client_backs_off_from_a_server_that_comes_and_goes") {
     };
     std::uint64_t end = rig.fake.now() + 45'000 * kMs;
     while (rig.fake.now() < end) {
-      REQUIRE(begin_shared_frame(&rig.device->renderer, &rig.client, 0).ok);
-      while (!advance_shared_frame(&rig.device->renderer, &rig.client, rig.fake.now() + 100 * kMs) &&
-             rig.fake.now() < end) {
+      REQUIRE(begin_frame(&rig.device->renderer, &rig.client, 0).ok);
+      while (!advance_frame(&rig.device->renderer, &rig.client, rig.fake.now() + 100 * kMs) && rig.fake.now() < end) {
       }
     }
     CHECK(rig.fake.connection_count >= 3);
@@ -141,7 +140,7 @@ TEST_CASE("client_counts_preparation") {
     for (int i = 0; i < 8; ++i) {
       REQUIRE(prepare_frame(r, 0).ok);
       begin_client_frame(&rig.client, *r, 0, prepare_ns);
-      REQUIRE(advance_shared_frame(r, &rig.client, ~std::uint64_t(0)));
+      REQUIRE(advance_frame(r, &rig.client, ~std::uint64_t(0)));
     }
     const FrameShare& share = rig.client.share;
     rows[prepare_ns > 0] = share.device_rows;

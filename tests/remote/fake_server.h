@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 #include "wire/codec.h"
 
 namespace pocketray {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 #include "wire/message.h"
 
 namespace pocketray {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "platform/link_pipe.h"
+#include "platform/net/link_pipe.h"
 
 namespace pocketray {
 

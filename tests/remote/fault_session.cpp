@@ -73,8 +73,7 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   device_picture(plan, second);
   begin_frame(w);
   bool complete = false;
-  if (!render_shared_frame(device_renderer(plan), &w->client, kFaultSeconds[second], nullptr, &complete).ok ||
-      !complete)
+  if (!render_frame(device_renderer(plan), &w->client, kFaultSeconds[second], nullptr, &complete).ok || !complete)
     return fail(*w, "is not complete");
   double ns = static_cast<double>(w->elapsed() - w->frame_begin_ns);
   note_faults();
@@ -103,10 +102,10 @@ std::string run_thin_frame(FaultWorld* w, SessionResult* result) {
   Renderer* r = device_renderer(w->plan);
   Client* c = &w->client;
   begin_frame(w);
-  if (!begin_shared_frame(r, c, kFaultSeconds[second]).ok) return fail(*w, "does not begin");
+  if (!begin_frame(r, c, kFaultSeconds[second]).ok) return fail(*w, "does not begin");
   std::uint64_t rows_come_ns = w->elapsed();
   std::uint32_t rows = 0;
-  while (!advance_shared_frame(r, c, client_now_ns(*c) + 20 * kMs, nullptr)) {
+  while (!advance_frame(r, c, client_now_ns(*c) + 20 * kMs, nullptr)) {
     if (w->stuck) return fail(*w, "a server holds the device");
     if (c->merge.row_count_done != rows) rows = c->merge.row_count_done, rows_come_ns = w->elapsed();
     if (is_cut_off(*c)) break;

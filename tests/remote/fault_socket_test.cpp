@@ -12,7 +12,7 @@
 #include "engine/frame.h"
 #include "platform/net/tcp.h"
 #include "present/pack.h"
-#include "remote/client/shared_frame.h"
+#include "remote/client/frame.h"
 #include "remote/server/session.h"
 #include "scene/builtin_helpers.h"
 #include "support/effort.h"
@@ -123,7 +123,7 @@ struct Device {
     }
     std::uint64_t begin = wall_ns();
     bool complete = false;
-    REQUIRE(render_shared_frame(r, &client, 0.3 * second, nullptr, &complete).ok);
+    REQUIRE(render_frame(r, &client, 0.3 * second, nullptr, &complete).ok);
     worst_ns = std::max(worst_ns, static_cast<double>(wall_ns() - begin));
     if (!complete) failure = "a frame is not complete";
     if (!std::equal(expected.begin(), expected.end(), client.pixels.begin()))

@@ -5,7 +5,7 @@
 
 #include "engine/frame.h"
 #include "engine/row_costs.h"
-#include "platform/null/null_state.h"
+#include "platform/null/net/null_state.h"
 #include "present/pack.h"
 #include "remote/server/state.h"
 #include "scene/builtin_helpers.h"

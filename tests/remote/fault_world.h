@@ -8,7 +8,7 @@
 #include "fault_plan.h"
 #include "hostile_client.h"
 #include "hostile_server.h"
-#include "remote/client/shared_frame.h"
+#include "remote/client/frame.h"
 #include "remote/server/server.h"
 #include "support/scripted_client.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 #include "support/scripted_client.h"
 
 namespace pocketray {

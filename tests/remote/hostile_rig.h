@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fake_server.h"
-#include "remote/client/shared_frame.h"
+#include "remote/client/frame.h"
 #include "scene/builtin_helpers.h"
 #include "split_rig.h"
 #include "support/generated_scene.h"
@@ -91,7 +91,7 @@ struct HostileRig {
   // A frame; the time it took, over the device's alone.
   double frame() {
     std::uint64_t begin = fake.now();
-    REQUIRE(render_shared_frame(&device->renderer, &client, 0).ok);
+    REQUIRE(render_frame(&device->renderer, &client, 0).ok);
     return static_cast<double>(fake.now() - begin) / kLocalNs;
   }
   void frames_until_ready() {

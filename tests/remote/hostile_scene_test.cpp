@@ -5,7 +5,7 @@
 
 #include "fake_server.h"
 #include "remote/client/inquiry.h"
-#include "remote/client/sharing_parts.h"
+#include "remote/client/servers.h"
 
 using namespace pocketray;
 
@@ -50,16 +50,16 @@ TEST_CASE("hostile_scene_sizes_are_refused_with_one_line") {
   for (std::uint64_t lie : kLies) {
     CAPTURE(lie);
     FakeServer server(scene_of(lie));
-    Sharing sharing;
-    sharing.link = server.link;
-    sharing.addresses = {server.address};
+    ConnectedServers servers;
+    servers.link = server.link;
+    servers.addresses = {server.address};
     CommonOptions options;
     options.scene = "lie";
     options.memory = "4M";
     options.size = "64x48";
     OpenScene opened;
-    Status status = open_shared_scene(
-        &sharing, options, [](const Settings&) { return std::size_t(0); }, &opened);
+    Status status = kRenderServers.open_scene(
+        &servers, options, [](const Settings&) { return std::size_t(0); }, &opened);
     CHECK(!status.ok);
     CHECK(std::strlen(status.message) > 0);
     CHECK(std::strchr(status.message, '\n') == nullptr);

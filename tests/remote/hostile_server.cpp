@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 #include "support/scripted_client.h"
 
 namespace pocketray {

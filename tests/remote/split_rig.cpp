@@ -54,7 +54,7 @@ std::vector<std::uint8_t> SplitRig::local_pixels() {
 }
 
 const FrameShare& SplitRig::frame(double seconds) {
-  REQUIRE(render_shared_frame(&device->renderer, &client, seconds).ok);
+  REQUIRE(render_frame(&device->renderer, &client, seconds).ok);
   if (!options.compares) return client.share;
   std::vector<std::uint8_t> merged(client.pixels.begin(), client.pixels.end());
   REQUIRE(render_frame(&device->renderer, seconds).ok);

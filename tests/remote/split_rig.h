@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "remote/client/shared_frame.h"
+#include "remote/client/frame.h"
 #include "scene/builtin_helpers.h"
 #include "split_report/virtual_world.h"
 #include "support/generated_scene.h"

@@ -19,16 +19,16 @@ SplitRigOptions thin(std::uint32_t server_count) {
 
 // The frame has begun, and some of its rows have come.
 void begin_frame(SplitRig* rig, double seconds) {
-  REQUIRE(begin_shared_frame(&rig->device->renderer, &rig->client, seconds).ok);
+  REQUIRE(begin_frame(&rig->device->renderer, &rig->client, seconds).ok);
   std::uint64_t limit = rig->now() + 1000 * kMs;
   while (rig->client.merge.row_count_done == 0 && rig->now() < limit)
-    advance_shared_frame(&rig->device->renderer, &rig->client, rig->now() + kMs / 10);
+    advance_frame(&rig->device->renderer, &rig->client, rig->now() + kMs / 10);
   REQUIRE(rig->client.merge.row_count_done > 0);
   REQUIRE(!has_all_rows(rig->client));
 }
 
 bool advance(SplitRig* rig, std::uint64_t ns) {
-  return advance_shared_frame(&rig->device->renderer, &rig->client, rig->now() + ns);
+  return advance_frame(&rig->device->renderer, &rig->client, rig->now() + ns);
 }
 
 // What has been merged is what the device would have rendered.

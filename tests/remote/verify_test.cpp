@@ -8,7 +8,7 @@
 #include "platform/entropy.h"
 #include "platform/null/null_entropy.h"
 #include "remote/client/parts.h"
-#include "remote/client/sharing_parts.h"
+#include "remote/client/servers.h"
 #include "split_rig.h"
 #include "support/effort.h"
 #include "support/lying_server.h"
@@ -273,7 +273,7 @@ TEST_CASE("verify_compares_rows_that_both_have") {
   RemoteServer* s = &own.server(0);
   std::size_t row_bytes = options.width * pixel_bytes(options.client.format);
   REQUIRE(c->merge.rows[0].state == RowState::device);
-  std::memcpy(picture_row(s->decoder->state, 0), shared_row(*c, 0), row_bytes);
+  std::memcpy(picture_row(s->decoder->state, 0), merged_row(*c, 0), row_bytes);
   CHECK(agrees_with_device(c, s, 0, 1));
   picture_row(s->decoder->state, 0)[row_bytes - 1] ^= 1;
   CHECK(!agrees_with_device(c, s, 0, 1));
@@ -344,37 +344,37 @@ TEST_CASE("verify_without_the_scene_trusts_the_honest") {
 }
 
 // Goal: the commands take the system's entropy, refuse a number of pixels that cannot be, and remember a liar when the
-// scene is opened anew. Method: what start_sharing() makes, twice; nobody listens there.
+// scene is opened anew. Method: clients as the backend makes them, twice; nobody listens there.
 TEST_CASE("verify_as_the_commands_start_it") {
-  SharingOptions options;
-  options.servers = {"127.0.0.1:9", "127.0.0.1:10"};
-  Sharing* sharing = nullptr;
+  ServersOptions options;
+  options.addresses = {"127.0.0.1:9", "127.0.0.1:10"};
+  Servers* servers = nullptr;
   for (int wrong : {-2, 1025, 1 << 30}) {
     options.verify = wrong;
-    Status status = open_sharing(options, nullptr, &sharing);
+    Status status = kRenderServers.open(options, nullptr, &servers);
     CHECK(!status.ok);
     CHECK(std::string(status.message).find("--verify is") != std::string::npos);
   }
   options.verify = 5;
-  Status status = open_sharing(options, nullptr, &sharing);
+  Status status = kRenderServers.open(options, nullptr, &servers);
   REQUIRE_MESSAGE(status.ok, status.message);
   Renderer r;
   r.settings.width = 64, r.settings.height = 48;
-  std::vector<unsigned char> memory(sharing_bytes(sharing, r.settings) + kArenaAlignment);
+  std::vector<unsigned char> memory(kRenderServers.need(*servers, r.settings) + kArenaAlignment);
   std::uint64_t state = 0;
   for (int i = 0; i < 2; ++i) {
     r.frame_arena = make_arena("frame", memory.data(), memory.size());
-    REQUIRE(start_sharing(sharing, &r, false, false).ok);
-    const Client& c = sharing->client;
+    REQUIRE(kRenderServers.start(servers, &r, false, false).ok);
+    const Client& c = connected(servers)->client;
     CHECK((c.options.entropy == platform::random_bytes));
     CHECK(c.verifier.check_count == 5);
     CHECK(c.verifier.random.state != state);
     state = c.verifier.random.state;
     CHECK(!c.servers[0].lied);
     CHECK(c.servers[1].lied == (i == 1));
-    sharing->client.servers[1].lied = true;
+    connected(servers)->client.servers[1].lied = true;
   }
-  close_sharing(sharing);
-  options.servers.clear();
-  CHECK(!open_sharing(options, nullptr, &sharing).ok);
+  kRenderServers.close(servers);
+  options.addresses.clear();
+  CHECK(!kRenderServers.open(options, nullptr, &servers).ok);
 }

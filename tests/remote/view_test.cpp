@@ -6,7 +6,7 @@
 
 #include "base/seal.h"
 #include "platform/net/tcp.h"
-#include "remote/client/sharing_parts.h"
+#include "remote/client/servers.h"
 #include "session/open_scene.h"
 #include "split_report/virtual_world.h"
 #include "support/scripted_client.h"
@@ -17,22 +17,22 @@ using namespace pocketray;
 namespace {
 
 // Views finished frames of a scene that moves, on no screen.
-ShareTotals view(const std::string& server, std::uint32_t frame_count, Viewer* viewer) {
+ServersTotals view(const std::string& server, std::uint32_t frame_count, Viewer* viewer) {
   CommonOptions common;
   common.scene = "seesaw", common.size = "32x24", common.threads = 1;
-  SharingOptions sharing;
-  sharing.servers = {server};
+  ServersOptions servers;
+  servers.addresses = {server};
   ViewOptions options;
   options.backend = "null", options.rotation = 0, options.frame_count = frame_count;
   REQUIRE(open_viewer(options, "seesaw", 32, 24, viewer).ok);
-  REQUIRE(open_sharing(sharing, nullptr, &viewer->sharing).ok);
+  REQUIRE(kRenderServers.open(servers, nullptr, &viewer->servers).ok);
   OpenScene opened;
-  REQUIRE(open_shared_scene(viewer->sharing, common, viewer_bytes, &opened).ok);
-  REQUIRE(start_sharing(viewer->sharing, &opened.renderer, false, false).ok);
+  REQUIRE(open_scene_with(viewer->servers, common, viewer_bytes, &opened).ok);
+  REQUIRE(kRenderServers.start(viewer->servers, &opened.renderer, false, false).ok);
   bool again;
   REQUIRE(run_viewer(viewer, &opened.renderer, &again).ok);
-  ShareTotals totals = share_totals(*viewer->sharing);
-  close_sharing(viewer->sharing);
+  ServersTotals totals = kRenderServers.totals(*viewer->servers);
+  kRenderServers.close(viewer->servers);
   close_viewer(viewer);
   return totals;
 }
@@ -50,7 +50,7 @@ TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
     while (!stop) step_server(rig.server, kMs);
   });
   Viewer with;
-  ShareTotals shared;
+  ServersTotals shared;
   std::uint32_t frame_count = 600;
   for (; shared.frames == 0 && frame_count < 600'000; frame_count *= 4) {  // a busy server takes its time
     with = Viewer();
@@ -61,15 +61,15 @@ TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
   stop = true;
   serving.join();
   unseal_memory();  // the rig's log seals
-  CHECK(with.picture_shared);
+  CHECK(with.picture_merged);
   CHECK(shared.frames > 0);
   CHECK(shared.server_rows > 0);
 
   rig.close();
   Viewer without;
-  ShareTotals alone = view(address, 20, &without);
+  ServersTotals alone = view(address, 20, &without);
   CHECK(without.frames_finished == 20);
-  CHECK_FALSE(without.picture_shared);
+  CHECK_FALSE(without.picture_merged);
   CHECK(alone.frames == 0);
 }
 
@@ -82,9 +82,9 @@ TEST_CASE("view_leaves_its_first_picture_to_servers") {
   ServerOptions server;
   server.client_memory_bytes = 16u << 20;
   REQUIRE(start_server(&world, 0, server).ok);
-  auto sharing = std::make_unique<Sharing>();
-  sharing->link = world.link;
-  sharing->addresses = world.addresses;
+  auto servers = std::make_unique<ConnectedServers>();
+  servers->link = world.link;
+  servers->addresses = world.addresses;
 
   CommonOptions common;
   common.scene = "seesaw", common.size = "16x64", common.threads = 1;
@@ -92,20 +92,20 @@ TEST_CASE("view_leaves_its_first_picture_to_servers") {
   options.backend = "null", options.rotation = 0, options.frame_count = 3;
   Viewer viewer;
   REQUIRE(open_viewer(options, "seesaw", 16, 64, &viewer).ok);
-  viewer.sharing = sharing.get();
+  viewer.servers = servers.get();
   OpenScene opened;
-  REQUIRE(open_shared_scene(sharing.get(), common, viewer_bytes, &opened).ok);
+  REQUIRE(open_scene_with(servers.get(), common, viewer_bytes, &opened).ok);
   opened.renderer.pace.ns_per_pixel = 5e8;  // a picture alone takes eight minutes
-  REQUIRE(start_sharing(sharing.get(), &opened.renderer, false, false).ok);
+  REQUIRE(kRenderServers.start(servers.get(), &opened.renderer, false, false).ok);
   opened.renderer.pace.ns_per_pixel = 3e6;
   std::uint64_t begin = world_now_ns(world);
   bool again;
   REQUIRE(run_viewer(&viewer, &opened.renderer, &again).ok);
-  ShareTotals totals = share_totals(*sharing);
+  ServersTotals totals = kRenderServers.totals(*servers);
   CHECK(viewer.frames_finished == 3);
   CHECK(totals.frames == 3);
   CHECK(totals.server_rows > totals.device_rows);
   CHECK(world_now_ns(world) - begin < 512'000 * kMs);  // three pictures in less than the time of one
-  close_client(&sharing->client);
+  close_client(&servers->client);
   close_viewer(&viewer);
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "platform/link.h"
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 #include "remote/server/server.h"
 #include "wire/codec.h"
 

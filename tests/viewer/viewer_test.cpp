@@ -123,7 +123,7 @@ TEST_CASE("viewer_answers_each_button") {
     platform::Button button;
     std::string answer;
   } kAnswers[] = {{platform::Button::screenshot, std::string("saved ") + folder + "/pocketray-0001.p"},
-                  {platform::Button::split, "V shows "},
+                  {platform::Button::side_by_side, "V shows "},
                   {platform::Button::finer, "--budget-ms"},
                   {platform::Button::faster, "--budget-ms"}};
   for (const auto& row : kAnswers) {
@@ -153,7 +153,7 @@ TEST_CASE("viewer_takes_its_note_away") {
   for (bool told : {false, true}) {
     Stage stage;
     stage.press(0, platform::Button::hud);
-    if (told) stage.press(1, platform::Button::split);
+    if (told) stage.press(1, platform::Button::side_by_side);
     stage.leave(9);
     stage.open("cube");
     OpenScene opened;

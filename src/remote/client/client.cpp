@@ -29,25 +29,27 @@ std::size_t in_bytes(const CodecShape& shape) {
   return std::max(chunk, kInBytesMin);
 }
 
-void mark_dirty(Client* c, std::uint32_t begin, std::uint32_t end) {
-  if (c->dirty_begin == c->dirty_end) c->dirty_begin = begin, c->dirty_end = end;
-  c->dirty_begin = std::min(c->dirty_begin, begin);
-  c->dirty_end = std::max(c->dirty_end, end);
+void mark_dirty(Client* client, std::uint32_t begin, std::uint32_t end) {
+  if (client->dirty_begin == client->dirty_end) client->dirty_begin = begin, client->dirty_end = end;
+  client->dirty_begin = std::min(client->dirty_begin, begin);
+  client->dirty_end = std::max(client->dirty_end, end);
 }
 
 // Frames in which the device looks often, so that it sees when rows come: the first ones with a server, and a few
 // later.
-bool is_watched(const Client& c) { return c.frames_shared < kWatchedFirst || c.frames_shared % kWatchedEvery == 0; }
+bool is_watched(const Client& client) {
+  return client.frames_with_servers < kWatchedFirst || client.frames_with_servers % kWatchedEvery == 0;
+}
 
 // How much longer the device may do nothing in this frame, so that it is done within 1 + kWaitShare times what it takes
 // alone even if nothing comes any more. What that is has to be certain: rows count as they were in this frame or, by as
 // much as this frame's are cheaper, in the frames before; for those that the device never rendered a part of the mean
 // is certain, and `come_share` of the time that rows which have come have saved.
-double time_to_spare(const Client& c, double come_share) {
+double time_to_spare(const Client& client, double come_share) {
   auto is_measured = [](const RowModel& row) { return is_known(row.device_ns) && !row.guessed; };
   double seen = 0, seen_before = 0, others = 0, come = 0, unknown = 0;
-  for (std::uint32_t r = 0; r < c.model.rows.count; ++r) {
-    const RowModel& row = c.model.rows[r];
+  for (std::uint32_t r = 0; r < client.model.rows.count; ++r) {
+    const RowModel& row = client.model.rows[r];
     if (!is_measured(row)) {
       if (!(row.device_ns_seen > 0)) ++unknown;
       continue;
@@ -56,95 +58,98 @@ double time_to_spare(const Client& c, double come_share) {
     if (row.device_ns_seen > 0)
       seen += static_cast<double>(row.device_ns_seen), seen_before += before;
     else
-      others += before, come += c.merge.rows[r].state == RowState::server ? before : 0;
+      others += before, come += client.merge.rows[r].state == RowState::server ? before : 0;
   }
   // Rows that were rendered at once have their mean: by a few of them a frame only seems to be dearer than the last.
   double change = seen_before > 0 ? std::min(1.0, seen / seen_before) : 1;
-  double alone = std::max(c.device_ns, std::min(c.device_ns + change * others, seen_before + others));
-  alone += kCertainPart * unknown * device_pixel_ns(c) * c.settings.width;
-  double idle = static_cast<double>(client_now_ns(c) - c.begin_ns) - c.device_ns;
+  double alone = std::max(client.device_ns, std::min(client.device_ns + change * others, seen_before + others));
+  alone += kCertainPart * unknown * device_pixel_ns(client) * client.settings.width;
+  double idle = static_cast<double>(client_now_ns(client) - client.begin_ns) - client.device_ns;
   return kWaitShare * alone + come_share * change * come - idle;
 }
 
 // What the rows that are not done would take the device: as this frame's and as those before, whichever is more.
-double rows_left_ns(const Client& c) {
-  double known = 0, count = c.merge.rows.count - c.merge.row_count_done;
-  for (std::uint32_t r = 0; r < c.model.rows.count; ++r)
-    if (c.merge.rows[r].state == RowState::missing) known += static_cast<double>(c.model.rows[r].device_ns.value);
-  return std::max(known, device_pixel_ns(c) * c.settings.width * count);
+double rows_left_ns(const Client& client) {
+  double known = 0, count = client.merge.rows.count - client.merge.row_count_done;
+  for (std::uint32_t r = 0; r < client.model.rows.count; ++r)
+    if (client.merge.rows[r].state == RowState::missing)
+      known += static_cast<double>(client.model.rows[r].device_ns.value);
+  return std::max(known, device_pixel_ns(client) * client.settings.width * count);
 }
 
 // Whether the servers' rows are due before the device could render one, or late by less than that takes; and should
 // none of them come, it is still done about when it would be alone.
-bool is_worth_waiting(const Client& c) {
-  double prepare = static_cast<double>(c.prepare_ns), due = c.share.predicted_ns - prepare;
-  double elapsed = static_cast<double>(client_now_ns(c) - c.begin_ns), row = device_pixel_ns(c) * c.settings.width;
-  if (!c.joined || elapsed + row <= due || elapsed >= std::max(kLateFactor * due, due + row)) return false;
-  bool any_guessed = std::any_of(c.model.rows.begin(), c.model.rows.end(), [](const RowModel& r) { return r.guessed; });
-  double latest = kLateFactor * (c.share.local_ns - prepare);
-  return elapsed + rows_left_ns(c) <= latest && (any_guessed || time_to_spare(c, kCertainPart) > 0);
+bool is_worth_waiting(const Client& client) {
+  double prepare = static_cast<double>(client.prepare_ns), due = client.share.predicted_ns - prepare;
+  double elapsed = static_cast<double>(client_now_ns(client) - client.begin_ns),
+         row = device_pixel_ns(client) * client.settings.width;
+  if (!client.joined || elapsed + row <= due || elapsed >= std::max(kLateFactor * due, due + row)) return false;
+  bool any_guessed =
+      std::any_of(client.model.rows.begin(), client.model.rows.end(), [](const RowModel& r) { return r.guessed; });
+  double latest = kLateFactor * (client.share.local_ns - prepare);
+  return elapsed + rows_left_ns(client) <= latest && (any_guessed || time_to_spare(client, kCertainPart) > 0);
 }
 
 // Rows that the device may render without a look at the link: while somebody is there to look for, not for long.
-std::uint32_t rows_between_looks(const Client& c) {
+std::uint32_t rows_between_looks(const Client& client) {
   bool any = false;
-  for (std::uint32_t i = 0; i < c.server_count; ++i) any = any || c.servers[i].phase != ServerPhase::waiting;
-  double row_ns = device_pixel_ns(c) * c.settings.width, look_ns = kLookNs;
-  if (c.joined && is_watched(c))
-    look_ns = std::min(look_ns, (c.share.predicted_ns - static_cast<double>(c.prepare_ns)) / kLooksWatched);
-  look_ns = std::min(look_ns, work_ns_max(c));
-  if (!any) return c.settings.height;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) any = any || client.servers[i].phase != ServerPhase::waiting;
+  double row_ns = device_pixel_ns(client) * client.settings.width, look_ns = kLookNs;
+  if (client.joined && is_watched(client))
+    look_ns = std::min(look_ns, (client.share.predicted_ns - static_cast<double>(client.prepare_ns)) / kLooksWatched);
+  look_ns = std::min(look_ns, work_ns_max(client));
+  if (!any) return client.settings.height;
   // By this frame's rows so far, and by those of the frames before: what follows the sky costs more.
   std::uint32_t count = 0;
-  for (double ns = 0; ns < look_ns && c.merge.next_row + count < c.model.rows.count; ++count)
-    ns += std::max(row_ns, static_cast<double>(c.model.rows[c.merge.next_row + count].device_ns.value));
+  for (double ns = 0; ns < look_ns && client.merge.next_row + count < client.model.rows.count; ++count)
+    ns += std::max(row_ns, static_cast<double>(client.model.rows[client.merge.next_row + count].device_ns.value));
   return std::max(1u, count);
 }
 
 // Takes what has come, after waiting `timeout_ns` at most for something.
-void look_at_servers(Client* c, std::uint64_t timeout_ns) {
+void look_at_servers(Client* client, std::uint64_t timeout_ns) {
   platform::LinkWait waits[kServerCountMax];
   int wait_count = 0;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    const RemoteServer& s = c->servers[i];
-    if (s.phase == ServerPhase::waiting) continue;
-    if (s.more) timeout_ns = 0;
-    bool connecting = s.phase == ServerPhase::connecting;
-    waits[wait_count].stream = s.messages.stream;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    const RemoteServer& server = client->servers[i];
+    if (server.phase == ServerPhase::waiting) continue;
+    if (server.more) timeout_ns = 0;
+    bool connecting = server.phase == ServerPhase::connecting;
+    waits[wait_count].stream = server.messages.stream;
     waits[wait_count].want_read = !connecting;
-    waits[wait_count++].want_write = connecting || has_output(s.messages);
+    waits[wait_count++].want_write = connecting || has_output(server.messages);
   }
-  std::uint64_t begin = client_now_ns(*c);
-  c->unwatched_ns = begin > c->looked_ns ? begin - c->looked_ns : 0;
-  c->link->backend->poll(c->link, waits, wait_count, timeout_ns);
-  std::uint64_t now = client_now_ns(*c);
-  std::uint64_t since = std::max(c->looked_ns, c->begin_ns);
-  c->arrivals.gap_ns_max = std::max(c->arrivals.gap_ns_max, now > since ? now - since : 0);
-  c->looked_ns = now;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) advance_server(c, &c->servers[i]);
-  let_join(c);
+  std::uint64_t begin = client_now_ns(*client);
+  client->unwatched_ns = begin > client->looked_ns ? begin - client->looked_ns : 0;
+  client->link->backend->poll(client->link, waits, wait_count, timeout_ns);
+  std::uint64_t now = client_now_ns(*client);
+  std::uint64_t since = std::max(client->looked_ns, client->begin_ns);
+  client->arrivals.gap_ns_max = std::max(client->arrivals.gap_ns_max, now > since ? now - since : 0);
+  client->looked_ns = now;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) advance_server(client, &client->servers[i]);
+  let_join(client);
 }
 
-void cancel_rest(Client* c) {
+void cancel_rest(Client* client) {
   Message message;
   message.type = MessageType::cancel;
-  message.cancel.frame = c->request.frame;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    if (!s->frame.open) continue;
+  message.cancel.frame = client->request.frame;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    RemoteServer* server = &client->servers[i];
+    if (!server->frame.open) continue;
     // None of its rows came in time: it takes at least that long to start.
-    if (s->frame.rows_come == 0 && s->phase == ServerPhase::ready)
-      observe_start(&c->model, i, static_cast<double>(client_now_ns(*c) - s->frame.asked_ns));
-    s->frame.open = false;
-    bool sent = send_message(&s->messages, message);
-    sent ? flush_server(c, s) : lose_server(c, s, "it does not read what it is sent");
+    if (server->frame.rows_come == 0 && server->phase == ServerPhase::ready)
+      observe_start(&client->model, i, static_cast<double>(client_now_ns(*client) - server->frame.asked_ns));
+    server->frame.open = false;
+    bool sent = send_message(&server->messages, message);
+    sent ? flush_server(client, server) : lose_server(client, server, "it does not read what it is sent");
   }
 }
 
 }  // namespace
 
-std::uint64_t client_now_ns(const Client& c) {
-  return platform::link_clock_ns(&c.clock, c.link->backend->now_ns(c.link));
+std::uint64_t client_now_ns(const Client& client) {
+  return platform::link_clock_ns(&client.clock, client.link->backend->now_ns(client.link));
 }
 
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count) {
@@ -157,207 +162,210 @@ std::size_t client_need(const Settings& settings, WireFormat format, std::uint32
 
 Status make_client(const ClientOptions& options, const Settings& settings, const ContentHash& scene,
                    platform::Link* link, const platform::LinkAddress* servers, std::uint32_t server_count, Arena* arena,
-                   Client* c) {
+                   Client* client) {
   CHECK_LE(server_count, kServerCountMax);
-  *c = Client();
-  c->options = options;
-  c->settings = settings;
-  c->scene = scene;
-  c->link = link;
-  c->server_count = server_count;
+  *client = Client();
+  client->options = options;
+  client->settings = settings;
+  client->scene = scene;
+  client->link = link;
+  client->server_count = server_count;
   CodecShape shape = codec_shape(settings, options.format);
   if (!codec_shape_valid(shape))
     return failure("pictures of %ux%u pixels cannot be shared: use a smaller --size", settings.width, settings.height);
-  c->pixels = arena_array_zeroed<std::uint8_t>(
+  client->pixels = arena_array_zeroed<std::uint8_t>(
       arena, std::size_t(settings.width) * settings.height * pixel_bytes(options.format));
-  c->merge = make_merge(settings.height, arena);
-  RETURN_IF_ERROR(make_verifier(options.check_count, options.entropy, settings, arena, &c->verifier));
-  c->model = make_cost_model(settings.width, settings.height, server_count, arena);
-  c->workspace = make_split_workspace(settings.height, server_count, arena);
-  c->model.cost_per_device_pixel = options.cost_per_device_pixel;
-  c->model.cost_per_byte = options.cost_per_byte;
-  c->split.server_count = server_count;
-  for (std::uint32_t& boundary : c->split.boundary) boundary = settings.height;
+  client->merge = make_merge(settings.height, arena);
+  RETURN_IF_ERROR(make_verifier(options.check_count, options.entropy, settings, arena, &client->verifier));
+  client->model = make_cost_model(settings.width, settings.height, server_count, arena);
+  client->workspace = make_split_workspace(settings.height, server_count, arena);
+  client->model.cost_per_device_pixel = options.cost_per_device_pixel;
+  client->model.cost_per_byte = options.cost_per_byte;
+  client->split.server_count = server_count;
+  for (std::uint32_t& boundary : client->split.boundary) boundary = settings.height;
   for (std::uint32_t i = 0; i < server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    s->address = servers[i];
-    s->messages = make_message_stream(in_bytes(shape), kOutBytes, arena);
-    s->timer = platform::link_timer(client_now_ns(*c), 0);
-    c->model.servers[i].cost_per_megabyte = options.cost_per_megabyte;
-    c->model.servers[i].chunk_rows = kChunkRowsMin;
-    RETURN_IF_ERROR(make_row_decoder(shape, arena, &s->decoder));
+    RemoteServer* server = &client->servers[i];
+    server->address = servers[i];
+    server->messages = make_message_stream(in_bytes(shape), kOutBytes, arena);
+    server->timer = platform::link_timer(client_now_ns(*client), 0);
+    client->model.servers[i].cost_per_megabyte = options.cost_per_megabyte;
+    client->model.servers[i].chunk_rows = kChunkRowsMin;
+    RETURN_IF_ERROR(make_row_decoder(shape, arena, &server->decoder));
   }
   return success();
 }
 
-void close_client(Client* c) {
-  for (std::uint32_t i = 0; i < c->server_count; ++i) close_message_stream(&c->servers[i].messages);
+void close_client(Client* client) {
+  for (std::uint32_t i = 0; i < client->server_count; ++i) close_message_stream(&client->servers[i].messages);
 }
 
-void work_until(Client* c, std::uint64_t due_ns) {
-  for (std::uint64_t now = client_now_ns(*c), before = 0; now < due_ns && now != before; now = client_now_ns(*c)) {
+void work_until(Client* client, std::uint64_t due_ns) {
+  for (std::uint64_t now = client_now_ns(*client), before = 0; now < due_ns && now != before;
+       now = client_now_ns(*client)) {
     before = now;  // still, where the clock has been set back meanwhile: the time is over all the same
-    c->link->backend->poll(c->link, nullptr, 0, due_ns - now);
+    client->link->backend->poll(client->link, nullptr, 0, due_ns - now);
   }
 }
 
-void advance_client(Client* c, std::uint64_t timeout_ns) {
-  look_at_servers(c, timeout_ns);
+void advance_client(Client* client, std::uint64_t timeout_ns) {
+  look_at_servers(client, timeout_ns);
   // A while of doing nothing but waiting for the answers of the overture, within what a network may cost.
-  while (timeout_ns == 0 && !c->complete) {
-    std::uint64_t wanted = wait_wanted_ns(*c);
+  while (timeout_ns == 0 && !client->complete) {
+    std::uint64_t wanted = wait_wanted_ns(*client);
     if (wanted == 0) return;
-    double left = time_to_spare(*c, 0);
-    std::uint64_t begin = client_now_ns(*c);
+    double left = time_to_spare(*client, 0);
+    std::uint64_t begin = client_now_ns(*client);
     // What the servers in use have saved is not for others to waste.
-    if (c->joined) left = std::min(left, kWaitShare * c->share.predicted_ns - static_cast<double>(c->waited_ns));
+    if (client->joined)
+      left = std::min(left, kWaitShare * client->share.predicted_ns - static_cast<double>(client->waited_ns));
     if (left <= 0) return;
-    look_at_servers(c, std::min(wanted, static_cast<std::uint64_t>(left) + 1));
-    c->waited_ns += client_now_ns(*c) - begin;
+    look_at_servers(client, std::min(wanted, static_cast<std::uint64_t>(left) + 1));
+    client->waited_ns += client_now_ns(*client) - begin;
   }
 }
 
-void accept_chunk(Client* c, RemoteServer* s, const RowChunk& chunk, std::uint32_t byte_count) {
-  std::uint32_t begin = chunk.row_begin, end = begin + chunk.row_count, server = index_of(*c, s);
+void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::uint32_t byte_count) {
+  std::uint32_t begin = chunk.row_begin, end = begin + chunk.row_count, server = index_of(*client, s);
   s->frame.bytes += byte_count;
   s->frame.row_bytes += chunk.bytes.count;
-  bool current = chunk.frame == c->request.frame && !c->complete;
+  bool current = chunk.frame == client->request.frame && !client->complete;
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
-  s->frame.heard_ns = client_now_ns(*c);
+  s->frame.heard_ns = client_now_ns(*client);
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
   if (s->phase == ServerPhase::probing) s->probe_ns_per_pixel = 1e-3 * chunk.pixel_ps;
-  double render_ns = 1e-3 * chunk.pixel_ps * c->settings.width * chunk.row_count;
+  double render_ns = 1e-3 * chunk.pixel_ps * client->settings.width * chunk.row_count;
   s->frame.render_ns += render_ns;
   if (s->frame.first_ns == 0)
     s->frame.first_ns = s->frame.heard_ns;
   else
     s->frame.bytes_behind += byte_count, s->frame.render_behind_ns += render_ns;
-  Arrivals* a = &c->arrivals;
-  a->last_ns = client_now_ns(*c);
+  Arrivals* a = &client->arrivals;
+  a->last_ns = client_now_ns(*client);
   if (a->first_ns == 0)
     a->first_ns = a->last_ns;
   else
     a->bytes += byte_count;
-  observe_server_rows(&c->model, server, begin, end, render_ns, byte_count);
-  if (!agrees_with_device(c, s, begin, end)) return;
-  if (!c->options.has_scene) compare_with_others(c, s, begin, end);
-  if (s->useful_ns == 0 || s->told) server_is_useful(c, s);
+  observe_server_rows(&client->model, server, begin, end, render_ns, byte_count);
+  if (!agrees_with_device(client, s, begin, end)) return;
+  if (!client->options.has_scene) compare_with_others(client, s, begin, end);
+  if (s->useful_ns == 0 || s->told) server_is_useful(client, s);
   // Rows that are done keep their pixels: a row's sender answers for it.
-  std::size_t row_bytes = std::size_t(c->settings.width) * pixel_bytes(c->options.format);
+  std::size_t row_bytes = std::size_t(client->settings.width) * pixel_bytes(client->options.format);
   for (std::uint32_t row = begin; row < end; ++row)
-    if (!is_done(c->merge.rows[row]))
-      std::memcpy(shared_row(*c, row), picture_row(s->decoder->state, row), row_bytes);
-  if (accept_rows(&c->merge, chunk.frame, begin, end, server) == 0) return;
-  c->progress_ns = a->last_ns;
-  mark_dirty(c, begin, end);
+    if (!is_done(client->merge.rows[row]))
+      std::memcpy(merged_row(*client, row), picture_row(s->decoder->state, row), row_bytes);
+  if (accept_rows(&client->merge, chunk.frame, begin, end, server) == 0) return;
+  client->progress_ns = a->last_ns;
+  mark_dirty(client, begin, end);
 }
 
-void begin_client_frame(Client* c, const Renderer& r, double seconds, std::uint64_t prepare_ns) {
-  if (!c->complete) {
-    cancel_rest(c);
-    end_frame(&c->model);
+void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns) {
+  if (!client->complete) {
+    cancel_rest(client);
+    end_frame(&client->model);
   }
-  FrameShare last = c->share;
-  c->share = FrameShare();
-  c->share.measured_ns = last.measured_ns;
-  c->complete = c->joined = false;
-  c->waited_ns = 0, c->device_ns = 0, c->device_rows = 0;
-  c->device_row = DeviceRow();
-  c->begin_ns = client_now_ns(*c);
-  c->prepare_ns = prepare_ns;
-  c->arrivals = Arrivals();
-  FrameRequest* q = &c->request;
+  FrameShare last = client->share;
+  client->share = FrameShare();
+  client->share.measured_ns = last.measured_ns;
+  client->complete = client->joined = false;
+  client->waited_ns = 0, client->device_ns = 0, client->device_rows = 0;
+  client->device_row = DeviceRow();
+  client->begin_ns = client_now_ns(*client);
+  client->prepare_ns = prepare_ns;
+  client->arrivals = Arrivals();
+  FrameRequest* q = &client->request;
   ++q->frame;
-  q->scene = c->scene, q->seconds = seconds;
-  q->camera_stated = c->options.has_scene || r.camera_overridden;  // without the scene: it moves as it does there
-  q->camera_index = static_cast<std::uint16_t>(r.camera_index);
-  q->camera = r.camera;
+  q->scene = client->scene, q->seconds = seconds;
+  q->camera_stated =
+      client->options.has_scene || renderer.camera_overridden;  // without the scene: it moves as it does there
+  q->camera_index = static_cast<std::uint16_t>(renderer.camera_index);
+  q->camera = renderer.camera;
   q->camera.node = kNone;
-  q->settings = r.settings;
-  q->exposure = r.exposure;
-  q->dither = c->options.dither;
-  q->format = c->options.format;
-  begin_merge(&c->merge, q->frame);
-  begin_checks(c);
-  c->share.frame = q->frame;
-  c->bytes_in_before = c->bytes_out_before = 0;
+  q->settings = renderer.settings;
+  q->exposure = renderer.exposure;
+  q->dither = client->options.dither;
+  q->format = client->options.format;
+  begin_merge(&client->merge, q->frame);
+  begin_checks(client);
+  client->share.frame = q->frame;
+  client->bytes_in_before = client->bytes_out_before = 0;
   bool any = false;
-  measure_anew(c);
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    s->frame = ServerFrame();
-    c->bytes_in_before += s->messages.bytes_in, c->bytes_out_before += s->messages.bytes_out;
-    any = any || s->phase == ServerPhase::ready;
+  measure_anew(client);
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    RemoteServer* server = &client->servers[i];
+    server->frame = ServerFrame();
+    client->bytes_in_before += server->messages.bytes_in, client->bytes_out_before += server->messages.bytes_out;
+    any = any || server->phase == ServerPhase::ready;
   }
-  c->held = any && wants_quiet(*c);
-  if (any && c->options.has_scene && !c->held) share_rows(c, 0);
-  advance_client(c, 0);
+  client->held = any && wants_quiet(*client);
+  if (any && client->options.has_scene && !client->held) share_rows(client, 0);
+  advance_client(client, 0);
 }
 
-bool take_device_rows(Client* c, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end) {
-  if (!c->options.has_scene) return false;
-  row_count_max = std::min(row_count_max, rows_between_looks(*c));
-  std::uint32_t own_end = c->joined ? c->split.boundary[0] : c->settings.height;
-  std::uint32_t next = c->merge.next_row;
+bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end) {
+  if (!client->options.has_scene) return false;
+  row_count_max = std::min(row_count_max, rows_between_looks(*client));
+  std::uint32_t own_end = client->joined ? client->split.boundary[0] : client->settings.height;
+  std::uint32_t next = client->merge.next_row;
   if (next < own_end) {
     row_count_max = std::min(row_count_max, own_end - next);
   } else {
     // Rows of servers that have not come, one at a time: they may be there any moment.
     bool awaited = false;
-    for (std::uint32_t i = 0; i < c->server_count; ++i) awaited = awaited || c->servers[i].frame.open;
-    if (awaited && (!c->options.device_goes_on || is_worth_waiting(*c))) return false;
+    for (std::uint32_t i = 0; i < client->server_count; ++i) awaited = awaited || client->servers[i].frame.open;
+    if (awaited && (!client->options.device_goes_on || is_worth_waiting(*client))) return false;
     if (awaited) row_count_max = 1;
   }
-  return take_rows(&c->merge, row_count_max, row_begin, row_end);
+  return take_rows(&client->merge, row_count_max, row_begin, row_end);
 }
 
-void finish_device_rows(Client* c, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns) {
+void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns) {
   std::uint32_t count = row_end - row_begin;
   for (std::uint32_t row = row_begin; row < row_end; ++row)
-    observe_device_row(&c->model, row, static_cast<double>(ns) / count);
-  c->device_ns += static_cast<double>(ns), c->device_rows += count;
-  finish_rows(&c->merge, row_begin, row_end);
-  mark_dirty(c, row_begin, row_end);
+    observe_device_row(&client->model, row, static_cast<double>(ns) / count);
+  client->device_ns += static_cast<double>(ns), client->device_rows += count;
+  finish_rows(&client->merge, row_begin, row_end);
+  mark_dirty(client, row_begin, row_end);
 }
 
-void end_client_frame(Client* c) {
-  CHECK(is_complete(c->merge));
-  c->complete = true;
-  FrameShare* share = &c->share;
-  share->measured_ns = static_cast<double>(client_elapsed_ns(*c));
-  share->device_rows = count_rows(c->merge, kDeviceRows);
+void end_client_frame(Client* client) {
+  CHECK(is_complete(client->merge));
+  client->complete = true;
+  FrameShare* share = &client->share;
+  share->measured_ns = static_cast<double>(client_elapsed_ns(*client));
+  share->device_rows = count_rows(client->merge, kDeviceRows);
   share->bytes_in = share->bytes_out = 0;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    share->server_rows[i] = count_rows(c->merge, i);
-    share->row_begin[i] = c->servers[i].frame.row_begin, share->row_end[i] = c->servers[i].frame.row_end;
-    share->server_bytes[i] = c->servers[i].frame.bytes;
-    share->row_bytes += c->servers[i].frame.row_bytes;
-    share->bytes_in += c->servers[i].messages.bytes_in, share->bytes_out += c->servers[i].messages.bytes_out;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    share->server_rows[i] = count_rows(client->merge, i);
+    share->row_begin[i] = client->servers[i].frame.row_begin, share->row_end[i] = client->servers[i].frame.row_end;
+    share->server_bytes[i] = client->servers[i].frame.bytes;
+    share->row_bytes += client->servers[i].frame.row_bytes;
+    share->bytes_in += client->servers[i].messages.bytes_in, share->bytes_out += client->servers[i].messages.bytes_out;
   }
   auto since = [](std::uint64_t now, std::uint64_t before) { return now > before ? now - before : 0; };
-  share->bytes_in = since(share->bytes_in, c->bytes_in_before);
-  share->bytes_out = since(share->bytes_out, c->bytes_out_before);
-  measure_link(c);
-  if (!c->options.has_scene) learn_row_times(c);
-  if (c->joined) ++c->frames_shared;
-  cancel_rest(c);
-  end_frame(&c->model);
+  share->bytes_in = since(share->bytes_in, client->bytes_in_before);
+  share->bytes_out = since(share->bytes_out, client->bytes_out_before);
+  measure_link(client);
+  if (!client->options.has_scene) learn_row_times(client);
+  if (client->joined) ++client->frames_with_servers;
+  cancel_rest(client);
+  end_frame(&client->model);
 }
 
-bool is_settled(const Client& c) {
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& s = c.servers[i];
-    if (s.phase == ServerPhase::ready || (s.phase == ServerPhase::waiting && s.told)) continue;
+bool is_settled(const Client& client) {
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& server = client.servers[i];
+    if (server.phase == ServerPhase::ready || (server.phase == ServerPhase::waiting && server.told)) continue;
     return false;
   }
   return true;
 }
 
-bool take_shared_rows(Client* c, std::uint32_t* row_begin, std::uint32_t* row_end) {
-  if (c->dirty_begin >= c->dirty_end) return false;
-  *row_begin = c->dirty_begin, *row_end = c->dirty_end;
-  c->dirty_begin = c->dirty_end = 0;
+bool take_merged_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end) {
+  if (client->dirty_begin >= client->dirty_end) return false;
+  *row_begin = client->dirty_begin, *row_end = client->dirty_end;
+  client->dirty_begin = client->dirty_end = 0;
   return true;
 }
 

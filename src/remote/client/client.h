@@ -158,8 +158,8 @@ struct Client {
   DeviceRow device_row;
   double device_ns = 0;  // that its rows took, in this frame
   std::uint32_t device_rows = 0;
-  std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_shared_rows()
-  std::uint64_t frames_shared = 0;               // since a server came into use
+  std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_merged_rows()
+  std::uint64_t frames_with_servers = 0;         // since a server came into use
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
   FrameShare share;               // of the last complete frame
   std::uint64_t progress_ns = 0;  // when rows that were missing came last
@@ -201,14 +201,16 @@ bool is_settled(const Client& client);
 // asked for some answered a ping; or for as long as a server may prepare its scene, whatever it answers.
 bool is_cut_off(const Client& client);
 // Rows changed since the last call.
-bool take_shared_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
+bool take_merged_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
 
 // By the link's clock, but never less than before.
 std::uint64_t client_now_ns(const Client& client);
 // Of the current frame, its preparation included.
-inline std::uint64_t client_elapsed_ns(const Client& c) { return client_now_ns(c) - c.begin_ns + c.prepare_ns; }
+inline std::uint64_t client_elapsed_ns(const Client& client) {
+  return client_now_ns(client) - client.begin_ns + client.prepare_ns;
+}
 // Where a row begins in client->pixels.
-inline std::uint8_t* shared_row(const Client& client, std::uint32_t row) {
+inline std::uint8_t* merged_row(const Client& client, std::uint32_t row) {
   return client.pixels.data + std::size_t(row) * client.settings.width * pixel_bytes(client.options.format);
 }
 

@@ -6,8 +6,8 @@
 
 namespace pocketray {
 
-inline std::uint32_t index_of(const Client& c, const RemoteServer* s) {
-  return static_cast<std::uint32_t>(s - c.servers);
+inline std::uint32_t index_of(const Client& client, const RemoteServer* server) {
+  return static_cast<std::uint32_t>(server - client.servers);
 }
 
 // ---- client_server.cpp

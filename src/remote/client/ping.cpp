@@ -25,145 +25,153 @@ constexpr std::uint64_t kPingWaitNs = 20'000'000;  // that the device waits for 
 constexpr std::uint64_t kSizedPingWaitNs = 200'000'000;  // and for one with a payload, over a slow link
 constexpr double kNsPerByteMin = 1e-3;  // a link faster than a terabyte a second is one that was not measured
 
-bool rows_are_under_way(const Client& c) {
-  for (std::uint32_t i = 0; i < c.server_count; ++i)
-    if (c.servers[i].frame.open && c.servers[i].phase != ServerPhase::waiting) return true;
+bool rows_are_under_way(const Client& client) {
+  for (std::uint32_t i = 0; i < client.server_count; ++i)
+    if (client.servers[i].frame.open && client.servers[i].phase != ServerPhase::waiting) return true;
   return false;
 }
 
 // The payload of the answer that is to be timed next. Servers may share the device's radio: one after the other.
-std::uint32_t next_ping_bytes(const Client& c, const RemoteServer& s) {
-  if (s.pings_answered < kPings) return 0;
-  bool disturbed = c.options.has_scene && rows_are_under_way(c) && client_now_ns(c) < s.quiet_until_ns;
+std::uint32_t next_ping_bytes(const Client& client, const RemoteServer& server) {
+  if (server.pings_answered < kPings) return 0;
+  bool disturbed =
+      client.options.has_scene && rows_are_under_way(client) && client_now_ns(client) < server.quiet_until_ns;
   if (disturbed) return 0;  // it comes when they are not
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& other = c.servers[i];
-    if (&other != &s && other.phase == ServerPhase::measuring && other.ping_id != 0 && other.ping_bytes > 0) return 0;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& other = client.servers[i];
+    if (&other != &server && other.phase == ServerPhase::measuring && other.ping_id != 0 && other.ping_bytes > 0)
+      return 0;
   }
-  std::uint32_t wanted = kPingBytesLeast << (s.pings_answered - kPings), room = s.messages.in.count - 64;
+  std::uint32_t wanted = kPingBytesLeast << (server.pings_answered - kPings), room = server.messages.in.count - 64;
   return wanted < room ? wanted : room;
 }
 
 // Whether an answer was awaited when it came, so that its time means something.
-bool is_watched(const Client& c, double ns, std::uint32_t byte_count) {
+bool is_watched(const Client& client, double ns, std::uint32_t byte_count) {
   double inverse = byte_count > 0 ? kSizedUnwatchedInverse : kUnwatchedInverse;
-  return inverse * static_cast<double>(c.unwatched_ns) < ns;
+  return inverse * static_cast<double>(client.unwatched_ns) < ns;
 }
 
 // And one with a payload was alone on the link; a device without the scene does without that.
-bool is_sound(const Client& c, const RemoteServer& s, double ns, std::uint32_t byte_count) {
-  bool alone = s.ping_alone && !rows_are_under_way(c);
-  return is_watched(c, ns, byte_count) && (alone || byte_count == 0 || !c.options.has_scene);
+bool is_sound(const Client& client, const RemoteServer& server, double ns, std::uint32_t byte_count) {
+  bool alone = server.ping_alone && !rows_are_under_way(client);
+  return is_watched(client, ns, byte_count) && (alone || byte_count == 0 || !client.options.has_scene);
 }
 
 // What a byte takes by an answer of that time.
-double ns_per_byte_of(const RemoteServer& s, double ns, std::uint32_t byte_count) {
-  double per_byte = (ns - s.round_trip_ns) / byte_count;
+double ns_per_byte_of(const RemoteServer& server, double ns, std::uint32_t byte_count) {
+  double per_byte = (ns - server.round_trip_ns) / byte_count;
   return per_byte > kNsPerByteMin ? per_byte : kNsPerByteMin;
 }
 
 // The overture's answers: first without a payload, then with as much as it takes to tell the link from its latency.
-void take_measuring_pong(Client* c, RemoteServer* s, double ns, std::uint32_t byte_count) {
-  bool sound = is_sound(*c, *s, ns, byte_count), waits = byte_count == 0 && s->pings_answered >= kPings;
-  if (!waits && !sound && ++s->pings_missed < kPingsMissedMax) return send_ping(c, s, next_ping_bytes(*c, *s));
-  if (!waits) ++s->pings_answered;
-  if (byte_count == 0 && (s->round_trip_ns == 0 || ns < s->round_trip_ns)) s->round_trip_ns = ns;
-  if (s->pings_answered == kPings && s->quiet_until_ns == 0) s->quiet_until_ns = client_now_ns(*c) + kQuietNs;
-  bool tells = byte_count >= kPingBytesMost || ns >= kPingTripsMin * s->round_trip_ns;
-  std::uint32_t next = next_ping_bytes(*c, *s);
-  if (byte_count == 0 || (!tells && (next == 0 || next > byte_count))) return send_ping(c, s, next);
-  s->ns_per_byte = ns_per_byte_of(*s, ns, byte_count);
-  s->scaled = sound ? 1 : kUnsound;
-  enter(c, s, ServerPhase::probing);
+void take_measuring_pong(Client* client, RemoteServer* server, double ns, std::uint32_t byte_count) {
+  bool sound = is_sound(*client, *server, ns, byte_count), waits = byte_count == 0 && server->pings_answered >= kPings;
+  if (!waits && !sound && ++server->pings_missed < kPingsMissedMax)
+    return send_ping(client, server, next_ping_bytes(*client, *server));
+  if (!waits) ++server->pings_answered;
+  if (byte_count == 0 && (server->round_trip_ns == 0 || ns < server->round_trip_ns)) server->round_trip_ns = ns;
+  if (server->pings_answered == kPings && server->quiet_until_ns == 0)
+    server->quiet_until_ns = client_now_ns(*client) + kQuietNs;
+  bool tells = byte_count >= kPingBytesMost || ns >= kPingTripsMin * server->round_trip_ns;
+  std::uint32_t next = next_ping_bytes(*client, *server);
+  if (byte_count == 0 || (!tells && (next == 0 || next > byte_count))) return send_ping(client, server, next);
+  server->ns_per_byte = ns_per_byte_of(*server, ns, byte_count);
+  server->scaled = sound ? 1 : kUnsound;
+  enter(client, server, ServerPhase::probing);
 }
 
 // The link of a server that is in use, measured anew. An answer that was seen late, or that rows held up, still says
 // that the link is no slower.
-void take_ready_pong(Client* c, RemoteServer* s, double ns, std::uint32_t byte_count) {
-  s->quiet_until_ns = 0;
-  ServerModel* model = &c->model.servers[index_of(*c, s)];
-  double ns_per_byte = ns_per_byte_of(*s, ns, byte_count);
-  bool sound = is_sound(*c, *s, ns, byte_count);
+void take_ready_pong(Client* client, RemoteServer* server, double ns, std::uint32_t byte_count) {
+  server->quiet_until_ns = 0;
+  ServerModel* model = &client->model.servers[index_of(*client, server)];
+  double ns_per_byte = ns_per_byte_of(*server, ns, byte_count);
+  bool sound = is_sound(*client, *server, ns, byte_count);
   if (!sound && !(ns_per_byte < static_cast<double>(model->ns_per_byte.value))) return;
-  s->ns_per_byte = ns_per_byte;
+  server->ns_per_byte = ns_per_byte;
   model->ns_per_byte = Smoothed();
   smooth(&model->ns_per_byte, ns_per_byte);
-  observe_own_link(&c->model, ns_per_byte);
-  s->scaled = sound ? 1 : kUnsound;
+  observe_own_link(&client->model, ns_per_byte);
+  server->scaled = sound ? 1 : kUnsound;
 }
 
 }  // namespace
 
-void send_ping(Client* c, RemoteServer* s, std::uint32_t reply_bytes) {
+void send_ping(Client* client, RemoteServer* server, std::uint32_t reply_bytes) {
   Message message;
   message.type = MessageType::ping;
-  if (++s->ping_id == 0) ++s->ping_id;
-  message.ping = {s->ping_id, reply_bytes};
-  s->ping_bytes = reply_bytes;
-  s->late_at_ping = s->late_rows;
-  s->ping_alone = !rows_are_under_way(*c);
-  s->ping_ns = client_now_ns(*c);
-  send(c, s, message);
+  if (++server->ping_id == 0) ++server->ping_id;
+  message.ping = {server->ping_id, reply_bytes};
+  server->ping_bytes = reply_bytes;
+  server->late_at_ping = server->late_rows;
+  server->ping_alone = !rows_are_under_way(*client);
+  server->ping_ns = client_now_ns(*client);
+  send(client, server, message);
 }
 
-void take_pong(Client* c, RemoteServer* s, const Pong& pong) {
+void take_pong(Client* client, RemoteServer* server, const Pong& pong) {
   // One ping is under way at most, so that there is no other to answer.
-  if (s->ping_id == 0 || pong.id != s->ping_id || pong.bytes.count != s->ping_bytes) return lose_server(c, s, kUnasked);
-  s->late_rows -= s->late_at_ping;  // they would have come before it
-  s->late_at_ping = 0;
-  double ns = static_cast<double>(client_now_ns(*c) - s->ping_ns);
-  s->ping_id = 0;
-  s->frame.answers = true;
-  if (s->phase == ServerPhase::measuring) return take_measuring_pong(c, s, ns, pong.bytes.count);
-  if (s->phase != ServerPhase::ready) return;
-  if (pong.bytes.count > 0) return take_ready_pong(c, s, ns, pong.bytes.count);
-  const Smoothed& start = c->model.servers[index_of(*c, s)].start_ns;
-  if (is_watched(*c, ns, 0) || ns < static_cast<double>(start.value)) observe_start(&c->model, index_of(*c, s), ns);
-  if (pong.pixel_ps > 0) observe_server_price(&c->model, index_of(*c, s), 1e-3 * pong.pixel_ps);
+  if (server->ping_id == 0 || pong.id != server->ping_id || pong.bytes.count != server->ping_bytes)
+    return lose_server(client, server, kUnasked);
+  server->late_rows -= server->late_at_ping;  // they would have come before it
+  server->late_at_ping = 0;
+  double ns = static_cast<double>(client_now_ns(*client) - server->ping_ns);
+  server->ping_id = 0;
+  server->frame.answers = true;
+  if (server->phase == ServerPhase::measuring) return take_measuring_pong(client, server, ns, pong.bytes.count);
+  if (server->phase != ServerPhase::ready) return;
+  if (pong.bytes.count > 0) return take_ready_pong(client, server, ns, pong.bytes.count);
+  const Smoothed& start = client->model.servers[index_of(*client, server)].start_ns;
+  if (is_watched(*client, ns, 0) || ns < static_cast<double>(start.value))
+    observe_start(&client->model, index_of(*client, server), ns);
+  if (pong.pixel_ps > 0) observe_server_price(&client->model, index_of(*client, server), 1e-3 * pong.pixel_ps);
 }
 
-bool wants_quiet(const Client& c) {
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& s = c.servers[i];
-    bool sizes = s.phase == ServerPhase::measuring
-                     ? s.pings_answered >= kPings
-                     : s.phase == ServerPhase::ready && s.ping_id != 0 && s.ping_bytes > 0;
-    if (sizes && client_now_ns(c) < s.quiet_until_ns) return true;
+bool wants_quiet(const Client& client) {
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& server = client.servers[i];
+    bool sizes = server.phase == ServerPhase::measuring
+                     ? server.pings_answered >= kPings
+                     : server.phase == ServerPhase::ready && server.ping_id != 0 && server.ping_bytes > 0;
+    if (sizes && client_now_ns(client) < server.quiet_until_ns) return true;
   }
   return false;
 }
 
-void measure_anew(Client* c) {
-  if (!c->options.has_scene || wants_quiet(*c)) return;
-  std::uint64_t now = client_now_ns(*c);
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    double scaled_max = c->server_count == 1 ? kScaledAloneMax : kScaledMax;
-    bool doubtful = s->scaled > scaled_max || s->scaled * scaled_max < 1;
-    if (s->phase != ServerPhase::ready || s->ping_id != 0 || now < s->anew_ns || !doubtful) continue;
-    double bytes = kAnewAnswerNs / s->ns_per_byte, least = kPingBytesLeast, most = kPingBytesMost;
-    s->anew_ns = now + kAnewNs;
-    s->quiet_until_ns = now + kAnewQuietNs;
-    send_ping(c, s, static_cast<std::uint32_t>(bytes < least ? least : bytes > most ? most : bytes));
-    return flush_server(c, s);  // one after the other
+void measure_anew(Client* client) {
+  if (!client->options.has_scene || wants_quiet(*client)) return;
+  std::uint64_t now = client_now_ns(*client);
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    RemoteServer* server = &client->servers[i];
+    double scaled_max = client->server_count == 1 ? kScaledAloneMax : kScaledMax;
+    bool doubtful = server->scaled > scaled_max || server->scaled * scaled_max < 1;
+    if (server->phase != ServerPhase::ready || server->ping_id != 0 || now < server->anew_ns || !doubtful) continue;
+    double bytes = kAnewAnswerNs / server->ns_per_byte, least = kPingBytesLeast, most = kPingBytesMost;
+    server->anew_ns = now + kAnewNs;
+    server->quiet_until_ns = now + kAnewQuietNs;
+    send_ping(client, server, static_cast<std::uint32_t>(bytes < least ? least : bytes > most ? most : bytes));
+    return flush_server(client, server);  // one after the other
   }
 }
 
-double work_ns_max(const Client& c) {
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& s = c.servers[i];
-    if (s.phase != ServerPhase::waiting && s.ping_id != 0 && s.ping_bytes > 0) return kSizingLookNs;
+double work_ns_max(const Client& client) {
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& server = client.servers[i];
+    if (server.phase != ServerPhase::waiting && server.ping_id != 0 && server.ping_bytes > 0) return kSizingLookNs;
   }
   return kLongWorkNs;
 }
 
-std::uint64_t wait_wanted_ns(const Client& c) {
+std::uint64_t wait_wanted_ns(const Client& client) {
   std::uint64_t wanted = 0;
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& s = c.servers[i];
-    bool is_measured = s.phase == ServerPhase::measuring || (s.phase == ServerPhase::ready && s.ping_bytes > 0);
-    if (is_measured && s.ping_id != 0) {
-      std::uint64_t since = client_now_ns(c) - s.ping_ns, wait = s.ping_bytes > 0 ? kSizedPingWaitNs : kPingWaitNs;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& server = client.servers[i];
+    bool is_measured =
+        server.phase == ServerPhase::measuring || (server.phase == ServerPhase::ready && server.ping_bytes > 0);
+    if (is_measured && server.ping_id != 0) {
+      std::uint64_t since = client_now_ns(client) - server.ping_ns,
+                    wait = server.ping_bytes > 0 ? kSizedPingWaitNs : kPingWaitNs;
       if (since < wait && wait - since > wanted) wanted = wait - since;
     }
   }

@@ -13,10 +13,10 @@ constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows: longer than
 constexpr double kSilentChunks = 4, kSilentNsMin = 30e6;
 
 // How many servers have been asked for the row.
-std::uint32_t asked_count(const Client& c, std::uint32_t row) {
+std::uint32_t asked_count(const Client& client, std::uint32_t row) {
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const ServerFrame& f = c.servers[i].frame;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const ServerFrame& f = client.servers[i].frame;
     count += f.open && f.row_begin <= row && row < f.row_end;
   }
   return count;
@@ -27,10 +27,10 @@ struct Run {
 };
 
 // The longest run of missing rows in [begin, end) that so many servers have been asked for.
-Run longest_run(const Client& c, std::uint32_t begin, std::uint32_t end, std::uint32_t count) {
+Run longest_run(const Client& client, std::uint32_t begin, std::uint32_t end, std::uint32_t count) {
   Run best, run = {begin, begin};
   for (std::uint32_t row = begin; row < end; ++row) {
-    if (c.merge.rows[row].state != RowState::missing || asked_count(c, row) != count) {
+    if (client.merge.rows[row].state != RowState::missing || asked_count(client, row) != count) {
       run = {row + 1, row + 1};
       continue;
     }
@@ -40,89 +40,90 @@ Run longest_run(const Client& c, std::uint32_t begin, std::uint32_t end, std::ui
   return best;
 }
 
-bool is_idle(const RemoteServer& s) { return s.phase == ServerPhase::ready && !s.frame.open; }
+bool is_idle(const RemoteServer& server) { return server.phase == ServerPhase::ready && !server.frame.open; }
 
 // Rows in a time; all are alike while nothing is known.
-double speed_of(const Client& c, const RemoteServer& s) {
+double speed_of(const Client& client, const RemoteServer& server) {
   double sum = 0, count = 0;
-  for (std::uint32_t i = 0; i < c.server_count; ++i)
-    if (is_known(c.servers[i].row_ns)) sum += 1 / static_cast<double>(c.servers[i].row_ns.value), ++count;
-  if (is_known(s.row_ns)) return 1 / static_cast<double>(s.row_ns.value);
+  for (std::uint32_t i = 0; i < client.server_count; ++i)
+    if (is_known(client.servers[i].row_ns)) sum += 1 / static_cast<double>(client.servers[i].row_ns.value), ++count;
+  if (is_known(server.row_ns)) return 1 / static_cast<double>(server.row_ns.value);
   return count > 0 ? sum / count : 1;
 }
 
 // Every idle server gets its part of the run, by its speed.
-void divide(Client* c, const Run& run) {
+void divide(Client* client, const Run& run) {
   double speed_sum = 0, so_far = 0, rows = run.end - run.begin;
-  for (std::uint32_t i = 0; i < c->server_count; ++i)
-    if (is_idle(c->servers[i])) speed_sum += speed_of(*c, c->servers[i]);
+  for (std::uint32_t i = 0; i < client->server_count; ++i)
+    if (is_idle(client->servers[i])) speed_sum += speed_of(*client, client->servers[i]);
   std::uint32_t begin = run.begin;
-  for (std::uint32_t i = 0; i < c->server_count && begin < run.end; ++i) {
-    RemoteServer* s = &c->servers[i];
-    if (!is_idle(*s)) continue;
-    so_far += speed_of(*c, *s);
+  for (std::uint32_t i = 0; i < client->server_count && begin < run.end; ++i) {
+    RemoteServer* server = &client->servers[i];
+    if (!is_idle(*server)) continue;
+    so_far += speed_of(*client, *server);
     std::uint32_t end = run.begin + static_cast<std::uint32_t>(rows * std::min(1.0, so_far / speed_sum) + 0.5);
-    if (end > begin) ask_for_rows(c, s, begin, end);
+    if (end > begin) ask_for_rows(client, server, begin, end);
     begin = end;
   }
 }
 
 // Rows that the server alone has been asked for and that somebody else had better render: all where it has fallen
 // silent, else the upper half, which it would send last.
-Run rows_to_spare(const Client& c, const RemoteServer& s) {
-  Run run = longest_run(c, s.frame.row_begin, s.frame.row_end, 1);
-  double silent = static_cast<double>(client_now_ns(c) - std::max(s.frame.asked_ns, s.frame.heard_ns));
-  double chunk_ns = static_cast<double>(s.row_ns.value) * kChunkRowsEven;
+Run rows_to_spare(const Client& client, const RemoteServer& server) {
+  Run run = longest_run(client, server.frame.row_begin, server.frame.row_end, 1);
+  double silent = static_cast<double>(client_now_ns(client) - std::max(server.frame.asked_ns, server.frame.heard_ns));
+  double chunk_ns = static_cast<double>(server.row_ns.value) * kChunkRowsEven;
   if (silent > std::max(kSilentNsMin, kSilentChunks * chunk_ns)) return run;
   std::uint32_t rows = run.end - run.begin;
-  if (rows < 2 * kChunkRowsEven || !is_known(s.row_ns)) return Run();
+  if (rows < 2 * kChunkRowsEven || !is_known(server.row_ns)) return Run();
   return {run.begin, run.begin + rows / 2};
 }
 
-void take_over(Client* c, RemoteServer* idle) {
+void take_over(Client* client, RemoteServer* idle) {
   Run best;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    if (!c->servers[i].frame.open) continue;
-    Run run = rows_to_spare(*c, c->servers[i]);
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    if (!client->servers[i].frame.open) continue;
+    Run run = rows_to_spare(*client, client->servers[i]);
     if (run.end - run.begin > best.end - best.begin) best = run;
   }
-  if (best.begin < best.end) ask_for_rows(c, idle, best.begin, best.end);
+  if (best.begin < best.end) ask_for_rows(client, idle, best.begin, best.end);
 }
 
 }  // namespace
 
-void ask_idle_servers(Client* c) {
+void ask_idle_servers(Client* client) {
   bool idle = false;
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    if (s->phase == ServerPhase::probing) server_is_ready(c, s);  // what it renders is seen as it comes
-    idle = idle || is_idle(*s);
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    RemoteServer* server = &client->servers[i];
+    if (server->phase == ServerPhase::probing) server_is_ready(client, server);  // what it renders is seen as it comes
+    idle = idle || is_idle(*server);
   }
-  if (!idle || c->complete) return;
-  Run run = longest_run(*c, 0, c->settings.height, 0);
-  if (run.begin < run.end) divide(c, run);
-  for (std::uint32_t i = 0; i < c->server_count; ++i)
-    if (is_idle(c->servers[i])) take_over(c, &c->servers[i]);
+  if (!idle || client->complete) return;
+  Run run = longest_run(*client, 0, client->settings.height, 0);
+  if (run.begin < run.end) divide(client, run);
+  for (std::uint32_t i = 0; i < client->server_count; ++i)
+    if (is_idle(client->servers[i])) take_over(client, &client->servers[i]);
 }
 
-void learn_row_times(Client* c) {
-  for (std::uint32_t i = 0; i < c->server_count; ++i) {
-    RemoteServer* s = &c->servers[i];
-    const ServerFrame& f = s->frame;
-    if (f.asked_ns == 0 || s->phase != ServerPhase::ready) continue;
-    std::uint64_t end = f.rows_come > 0 && !f.open ? f.heard_ns : client_now_ns(*c);
-    smooth(&s->row_ns, static_cast<double>(end - f.asked_ns) / std::max(1u, f.rows_come));
+void learn_row_times(Client* client) {
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    RemoteServer* server = &client->servers[i];
+    const ServerFrame& f = server->frame;
+    if (f.asked_ns == 0 || server->phase != ServerPhase::ready) continue;
+    std::uint64_t end = f.rows_come > 0 && !f.open ? f.heard_ns : client_now_ns(*client);
+    smooth(&server->row_ns, static_cast<double>(end - f.asked_ns) / std::max(1u, f.rows_come));
   }
 }
 
-bool is_cut_off(const Client& c) {
-  if (c.options.has_scene || c.complete) return false;
-  std::uint64_t now = client_now_ns(c), since = std::max(c.begin_ns, c.progress_ns);
+bool is_cut_off(const Client& client) {
+  if (client.options.has_scene || client.complete) return false;
+  std::uint64_t now = client_now_ns(client), since = std::max(client.begin_ns, client.progress_ns);
   if (now < since + kCutOffNs) return false;
-  if (now >= since + std::max(kCutOffNs, c.options.prepare_timeout_ns)) return true;
-  for (std::uint32_t i = 0; i < c.server_count; ++i) {
-    const RemoteServer& s = c.servers[i];
-    if (s.phase == ServerPhase::ready && s.frame.open && s.frame.answers) return false;  // it lives, and takes its time
+  if (now >= since + std::max(kCutOffNs, client.options.prepare_timeout_ns)) return true;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& server = client.servers[i];
+    if (server.phase == ServerPhase::ready && server.frame.open && server.frame.answers)
+      return false;  // it lives, and takes its time
   }
   return true;
 }

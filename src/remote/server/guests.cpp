@@ -82,8 +82,8 @@ int forgotten_address(const Server& server) {
   const std::vector<Address>& all = server.addresses;
   int oldest = -1;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    bool taken = std::any_of(server.sessions.begin(), server.sessions.end(), [&](const Session& s) {
-      return s.phase != SessionPhase::unused && s.address == static_cast<int>(i);
+    bool taken = std::any_of(server.sessions.begin(), server.sessions.end(), [&](const Session& session) {
+      return session.phase != SessionPhase::unused && session.address == static_cast<int>(i);
     });
     if (!taken && (oldest < 0 || all[i].last_ns < all[static_cast<std::size_t>(oldest)].last_ns))
       oldest = static_cast<int>(i);
@@ -102,8 +102,8 @@ int find_address(Server* server, std::uint64_t key) {
     all.emplace_back();
   } else {
     chosen = forgotten_address(*server);
-    for (Session& s : server->sessions)
-      if (s.address == chosen) s.address = -1;
+    for (Session& session : server->sessions)
+      if (session.address == chosen) session.address = -1;
     all[static_cast<std::size_t>(chosen)] = Address();
   }
   all[static_cast<std::size_t>(chosen)].key = key;
@@ -111,13 +111,13 @@ int find_address(Server* server, std::uint64_t key) {
 }
 
 int places_of(const Server& server, int address) {
-  return static_cast<int>(std::count_if(server.sessions.begin(), server.sessions.end(), [&](const Session& s) {
-    return s.phase != SessionPhase::unused && s.address == address;
+  return static_cast<int>(std::count_if(server.sessions.begin(), server.sessions.end(), [&](const Session& session) {
+    return session.phase != SessionPhase::unused && session.address == address;
   }));
 }
 
-std::uint64_t silent_ns(Server* server, Session* s) {
-  std::uint64_t left = platform::link_timer_left(&s->idle_timer, now_ns(server));
+std::uint64_t silent_ns(Server* server, Session* session) {
+  std::uint64_t left = platform::link_timer_left(&session->idle_timer, now_ns(server));
   return server->options.idle_timeout_ns - std::min(left, server->options.idle_timeout_ns);
 }
 
@@ -127,21 +127,21 @@ Session* find_leaver(Server* server, int address) {
   int own = places_of(*server, address), most = 0;
   std::uint64_t longest = 0;
   Session* chosen = nullptr;
-  for (Session& s : server->sessions) {
-    if (s.phase == SessionPhase::unused) continue;
-    int count = places_of(*server, s.address);
-    std::uint64_t silent = silent_ns(server, &s);
-    bool idle = s.phase == SessionPhase::leaving || (!has_job(s) && silent >= kMakeWayNs);
-    bool may_go = count >= own + 2 || (idle && (count > own || s.address == address));
+  for (Session& session : server->sessions) {
+    if (session.phase == SessionPhase::unused) continue;
+    int count = places_of(*server, session.address);
+    std::uint64_t silent = silent_ns(server, &session);
+    bool idle = session.phase == SessionPhase::leaving || (!has_job(session) && silent >= kMakeWayNs);
+    bool may_go = count >= own + 2 || (idle && (count > own || session.address == address));
     if (!may_go || count < most || (count == most && chosen && silent <= longest)) continue;
-    chosen = &s, most = count, longest = silent;
+    chosen = &session, most = count, longest = silent;
   }
   return chosen;
 }
 
 Session* find_place(Server* server, int address) {
-  for (Session& s : server->sessions)
-    if (s.phase == SessionPhase::unused) return &s;
+  for (Session& session : server->sessions)
+    if (session.phase == SessionPhase::unused) return &session;
   Session* leaver = find_leaver(server, address);
   if (!leaver) return nullptr;
   if (leaver->phase == SessionPhase::serving && output_room(*leaver) >= kReplyBytesMax) {
@@ -159,29 +159,29 @@ Session* find_place(Server* server, int address) {
 // Gives the guest's connection a place.
 void seat(Server* server, Guest* guest, const Hello& hello) {
   int address = find_address(server, guest->key);
-  Session* s = find_place(server, address);
-  if (!s) {
+  Session* session = find_place(server, address);
+  if (!session) {
     log_line(&server->log, now_ns(server), "%s was sent away: all %zu places are taken",
              server->net->stream_name(server->link, guest->stream), server->sessions.size());
     return send_away(server, guest, WireError::busy);
   }
-  restart_session(s);
-  s->phase = SessionPhase::serving;
-  s->stream = guest->stream;
-  s->address = address;
-  s->message_bytes_max = hello.message_bytes_max;
-  std::snprintf(s->name, sizeof s->name, "%s", server->net->stream_name(server->link, s->stream));
+  restart_session(session);
+  session->phase = SessionPhase::serving;
+  session->stream = guest->stream;
+  session->address = address;
+  session->message_bytes_max = hello.message_bytes_max;
+  std::snprintf(session->name, sizeof session->name, "%s", server->net->stream_name(server->link, session->stream));
   std::uint64_t now = now_ns(server);
   server->addresses[static_cast<std::size_t>(address)].last_ns = now;
-  s->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
-  s->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
-  s->stall_timer = platform::link_timer(now, server->options.stall_timeout_ns);
+  session->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
+  session->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
+  session->stall_timer = platform::link_timer(now, server->options.stall_timeout_ns);
   std::size_t unsent = guest->output_end - guest->output_begin;
-  std::memcpy(reserve_output(s, unsent), guest->output + guest->output_begin, unsent);
-  s->output.end += unsent;
+  std::memcpy(reserve_output(session, unsent), guest->output + guest->output_begin, unsent);
+  session->output.end += unsent;
   guest->stream = -1;
   ++server->totals.client_count;
-  log_line(&server->log, now, "%s came", s->name);
+  log_line(&server->log, now, "%s came", session->name);
 }
 
 void log_guest(Server* server, const Guest& guest, const char* reason) {

@@ -50,54 +50,57 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
   send_message(session, reply);
 }
 
-void begin_job(Session* s, const StoredScene* scene) {
-  s->job = FrameJob();
-  s->job.scene = scene;
+void begin_job(Session* session, const StoredScene* scene) {
+  session->job = FrameJob();
+  session->job.scene = scene;
 }
 
 // The request takes the place of what is left of the one before, whatever becomes of it.
-void take_request(Server* server, Session* s, const FrameRequest& request) {
+void take_request(Server* server, Session* session, const FrameRequest& request) {
   const Settings& settings = request.settings;
-  if (request.frame == 0) return refuse(server, s, WireError::bad_request, 0, "frames count from 1");
-  bool is_late = request.frame < s->frame_last;  // further rows of the same frame may be asked for
-  if (is_late) return refuse(server, s, WireError::bad_request, request.frame, "a later frame was asked for before");
-  drop_job(s);
-  ++s->job_number;
-  s->frame_last = request.frame;
-  s->request = request;
-  if (settings.width != s->shape.width || settings.height != s->shape.height || request.format != s->shape.format) {
-    s->shape = {settings.width, settings.height, 1, request.format};
-    s->encoder = nullptr;  // both ends begin anew
+  if (request.frame == 0) return refuse(server, session, WireError::bad_request, 0, "frames count from 1");
+  bool is_late = request.frame < session->frame_last;  // further rows of the same frame may be asked for
+  if (is_late)
+    return refuse(server, session, WireError::bad_request, request.frame, "a later frame was asked for before");
+  drop_job(session);
+  ++session->job_number;
+  session->frame_last = request.frame;
+  session->request = request;
+  if (settings.width != session->shape.width || settings.height != session->shape.height ||
+      request.format != session->shape.format) {
+    session->shape = {settings.width, settings.height, 1, request.format};
+    session->encoder = nullptr;  // both ends begin anew
   }
   if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
-    return refuse(server, s, WireError::too_large, request.frame, "the picture is larger than this server allows");
+    return refuse(server, session, WireError::too_large, request.frame,
+                  "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, request.scene);
-  if (!scene) return refuse(server, s, WireError::unknown_scene, request.frame, "its scene is not known here");
-  begin_job(s, scene);
-  s->job.request = request;
-  s->job.traced_begin = s->job.sent_begin = request.row_end;
+  if (!scene) return refuse(server, session, WireError::unknown_scene, request.frame, "its scene is not known here");
+  begin_job(session, scene);
+  session->job.request = request;
+  session->job.traced_begin = session->job.sent_begin = request.row_end;
 }
 
-void take_frame_change(Server* server, Session* s, const FrameRequest& change) {
-  if (s->request.frame == 0 || change.row_end > s->request.settings.height)
-    return refuse(server, s, WireError::bad_request, change.frame, "it changes what was not asked for");
-  FrameRequest request = s->request;
+void take_frame_change(Server* server, Session* session, const FrameRequest& change) {
+  if (session->request.frame == 0 || change.row_end > session->request.settings.height)
+    return refuse(server, session, WireError::bad_request, change.frame, "it changes what was not asked for");
+  FrameRequest request = session->request;
   take_change(change, &request);
-  take_request(server, s, request);
+  take_request(server, session, request);
 }
 
-void take_view_query(Server* server, Session* s, const ViewQuery& query) {
-  drop_job(s);
-  ++s->job_number;
+void take_view_query(Server* server, Session* session, const ViewQuery& query) {
+  drop_job(session);
+  ++session->job_number;
   const Settings& settings = query.settings;
   if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
-    return refuse(server, s, WireError::too_large, 0, "the picture is larger than this server allows");
+    return refuse(server, session, WireError::too_large, 0, "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, query.scene);
-  if (!scene) return refuse(server, s, WireError::unknown_scene, 0, "its scene is not known here");
-  begin_job(s, scene);
-  s->job.is_view_query = true;
-  s->job.measure_exposure = query.measure_exposure;
-  FrameRequest* request = &s->job.request;
+  if (!scene) return refuse(server, session, WireError::unknown_scene, 0, "its scene is not known here");
+  begin_job(session, scene);
+  session->job.is_view_query = true;
+  session->job.measure_exposure = query.measure_exposure;
+  FrameRequest* request = &session->job.request;
   request->scene = query.scene;
   request->camera_stated = query.camera_stated, request->camera_index = query.camera_index;
   request->camera = query.camera, request->settings = query.settings;
@@ -159,49 +162,53 @@ Message server_hello(const Server& server) {
   return message;
 }
 
-int take_messages(Server* server, Session* s) {
+int take_messages(Server* server, Session* session) {
   constexpr WireError kMalformed = WireError::malformed;
   std::uint64_t start = now_ns(server);
   std::size_t begin = 0;
   int count = 0;
-  while (wants_messages(*s)) {
+  while (wants_messages(*session)) {
     Message message;
-    Decoded decoded = decode_message(s->input.data + begin, s->input_count - begin, kRequestBytesMax, &message);
-    s->more_to_take = decoded.state == DecodeState::message;
+    Decoded decoded =
+        decode_message(session->input.data + begin, session->input_count - begin, kRequestBytesMax, &message);
+    session->more_to_take = decoded.state == DecodeState::message;
     if (decoded.state == DecodeState::need_more) break;
     ++count;
     if (decoded.state == DecodeState::malformed) {
-      leave(server, s, &kMalformed, "it sent what is no message");
+      leave(server, session, &kMalformed, "it sent what is no message");
       return count;
     }
     begin += decoded.byte_count;
     std::uint64_t now = now_ns(server);
-    s->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
-    s->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
-    if (!take_message(server, s, message)) return count;
+    session->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
+    session->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
+    if (!take_message(server, session, message)) return count;
     if (count == kMessagesAtOnce || now_ns(server) > start + kMessagesNs) break;
   }
-  s->input_count -= begin;
-  std::memmove(s->input.data, s->input.data + begin, s->input_count);
-  if (s->has_ended && !wants_messages(*s) && s->phase == SessionPhase::serving && !s->more_to_take)
-    end_session(server, s, "it closed the connection");
+  session->input_count -= begin;
+  std::memmove(session->input.data, session->input.data + begin, session->input_count);
+  if (session->has_ended && !wants_messages(*session) && session->phase == SessionPhase::serving &&
+      !session->more_to_take)
+    end_session(server, session, "it closed the connection");
   return count;
 }
 
-void read_session(Server* server, Session* s) {
-  bool leaving = s->phase == SessionPhase::leaving;
-  if (leaving) s->input_count = 0;
-  if (s->input_count == 0) s->message_timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
+void read_session(Server* server, Session* session) {
+  bool leaving = session->phase == SessionPhase::leaving;
+  if (leaving) session->input_count = 0;
+  if (session->input_count == 0)
+    session->message_timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
   std::size_t count = 0;
   platform::Error error;
-  platform::LinkResult result = server->net->read(server->link, s->stream, s->input.data + s->input_count,
-                                                  s->input.count - s->input_count, &count, &error);
-  s->input_count += count;
-  s->more_to_take = s->more_to_take || (!leaving && count > 0);
-  if (result == platform::LinkResult::failed) return end_session(server, s, error.text);
+  platform::LinkResult result =
+      server->net->read(server->link, session->stream, session->input.data + session->input_count,
+                        session->input.count - session->input_count, &count, &error);
+  session->input_count += count;
+  session->more_to_take = session->more_to_take || (!leaving && count > 0);
+  if (result == platform::LinkResult::failed) return end_session(server, session, error.text);
   if (result != platform::LinkResult::ended) return;
-  if (leaving || !s->more_to_take) return end_session(server, s, "it closed the connection");
-  s->has_ended = true;  // what it said before counts
+  if (leaving || !session->more_to_take) return end_session(server, session, "it closed the connection");
+  session->has_ended = true;  // what it said before counts
 }
 
 }  // namespace pocketray

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/status.h"
+#include "scene/content_hash.h"
 #include "scene/scene.h"
-#include "wire/content_hash.h"
 #include "wire/message.h"
 
 namespace pocketray {

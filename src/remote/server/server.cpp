@@ -20,57 +20,61 @@ bool accepts(Server* server) {
   return !server->accept_rests || platform::link_timer_left(&server->accept_timer, now_ns(server)) == 0;
 }
 
-void write_session(Server* server, Session* s) {
-  OutputQueue* q = &s->output;
+void write_session(Server* server, Session* session) {
+  OutputQueue* q = &session->output;
   while (q->begin < q->end) {
     std::size_t count = 0;
     platform::Error error;
     LinkResult result =
-        server->net->write(server->link, s->stream, q->bytes.data + q->begin, q->end - q->begin, &count, &error);
-    if (result == LinkResult::failed) return end_session(server, s, error.text);
+        server->net->write(server->link, session->stream, q->bytes.data + q->begin, q->end - q->begin, &count, &error);
+    if (result == LinkResult::failed) return end_session(server, session, error.text);
     if (count == 0) return;
     q->begin += count;
-    s->byte_count += count;
-    s->stall_timer = platform::link_timer(now_ns(server), server->options.stall_timeout_ns);
+    session->byte_count += count;
+    session->stall_timer = platform::link_timer(now_ns(server), server->options.stall_timeout_ns);
   }
   q->begin = q->end = 0;
 }
 
 // Sends what there is, and rows that waited for room, unless they have to wait for their turn as well.
-void send_session(Server* server, Session* s) {
+void send_session(Server* server, Session* session) {
   for (;;) {
-    std::uint64_t start = now_ns(server), queued_before = queued_bytes(*s);
-    write_session(server, s);
+    std::uint64_t start = now_ns(server), queued_before = queued_bytes(*session);
+    write_session(server, session);
     std::uint64_t now = now_ns(server);
-    if (in_turn(*server) && now > start && queued_before > 0) account_for(server, s, now - start, false);
-    if (s->phase != SessionPhase::serving || in_turn(*server)) return;
-    std::size_t queued = queued_bytes(*s);
-    send_chunks(s);
-    if (queued_bytes(*s) == queued) return;
+    if (in_turn(*server) && now > start && queued_before > 0) account_for(server, session, now - start, false);
+    if (session->phase != SessionPhase::serving || in_turn(*server)) return;
+    std::size_t queued = queued_bytes(*session);
+    send_chunks(session);
+    if (queued_bytes(*session) == queued) return;
   }
 }
 
 // Whether it waits for the rest of a message; for the client to take what it is sent; for nothing.
-bool awaits_message(const Session& s) { return s.phase == SessionPhase::serving && s.input_count > 0; }
-bool awaits_room(const Session& s) { return queued_bytes(s) > 0; }
-bool is_idle(const Session& s) { return s.phase == SessionPhase::serving && !has_job(s) && queued_bytes(s) == 0; }
+bool awaits_message(const Session& session) {
+  return session.phase == SessionPhase::serving && session.input_count > 0;
+}
+bool awaits_room(const Session& session) { return queued_bytes(session) > 0; }
+bool is_idle(const Session& session) {
+  return session.phase == SessionPhase::serving && !has_job(session) && queued_bytes(session) == 0;
+}
 
 // Nanoseconds till one of the session's times is over.
-std::uint64_t session_due_ns(Session* s, std::uint64_t now) {
+std::uint64_t session_due_ns(Session* session, std::uint64_t now) {
   std::uint64_t due = ~std::uint64_t(0);
   auto consider = [&](bool counts, platform::LinkTimer* timer) {
     if (!counts) return;
     std::uint64_t left = platform::link_timer_left(timer, now);
     if (left < due) due = left;
   };
-  consider(awaits_message(*s), &s->message_timer);
-  consider(awaits_room(*s), &s->stall_timer);
-  consider(is_idle(*s), &s->idle_timer);
-  consider(s->phase == SessionPhase::leaving, &s->leave_timer);
+  consider(awaits_message(*session), &session->message_timer);
+  consider(awaits_room(*session), &session->stall_timer);
+  consider(is_idle(*session), &session->idle_timer);
+  consider(session->phase == SessionPhase::leaving, &session->leave_timer);
   return due;
 }
 
-void look_at_clock(Server* server, Session* s) {
+void look_at_clock(Server* server, Session* session) {
   std::uint64_t now = now_ns(server);
   auto over = [&](bool counts, platform::LinkTimer* timer) {
     if (counts) return platform::link_timer_left(timer, now) == 0;
@@ -78,13 +82,16 @@ void look_at_clock(Server* server, Session* s) {
     timer->passed_ns = 0;
     return false;
   };
-  if (s->phase == SessionPhase::leaving) {
-    if (over(true, &s->leave_timer)) end_session(server, s, s->reason);
+  if (session->phase == SessionPhase::leaving) {
+    if (over(true, &session->leave_timer)) end_session(server, session, session->reason);
     return;
   }
-  if (over(awaits_room(*s), &s->stall_timer)) return end_session(server, s, "it takes nothing of what it asked for");
-  if (over(awaits_message(*s), &s->message_timer)) return leave(server, s, nullptr, "it stopped in a message");
-  if (over(is_idle(*s), &s->idle_timer)) return leave(server, s, nullptr, "it has been silent for too long");
+  if (over(awaits_room(*session), &session->stall_timer))
+    return end_session(server, session, "it takes nothing of what it asked for");
+  if (over(awaits_message(*session), &session->message_timer))
+    return leave(server, session, nullptr, "it stopped in a message");
+  if (over(is_idle(*session), &session->idle_timer))
+    return leave(server, session, nullptr, "it has been silent for too long");
 }
 
 // Waits until there is something to do.
@@ -94,12 +101,12 @@ void wait_for_news(Server* server, std::uint64_t timeout_ns) {
   platform::LinkWait* wait = server->waits.data();
   *wait++ = {server->listener, accepts(server), false};
   if (server->accept_rests) due = std::min(due, platform::link_timer_left(&server->accept_timer, now));
-  for (Session& s : server->sessions) {
+  for (Session& session : server->sessions) {
     *wait = platform::LinkWait();
-    if (s.phase != SessionPhase::unused) {
-      bool has_room = s.input_count < s.input.count;
-      *wait = {s.stream, has_room && !s.has_ended, queued_bytes(s) != 0};
-      std::uint64_t session_due = wants_messages(s) ? 0 : session_due_ns(&s, now);
+    if (session.phase != SessionPhase::unused) {
+      bool has_room = session.input_count < session.input.count;
+      *wait = {session.stream, has_room && !session.has_ended, queued_bytes(session) != 0};
+      std::uint64_t session_due = wants_messages(session) ? 0 : session_due_ns(&session, now);
       if (session_due < due) due = session_due;
     }
     ++wait;
@@ -115,17 +122,18 @@ void wait_for_news(Server* server, std::uint64_t timeout_ns) {
 
 // Queues a last word for everybody and sends what can be sent in a moment.
 void say_farewell(Server* server) {
-  for (Session& s : server->sessions)
-    if (s.phase == SessionPhase::serving && output_room(s) >= kReplyBytesMax) send_error(&s, WireError::closing, 0);
+  for (Session& session : server->sessions)
+    if (session.phase == SessionPhase::serving && output_room(session) >= kReplyBytesMax)
+      send_error(&session, WireError::closing, 0);
   platform::LinkTimer timer = platform::link_timer(now_ns(server), kFarewellNs);
   for (;;) {
     bool waits = false;
     for (std::size_t i = 0; i < server->sessions.size(); ++i) {
-      Session* s = &server->sessions[i];
-      if (s->phase != SessionPhase::unused) write_session(server, s);
-      if (s->phase != SessionPhase::unused) drop_input(server, s->stream);
-      bool unsent = s->phase != SessionPhase::unused && queued_bytes(*s) > 0;
-      server->waits[i] = {s->stream, false, unsent};
+      Session* session = &server->sessions[i];
+      if (session->phase != SessionPhase::unused) write_session(server, session);
+      if (session->phase != SessionPhase::unused) drop_input(server, session->stream);
+      bool unsent = session->phase != SessionPhase::unused && queued_bytes(*session) > 0;
+      server->waits[i] = {session->stream, false, unsent};
       waits = waits || unsent;
     }
     std::uint64_t left = platform::link_timer_left(&timer, now_ns(server));
@@ -154,13 +162,13 @@ Status take_memory(Server* server) {
   server->guests.resize(static_cast<std::size_t>(o.guest_count_max));
   server->addresses.reserve(kAddressCountMax);
   server->waits.resize(1 + server->sessions.size() + server->guests.size());
-  for (Session& s : server->sessions) {
+  for (Session& session : server->sessions) {
     void* block = take_block(o.client_memory_bytes);
     if (!block)
       return failure("%d clients of %.0f MiB each cannot be had: allow fewer, or less for each", o.client_count_max,
                      static_cast<double>(o.client_memory_bytes) / (1 << 20));
     server->blocks.push_back(block);
-    make_session(block, o.client_memory_bytes, &s);
+    make_session(block, o.client_memory_bytes, &session);
   }
   return success();
 }
@@ -174,28 +182,28 @@ void release(Server* server) {
 
 }  // namespace
 
-void leave(Server* server, Session* s, const WireError* code, const char* reason) {
-  drop_job(s);
-  if (code) send_error(s, *code, 0);
-  std::snprintf(s->reason, sizeof s->reason, "%s", reason);
-  s->phase = SessionPhase::leaving;
-  s->input_count = 0;
-  s->more_to_take = false;
-  s->leave_timer = platform::link_timer(now_ns(server), kLingerNs);
-  if (!code) end_session(server, s, reason);
+void leave(Server* server, Session* session, const WireError* code, const char* reason) {
+  drop_job(session);
+  if (code) send_error(session, *code, 0);
+  std::snprintf(session->reason, sizeof session->reason, "%s", reason);
+  session->phase = SessionPhase::leaving;
+  session->input_count = 0;
+  session->more_to_take = false;
+  session->leave_timer = platform::link_timer(now_ns(server), kLingerNs);
+  if (!code) end_session(server, session, reason);
 }
 
-void end_session(Server* server, Session* s, const char* reason) {
-  server->net->close(server->link, s->stream);
-  if (s->phase == SessionPhase::leaving && s->reason[0]) reason = s->reason;
-  s->phase = SessionPhase::unused;
-  drop_job(s);
-  server->totals.frame_count += s->frame_count;
-  server->totals.row_count += s->row_count;
-  server->totals.byte_count += s->byte_count;
-  log_line(&server->log, now_ns(server), "%s went after %llu frames, %llu rows, %.1f KiB: %s", s->name,
-           static_cast<unsigned long long>(s->frame_count), static_cast<unsigned long long>(s->row_count),
-           static_cast<double>(s->byte_count) / 1024, reason);
+void end_session(Server* server, Session* session, const char* reason) {
+  server->net->close(server->link, session->stream);
+  if (session->phase == SessionPhase::leaving && session->reason[0]) reason = session->reason;
+  session->phase = SessionPhase::unused;
+  drop_job(session);
+  server->totals.frame_count += session->frame_count;
+  server->totals.row_count += session->row_count;
+  server->totals.byte_count += session->byte_count;
+  log_line(&server->log, now_ns(server), "%s went after %llu frames, %llu rows, %.1f KiB: %s", session->name,
+           static_cast<unsigned long long>(session->frame_count), static_cast<unsigned long long>(session->row_count),
+           static_cast<double>(session->byte_count) / 1024, reason);
 }
 
 int server_stream_count(const ServerOptions& options) { return 2 + options.client_count_max + options.guest_count_max; }
@@ -232,43 +240,44 @@ void step_server(Server* server, std::uint64_t timeout_ns) {
   wait_for_news(server, timeout_ns);
   const platform::LinkWait* wait = server->waits.data();
   bool comes = (wait++)->can_read;
-  for (Session& s : server->sessions) {
+  for (Session& session : server->sessions) {
     bool has_news = (wait++)->can_read;
-    if (s.phase != SessionPhase::unused && (has_news || s.input_count > 0)) read_session(server, &s);
-    if (s.phase == SessionPhase::serving && !in_turn(*server) && wants_messages(s)) take_messages(server, &s);
+    if (session.phase != SessionPhase::unused && (has_news || session.input_count > 0)) read_session(server, &session);
+    if (session.phase == SessionPhase::serving && !in_turn(*server) && wants_messages(session))
+      take_messages(server, &session);
   }
   for (Guest& guest : server->guests)
     if (guest.stream >= 0) tend_guest(server, &guest);
   if (comes) accept_clients(server);
   do_work(server);
-  for (Session& s : server->sessions) {
-    if (s.phase != SessionPhase::unused) send_session(server, &s);
-    if (s.phase != SessionPhase::unused) look_at_clock(server, &s);
+  for (Session& session : server->sessions) {
+    if (session.phase != SessionPhase::unused) send_session(server, &session);
+    if (session.phase != SessionPhase::unused) look_at_clock(server, &session);
   }
 }
 
 ServerTotals server_totals(const Server& server) {
   ServerTotals totals = server.totals;
-  for (const Session& s : server.sessions)
-    if (s.phase != SessionPhase::unused) {
-      totals.frame_count += s.frame_count;
-      totals.row_count += s.row_count;
-      totals.byte_count += s.byte_count;
+  for (const Session& session : server.sessions)
+    if (session.phase != SessionPhase::unused) {
+      totals.frame_count += session.frame_count;
+      totals.row_count += session.row_count;
+      totals.byte_count += session.byte_count;
     }
   return totals;
 }
 
 int server_client_count(const Server& server) {
   int count = 0;
-  for (const Session& s : server.sessions) count += s.phase != SessionPhase::unused;
+  for (const Session& session : server.sessions) count += session.phase != SessionPhase::unused;
   return count;
 }
 
 void close_server(Server* server) {
   if (!server) return;
   say_farewell(server);
-  for (Session& s : server->sessions)
-    if (s.phase != SessionPhase::unused) end_session(server, &s, "this server ends");
+  for (Session& session : server->sessions)
+    if (session.phase != SessionPhase::unused) end_session(server, &session, "this server ends");
   for (Guest& guest : server->guests)
     if (guest.stream >= 0) close_guest(server, &guest);
   release(server);

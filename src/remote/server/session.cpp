@@ -22,34 +22,36 @@ std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
   return ps < 4294967295.0 ? static_cast<std::uint32_t>(ps) : ~0u;
 }
 
-void send_chunk(Session* s, std::uint32_t row_begin, std::uint32_t row_end) {
-  const FrameRequest& request = s->job.request;
-  const Renderer& r = s->renderer;
-  int width = static_cast<int>(r.settings.width), line_bytes = width * static_cast<int>(pixel_bytes(request.format));
-  pack_rows(r.image.data, width, static_cast<int>(r.settings.height), static_cast<int>(row_begin),
-            static_cast<int>(row_end), r.exposure, pack_format(request.format), Rotation::none, request.dither,
-            s->pixels.data, line_bytes);
+void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end) {
+  const FrameRequest& request = session->job.request;
+  const Renderer& renderer = session->renderer;
+  int width = static_cast<int>(renderer.settings.width),
+      line_bytes = width * static_cast<int>(pixel_bytes(request.format));
+  pack_rows(renderer.image.data, width, static_cast<int>(renderer.settings.height), static_cast<int>(row_begin),
+            static_cast<int>(row_end), renderer.exposure, pack_format(request.format), Rotation::none, request.dither,
+            session->pixels.data, line_bytes);
   std::uint32_t prefix = row_chunk_prefix_bytes(), row_count = row_end - row_begin;
-  std::uint8_t* at = reserve_output(s, prefix + encoded_bytes_max(s->shape, row_count));
+  std::uint8_t* at = reserve_output(session, prefix + encoded_bytes_max(session->shape, row_count));
   Message message;
   message.type = MessageType::row_chunk;
   RowChunk* chunk = &message.row_chunk;
   chunk->frame = request.frame;
   chunk->row_begin = static_cast<std::uint16_t>(row_begin);
   chunk->row_count = static_cast<std::uint16_t>(row_count);
-  chunk->pixel_ps = s->pixel_ps = picoseconds(s->job.wall_ns, s->job.pixel_count);
-  std::uint32_t byte_count = encode_rows(s->encoder, row_begin, row_count,
-                                         s->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes),
-                                         request.deflate_level, at + prefix, &chunk->encoding);
-  add_chunk_number(chunk, s->chunk_count++);
+  chunk->pixel_ps = session->pixel_ps = picoseconds(session->job.wall_ns, session->job.pixel_count);
+  std::uint32_t byte_count =
+      encode_rows(session->encoder, row_begin, row_count,
+                  session->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes),
+                  request.deflate_level, at + prefix, &chunk->encoding);
+  add_chunk_number(chunk, session->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};
-  send_message(s, message);
-  s->row_count += row_count;
+  send_message(session, message);
+  session->row_count += row_count;
 }
 
 // Rows of the chunk that is to be sent next; 0: all are sent.
-std::uint32_t next_chunk_rows(const Session& s) {
-  const FrameJob& job = s.job;
+std::uint32_t next_chunk_rows(const Session& session) {
+  const FrameJob& job = session.job;
   return next_chunk_rows(job.request, job.chunk_rows, job.sent_begin - job.request.row_begin);
 }
 
@@ -77,49 +79,49 @@ void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) 
 
 void next_slice(void* context, SpanBatch* batch) {
   SliceSource* source = static_cast<SliceSource*>(context);
-  const Session& s = *source->session;
-  const FrameJob& job = s.job;
-  const Settings& settings = s.renderer.settings;
+  const Session& session = *source->session;
+  const FrameJob& job = session.job;
+  const Settings& settings = session.renderer.settings;
   // trace_ns is of all threads together.
   std::uint32_t pixels_max = kFirstPixels * settings.threads;
-  if (s.trace_ns > 0)
-    pixels_max = slice_pixels(settings, s.renderer.light_points.count, s.trace_ns * settings.threads,
+  if (session.trace_ns > 0)
+    pixels_max = slice_pixels(settings, session.renderer.light_points.count, session.trace_ns * settings.threads,
                               source->slice_ns * settings.threads);
   if (job.traced_columns > 0 || pixels_max < settings.width) return next_part(source, pixels_max, batch);
   // The rest of a chunk, but enough rows for all threads to be busy to the end.
-  std::uint32_t rest = next_chunk_rows(s) - (job.sent_begin - job.traced_begin);
+  std::uint32_t rest = next_chunk_rows(session) - (job.sent_begin - job.traced_begin);
   std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
   std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});
-  batch->spans = s.renderer.spans.data + job.traced_begin - rows;
+  batch->spans = session.renderer.spans.data + job.traced_begin - rows;
   batch->span_count = rows;
   source->slice = {rows, 0, rows * settings.width, false};
 }
 
 }  // namespace
 
-void make_session(void* memory, std::size_t byte_count, Session* s) {
-  s->block = make_arena("client", memory, byte_count);
-  s->input = arena_array<std::uint8_t>(&s->block, kInputBytes);
-  s->output.bytes = arena_array<std::uint8_t>(&s->block, kMessageBytesMax + kReplyBytesMax + kAheadBytes);
-  s->frame_mark = arena_mark(s->block);
+void make_session(void* memory, std::size_t byte_count, Session* session) {
+  session->block = make_arena("client", memory, byte_count);
+  session->input = arena_array<std::uint8_t>(&session->block, kInputBytes);
+  session->output.bytes = arena_array<std::uint8_t>(&session->block, kMessageBytesMax + kReplyBytesMax + kAheadBytes);
+  session->frame_mark = arena_mark(session->block);
 }
 
-void restart_session(Session* s) {
-  Arena block = s->block;
-  Array<std::uint8_t> input = s->input, output = s->output.bytes;
-  std::size_t frame_mark = s->frame_mark;
-  std::uint64_t job_number = s->job_number;
-  *s = Session();
-  s->job_number = job_number;
-  s->block = block;
-  s->input = input;
-  s->output.bytes = output;
-  s->frame_mark = frame_mark;
+void restart_session(Session* session) {
+  Arena block = session->block;
+  Array<std::uint8_t> input = session->input, output = session->output.bytes;
+  std::size_t frame_mark = session->frame_mark;
+  std::uint64_t job_number = session->job_number;
+  *session = Session();
+  session->job_number = job_number;
+  session->block = block;
+  session->input = input;
+  session->output.bytes = output;
+  session->frame_mark = frame_mark;
 }
 
-std::uint8_t* reserve_output(Session* s, std::size_t byte_count) {
-  OutputQueue* q = &s->output;
-  CHECK_LE(byte_count, output_room(*s));
+std::uint8_t* reserve_output(Session* session, std::size_t byte_count) {
+  OutputQueue* q = &session->output;
+  CHECK_LE(byte_count, output_room(*session));
   if (q->bytes.count - q->end < byte_count) {
     std::memmove(q->bytes.data, q->bytes.data + q->begin, q->end - q->begin);
     q->end -= q->begin;
@@ -129,40 +131,43 @@ std::uint8_t* reserve_output(Session* s, std::size_t byte_count) {
   return q->bytes.data + q->end;
 }
 
-void send_message(Session* s, const Message& message) {
+void send_message(Session* session, const Message& message) {
   std::uint32_t byte_count = message_bytes(message);
-  encode_message(message, reserve_output(s, byte_count));
-  s->output.end += byte_count;
-  s->queued_count += byte_count;
+  encode_message(message, reserve_output(session, byte_count));
+  session->output.end += byte_count;
+  session->queued_count += byte_count;
 }
 
-bool wants_messages(const Session& s) { return s.more_to_take && output_room(s) >= 2 * kReplyBytesMax; }
+bool wants_messages(const Session& session) {
+  return session.more_to_take && output_room(session) >= 2 * kReplyBytesMax;
+}
 
-void send_error(Session* s, WireError code, std::uint32_t frame) {
+void send_error(Session* session, WireError code, std::uint32_t frame) {
   Message message;
   message.type = MessageType::error;
   message.error = {code, frame};
-  send_message(s, message);
+  send_message(session, message);
 }
 
-void drop_job(Session* s) {
-  FrameJob* job = &s->job;
-  if (!has_job(*s)) return;
+void drop_job(Session* session) {
+  FrameJob* job = &session->job;
+  if (!has_job(*session)) return;
   job->scene = nullptr;
   std::uint32_t traced = job->request.row_end - job->traced_begin, sent = job->request.row_end - job->sent_begin;
-  s->ended_took_ns += job->took_ns;
-  if (!job->is_view_query && traced > 0) s->ended_sent_ns += job->took_ns * sent / traced;
+  session->ended_took_ns += job->took_ns;
+  if (!job->is_view_query && traced > 0) session->ended_sent_ns += job->took_ns * sent / traced;
 }
 
-bool has_chunk(const Session& s) {
-  return has_job(s) && s.job.stage == JobStage::rows && queued_bytes(s) <= kAheadBytes &&
-         s.job.sent_begin - s.job.traced_begin >= next_chunk_rows(s);
+bool has_chunk(const Session& session) {
+  return has_job(session) && session.job.stage == JobStage::rows && queued_bytes(session) <= kAheadBytes &&
+         session.job.sent_begin - session.job.traced_begin >= next_chunk_rows(session);
 }
 
-bool can_work(const Session& s) {
-  if (!has_job(s) || queued_bytes(s) > kAheadBytes) return false;
-  std::uint32_t unsent = s.job.sent_begin - s.job.traced_begin;
-  return s.job.stage != JobStage::rows || (s.job.traced_begin > s.job.request.row_begin && unsent < next_chunk_rows(s));
+bool can_work(const Session& session) {
+  if (!has_job(session) || queued_bytes(session) > kAheadBytes) return false;
+  std::uint32_t unsent = session.job.sent_begin - session.job.traced_begin;
+  return session.job.stage != JobStage::rows ||
+         (session.job.traced_begin > session.job.request.row_begin && unsent < next_chunk_rows(session));
 }
 
 std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_count, double known_ns,
@@ -172,37 +177,37 @@ std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_c
   return pixels < 1 ? 1 : pixels < kChunkPixelsMax ? static_cast<std::uint32_t>(pixels) : kChunkPixelsMax;
 }
 
-Slice trace_slice(Session* s, std::uint64_t slice_ns) {
+Slice trace_slice(Session* session, std::uint64_t slice_ns) {
   SliceSource source;
-  source.session = s, source.slice_ns = slice_ns;
-  trace_frame(&s->renderer, {&source, next_slice, [](void*, const SpanBatch&) { return true; }});
+  source.session = session, source.slice_ns = slice_ns;
+  trace_frame(&session->renderer, {&source, next_slice, [](void*, const SpanBatch&) { return true; }});
   return source.slice;
 }
 
-void end_slice(Session* s, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns) {
-  FrameJob* job = &s->job;
+void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns) {
+  FrameJob* job = &session->job;
   if (slice.is_probe) {
-    s->probe_ns = dear_pixel_ns(s->probe_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
+    session->probe_ns = dear_pixel_ns(session->probe_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
     return;
   }
   job->traced_begin -= slice.row_count;
   job->traced_columns = slice.column_end;
   job->wall_ns += wall_ns;
   job->pixel_count += slice.pixel_count;
-  s->trace_ns = dear_pixel_ns(s->trace_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
+  session->trace_ns = dear_pixel_ns(session->trace_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
 }
 
-void send_chunks(Session* s) {
-  FrameJob* job = &s->job;
-  while (has_chunk(*s)) {
-    std::uint32_t rows = next_chunk_rows(*s);
-    send_chunk(s, job->sent_begin - rows, job->sent_begin);
+void send_chunks(Session* session) {
+  FrameJob* job = &session->job;
+  while (has_chunk(*session)) {
+    std::uint32_t rows = next_chunk_rows(*session);
+    send_chunk(session, job->sent_begin - rows, job->sent_begin);
     job->sent_begin -= rows;
     job->chunk_rows = rows;
     if (job->sent_begin == job->traced_begin) job->wall_ns = job->pixel_count = 0;
     if (job->sent_begin == job->request.row_begin) {
-      ++s->frame_count;
-      drop_job(s);
+      ++session->frame_count;
+      drop_job(session);
     }
   }
 }

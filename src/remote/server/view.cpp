@@ -3,22 +3,22 @@
 
 namespace pocketray {
 
-Status answer_view_query(Session* s) {
-  const Renderer* r = &s->renderer;
+Status answer_view_query(Session* session) {
+  const Renderer* renderer = &session->renderer;
   Message message;
   message.type = MessageType::view_entry;
   ViewEntry* entry = &message.view_entry;
-  entry->scene = s->job.scene->hash;
-  entry->camera = r->camera;
+  entry->scene = session->job.scene->hash;
+  entry->camera = renderer->camera;
   entry->camera.node = kNone;
-  entry->exposure = r->exposure;
-  entry->frames_per_second = r->scene.info.frames_per_second;
-  entry->effects = r->effects.mask;
-  entry->triangle_count = r->scene.triangles.count;
-  if (!is_empty(r->accel.bounds)) entry->bounds = r->accel.bounds;
+  entry->exposure = renderer->exposure;
+  entry->frames_per_second = renderer->scene.info.frames_per_second;
+  entry->effects = renderer->effects.mask;
+  entry->triangle_count = renderer->scene.triangles.count;
+  if (!is_empty(renderer->accel.bounds)) entry->bounds = renderer->accel.bounds;
   if (!can_encode(message)) return failure("its camera, size or exposure is beyond what a message takes");
-  send_message(s, message);
-  drop_job(s);
+  send_message(session, message);
+  drop_job(session);
   return success();
 }
 

@@ -14,20 +14,21 @@ std::uint64_t elapsed(std::uint64_t begin, std::uint64_t end) { return end > beg
 void settle(Server* server, std::uint64_t now) {
   std::uint64_t passed = elapsed(server->settled_ns, now), count = 1;
   server->settled_ns = now;
-  for (Session& s : server->sessions) {
-    if (s.phase != SessionPhase::unused) ++count;
-    if (s.address < 0 || s.ended_took_ns == 0) continue;
-    end_frame(&s.account, s.ended_took_ns, s.ended_sent_ns);
-    end_frame(&server->addresses[static_cast<std::size_t>(s.address)].account, s.ended_took_ns, s.ended_sent_ns);
-    s.ended_took_ns = s.ended_sent_ns = 0;
+  for (Session& session : server->sessions) {
+    if (session.phase != SessionPhase::unused) ++count;
+    if (session.address < 0 || session.ended_took_ns == 0) continue;
+    end_frame(&session.account, session.ended_took_ns, session.ended_sent_ns);
+    end_frame(&server->addresses[static_cast<std::size_t>(session.address)].account, session.ended_took_ns,
+              session.ended_sent_ns);
+    session.ended_took_ns = session.ended_sent_ns = 0;
   }
-  for (Session& s : server->sessions) forgive(&s.account, passed, count);
+  for (Session& session : server->sessions) forgive(&session.account, passed, count);
   for (Address& address : server->addresses) forgive(&address.account, passed, count);
 }
 
-bool has_turn(const Server& server, const Session& s) {
-  if (s.phase != SessionPhase::serving) return false;
-  return can_work(s) || (in_turn(server) && (wants_messages(s) || has_chunk(s)));
+bool has_turn(const Server& server, const Session& session) {
+  if (session.phase != SessionPhase::serving) return false;
+  return can_work(session) || (in_turn(server) && (wants_messages(session) || has_chunk(session)));
 }
 
 // One of those with something to do: of the address whose turn it is, the session whose turn it is. Notes since when
@@ -36,17 +37,17 @@ int choose_session(Server* server) {
   std::uint64_t now = now_ns(server);
   settle(server, now);
   for (Address& address : server->addresses) address.waits = false;
-  for (Session& s : server->sessions) {
-    if (s.phase != SessionPhase::serving || !can_work(s)) {
-      s.waiting_since_ns = 0;
-    } else if (s.waiting_since_ns == 0) {
-      s.waiting_since_ns = now;
+  for (Session& session : server->sessions) {
+    if (session.phase != SessionPhase::serving || !can_work(session)) {
+      session.waiting_since_ns = 0;
+    } else if (session.waiting_since_ns == 0) {
+      session.waiting_since_ns = now;
     }
-    if (s.address < 0) continue;
-    Address* address = &server->addresses[static_cast<std::size_t>(s.address)];
-    bool waits = has_turn(*server, s);
+    if (session.address < 0) continue;
+    Address* address = &server->addresses[static_cast<std::size_t>(session.address)];
+    bool waits = has_turn(*server, session);
     address->waits = address->waits || waits;
-    note(&address->lanes, &s.account, waits);
+    note(&address->lanes, &session.account, waits);
   }
   int first[2] = {-1, -1};
   for (std::size_t i = 0; i < server->addresses.size(); ++i) {
@@ -61,53 +62,53 @@ int choose_session(Server* server) {
 
   first[0] = first[1] = -1;
   for (std::size_t i = 0; i < server->sessions.size(); ++i) {
-    const Session& s = server->sessions[i];
-    if (s.address != chosen || !s.account.waits) continue;
-    int* best = &first[s.account.heavy ? 1 : 0];
-    bool goes = *best < 0 || goes_before(s.account, server->sessions[static_cast<std::size_t>(*best)].account);
+    const Session& session = server->sessions[i];
+    if (session.address != chosen || !session.account.waits) continue;
+    int* best = &first[session.account.heavy ? 1 : 0];
+    bool goes = *best < 0 || goes_before(session.account, server->sessions[static_cast<std::size_t>(*best)].account);
     if (goes) *best = static_cast<int>(i);
   }
   Lanes* lanes = &server->addresses[static_cast<std::size_t>(chosen)].lanes;
   return first[choose_lane(lanes, first[0] >= 0, first[1] >= 0)];
 }
 
-Pace pace_of(const Server& server, const Session& s, const Slice& slice) {
-  std::uint32_t end = s.job.traced_begin, row_count = std::max(slice.row_count, slice.pixel_count > 0 ? 1u : 0u);
+Pace pace_of(const Server& server, const Session& session, const Slice& slice) {
+  std::uint32_t end = session.job.traced_begin, row_count = std::max(slice.row_count, slice.pixel_count > 0 ? 1u : 0u);
   return pace_of_rows(server.options.pace, server.options.row_costs, end - row_count, end);
 }
 
 // How long the work was, by the CPU that is emulated if there is one.
-std::uint64_t work_ns(const Server& server, const Session& s, const Work& work, std::uint64_t took) {
+std::uint64_t work_ns(const Server& server, const Session& session, const Work& work, std::uint64_t took) {
   const ServerOptions& o = server.options;
   if (!is_paced(o.pace)) return took;
-  if (work.message_count == 0) return paced_ns(pace_of(server, s, work.slice), work.slice.pixel_count, took);
+  if (work.message_count == 0) return paced_ns(pace_of(server, session, work.slice), work.slice.pixel_count, took);
   return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
 }
 
 // Takes messages, queues what waited for room, prepares a frame or traces a part of it.
 void begin_work(Server* server, int index) {
-  Session* s = &server->sessions[static_cast<std::size_t>(index)];
+  Session* session = &server->sessions[static_cast<std::size_t>(index)];
   Work* work = &server->work;
   *work = Work();
   work->session = index;
-  work->address = s->address;
-  work->job_number = s->job_number;
-  work->is_job = !(in_turn(*server) && (wants_messages(*s) || has_chunk(*s)));
-  std::uint64_t start = now_ns(server), waited_since = s->waiting_since_ns;
-  if (!work->is_job && wants_messages(*s)) {
-    std::uint64_t queued = s->queued_count;
-    work->message_count = take_messages(server, s);
-    work->byte_count = s->queued_count - queued;
+  work->address = session->address;
+  work->job_number = session->job_number;
+  work->is_job = !(in_turn(*server) && (wants_messages(*session) || has_chunk(*session)));
+  std::uint64_t start = now_ns(server), waited_since = session->waiting_since_ns;
+  if (!work->is_job && wants_messages(*session)) {
+    std::uint64_t queued = session->queued_count;
+    work->message_count = take_messages(server, session);
+    work->byte_count = session->queued_count - queued;
   } else if (!work->is_job) {
-    send_chunks(s);
+    send_chunks(session);
   } else {
     WireError code;
     JobTools tools = {server->options.thread_count, server->workers};
-    Status status = step_job(s, tools, kSliceNs, &work->slice, &code);
+    Status status = step_job(session, tools, kSliceNs, &work->slice, &code);
     if (!status.ok) {
-      std::uint32_t frame = s->job.request.frame;
-      drop_job(s);
-      refuse(server, s, code, frame, status.message);
+      std::uint32_t frame = session->job.request.frame;
+      drop_job(session);
+      refuse(server, session, code, frame, status.message);
     }
   }
 
@@ -115,7 +116,7 @@ void begin_work(Server* server, int index) {
   work->begin_ns = start;
   work->end_ns = now;
   if (is_paced(server->options.pace)) {
-    took = work_ns(*server, *s, *work, took);
+    took = work_ns(*server, *session, *work, took);
     // Who waited already when the CPU became free was begun with at that moment.
     if (work->is_job && waited_since < server->cpu_free_ns && server->cpu_free_ns < start)
       work->begin_ns = server->cpu_free_ns;
@@ -127,37 +128,39 @@ void begin_work(Server* server, int index) {
 
 void end_work(Server* server) {
   Work* work = &server->work;
-  Session* s = &server->sessions[static_cast<std::size_t>(work->session)];
+  Session* session = &server->sessions[static_cast<std::size_t>(work->session)];
   work->session = -1;
   std::uint64_t took = elapsed(work->begin_ns, work->end_ns);
-  bool goes_on = work->is_job && has_job(*s) && s->job_number == work->job_number;
-  bool is_job = work->is_job && s->address == work->address;
-  account_for(server, s, took, is_job);
-  if (is_job) (goes_on ? s->job.took_ns : s->ended_took_ns) += took;  // of a frame that was given up: in vain
+  bool goes_on = work->is_job && has_job(*session) && session->job_number == work->job_number;
+  bool is_job = work->is_job && session->address == work->address;
+  account_for(server, session, took, is_job);
+  if (is_job)
+    (goes_on ? session->job.took_ns : session->ended_took_ns) += took;  // of a frame that was given up: in vain
   if (!goes_on) return;
-  if (work->slice.pixel_count > 0) end_slice(s, work->slice, took, elapsed(s->waiting_since_ns, work->end_ns));
-  s->waiting_since_ns = work->end_ns;
+  if (work->slice.pixel_count > 0)
+    end_slice(session, work->slice, took, elapsed(session->waiting_since_ns, work->end_ns));
+  session->waiting_since_ns = work->end_ns;
   std::uint64_t start = now_ns(server);
-  send_chunks(s);
+  send_chunks(session);
   std::uint64_t sending = elapsed(start, now_ns(server));
-  account_for(server, s, sending, true);
-  if (has_job(*s)) {
-    s->job.took_ns += sending;
+  account_for(server, session, sending, true);
+  if (has_job(*session)) {
+    session->job.took_ns += sending;
   } else {
-    s->ended_took_ns += sending;
-    s->ended_sent_ns += sending;
+    session->ended_took_ns += sending;
+    session->ended_sent_ns += sending;
   }
-  if (s->pixel_ps) server->pixel_ps = s->pixel_ps;
+  if (session->pixel_ps) server->pixel_ps = session->pixel_ps;
 }
 
 }  // namespace
 
-void account_for(Server* server, Session* s, std::uint64_t took, bool is_job) {
-  if (s->address < 0) return;
-  Address* address = &server->addresses[static_cast<std::size_t>(s->address)];
+void account_for(Server* server, Session* session, std::uint64_t took, bool is_job) {
+  if (session->address < 0) return;
+  Address* address = &server->addresses[static_cast<std::size_t>(session->address)];
   charge(&server->lanes, &address->account, took);
-  charge(&address->lanes, &s->account, took);
-  for (Account* account : {&address->account, &s->account}) {
+  charge(&address->lanes, &session->account, took);
+  for (Account* account : {&address->account, &session->account}) {
     if (is_job)
       account->job_ns += took;
     else

@@ -1,11 +1,10 @@
-// The scene that is shared with servers: fetched from them where the device does not have it, left to them where the
-// device has no room for it.
+// The scene: fetched from servers where the device does not have it, left to them where the device has no room for it.
 #include <cstdio>
 
 #include "base/printable.h"
 #include "platform/net/tcp.h"
 #include "remote/client/inquiry.h"
-#include "remote/client/sharing_parts.h"
+#include "remote/client/servers.h"
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
 #include "session/heap_scene.h"
@@ -27,14 +26,14 @@ std::string memory_hint(const char* before, std::size_t wanted, const char* woul
   return text;
 }
 
-Status ask(Sharing* s, std::size_t server, Inquiry* inquiry) {
+Status ask(ConnectedServers* s, std::size_t server, Inquiry* inquiry) {
   InquiryOptions options;
   options.stopped = [s] { return s->stopped.load() || interrupted.load(); };
   return open_inquiry(options, s->link, s->addresses[server], inquiry);
 }
 
 // "127.0.0.1:7411: it does not answer; …", each server once; the link's own errors begin with its name.
-void add_reason(const Sharing& s, std::size_t server, const std::string& reason, std::string* reasons) {
+void add_reason(const ConnectedServers& s, std::size_t server, const std::string& reason, std::string* reasons) {
   const std::string name = s.addresses[server].text;
   *reasons += (reasons->empty() ? "" : "; ") + (reason.compare(0, name.size(), name) == 0 ? "" : name + ": ") + reason;
 }
@@ -57,38 +56,40 @@ Status find_on(Inquiry* inquiry, const std::string& name, SceneEntry* entry) {
 
 // Into the scene arena, where there is room. How long the scene is, is the server's word: 64 bits, of which a CPU may
 // address 32.
-Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry, Renderer* r, SceneSource* source) {
-  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&r->scene_arena, entry.byte_count));
-  if (!bytes) return scene_too_large(name, entry.byte_count, r->settings.memory_bytes, source);
+Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry, Renderer* renderer,
+             SceneSource* source) {
+  auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, entry.byte_count));
+  if (!bytes) return scene_too_large(name, entry.byte_count, renderer->settings.memory_bytes, source);
   std::size_t byte_count = to_size(entry.byte_count);
   Progress progress = start_progress("fetching the scene", byte_count);
   Status status =
       fetch_scene(inquiry, entry, bytes, byte_count, [&](std::uint64_t done) { show_progress(&progress, done); });
   end_progress(&progress);
   RETURN_IF_ERROR(status);
-  RETURN_IF_ERROR(baked_open(bytes, byte_count, &r->scene));
+  RETURN_IF_ERROR(baked_open(bytes, byte_count, &renderer->scene));
   source->baked = bytes;
   source->baked_bytes = byte_count;
   return success();
 }
 
 // From the first server that has the scene and sends it.
-Status load_from_servers(Sharing* s, const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+Status load_from_servers(ConnectedServers* s, const std::string& name, Renderer* renderer, SceneSource* source,
+                         SceneStorage* storage) {
   std::string reasons;
   for (std::size_t i = 0; i < s->addresses.size(); ++i) {
     Inquiry inquiry;
     SceneEntry entry;
-    std::size_t mark = arena_mark(r->scene_arena);
+    std::size_t mark = arena_mark(renderer->scene_arena);
     Status status = ask(s, i, &inquiry);
     if (status.ok) status = find_on(&inquiry, name, &entry);
     if (status.ok) {
       s->scene = entry.hash;
       s->is_named = true;
-      status = fetch(&inquiry, name, entry, r, source);
+      status = fetch(&inquiry, name, entry, renderer, source);
     }
-    if (status.ok) storage->arena_bytes = r->scene_arena.used;
+    if (status.ok) storage->arena_bytes = renderer->scene_arena.used;
     if (status.ok || source->bytes_wanted > 0) return status;
-    arena_release(&r->scene_arena, mark);
+    arena_release(&renderer->scene_arena, mark);
     s->is_named = false;
     add_reason(*s, i, status.message, &reasons);
   }
@@ -96,21 +97,25 @@ Status load_from_servers(Sharing* s, const std::string& name, Renderer* r, Scene
                  reasons.c_str());
 }
 
-Status load_shared(Sharing* s, const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
+Status load(ConnectedServers* s, const std::string& name, Renderer* renderer, SceneSource* source,
+            SceneStorage* storage) {
   *storage = SceneStorage();
-  return is_local_scene(name) ? load_scene(name, r, source, storage) : load_from_servers(s, name, r, source, storage);
+  return is_local_scene(name) ? load_scene(name, renderer, source, storage)
+                              : load_from_servers(s, name, renderer, source, storage);
 }
 
 // Which scene it is, told from where it lies.
-Status name_loaded(Sharing* s, SceneSource* source, Renderer* r) {
-  Status status = identify_scene(*source, r, &s->scene);
+Status name_loaded(ConnectedServers* s, SceneSource* source, Renderer* renderer) {
+  Status status = identify_scene(*source, renderer, &s->scene);
   s->is_named = status.ok;
-  if (!status.ok) source->bytes_wanted = r->settings.memory_bytes - arena_free(r->scene_arena) + baked_size(r->scene);
+  if (!status.ok)
+    source->bytes_wanted =
+        renderer->settings.memory_bytes - arena_free(renderer->scene_arena) + baked_size(renderer->scene);
   return status;
 }
 
 // The hash of a scene that did not fit: of a file by its bytes, of a built-in scene by a server that has it, too.
-Status name_without_loading(Sharing* s, const std::string& name) {
+Status name_without_loading(ConnectedServers* s, const std::string& name) {
   bool is_builtin = find_builtin(name.c_str()) != nullptr;
   if (!is_builtin && is_baked_name(name)) return hash_file(name, &s->scene);
   if (!is_builtin) {
@@ -135,7 +140,7 @@ Status name_without_loading(Sharing* s, const std::string& name) {
   return failure("%s", reasons.c_str());
 }
 
-Status find_view(Sharing* s, const ViewQuery& query) {
+Status find_view(ConnectedServers* s, const ViewQuery& query) {
   std::string reasons;
   for (std::size_t i = 0; i < s->addresses.size(); ++i) {
     Inquiry inquiry;
@@ -161,7 +166,7 @@ EffectPlan effects_of_servers(EffectMask mask) {
 }
 
 // Without the scene: what is shown is what the servers render.
-Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
+Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
   ViewQuery query;
   query.settings = opened->renderer.settings;
   query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked
@@ -179,19 +184,19 @@ Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, O
   opened->source = SceneSource();
 
   Pace pace = opened->renderer.pace;
-  Renderer* r = &opened->renderer;
-  *r = Renderer();
-  start_renderer(opened->block, limit, query.settings, r);
-  RETURN_IF_ERROR(plan_without_scene(r, output_bytes));
-  r->pace = pace;
-  r->camera = s->view.camera;
-  r->camera_index = o.camera_index;
-  r->camera_overridden = query.camera_stated;
-  r->exposure = s->view.exposure;
-  RETURN_IF_ERROR(change_exposure(factor, &r->exposure));
-  r->effects = effects_of_servers(s->view.effects);
-  r->scene.info.frames_per_second = s->view.frames_per_second;
-  r->accel.bounds = s->view.bounds;
+  Renderer* renderer = &opened->renderer;
+  *renderer = Renderer();
+  start_renderer(opened->block, limit, query.settings, renderer);
+  RETURN_IF_ERROR(plan_without_scene(renderer, output_bytes));
+  renderer->pace = pace;
+  renderer->camera = s->view.camera;
+  renderer->camera_index = o.camera_index;
+  renderer->camera_overridden = query.camera_stated;
+  renderer->exposure = s->view.exposure;
+  RETURN_IF_ERROR(change_exposure(factor, &renderer->exposure));
+  renderer->effects = effects_of_servers(s->view.effects);
+  renderer->scene.info.frames_per_second = s->view.frames_per_second;
+  renderer->accel.bounds = s->view.bounds;
   s->is_named = s->is_thin = true;
   char line[400];
   std::snprintf(line, sizeof line,
@@ -203,33 +208,36 @@ Status open_thin(Sharing* s, const CommonOptions& o, std::size_t output_bytes, O
 
 }  // namespace
 
-Status open_shared_scene(Sharing* s, const CommonOptions& o,
-                         const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened) {
+Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
+                              OpenScene* opened) {
+  ConnectedServers* s = connected(servers);
   OpenHooks hooks;
-  hooks.output_bytes = [&](const Settings& settings) { return output_bytes(settings) + sharing_bytes(s, settings); };
-  if (s) {
-    end_sharing(s);
-    s->is_named = s->is_thin = false;
-    hooks.load = [s](const std::string& name, Renderer* r, SceneSource* source, SceneStorage* storage) {
-      return load_shared(s, name, r, source, storage);
-    };
-    hooks.loaded = [s, opened](const SceneSource&, Renderer* r) { return name_loaded(s, &opened->source, r); };
-  }
-  Status status = open_scene(o, hooks, opened);
-  if (status.ok) return start_scene(opened, o);
-  if (!s || opened->source.bytes_wanted == 0) return status;
-  return open_thin(s, o, hooks.output_bytes(opened->renderer.settings), opened);
+  hooks.output_bytes = [&](const Settings& settings) {
+    return output_bytes(settings) + servers->backend->need(*servers, settings);
+  };
+  end_client(s);
+  s->is_named = s->is_thin = false;
+  hooks.load = [s](const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+    return load(s, name, renderer, source, storage);
+  };
+  hooks.loaded = [s, opened](const SceneSource&, Renderer* renderer) {
+    return name_loaded(s, &opened->source, renderer);
+  };
+  Status status = open_scene(common, hooks, opened);
+  if (status.ok) return start_scene(opened, common);
+  if (opened->source.bytes_wanted == 0) return status;
+  return open_thin(s, common, hooks.output_bytes(opened->renderer.settings), opened);
 }
 
-void stop_opening(Sharing* s) {
-  if (s) s->stopped = true;
+void stop_opening(Servers* servers) { connected(servers)->stopped = true; }
+
+std::uint32_t scene_triangle_count(const Servers& servers, const Renderer& renderer) {
+  const ConnectedServers& s = connected(servers);
+  return s.is_thin ? s.view.triangle_count : renderer.scene.triangles.count;
 }
 
-std::uint32_t shared_triangle_count(const Sharing* s, const Renderer& r) {
-  return s && s->is_thin ? s->view.triangle_count : r.scene.triangles.count;
-}
-
-Status list_shared_scenes(Sharing* s, std::size_t server, std::vector<OfferedScene>* scenes) {
+Status list_offered_scenes(Servers* servers, std::size_t server, std::vector<OfferedScene>* scenes) {
+  ConnectedServers* s = connected(servers);
   scenes->clear();
   Inquiry inquiry;
   std::vector<SceneEntry> entries;

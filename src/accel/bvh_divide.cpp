@@ -1,4 +1,4 @@
-#include "accel/bvh_split.h"
+#include "accel/bvh_divide.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t kBinCount = 32;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-struct BinSplit {
+struct BinDivision {
   double cost = kInfinite;
   int axis = -1;  // -1: there is none
   std::uint32_t left_bins = 0, left_count = 0;
@@ -72,7 +72,7 @@ void fill_bins(const BuildPrimitive* primitives, const BuildPart& part, const Bi
 bool side_is_allowed(std::uint32_t count) {
   return count > 0 && (leaves_for(count) == 1 || leaves_for(count) >= kSideLeavesMin);
 }
-bool split_is_allowed(const BuildPart& part, std::uint32_t left) {
+bool division_is_allowed(const BuildPart& part, std::uint32_t left) {
   return side_is_allowed(left) && side_is_allowed(part.count - left) &&
          leaves_for(left) + leaves_for(part.count - left) <= part.leaf_max;
 }
@@ -80,14 +80,14 @@ bool split_is_allowed(const BuildPart& part, std::uint32_t left) {
 // The allowed count that is nearest to the one wished for.
 std::uint32_t allowed_left_count(const BuildPart& part, std::uint32_t wish) {
   for (std::uint32_t step = 0;; ++step) {
-    if (wish > step && split_is_allowed(part, wish - step)) return wish - step;
-    if (wish + step < part.count && split_is_allowed(part, wish + step)) return wish + step;
+    if (wish > step && division_is_allowed(part, wish - step)) return wish - step;
+    if (wish + step < part.count && division_is_allowed(part, wish + step)) return wish + step;
     CHECK_LT(step, part.count);
   }
 }
 
-BinSplit bin_split(const Bins& bins, const BuildPart& part, const BinMap& map) {
-  BinSplit best;
+BinDivision bin_division(const Bins& bins, const BuildPart& part, const BinMap& map) {
+  BinDivision best;
   for (int axis = 0; axis < 3; ++axis) {
     if (map.axis_scale[axis] == 0) continue;
     double right_cost[kBinCount];
@@ -110,11 +110,11 @@ BinSplit bin_split(const Bins& bins, const BuildPart& part, const BinMap& map) {
 }
 
 // Brings the primitives of the lower bins to the front, without a branch that depends on them.
-void partition(BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, const BinSplit& split) {
+void partition(BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, const BinDivision& division) {
   BuildPrimitive *first = primitives + part.begin, *end = first + part.count, *middle = first;
   for (BuildPrimitive* p = first; p < end; ++p) {
     BuildPrimitive here = *p;
-    bool is_left = map.bin(here, split.axis) < split.left_bins;
+    bool is_left = map.bin(here, division.axis) < division.left_bins;
     *p = *middle, *middle = here;
     middle += is_left;
   }
@@ -144,7 +144,7 @@ int widest_axis(const WideBox& box) {
 
 }  // namespace
 
-bool has_split_axis(const BuildPart& part) {
+bool has_division_axis(const BuildPart& part) {
   BinMap map(part.centroids);
   return map.axis_scale[0] > 0 || map.axis_scale[1] > 0 || map.axis_scale[2] > 0;
 }
@@ -161,19 +161,19 @@ BuildPart make_part(const BuildPrimitive* primitives, std::uint32_t begin, std::
   return part;
 }
 
-void split_part(BuildPrimitive* primitives, const BuildPart& part, bool halve, BuildPart* left, BuildPart* right) {
+void divide_part(BuildPrimitive* primitives, const BuildPart& part, bool halve, BuildPart* left, BuildPart* right) {
   BinMap map(part.centroids);
-  BinSplit split;
+  BinDivision division;
   if (!halve) {
     Bins bins;
     fill_bins(primitives, part, map, &bins);
-    split = bin_split(bins, part, map);
+    division = bin_division(bins, part, map);
   }
   std::uint32_t middle;
-  if (split.axis >= 0) {
-    middle = allowed_left_count(part, split.left_count);
-    partition(primitives, part, map, split);
-    move_boundary(primitives, part, split.axis, split.left_count, middle);
+  if (division.axis >= 0) {
+    middle = allowed_left_count(part, division.left_count);
+    partition(primitives, part, map, division);
+    move_boundary(primitives, part, division.axis, division.left_count, middle);
   } else {
     middle = allowed_left_count(part, part.count / 2);
     BuildPrimitive* first = primitives + part.begin;

@@ -1,4 +1,4 @@
-// The upper end of the BVH: ranges of many primitives are split in two.
+// The upper end of the BVH: ranges of many primitives are divided in two.
 #pragma once
 #include "accel/bvh_primitive.h"
 
@@ -13,14 +13,14 @@ struct BuildPart {
 // The part of primitives[begin .. begin + count); measures its boxes.
 BuildPart make_part(const BuildPrimitive* primitives, std::uint32_t begin, std::uint32_t count, std::uint32_t leaf_max);
 
-// Whether centroids tell primitives of the part apart, so that one split is better than another.
-bool has_split_axis(const BuildPart& part);
+// Whether centroids tell primitives of the part apart, so that one division is better than another.
+bool has_division_axis(const BuildPart& part);
 
-// Whether split_part() finds a split: both sides have to be one leaf or at least four, lest nodes stay half empty.
+// Whether divide_part() finds a division: both sides have to be one leaf or at least four, lest nodes stay half empty.
 constexpr std::uint32_t kSideLeavesMin = 4;
-constexpr bool can_be_split(std::uint32_t count) { return leaves_for(count) > kSideLeavesMin; }
+constexpr bool can_be_divided(std::uint32_t count) { return leaves_for(count) > kSideLeavesMin; }
 
 // Splits a part that can be by the surface-area heuristic, or with `halve` into equal counts; reorders its primitives.
-void split_part(BuildPrimitive* primitives, const BuildPart& part, bool halve, BuildPart* left, BuildPart* right);
+void divide_part(BuildPrimitive* primitives, const BuildPart& part, bool halve, BuildPart* left, BuildPart* right);
 
 }  // namespace pocketray

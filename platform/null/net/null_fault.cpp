@@ -1,4 +1,4 @@
-#include "platform/null/null_state.h"
+#include "platform/null/net/null_state.h"
 
 namespace platform {
 

@@ -4,7 +4,7 @@
 #include <cinttypes>
 #include <thread>
 
-#include "app/commands.h"
+#include "app/network/network_commands.h"
 #include "app/options.h"
 #include "base/isa.h"
 #include "base/seal.h"

@@ -1,4 +1,4 @@
-#include "platform/link_pipe.h"
+#include "platform/net/link_pipe.h"
 
 #include <cstring>
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "accuracy/gnuplot.h"
-#include "app/commands.h"
+#include "app/network/network_commands.h"
 #include "app/options.h"
 #include "engine/frame.h"
 #include "session/interrupt.h"
@@ -29,33 +29,33 @@ struct ReportOptions {
 };
 
 // What a pixel costs one thread of this machine: the median of a few frames.
-Status measure_pixel_ns(Renderer* r, double* ns) {
+Status measure_pixel_ns(Renderer* renderer, double* ns) {
   constexpr std::uint32_t kFrames = 3;
-  Workers* workers = r->workers;
-  Pace pace = r->pace;
-  r->workers = nullptr, r->pace = Pace();
+  Workers* workers = renderer->workers;
+  Pace pace = renderer->pace;
+  renderer->workers = nullptr, renderer->pace = Pace();
   double times[kFrames];
   Status status;
   for (double& time : times) {
-    if (status.ok) status = render_frame(r, 0, Aov::none, &interrupted);
-    time = r->timings.trace_ms * 1e6 / pixel_count(*r);
+    if (status.ok) status = render_frame(renderer, 0, Aov::none, &interrupted);
+    time = renderer->timings.trace_ms * 1e6 / pixel_count(*renderer);
   }
-  r->workers = workers, r->pace = pace;
+  renderer->workers = workers, renderer->pace = pace;
   *ns = range_of(times, kFrames).median;
   return status;
 }
 
-Status make_setup(const ReportOptions& o, const platform::Device& device, Renderer* r, SplitSetup* setup) {
+Status make_setup(const ReportOptions& o, const platform::Device& device, Renderer* renderer, SplitSetup* setup) {
   double here_ns = 0;
-  if (o.device_ns <= 0 || o.server_ns <= 0) RETURN_IF_ERROR(measure_pixel_ns(r, &here_ns));
-  setup->device = r;
+  if (o.device_ns <= 0 || o.server_ns <= 0) RETURN_IF_ERROR(measure_pixel_ns(renderer, &here_ns));
+  setup->device = renderer;
   setup->format = device.bits_per_pixel == 16 ? WireFormat::rgb565 : WireFormat::rgb888;
   setup->line.bytes_per_second = device.link_bytes_per_second;
   setup->line.latency_ns = device.link_latency_ns;
   setup->line.jitter_ns = device.link_jitter_ns;
   setup->line.clock_step_ns = kClockStepNs;
   setup->server_count = o.server_count;
-  setup->device_ns = o.device_ns > 0 ? o.device_ns : here_ns * device.slowdown / r->settings.threads;
+  setup->device_ns = o.device_ns > 0 ? o.device_ns : here_ns * device.slowdown / renderer->settings.threads;
   setup->server_ns = o.server_ns > 0 ? o.server_ns : here_ns;
   setup->orbit_degrees = o.orbit_degrees;
   setup->frame_count = o.frame_count;
@@ -183,7 +183,9 @@ int run(const ReportOptions& o) {
   SplitSetup setup;
   OpenHooks hooks;
   hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
-  hooks.loaded = [&](const SceneSource& source, Renderer* r) { return identify_scene(source, r, &setup.scene); };
+  hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
+    return identify_scene(source, renderer, &setup.scene);
+  };
   if (status.ok) status = open_scene(o.common, hooks, &opened);
   if (status.ok) status = start_scene(&opened, o.common);
   if (status.ok) status = store_scene(o.common.scene, o.common.scene, kSceneBytesMax, &store);

@@ -1,9 +1,9 @@
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 
 #include <cstdio>
 #include <cstring>
 
-#include "platform/null/null_state.h"
+#include "platform/null/net/null_state.h"
 
 namespace platform {
 using namespace null_link;

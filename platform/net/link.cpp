@@ -5,7 +5,7 @@
 
 namespace platform {
 
-bool link_split_address(const char* text, char* host, std::size_t host_bytes, int* port, Error* error) {
+bool link_parse_address(const char* text, char* host, std::size_t host_bytes, int* port, Error* error) {
   // 1. The last colon parts host and port, unless the host has colons itself: then it stands in brackets.
   const char *host_begin = text, *host_end = text, *digits = text;
   if (text[0] == '[') {

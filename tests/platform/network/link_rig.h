@@ -12,7 +12,7 @@
 #include "platform/link.h"
 #include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 
 namespace platform {
 

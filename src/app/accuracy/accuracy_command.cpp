@@ -4,7 +4,7 @@
 #include "accuracy/csv.h"
 #include "accuracy/gnuplot.h"
 #include "accuracy/report.h"
-#include "app/commands.h"
+#include "app/accuracy/accuracy_command.h"
 #include "app/options.h"
 #include "budget/front_file.h"
 #include "session/gnuplot.h"

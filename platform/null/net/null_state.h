@@ -3,9 +3,9 @@
 #pragma once
 #include <cstdio>
 
-#include "platform/link_pipe.h"
-#include "platform/link_slots.h"
-#include "platform/null/null_link.h"
+#include "platform/net/link_pipe.h"
+#include "platform/net/link_slots.h"
+#include "platform/null/net/null_link.h"
 
 namespace platform {
 namespace null_link {

@@ -1,5 +1,5 @@
 // The reference beside the picture.
-#include "viewer/side_by_side.h"
+#include "viewer/reference/reference_view.h"
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 struct Scenery {
   OpenScene opened;
-  SplitScreen* split = nullptr;
+  SideBySide* side_by_side = nullptr;
   Renderer* r = &opened.renderer;
 
   Scenery(const char* scene, const char* reference, std::uint32_t threads) {
@@ -25,17 +25,17 @@ struct Scenery {
     hooks.output_bytes = viewer_bytes;
     REQUIRE(open_scene(common, hooks, &opened).ok);
     REQUIRE(start_scene(&opened, common).ok);
-    SplitScreenOptions options;
+    SideBySideOptions options;
     options.reference = reference;
-    split = open_split_screen(options, *r, 32, false);
-    REQUIRE(split != nullptr);
+    side_by_side = kReferenceView.open(options, *r, 32, false);
+    REQUIRE(side_by_side != nullptr);
   }
-  ~Scenery() { close_split_screen(split); }
+  ~Scenery() { kReferenceView.close(side_by_side); }
 
   // Until the reference has so many samples of each seed; the deadlines are too short for a whole pass.
   void refine(std::uint32_t samples, double seconds, std::uint64_t slice_ns = 200'000) {
-    do REQUIRE(advance_split_screen(split, r, seconds, 1, clock_ns() + slice_ns).ok);
-    while (split_screen_samples(*split) < 2 * samples);
+    do REQUIRE(kReferenceView.advance(side_by_side, r, seconds, 1, clock_ns() + slice_ns).ok);
+    while (kReferenceView.samples(*side_by_side) < 2 * samples);
   }
 };
 
@@ -62,7 +62,7 @@ bool is_near(const Vec3& a, const Vec3d& b) {
 
 // Pixels of the right half that are not those of the reference of the frame as it is prepared.
 std::uint32_t unlike_reference(const Scenery& s, Transport transport, const Vec3* shown) {
-  std::uint32_t samples = split_screen_samples(*s.split) / 2, count = 0;
+  std::uint32_t samples = kReferenceView.samples(*s.side_by_side) / 2, count = 0;
   std::vector<Vec3d> before = whole_reference(s.r, transport, samples),
                      after = whole_reference(s.r, transport, samples + 1);
   for (std::uint32_t i = 0; i < s.r->image.count; ++i)  // the upper rows may have a sample more, of an unfinished pass
@@ -75,7 +75,7 @@ std::uint32_t unlike_reference(const Scenery& s, Transport transport, const Vec3
 // Goal: the left half is the picture, the right half the reference, however its rows came to be. Method: slices of time
 // too short for all rows, by one and by three threads, on both kinds; the reference traced in one go, of the same view
 // and time with the scene's own settings, though the picture's are others.
-TEST_CASE("split_screen_shows_picture_and_reference") {
+TEST_CASE("side_by_side_shows_picture_and_reference") {
   for (const char* kind : {"model", "physical"})
     for (std::uint32_t threads : {1u, 3u}) {
       Scenery s("seesaw", kind, threads);
@@ -87,7 +87,7 @@ TEST_CASE("split_screen_shows_picture_and_reference") {
       s.refine(3, 0.4);
       CHECK(s.r->settings.normals == NormalMode::flat);
       CHECK(s.r->settings.ray_depth == 0);
-      const Vec3* shown = split_picture(s.split, *s.r);
+      const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.r);
       Settings own = plain;
       own.normals = NormalMode::as_scene;
       REQUIRE(change_settings(s.r, own).ok);
@@ -101,41 +101,41 @@ TEST_CASE("split_screen_shows_picture_and_reference") {
       CHECK(other == 0);
       CHECK(unlike_reference(s, kind[0] == 'm' ? Transport::model : Transport::physical, shown) == 0);
       HudText text;
-      write_split_lines(*s.split, &text);
+      kReferenceView.write_lines(*s.side_by_side, &text);
       CHECK(text.line_count == 2);
     }
 }
 
 // Goal: what is seen from elsewhere or at another time is never mixed with what was. Method: the camera moves, then
 // time passes; the samples begin anew.
-TEST_CASE("split_screen_begins_anew_when_the_view_changes") {
+TEST_CASE("side_by_side_begins_anew_when_the_view_changes") {
   Scenery s("seesaw", "model", 1);
   REQUIRE(render_frame(s.r, 0).ok);
   s.refine(40, 0);
-  std::uint32_t before = split_screen_samples(*s.split);
-  REQUIRE(advance_split_screen(s.split, s.r, 0, 2, 0).ok);
-  CHECK(split_screen_samples(*s.split) >= before);
+  std::uint32_t before = kReferenceView.samples(*s.side_by_side);
+  REQUIRE(kReferenceView.advance(s.side_by_side, s.r, 0, 2, 0).ok);
+  CHECK(kReferenceView.samples(*s.side_by_side) >= before);
   Camera camera = s.r->camera;
   camera.eye.x += 0.5f;
   REQUIRE(set_camera(s.r, camera).ok);
-  REQUIRE(advance_split_screen(s.split, s.r, 0, 3, 0).ok);
-  CHECK(split_screen_samples(*s.split) == 0);
+  REQUIRE(kReferenceView.advance(s.side_by_side, s.r, 0, 3, 0).ok);
+  CHECK(kReferenceView.samples(*s.side_by_side) == 0);
   s.refine(4, 0);
-  const Vec3* shown = split_picture(s.split, *s.r);
+  const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.r);
   REQUIRE(prepare_frame(s.r, 0).ok);
   CHECK(unlike_reference(s, Transport::model, shown) == 0);
-  forget_split_screen(s.split);
-  shown = split_picture(s.split, *s.r);
+  kReferenceView.forget(s.side_by_side);
+  shown = kReferenceView.picture(s.side_by_side, *s.r);
   std::uint32_t other = 0;
   for (std::size_t i = 0; i < s.r->image.count; ++i) other += i % 24 != 12 && shown[i].y != s.r->image[i].y;
   CHECK(other == 0);
-  REQUIRE(advance_split_screen(s.split, s.r, 1.5, 4, 0).ok);
-  CHECK(split_screen_samples(*s.split) == 0);
+  REQUIRE(kReferenceView.advance(s.side_by_side, s.r, 1.5, 4, 0).ok);
+  CHECK(kReferenceView.samples(*s.side_by_side) == 0);
 }
 
 // Goal: the user sees it, can put it away, and time stands still while it shows. Method: a screen in memory and a
 // script: two frames, in both of which the right half is the reference; then the key.
-TEST_CASE("split_screen_is_shown_by_the_viewer") {
+TEST_CASE("side_by_side_is_shown_by_the_viewer") {
   CommonOptions common;
   common.scene = "seesaw", common.size = "24x16", common.threads = 1;
   std::vector<std::uint32_t> screens[2];
@@ -144,7 +144,7 @@ TEST_CASE("split_screen_is_shown_by_the_viewer") {
     screen->resize(24 * 16);
     platform::Event script[2];
     script[0].type = platform::EventType::button_down, script[0].button = platform::Button::hud;
-    script[1].type = platform::EventType::button_down, script[1].button = platform::Button::split;
+    script[1].type = platform::EventType::button_down, script[1].button = platform::Button::side_by_side;
     platform::NullSettings settings;
     settings.screen = screen->data(), settings.screen_bytes = screen->size() * 4;
     settings.script = script, settings.script_count = put_away ? 2 : 1;
@@ -158,14 +158,14 @@ TEST_CASE("split_screen_is_shown_by_the_viewer") {
     hooks.output_bytes = viewer_bytes;
     REQUIRE(open_scene(common, hooks, &opened).ok);
     REQUIRE(start_scene(&opened, common).ok);
-    SplitScreenOptions split;
-    split.reference = "model";
-    viewer.split = open_split_screen(split, opened.renderer, 32, false);
+    SideBySideOptions asked;
+    asked.reference = "model";
+    viewer.side_by_side = kReferenceView.open(asked, opened.renderer, 32, false);
     bool again;
     REQUIRE(run_viewer(&viewer, &opened.renderer, &again).ok);
     CHECK(viewer.frames_finished == 2);
-    CHECK((split_screen_samples(*viewer.split) > 0) == !put_away);
-    close_split_screen(viewer.split);
+    CHECK((kReferenceView.samples(*viewer.side_by_side) > 0) == !put_away);
+    kReferenceView.close(viewer.side_by_side);
     close_viewer(&viewer);
     platform::null_configure(platform::NullSettings());
   }

@@ -1,5 +1,5 @@
 // The simulated link alone: its line takes the time it should, its faults strike where they should, and a seed replays.
-#include "platform/null/null_link.h"
+#include "platform/null/net/null_link.h"
 
 #include <doctest/doctest.h>
 

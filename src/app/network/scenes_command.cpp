@@ -2,8 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
-#include "remote/client/sharing.h"
+#include "app/network/network_commands.h"
+#include "remote/client/servers.h"
 #include "session/output.h"
 #include "session/report.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 struct ScenesOptions {
   std::string json;
-  SharingOptions sharing;
+  ServersOptions servers;
 };
 
 Json to_json(const std::vector<OfferedScene>& scenes) {
@@ -30,22 +30,22 @@ void print(const std::string& server, const std::vector<OfferedScene>& scenes) {
 }
 
 int run(const ScenesOptions& o) {
-  Sharing* sharing = nullptr;
+  Servers* servers = nullptr;
   Status status = check_outputs({}, {{"--json", o.json}});
-  if (status.ok) status = open_sharing(o.sharing, nullptr, &sharing);
-  std::unique_ptr<Sharing, void (*)(Sharing*)> closing(sharing, close_sharing);
+  if (status.ok) status = kRenderServers.open(o.servers, nullptr, &servers);
+  ServersHandle closing(servers);
   if (!status.ok) return report(status);
   Json json = Json::array();
   int exit_status = kExitDone;
-  for (std::size_t i = 0; i < o.sharing.servers.size(); ++i) {
+  for (std::size_t i = 0; i < o.servers.addresses.size(); ++i) {
     std::vector<OfferedScene> scenes;
-    status = list_shared_scenes(sharing, i, &scenes);
+    status = servers->backend->list_scenes(servers, i, &scenes);
     if (!status.ok) {
       exit_status = report(status);
       continue;
     }
-    if (o.json != "-") print(o.sharing.servers[i], scenes);
-    json.push_back({{"server", o.sharing.servers[i]}, {"scenes", to_json(scenes)}});
+    if (o.json != "-") print(o.servers.addresses[i], scenes);
+    json.push_back({{"server", o.servers.addresses[i]}, {"scenes", to_json(scenes)}});
   }
   if (!o.json.empty()) status = write_json(o.json, json);
   return status.ok || exit_status != kExitDone ? exit_status : report(status);
@@ -56,7 +56,7 @@ int run(const ScenesOptions& o) {
 void add_scenes_command(CLI::App* program, int* exit_status) {
   auto o = std::make_shared<ScenesOptions>();
   CLI::App* command = program->add_subcommand("scenes", "list the scenes that render servers offer");
-  command->add_option("--server", o->sharing.servers, "HOST:PORT of a `pocketray serve`; may be given several times")
+  command->add_option("--server", o->servers.addresses, "HOST:PORT of a `pocketray serve`; may be given several times")
       ->allow_extra_args(false)
       ->required();
   command->add_option("--json", o->json, "also write them as JSON to FILE, or - for standard output");

@@ -1,4 +1,4 @@
-#include "wire/content_hash.h"
+#include "scene/content_hash.h"
 
 #include <cstring>
 

@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "platform/null/null_state.h"
+#include "platform/null/net/null_state.h"
 
 namespace platform {
 namespace null_link {
@@ -79,7 +79,7 @@ bool resolve(const char* text, LinkAddress* address, Error* error) {
   *address = LinkAddress();
   char host[256];
   int port;
-  if (!link_split_address(text, host, sizeof host, &port, error)) return false;
+  if (!link_parse_address(text, host, sizeof host, &port, error)) return false;
   std::snprintf(address->text, sizeof address->text, "%s", text);
   address->loopback =
       std::strncmp(host, "127.", 4) == 0 || std::strcmp(host, "localhost") == 0 || std::strcmp(host, "::1") == 0;

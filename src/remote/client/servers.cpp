@@ -1,0 +1,271 @@
+#include "remote/client/servers.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+#include "platform/entropy.h"
+#include "platform/net/shaped_link.h"
+#include "platform/net/tcp.h"
+#include "remote/client/frame.h"
+
+namespace pocketray {
+
+namespace {
+
+constexpr platform::LinkBackend const& kNet = platform::kTcpLink;
+
+platform::LinkOptions link_options(int stream_count_max, std::size_t byte_count,
+                                   std::vector<std::max_align_t>* memory) {
+  memory->resize(byte_count / sizeof(std::max_align_t) + 1);
+  platform::LinkOptions options;
+  options.memory = memory->data();
+  options.memory_bytes = memory->size() * sizeof(std::max_align_t);
+  options.stream_count_max = stream_count_max;
+  options.now_ns = clock_ns;
+  return options;
+}
+
+Status open_link(const platform::Device* emulated, ConnectedServers* s) {
+  int streams = static_cast<int>(s->addresses.size());
+  platform::Error error;
+  s->tcp = s->link = kNet.open(link_options(streams, kNet.need(streams), &s->tcp_memory), &error);
+  if (s->tcp && emulated) {
+    platform::ShapedLinkSettings radio = platform::shaped_link_settings(*emulated);
+    std::size_t need = platform::shaped_link_need(streams, radio);
+    s->link = platform::shaped_link_open(s->tcp, link_options(streams, need, &s->radio_memory), radio, &error);
+  }
+  return s->link ? success() : failure("%s", error.text);
+}
+
+void print_line(void*, const char* line) { std::fprintf(stderr, "pocketray: %s\n", line); }
+
+WireFormat wire_format(bool small_pixels) { return small_pixels ? WireFormat::rgb565 : WireFormat::rgb888; }
+
+Status check(const ServersOptions& o) {
+  if (o.addresses.size() > kServerCountMax)
+    return failure("--server is given %zu times: at most %u servers take part", o.addresses.size(), kServerCountMax);
+  if (o.device_share != kBestShare && !(o.device_share >= 0 && o.device_share <= 1))
+    return failure("--share is %g: it must lie in 0 … 1", o.device_share);
+  for (double x : {o.price, o.energy_pixel, o.energy_byte, o.cost_weight_ms, o.cost_cap})
+    if (!(x >= 0 && x < 1e30)) return failure("prices, energies and their weights must not be negative");
+  if (o.verify != kVerifyAuto && !(o.verify >= 0 && o.verify <= static_cast<int>(kSpotChecksMax)))
+    return failure("--verify is %d: it must lie in 0 … %u", o.verify, kSpotChecksMax);
+  if (o.addresses.empty() && o.verify != kVerifyAuto)
+    return failure("--verify checks the pixels of render servers: name one with --server");
+  bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
+  if (o.addresses.empty() && (any || o.device_share != kBestShare))
+    return failure("shares, prices and energies are about render servers: name one with --server");
+  if (o.cost_weight_ms > 0 && o.cost_cap > 0)
+    return failure("--cost-weight and --cost-cap exclude each other: give one of them");
+  return success();
+}
+
+SplitWish wish_of(const ServersOptions& o) {
+  SplitWish wish;
+  if (o.cost_weight_ms > 0) wish.goal = SplitGoal::time_and_cost, wish.ns_per_cost = o.cost_weight_ms * 1e6;
+  if (o.cost_cap > 0) wish.goal = SplitGoal::time_under_cap, wish.cap = o.cost_cap;
+  return wish;
+}
+
+Status open_servers(const ServersOptions& options, const platform::Device* emulated, Servers** servers) {
+  *servers = nullptr;
+  RETURN_IF_ERROR(check(options));
+  if (options.addresses.empty()) return success();
+  auto s = std::make_unique<ConnectedServers>();
+  s->options = options;
+  for (const std::string& text : options.addresses) {
+    platform::LinkAddress address;
+    platform::Error error;
+    if (!kNet.resolve(text.c_str(), &address, &error)) return failure("--server %s", error.text);
+    s->addresses.push_back(address);
+  }
+  RETURN_IF_ERROR(open_link(emulated, s.get()));
+  *servers = s.release();
+  return success();
+}
+
+void close_servers(Servers* servers) {
+  ConnectedServers* s = connected(servers);
+  end_client(s);
+  if (s->link != s->tcp) s->link->backend->close_all(s->link);
+  kNet.close_all(s->tcp);
+  delete s;
+}
+
+std::size_t servers_need(const Servers& servers, const Settings& settings) {
+  return client_need(settings, WireFormat::rgb888, static_cast<std::uint32_t>(connected(servers).addresses.size()));
+}
+
+Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, bool dither) {
+  ConnectedServers* s = connected(servers);
+  end_client(s);
+  ClientOptions options;
+  options.format = wire_format(small_pixels);
+  options.dither = dither;
+  options.wish = wish_of(s->options);
+  options.cost_per_device_pixel = s->options.energy_pixel;
+  options.cost_per_byte = s->options.energy_byte;
+  options.cost_per_megabyte = s->options.price;
+  options.device_share = s->options.device_share;
+  options.pace = renderer->pace;
+  options.has_scene = !s->is_thin;
+  options.check_count = s->options.verify;
+  options.entropy = platform::random_bytes;
+  options.log = print_line;
+  s->totals = ServersTotals();
+  s->last = FrameShare();
+  s->started = true;
+  RETURN_IF_ERROR(make_client(options, renderer->settings, s->scene, s->link, s->addresses.data(),
+                              static_cast<std::uint32_t>(s->addresses.size()), &renderer->frame_arena, &s->client));
+  for (std::uint32_t i = 0; i < s->client.server_count; ++i)
+    s->client.servers[i].lied = s->client.servers[i].told = s->lied[i];
+  return success();
+}
+
+Status begin_frame(Servers* servers, Renderer* renderer, double seconds) {
+  return begin_frame(renderer, &connected(servers)->client, seconds);
+}
+
+bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
+  ConnectedServers* s = connected(servers);
+  if (!advance_frame(renderer, &s->client, deadline_ns, stop)) return false;
+  const FrameShare& share = s->client.share;
+  ServersTotals* t = &s->totals;
+  s->last = share;
+  ++t->frames;
+  t->device_rows += share.device_rows;
+  for (std::uint32_t rows : share.server_rows) t->server_rows += rows;
+  t->bytes_in += share.bytes_in, t->bytes_out += share.bytes_out;
+  for (std::uint32_t checked : share.checked) t->checked += checked;
+  t->lies += share.lies;
+  if (share.local_ns > 0) t->local_ns += share.local_ns, t->known_ns += share.measured_ns;
+  return true;
+}
+
+void tend_client(Servers* servers) { advance_client(&connected(servers)->client, 0); }
+
+// A picture that is refined shows sooner than one that is complete: servers are in use once one is in reach.
+ServersState state_of(const Servers& servers) {
+  const ConnectedServers& s = connected(servers);
+  const Client& client = s.client;
+  ServersState state;
+  state.in_use =
+      s.is_thin || std::any_of(client.servers, client.servers + client.server_count,
+                               [](const RemoteServer& server) { return server.phase >= ServerPhase::probing; });
+  state.cut_off = is_cut_off(client);
+  state.disputed = client.verifier.disputed;
+  state.rows_done = client.merge.row_count_done;
+  return state;
+}
+
+MergedPicture merged_picture(const Servers& servers) {
+  const Client& client = connected(servers).client;
+  WireFormat format = client.options.format;
+  return {client.pixels.data, static_cast<int>(client.settings.width * pixel_bytes(format)),
+          format == WireFormat::rgb565 ? kRgb565 : kRgb888};
+}
+
+bool take_rows(Servers* servers, std::uint32_t* row_begin, std::uint32_t* row_end) {
+  return take_merged_rows(&connected(servers)->client, row_begin, row_end);
+}
+
+void show_own_picture(Servers* servers, const Renderer& renderer) {
+  const Client& client = connected(servers)->client;
+  MergedPicture merged = merged_picture(*servers);
+  int height = static_cast<int>(renderer.settings.height);
+  pack_rows(renderer.image.data, static_cast<int>(renderer.settings.width), height, 0, height, renderer.exposure,
+            merged.format, Rotation::none, client.options.dither, client.pixels.data, merged.line_bytes);
+}
+
+void add_server_lines(const ConnectedServers& s, HudText* text) {
+  const Client& client = s.client;
+  const FrameShare& f = s.last;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& server = client.servers[i];
+    if (server.phase == ServerPhase::ready && f.row_end[i] > 0)
+      add_hud_line(text, "%s rows %u-%u, gave %u  %.1f kB", server.address.text, f.row_begin[i], f.row_end[i] - 1,
+                   f.server_rows[i], static_cast<double>(f.server_bytes[i]) * 1e-3);
+    else
+      add_hud_line(text, "%s %s", server.address.text, server.lied ? "sent wrong pixels" : phase_text(server.phase));
+  }
+}
+
+void add_share_lines(const ConnectedServers& s, HudText* text) {
+  const Client& client = s.client;
+  const FrameShare& f = s.last;
+  if (is_cut_off(client)) add_hud_line(text, "no server sends rows: the picture stands still");
+  if (f.measured_ns > 0) {
+    if (f.local_ns > 0)
+      add_hud_line(text, "%.1f ms, predicted %.1f, alone %.1f: %.1f times", f.measured_ns * 1e-6, f.predicted_ns * 1e-6,
+                   f.local_ns * 1e-6, f.local_ns / f.measured_ns);
+    else if (s.is_thin)
+      add_hud_line(text, "%.1f ms  all of it by servers", f.measured_ns * 1e-6);
+    else
+      add_hud_line(text, "%.1f ms  device alone so far", f.measured_ns * 1e-6);
+    const char* device = client.options.pace.device ? client.options.pace.device : "device";
+    add_hud_line(text, "%s %u rows  %.1f kB in  %.1f kB out", device, f.device_rows,
+                 static_cast<double>(f.bytes_in) * 1e-3, static_cast<double>(f.bytes_out) * 1e-3);
+  }
+  add_server_lines(s, text);
+  if (client.verifier.disputed) add_hud_line(text, "servers disagree: the picture may be wrong");
+  std::uint64_t checked = 0;
+  double caught = 1;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    checked += f.checked[i];
+    if (f.server_rows[i] > 0) caught = std::min(caught, client.servers[i].checks.caught_row_last);
+  }
+  if (checked > 0)
+    add_hud_line(text, "%llu %s checked: a wrong row is seen with %.2g %%", static_cast<unsigned long long>(checked),
+                 s.is_thin ? "rows" : "pixels", 100 * caught);
+}
+
+void write_lines(const Servers& servers, bool servers_only, HudText* text) {
+  if (servers_only)
+    add_server_lines(connected(servers), text);
+  else
+    add_share_lines(connected(servers), text);
+}
+
+ServersTotals totals_of(const Servers& servers) {
+  const ConnectedServers& s = connected(servers);
+  ServersTotals totals = s.totals;
+  totals.checks_rows = s.is_thin;
+  totals.caught_row = 1;
+  for (const RemoteServer& server : s.client.servers)
+    if (server.checks.rows > 0 && !server.lied)
+      totals.caught_row = std::min(totals.caught_row, server.checks.caught_row);
+  return totals;
+}
+
+}  // namespace
+
+const ServersBackend kRenderServers = {open_servers,
+                                       close_servers,
+                                       servers_need,
+                                       open_scene_or_leave_it,
+                                       stop_opening,
+                                       scene_triangle_count,
+                                       list_offered_scenes,
+                                       start_client,
+                                       begin_frame,
+                                       advance_frame,
+                                       tend_client,
+                                       state_of,
+                                       merged_picture,
+                                       take_rows,
+                                       show_own_picture,
+                                       write_lines,
+                                       totals_of};
+
+ConnectedServers::ConnectedServers() : Servers{&kRenderServers} {}
+
+void end_client(ConnectedServers* servers) {
+  for (std::uint32_t i = 0; servers->started && i < servers->client.server_count; ++i)
+    servers->lied[i] = servers->client.servers[i].lied;
+  if (servers->started) close_client(&servers->client);
+  servers->started = false;
+}
+
+}  // namespace pocketray

@@ -1,0 +1,45 @@
+// The backend of session/servers.h: a Client over TCP, and the scene, fetched or left to the servers.
+#pragma once
+#include "remote/client/client.h"
+#include "session/servers.h"
+
+namespace pocketray {
+
+struct ConnectedServers : Servers {
+  ConnectedServers();
+
+  ServersOptions options;
+  std::vector<platform::LinkAddress> addresses;
+  std::vector<std::max_align_t> tcp_memory, radio_memory;
+  platform::Link* tcp = nullptr;
+  platform::Link* link = nullptr;  // tcp, or the emulated radio over it
+  ContentHash scene;
+  bool is_named = false;  // `scene` is the hash of the scene that is open
+  bool is_thin = false;   // the device has no room for it
+  ViewEntry view;         // of it, where that is so
+  Client client;
+  bool started = false;
+  bool lied[kServerCountMax] = {};  // found out by a client before this one
+  ServersTotals totals;
+  FrameShare last;  // of the last complete frame
+  std::atomic<bool> stopped{false};
+};
+
+inline ConnectedServers* connected(Servers* servers) { return static_cast<ConnectedServers*>(servers); }
+inline const ConnectedServers& connected(const Servers& servers) {
+  return static_cast<const ConnectedServers&>(servers);
+}
+
+extern const ServersBackend kRenderServers;
+
+// Closes the client's connections, if there is one.
+void end_client(ConnectedServers* servers);
+
+// Of the backend; scene.cpp has them.
+Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
+                              OpenScene* opened);
+void stop_opening(Servers* servers);
+std::uint32_t scene_triangle_count(const Servers& servers, const Renderer& renderer);
+Status list_offered_scenes(Servers* servers, std::size_t server, std::vector<OfferedScene>* scenes);
+
+}  // namespace pocketray
