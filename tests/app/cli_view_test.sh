@@ -39,7 +39,8 @@ if [ $# -eq 0 ]; then
   until [ "$(told 'live.pray is loaded again')" -gt 0 ] || ! kill -0 $viewing; do touch live.pray && sleep 0.2; done
   before=$(told 'is loaded again')
   head -c 3000 good.pray >live.pray
-  until [ "$(told 'the last picture stays')" -gt 0 ] || ! kill -0 $viewing; do sleep 0.05; done
+  # A read that the cut interrupts is told first, and tried again.
+  until grep -q 'live.pray: .*; the last picture stays' view.err || ! kill -0 $viewing; do sleep 0.05; done
   check view_tells_what_is_broken grep -q 'live.pray: .*; the last picture stays, and the file is tried again' view.err
   check view_stays kill -0 $viewing
   : >live.pray
