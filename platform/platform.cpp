@@ -39,11 +39,4 @@ ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_
   return format;
 }
 
-const char* button_name(Button button) {
-  static const char* const kNames[kButtonCount] = {"up",  "down",       "left",   "right", "a",      "b",
-                                                   "x",   "y",          "l",      "r",     "start",  "select",
-                                                   "hud", "screenshot", "reload", "finer", "faster", "split"};
-  return kNames[static_cast<int>(button)];
-}
-
 }  // namespace platform

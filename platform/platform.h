@@ -32,8 +32,6 @@ enum class Button : std::uint8_t {
 constexpr int kPadButtonCount = 12;  // up … select: what a handheld has
 constexpr int kButtonCount = 18;     // with the keys of a desktop keyboard
 
-const char* button_name(Button button);
-
 enum class EventType : std::uint8_t { button_down, button_up, file_drop, quit };
 
 struct Event {

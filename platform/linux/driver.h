@@ -27,5 +27,7 @@ struct Driver {
 };
 
 extern const Driver kSystemDriver;
+// The backend's; changes only while it is closed. Tests put a recorded one here.
+extern const Driver* linux_driver;
 
 }  // namespace platform

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 
 #include "platform/linux/console.h"
+#include "platform/linux/driver.h"
 #include "platform/linux/evdev.h"
 #include "platform/linux/fbdev.h"
 
@@ -10,7 +11,6 @@ namespace platform {
 namespace {
 
 struct State {
-  const Driver* driver = &kSystemDriver;
   Framebuffer framebuffer;
   InputQueue input;
   bool open = false;
@@ -19,9 +19,9 @@ struct State {
 State state;
 
 bool usable() {
-  int file = state.driver->open("/dev/fb0", O_RDWR);
+  int file = linux_driver->open("/dev/fb0", O_RDWR);
   if (file < 0) return false;
-  state.driver->close(file);
+  linux_driver->close(file);
   return true;
 }
 
@@ -35,12 +35,12 @@ void close() {
 
 bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   close();
-  console_open(*state.driver);  // first: its cursor must not blink into the picture
-  if (!framebuffer_open(*state.driver, options, &state.framebuffer, format, error)) {
+  console_open(*linux_driver);  // first: its cursor must not blink into the picture
+  if (!framebuffer_open(*linux_driver, options, &state.framebuffer, format, error)) {
     console_close();
     return false;
   }
-  input_open(*state.driver, options.keys, &state.input);
+  input_open(*linux_driver, options.keys, &state.input);
   state.open = true;
   state.quit_told = false;
   return true;
@@ -53,21 +53,18 @@ bool poll(Event* event) {
   if (console_quit_requested() && !state.quit_told) {
     state.quit_told = true;
     *event = Event();
-    event->time_ns = state.driver->now_ns();
+    event->time_ns = linux_driver->now_ns();
     return true;
   }
   return input_poll(&state.input, event);
 }
 
-std::uint64_t now_ns() { return state.driver->now_ns(); }
-void sleep_ns(std::uint64_t duration) { state.driver->sleep_ns(duration); }
+std::uint64_t now_ns() { return linux_driver->now_ns(); }
+void sleep_ns(std::uint64_t duration) { linux_driver->sleep_ns(duration); }
 
 }  // namespace
 
-void linux_set_driver(const Driver* driver) {
-  close();
-  state.driver = driver ? driver : &kSystemDriver;
-}
+const Driver* linux_driver = &kSystemDriver;
 
 const Backend kLinuxBackend = {"linux",     "a framebuffer, /dev/fb0, that this user may write",
                                usable,      open,

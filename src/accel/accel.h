@@ -18,7 +18,22 @@ struct Accel {
   Array<const std::uint8_t> data;  // the structure itself
 };
 
-struct AccelInfo {
+// How rays traverse it.
+struct AccelTraversal {
+  // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none. `filter` and
+  // `stats` may be null.
+  void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
+  // closest() for every ray of the packet: the same bits, in hits[0 .. rays.count). by_rays.h has one for any.
+  void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
+                         TraceStats* stats);
+  // Whether anything is hit in (0, ray.t_max).
+  bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
+  // occluded() for every ray of the packet: bit i for ray i.
+  std::uint64_t (*occluded_packet)(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
+                                   TraceStats* stats);
+};
+
+struct AccelInfo : AccelTraversal {
   const char* name;
   const char* help;     // what sets it apart; may be empty
   bool is_automatic;    // taken unasked where those before it in the list do not fit
@@ -34,17 +49,6 @@ struct AccelInfo {
   void (*refit)(Accel* accel, Array<std::uint8_t> data);
   // Adopts baked data, aligned to 64, after checking every index, bound and vertex in it against the geometry.
   Status (*adopt)(Accel* accel, Array<const std::uint8_t> data);
-  // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none. `filter` and
-  // `stats` may be null.
-  void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
-  // closest() for every ray of the packet: the same bits, in hits[0 .. rays.count). by_rays.h has one for any.
-  void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
-                         TraceStats* stats);
-  // Whether anything is hit in (0, ray.t_max).
-  bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
-  // occluded() for every ray of the packet: bit i for ray i.
-  std::uint64_t (*occluded_packet)(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
-                                   TraceStats* stats);
   // No triangle is nearer to the point than this: their least distance, less its rounding error. Infinity without
   // triangles, 0 for a point that is not finite.
   float (*nearest_distance)(const Accel& accel, const Vec3& point);

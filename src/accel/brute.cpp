@@ -88,6 +88,7 @@ float brute_nearest_distance(const Accel& accel, const Vec3& point) {
 }  // namespace
 
 const AccelInfo kBruteAccel = {
+    {brute_closest, closest_by_rays<brute_closest>, brute_occluded, occluded_by_rays<brute_occluded>},
     "brute",
     "for comparisons",
     false,
@@ -97,10 +98,6 @@ const AccelInfo kBruteAccel = {
     brute_build,
     brute_refit,
     brute_adopt,
-    brute_closest,
-    closest_by_rays<brute_closest>,
-    brute_occluded,
-    occluded_by_rays<brute_occluded>,
     brute_nearest_distance,
 };
 

@@ -10,18 +10,18 @@ namespace pocketray {
 namespace {
 
 #if defined(__x86_64__)
-constexpr const BvhKernels* kBlockKernels[kIsaCount] = {&kBaselineKernels, &kAvx2Kernels, &kAvx512Kernels};
-constexpr const BvhKernels* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels, &kAvx2CompactKernels,
-                                                          &kAvx512CompactKernels};
+constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels, &kAvx2Kernels, &kAvx512Kernels};
+constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels, &kAvx2CompactKernels,
+                                                              &kAvx512CompactKernels};
 #else
-constexpr const BvhKernels* kBlockKernels[] = {&kBaselineKernels};
-constexpr const BvhKernels* kCompactKernels[] = {&kBaselineCompactKernels};
+constexpr const AccelTraversal* kBlockKernels[] = {&kBaselineKernels};
+constexpr const AccelTraversal* kCompactKernels[] = {&kBaselineCompactKernels};
 #endif
 
 // What AccelInfo wants, for one kind of leaves and the kernels of every instruction set.
 template <const LeafKind& kLeaves, const auto& kKernels>
 struct Hierarchy {
-  static const BvhKernels& kernels() { return *kKernels[static_cast<int>(active_isa())]; }
+  static const AccelTraversal& kernels() { return *kKernels[static_cast<int>(active_isa())]; }
   static std::size_t need(std::uint32_t triangle_count) { return bvh_need(kLeaves, triangle_count); }
   static void build(Accel* accel, Arena* keep, Arena* scratch) { bvh_build(kLeaves, accel, keep, scratch); }
   static void refit(Accel* accel, Array<std::uint8_t> data) { bvh_refit(kLeaves, accel, data); }
@@ -44,8 +44,17 @@ struct Hierarchy {
     return bvh_nearest_distance(kLeaves, accel, point);
   }
   static constexpr AccelInfo info(const char* name, const char* help, std::uint32_t magic) {
-    return {name,  help,  true,    magic,          need,     bvh_scratch_need, build,
-            refit, adopt, closest, closest_packet, occluded, occluded_packet,  nearest_distance};
+    return {{closest, closest_packet, occluded, occluded_packet},
+            name,
+            help,
+            true,
+            magic,
+            need,
+            bvh_scratch_need,
+            build,
+            refit,
+            adopt,
+            nearest_distance};
   }
 };
 

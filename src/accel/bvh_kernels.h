@@ -5,19 +5,10 @@
 
 namespace pocketray {
 
-// As the functions of AccelInfo; of `bvh`, and those called Compact of `compact`.
-struct BvhKernels {
-  void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
-  void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
-                         TraceStats* stats);
-  bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
-  std::uint64_t (*occluded_packet)(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
-                                   TraceStats* stats);
-};
-
-extern const BvhKernels kBaselineKernels, kBaselineCompactKernels;
+// `bvh`'s, and `compact`'s where the name says so.
+extern const AccelTraversal kBaselineKernels, kBaselineCompactKernels;
 #if defined(__x86_64__)
-extern const BvhKernels kAvx2Kernels, kAvx2CompactKernels, kAvx512Kernels, kAvx512CompactKernels;
+extern const AccelTraversal kAvx2Kernels, kAvx2CompactKernels, kAvx512Kernels, kAvx512CompactKernels;
 #endif
 
 }  // namespace pocketray

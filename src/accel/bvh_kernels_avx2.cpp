@@ -5,8 +5,8 @@
 #if defined(__x86_64__)
 namespace pocketray {
 
-const BvhKernels kAvx2Kernels = avx2::kernels_of<avx2::BlockTree, 8>();
-const BvhKernels kAvx2CompactKernels = avx2::kernels_of<avx2::CompactTree, 8>();
+const AccelTraversal kAvx2Kernels = avx2::kernels_of<avx2::BlockTree, 8>();
+const AccelTraversal kAvx2CompactKernels = avx2::kernels_of<avx2::CompactTree, 8>();
 
 }  // namespace pocketray
 #endif

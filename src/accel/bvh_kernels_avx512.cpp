@@ -5,8 +5,8 @@
 #if defined(__x86_64__)
 namespace pocketray {
 
-const BvhKernels kAvx512Kernels = avx512::kernels_of<avx512::BlockTree, 16>();
-const BvhKernels kAvx512CompactKernels = avx512::kernels_of<avx512::CompactTree, 16>();
+const AccelTraversal kAvx512Kernels = avx512::kernels_of<avx512::BlockTree, 16>();
+const AccelTraversal kAvx512CompactKernels = avx512::kernels_of<avx512::CompactTree, 16>();
 
 }  // namespace pocketray
 #endif

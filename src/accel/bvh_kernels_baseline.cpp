@@ -3,7 +3,7 @@
 
 namespace pocketray {
 
-const BvhKernels kBaselineKernels = baseline::kernels_of<baseline::BlockTree, 4>();
-const BvhKernels kBaselineCompactKernels = baseline::kernels_of<baseline::CompactTree, 4>();
+const AccelTraversal kBaselineKernels = baseline::kernels_of<baseline::BlockTree, 4>();
+const AccelTraversal kBaselineCompactKernels = baseline::kernels_of<baseline::CompactTree, 4>();
 
 }  // namespace pocketray

@@ -10,7 +10,7 @@ inline namespace POCKETRAY_ISA {
 
 // Tree: BlockTree or CompactTree.
 template <class Tree, int kLanes>
-constexpr BvhKernels kernels_of() {
+constexpr AccelTraversal kernels_of() {
   return {closest<Tree>, closest_packet<Tree, kLanes>, occluded<Tree>, occluded_packet<Tree, kLanes>};
 }
 

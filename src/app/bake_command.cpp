@@ -30,15 +30,9 @@ Status write_scene(const std::string& path, const Scene& scene, std::size_t* byt
   });
 }
 
-// And has something before that.
-bool ends_in_pray(const std::string& path) {
-  std::size_t at = path.rfind(".pray");
-  return at != std::string::npos && at + 5 == path.size() && at > 0 && path[at - 1] != '/';
-}
-
 // Before the work. A device or a pipe, and standard output, may have any name.
 Status check(const BakeOptions& o) {
-  if (!platform::is_device_or_pipe(o.output.c_str()) && !ends_in_pray(o.output))
+  if (!platform::is_device_or_pipe(o.output.c_str()) && !has_suffix(o.output, ".pray"))
     return failure("-o is '%.300s': a baked scene's name must end in .pray", o.output.c_str());
   return check_outputs({{"IN", o.input}}, {{"-o", o.output}, {"--json", o.json}});
 }

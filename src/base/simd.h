@@ -23,6 +23,18 @@
 #else
 #include "base/simd_scalar.h"
 #endif
+
+namespace pocketray {
+// Vectors of so many lanes.
+template <int kLanes>
+struct Lanes;
+template <>
+struct Lanes<4> {
+  using Floats = Float4;
+  using Doubles = Double4;
+};
+}  // namespace pocketray
+
 #if defined(__AVX2__)
 #include "base/simd_avx2.h"
 #endif

@@ -108,12 +108,4 @@ inline Double4 select(DoubleMask4 m, Double4 a, Double4 b) {
 }
 inline unsigned bits(DoubleMask4 m) { return bits(Mask4{vcombine_u32(vmovn_u64(m.low), vmovn_u64(m.high))}); }
 
-template <int kLanes>
-struct Lanes;
-template <>
-struct Lanes<4> {
-  using Floats = Float4;
-  using Doubles = Double4;
-};
-
 }  // namespace pocketray

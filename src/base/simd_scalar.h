@@ -114,12 +114,4 @@ inline Float4 narrow(const Double4& a) {
   return r;
 }
 
-template <int kLanes>
-struct Lanes;
-template <>
-struct Lanes<4> {
-  using Floats = Float4;
-  using Doubles = Double4;
-};
-
 }  // namespace pocketray

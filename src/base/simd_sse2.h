@@ -137,12 +137,4 @@ inline unsigned bits(DoubleMask4 m) {
   return static_cast<unsigned>(_mm_movemask_pd(m.low) | _mm_movemask_pd(m.high) << 2);
 }
 
-template <int kLanes>
-struct Lanes;
-template <>
-struct Lanes<4> {
-  using Floats = Float4;
-  using Doubles = Double4;
-};
-
 }  // namespace pocketray

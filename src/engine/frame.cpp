@@ -21,9 +21,10 @@ Status prepare_frame(Renderer* renderer, double seconds) {
 
 Status render_frame(Renderer* renderer, double seconds, const SpanSource& source, bool* complete) {
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  std::uint64_t start = clock_ns();
+  const Clock& clock = *renderer->pace.clock;
+  std::uint64_t start = clock.now_ns();
   bool done = trace_frame(renderer, source);
-  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  renderer->timings.trace_ms = static_cast<double>(clock.now_ns() - start) * 1e-6;
   if (complete) *complete = done;
   return success();
 }

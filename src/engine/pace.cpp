@@ -13,7 +13,11 @@ constexpr double kPacedNsMax = 3600e9;             // nothing waits for longer
 
 std::uint64_t to_ns(double ns) { return static_cast<std::uint64_t>(ns < kPacedNsMax ? ns : kPacedNsMax); }
 
+void sleep_ns(std::uint64_t duration) { std::this_thread::sleep_for(std::chrono::nanoseconds(duration)); }
+
 }  // namespace
+
+const Clock kSystemClock = {clock_ns, sleep_ns};
 
 std::uint64_t paced_ns(const Pace& pace, std::uint64_t pixel_count, std::uint64_t elapsed_ns) {
   if (pace.ns_per_pixel > 0) return to_ns(static_cast<double>(pixel_count) * pace.ns_per_pixel);
@@ -36,7 +40,7 @@ std::uint64_t span_pixel_count(const Span* spans, std::uint32_t span_count) {
 
 void wait_for_pace(Pace* pace, std::uint64_t pixel_count, std::uint64_t start_ns, const std::atomic<bool>* stop) {
   if (!is_paced(*pace)) return;
-  std::uint64_t last = clock_ns();
+  std::uint64_t last = pace->clock->now_ns();
   pace->owed_ns += static_cast<std::int64_t>(paced_ns(*pace, pixel_count, last - start_ns)) -
                    static_cast<std::int64_t>(last - start_ns);
   auto stopped = [&] {
@@ -45,8 +49,8 @@ void wait_for_pace(Pace* pace, std::uint64_t pixel_count, std::uint64_t start_ns
   };
   while (pace->owed_ns > kOwedNsMax && !stopped()) {
     std::int64_t sleep = pace->owed_ns - kOwedNsMax / 2;
-    std::this_thread::sleep_for(std::chrono::nanoseconds(sleep < kSleepNsMax ? sleep : kSleepNsMax));
-    std::uint64_t now = clock_ns();
+    pace->clock->sleep_ns(static_cast<std::uint64_t>(sleep < kSleepNsMax ? sleep : kSleepNsMax));
+    std::uint64_t now = pace->clock->now_ns();
     pace->owed_ns -= static_cast<std::int64_t>(now - last);
     last = now;
   }

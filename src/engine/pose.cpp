@@ -27,17 +27,17 @@ void pose_at_time(Renderer* renderer, double seconds) {
 }  // namespace
 
 void pose_scene(Renderer* renderer, double seconds) {
-  std::uint64_t start = clock_ns();
+  std::uint64_t start = renderer->pace.clock->now_ns();
   pose_at_time(renderer, seconds);
   wait_for_pace(&renderer->pace, 0, start);
-  renderer->timings.pose_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  renderer->timings.pose_ms = static_cast<double>(renderer->pace.clock->now_ns() - start) * 1e-6;
 }
 
 void accelerate(Renderer* renderer) {
-  std::uint64_t start = clock_ns();
+  std::uint64_t start = renderer->pace.clock->now_ns();
   if (renderer->pose.positions.count) follow_motion(renderer);
   wait_for_pace(&renderer->pace, 0, start);
-  renderer->timings.refit_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  renderer->timings.refit_ms = static_cast<double>(renderer->pace.clock->now_ns() - start) * 1e-6;
   renderer->frame.accel = renderer->accel;
 }
 

@@ -17,7 +17,7 @@ constexpr std::uint32_t kCoarsestStep = 8;
 // Bytes of the span list that advance() needs for one row.
 inline std::size_t progressive_need(const Settings& settings) { return arena_need<Span>(settings.width); }
 
-// Traces on until about `deadline_ns` by clock_ns(), at least one row. True when the frame is finished. After
+// Traces on until about `deadline_ns` by the pace's clock, at least one row. True when the frame is finished. After
 // prepare_frame() a new frame begins with a Progressive as it is made.
 bool advance_progressive(Renderer* renderer, Array<Span> row_spans, std::uint64_t deadline_ns,
                          Progressive* progressive);

@@ -36,7 +36,7 @@ struct SpanSource {
   const std::atomic<bool>* stop = nullptr;  // set: no further batch
 
   // A clock of the source's own, and its pace: waits until work begun at `begin_ns` has lasted as long as on the
-  // emulated device and returns how long that is. Null, both: clock_ns() and the renderer's pace.
+  // emulated device and returns how long that is. Null, both: the renderer's pace and its clock.
   std::uint64_t (*now_ns)(void* context) = nullptr;
   std::uint64_t (*pace)(void* context, const SpanBatch& batch, std::uint64_t begin_ns) = nullptr;
 };

@@ -5,7 +5,9 @@
 namespace pocketray {
 namespace {
 
-std::uint64_t now_ns(const SpanSource& source) { return source.now_ns ? source.now_ns(source.context) : clock_ns(); }
+std::uint64_t now_ns(const Renderer& renderer, const SpanSource& source) {
+  return source.now_ns ? source.now_ns(source.context) : renderer.pace.clock->now_ns();
+}
 
 // Waits until the batch, begun at `begin_ns`, has lasted as long as on the emulated device; returns how long that is.
 std::uint64_t keep_pace(Renderer* renderer, const SpanSource& source, const SpanBatch& batch, std::uint64_t begin_ns) {
@@ -15,12 +17,12 @@ std::uint64_t keep_pace(Renderer* renderer, const SpanSource& source, const Span
       pace_spans(renderer->pace, batch.spans, batch.done_count, worker_thread_count(renderer->workers), batch.span_ns);
     wait_for_pace(&renderer->pace, pixel_count, begin_ns, source.stop);
   }
-  return clock_ns() - begin_ns;
+  return renderer->pace.clock->now_ns() - begin_ns;
 }
 
 void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch) {
   CHECK_LE(worker_thread_count(renderer->workers), renderer->tracers.count);
-  std::uint64_t begin_ns = now_ns(source);
+  std::uint64_t begin_ns = now_ns(*renderer, source);
   batch->done_count =
       trace_with(renderer->workers, {batch->spans, batch->span_count, source.aov, renderer->image.data,
                                      renderer->tracers.data, batch->span_ns, batch->stoppable ? source.stop : nullptr});
@@ -40,7 +42,7 @@ bool trace_frame(Renderer* renderer, const SpanSource& source) {
     source.next(source.context, &batch);
     if (batch.span_count > 0) trace_batch(renderer, source, &batch);
     if (source.finished(source.context, batch)) return true;
-  } while (source.deadline_ns == kNoDeadline || now_ns(source) < source.deadline_ns);
+  } while (source.deadline_ns == kNoDeadline || now_ns(*renderer, source) < source.deadline_ns);
   return false;
 }
 

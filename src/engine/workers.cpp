@@ -71,6 +71,19 @@ void take_spans(void* context, std::uint32_t thread) {
   }
 }
 
+struct ItemQueue {
+  std::uint32_t end;
+  bool (*take)(void* context, std::uint32_t thread, std::uint32_t item);
+  void* context;
+  std::atomic<std::uint32_t> next;
+};
+
+void take_items(void* context, std::uint32_t thread) {
+  ItemQueue* queue = static_cast<ItemQueue*>(context);
+  for (std::uint32_t item; (item = queue->next++) < queue->end;)
+    if (!queue->take(queue->context, thread, item)) return;
+}
+
 void run_worker(Workers* w, std::uint32_t thread) {
   std::uint64_t seen = 0;
   for (;;) {
@@ -138,6 +151,16 @@ void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), voi
   work(context, 0);
   std::unique_lock<std::mutex> lock(w->mutex);
   w->end.wait(lock, [&] { return w->busy == 0; });
+}
+
+std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t end,
+                          bool (*take)(void* context, std::uint32_t thread, std::uint32_t item), void* context) {
+  CHECK_LE(begin, end);
+  CHECK_LE(end, ~0u - kThreadCountMax);
+  ItemQueue queue{end, take, context, {begin}};
+  run_with(workers, take_items, &queue);
+  std::uint32_t next = queue.next;
+  return next < end ? next : end;
 }
 
 std::uint32_t trace_with(Workers* w, const TraceJob& job) {

@@ -19,6 +19,11 @@ std::uint32_t worker_thread_count(const Workers* workers);
 // be null: the caller's thread does it alone.
 void run_with(Workers* workers, void (*work)(void* context, std::uint32_t thread), void* context);
 
+// Calls take(context, thread, item) for each item of [begin, end), on whichever thread is free. Returns when all are
+// done, or each thread has left because take() returned false: the first item that none took.
+std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t end,
+                          bool (*take)(void* context, std::uint32_t thread, std::uint32_t item), void* context);
+
 struct TraceJob {
   const Span* spans;
   std::uint32_t span_count;

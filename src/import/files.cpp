@@ -15,11 +15,6 @@
 
 namespace pocketray {
 
-bool file_exists(const std::string& path) {
-  struct stat info;
-  return stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
-}
-
 Bytes read_file(const std::string& path, std::uint64_t byte_count_max) {
   // A pipe that takes the file's place would have open() wait for a writer; and what is examined is what is read.
   int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);

@@ -11,7 +11,6 @@ using Bytes = std::vector<std::uint8_t>;
 // The whole file; its size is asked before memory is taken. Throws ImportError when it cannot be read or is larger than
 // `byte_count_max`.
 Bytes read_file(const std::string& path, std::uint64_t byte_count_max);
-bool file_exists(const std::string& path);
 
 // Path of the file that the scene file at `scene_path` calls `name`: relative, without "..", '\' taken as '/'.
 // Throws ImportError for anything else.

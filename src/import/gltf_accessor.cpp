@@ -158,10 +158,6 @@ Elements dense_elements(GltfFile* file, const tinygltf::Accessor& accessor, int 
 
 }  // namespace
 
-std::size_t gltf_count(const GltfFile& file, int accessor, const char* what) {
-  return accessor_at(file, accessor, what).count;
-}
-
 int gltf_component_count(const GltfFile& file, int accessor) {
   return component_count(accessor_at(file, accessor, "an attribute").type);
 }

@@ -73,9 +73,4 @@ ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin,
 void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, float exposure,
                 const PixelFormat& format, bool dither, std::uint8_t* pixels);
 
-// A whole picture into bytes R, G, B without padding: what PNG and PPM take.
-inline ToneCounts pack_rgb8(const Vec3* radiance, int width, int height, float exposure, std::uint8_t* rgb) {
-  return pack_rows(radiance, width, height, 0, height, exposure, kRgb888, Rotation::none, false, rgb, 3 * width);
-}
-
 }  // namespace pocketray

@@ -75,10 +75,6 @@ Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& 
 
 }  // namespace
 
-Vec3d radiance_as_rendered(const Reference& reference, const Vec3d& origin, const Vec3d& direction) {
-  return follow(reference, {origin, direction, 0, kInfinity}, {0, reference.world.frame->eye_media});
-}
-
 void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std::uint32_t row_end, Vec3d* picture) {
   const FrameData& frame = *reference.world.frame;
   std::uint32_t width = static_cast<std::uint32_t>(frame.camera.width), n = frame.settings.samples_per_pixel;

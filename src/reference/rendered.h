@@ -5,9 +5,6 @@
 
 namespace pocketray {
 
-// Radiance along one ray.
-Vec3d radiance_as_rendered(const Reference& reference, const Vec3d& origin, const Vec3d& direction);
-
 // Rows [row_begin, row_end), width × rows radiances. Settings are those of the frame: samples_per_pixel, ray_depth,
 // points_per_area_light. Threads may share the reference.
 void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std::uint32_t row_end, Vec3d* picture);

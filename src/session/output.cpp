@@ -24,6 +24,12 @@ bool is_file(const NamedFile& input) {
 
 }  // namespace
 
+bool has_suffix(const std::string& path, const std::string& suffix) {
+  if (path.size() <= suffix.size()) return false;
+  std::size_t at = path.size() - suffix.size();
+  return path.compare(at, suffix.size(), suffix) == 0 && path[at - 1] != '/';
+}
+
 Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const NamedFile& output = outputs[i];

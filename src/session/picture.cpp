@@ -13,15 +13,13 @@ namespace {
 
 enum class Kind { png, ppm, pfm, raw, unknown };
 
-Kind kind_of(const char* path) {
-  const char* dot = std::strrchr(path, '.');
-  if (!dot) return Kind::unknown;
+Kind kind_of(const std::string& path) {
   constexpr struct {
-    const char* ending;
+    const char* suffix;
     Kind kind;
-  } kEndings[] = {{".png", Kind::png}, {".ppm", Kind::ppm}, {".pfm", Kind::pfm}, {".raw", Kind::raw}};
-  for (const auto& row : kEndings)
-    if (std::strcmp(dot, row.ending) == 0) return row.kind;
+  } kSuffixes[] = {{".png", Kind::png}, {".ppm", Kind::ppm}, {".pfm", Kind::pfm}, {".raw", Kind::raw}};
+  for (const auto& row : kSuffixes)
+    if (has_suffix(path, row.suffix)) return row.kind;
   return Kind::unknown;
 }
 

@@ -94,7 +94,7 @@ Status render_seed(const AccuracyOptions& options, const ReferenceOptions& o, co
     if (save_begun(options, settings, *picture, *state).ok) saved_ns = clock_ns();
   };
   auto trace_row = [&](std::uint32_t row, Vec3d* means) { trace_reference(rig.reference, o, row, row + 1, means); };
-  *whole = trace_rows(settings, rows, trace_row, row_done, picture->data());
+  *whole = trace_rows(rig.opened.renderer, rows, trace_row, row_done, picture->data());
   end_progress(&progress);
   if (!*whole) return save_begun(options, settings, *picture, *state);
   RETURN_IF_ERROR(save_radiance(options.folder, name, settings.width, settings.height, *picture));

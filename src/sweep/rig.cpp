@@ -2,7 +2,6 @@
 #include <zlib.h>
 
 #include <mutex>
-#include <thread>
 
 #include "base/limits.h"
 #include "budget/front_file.h"
@@ -101,7 +100,7 @@ Status render_in_double(Rig* rig, double seconds) {
   std::uint32_t rows = static_cast<std::uint32_t>(all.size());
   for (std::uint32_t i = 0; i < rows; ++i) all[i] = i;
   trace_rows(
-      renderer->settings, all,
+      *renderer, all,
       [&](std::uint32_t i, Vec3d* radiances) {
         std::uint32_t row = (2 * i + 1) * renderer->settings.height / (2 * rows);
         trace_as_rendered(rig->reference, row, row + 1, radiances);
@@ -136,29 +135,31 @@ void make_rig_reference(Rig* rig) {
   rig->reference = make_reference(frame, &arena);
 }
 
-bool trace_rows(const Settings& settings, const std::vector<std::uint32_t>& rows,
+bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows,
                 const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
                 const std::function<void(std::uint32_t)>& row_done, Vec3* picture) {
-  std::atomic<std::size_t> next{0};
-  std::size_t done = 0;
-  std::mutex mutex;
-  auto take_rows = [&] {
-    std::vector<Vec3d> row_of(settings.width);
-    for (std::size_t i; !interrupted && (i = next++) < rows.size();) {
-      trace_row(rows[i], row_of.data());
-      Vec3* out = picture + std::size_t(rows[i]) * settings.width;
-      for (const Vec3d& radiance : row_of)
-        *out++ = {static_cast<float>(radiance.x), static_cast<float>(radiance.y), static_cast<float>(radiance.z)};
-      std::lock_guard<std::mutex> lock(mutex);
-      ++done;
-      if (row_done) row_done(rows[i]);
-    }
+  struct Context {
+    const std::vector<std::uint32_t>& rows;
+    const std::function<void(std::uint32_t, Vec3d*)>& trace_row;
+    const std::function<void(std::uint32_t)>& row_done;
+    Vec3* picture;
+    std::vector<std::vector<Vec3d>> row_of;  // each thread's
+    std::mutex mutex;
+  } context{rows, trace_row, row_done, picture, {}, {}};
+  context.row_of.assign(worker_thread_count(renderer.workers), std::vector<Vec3d>(renderer.settings.width));
+  auto take_row = [](void* user, std::uint32_t thread, std::uint32_t i) {
+    Context* c = static_cast<Context*>(user);
+    std::vector<Vec3d>& radiances = c->row_of[thread];
+    c->trace_row(c->rows[i], radiances.data());
+    Vec3* out = c->picture + std::size_t(c->rows[i]) * radiances.size();
+    for (const Vec3d& radiance : radiances)
+      *out++ = {static_cast<float>(radiance.x), static_cast<float>(radiance.y), static_cast<float>(radiance.z)};
+    std::lock_guard<std::mutex> lock(c->mutex);
+    if (c->row_done) c->row_done(c->rows[i]);
+    return !interrupted;
   };
-  std::vector<std::thread> threads;
-  for (std::uint32_t i = 1; i < settings.threads; ++i) threads.emplace_back(take_rows);
-  take_rows();
-  for (std::thread& thread : threads) thread.join();
-  return done == rows.size();
+  auto count = static_cast<std::uint32_t>(rows.size());
+  return share_items(renderer.workers, 0, count, take_row, &context) == count;
 }
 
 std::uint32_t take_part(Rig* rig) {

@@ -43,9 +43,9 @@ Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, st
 // Makes rig->reference if it is not made yet, of the frame as it is prepared.
 void make_rig_reference(Rig* rig);
 
-// Calls trace_row(row, radiances) for each of the rows by all threads, puts what it gets into `picture`, width ×
+// Calls trace_row(row, radiances) for each of the rows by all workers, puts what it gets into `picture`, width ×
 // height, and calls row_done(row), one thread at a time; that may be null. False: interrupted before the last of them.
-bool trace_rows(const Settings& settings, const std::vector<std::uint32_t>& rows,
+bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows,
                 const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
                 const std::function<void(std::uint32_t)>& row_done, Vec3* picture);
 

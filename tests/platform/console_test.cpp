@@ -62,7 +62,7 @@ int run_child(Body body, void (*term_handler)(int) = SIG_DFL) {
     recorded_ioctl = recorded::kDriver.ioctl;
     static Driver driver = recorded::kDriver;
     driver.ioctl = shared_ioctl;
-    linux_set_driver(&driver);
+    linux_driver = &driver;
     ScreenOptions options;
     options.memory = memory.data();
     options.memory_bytes = memory.size() * 4;

@@ -1,12 +1,11 @@
-// Random numbers of the system, and those for tests.
+// Random numbers of the system.
 #include "platform/entropy.h"
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <cstring>
 #include <set>
-
-#include "platform/null/null_entropy.h"
 
 // Goal: bytes that differ each time and reach every value; nothing is written behind them. Method: 4096 words.
 TEST_CASE("entropy_words_do_not_repeat") {
@@ -25,20 +24,4 @@ TEST_CASE("entropy_words_do_not_repeat") {
   CHECK(words.size() == 4096);
   CHECK(values.size() == 256);
   CHECK(platform::random_bytes(nullptr, 0));
-}
-
-// Goal: a seed decides the numbers for tests. Method: equal and unequal seeds.
-TEST_CASE("null_entropy_follows_its_seed") {
-  unsigned char a[20], b[20], c[20];
-  platform::seed_null_entropy(7);
-  REQUIRE(platform::null_random_bytes(a, sizeof a));
-  REQUIRE(platform::null_random_bytes(c, sizeof c));
-  platform::seed_null_entropy(7);
-  REQUIRE(platform::null_random_bytes(b, sizeof b));
-  CHECK(std::memcmp(a, b, sizeof a) == 0);
-  CHECK(std::memcmp(a, c, sizeof a) != 0);
-  platform::seed_null_entropy(8);
-  REQUIRE(platform::null_random_bytes(b, sizeof b));
-  CHECK(std::memcmp(a, b, sizeof a) != 0);
-  CHECK(!platform::no_random_bytes(a, sizeof a));
 }

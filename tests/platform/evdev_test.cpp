@@ -1,5 +1,6 @@
 #if defined(__linux__)
 #include "platform/linux/evdev.h"
+#include "platform/button_name.h"
 
 #include <doctest/doctest.h>
 #include <linux/input.h>

@@ -48,14 +48,14 @@ struct Screen {
   explicit Screen(const Geometry& geometry, Vsync vsync = Vsync::absent) {
     recorded::reset(&machine, geometry, vsync);
     driver.vsync_timeout_ns = vsync == Vsync::never ? kVsyncTimeoutNs : kPatienceNs;
-    linux_set_driver(&driver);
+    linux_driver = &driver;
     options.memory = memory.data();
     options.memory_bytes = memory.size() * 4;
   }
   ~Screen() {
     machine.release = true;
     kLinuxBackend.close();
-    linux_set_driver(nullptr);
+    linux_driver = &kSystemDriver;
     while (machine.stuck) usleep(1000);
   }
   bool open() { return kLinuxBackend.open(options, &format, &error); }

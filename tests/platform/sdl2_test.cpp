@@ -1,5 +1,6 @@
 #if defined(POCKETRAY_HAVE_SDL2)
 #include "platform/sdl2/sdl2.h"
+#include "platform/button_name.h"
 
 #include <SDL.h>
 #include <doctest/doctest.h>

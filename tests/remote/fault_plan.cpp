@@ -1,4 +1,5 @@
 #include "fault_plan.h"
+#include "support/link_fault.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,8 +71,7 @@ FaultPlan draw_faults(std::uint64_t seed) {
   plan.line.fault_count = static_cast<int>(random.below(kSessionFaultsMax + 1));
   // Half of them within the overture's small messages.
   std::uint64_t byte_count = random.below(2) ? 200 : 30'000;
-  platform::null_link_draw_faults(random.below(~0u), kFaultyConnections, byte_count, plan.faults,
-                                  plan.line.fault_count);
+  draw_link_faults(random.below(~0u), kFaultyConnections, byte_count, plan.faults, plan.line.fault_count);
   plan.event_count = static_cast<int>(random.below(kSessionEventsMax + 1));
   for (int i = 0; i < plan.event_count; ++i) {
     PlannedEvent* e = &plan.events[i];

@@ -1,4 +1,5 @@
 #include "fault_session.h"
+#include "client_count.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -233,7 +234,7 @@ SessionResult run_fault_session(const FaultPlan& plan) {
   close_client(&w.client);
   let_pass(kServerIdleNs + kSilenceNs + 200 * kMs);
   for (std::uint32_t i = 0; i < plan.server_count; ++i)
-    if (result.failure.empty() && server_client_count(*w.places[i].server) > 0)
+    if (result.failure.empty() && client_count(*w.places[i].server) > 0)
       result.failure = fail(w, "leaves a session behind");
   close_fault_world(&w);
   return result;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include "client_count.h"
 #include "remote/server/state.h"
 #include "support/effort.h"
 #include "support/scripted_client.h"
@@ -208,7 +209,7 @@ TEST_CASE("server_gives_the_place_of_who_is_silent_to_who_comes") {
   rig.server->net = &net;
   std::vector<std::unique_ptr<ScriptedClient>> silent;
   for (int i = 0; i < 8; ++i) silent.push_back(std::make_unique<ScriptedClient>(&rig));
-  rig.run_until([&] { return server_client_count(*rig.server) == 8; });
+  rig.run_until([&] { return client_count(*rig.server) == 8; });
   ScriptedClient early(&rig);
   CHECK(early.wait_for(MessageType::error)->message.error.code == WireError::busy);
   std::uint64_t later = rig.now() + 10'000 * kMs;
@@ -216,7 +217,7 @@ TEST_CASE("server_gives_the_place_of_who_is_silent_to_who_comes") {
   ScriptedClient ninth(&rig);
   ninth.request(frame_request("cube", 1, 16, 12));
   ninth.wait_for_rows(12);
-  CHECK(server_client_count(*rig.server) == 8);
+  CHECK(client_count(*rig.server) == 8);
   rig.run_until([&] { return silent[0]->poll(), silent[0]->closed; });
   CHECK(silent[0]->has_error(WireError::busy));
   rig.server->net = &platform::kNullLink;
@@ -238,7 +239,7 @@ TEST_CASE("server_gives_no_address_all_places_for_long") {
     many.push_back(std::make_unique<ScriptedClient>(&rig));
     many.back()->request(frame_request("cube", 1, 320, 240));
   }
-  rig.run_until([&] { return server_client_count(*rig.server) == 8; });
+  rig.run_until([&] { return client_count(*rig.server) == 8; });
   for (int i = 0; i < 2; ++i) {
     many.push_back(std::make_unique<ScriptedClient>(&rig));
     many.back()->request(frame_request("cube", 1, 16, 12));
@@ -246,7 +247,7 @@ TEST_CASE("server_gives_no_address_all_places_for_long") {
   }
   ScriptedClient late(&rig);
   CHECK(late.wait_for(MessageType::error)->message.error.code == WireError::busy);
-  CHECK(server_client_count(*rig.server) == 8);
+  CHECK(client_count(*rig.server) == 8);
   rig.server->net = &platform::kNullLink;
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/rng.h"
+#include "client_count.h"
 #include "support/scripted_client.h"
 
 using namespace pocketray;
@@ -33,7 +34,7 @@ void check_malformed(ServerRig* rig, const std::vector<std::uint8_t>& bytes, Wir
   client.send_bytes(bytes);
   rig->run_until([&] { return client.poll(), client.closed; });
   CHECK(client.has_error(code));
-  CHECK(server_client_count(*rig->server) == 0);
+  CHECK(client_count(*rig->server) == 0);
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ TEST_CASE("server_refuses_requests_that_it_cannot_meet") {
   request.camera_stated = true;
   request.camera.eye = request.camera.target = {1, 2, 3};
   check_refused(request, WireError::bad_request);
-  CHECK(server_client_count(*rig.server) == 1);
+  CHECK(client_count(*rig.server) == 1);
 }
 
 // Goal: a change of no request, or to rows that its picture does not have, is refused, and the connection goes on.
@@ -172,14 +173,14 @@ TEST_CASE("server_ends_a_client_that_never_reads") {
   ScriptedClient deaf(&rig), other(&rig);
   deaf.wait_for(MessageType::hello);
   other.wait_for(MessageType::hello);
-  rig.run_until([&] { return server_client_count(*rig.server) == 2; });
+  rig.run_until([&] { return client_count(*rig.server) == 2; });
   deaf.reads = false;
   FrameRequest large = frame_request("cornell", 1, 320, 240);
   large.format = WireFormat::rgb888, large.deflate_level = 0;
   deaf.send_bytes(request_bytes(large));
   FrameRequest request = frame_request("cube", 1);
   std::uint64_t start = rig.now(), last_ns = 0;
-  while (server_client_count(*rig.server) == 2) {
+  while (client_count(*rig.server) == 2) {
     std::uint64_t before = rig.now();
     other.request(request);
     other.wait_for_rows(48);
@@ -224,7 +225,7 @@ TEST_CASE("server_ends_who_stops_in_a_message_or_is_silent_for_too_long") {
     CAPTURE(i);
     CHECK(seconds[i] == doctest::Approx(expected[i]).epsilon(0.1));
   }
-  CHECK(server_client_count(*rig.server) == 0);
+  CHECK(client_count(*rig.server) == 0);
   check_serves(&rig);
 }
 
@@ -241,7 +242,7 @@ TEST_CASE("server_tells_one_client_too_many_that_it_is_busy") {
     CHECK(ninth.wait_for(MessageType::error)->message.error.code == WireError::busy);
     if (i < 3) rig.run_until([&] { return ninth.poll(), ninth.closed; });
   }
-  CHECK(server_client_count(*rig.server) == 8);
+  CHECK(client_count(*rig.server) == 8);
   // Those that do not go by themselves are closed in time, the first ones at once where there are many.
   std::vector<std::unique_ptr<ScriptedClient>> late;
   for (int i = 0; i < 20; ++i) {
@@ -257,7 +258,7 @@ TEST_CASE("server_tells_one_client_too_many_that_it_is_busy") {
   CHECK_FALSE(late[19]->closed);
   rig.run_until(poll_late, 3000 * kMs);
   clients.pop_back();
-  rig.run_until([&] { return server_client_count(*rig.server) == 7; });
+  rig.run_until([&] { return client_count(*rig.server) == 7; });
   check_serves(&rig);
 }
 
@@ -268,7 +269,7 @@ TEST_CASE("server_state_stays_bounded_over_a_thousand_connections") {
   Rng rng = make_rng(5);
   for (int i = 0; i < 1000; ++i) {
     rig.step();  // lets in who came last
-    rig.run_until([&] { return server_client_count(*rig.server) < 4; });
+    rig.run_until([&] { return client_count(*rig.server) < 4; });
     ScriptedClient client(&rig, false);
     std::vector<std::uint8_t> hello = hello_bytes();
     FrameRequest request = frame_request("cube", 1, 16, 12);
@@ -292,9 +293,9 @@ TEST_CASE("server_state_stays_bounded_over_a_thousand_connections") {
         client.send_bytes({0xff, 0xff});
         break;
     }
-    CHECK(server_client_count(*rig.server) <= 8);
+    CHECK(client_count(*rig.server) <= 8);
   }
-  rig.run_until([&] { return server_client_count(*rig.server) == 0; });
+  rig.run_until([&] { return client_count(*rig.server) == 0; });
   std::uint64_t later = rig.now() + 2000 * kMs;
   rig.run_until([&] { return rig.now() >= later; });
   check_serves(&rig);
@@ -317,7 +318,7 @@ TEST_CASE("server_reads_no_more_than_it_can_answer") {
   std::vector<std::uint8_t> many, one = bytes_of(ping);
   for (int i = 0; i < 5000; ++i) many.insert(many.end(), one.begin(), one.end());
   client.send_bytes(many);
-  rig.run_until([&] { return server_client_count(*rig.server) == 0; });
+  rig.run_until([&] { return client_count(*rig.server) == 0; });
   CHECK(rig.logged("takes nothing"));
   check_serves(&rig);
 }

@@ -6,12 +6,12 @@
 
 #include "engine/frame.h"
 #include "platform/entropy.h"
-#include "platform/null/null_entropy.h"
 #include "remote/client/parts.h"
 #include "remote/client/servers.h"
 #include "split_rig.h"
 #include "support/effort.h"
 #include "support/lying_server.h"
+#include "support/test_entropy.h"
 
 using namespace pocketray;
 
@@ -225,8 +225,8 @@ TEST_CASE("verify_pixels_follow_the_entropy") {
   for (int k = 0; k < 3; ++k) {
     SplitRigOptions options = small(1);
     options.client.check_count = 16;
-    options.client.entropy = platform::null_random_bytes;
-    platform::seed_null_entropy(k == 2 ? 1 : 0);
+    options.client.entropy = test_random_bytes;
+    seed_test_entropy(k == 2 ? 1 : 0);
     LiarRig own(options);
     for (int i = 0; i < 3; ++i) own.rig.frame(0);
     REQUIRE(own.rig.client.share.checked[0] == 16);
@@ -244,10 +244,10 @@ TEST_CASE("verify_pixels_follow_the_entropy") {
   std::vector<unsigned char> memory(verifier_need(settings) + kArenaAlignment);
   Arena arena = make_arena("verifier", memory.data(), memory.size());
   Verifier verifier;
-  Status status = make_verifier(kCheckCountAuto, platform::no_random_bytes, settings, &arena, &verifier);
+  Status status = make_verifier(kCheckCountAuto, no_random_bytes, settings, &arena, &verifier);
   CHECK(!status.ok);
   CHECK(std::string(status.message).find("--verify 0") != std::string::npos);
-  CHECK(make_verifier(0, platform::no_random_bytes, settings, &arena, &verifier).ok);
+  CHECK(make_verifier(0, no_random_bytes, settings, &arena, &verifier).ok);
 }
 
 // Goal: --verify 0 checks nothing; what is shown is what came. Method: a liar, every frame.

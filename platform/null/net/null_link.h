@@ -19,7 +19,6 @@ enum class LinkFault : std::uint8_t {
   clock_back,  // the clock is set back by up to ten seconds
 };
 constexpr int kLinkFaultCount = 9;
-const char* link_fault_name(LinkFault fault);
 
 // Strikes once in every connection that it is meant for.
 struct NullFault {
@@ -50,11 +49,6 @@ Link* null_link_open(const LinkOptions& options, const NullLinkSettings& setting
 // no limit of bandwidth; faults do not strike it and connection_count leaves it out. `host` is an address in numbers.
 int null_link_connect_from(Link* link, const char* host, const LinkAddress& address, std::uint64_t timeout_ns,
                            Error* error);
-
-// Faults drawn from a seed: of any kind, for one of the first `connection_count` connections, at one of its first
-// `byte_count` bytes.
-void null_link_draw_faults(std::uint64_t seed, int connection_count, std::uint64_t byte_count, NullFault* faults,
-                           int fault_count);
 
 struct NullLinkRecord {
   int connection_count = 0;  // asked for so far

@@ -8,22 +8,19 @@
 #include "scene/baked.h"
 #include "scene/builtin/builtin.h"
 #include "session/heap_scene.h"
+#include "session/output.h"
 #include "session/progress.h"
 
 namespace pocketray {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 // Whether a file's name is that of a scene; those beside them are textures and the like.
 bool is_scene_file(const std::string& name) {
-  if (ends_with(name, ".pray")) return true;
+  if (has_suffix(name, ".pray")) return true;
 #ifdef POCKETRAY_HAVE_IMPORT
   std::string formats = import_formats() + " ";
   for (std::size_t begin = 0, end; (end = formats.find(' ', begin)) != std::string::npos; begin = end + 1)
-    if (end > begin && ends_with(name, "." + formats.substr(begin, end - begin))) return true;
+    if (end > begin && has_suffix(name, "." + formats.substr(begin, end - begin))) return true;
 #endif
   return false;
 }

@@ -267,12 +267,6 @@ ServerTotals server_totals(const Server& server) {
   return totals;
 }
 
-int server_client_count(const Server& server) {
-  int count = 0;
-  for (const Session& session : server.sessions) count += session.phase != SessionPhase::unused;
-  return count;
-}
-
 void close_server(Server* server) {
   if (!server) return;
   say_farewell(server);

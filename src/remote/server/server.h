@@ -48,7 +48,6 @@ const char* server_address(const Server& server);
 // a part of one frame, sends what is ready.
 void step_server(Server* server, std::uint64_t timeout_ns);
 ServerTotals server_totals(const Server& server);
-int server_client_count(const Server& server);  // now
 // Tells the clients, for half a second at most, and gives everything back. Null is allowed.
 void close_server(Server* server);
 

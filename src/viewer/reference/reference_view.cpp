@@ -85,36 +85,31 @@ Status aim(ReferenceView* view, Renderer* renderer, double seconds) {
   return success();
 }
 
-struct RowQueue {
+struct Pass {
   ReferenceView* view;
   std::uint64_t deadline_ns;
-  std::atomic<std::uint32_t> next_row;
 };
 
-void take_rows(void* context, std::uint32_t thread) {
-  RowQueue* queue = static_cast<RowQueue*>(context);
-  ReferenceView* view = queue->view;
+bool take_row(void* context, std::uint32_t thread, std::uint32_t row) {
+  const Pass& pass = *static_cast<Pass*>(context);
+  ReferenceView* view = pass.view;
   ReferenceOptions o = view->reference_options;
   o.samples_per_pixel = 1;
   o.first_sample = view->samples;
   Vec3d* light = view->row_light.data() + std::size_t(thread) * view->width;
-  while (clock_ns() < queue->deadline_ns) {
-    std::uint32_t row = queue->next_row++;
-    if (row >= view->height) return;
-    for (std::uint32_t seed = 0; seed < kSeedCount; ++seed) {
-      o.seed = seed + 1;
-      trace_reference(view->reference, o, row, row + 1, light);
-      Vec3d* sum = view->sums[seed].data() + std::size_t(row) * view->width;
-      for (std::uint32_t x = 0; x < view->width; ++x) sum[x] = view->samples == 0 ? light[x] : sum[x] + light[x];
-    }
+  for (std::uint32_t seed = 0; seed < kSeedCount; ++seed) {
+    o.seed = seed + 1;
+    trace_reference(view->reference, o, row, row + 1, light);
+    Vec3d* sum = view->sums[seed].data() + std::size_t(row) * view->width;
+    for (std::uint32_t x = 0; x < view->width; ++x) sum[x] = view->samples == 0 ? light[x] : sum[x] + light[x];
   }
+  return clock_ns() < pass.deadline_ns;
 }
 
 // One more sample of each pixel, or of as many rows as there is time for.
 void trace_pass(ReferenceView* view, Workers* workers, std::uint64_t deadline_ns) {
-  RowQueue queue{view, deadline_ns, {view->row}};
-  run_with(workers, take_rows, &queue);
-  view->row = std::min<std::uint32_t>(queue.next_row, view->height);
+  Pass pass = {view, deadline_ns};
+  view->row = share_items(workers, view->row, view->height, take_row, &pass);
   if (view->row < view->height) return;
   view->row = 0;
   ++view->samples;

@@ -5,8 +5,11 @@
 
 #include "link_rig.h"
 #include "support/effort.h"
+#include "support/link_fault.h"
 
 using namespace platform;
+using pocketray::draw_link_faults;
+using pocketray::link_fault_name;
 
 namespace {
 
@@ -176,7 +179,7 @@ namespace {
 // A session of both ends, who write and read what they please under four faults; everything that happened, as a number.
 std::uint64_t session(std::uint64_t seed, NullLinkRecord* record) {
   NullFault faults[4];
-  null_link_draw_faults(seed, 2, 4000, faults, 4);
+  draw_link_faults(seed, 2, 4000, faults, 4);
   NullLinkSettings settings;
   settings.bytes_per_second = 500'000;
   settings.latency_ns = settings.jitter_ns = 2 * kMs;

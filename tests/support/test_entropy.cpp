@@ -1,6 +1,6 @@
-#include "platform/null/null_entropy.h"
+#include "support/test_entropy.h"
 
-namespace platform {
+namespace pocketray {
 namespace {
 
 std::uint64_t state = 0;
@@ -15,9 +15,9 @@ std::uint64_t next() {
 
 }  // namespace
 
-void seed_null_entropy(std::uint64_t seed) { state = seed; }
+void seed_test_entropy(std::uint64_t seed) { state = seed; }
 
-bool null_random_bytes(void* bytes, std::size_t byte_count) {
+bool test_random_bytes(void* bytes, std::size_t byte_count) {
   unsigned char* at = static_cast<unsigned char*>(bytes);
   std::uint64_t word = 0;
   for (std::size_t i = 0; i < byte_count; ++i, word >>= 8) {
@@ -29,4 +29,4 @@ bool null_random_bytes(void* bytes, std::size_t byte_count) {
 
 bool no_random_bytes(void*, std::size_t) { return false; }
 
-}  // namespace platform
+}  // namespace pocketray

@@ -1,9 +1,13 @@
+#include "support/link_fault.h"
+
 #include "platform/null/net/null_state.h"
 
-namespace platform {
+namespace pocketray {
 
-void null_link_draw_faults(std::uint64_t seed, int connection_count, std::uint64_t byte_count, NullFault* faults,
-                           int fault_count) {
+using namespace platform;
+
+void draw_link_faults(std::uint64_t seed, int connection_count, std::uint64_t byte_count, NullFault* faults,
+                      int fault_count) {
   for (int i = 0; i < fault_count; ++i) {
     faults[i].fault = static_cast<LinkFault>(random_u64(&seed) % kLinkFaultCount);
     faults[i].connection = static_cast<int>(random_u64(&seed) % static_cast<std::uint64_t>(connection_count));
@@ -18,4 +22,4 @@ const char* link_fault_name(LinkFault fault) {
   return kNames[static_cast<int>(fault)];
 }
 
-}  // namespace platform
+}  // namespace pocketray
