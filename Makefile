@@ -1,15 +1,15 @@
 # A thin front over CMake: sets up what is missing, configures, builds, runs. `make help` lists the targets.
 #   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
 #   PREFIX=   where `make install` goes
-#   TESTS=    only the test programs that match this regular expression
-#   JSON=     a file that takes the table of `make hardcases` or `make mutants`, too
+#   TESTS=    run only the tests that match this regular expression
+#   JSON=     also write the table of `make hardcases` or `make mutants` to this file
 DEVICE ?=
 PREFIX ?= /usr/local
 TESTS ?= .
 SCENE ?= cornell
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-# A compiler cache serves clones in other folders, too.
+# Lets clones in other folders share a compiler cache.
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := true
 
@@ -34,7 +34,7 @@ endif
 setup:
 	@toolchains/setup.sh $(or $(CLASS),desktop)
 
-# Options that are no part of a target: the generator and the compiler cache where there is one, the toolchain of the device.
+# Ninja and a compiler cache where installed, and the device's toolchain.
 configure: setup
 	@mkdir -p $(BUILD) && sysroot=$(if $(CLASS),$$(toolchains/sysroot.sh $(CLASS))) && \
 	cmake -S . -B $(BUILD) -DCMAKE_INSTALL_PREFIX=$(PREFIX) \
@@ -64,12 +64,13 @@ test: setup-tests configure
 hardcases: setup-tests configure
 	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases
 
-# Deliberate faults, one at a time: does some test fail? MUTANTS= takes options: see tests/mutation/mutate.sh.
+# Applies deliberate faults, one at a time: does a test fail? MUTANTS= takes the options of tests/mutation/mutate.sh.
 mutants: setup-tests
 	@JSON=$(JSON) tests/mutation/mutate.sh --jobs $(JOBS) $(MUTANTS)
 
-# Sessions of a device and its servers in which something goes wrong, in JOBS shares. SEED= begins with that one; a failing
-# session is printed with its own: make faults SESSIONS=1 SEED=n. Without SEED= those over sockets follow, all of them.
+# Simulates sessions of a device and its servers in which something goes wrong, in JOBS processes. SEED= starts at that seed;
+# a failing session prints its own, and make faults SESSIONS=1 SEED=n repeats it. Without SEED= the full tests over sockets
+# follow.
 SESSIONS ?= 100000
 SEED ?= 1
 faults: setup-tests configure
@@ -80,8 +81,8 @@ faults: setup-tests configure
 	  $(BUILD)/test_remote --no-intro --test-case="faults_simulated*"'
 	@[ $(SEED) != 1 ] || POCKETRAY_FAULT_SESSIONS=$(SESSIONS) $(BUILD)/test_remote --no-intro --test-case="faults_over_sockets*"
 
-# A render server and an emulated handheld that shares its frames with it. In a window where there is a display; else some
-# frames are rendered and the last one's split is printed, as the display over the picture shows it.
+# A render server and an emulated handheld: in a window if there is a display; otherwise renders some frames and prints the
+# split of the last one.
 EMULATE ?= tablet
 DEMO_SCENE := $(if $(filter command line environment,$(origin SCENE)),$(SCENE),seesaw)
 demo-split: configure
@@ -97,8 +98,8 @@ demo-split: configure
 	    -o $(BUILD)/demo/$(DEMO_SCENE).png; \
 	fi
 
-# What a hostile peer or file can do: libFuzzer from the committed corpus on, each target for FUZZ_SECONDS. What it finds to
-# be worth keeping goes to build-fuzz/corpus; an input that breaks something is left in build-fuzz.
+# What a hostile peer or file can do: runs libFuzzer on each target for FUZZ_SECONDS, from the committed corpus on. New inputs
+# go to build-fuzz/corpus, those that break something to build-fuzz.
 FUZZ_SECONDS ?= 600
 FUZZ_TARGETS ?= message pray import front text client server
 fuzz:
@@ -114,8 +115,8 @@ fuzz:
 	  grep -E '^#[0-9]+.*(DONE)|stat::number_of_executed' build-fuzz/$$target.log | sed "s/^/$$target: /"; \
 	done
 
-# Bits of every model in ../shared/scenes turned, FLIPS times, in JOBS shares: imported, baked, rendered; nothing may crash,
-# run for ever or take memory without bounds. A flip that does is printed with its number: make flips FLIP=n.
+# Flips bits of the models in ../shared/scenes FLIPS times, in JOBS processes; imports, bakes and renders them. Nothing may
+# crash, run forever or use unbounded memory. A failing flip prints its number; make flips FLIP=n repeats it.
 FLIPS ?= 100000
 FLIP ?=
 flips: setup-tests configure
@@ -125,7 +126,7 @@ flips: setup-tests configure
 	xargs -P $(JOBS) -I {} env POCKETRAY_FLIP={} POCKETRAY_FLIPS=$$share \
 	  $(BUILD)/test_import --no-intro --test-case="flips_*"
 
-# The chosen split against a sweep of fixed ones: every device, one to three servers, three scenes.
+# Compares the chosen split with a sweep of fixed ones: every device, one to three servers, three scenes.
 split-table: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS) --target test_split_report
 	$(BUILD)/test_split_report --no-skip --test-case=split_report_table
@@ -134,8 +135,8 @@ bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) bench $(SCENE) --json -
 
-# Against other ray tracers. Without SCENE= all scenes of the list; what make itself has to say goes to stderr, so that
-# JSON=- can be piped.
+# Comparisons with other ray tracers. Without SCENE=, all scenes. Make's own messages go to stderr, so that JSON=- can be
+# piped.
 setup-bench-%:
 	@toolchains/setup.sh bench-$* >&2
 
@@ -166,21 +167,22 @@ clean:
 
 help:
 	@echo "make              build for this machine into build/"
-	@echo "make run          build, then render, plan and time SCENE=$(SCENE); open the emulator where there is a display"
-	@echo "make test         build and run all tests (TESTS=regex: those that match)"
-	@echo "make hardcases    every hard case in full: case, inputs, wrong answers, bound (JSON=FILE: as a list, too)"
-	@echo "make mutants      deliberate faults in the core, one at a time: how many the tests notice (JSON=FILE: as a list, too;"
-	@echo "                  MUTANTS='--only x': that one, MUTANTS=--list: their names)"
-	@echo "make demo-split   a render server and an emulated handheld that share a frame (SCENE=, EMULATE=)"
-	@echo "make faults       SESSIONS=$(SESSIONS) simulated sessions in which lines and servers fail (SEED=n: from that one on)"
-	@echo "make fuzz         libFuzzer on what comes from peers and files, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
-	@echo "make flips        FLIPS=$(FLIPS) turned bits of the sample models, imported and rendered (FLIP=n: that one alone)"
-	@echo "make split-table  the split that is chosen beside the best of a sweep, for every device"
-	@echo "make bench        cost per pixel and per effect of SCENE=$(SCENE), as JSON"
-	@echo "make bench-embree the tracing core against Embree: SCENE=x one scene, JSON=FILE and BUILD_JSON=FILE its tables,"
-	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31' and others ($(BUILD)/bench_embree --help)"
-	@echo "make bench-povray whole frames of the statue against POV-Ray; JSON=FILE its table"
-	@echo "make format       clang-format on all sources;  make tidy: clang-tidy"
-	@echo "make install      into PREFIX=$(PREFIX) (and DESTDIR)"
+	@echo "make run          build, then plan, render and time SCENE=$(SCENE); open the viewer if there is a display"
+	@echo "make test         build and run all tests (TESTS=regex: only matching ones)"
+	@echo "make hardcases    run every hard case in full: inputs, wrong answers, bounds (JSON=FILE: also write JSON)"
+	@echo "make mutants      apply deliberate faults, one at a time: do the tests notice? (MUTANTS=--list: names,"
+	@echo "                  MUTANTS='--only x': just that one, JSON=FILE: also write JSON)"
+	@echo "make faults       simulate SESSIONS=$(SESSIONS) sessions in which links and servers fail (SEED=n: start at that one)"
+	@echo "make fuzz         run libFuzzer on messages and files, FUZZ_SECONDS=$(FUZZ_SECONDS) per target"
+	@echo "make flips        flip bits of the sample models FLIPS=$(FLIPS) times, import and render them (FLIP=n: just that one)"
+	@echo "make demo-split   run a render server and an emulated handheld (SCENE=, EMULATE=)"
+	@echo "make split-table  compare the chosen split with the best fixed one, for every device"
+	@echo "make bench        measure cost per pixel and per effect of SCENE=$(SCENE), as JSON"
+	@echo "make bench-embree compare rays per second with Embree (SCENE=x: one scene, JSON=FILE, BUILD_JSON=FILE: write tables,"
+	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31': see $(BUILD)/bench_embree --help)"
+	@echo "make bench-povray compare whole frames with POV-Ray (JSON=FILE: write the table)"
+	@echo "make format       run clang-format on all sources"
+	@echo "make tidy         run clang-tidy on all sources"
+	@echo "make install      install into PREFIX=$(PREFIX) (and DESTDIR)"
 	@echo "make clean        remove build/ and build-*/"
-	@echo "DEVICE=x          with any of these: build for a device or CPU class, run under qemu-user"
+	@echo "DEVICE=x          build for a device or CPU class; tests then run under qemu-user"

@@ -1,5 +1,5 @@
-# What all device builds share: Debian's cross compiler, libraries from POCKETRAY_SYSROOT alone (sysroot.sh makes it), one
-# static binary without what nothing calls.
+# Shared by all device builds: Debian's cross compiler, libraries from POCKETRAY_SYSROOT only (made by sysroot.sh), one static
+# binary without unused code.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_C_COMPILER ${POCKETRAY_TRIPLE}-gcc)
 set(CMAKE_CXX_COMPILER ${POCKETRAY_TRIPLE}-g++)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# device.sh NAME : prints the CPU class to build for (armhf, armel, aarch64, or desktop for this machine); NAME is a device of
-# platform/devices or a class itself.
+# device.sh NAME : prints the CPU class to build for: armhf, armel, aarch64, or desktop for this machine. NAME is a device in
+# platform/devices or a class.
 set -eu
 cd "$(dirname "$0")/.."
 classes="armhf armel aarch64 desktop"

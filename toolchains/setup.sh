@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# setup.sh GROUP... : installs what a build needs and this machine lacks. Silent when nothing is missing.
+# setup.sh GROUP... : installs the packages that a build needs and this machine lacks. Silent if none is missing.
 # Groups: desktop tests bench-embree bench-povray clang format tidy armhf armel aarch64 x86-32. Run by the Makefile and by .ci/run.
 set -eu
 
-# What each group needs. "command=package" counts as there when the command is; a plain name is a Debian package.
+# Required packages of each group. "command=package" is installed if the command exists; a plain name is a Debian package.
 required() {
   local common="cmake=cmake make=make doctest-dev libcli11-dev nlohmann-json3-dev"
   case $1 in
@@ -22,7 +22,7 @@ required() {
     *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
 }
-# What makes the desktop build better and may be absent: PNG, the emulator window, model formats, a faster build.
+# Optional packages: PNG, the emulator window, model formats, a faster build.
 optional() {
   case $1 in
     armhf | armel | aarch64) echo ninja=ninja-build ;;
@@ -31,7 +31,7 @@ optional() {
   esac
 }
 
-# Names of the packages that are missing among "command=package" and "package" entries.
+# Prints the missing packages among "command=package" and "package" entries.
 missing_packages() {
   local entry packages=()
   for entry in "$@"; do
@@ -56,7 +56,7 @@ for group in "$@"; do
 done
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-  # Another package manager: the commands can be checked, the libraries are for CMake to find and name.
+  # Another package manager: check the commands; CMake finds and names missing libraries.
   absent=()
   for entry in "${needs[@]}"; do
     case $entry in *=*) command -v "${entry%%=*}" >/dev/null || absent+=("${entry%%=*}") ;; esac
@@ -71,7 +71,7 @@ fi
 
 mapfile -t needed < <(missing_packages "${needs[@]}")
 mapfile -t wanted < <([ ${#extras[@]} -eq 0 ] || missing_packages "${extras[@]}")
-# Optional packages that this system does not have are looked for once, not at every build.
+# Look only once for optional packages that this system does not offer, not at every build.
 stamp=build/.not-available
 if [ ${#wanted[@]} -gt 0 ] && [ -f $stamp ]; then
   mapfile -t wanted < <(printf '%s\n' "${wanted[@]}" | grep -vxFf $stamp)

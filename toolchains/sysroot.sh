@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# sysroot.sh CLASS : prints a folder with zlib for the foreign CPU (include/, lib/libz.a) and links to the header-only
-# libraries of this machine; makes it where it is not there yet. Nothing is installed: the package is fetched into a private
-# apt root, from the mirror that this machine already uses, and unpacked, since adding a foreign architecture to the machine's
-# own package manager does not work everywhere.
+# sysroot.sh CLASS : prints a folder with zlib for the target CPU (include/, lib/libz.a) and links to this machine's header-only
+# libraries; makes the folder if needed. Installs nothing: it fetches the package into a private apt root, from the mirror that
+# this machine already uses, and unpacks it. Adding a foreign architecture to the machine's own package manager does not work
+# everywhere.
 set -eu
 case $1 in
   armhf) arch=armhf ;;
@@ -32,7 +32,7 @@ fetch_zlib() {
   [ -n "$mirror" ] || fail "found no $ID mirror under /etc/apt to fetch zlib1g-dev:$arch from"
   if [ "$ID" = ubuntu ]; then
     [ "$arch" != armel ] || fail "Ubuntu has no packages for armel"
-    # ARM packages lie on the ports mirror, which is named after the main one.
+    # ARM packages are on the ports mirror, whose name derives from the main one's.
     mirror=$(sed -E 's#//([a-z.]*\.)?(archive|security)\.#//ports.#; s#/ubuntu/?$#/ubuntu-ports#' <<<"$mirror")
   fi
   mkdir -p "$work"/etc/{apt.conf.d,preferences.d,sources.list.d} "$work"/state/lists/partial "$work"/cache/archives/partial
@@ -43,7 +43,7 @@ Dir::Etc "$work/etc"; Dir::Etc::sourcelist "sources.list"; Dir::Etc::sourceparts
 Dir::State "$work/state"; Dir::State::status "$work/state/status"; Dir::Cache "$work/cache";
 APT::Architecture "$arch"; APT::Architectures { "$arch"; }; APT::Sandbox::User "$(id -un)"; Acquire::Languages "none";
 C
-  # A proxy set for this machine holds here too.
+  # Use this machine's proxy here, too.
   apt-config dump 2>/dev/null | grep -i '^Acquire::https\?::' >>"$work/apt.conf" || true
   export APT_CONFIG=$work/apt.conf
   apt-get -q update >"$work/log" 2>&1 || { cat "$work/log" >&2; fail "cannot read the package list for $arch"; }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Sweeps of what accuracy costs. Usage: cli_accuracy_test.sh PROGRAM [EMULATOR...]
+# Accuracy sweeps. Usage: cli_accuracy_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
-# Goal: a sweep leaves its table and its page, goes on where it was interrupted, and refuses another's folder.
+# Goal: a sweep writes its table and its page, resumes where it was interrupted, and refuses another sweep's folder.
 if "${run[@]}" --help | grep -q '^ *accuracy '; then
   tiny=(--size 16x12 --threads 2 --reference-samples 2)
   expect accuracy_without_folder 2 'output-folder' accuracy cube
@@ -20,9 +20,9 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
   check accuracy_json grep -q '"reference_flip": 0' sweep.json
   check accuracy_page grep -q '</html>' sweep/index.html
-  # Goal: instructions are counted where something can, and without it nothing else is lost. Method: the baseline's row;
-  # where the CPU does not count them, a valgrind that fails, one that an interrupt finds at work, and a program without
-  # symbols. Skipped where valgrind is not there or cannot run this program (an emulated CPU, a sanitizer).
+  # Goal: instructions are counted if possible; otherwise nothing else is lost. Method: the baseline's row; if the CPU does
+  # not count them, a valgrind that fails, one that is interrupted, and a program without symbols. Skipped if valgrind is not
+  # installed or cannot run this program (an emulated CPU, a sanitizer).
   counts() { awk -F, '$1 == "baseline" && $18 > 100 { found = 1 } END { exit !found }' "$1/accuracy.csv"; }
   if [ $# -eq 0 ] && valgrind -q "$program" --version >/dev/null 2>&1; then
     check accuracy_counts counts sweep

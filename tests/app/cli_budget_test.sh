@@ -2,7 +2,7 @@
 # Time budgets, fronts and their prices. Usage: cli_budget_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
-# Goal: a time budget is kept by settings along a front, whose prices are kept; what was chosen is said. Method: a front of
+# Goal: settings along a front keep a time budget; their prices are stored, and the choice is reported. Method: a front of
 # one candidate gives the picture of its settings; files in a cache of their own; budgets beyond any machine in both ways.
 one="samples=2 depth=1 area-lights=2 cut-off=0 texture-filter=nearest normals=flat"
 printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$one" >one.front

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What commands write, and what they do not overwrite. Usage: cli_output_test.sh PROGRAM [EMULATOR...]
+# Output files: writing and overwriting. Usage: cli_output_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
 tiny=(--size 8x6 --threads 1)
@@ -7,8 +7,8 @@ has() { "${run[@]}" --help | grep -q "^ *$1 "; }
 quality="samples=1 depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat"
 mode_of() { stat -c %a "$1"; }
 
-# Goal: a file that is replaced stays what it was: its permissions, the link that names it, a pipe. Method: each of them,
-# by each kind of output.
+# Goal: replacing a file keeps its permissions and a link to it, and a pipe stays a pipe. Method: each of them, with each kind
+# of output.
 "${run[@]}" bake cube -o seen.pray >/dev/null
 commands=("render cube --size 8x6 -o" "render cube --size 8x6 -o probe.ppm --json" "bake cube -o" "plan cube --json"
   "bench cube --size 8x6 --frames 1 --no-prices --json" "bench cube --size 8x6 --frames 1 --front")
@@ -45,8 +45,8 @@ done
 check baked_to_stdout cmp -s piped.pray seen.pray
 expect nowhere 0 'effects' plan cube --json /dev/null
 
-# Goal: what did not arrive is told, whatever was printed, and nothing else fails of it. Method: a device that is full, a
-# closed output; by all commands that print.
+# Goal: a failed write to standard output is reported and breaks nothing else. Method: a full device and a closed output, with
+# every command that prints.
 printing=("--help" "--version" "plan cube" "plan cube --json -" "render cube --size 8x6 -o full.ppm" "bake cube -o full.pray"
   "render cube --size 8x6 -o full.ppm --json -" "bench cube --size 8x6 --frames 1 --no-prices"
   "bench cube --size 8x6 --frames 1 --no-prices --json -" "bake cube -o -")
@@ -63,7 +63,7 @@ done
 cmp -s full.ppm a.ppm || check picture_is_whole false
 check scene_is_whole cmp -s full.pray seen.pray
 
-# Goal: an empty text is no value, in any place. Method: every option of every command that takes a text or a number.
+# Goal: no option accepts an empty text. Method: every option of every command that takes a text or a number.
 for command in $("${run[@]}" --help | sed -n '/^Subcommands/,$s/^  \([a-z][a-z-]*\) .*/\1/p'); do
   for option in $("${run[@]}" "$command" --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -v -- '--help'); do
     expect "empty_${command}_$option" 2 "$option is followed by an empty text" "$command" cube "$option" ''
@@ -81,7 +81,7 @@ for frames in 0:-1 -1:3 +0:1 1: :1 2 ' 0:1' 0:1:2 0x1; do
   expect "frames_$frames" 1 'first:last' render seesaw "${tiny[@]}" --frames "$frames" -o refused.ppm
 done
 
-# Goal: no command replaces what it reads. Method: the scene and the front as every output, by their names and through
+# Goal: no command overwrites its own input. Method: the scene and the front as every output, by their names and through
 # links of both kinds; the files stay as they are, and no output is another.
 cp seen.pray kept.pray
 ln seen.pray hard.pray
@@ -122,8 +122,8 @@ if "${run[@]}" render --help | grep -q glTF; then
   check linked_model_is_as_it_was cmp -s other.obj kept.obj
 fi
 
-# Goal: what cannot be written is told before the work, and a folder for results is made. Method: work that takes
-# longer than anybody waits.
+# Goal: an output that cannot be written is reported before the work starts, and a folder for results is made. Method: work
+# that takes far too long to wait for.
 ages=(--size 2048x2048 --samples 16 --threads 1 --memory 512M)
 slow=(--size 2048x2048 --threads 1 --memory 512M)
 mkdir folder.ppm folder.json

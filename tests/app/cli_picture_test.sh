@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Pictures as files, and what they must not depend on. Usage: cli_picture_test.sh PROGRAM [EMULATOR...]
+# Picture files; pictures do not depend on threads, accelerators or effects. Usage: cli_picture_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
 # Goal: every output exists and has its size. Method: PPM and PFM headers and byte counts, raw framebuffers.

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# A render server and the devices that share frames with it. Usage: cli_serve_test.sh PROGRAM [EMULATOR...]
+# A render server and its devices. Usage: cli_serve_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
-# Goal: the render server says where it listens, what it offers and why it does not start; it ends when it is told to.
-# Method: any free port; an address that others reach; a port that is taken; an interrupt.
+# Goal: the render server reports its address, its scenes and why it cannot start, and ends on an interrupt.
+# Method: any free port; an address that other machines reach; a port in use; an interrupt.
 if "${run[@]}" --help | grep -q '^ *serve '; then
   expect serve_help 0 'insecure-lan' serve --help
   expect serve_to_others 1 'asks nobody who they are.*--insecure-lan' serve --listen 0.0.0.0:0
@@ -97,7 +97,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
     check "orbit_shared_$n" cmp -s alone-000$n.ppm shared-000$n.ppm
     check "orbit_thin_$n" cmp -s alone-000$n.ppm thin-000$n.ppm
   done
-  # Goal: what an emulated device does before a frame takes the device's time, not the device's time of that.
+  # Goal: work before a frame is slowed down once on an emulated device, not twice.
   timeout -k 1 120 "${run[@]}" render seesaw --size 16x12 --frames 0:1 --emulate pi-zero --server "$address" \
     -o paced.ppm >/dev/null
   check emulated_frames_come test $? -eq 0

@@ -13,7 +13,7 @@ fi
 unset SDL_VIDEODRIVER
 expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
 
-# Goal: nobody is shown a picture on no screen unless that is asked for: what was tried is told. Method: no display, and
+# Goal: without a screen the viewer runs only if asked to, and otherwise reports what it tried. Method: no display, and
 # no framebuffer; one that is named and is not there; a folder for screenshots that cannot be.
 if [ ! -e /dev/fb0 ]; then
   saved=("${run[@]}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Every option that takes a number, of every command, with numbers that it may not expect: exit status 1 or 2 and one line, or
-# 0 where it is a number like another; never an abort. Usage: numbers_test.sh PROGRAM
-# Commands whose work would take long are given something else that they must refuse, after the number.
+# Every numeric option of every command with unexpected numbers: exit status 1 or 2 and one line, or 0 if the number is valid;
+# never an abort. Usage: numbers_test.sh PROGRAM
+# Commands that would run for long also get an argument that they must refuse after reading the number.
 set -u
 program=$(realpath "$1")
 folder=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What befalls a render server from outside: descriptors that are short, outputs that are closed, and folders that hold
-# what is no file. Usage: serve_test.sh PROGRAM. A server must go on, or say in one line why it does not; it must never
-# hang. PROGRAM is built with the sealed heap.
+# A render server under outside trouble: too few descriptors, closed outputs, and folders with entries that are not files.
+# Usage: serve_test.sh PROGRAM. A server must continue, or report in one line why it cannot; it must never hang. PROGRAM is
+# built with the sealed heap.
 set -u
 program=$(realpath "$1")
 folder=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/bin/bash
-# The whole gate of hard cases: runs the tests hard_NN_… and differential_… of the programs given and prints a table:
-# case, inputs, wrong answers, bound. With JSON=FILE in the environment the same as a list of objects. EMULATOR runs
-# programs of another CPU. Exit status 1 if any answer is wrong.
+# Runs the hard cases in full: the tests hard_NN_… and differential_… of the programs given. Prints a table of case,
+# inputs, wrong answers and bound; with JSON=FILE in the environment, also writes it as a list of objects. EMULATOR runs
+# programs for another CPU. Exit status 1 if any answer is wrong.
 set -u
 lines=$(mktemp) && log=$(mktemp) || exit 1
 trap 'rm -f "$lines" "$log"' EXIT

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # mutate.sh [--check | --list] [--only FAULT]... [--jobs N] [--build DIR]
-# Whether the tests notice: applies the faults of faults/*.txt one at a time to a copy of the sources, builds and runs test
-# programs until one fails, and prints a table and the kill rate. Exit status 1 where a fault survives, is not found in
-# the sources or does not compile; 2 for wrong usage.
-#   --check      only sees that every fault's old text is in its file exactly once
-#   --list       prints the faults
-#   --only FAULT those faults alone; may be repeated
-#   --jobs N     copies at work side by side (default: as many as there are cores)
-#   --build DIR  where the copies lie (default: build-mutants); removed at the start and at the end
-# JSON=FILE in the environment takes the table, too (- is stdout). Needs cmake; ninja and ccache are used where they are.
+# Applies the faults of faults/*.txt one at a time to a copy of the sources, builds and runs test programs until one fails,
+# and prints a table and the kill rate. Exit status 1 if a fault survives, is not found in the sources or does not compile;
+# 2 for wrong usage.
+#   --check      only check that every fault's old text is in its file exactly once
+#   --list       print the faults
+#   --only FAULT apply only this fault; may be repeated
+#   --jobs N     number of copies tested in parallel (default: one per core)
+#   --build DIR  folder of the copies (default: build-mutants); removed at the start and at the end
+# JSON=FILE in the environment also writes the table as JSON (- is stdout). Needs cmake; uses ninja and ccache if installed.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -29,15 +29,15 @@ fail() {
   exit 1
 }
 
-# Faults: one a block, a key and a value a line, blank lines between blocks, lines of # between them.
-#   name    of the fault
-#   file    it is applied to
-#   suites  the test programs to ask first; the others follow
-#   why     what the fault is
-#   old     text that the file has exactly once; white space stands for any white space
-#   new     what comes in its place, or nothing
-# Keep the old texts short, so that they outlive changes around them. A fault that nothing can notice (one that only
-# costs time, say) has no place there.
+# Reads the faults: one per block, "key: value" lines, blank lines between blocks, comments start with #.
+#   name    name of the fault
+#   file    file that it is applied to
+#   suites  test programs to run first; the others follow
+#   why     description of the fault
+#   old     text that occurs in the file exactly once; white space matches any white space
+#   new     its replacement, may be empty
+# Keep the old texts short, so that they outlive changes around them. Do not add faults that no test can notice, such as
+# one that only costs time.
 read_faults() {
   local line key value n=-1 first=1
   local keys=" name file suites why old new "
@@ -52,12 +52,13 @@ read_faults() {
   done < <(cat "$here"/faults/*.txt)
 }
 
-# A text as a regular expression that takes any white space for white space: clang-format may break its lines anew.
+# Turns a text into a regular expression in which white space matches any white space: clang-format may rewrap its lines.
 pattern_of() {
   sed 's/[][\\.*^$(){}?+|]/\\&/g; s/[[:space:]]\{1,\}/[[:space:]]+/g' <<<"$1"
 }
 
-# Sets `matched` to what a fault's old text is in the sources under $1; fails, and says so, unless it is there once.
+# Sets `matched` to the text in the sources under $1 that matches a fault's old text; fails with a message unless there is
+# exactly one match.
 find_fault() {
   local tree=$1 i=$2 content pattern
   [ -f "$tree/${file[i]}" ] || { echo "${name[i]}: there is no file ${file[i]}" && return 1; }
@@ -89,7 +90,7 @@ check_faults() {
   [ $errors = 0 ]
 }
 
-# A copy of the sources with a build folder of its own. No debug information and -O1: they compile faster.
+# Makes a copy of the sources with its own build folder. No debug information and -O1, to compile faster.
 make_copy() {
   local copy=$1 generator=() launcher=()
   mkdir -p "$copy/tree"
@@ -110,7 +111,7 @@ run_suite() {  # COPY SUITE : its first failing test is in $copy/log
   (cd "$1/build" && timeout $seconds_max "./test_$2" --abort-after=1 --no-colors >"$1/log" 2>&1) 2>/dev/null
 }
 
-# Applies a fault to a copy, asks the test programs, takes it back. Prints verdict, suite and test.
+# Applies a fault to a copy, runs the test programs and reverts the fault. Prints verdict, suite and test.
 try_fault() {
   local copy=$1 i=$2 suite test verdict=survived content matched path=$1/tree/${file[$2]}
   find_fault "$copy/tree" "$i" >/dev/null || { printf 'error\t\tnot found' && return; }
@@ -131,7 +132,7 @@ try_fault() {
   printf '%s\t%s\t%s' "$verdict" "$suite" "$test"
 }
 
-# Takes the faults that nobody else has taken yet.
+# Works on faults that no other job has taken yet.
 work() {
   local copy=$1 i start result finished
   for i in "${chosen[@]}"; do

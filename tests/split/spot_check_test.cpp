@@ -97,7 +97,7 @@ TEST_CASE("spot_check_odds_at_the_ends") {
   CHECK(catch_probability({240, 320, 1, 1, 8}, 0) == 0);
 }
 
-// README's table.
+// The table of src/remote/README.md.
 TEST_CASE("spot_check_table") {
   std::printf("rows wrong of 216, 320 pixels each, %% caught\n%28s", "");
   for (const char* head : {"1 frame", "30", "300"}) std::printf("%10s", head);

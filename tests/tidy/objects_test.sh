@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# objects_test.sh FOLDER NM OBJDUMP COMPILER [FLAGS...] : what the compiled core is made of, on this CPU.
-# Goal: no multiply-add is fused (it would round once where other CPUs round twice), the core calls no heap, no exceptions
-# and no libm function that differs between C libraries, and constructs nothing before main().
-# Method: disassemble the objects in FOLDER, where CMake put them, and read their symbols. Then break each rule in a file of
-# our own, compiled for the same CPU, and see it found.
+# objects_test.sh FOLDER NM OBJDUMP COMPILER [FLAGS...] : checks the compiled core for this CPU.
+# Goal: no multiply-add is fused (it would round once where other CPUs round twice); the core uses no heap, no exceptions and
+# no libm function that differs between C libraries, and constructs nothing before main().
+# Method: disassemble CMake's objects in FOLDER and read their symbols. Then break each rule in a file compiled for the same
+# CPU, and see it found.
 set -eu
 folder=$1 nm=$2 objdump=$3 compiler=$4
 shift 4
