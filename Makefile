@@ -24,7 +24,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases mutants faults demo-split split-table fuzz flips bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -67,6 +67,11 @@ hardcases: setup-tests configure
 # Applies deliberate faults, one at a time: does a test fail? MUTANTS= takes the options of tests/mutation/mutate.sh.
 mutants: setup-tests
 	@JSON=$(JSON) tests/mutation/mutate.sh --jobs $(JOBS) $(MUTANTS)
+
+# Adds a setting, a lobe, an accelerator, a method of indirect light and a device to a copy of the sources, one at a time,
+# and runs the suites that loop over their lists. TRIALS= names some of them.
+trials: setup-tests
+	tests/trials/trial.sh $(TRIALS)
 
 # Simulates sessions of a device and its servers in which something goes wrong, in JOBS processes. SEED= starts at that seed;
 # a failing session prints its own, and make faults SESSIONS=1 SEED=n repeats it. Without SEED= the full tests over sockets
@@ -172,6 +177,7 @@ help:
 	@echo "make hardcases    run every hard case in full: inputs, wrong answers, bounds (JSON=FILE: also write JSON)"
 	@echo "make mutants      apply deliberate faults, one at a time: do the tests notice? (MUTANTS=--list: names,"
 	@echo "                  MUTANTS='--only x': just that one, JSON=FILE: also write JSON)"
+	@echo "make trials       extend a copy of the sources by one entry of each list and test it (TRIALS='lobe device': some)"
 	@echo "make faults       simulate SESSIONS=$(SESSIONS) sessions in which links and servers fail (SEED=n: start at that one)"
 	@echo "make fuzz         run libFuzzer on messages and files, FUZZ_SECONDS=$(FUZZ_SECONDS) per target"
 	@echo "make flips        flip bits of the sample models FLIPS=$(FLIPS) times, import and render them (FLIP=n: just that one)"
