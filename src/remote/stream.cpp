@@ -14,20 +14,6 @@ void compact(Array<std::uint8_t> bytes, std::size_t* begin, std::size_t* end) {
   *end -= *begin, *begin = 0;
 }
 
-bool read_in(MessageStream* s, platform::Error* error) {
-  compact(s->in, &s->in_begin, &s->in_end);
-  while (!s->ended && s->in_end < s->in.count) {
-    std::size_t count = 0;
-    platform::LinkResult result =
-        s->link->backend->read(s->link, s->stream, s->in.data + s->in_end, s->in.count - s->in_end, &count, error);
-    if (result == platform::LinkResult::later) return true;
-    if (result == platform::LinkResult::failed) return false;
-    if (result == platform::LinkResult::ended) s->ended = true;
-    s->in_end += count, s->bytes_in += count;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::size_t message_stream_need(std::size_t in_bytes, std::size_t out_bytes) {
@@ -44,8 +30,9 @@ MessageStream make_message_stream(std::size_t in_bytes, std::size_t out_bytes, A
 
 void start_message_stream(MessageStream* s, platform::Link* link, int connection) {
   Array<std::uint8_t> in = s->in, out = s->out;
+  std::uint32_t message_bytes_max = s->message_bytes_max;
   *s = MessageStream();
-  s->in = in, s->out = out;
+  s->in = in, s->out = out, s->message_bytes_max = message_bytes_max;
   s->link = link, s->stream = connection;
 }
 
@@ -55,7 +42,7 @@ void close_message_stream(MessageStream* s) {
 }
 
 bool flush_message_stream(MessageStream* s, platform::Error* error) {
-  while (has_output(*s)) {
+  while (queued_bytes(*s) > 0) {
     std::size_t count = 0;
     platform::LinkResult result = s->link->backend->write(s->link, s->stream, s->out.data + s->out_begin,
                                                           s->out_end - s->out_begin, &count, error);
@@ -67,31 +54,47 @@ bool flush_message_stream(MessageStream* s, platform::Error* error) {
   return true;
 }
 
+bool read_message_stream(MessageStream* s, platform::Error* error) {
+  compact(s->in, &s->in_begin, &s->in_end);
+  while (!s->ended && s->in_end < s->in.count) {
+    std::size_t count = 0;
+    platform::LinkResult result =
+        s->link->backend->read(s->link, s->stream, s->in.data + s->in_end, s->in.count - s->in_end, &count, error);
+    if (result == platform::LinkResult::later) return true;
+    if (result == platform::LinkResult::failed) return false;
+    if (result == platform::LinkResult::ended) s->ended = true;
+    s->in_end += count, s->bytes_in += count;
+  }
+  return true;
+}
+
 bool pump_message_stream(MessageStream* s, platform::Error* error) {
-  if (!flush_message_stream(s, error) || !read_in(s, error)) return false;
-  if (!s->ended || s->in_end > s->in_begin) return true;
+  if (!flush_message_stream(s, error) || !read_message_stream(s, error)) return false;
+  if (!s->ended || input_bytes(*s) > 0) return true;
   std::snprintf(error->text, sizeof error->text, "the peer has closed the connection");
   return false;
 }
 
 DecodeState take_message(MessageStream* s, Message* message) {
-  Decoded decoded = decode_message(s->in.data + s->in_begin, s->in_end - s->in_begin,
-                                   static_cast<std::uint32_t>(s->in.count), message);
+  std::uint32_t bytes_max = s->message_bytes_max ? s->message_bytes_max : static_cast<std::uint32_t>(s->in.count);
+  Decoded decoded = decode_message(s->in.data + s->in_begin, input_bytes(*s), bytes_max, message);
   if (decoded.state == DecodeState::message) s->in_begin += decoded.byte_count;
   // Half a message that no rest can follow.
   if (decoded.state == DecodeState::need_more && s->ended) s->in_begin = s->in_end;
   return decoded.state;
 }
 
-bool has_room(const MessageStream& s, std::size_t byte_count) {
-  return byte_count <= s.out.count - (s.out_end - s.out_begin);
+std::uint8_t* reserve_output(MessageStream* s, std::size_t byte_count) {
+  CHECK_LE(byte_count, output_room(*s));
+  if (byte_count > s->out.count - s->out_end) compact(s->out, &s->out_begin, &s->out_end);
+  CHECK_LE(s->out_end + byte_count, s->out.count);
+  return s->out.data + s->out_end;
 }
 
 bool send_message(MessageStream* s, const Message& message) {
   std::uint32_t byte_count = message_bytes(message);
-  if (!has_room(*s, byte_count)) return false;
-  if (byte_count > s->out.count - s->out_end) compact(s->out, &s->out_begin, &s->out_end);
-  encode_message(message, s->out.data + s->out_end);
+  if (byte_count > output_room(*s)) return false;
+  encode_message(message, reserve_output(s, byte_count));
   s->out_end += byte_count;
   return true;
 }

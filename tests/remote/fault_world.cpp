@@ -105,7 +105,7 @@ void kill(std::uint32_t i) {
   if (!server) return;
   for (Session& s : server->sessions)
     if (s.phase != SessionPhase::unused) {
-      platform::kNullLink.close(world->link, s.stream);
+      platform::kNullLink.close(world->link, s.messages.stream);
       s.phase = SessionPhase::unused;
     }
   close_server(server);

@@ -117,7 +117,7 @@ void look_at_servers(Client* client, std::uint64_t timeout_ns) {
     bool connecting = server.phase == ServerPhase::connecting;
     waits[wait_count].stream = server.messages.stream;
     waits[wait_count].want_read = !connecting;
-    waits[wait_count++].want_write = connecting || has_output(server.messages);
+    waits[wait_count++].want_write = connecting || queued_bytes(server.messages) > 0;
   }
   std::uint64_t begin = client_now_ns(*client);
   client->unwatched_ns = begin > client->looked_ns ? begin - client->looked_ns : 0;

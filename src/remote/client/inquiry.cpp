@@ -70,7 +70,7 @@ Status await(Inquiry* q, MessageType type, Message* answer) {
     std::uint64_t left =
         std::min(platform::link_timer_left(&whole, now_ns(*q)), platform::link_timer_left(&silence, now_ns(*q)));
     if (left == 0) return failure("it does not answer");
-    RETURN_IF_ERROR(wait_for_news(q, has_output(q->messages), left));
+    RETURN_IF_ERROR(wait_for_news(q, queued_bytes(q->messages) > 0, left));
   }
 }
 

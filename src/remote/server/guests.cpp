@@ -16,24 +16,12 @@ constexpr std::uint64_t kMakeWayNs = 10'000'000'000;    // of silence, after whi
 constexpr std::uint64_t kAcceptRestNs = 1'000'000'000;  // after a failure: what is missing will still be, at once
 constexpr int kAcceptsAtOnce = 16;
 
-void queue(Guest* guest, const Message& message) {
-  std::uint32_t byte_count = message_bytes(message);
-  CHECK_LE(guest->output_end + byte_count, sizeof guest->output);
-  encode_message(message, guest->output + guest->output_end);
-  guest->output_end += byte_count;
-}
+void queue(Guest* guest, const Message& message) { CHECK(send_message(&guest->messages, message)); }
 
 // Sends what there is room for; false: the connection is lost.
-bool flush(Server* server, Guest* guest) {
-  while (guest->output_begin < guest->output_end) {
-    std::size_t sent = 0;
-    platform::Error error;
-    LinkResult result = server->net->write(server->link, guest->stream, guest->output + guest->output_begin,
-                                           guest->output_end - guest->output_begin, &sent, &error);
-    if (result != LinkResult::done) return result == LinkResult::later;
-    guest->output_begin += sent;
-  }
-  return true;
+bool flush(Guest* guest) {
+  platform::Error error;
+  return flush_message_stream(&guest->messages, &error);
 }
 
 void send_away(Server* server, Guest* guest, WireError code) {
@@ -43,12 +31,12 @@ void send_away(Server* server, Guest* guest, WireError code) {
   queue(guest, message);
   guest->leaves = true;
   guest->timer = platform::link_timer(now_ns(server), kLingerNs);
-  if (!flush(server, guest)) close_guest(server, guest);
+  if (!flush(guest)) close_guest(guest);
 }
 
 int guests_of(const Server& server, std::uint64_t key) {
   return static_cast<int>(std::count_if(server.guests.begin(), server.guests.end(),
-                                        [&](const Guest& g) { return g.stream >= 0 && g.key == key; }));
+                                        [&](const Guest& g) { return is_open(g) && g.key == key; }));
 }
 
 // A free slot, or that of the one that has waited longest of those that leave or, else, of the address with most.
@@ -57,24 +45,26 @@ Guest* free_guest(Server* server) {
   int most = 0;
   std::uint64_t least = 0;
   for (Guest& guest : server->guests) {
-    if (guest.stream < 0) return &guest;
+    if (!is_open(guest)) return &guest;
     int count = guest.leaves ? kAddressCountMax : guests_of(*server, guest.key);
     std::uint64_t left = platform::link_timer_left(&guest.timer, now_ns(server));
     if (count < most || (count == most && left >= least)) continue;
     chosen = &guest, most = count, least = left;
   }
-  close_guest(server, chosen);
+  close_guest(chosen);
   return chosen;
 }
 
 void receive_guest(Server* server, int stream) {
   Guest* guest = free_guest(server);
   *guest = Guest();
-  guest->stream = stream;
+  guest->messages.in = {guest->input, sizeof guest->input};
+  guest->messages.out = {guest->output, sizeof guest->output};
+  start_message_stream(&guest->messages, server->link, stream);
   guest->key = address_key(server->net->stream_name(server->link, stream));
   guest->timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
   queue(guest, server_hello(*server));
-  if (!flush(server, guest)) close_guest(server, guest);
+  if (!flush(guest)) close_guest(guest);
 }
 
 // Of the addresses that nobody is at the one that was seen longest ago.
@@ -144,16 +134,30 @@ Session* find_place(Server* server, int address) {
     if (session.phase == SessionPhase::unused) return &session;
   Session* leaver = find_leaver(server, address);
   if (!leaver) return nullptr;
-  if (leaver->phase == SessionPhase::serving && output_room(*leaver) >= kReplyBytesMax) {
+  if (leaver->phase == SessionPhase::serving && output_room(leaver->messages) >= kReplyBytesMax) {
     send_error(leaver, WireError::busy, 0);
-    std::size_t sent = 0;
     platform::Error error;
-    OutputQueue* q = &leaver->output;
-    (void)server->net->write(server->link, leaver->stream, q->bytes.data + q->begin, q->end - q->begin, &sent, &error);
-    drop_input(server, leaver->stream);
+    (void)flush_message_stream(&leaver->messages, &error);
+    discard_input(&leaver->messages);
   }
   end_session(server, leaver, "it made way for another client");
   return leaver;
+}
+
+const char* name_of(const Server& server, const Guest& guest) {
+  return server.net->stream_name(server.link, guest.messages.stream);
+}
+
+// Gives a connection to another stream, with what has come and what waits to be sent.
+void hand_over(MessageStream* from, MessageStream* to) {
+  std::size_t come = input_bytes(*from), waiting = queued_bytes(*from);
+  CHECK_LE(come, to->in.count);
+  std::memcpy(to->in.data, from->in.data + from->in_begin, come);
+  to->in_end = come;
+  std::memcpy(reserve_output(to, waiting), from->out.data + from->out_begin, waiting);
+  to->out_end += waiting;
+  to->ended = from->ended;
+  from->stream = -1;
 }
 
 // Gives the guest's connection a place.
@@ -161,85 +165,71 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   int address = find_address(server, guest->key);
   Session* session = find_place(server, address);
   if (!session) {
-    log_line(&server->log, now_ns(server), "%s was sent away: all %zu places are taken",
-             server->net->stream_name(server->link, guest->stream), server->sessions.size());
+    log_line(&server->log, now_ns(server), "%s was sent away: all %zu places are taken", name_of(*server, *guest),
+             server->sessions.size());
     return send_away(server, guest, WireError::busy);
   }
-  restart_session(session);
+  restart_session(session, server->link, guest->messages.stream);
   session->phase = SessionPhase::serving;
-  session->stream = guest->stream;
   session->address = address;
   session->message_bytes_max = hello.message_bytes_max;
-  std::snprintf(session->name, sizeof session->name, "%s", server->net->stream_name(server->link, session->stream));
+  std::snprintf(session->name, sizeof session->name, "%s", name_of(*server, *guest));
   std::uint64_t now = now_ns(server);
   server->addresses[static_cast<std::size_t>(address)].last_ns = now;
   session->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
   session->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
   session->stall_timer = platform::link_timer(now, server->options.stall_timeout_ns);
-  std::size_t unsent = guest->output_end - guest->output_begin;
-  std::memcpy(reserve_output(session, unsent), guest->output + guest->output_begin, unsent);
-  session->output.end += unsent;
-  guest->stream = -1;
+  hand_over(&guest->messages, &session->messages);
+  session->more_to_take = true;
   ++server->totals.client_count;
   log_line(&server->log, now, "%s came", session->name);
 }
 
 void log_guest(Server* server, const Guest& guest, const char* reason) {
-  log_line(&server->log, now_ns(server), "%s went: %s", server->net->stream_name(server->link, guest.stream), reason);
+  log_line(&server->log, now_ns(server), "%s went: %s", name_of(*server, guest), reason);
 }
 
-// Reads the first message and not a byte of what follows it, which the session is to take.
 void read_hello(Server* server, Guest* guest) {
-  for (;;) {
-    Message message;
-    Decoded decoded = decode_message(guest->input, guest->input_count, kGuestInputBytes, &message);
-    if (decoded.state == DecodeState::message && message.type == MessageType::hello) {
-      if (message.hello.version == kWireVersion) return seat(server, guest, message.hello);
-      log_guest(server, *guest, "it speaks another version of the protocol");
-      return send_away(server, guest, WireError::wrong_version);
-    }
-    bool too_long = decoded.byte_count > kGuestInputBytes;
-    if (decoded.state != DecodeState::need_more || too_long) {
-      log_guest(server, *guest, "it did not begin with a hello");
-      return send_away(server, guest, WireError::malformed);
-    }
-    std::size_t count = 0;
-    platform::Error error;
-    LinkResult result = server->net->read(server->link, guest->stream, guest->input + guest->input_count,
-                                          decoded.byte_count - guest->input_count, &count, &error);
-    guest->input_count += count;
-    if (result == LinkResult::later) return;
-    if (result == LinkResult::done) continue;
-    log_guest(server, *guest, result == LinkResult::ended ? "it closed the connection" : error.text);
-    return close_guest(server, guest);
+  platform::Error error;
+  bool open = read_message_stream(&guest->messages, &error);
+  Message message;
+  DecodeState state = take_message(&guest->messages, &message);
+  if (state == DecodeState::message && message.type == MessageType::hello) {
+    if (message.hello.version == kWireVersion) return seat(server, guest, message.hello);
+    log_guest(server, *guest, "it speaks another version of the protocol");
+    return send_away(server, guest, WireError::wrong_version);
   }
+  if (state != DecodeState::need_more) {
+    log_guest(server, *guest, "it did not begin with a hello");
+    return send_away(server, guest, WireError::malformed);
+  }
+  if (open && !guest->messages.ended) return;
+  log_guest(server, *guest, open ? "it closed the connection" : error.text);
+  close_guest(guest);
 }
 
 }  // namespace
 
-void close_guest(Server* server, Guest* guest) {
-  server->net->close(server->link, guest->stream);
-  guest->stream = -1;
-}
+void close_guest(Guest* guest) { close_message_stream(&guest->messages); }
 
-bool drop_input(Server* server, int stream) {
-  std::uint8_t bytes[512];
-  std::size_t count = 0;
+bool discard_input(MessageStream* messages) {
   platform::Error error;
-  LinkResult result = server->net->read(server->link, stream, bytes, sizeof bytes, &count, &error);
-  return result != LinkResult::ended && result != LinkResult::failed;
+  drop_input(messages);
+  bool open = read_message_stream(messages, &error) && !messages->ended;
+  drop_input(messages);
+  return open;
 }
 
 void tend_guest(Server* server, Guest* guest) {
-  if (!flush(server, guest)) return close_guest(server, guest);
+  if (!flush(guest)) return close_guest(guest);
   if (guest->leaves) {
-    if (!drop_input(server, guest->stream)) return close_guest(server, guest);
+    if (!discard_input(&guest->messages)) return close_guest(guest);
   } else {
     read_hello(server, guest);
   }
-  if (guest->stream < 0 || platform::link_timer_left(&guest->timer, now_ns(server)) > 0) return;
+  if (!is_open(*guest) || platform::link_timer_left(&guest->timer, now_ns(server)) > 0) return;
   if (!guest->leaves) log_guest(server, *guest, "it stopped in a message");
-  close_guest(server, guest);
+  close_guest(guest);
 }
 
 void accept_clients(Server* server) {

@@ -44,7 +44,7 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
   reply.pong.pixel_ps = pixel_ps;
   reply.pong.bytes.count = ping.reply_bytes;
   std::uint32_t byte_count = message_bytes(reply);
-  std::uint8_t* at = reserve_output(session, byte_count);
+  std::uint8_t* at = reserve_output(&session->messages, byte_count);
   std::memset(at, 0, byte_count);
   reply.pong.bytes.data = at + byte_count - ping.reply_bytes;
   send_message(session, reply);
@@ -165,50 +165,41 @@ Message server_hello(const Server& server) {
 int take_messages(Server* server, Session* session) {
   constexpr WireError kMalformed = WireError::malformed;
   std::uint64_t start = now_ns(server);
-  std::size_t begin = 0;
   int count = 0;
   while (wants_messages(*session)) {
     Message message;
-    Decoded decoded =
-        decode_message(session->input.data + begin, session->input_count - begin, kRequestBytesMax, &message);
-    session->more_to_take = decoded.state == DecodeState::message;
-    if (decoded.state == DecodeState::need_more) break;
+    DecodeState state = take_message(&session->messages, &message);
+    session->more_to_take = state == DecodeState::message;
+    if (state == DecodeState::need_more) break;
     ++count;
-    if (decoded.state == DecodeState::malformed) {
+    if (state == DecodeState::malformed) {
       leave(server, session, &kMalformed, "it sent what is no message");
       return count;
     }
-    begin += decoded.byte_count;
     std::uint64_t now = now_ns(server);
     session->idle_timer = platform::link_timer(now, server->options.idle_timeout_ns);
     session->message_timer = platform::link_timer(now, server->options.message_timeout_ns);
     if (!take_message(server, session, message)) return count;
     if (count == kMessagesAtOnce || now_ns(server) > start + kMessagesNs) break;
   }
-  session->input_count -= begin;
-  std::memmove(session->input.data, session->input.data + begin, session->input_count);
-  if (session->has_ended && !wants_messages(*session) && session->phase == SessionPhase::serving &&
+  if (session->messages.ended && !wants_messages(*session) && session->phase == SessionPhase::serving &&
       !session->more_to_take)
     end_session(server, session, "it closed the connection");
   return count;
 }
 
 void read_session(Server* server, Session* session) {
+  MessageStream* messages = &session->messages;
   bool leaving = session->phase == SessionPhase::leaving;
-  if (leaving) session->input_count = 0;
-  if (session->input_count == 0)
+  if (leaving) drop_input(messages);
+  if (input_bytes(*messages) == 0)
     session->message_timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
-  std::size_t count = 0;
+  std::uint64_t before = messages->bytes_in;
   platform::Error error;
-  platform::LinkResult result =
-      server->net->read(server->link, session->stream, session->input.data + session->input_count,
-                        session->input.count - session->input_count, &count, &error);
-  session->input_count += count;
-  session->more_to_take = session->more_to_take || (!leaving && count > 0);
-  if (result == platform::LinkResult::failed) return end_session(server, session, error.text);
-  if (result != platform::LinkResult::ended) return;
-  if (leaving || !session->more_to_take) return end_session(server, session, "it closed the connection");
-  session->has_ended = true;  // what it said before counts
+  if (!read_message_stream(messages, &error)) return end_session(server, session, error.text);
+  session->more_to_take |= !leaving && messages->bytes_in > before;
+  // What it said before it closed the connection counts.
+  if (messages->ended && (leaving || !session->more_to_take)) end_session(server, session, "it closed the connection");
 }
 
 }  // namespace pocketray

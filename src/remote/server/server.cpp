@@ -21,42 +21,35 @@ bool accepts(Server* server) {
 }
 
 void write_session(Server* server, Session* session) {
-  OutputQueue* q = &session->output;
-  while (q->begin < q->end) {
-    std::size_t count = 0;
-    platform::Error error;
-    LinkResult result =
-        server->net->write(server->link, session->stream, q->bytes.data + q->begin, q->end - q->begin, &count, &error);
-    if (result == LinkResult::failed) return end_session(server, session, error.text);
-    if (count == 0) return;
-    q->begin += count;
-    session->byte_count += count;
+  std::uint64_t sent = session->messages.bytes_out;
+  platform::Error error;
+  bool open = flush_message_stream(&session->messages, &error);
+  if (session->messages.bytes_out > sent)
     session->stall_timer = platform::link_timer(now_ns(server), server->options.stall_timeout_ns);
-  }
-  q->begin = q->end = 0;
+  if (!open) end_session(server, session, error.text);
 }
 
 // Sends what there is, and rows that waited for room, unless they have to wait for their turn as well.
 void send_session(Server* server, Session* session) {
   for (;;) {
-    std::uint64_t start = now_ns(server), queued_before = queued_bytes(*session);
+    std::uint64_t start = now_ns(server), queued_before = queued_bytes(session->messages);
     write_session(server, session);
     std::uint64_t now = now_ns(server);
     if (in_turn(*server) && now > start && queued_before > 0) account_for(server, session, now - start, false);
     if (session->phase != SessionPhase::serving || in_turn(*server)) return;
-    std::size_t queued = queued_bytes(*session);
+    std::size_t queued = queued_bytes(session->messages);
     send_chunks(session);
-    if (queued_bytes(*session) == queued) return;
+    if (queued_bytes(session->messages) == queued) return;
   }
 }
 
 // Whether it waits for the rest of a message; for the client to take what it is sent; for nothing.
 bool awaits_message(const Session& session) {
-  return session.phase == SessionPhase::serving && session.input_count > 0;
+  return session.phase == SessionPhase::serving && input_bytes(session.messages) > 0;
 }
-bool awaits_room(const Session& session) { return queued_bytes(session) > 0; }
+bool awaits_room(const Session& session) { return queued_bytes(session.messages) > 0; }
 bool is_idle(const Session& session) {
-  return session.phase == SessionPhase::serving && !has_job(session) && queued_bytes(session) == 0;
+  return session.phase == SessionPhase::serving && !has_job(session) && queued_bytes(session.messages) == 0;
 }
 
 // Nanoseconds till one of the session's times is over.
@@ -104,16 +97,17 @@ void wait_for_news(Server* server, std::uint64_t timeout_ns) {
   for (Session& session : server->sessions) {
     *wait = platform::LinkWait();
     if (session.phase != SessionPhase::unused) {
-      bool has_room = session.input_count < session.input.count;
-      *wait = {session.stream, has_room && !session.has_ended, queued_bytes(session) != 0};
+      const MessageStream& messages = session.messages;
+      bool has_room = input_bytes(messages) < messages.in.count;
+      *wait = {messages.stream, has_room && !messages.ended, queued_bytes(messages) != 0};
       std::uint64_t session_due = wants_messages(session) ? 0 : session_due_ns(&session, now);
       if (session_due < due) due = session_due;
     }
     ++wait;
   }
   for (Guest& guest : server->guests) {
-    *wait++ = {guest.stream, guest.stream >= 0, guest.stream >= 0 && guest.output_begin < guest.output_end};
-    if (guest.stream < 0) continue;
+    *wait++ = {guest.messages.stream, is_open(guest), is_open(guest) && queued_bytes(guest.messages) > 0};
+    if (!is_open(guest)) continue;
     std::uint64_t left = platform::link_timer_left(&guest.timer, now);
     if (left < due) due = left;
   }
@@ -123,7 +117,7 @@ void wait_for_news(Server* server, std::uint64_t timeout_ns) {
 // Queues a last word for everybody and sends what can be sent in a moment.
 void say_farewell(Server* server) {
   for (Session& session : server->sessions)
-    if (session.phase == SessionPhase::serving && output_room(session) >= kReplyBytesMax)
+    if (session.phase == SessionPhase::serving && output_room(session.messages) >= kReplyBytesMax)
       send_error(&session, WireError::closing, 0);
   platform::LinkTimer timer = platform::link_timer(now_ns(server), kFarewellNs);
   for (;;) {
@@ -131,9 +125,9 @@ void say_farewell(Server* server) {
     for (std::size_t i = 0; i < server->sessions.size(); ++i) {
       Session* session = &server->sessions[i];
       if (session->phase != SessionPhase::unused) write_session(server, session);
-      if (session->phase != SessionPhase::unused) drop_input(server, session->stream);
-      bool unsent = session->phase != SessionPhase::unused && queued_bytes(*session) > 0;
-      server->waits[i] = {session->stream, false, unsent};
+      if (session->phase != SessionPhase::unused) discard_input(&session->messages);
+      bool unsent = session->phase != SessionPhase::unused && queued_bytes(session->messages) > 0;
+      server->waits[i] = {session->messages.stream, false, unsent};
       waits = waits || unsent;
     }
     std::uint64_t left = platform::link_timer_left(&timer, now_ns(server));
@@ -187,23 +181,23 @@ void leave(Server* server, Session* session, const WireError* code, const char* 
   if (code) send_error(session, *code, 0);
   std::snprintf(session->reason, sizeof session->reason, "%s", reason);
   session->phase = SessionPhase::leaving;
-  session->input_count = 0;
+  drop_input(&session->messages);
   session->more_to_take = false;
   session->leave_timer = platform::link_timer(now_ns(server), kLingerNs);
   if (!code) end_session(server, session, reason);
 }
 
 void end_session(Server* server, Session* session, const char* reason) {
-  server->net->close(server->link, session->stream);
+  close_message_stream(&session->messages);
   if (session->phase == SessionPhase::leaving && session->reason[0]) reason = session->reason;
   session->phase = SessionPhase::unused;
   drop_job(session);
   server->totals.frame_count += session->frame_count;
   server->totals.row_count += session->row_count;
-  server->totals.byte_count += session->byte_count;
+  server->totals.byte_count += session->messages.bytes_out;
   log_line(&server->log, now_ns(server), "%s went after %llu frames, %llu rows, %.1f KiB: %s", session->name,
            static_cast<unsigned long long>(session->frame_count), static_cast<unsigned long long>(session->row_count),
-           static_cast<double>(session->byte_count) / 1024, reason);
+           static_cast<double>(session->messages.bytes_out) / 1024, reason);
 }
 
 int server_stream_count(const ServerOptions& options) { return 2 + options.client_count_max + options.guest_count_max; }
@@ -242,12 +236,13 @@ void step_server(Server* server, std::uint64_t timeout_ns) {
   bool comes = (wait++)->can_read;
   for (Session& session : server->sessions) {
     bool has_news = (wait++)->can_read;
-    if (session.phase != SessionPhase::unused && (has_news || session.input_count > 0)) read_session(server, &session);
+    if (session.phase != SessionPhase::unused && (has_news || input_bytes(session.messages) > 0))
+      read_session(server, &session);
     if (session.phase == SessionPhase::serving && !in_turn(*server) && wants_messages(session))
       take_messages(server, &session);
   }
   for (Guest& guest : server->guests)
-    if (guest.stream >= 0) tend_guest(server, &guest);
+    if (is_open(guest)) tend_guest(server, &guest);
   if (comes) accept_clients(server);
   do_work(server);
   for (Session& session : server->sessions) {
@@ -262,7 +257,7 @@ ServerTotals server_totals(const Server& server) {
     if (session.phase != SessionPhase::unused) {
       totals.frame_count += session.frame_count;
       totals.row_count += session.row_count;
-      totals.byte_count += session.byte_count;
+      totals.byte_count += session.messages.bytes_out;
     }
   return totals;
 }
@@ -273,7 +268,7 @@ void close_server(Server* server) {
   for (Session& session : server->sessions)
     if (session.phase != SessionPhase::unused) end_session(server, &session, "this server ends");
   for (Guest& guest : server->guests)
-    if (guest.stream >= 0) close_guest(server, &guest);
+    if (is_open(guest)) close_guest(&guest);
   release(server);
 }
 

@@ -1,7 +1,6 @@
 #include "remote/server/session.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/check.h"
 #include "engine/span_list.h"
@@ -31,7 +30,7 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
             static_cast<int>(row_end), renderer.exposure, pack_format(request.format), Rotation::none, request.dither,
             session->pixels.data, line_bytes);
   std::uint32_t prefix = row_chunk_prefix_bytes(), row_count = row_end - row_begin;
-  std::uint8_t* at = reserve_output(session, prefix + encoded_bytes_max(session->shape, row_count));
+  std::uint8_t* at = reserve_output(&session->messages, prefix + encoded_bytes_max(session->shape, row_count));
   Message message;
   message.type = MessageType::row_chunk;
   RowChunk* chunk = &message.row_chunk;
@@ -101,45 +100,29 @@ void next_slice(void* context, SpanBatch* batch) {
 
 void make_session(void* memory, std::size_t byte_count, Session* session) {
   session->block = make_arena("client", memory, byte_count);
-  session->input = arena_array<std::uint8_t>(&session->block, kInputBytes);
-  session->output.bytes = arena_array<std::uint8_t>(&session->block, kMessageBytesMax + kReplyBytesMax + kAheadBytes);
+  session->messages =
+      make_message_stream(kInputBytes, kMessageBytesMax + kReplyBytesMax + kAheadBytes, &session->block);
+  session->messages.message_bytes_max = kRequestBytesMax;
   session->frame_mark = arena_mark(session->block);
 }
 
-void restart_session(Session* session) {
+void restart_session(Session* session, platform::Link* link, int connection) {
   Arena block = session->block;
-  Array<std::uint8_t> input = session->input, output = session->output.bytes;
+  MessageStream messages = session->messages;
   std::size_t frame_mark = session->frame_mark;
   std::uint64_t job_number = session->job_number;
   *session = Session();
   session->job_number = job_number;
   session->block = block;
-  session->input = input;
-  session->output.bytes = output;
+  session->messages = messages;
   session->frame_mark = frame_mark;
+  start_message_stream(&session->messages, link, connection);
 }
 
-std::uint8_t* reserve_output(Session* session, std::size_t byte_count) {
-  OutputQueue* q = &session->output;
-  CHECK_LE(byte_count, output_room(*session));
-  if (q->bytes.count - q->end < byte_count) {
-    std::memmove(q->bytes.data, q->bytes.data + q->begin, q->end - q->begin);
-    q->end -= q->begin;
-    q->begin = 0;
-  }
-  CHECK_LE(q->end + byte_count, q->bytes.count);
-  return q->bytes.data + q->end;
-}
-
-void send_message(Session* session, const Message& message) {
-  std::uint32_t byte_count = message_bytes(message);
-  encode_message(message, reserve_output(session, byte_count));
-  session->output.end += byte_count;
-  session->queued_count += byte_count;
-}
+void send_message(Session* session, const Message& message) { CHECK(send_message(&session->messages, message)); }
 
 bool wants_messages(const Session& session) {
-  return session.more_to_take && output_room(session) >= 2 * kReplyBytesMax;
+  return session.more_to_take && output_room(session.messages) >= 2 * kReplyBytesMax;
 }
 
 void send_error(Session* session, WireError code, std::uint32_t frame) {
@@ -159,12 +142,12 @@ void drop_job(Session* session) {
 }
 
 bool has_chunk(const Session& session) {
-  return has_job(session) && session.job.stage == JobStage::rows && queued_bytes(session) <= kAheadBytes &&
+  return has_job(session) && session.job.stage == JobStage::rows && queued_bytes(session.messages) <= kAheadBytes &&
          session.job.sent_begin - session.job.traced_begin >= next_chunk_rows(session);
 }
 
 bool can_work(const Session& session) {
-  if (!has_job(session) || queued_bytes(session) > kAheadBytes) return false;
+  if (!has_job(session) || queued_bytes(session.messages) > kAheadBytes) return false;
   std::uint32_t unsent = session.job.sent_begin - session.job.traced_begin;
   return session.job.stage != JobStage::rows ||
          (session.job.traced_begin > session.job.request.row_begin && unsent < next_chunk_rows(session));

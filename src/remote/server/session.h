@@ -5,6 +5,7 @@
 #include "platform/link.h"
 #include "remote/server/scene_store.h"
 #include "remote/server/share.h"
+#include "remote/stream.h"
 #include "wire/codec.h"
 
 namespace pocketray {
@@ -23,12 +24,6 @@ enum class SessionPhase : std::uint8_t {
   unused,
   serving,
   leaving,  // is told why, and what it still sends is read and dropped
-};
-
-// Bytes [begin, end) are to be sent.
-struct OutputQueue {
-  Array<std::uint8_t> bytes;
-  std::size_t begin, end;
 };
 
 // What is next to be done for a job. Each stage takes one slice of the CPU, or as many as its pixels need.
@@ -68,7 +63,6 @@ struct JobTools {
 
 struct Session {
   SessionPhase phase = SessionPhase::unused;
-  int stream = -1;
   char name[64] = {0};                  // the peer's address
   char reason[160] = {0};               // why it is to leave
   std::uint32_t message_bytes_max = 0;  // that the client takes
@@ -76,15 +70,11 @@ struct Session {
   Account account;
   std::uint64_t ended_took_ns = 0, ended_sent_ns = 0;  // of frames at their end that are not accounted for yet
   std::uint32_t chunk_count = 0;                       // sent to it
-  std::uint64_t queued_count = 0;                      // bytes of messages so far
 
   Arena block;
   std::size_t frame_mark = 0;  // of the block, behind the buffers
-  Array<std::uint8_t> input;
-  std::size_t input_count = 0;
+  MessageStream messages;
   bool more_to_take = false;  // whole messages may wait in the input
-  bool has_ended = false;     // it sends nothing more than what is in the input
-  OutputQueue output = {};
 
   CodecShape shape;               // of the last request
   RowEncoder* encoder = nullptr;  // null: to be made for the shape
@@ -103,21 +93,17 @@ struct Session {
   std::uint64_t waiting_since_ns = 0;  // for its turn; 0: it does not wait
 
   platform::LinkTimer message_timer, idle_timer, stall_timer, leave_timer;
-  std::uint64_t frame_count = 0, row_count = 0, byte_count = 0;  // sent
+  std::uint64_t frame_count = 0, row_count = 0;  // sent
 };
 
 // Takes the buffers out of the block.
 void make_session(void* memory, std::size_t byte_count, Session* session);
-// Another client comes.
-void restart_session(Session* session);
+// Another client comes, by that connection.
+void restart_session(Session* session, platform::Link* link, int connection);
 
 // Whether messages may wait that there is room to answer.
 bool wants_messages(const Session& session);
 
-inline std::size_t queued_bytes(const Session& session) { return session.output.end - session.output.begin; }
-inline std::size_t output_room(const Session& session) { return session.output.bytes.count - queued_bytes(session); }
-// Room for `byte_count` bytes in a row at the end of the queue, of which there must be as many.
-std::uint8_t* reserve_output(Session* session, std::size_t byte_count);
 // Queues a message; there must be room.
 void send_message(Session* session, const Message& message);
 void send_error(Session* session, WireError code, std::uint32_t frame);

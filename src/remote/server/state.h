@@ -25,15 +25,13 @@ struct Address {
 // read it. Closed at once, what it has sent meanwhile would have the system throw the message away [RFC 1122,
 // sec. 4.2.2.13].
 struct Guest {
-  int stream = -1;
+  MessageStream messages;
   bool leaves = false;
-  std::uint64_t key = 0;      // of its address
-  platform::LinkTimer timer;  // for its hello, or to leave
-  std::uint8_t input[kGuestInputBytes];
-  std::size_t input_count = 0;
-  std::uint8_t output[96];
-  std::size_t output_begin = 0, output_end = 0;
+  std::uint64_t key = 0;                             // of its address
+  platform::LinkTimer timer;                         // for its hello, or to leave
+  std::uint8_t input[kGuestInputBytes], output[96];  // the stream's
 };
+inline bool is_open(const Guest& guest) { return guest.messages.stream >= 0; }
 
 // The work that a session gets the CPU for.
 struct Work {
@@ -78,13 +76,13 @@ inline bool in_turn(const Server& server) { return !is_paced(server.options.pace
 
 // ---- server_guests.cpp
 
-void close_guest(Server* server, Guest* guest);
+void close_guest(Guest* guest);
 // Lets in whoever waits at the listener.
 void accept_clients(Server* server);
 // Takes what a guest has sent: with a hello it gets a place, or is told that there is none.
 void tend_guest(Server* server, Guest* guest);
 // Drops what has come; false: nothing more will.
-bool drop_input(Server* server, int stream);
+bool discard_input(MessageStream* messages);
 
 // ---- server.cpp
 

@@ -96,9 +96,9 @@ void begin_work(Server* server, int index) {
   work->is_job = !(in_turn(*server) && (wants_messages(*session) || has_chunk(*session)));
   std::uint64_t start = now_ns(server), waited_since = session->waiting_since_ns;
   if (!work->is_job && wants_messages(*session)) {
-    std::uint64_t queued = session->queued_count;
+    std::uint64_t queued = queued_in_all(session->messages);
     work->message_count = take_messages(server, session);
-    work->byte_count = session->queued_count - queued;
+    work->byte_count = queued_in_all(session->messages) - queued;
   } else if (!work->is_job) {
     send_chunks(session);
   } else {
