@@ -32,7 +32,7 @@ Status write_scene(const std::string& path, const Scene& scene, std::size_t* byt
 
 // Before the work. A device or a pipe, and standard output, may have any name.
 Status check(const BakeOptions& o) {
-  if (!platform::is_device_or_pipe(o.output.c_str()) && !has_suffix(o.output, ".pray"))
+  if (!platform::is_device_or_pipe(o.output.c_str()) && !has_suffix(o.output.c_str(), ".pray"))
     return failure("-o is '%.300s': a baked scene's name must end in .pray", o.output.c_str());
   return check_outputs({{"IN", o.input}}, {{"-o", o.output}, {"--json", o.json}});
 }

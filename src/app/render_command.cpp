@@ -84,7 +84,7 @@ std::string numbered_path(const std::string& path, std::uint32_t number) {
 
 // Scales an AOV so that a picture of levels shows it: radiance formats keep the values.
 void fit_for_levels(Aov aov, const std::string& path, Renderer* renderer) {
-  if (aov == Aov::none || has_suffix(path, ".pfm")) return;
+  if (aov == Aov::none || has_suffix(path.c_str(), ".pfm")) return;
   renderer->exposure = 1;
   float most = 0;
   for (const Vec3& p : renderer->image) most = max_component(p) > most ? max_component(p) : most;
@@ -250,14 +250,14 @@ void print_share(const Servers& servers) {
 Status check_shareable(const RenderOptions& o, Aov aov) {
   if (o.servers.addresses.empty()) return success();
   if (aov != Aov::none) return failure("--server sends colours alone: leave it out, or --aov");
-  if (has_suffix(o.output, ".pfm"))
+  if (has_suffix(o.output.c_str(), ".pfm"))
     return failure("--server sends displayed levels and .pfm takes radiance: leave it out, or write .png or .ppm");
   return success();
 }
 
 Status start_servers_for(const RenderOptions& o, Renderer* renderer, Job* job) {
   if (!job->servers) return success();
-  bool raw = has_suffix(o.output, ".raw");
+  bool raw = has_suffix(o.output.c_str(), ".raw");
   const ServersBackend& servers = *job->servers->backend;
   bool small_pixels = raw && job->picture.raw_format.bits_per_pixel == 16;
   RETURN_IF_ERROR(servers.start(job->servers, renderer, small_pixels, raw && o.dither));
@@ -291,7 +291,7 @@ Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget
   start_budget(o.budget, front, *renderer, job->sequence.last - job->sequence.first + 12, budget);
   job->budget = budget;
   PictureOptions* p = &job->picture;
-  bool raw = has_suffix(o.output, ".raw");
+  bool raw = has_suffix(o.output.c_str(), ".raw");
   p->packed_format = raw ? p->raw_format : kRgb888;
   p->dither = raw && o.dither;
   p->packed_line_bytes = static_cast<int>(renderer->settings.width) * p->packed_format.bits_per_pixel / 8;

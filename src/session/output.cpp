@@ -1,6 +1,7 @@
 #include "session/output.h"
 
 #include <cstdio>
+#include <cstring>
 
 #include "platform/file.h"
 #include "scene/builtin/builtin.h"
@@ -24,10 +25,11 @@ bool is_file(const NamedFile& input) {
 
 }  // namespace
 
-bool has_suffix(const std::string& path, const std::string& suffix) {
-  if (path.size() <= suffix.size()) return false;
-  std::size_t at = path.size() - suffix.size();
-  return path.compare(at, suffix.size(), suffix) == 0 && path[at - 1] != '/';
+bool has_suffix(const char* path, const char* suffix) {
+  std::size_t length = std::strlen(path), suffix_length = std::strlen(suffix);
+  if (length <= suffix_length) return false;
+  const char* at = path + length - suffix_length;
+  return std::strcmp(at, suffix) == 0 && at[-1] != '/';
 }
 
 Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {

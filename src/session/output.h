@@ -14,8 +14,8 @@ struct NamedFile {
   std::string path;
 };
 
-// Whether a path ends in the suffix, ".pray", and its last component has something before it.
-bool has_suffix(const std::string& path, const std::string& suffix);
+// Whether a path ends in the suffix, ".pray", and its last component has something before it. Allocates nothing.
+bool has_suffix(const char* path, const char* suffix);
 
 // Fails where an output cannot be written, is an input, through whatever links, or another output. To be called before
 // the work. Inputs may be names of other things than files. Leaves no trace.

@@ -13,7 +13,7 @@ namespace {
 
 enum class Kind { png, ppm, pfm, raw, unknown };
 
-Kind kind_of(const std::string& path) {
+Kind kind_of(const char* path) {
   constexpr struct {
     const char* suffix;
     Kind kind;

@@ -16,11 +16,11 @@ namespace {
 
 // Whether a file's name is that of a scene; those beside them are textures and the like.
 bool is_scene_file(const std::string& name) {
-  if (has_suffix(name, ".pray")) return true;
+  if (has_suffix(name.c_str(), ".pray")) return true;
 #ifdef POCKETRAY_HAVE_IMPORT
   std::string formats = import_formats() + " ";
   for (std::size_t begin = 0, end; (end = formats.find(' ', begin)) != std::string::npos; begin = end + 1)
-    if (end > begin && has_suffix(name, "." + formats.substr(begin, end - begin))) return true;
+    if (end > begin && has_suffix(name.c_str(), ("." + formats.substr(begin, end - begin)).c_str())) return true;
 #endif
   return false;
 }
