@@ -1,11 +1,11 @@
-// The traversals of the BVH, compiled once per instruction set (base/isa.h) by bvh_kernels_*.cpp. All give the same
+// The traversals of the BVH, compiled once per instruction set (base/isa.h) by bvh_kernels_*.cpp. All return the same
 // bits.
 #pragma once
 #include "accel/accel.h"
 
 namespace pocketray {
 
-// As the functions of AccelInfo; of `bvh`, and those called Compact of `compact`.
+// The functions of AccelInfo, for `bvh` and `compact`.
 struct BvhKernels {
   void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
   void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,

@@ -110,7 +110,7 @@ static void plans_say_which_effects_and_why(void) {
   options.effects = "auto,-mirror";
   before = make_plan(&source, &options);
   EXPECT(find_effect(&before, "shadow")->on && strlen(find_effect(&before, "shadow")->called_for_by) > 0);
-  EXPECT(!find_effect(&before, "mirror")->on && strstr(find_effect(&before, "mirror")->reason, "switched off"));
+  EXPECT(!find_effect(&before, "mirror")->on && strstr(find_effect(&before, "mirror")->reason, "forced off"));
   EXPECT(before.triangle_count > 40000 && before.vertex_count > 20000 && before.material_count > 3);
   EXPECT(before.camera_count == 1 && !before.default_camera && !before.default_lights && before.frame_count == 1);
   EXPECT(before.duration_seconds == 0 && strcmp(before.accelerator, "bvh") == 0);
