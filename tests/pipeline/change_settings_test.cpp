@@ -77,7 +77,7 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   more.points_per_area_light = 5;
   Status refused = change_settings(&test->renderer, more);
   CHECK_FALSE(refused.ok);
-  CHECK(std::strstr(refused.message, "plan with that many") != nullptr);
+  CHECK(std::strstr(refused.message, "plan for that many") != nullptr);
   Settings wrong = settings;
   wrong.ray_depth = kRayDepthMax + 1;
   CHECK_FALSE(change_settings(&test->renderer, wrong).ok);
