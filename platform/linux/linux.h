@@ -7,7 +7,7 @@ namespace platform {
 
 extern const Backend kLinuxBackend;
 
-// System calls go to this driver from the next open() on; null: to the system.
+// Uses this driver for system calls from the next open() on; null: the system's.
 void linux_set_driver(const Driver* driver);
 
 }  // namespace platform

@@ -6,9 +6,9 @@
 namespace platform {
 
 void seed_null_entropy(std::uint64_t seed);
-// As random_bytes() of entropy.h.
+// The same as random_bytes() of entropy.h.
 bool null_random_bytes(void* bytes, std::size_t byte_count);
-// A system that has none.
+// A system without random numbers.
 bool no_random_bytes(void* bytes, std::size_t byte_count);
 
 }  // namespace platform

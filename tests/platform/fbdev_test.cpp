@@ -299,7 +299,7 @@ TEST_CASE("fbdev_refuses_what_it_cannot_draw_to") {
   Screen small(kGeometries[0]);
   small.options.memory_bytes = 320 * 240 * 2 - 1;
   CHECK_FALSE(small.open());
-  CHECK(std::strstr(small.error.text, "back page takes 153600 bytes") != nullptr);
+  CHECK(std::strstr(small.error.text, "back page needs 153600 bytes") != nullptr);
   CHECK(small.machine.files_open == 0);
   small.options.memory_bytes += 1;
   CHECK(small.open());

@@ -17,9 +17,9 @@ TEST_CASE("file_errors_say_why") {
   Folder folder;
   FileError error;
   CHECK(content_of(folder.file("a")) == "cannot be opened: No such file or directory");
-  CHECK(content_of(folder.path) == "is not a regular file: name one that is");
+  CHECK(content_of(folder.path) == "is not a regular file: name a regular file");
   REQUIRE(write_file(folder.file("a"), "", &error));
-  CHECK(content_of(folder.file("a")) == "is empty: make it again");
+  CHECK(content_of(folder.file("a")) == "is empty: create it again");
   CHECK_FALSE(write_file(folder.file("no/a"), "x", &error));
   CHECK(std::strstr(error.text, "No such file") != nullptr);
   CHECK_FALSE(write_file("/tmp/" + std::string(2000, 'x'), "x", &error));
@@ -54,8 +54,8 @@ TEST_CASE("file_that_is_none_is_refused_at_once") {
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
   REQUIRE(symlink("loop", folder.file("loop").c_str()) == 0);
   alarm(20);
-  CHECK(content_of(folder.file("pipe")) == "is not a regular file: name one that is");
-  CHECK(content_of("/dev/zero") == "is not a regular file: name one that is");
+  CHECK(content_of(folder.file("pipe")) == "is not a regular file: name a regular file");
+  CHECK(content_of("/dev/zero") == "is not a regular file: name a regular file");
   CHECK(content_of("/dev/tty").find("bytes") == std::string::npos);
   CHECK(content_of(folder.file("loop")).find("cannot be opened") == 0);
   alarm(0);
@@ -88,7 +88,7 @@ TEST_CASE("file_in_memory_does_not_follow_the_file") {
   CHECK(read_bytes(&reader, &bytes[0], 1000, &error));
   REQUIRE(truncate(path.c_str(), 5000) == 0);
   CHECK_FALSE(read_bytes(&reader, &bytes[1000], bytes.size() - 1000, &error));
-  CHECK(std::strstr(error.text, "became shorter") != nullptr);
+  CHECK(std::strstr(error.text, "was truncated") != nullptr);
   close_reader(&reader);
   CHECK(reader.descriptor == -1);
 }

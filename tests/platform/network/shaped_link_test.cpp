@@ -236,7 +236,7 @@ TEST_CASE("shaped_link_refuses_what_it_has_no_memory_for") {
   CHECK(shaped_link_open(rig.link, options, settings, &rig.error) != nullptr);
   --options.memory_bytes;
   CHECK(shaped_link_open(rig.link, options, settings, &rig.error) == nullptr);
-  CHECK(std::strstr(rig.error.text, "by radio take") != nullptr);
+  CHECK(std::strstr(rig.error.text, "by radio need") != nullptr);
   options.stream_count_max = kLinkStreamsMax + 1;
   CHECK(shaped_link_open(rig.link, options, settings, &rig.error) == nullptr);
   options = LinkOptions();

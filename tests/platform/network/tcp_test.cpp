@@ -53,10 +53,11 @@ TEST_CASE("tcp_says_what_is_wrong_with_an_address") {
   CHECK(std::strstr(rig.error.text, "number") != nullptr);
   REQUIRE(kTcpLink.resolve("224.0.0.1:7474", &address, &rig.error));
   CHECK(kTcpLink.connect(rig.link, address, kMs, &rig.error) == -1);
-  CHECK(std::string(rig.error.text) == "224.0.0.1:7474: no way leads there: is the network up, and the address right?");
+  CHECK(std::string(rig.error.text) ==
+        "224.0.0.1:7474: no route leads there: is the network up, and the address right?");
   REQUIRE(kTcpLink.resolve("192.0.2.1:7474", &address, &rig.error));
   CHECK(kTcpLink.listen(rig.link, address, &rig.error) == -1);
-  CHECK(std::strstr(rig.error.text, "no way leads there") != nullptr);
+  CHECK(std::strstr(rig.error.text, "no route leads there") != nullptr);
 }
 
 // Goal: a connection without an outcome fails at its deadline. Method: a listener whose queue is full drops what
@@ -164,7 +165,7 @@ TEST_CASE("tcp_reset_by_hand_is_told") {
   LinkResult result;
   CHECK(rig.read_all(stream, 10, &result) == "");
   CHECK(result == LinkResult::failed);
-  CHECK(std::strstr(rig.error.text, "the peer broke the connection off") != nullptr);
+  CHECK(std::strstr(rig.error.text, "the peer closed the connection") != nullptr);
 }
 
 // Goal: a process that is killed in the middle of what it says is a peer that is gone, and the next one is served.
