@@ -78,7 +78,7 @@ Status encode_png(const std::uint8_t* rgb, int width, int height, Arena* arena, 
   if (png) png_destroy_write_struct(&png, &info);
   arena_release(arena, mark);
   if (done) return success();
-  return failure("cannot write a PNG: %s (needs %zu bytes, %zu are free in the %s arena)",
+  return failure("cannot write a PNG: %s (needs %zu bytes of memory, %zu are free in the %s arena)",
                  encoder.message[0] ? encoder.message : "out of memory", encode_png_need(width), arena_free(*arena),
                  arena->name);
 }

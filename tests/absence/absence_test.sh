@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# absence_test.sh FOLDER COUNTS COMPILER : an effect that a scene does not call for costs no instruction and no byte.
-# Goal: the frames of the built-in scenes take at most 0.1 % more instructions with every effect built in, and the plan, than
-# in a build that lacks the absent ones; all parts of memory take the same bytes, and the pictures are the same. What a frame
-# takes stays within 1 % of the committed count, where the compiler is the one that it was counted with.
-# Method: valgrind counts a run of one frame and one of three, so that what comes before them drops out.
-# `absence_test.sh … --write` writes the counts anew: say in the commit why they changed.
+# absence_test.sh FOLDER COUNTS COMPILER : an effect absent from a scene costs no instruction and no byte.
+# Goal: a frame of each built-in scene takes at most 0.1 % more instructions with every effect built in, and the plan, than
+# in a build without the absent ones; all parts of memory take the same bytes, and the pictures are the same. The
+# instructions stay within 1 % of the committed count if the compiler is the one that it was made with.
+# Method: valgrind counts runs of one and of three frames, so that everything before the frames cancels out.
+# `absence_test.sh … --write` rewrites the counts: say in the commit why they changed.
 set -eu
 folder=$1 counts=$2 compiler=$("$3" --version | head -n 1)
 valgrind -q --tool=none "$folder/absence_all" cube 0 >/dev/null 2>&1 || { echo "skipped: valgrind cannot run this program"; exit 0; }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # trial.sh BUILD [CXX]: adds a setting to a copy of the sources, a member of Quality and a row of setting_list.h (and the
-# row of PROTOCOL.md that the test of the wire asks for), compiles what is generated from the list together with
-# setting_list_test.cpp, and runs that. BUILD holds the libraries of this tree; objects with the new row go before them.
+# row of PROTOCOL.md required by the wire test), compiles everything generated from the list together with
+# setting_list_test.cpp, and runs that. BUILD has this tree's libraries; objects with the new row are linked before them.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd) build=$(cd "$1" && pwd) cxx=${2:-c++}
 copy=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/bin/bash
-# The whole gate of hard cases: runs the tests hard_NN_… and differential_… of the programs given and prints a table:
-# case, inputs, wrong answers, bound. With JSON=FILE in the environment the same as a list of objects. EMULATOR runs
+# The full gate of hard cases: runs the tests hard_NN_… and differential_… of the given programs and prints a table:
+# case, inputs, wrong answers, bound. JSON=FILE in the environment also writes them as a list of objects. EMULATOR runs
 # programs of another CPU. Exit status 1 if any answer is wrong.
 set -u
 lines=$(mktemp) && log=$(mktemp) || exit 1

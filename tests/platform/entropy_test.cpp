@@ -8,7 +8,7 @@
 
 #include "platform/null/null_entropy.h"
 
-// Goal: bytes that differ each time and reach every value; nothing is written behind them. Method: 4096 words.
+// Goal: bytes differ each time and take every value; nothing is written after them. Method: 4096 words.
 TEST_CASE("entropy_words_do_not_repeat") {
   std::set<std::uint64_t> words;
   std::set<unsigned> values;
@@ -27,7 +27,7 @@ TEST_CASE("entropy_words_do_not_repeat") {
   CHECK(platform::random_bytes(nullptr, 0));
 }
 
-// Goal: a seed decides the numbers for tests. Method: equal and unequal seeds.
+// Goal: a seed determines the numbers for tests. Method: equal and unequal seeds.
 TEST_CASE("null_entropy_follows_its_seed") {
   unsigned char a[20], b[20], c[20];
   platform::seed_null_entropy(7);

@@ -12,7 +12,7 @@
 
 using namespace folder_test;
 
-// Goal: what cannot be read or written is an error that says why. Method: each kind.
+// Goal: errors of reading and writing state their cause. Method: each kind.
 TEST_CASE("file_errors_say_why") {
   Folder folder;
   FileError error;
@@ -27,11 +27,11 @@ TEST_CASE("file_errors_say_why") {
   CHECK_FALSE(write_file(folder.path, "x", &error));  // a folder
   CHECK(std::strstr(error.text, "is a folder") != nullptr);
   CHECK_FALSE(write_file("", "x", &error));
-  CHECK(std::strstr(error.text, "empty path") != nullptr);
+  CHECK(std::strstr(error.text, "path is empty") != nullptr);
 }
 
-// Goal: a folder is made where there is none, and one that is there will do; anything else is an error. Method: twice,
-// within a missing folder, over a file.
+// Goal: a missing folder is made, and an existing one is accepted; anything else is an error. Method: twice, within a
+// missing folder, over a file.
 TEST_CASE("file_folder_is_made_or_there") {
   Folder folder;
   FileError error;
@@ -47,8 +47,8 @@ TEST_CASE("file_folder_is_made_or_there") {
   rmdir(made.c_str());
 }
 
-// Goal: nothing that is no regular file is waited for. Method: a pipe that nobody writes to, a device, a loop of links;
-// an alarm ends the test where it hangs.
+// Goal: anything but a regular file is refused without waiting. Method: a pipe that nobody writes to, a device, a loop
+// of links; an alarm ends the test if it hangs.
 TEST_CASE("file_that_is_none_is_refused_at_once") {
   Folder folder;
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
@@ -61,8 +61,8 @@ TEST_CASE("file_that_is_none_is_refused_at_once") {
   alarm(0);
 }
 
-// Goal: what was read stays, whatever becomes of the file, and a file that is cut short while it is read is an error,
-// not a signal. Method: cut and written over, by its one inode, as `cp` and a full disk do it.
+// Goal: data in memory does not change with the file, and a file truncated while being read is an error, not a signal.
+// Method: truncate and overwrite the same inode, as `cp` and a full disk do.
 TEST_CASE("file_in_memory_does_not_follow_the_file") {
   Folder folder;
   FileError error;

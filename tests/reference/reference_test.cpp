@@ -14,9 +14,9 @@
 
 using namespace pocketray;
 
-// Goal: glass of index 1.5 at normal incidence lets 12/13 through and reflects 1/13 (HARDCASES row 34), facing mirrors
-// add up to Σρᵏ (row 35), and paths that end earlier to the first terms of either. Method: a glowing wall behind a slab
-// and one before it; two mirrors that glow. What branches at each boundary is exact at every depth.
+// Goal: glass of index 1.5 at normal incidence transmits 12/13 and reflects 1/13 (HARDCASES row 34), facing mirrors add
+// up to Σρᵏ (row 35), and shorter paths to the first terms of either. Method: an emissive wall behind a slab and one in
+// front of it; two emissive mirrors. What branches at each boundary is exact at every depth.
 TEST_CASE("reference_optics_have_their_closed_forms") {
   GeneratedScene s;
   Material glass;
@@ -35,7 +35,7 @@ TEST_CASE("reference_optics_have_their_closed_forms") {
   TestReference t(s.scene);
   for (Transport transport : {Transport::model, Transport::physical}) {
     check_equal(estimate(t, transport, slab_eye, down, effort(10000)), 2 * 12.0 / 13);
-    // From between wall and slab: what the slab sends back of the wall, which reflects nothing.
+    // From between wall and slab: light of the wall reflected by the slab; the wall reflects nothing.
     check_equal(estimate(t, transport, wall_eye, up, effort(10000)), 2 / 13.0);
     check_equal(estimate(t, transport, mirror_eye, along, effort(10000)), 1 / (1 - 0.75));
   }
@@ -52,12 +52,12 @@ TEST_CASE("reference_optics_have_their_closed_forms") {
     CHECK(std::fabs(radiance_as_rendered(limited.reference, slab_eye, down).y - passed) < 1e-6);
     CHECK(std::fabs(radiance_as_rendered(limited.reference, wall_eye, up).y - sent_back) < 1e-6);
     CHECK(std::fabs(radiance_as_rendered(limited.reference, mirror_eye, along).y - mirrors) < 1e-6);
-    if (depth <= 4)  // before chance ends paths
+    if (depth <= 4)  // before Russian roulette begins
       check_equal(estimate(t, Transport::physical, mirror_eye, along, 1, 1, depth), mirrors);
   }
 }
 
-// Goal: boundaries reflect as HARDCASES rows 32 and 33 have it, to 1e-6. Method: their table.
+// Goal: boundaries reflect as in HARDCASES rows 32 and 33, to 1e-6. Method: their table.
 TEST_CASE("reference_boundary_reflects_by_fresnel") {
   struct Case {
     double ior, degrees, reflectance;
@@ -73,10 +73,10 @@ TEST_CASE("reference_boundary_reflects_by_fresnel") {
   CHECK(boundary_reflectance(std::cos(std::asin(1 / 1.5) - 2e-7), 1.5, &cos_t) < 1);
 }
 
-// Goal: directions of the lobes come with the density that is claimed. Method: chi² over the cosine and the azimuth
-// about the mirror direction, every lobe listed, exponents from blunt to sharp; 99.9 % bound for the cells.
+// Goal: the lobes' directions have the stated density. Method: chi² over the cosine and the azimuth around the mirror
+// direction, every lobe listed, exponents from blunt to sharp; 99.9 % bound for the cells.
 TEST_CASE("reference_density_is_that_of_its_samples") {
-  // Written with the surface alone: no scene is needed.
+  // Needs only the surface, no scene.
   constexpr int kRings = 12, kSectors = 8;
   constexpr float kExponents[] = {0, 1, 20, 400};
   for (std::uint32_t row = 0; row < 4 * kBrdfCount; ++row) {
@@ -94,7 +94,7 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
       double turn = std::atan2(dot(d, bitangent), dot(d, tangent)) / (2 * kPi) + 0.5;
       return ring * kSectors + std::min(kSectors - 1, static_cast<int>(turn * kSectors));
     };
-    // What the density claims, by the midpoint rule over each cell.
+    // The stated density, by the midpoint rule over each cell.
     std::vector<double> claimed(kRings * kSectors), found(kRings * kSectors);
     constexpr int kFine = 60;
     double total = 0;
@@ -131,9 +131,9 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
   }
 }
 
-// Goal: the renderer's radiance is the limit of its own model. Method: generated scenes of each feature and of all,
-// rays of the camera, no cut-off. Where nothing is left to chance both agree to float's precision; mirrors and glass,
-// which the reference picks by chance, within five standard errors. Rays that floats lead past an edge are few.
+// Goal: the renderer's radiance is the limit of its own model. Method: generated scenes with each single feature and
+// with all, camera rays, no cut-off. Without random choices both agree to float precision; mirrors and glass, which the
+// reference selects at random, within five standard errors. Rays that float rounding moves across an edge are few.
 TEST_CASE("reference_model_is_the_renderers_limit") {
   std::uint32_t without = bit(Feature::emission) | bit(Feature::animation) | bit(Feature::supersampling);
   std::uint32_t chance =
@@ -153,7 +153,7 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
     int count = effort(50), unequal = 0;
     double worst = 0;
     for (int i = 0; i < count; ++i) {
-      // At small things as often as at large ones: towards any triangle.
+      // Small objects as often as large ones: towards a random triangle.
       const Triangle& at = s->scene.triangles[next_u32(&rng) % s->scene.triangles.count];
       float u = 0.5f * next_float(&rng), v = 0.5f * next_float(&rng);
       Vec3 point = frame.positions[at.vertex(0)] * (1 - u - v) + frame.positions[at.vertex(1)] * u +
