@@ -195,9 +195,9 @@ POCKETRAY_API pocketray_result pocketray_get_plan(const pocketray_instance* inst
 POCKETRAY_API pocketray_result pocketray_get_settings(const pocketray_instance* instance, pocketray_settings* settings);
 POCKETRAY_API pocketray_result pocketray_set_settings(pocketray_instance* instance, const pocketray_settings* settings);
 
-/* The camera. Get: that of the last frame or the one set since. Set: replaces the scene's camera. Reset: uses the
- * scene's camera `camera_index` again, which moves if it is animated; in a scene without cameras, index 0 is the
- * default one. */
+/* The camera. Get: that of the last frame or the one set since. Set: replaces the scene's. Use scene: the scene's
+ * camera `camera_index` again, which moves if it is animated; in a scene without cameras, index 0 is the default one.
+ */
 POCKETRAY_API pocketray_result pocketray_get_camera(const pocketray_instance* instance, pocketray_camera* camera);
 POCKETRAY_API pocketray_result pocketray_set_camera(pocketray_instance* instance, const pocketray_camera* camera);
 POCKETRAY_API pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, uint32_t camera_index);
