@@ -38,7 +38,7 @@ bool add_number(LinkAddress* address, const char* host, int port) {
 // The C library loads its resolver at run time, which a static program cannot rely on.
 bool add_name(LinkAddress*, const char* host, int port, Error* error) {
   snprintf(error->text, sizeof error->text,
-           "this build cannot resolve names: give the address of '%.64s' in numbers, as in 192.168.1.2:%d", host, port);
+           "this build cannot resolve names: give the numeric address of '%.64s', as in 192.168.1.2:%d", host, port);
   return false;
 }
 #else

@@ -50,7 +50,7 @@ TEST_CASE("tcp_says_what_is_wrong_with_an_address") {
   LinkAddress address;
   CHECK_FALSE(kTcpLink.resolve("no..host:7474", &address, &rig.error));
   CHECK(std::strstr(rig.error.text, "'no..host'") != nullptr);
-  CHECK(std::strstr(rig.error.text, "number") != nullptr);
+  CHECK(std::strstr(rig.error.text, "numeric") != nullptr);
   REQUIRE(kTcpLink.resolve("224.0.0.1:7474", &address, &rig.error));
   CHECK(kTcpLink.connect(rig.link, address, kMs, &rig.error) == -1);
   CHECK(std::string(rig.error.text) ==
