@@ -1,4 +1,4 @@
-// Files without the heap: reading one, replacing one as a whole. Standard types only.
+// Files without the heap: reading a file, replacing a file as a whole. Standard types only.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,22 +9,22 @@ struct FileError {
   char text[256] = {0};  // what is wrong and how to mend it, without the path
 };
 
-// Files are read, never mapped: what has been checked in memory stays as it is, whatever becomes of the file. Under a
-// mapping it could change after the check, or be cut short, which ends a program with SIGBUS.
+// Files are read, never mapped: data checked in memory must not change when the file does. A mapped file could change
+// after the check, or be truncated, which ends a program with SIGBUS.
 
-// A regular file that is open for reading, and its size at that moment.
+// A regular file open for reading, and its size when it was opened.
 struct FileReader {
   int descriptor = -1;
   std::uint64_t byte_count = 0;
 };
 
-// An empty file is an error, and so is all that is not a regular file; nothing is waited for.
+// Never waits. An empty file is an error, and so is anything other than a regular file.
 bool open_reader(const char* path, FileReader* reader, FileError* error);
-// The next `byte_count` bytes. Fails where the file ends before them.
+// The next `byte_count` bytes. Fails if the file ends before.
 bool read_bytes(FileReader* reader, void* bytes, std::size_t byte_count, FileError* error);
 void close_reader(FileReader* reader);
 
-// A whole file in memory that is not the heap's.
+// A whole file in memory outside the heap.
 struct LoadedFile {
   const std::uint8_t* bytes = nullptr;  // aligned to a page; null: not loaded
   std::size_t byte_count = 0;
@@ -32,52 +32,52 @@ struct LoadedFile {
 bool load_file(const char* path, LoadedFile* file, FileError* error);
 void unload_file(LoadedFile* file);
 
-// Calls found() with the name of everything in a folder but what begins with a dot, in no order. At the start only: the
-// system takes memory for it.
+// Calls found() with the name of every entry of a folder that does not begin with a dot, in no particular order. Only
+// for start-up: the system takes memory for it.
 bool list_folder(const char* path, void (*found)(void* context, const char* name), void* context, FileError* error);
 
-// Makes a folder within one that is there. Also true where it is there already.
+// Makes a folder within an existing one. Also true if it already exists.
 bool make_folder(const char* path, FileError* error);
 
-// Makes a folder that no other program uses, where files that pass lie (TMPDIR or /tmp), and puts its path into `path`.
-// The caller's to remove.
+// Makes a private folder in the place for temporary files (TMPDIR or /tmp) and writes its path to `path`. The caller
+// removes it.
 bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error);
-// Removes a folder with the files in it, but for those whose names begin with a dot; one with folders in it stays.
+// Removes a folder and its files, except those whose names begin with a dot; a folder that contains folders stays.
 void remove_folder(const char* path);
 
-// Changes whenever the file's content was replaced; 0 where there is no such file.
+// Changes whenever the file's content is replaced; 0 if there is no such file.
 std::uint64_t file_stamp(const char* path);
 
-// Writes a file so that readers see the old content or the whole new one, even after a power cut: into
-// PATH.NUMBER.part, which no other program uses; close_writer() brings it to the disk and renames it.
-// - A symbolic link stays and its target is written.
-// - A file that is there keeps its permissions, and its owner and group where the system allows that. One that may not
-//   be written is refused, though its folder would allow a new one.
-// - What is no regular file (a device, a pipe, a FIFO) is written directly, as are standard output ("-", /dev/stdout)
-//   and other descriptors (/dev/fd/3).
+// Writes a file so that readers see either the old content or the whole new one, even after a power cut: into
+// PATH.NUMBER.part, which no other program uses; close_writer() flushes it to the disk and renames it.
+// - A symbolic link stays, and its target is written.
+// - An existing file keeps its permissions, and its owner and group if the system allows that. A file without write
+//   permission is refused, even if its folder would allow a new one.
+// - Anything other than a regular file (a device, a pipe, a FIFO) is written directly, as are standard output ("-",
+//   /dev/stdout) and other descriptors (/dev/fd/3).
 constexpr std::size_t kWriterPathBytes = 1024;
 struct FileWriter {
   int descriptor = -1;
   bool failed = false;
-  char path[kWriterPathBytes] = {0};       // what is replaced in the end; empty: written directly
-  char part[kWriterPathBytes + 32] = {0};  // written until then
+  char path[kWriterPathBytes] = {0};       // the file to replace at the end; empty: written directly
+  char part[kWriterPathBytes + 32] = {0};  // the file written until then
 };
 bool open_writer(const char* path, FileWriter* writer, FileError* error);
-// After a failure the rest is ignored; close_writer() reports it.
+// After a failure further data is ignored; close_writer() reports the failure.
 void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count);
 bool close_writer(FileWriter* writer, FileError* error);
-// Gives up: what was written is removed, an older file of that name stays.
+// Gives up: removes the data written; an older file of that name stays.
 void discard_writer(FileWriter* writer);
 
-// Whether open_writer() would succeed: to be asked before work whose result goes there. A pipe is not opened.
+// Whether open_writer() would succeed; ask before work whose result goes there. Does not open pipes.
 bool can_write(const char* path, FileError* error);
-// Whether open_writer() writes directly there.
+// Whether open_writer() would write there directly.
 bool is_device_or_pipe(const char* path);
-// Whether two paths name one file, through links of both kinds; also one that does not exist yet. False for devices and
-// pipes.
+// Whether two paths name the same file, through links of either kind; the file need not exist yet. False for devices
+// and pipes.
 bool is_same_file(const char* one, const char* other);
 
-// Whether a person watches standard error.
+// Whether standard error is a terminal.
 bool stderr_is_terminal();
 
 }  // namespace platform

@@ -1,15 +1,15 @@
-// Instructions that this process executes, where the CPU and the system count them for programs: a measure of work that
-// neither clock rates nor other programs disturb. Standard types only.
+// Counts the instructions of this process, where CPU and system allow it: a measure of work that neither clock rates
+// nor other programs disturb. Standard types only.
 #pragma once
 #include <cstdint>
 
 namespace platform {
 
-// Counts from now on what the calling thread and the threads it starts later execute outside the system. False: nothing
-// is counted here, as on many virtual machines. Once per process; a second call returns what the first did.
+// Starts counting the user-mode instructions of the calling thread and of threads it starts later. False: counting is
+// not available, as on many virtual machines. Once per process; a second call returns the result of the first.
 bool start_instruction_count();
 
-// So far; 0 where nothing is counted.
+// Instructions so far; 0 without counting.
 std::uint64_t instruction_count();
 
 }  // namespace platform

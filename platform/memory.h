@@ -4,8 +4,8 @@
 
 namespace platform {
 
-// Asks for a block of memory to be made of large pages, where the system has some: rays read here and there, and each
-// small page costs the CPU a translation. A wish; whether it is granted changes no content.
+// Asks the system to use large pages for a block, if it has any: rays read all over it, and each small page costs the
+// CPU a translation. Only a hint; it never changes the content.
 void wish_large_pages(void* block, std::size_t byte_count);
 
 }  // namespace platform

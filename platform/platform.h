@@ -1,8 +1,8 @@
 // The platform contract: a screen, buttons and a clock, as one struct of functions per backend. Standard types only.
-// Only app/ and tests/ include it, and nothing under platform/ includes anything of src/. PORTING.md tells how to write
-// one.
+// Of src/ only the rooms from session/ upward include it, and nothing under platform/ includes anything from src/.
+// PORTING.md explains how to write a backend.
 //
-// All functions are called from one thread. After open() a backend takes no memory and never waits without a bound.
+// All functions are called from one thread. After open() a backend takes no memory and has no unbounded waits.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -29,57 +29,57 @@ enum class Button : std::uint8_t {
   faster,
   side_by_side
 };
-constexpr int kPadButtonCount = 12;  // up … select: what a handheld has
+constexpr int kPadButtonCount = 12;  // up … select: those of a handheld
 constexpr int kButtonCount = 18;     // with the keys of a desktop keyboard
 
 enum class EventType : std::uint8_t { button_down, button_up, file_drop, quit };
 
 struct Event {
   EventType type = EventType::quit;
-  Button button = Button::up;  // of button_down and button_up; a button held down is reported once
-  const char* path = nullptr;  // of file_drop; valid until the next poll()
-  std::uint64_t time_ns = 0;   // by the backend's own clock, now_ns()
+  Button button = Button::up;  // for button_down and button_up; holding a button is reported once
+  const char* path = nullptr;  // for file_drop; valid until the next poll()
+  std::uint64_t time_ns = 0;   // by the backend's clock, now_ns()
 };
 
-// Where a colour channel lies in a pixel: `length` bits from bit `offset` upward of the pixel read as one integer.
+// Position of a colour channel in a pixel: `length` bits from bit `offset` upward of the pixel read as one integer.
 struct Channel {
   int offset = 0, length = 0;
 };
 
-// The screen as the hardware has it, before any rotation. Pixels are 16 or 32 bits in the CPU's byte order, or 24 bits
-// with the lowest byte first. Bits of no channel but alpha are written as zero, those of alpha as one.
+// The hardware's screen, before any rotation. Pixels are 16 or 32 bits in the CPU's byte order, or 24 bits with the
+// lowest byte first. Bits of no channel are written as zero, those of alpha as one.
 struct ScreenFormat {
   int width = 0, height = 0;  // pixels to draw into
   int bits_per_pixel = 0;
   Channel red, green, blue, alpha;
 };
 
-// Where the next frame is drawn.
+// Where to draw the next frame.
 struct Page {
   void* pixels = nullptr;  // row 0, column 0
-  int line_bytes = 0;      // from a row to the next, at least width × bytes per pixel
+  int line_bytes = 0;      // from one row to the next, at least width × bytes per pixel
   int age = 0;             // it holds the frame shown this many frames ago; 0: unknown, draw every row
 };
 
 struct ScreenOptions {
   int width = 320,
-      height = 240;         // picture wanted, before rotation; a smaller screen gives less, a larger one centres it
-  int rotation = 0;         // 0, 90, 180, 270: degrees clockwise by which the caller turns the picture on the screen
+      height = 240;         // requested picture, before rotation; a smaller screen reduces it, a larger one centres it
+  int rotation = 0;         // 0, 90, 180, 270: degrees clockwise by which the caller rotates the picture on the screen
   int scale = 0;            // of a window: screen pixels per pixel; 0: as large as fits comfortably
   const char* title = "";   // of a window
-  int bits_per_pixel = 0;   // of a window or of none: 16 or 32, as the screen it stands for has; 0: 32
-  bool blue_first = false;  //   blue in the highest bits, not red
-  bool upright = false;     // of a window: turns the screen back, as one would hold the device
-  const char* device = nullptr;         // of a framebuffer; null: the usual one
+  int bits_per_pixel = 0;   // of a window or of no screen: 16 or 32, as on the screen it stands for; 0: 32
+  bool blue_first = false;  // blue in the highest bits instead of red
+  bool upright = false;     // of a window: rotates the screen back, as a user would hold the device
+  const char* device = nullptr;         // of a framebuffer; null: the default one
   const std::uint16_t* keys = nullptr;  // of evdev: kPadButtonCount key codes, up … select; null: a keyboard's
-  void* memory = nullptr;        // back page, the caller's, kept until close(): at least page_bytes_max(width, height)
+  void* memory = nullptr;        // back page from the caller, until close(): at least page_bytes_max(width, height)
   std::size_t memory_bytes = 0;  //   bytes, aligned to 4
 };
 
 // A screen of those pixels: 32 bits as 8-8-8, 16 as 5-6-5.
 ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_first);
 
-// What a back page can take at most.
+// Most bytes that a back page can take.
 constexpr std::size_t page_bytes_max(int width, int height) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
 }
@@ -90,25 +90,25 @@ struct Error {
 
 struct Backend {
   const char* name;
-  // What usable() looks for, to be told where it is missing.
+  // What usable() looks for, to tell the user what is missing.
   const char* needs;
-  // Whether open() has a chance here. Changes nothing.
+  // Whether open() might succeed here. Changes nothing.
   bool (*usable)();
-  // Opens screen and buttons. False: `error` says why, and everything is as it was before.
+  // Opens screen and buttons. False: `error` says why, and nothing has changed.
   bool (*open)(const ScreenOptions& options, ScreenFormat* format, Error* error);
   // The page to draw the next frame into; valid until end_frame().
   Page (*begin_frame)();
-  // Shows it. Rows [row_begin, row_end) may differ from the frame shown before; the rest is taken to be as it was.
+  // Shows it. Rows [row_begin, row_end) may differ from the frame shown before; the others are assumed to be unchanged.
   void (*end_frame)(int row_begin, int row_end);
   // Takes the next event, oldest first; false when there is none. Never waits.
   bool (*poll)(Event* event);
-  std::uint64_t (*now_ns)();  // never runs backwards; its zero is arbitrary
+  std::uint64_t (*now_ns)();  // never runs backwards; its origin is arbitrary
   void (*sleep_ns)(std::uint64_t duration);
-  // Gives screen and buttons back as they were. Nothing happens when not open.
+  // Restores screen and buttons. Does nothing if not open.
   void (*close)();
 };
 
-// All backends of this build, in order of preference; null, which works everywhere, is last.
+// All backends of this build, in order of preference; null, which works everywhere, comes last.
 extern const Backend* const kBackends[];
 extern const int kBackendCount;
 

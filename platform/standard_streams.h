@@ -5,15 +5,15 @@
 
 namespace platform {
 
-// Opens descriptors 0, 1 and 2 where the parent left them closed, so that no file or socket takes their place and is
-// written to by mistake. Reading from or writing to one opened here fails, as it would have without. Call first of all.
+// Opens descriptors 0, 1 and 2 if the parent left them closed, so that no file or socket takes their place and is
+// written to by mistake. Using a descriptor opened here fails, as it would have without. Must be called first.
 void open_standard_streams();
 
-// From here on a write to a pipe that nobody reads fails instead of ending the program.
+// From here on, a write to a pipe without a reader fails instead of ending the program.
 void survive_closed_pipes();
 
-// Writes a line and its end to standard output. Never waits and never fails: false means that the reader has gone, or
-// takes nothing at the moment, and the line is lost.
+// Writes a line with its terminator to standard output. Never waits and never fails: false means that the reader is
+// gone or currently takes nothing, and that the line is lost.
 bool print_line_at_once(const char* line);
 
 }  // namespace platform

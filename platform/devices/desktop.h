@@ -3,8 +3,8 @@
 
 namespace platform {
 
-// Any PC, by Ethernet of 1 Gbit/s: 941 Mbit/s by iperf3 (mpr-projects.com, "RPi NAS: Part 3 Network Connections",
-// 2023). A window of the handhelds' size, and memory enough for every scene.
+// Any PC on Ethernet of 1 Gbit/s: 941 Mbit/s by iperf3 (mpr-projects.com, "RPi NAS: Part 3 Network Connections",
+// 2023). A window of the handhelds' size, and enough memory for every scene.
 constexpr Device kDesktop = {"desktop",
                              "A PC with a window or a framebuffer",
                              "x86-64",

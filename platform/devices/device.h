@@ -1,11 +1,11 @@
-// A device as data. One file per device; device_list.h names them all. Standard types only: src/ reads these too.
+// A device as data. One file per device; device_list.h lists them all. Standard types only: src/ reads these too.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 
 namespace platform {
 
-// The codes of <linux/input-event-codes.h> that devices have on their buttons.
+// Key codes from <linux/input-event-codes.h> for the buttons of devices.
 namespace key {
 constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 20, kEnter = 28, kLeftControl = 29,
                         kLeftShift = 42, kLeftAlt = 56, kSpace = 57, kRightControl = 97, kUp = 103, kLeft = 105,
@@ -20,20 +20,21 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
 struct Device {
   const char* name;         // as on the command line
   const char* description;  // one line
-  const char* cpu_class;    // what to build for: armel, armhf, aarch64, x86-64
+  const char* cpu_class;    // build to use: armel, armhf, aarch64, x86-64
   int screen_width, screen_height;
   int bits_per_pixel;
-  const char* channel_order;  // rgb: red in the highest bits; bgr: blue. What the driver says wins.
-  int rotation;               // degrees clockwise by which a picture is turned on the screen to stand upright
-  std::size_t memory_bytes;   // default of the memory block: half of what Linux has, at most 512 MiB
-  const std::uint16_t* keys;  // key codes of up, down, left, right, A, B, X, Y, L, R, start, select; null: a keyboard's
+  const char* channel_order;  // rgb: red in the highest bits; bgr: blue. The driver's report overrides it.
+  int rotation;               // degrees clockwise to turn a picture on the screen so that it is upright
+  std::size_t memory_bytes;   // default of the memory block: half of Linux's memory, at most 512 MiB
+  const std::uint16_t*
+      keys;  // key codes of up, down, left, right, A, B, X, Y, L, R, start, select; null: those of a keyboard
 
-  // What it takes to emulate it on a desktop.
-  int core_count;   // of its CPU; 0: as many as there are
-  double slowdown;  // a pixel's time on one of them over that on one x86-64 core of 2.8 to 3 GHz, by the same program
-  std::uint64_t link_bytes_per_second;  // each way, as the payload of TCP gets it
+  // For emulation on a desktop.
+  int core_count;   // of its CPU; 0: as many as this machine has
+  double slowdown;  // time per pixel on one of them over that on one x86-64 core of 2.8 to 3 GHz, same program
+  std::uint64_t link_bytes_per_second;  // each way, TCP payload
   std::uint64_t link_latency_ns;        // one way
-  std::uint64_t link_jitter_ns;         // up to so much more
+  std::uint64_t link_jitter_ns;         // maximum addition to the latency
 };
 
 constexpr std::uint64_t microseconds(std::uint64_t count) { return count * 1000; }

@@ -1,4 +1,4 @@
-// All devices. A new one is a file beside this and a line here.
+// All devices. A new one is a file in this folder and a line here.
 #pragma once
 #include "platform/devices/desktop.h"
 #include "platform/devices/gp2x.h"

@@ -11,8 +11,8 @@ constexpr std::uint16_t kMiyooMiniKeys[] = {key::kUp,    key::kDown,        key:
 // SigmaStar SSD202D: two Cortex-A7 at 1.2 GHz with NEON, 128 MiB in the package; LCD 640 × 480, 32 bits, mounted upside
 // down (its SDL port turns every frame by 180 degrees).
 // CPU: 1.5 clocks per instruction, a guess: 1.9 DMIPS/MHz (ARM), but vectors of four floats take two.
-// Link: that of the Miyoo Mini Plus, 802.11n at 2.4 GHz with one antenna: 37 Mbit/s, as usual for its kind in a channel
-// of 20 MHz, of at most 50 (tanaza.com, "Bitrate, throughput, bandwidth", 2014). Latency and jitter guessed.
+// Link: as in the Miyoo Mini Plus, 802.11n at 2.4 GHz with one antenna: 37 Mbit/s, typical of its kind in a channel of
+// 20 MHz, out of at most 50 (tanaza.com, "Bitrate, throughput, bandwidth", 2014). Latency and jitter are guesses.
 constexpr Device kMiyooMini = {"miyoo-mini",
                                "Miyoo Mini: two Cortex-A7 1.2 GHz, NEON",
                                "armhf",

@@ -4,11 +4,11 @@
 namespace platform {
 
 // The client measured in [Aranha07] sec. 4: a tablet PC, Pentium M at 1 GHz, 502 MB, rendering at 320 × 240.
-// The paper names neither its screen's depth nor its order: a PC's.
+// The paper gives neither the depth nor the channel order of its screen: a PC's.
 // CPU: table 1, Cornell box: 8841 ns per pixel against 989 on two cores of 3 GHz, 8841 / (2 × 989) for each of them.
-// (The Buddha, 6688 and 520, gives 6.43; four and eight cores less for both.) Link: 802.11g with 19 Mbit/s on average
-// (sec. 4). At that rate its T_t of 400 ns carries 0.95 bytes: a pixel of four bytes compressed 4:1. Latency and jitter
-// guessed: the paper has none.
+// (The Buddha, 6688 and 520, gives 6.43; four and eight cores give less for both.) Link: 802.11g with 19 Mbit/s on
+// average (sec. 4). At that rate its T_t of 400 ns carries 0.95 bytes: a pixel of four bytes compressed 4:1. Latency
+// and jitter are guesses: the paper has none.
 constexpr Device kTablet = {"tablet",
                             "The tablet PC of Aranha et al.: Pentium M 1 GHz",
                             "x86-64",

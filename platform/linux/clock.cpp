@@ -1,4 +1,4 @@
-// The system's own calls, and its clock: CLOCK_MONOTONIC, which no one sets back.
+// The real system calls, and the clock: CLOCK_MONOTONIC, which is never set back.
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>

@@ -10,17 +10,17 @@
 namespace platform {
 namespace {
 
-// Polite ones ask the program to end; a handler of its own may see to that. The others end it.
+// The first ask the program to end, and it may handle them itself. The others end it.
 constexpr int kSignals[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGSEGV, SIGBUS,
                             SIGFPE, SIGILL, SIGABRT, SIGSYS,  SIGTRAP};
 constexpr int kSignalCount = sizeof kSignals / sizeof kSignals[0];
 constexpr int kPoliteCount = 4;
 
-// Read by the signal handler: written before `armed` is set, and not again until it is cleared.
+// Read by the signal handler: written before `armed` is set, and again only after it is cleared.
 struct Console {
   const Driver* driver = nullptr;
   int file = -1;
-  int mode = KD_TEXT, keyboard = K_UNICODE;  // as they were
+  int mode = KD_TEXT, keyboard = K_UNICODE;  // before we changed them
   struct sigaction previous[kSignalCount];
   bool caught[kSignalCount] = {};
   bool exit_registered = false;
@@ -28,7 +28,7 @@ struct Console {
 Console console;
 volatile sig_atomic_t armed = 0;
 volatile sig_atomic_t quit_requested = 0;
-alignas(16) unsigned char signal_stack[16384];  // a stack that ran over cannot run the handler
+alignas(16) unsigned char signal_stack[16384];  // after a stack overflow the handler cannot run on the stack
 
 void* number(int value) { return reinterpret_cast<void*>(static_cast<std::intptr_t>(value)); }
 
@@ -48,7 +48,7 @@ void on_signal(int signal, siginfo_t* info, void* context) {
   } else {
     console_restore();
     sigaction(signal, &previous, nullptr);
-    raise(signal);  // blocked until this handler returns; then the program ends as it would have without us
+    raise(signal);  // blocked until this handler returns; then the program ends as it would have without it
   }
   errno = saved_errno;
 }
@@ -67,12 +67,12 @@ void catch_signals() {
   for (int i = 0; i < kSignalCount; ++i) {
     console.caught[i] = false;
     if (sigaction(kSignals[i], nullptr, &console.previous[i]) != 0) continue;
-    if (console.previous[i].sa_handler == SIG_IGN) continue;  // nohup and the like mean it
+    if (console.previous[i].sa_handler == SIG_IGN) continue;  // set on purpose, for instance by nohup
     console.caught[i] = sigaction(kSignals[i], &action, nullptr) == 0;
   }
 }
 
-// The virtual terminal in front: our own if that is one, else the one that is shown.
+// The foreground virtual terminal: our own if it is one, otherwise the visible one.
 int open_terminal(const Driver& driver) {
   const char* const paths[] = {"/dev/tty", "/dev/tty0"};
   for (const char* path : paths) {
@@ -94,7 +94,7 @@ bool console_open(const Driver& driver) {
   console.driver = &driver;
   console.file = file;
   if (driver.ioctl(file, KDGETMODE, &console.mode) != 0) console.mode = KD_TEXT;
-  // A program that crashed without restoring leaves these behind; giving them back would keep the console dead.
+  // Left behind by a program that crashed without restoring; returning to these would keep the console dead.
   if (console.mode == KD_GRAPHICS) console.mode = KD_TEXT;
   if (driver.ioctl(file, KDGKBMODE, &console.keyboard) != 0 || console.keyboard == K_OFF) console.keyboard = K_UNICODE;
   if (!console.exit_registered) console.exit_registered = atexit(console_restore) == 0;

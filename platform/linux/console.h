@@ -1,22 +1,22 @@
-// The text console, put aside while we draw: KD_GRAPHICS, so that it does not write over the picture, and its keyboard
-// off, so that the keys pressed do not arrive in a shell. Both are given back on close, on exit(), on a signal that
-// ends the program and on a crash. (Not on SIGKILL: nothing runs then.)
+// Puts the text console aside while we draw: KD_GRAPHICS, so that it does not write over the picture, and its keyboard
+// off, so that key presses do not reach a shell. Both are restored on close, on exit(), on a signal that ends the
+// program and on a crash. (Not on SIGKILL, when nothing can run.)
 #pragma once
 #include "platform/linux/driver.h"
 
 namespace platform {
 
-// Takes the console over. False: there is none, or we may not; drawing works all the same.
+// Takes over the console. False: there is none, or no permission; drawing works nevertheless.
 bool console_open(const Driver& driver);
 
-// Gives it back. May be called at any time, from a signal handler too; only the first call does anything.
+// Restores it. May be called at any time, even from a signal handler; only the first call has an effect.
 void console_restore();
 
-// A signal asked us to end (SIGINT, SIGTERM …), and the program's own handler, which was called, wants to end in good
-// order.
+// A signal asked the program to end (SIGINT, SIGTERM …), and the program's own handler was called and wants an orderly
+// end.
 bool console_quit_requested();
 
-// console_restore(), and the signals as they were.
+// console_restore(), and restores the signal handlers.
 void console_close();
 
 }  // namespace platform

@@ -1,5 +1,5 @@
-// Every system call of the Linux backend, as a table: the real ones, or a recorded driver in tests. Return values and
-// errno are those of the calls they are named after.
+// All system calls of the Linux backend, as a table: the real ones, or a recorded driver in tests. Return values and
+// errno are those of the calls of the same name.
 #pragma once
 #include <poll.h>
 #include <sys/types.h>
@@ -9,15 +9,14 @@
 
 namespace platform {
 
-constexpr std::uint64_t kVsyncTimeoutNs = 100'000'000;  // two frames of 20 Hz: no screen is slower
+constexpr std::uint64_t kVsyncTimeoutNs = 100'000'000;  // two frames at 20 Hz: no screen is slower
 
 struct Driver {
   int (*open)(const char* path, int flags);
   int (*close)(int file);
-  // Requests that take a number instead of a pointer get it cast to one. Also called from a signal handler and another
-  // thread.
+  // An integer argument is passed cast to a pointer. Also called from a signal handler and from another thread.
   int (*ioctl)(int file, unsigned long request, void* argument);
-  void* (*map)(int file, std::size_t bytes);  // shared, to read and write; null on failure
+  void* (*map)(int file, std::size_t bytes);  // shared, read and write; null on failure
   int (*unmap)(void* address, std::size_t bytes);
   ssize_t (*read)(int file, void* bytes, std::size_t count);
   int (*poll)(pollfd* files, int count);  // does not wait

@@ -8,10 +8,10 @@
 namespace platform {
 namespace {
 
-// Linux 3.17 and later. By number: C libraries have had a function for it for a shorter time.
+// Linux 3.17 and later. Called by number: older C libraries have no function for it.
 bool ask_kernel(unsigned char* bytes, std::size_t byte_count) {
 #ifdef SYS_getrandom
-  constexpr unsigned kDoNotWait = 1;  // GRND_NONBLOCK: until the system has started it has none
+  constexpr unsigned kDoNotWait = 1;  // GRND_NONBLOCK: early in the boot there is no entropy yet
   while (byte_count > 0) {
     long count = ::syscall(SYS_getrandom, bytes, byte_count, kDoNotWait);
     if (count < 0 && errno == EINTR) continue;

@@ -8,7 +8,7 @@
 namespace platform {
 namespace {
 
-// A keyboard as a pad: arrows, X Z S A Q W, Enter, right Shift. The same as in the SDL2 window.
+// A keyboard as a gamepad: arrows, X Z S A Q W, Enter, right Shift. The same as in the SDL2 window.
 constexpr std::uint16_t kKeyboard[kPadButtonCount] = {KEY_UP, KEY_DOWN, KEY_LEFT, KEY_RIGHT, KEY_X,     KEY_Z,
                                                       KEY_S,  KEY_A,    KEY_Q,    KEY_W,     KEY_ENTER, KEY_RIGHTSHIFT};
 
@@ -16,7 +16,7 @@ struct KeyButton {
   std::uint16_t code;
   Button button;
 };
-// Understood whatever the device's own keys are.
+// Accepted whatever the device's own keys are.
 constexpr KeyButton kMoreKeys[] = {
     {BTN_DPAD_UP, Button::up},
     {BTN_DPAD_DOWN, Button::down},
@@ -56,7 +56,7 @@ void set_button(InputQueue* queue, Button button, bool down) {
   if (((queue->held & bit) != 0) == down) return;
   queue->held ^= bit;
   push(queue, down ? EventType::button_down : EventType::button_up, button);
-  // Handhelds have no key to leave with: start and select together.
+  // Handhelds have no key for leaving: start and select together do it.
   constexpr std::uint32_t kLeave = 1u << static_cast<int>(Button::start) | 1u << static_cast<int>(Button::select);
   if (down && (bit & kLeave) && (queue->held & kLeave) == kLeave) push(queue, EventType::quit, button);
 }
@@ -73,7 +73,7 @@ void take_key(InputQueue* queue, std::uint16_t code, bool down) {
     if (queue->keys[i] == code) return set_button(queue, static_cast<Button>(i), down);
   for (const KeyButton& key : kMoreKeys)
     if (key.code == code) return set_button(queue, key.button, down);
-  // The console's keyboard is off, so Ctrl-C is ours to see.
+  // The console's keyboard is off, so Ctrl-C must be handled here.
   if (code == KEY_LEFTCTRL || code == KEY_RIGHTCTRL) queue->control_held = down;
   if (down && (code == KEY_ESC || code == KEY_POWER || (code == KEY_C && queue->control_held)))
     push(queue, EventType::quit, Button::up);
@@ -96,7 +96,7 @@ void find_axes(const Driver& driver, Input* input) {
   for (int i = 0; i < 4; ++i) {
     input_absinfo range = {};
     if (driver.ioctl(input->file, EVIOCGABS(kAxisCodes[i]), &range) != 0 || range.maximum <= range.minimum) continue;
-    // Pressed from half way between the middle and the end on.
+    // Pressed from half-way between centre and end.
     std::int64_t quarter = (static_cast<std::int64_t>(range.maximum) - range.minimum) / 4;
     input->axes[i].low = static_cast<int>(range.minimum + quarter);
     input->axes[i].high = static_cast<int>(range.maximum - quarter);
@@ -106,7 +106,7 @@ void find_axes(const Driver& driver, Input* input) {
 void drop_input(InputQueue* queue, int index) {
   queue->driver->close(queue->inputs[index].file);
   queue->inputs[index] = queue->inputs[--queue->input_count];
-  release_all(queue);  // it can no longer say which of its buttons are let go
+  release_all(queue);  // the device is gone: its button releases will not arrive
 }
 
 void read_input(InputQueue* queue, int index) {
@@ -114,7 +114,7 @@ void read_input(InputQueue* queue, int index) {
   ssize_t bytes = queue->driver->read(queue->inputs[index].file, &event, sizeof event);
   if (bytes < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (bytes != static_cast<ssize_t>(sizeof event)) return drop_input(queue, index);
-  if (event.type == EV_KEY && event.value != 2) take_key(queue, event.code, event.value != 0);  // 2: repeated
+  if (event.type == EV_KEY && event.value != 2) take_key(queue, event.code, event.value != 0);  // 2: auto-repeat
   if (event.type == EV_ABS) take_axis(queue, &queue->inputs[index], event.code, event.value);
   if (event.type == EV_SYN && event.code == SYN_DROPPED) release_all(queue);
 }
@@ -137,12 +137,12 @@ void input_open(const Driver& driver, const std::uint16_t* keys, InputQueue* que
 }
 
 bool input_poll(InputQueue* queue, Event* event) {
-  // Events are read until one of them is for us; a device that never falls silent does not keep us here.
+  // Reads events until one matters; a device that never stops sending does not block us.
   for (int round = 0; round < 64 && queue->count == 0 && queue->input_count > 0; ++round) {
     pollfd files[kInputCountMax];
     for (int i = 0; i < queue->input_count; ++i) files[i] = {queue->inputs[i].file, POLLIN, 0};
     if (queue->driver->poll(files, queue->input_count) <= 0) break;
-    // From the last on: one that is dropped is replaced by one already read.
+    // Backwards, because a device that is dropped is replaced by one already read.
     for (int i = queue->input_count - 1; i >= 0 && queue->count <= kButtonCount - 3; --i)
       if (files[i].revents) read_input(queue, i);
   }

@@ -1,4 +1,4 @@
-// Keys, buttons, hats and sticks of all /dev/input/event*, as the handheld's buttons.
+// Keys, buttons, hats and sticks of all /dev/input/event*, mapped to the handheld's buttons.
 #pragma once
 #include "platform/linux/driver.h"
 #include "platform/platform.h"
@@ -20,13 +20,13 @@ struct InputQueue {
   const std::uint16_t* keys = nullptr;
   Input inputs[kInputCountMax];
   int input_count = 0;
-  std::uint32_t held = 0;  // a bit per button
+  std::uint32_t held = 0;  // one bit per button
   bool control_held = false;
   Event events[2 * kButtonCount];
   int first = 0, count = 0;
 };
 
-// Opens what there is, may be nothing. `keys`: key codes of the buttons up … select, or null for a keyboard's.
+// Opens all devices, possibly none. `keys`: key codes of the buttons up … select, or null for a keyboard.
 void input_open(const Driver& driver, const std::uint16_t* keys, InputQueue* queue);
 bool input_poll(InputQueue* queue, Event* event);
 void input_close(InputQueue* queue);

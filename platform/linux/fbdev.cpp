@@ -9,7 +9,7 @@
 namespace platform {
 namespace {
 
-// Without a vsync wait that works, the page that was shown is not drawn into until this long after the flip: a frame of
+// Without a working vsync wait, the page shown before is not drawn into until this long after the flip: a frame at
 // 50 Hz.
 constexpr std::uint64_t kFlipNs = 20'000'000;
 
@@ -18,9 +18,9 @@ bool get_geometry(Framebuffer* fb, fb_fix_screeninfo* fixed) {
          fb->driver->ioctl(fb->file, FBIOGET_FSCREENINFO, fixed) == 0;
 }
 
-// Without a text console nobody has switched the screen on yet: PL11x then reports stride 0 and no colour fields, and
-// DRM's fbdev shows nothing at all. Setting the mode it already has is harmless elsewhere, so that comes first; then it
-// is asked again. A driver that refuses may still be usable.
+// Without a text console the screen may not be switched on yet: PL11x then reports stride 0 and no colour fields, and
+// DRM's fbdev shows nothing. Setting the current mode is harmless elsewhere, so that is done first; then the geometry
+// is read again. A driver that refuses may still be usable.
 bool set_mode(Framebuffer* fb, fb_fix_screeninfo* fixed) {
   if (!get_geometry(fb, fixed)) return false;
   fb->before = fb->mode;
@@ -38,7 +38,7 @@ bool field_usable(const fb_bitfield& field, std::uint32_t pixel_bits) {
   return field.length >= 1 && field.length <= 10 && field.msb_right == 0 && field.offset <= pixel_bits - field.length;
 }
 
-// Null when the geometry is one that can be drawn to, or what is wrong with it.
+// Null if the geometry is supported, otherwise what is wrong with it.
 const char* geometry_error(const fb_var_screeninfo& mode, const fb_fix_screeninfo& fixed) {
   std::uint32_t bits = mode.bits_per_pixel;
   if (bits != 16 && bits != 24 && bits != 32) return "its depth is not 16, 24 or 32 bits per pixel";
@@ -46,16 +46,17 @@ const char* geometry_error(const fb_var_screeninfo& mode, const fb_fix_screeninf
   if (fixed.visual != FB_VISUAL_TRUECOLOR && fixed.visual != FB_VISUAL_DIRECTCOLOR) return "it is not true-colour";
   if (!field_usable(mode.red, bits) || !field_usable(mode.green, bits) || !field_usable(mode.blue, bits) ||
       (mode.transp.length && !field_usable(mode.transp, bits)))
-    return "its colour fields are none that can be written";
+    return "its colour fields are not supported";
   constexpr std::uint32_t kSideMax = 1u << 16;
-  if (mode.xres == 0 || mode.yres == 0 || mode.xres > kSideMax || mode.yres > kSideMax) return "it reports no size";
+  if (mode.xres == 0 || mode.yres == 0 || mode.xres > kSideMax || mode.yres > kSideMax)
+    return "it reports no usable size";
   if (mode.xoffset > kSideMax || mode.yoffset > kSideMax) return "it reports an offset outside its memory";
   if (fixed.line_length < (mode.xoffset + mode.xres) * (bits / 8)) return "it reports rows shorter than its pixels";
   if (fixed.smem_len / fixed.line_length < mode.yoffset + mode.yres) return "it reports less memory than its rows take";
   return nullptr;
 }
 
-// Two pages, that the driver will exchange when told to.
+// Whether there are two pages that the driver exchanges on request.
 bool can_flip(Framebuffer* fb, const fb_fix_screeninfo& fixed, std::size_t map_offset) {
   fb_var_screeninfo* mode = &fb->mode;
   if (fixed.ypanstep == 0 || mode->yres % fixed.ypanstep != 0) return false;
@@ -95,7 +96,7 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
   *fb = Framebuffer();
   fb->driver = &driver;
 
-  // 1. The device, switched on.
+  // 1. Open the device and switch it on.
   fb->file = driver.open(path, O_RDWR);
   if (fb->file < 0) {
     snprintf(error->text, sizeof error->text, "cannot open %s: %s%s", path, strerror(errno),
@@ -104,7 +105,7 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
   }
   fb_fix_screeninfo fixed;
   if (!set_mode(fb, &fixed)) {
-    snprintf(error->text, sizeof error->text, "%s does not tell its geometry: %s", path, strerror(errno));
+    snprintf(error->text, sizeof error->text, "cannot read the geometry of %s: %s", path, strerror(errno));
     return fail(fb);
   }
   if (const char* reason = geometry_error(fb->mode, fixed)) {
@@ -113,7 +114,7 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
     return fail(fb);
   }
 
-  // 2. The picture, centred on a larger screen.
+  // 2. Place the picture, centred on a larger screen.
   bool turned = options.rotation == 90 || options.rotation == 270;
   int screen_width = static_cast<int>(fb->mode.xres), screen_height = static_cast<int>(fb->mode.yres);
   fb->width = turned ? options.height : options.width;
@@ -125,12 +126,12 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
   fb->memory_line_bytes = (fb->width * fb->pixel_bytes + 3) / 4 * 4;
   if (!fb->memory ||
       options.memory_bytes / static_cast<unsigned>(fb->memory_line_bytes) < static_cast<unsigned>(fb->height)) {
-    snprintf(error->text, sizeof error->text, "the back page takes %d bytes, %zu were given",
+    snprintf(error->text, sizeof error->text, "the back page needs %d bytes, %zu were given",
              fb->memory_line_bytes * fb->height, options.memory_bytes);
     return fail(fb);
   }
 
-  // 3. Its memory. A frame that does not start on a memory page is mapped from the page's start.
+  // 3. Map its memory. A frame that does not start on a memory page is mapped from the page's start.
   std::size_t map_offset = fixed.smem_start % static_cast<unsigned long>(sysconf(_SC_PAGESIZE));
   fb->map_bytes = fixed.smem_len + map_offset;
   fb->map = static_cast<unsigned char*>(driver.map(fb->file, fb->map_bytes));
@@ -160,7 +161,7 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
 
 Page framebuffer_begin_frame(Framebuffer* fb) {
   if (!fb->flips) return {fb->memory, fb->memory_line_bytes, fb->frames_drawn > 0 ? 1 : 0};
-  // The page to draw into was shown until the flip, which takes place within a frame of its being asked for.
+  // The page to draw into was visible until the flip, which happens within one frame of the request.
   if (fb->frames_drawn > 0) {
     std::uint64_t elapsed = fb->driver->now_ns() - fb->panned_ns;
     std::uint64_t period = vsync_period_ns() ? vsync_period_ns() : kFlipNs;
@@ -186,7 +187,7 @@ void framebuffer_end_frame(Framebuffer* fb, int row_begin, int row_end) {
     fb->panned_ns = fb->driver->now_ns();
     return;
   }
-  // The driver no longer pans: the page that is shown stays, and takes a copy of this frame and of all that follow.
+  // Panning has stopped working: stay on the visible page and copy this frame and all later ones to it.
   copy_rows(fb, page_address(fb, 1 - fb->page_shown), fb->line_bytes, page_address(fb, fb->page_shown), 0, fb->height);
   fb->first_row = page_address(fb, fb->page_shown);
   fb->flips = false;

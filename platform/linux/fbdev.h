@@ -11,24 +11,24 @@ namespace platform {
 struct Framebuffer {
   const Driver* driver = nullptr;
   int file = -1;
-  fb_var_screeninfo before = {};  // to be given back
+  fb_var_screeninfo before = {};  // to be restored
   fb_var_screeninfo mode = {};
   unsigned char* map = nullptr;
   std::size_t map_bytes = 0;
   unsigned char* first_row = nullptr;  // of page 0, left edge of the picture
   int line_bytes = 0, page_lines = 0;
   int width = 0, height = 0, pixel_bytes = 0;  // of the picture
-  bool flips = false;                          // two pages, exchanged by panning; else the back page is copied
+  bool flips = false;                          // two pages, exchanged by panning; otherwise the back page is copied
   int page_shown = 0;
-  int frames_drawn = 0;  // since the way of showing was chosen
+  int frames_drawn = 0;  // since the method of showing was chosen
   std::uint64_t panned_ns = 0;
   VsyncKind vsync = VsyncKind::absent;
-  unsigned char* memory = nullptr;  // the back page, when copying
+  unsigned char* memory = nullptr;  // the back page, if copying
   int memory_line_bytes = 0;
 };
 
-// Opens the device (null: /dev/fb0), maps it and clears the picture's pages. False: `error` says why, nothing stays
-// open.
+// Opens the device (null: /dev/fb0), maps it and clears the picture's pages. On failure returns false, `error` says
+// why, and nothing stays open.
 bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Framebuffer* framebuffer,
                       ScreenFormat* format, Error* error);
 Page framebuffer_begin_frame(Framebuffer* framebuffer);

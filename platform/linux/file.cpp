@@ -18,8 +18,8 @@ bool fail(FileError* error, const char* what, int number) {
   return false;
 }
 
-// Opens a regular file for reading; -1: `error` says why. A pipe that nobody writes to would have open() wait for ever,
-// some devices too: nothing waits with O_NONBLOCK, which means nothing to a regular file.
+// Opens a regular file for reading; on failure returns -1, and `error` says why. open() would wait forever on a pipe
+// that nobody writes to, and on some devices; O_NONBLOCK prevents that and does not affect regular files.
 int open_regular(const char* path, struct stat* info, FileError* error) {
   int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) {
@@ -29,7 +29,7 @@ int open_regular(const char* path, struct stat* info, FileError* error) {
   bool ok = fstat(descriptor, info) == 0 || fail(error, "cannot be examined", errno);
   if (ok && !S_ISREG(info->st_mode)) {
     ok = false;
-    snprintf(error->text, sizeof error->text, "is not a regular file: name one that is");
+    snprintf(error->text, sizeof error->text, "is not a regular file: name a regular file");
   }
   if (ok) return descriptor;
   close(descriptor);
@@ -44,7 +44,7 @@ bool open_reader(const char* path, FileReader* reader, FileError* error) {
   if (descriptor < 0) return false;
   bool ok = info.st_size > 0;
   if (!ok) {
-    snprintf(error->text, sizeof error->text, "is empty: make it again");
+    snprintf(error->text, sizeof error->text, "is empty: create it again");
     close(descriptor);
     return false;
   }
@@ -60,7 +60,7 @@ bool read_bytes(FileReader* reader, void* bytes, std::size_t byte_count, FileErr
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return fail(error, "cannot be read", errno);
     if (n == 0) {
-      snprintf(error->text, sizeof error->text, "became shorter while it was read: try again when it is complete");
+      snprintf(error->text, sizeof error->text, "was truncated while being read: try again when it is complete");
       return false;
     }
     at += n;
@@ -83,7 +83,7 @@ bool load_file(const char* path, LoadedFile* file, FileError* error) {
     bytes = mmap(nullptr, byte_count, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   bool ok = bytes != MAP_FAILED;
   if (!ok)
-    snprintf(error->text, sizeof error->text, "has %llu bytes: there is no memory for them",
+    snprintf(error->text, sizeof error->text, "has %llu bytes: not enough memory",
              static_cast<unsigned long long>(reader.byte_count));
   if (ok) {
     ok = read_bytes(&reader, bytes, byte_count, error);
@@ -119,7 +119,7 @@ bool make_folder(const char* path, FileError* error) {
   if (mkdir(path, 0777) == 0) return true;
   int number = errno;
   if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return true;
-  return fail(error, "cannot be made as a folder", number);
+  return fail(error, "cannot be created as a folder", number);
 }
 
 bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error) {
@@ -129,7 +129,7 @@ bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error)
   bool fits = length >= 0 && static_cast<size_t>(length) < path_bytes;
   if (fits && mkdtemp(path)) return true;
   int number = fits ? errno : ENAMETOOLONG;
-  path[0] = 0;  // no folder of somebody else's
+  path[0] = 0;  // not another user's folder
   return fail(error, "of TMPDIR: no folder can be made there", number);
 }
 

@@ -1,4 +1,4 @@
-// Writing files: the half of file.h that replaces them as a whole.
+// Writing files: the half of file.h that replaces files as a whole.
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -14,9 +14,9 @@
 namespace platform {
 namespace {
 
-constexpr int kLinkCountMax = 40;       // in a row, as Linux has it
-constexpr int kPartCountMax = 100;      // names to try; those of killed programs may be in the way
-constexpr size_t kPartStemBytes = 200;  // of the file's name in its part's: names have 255 bytes at most
+constexpr int kLinkCountMax = 40;       // in a row, as in Linux
+constexpr int kPartCountMax = 100;      // names to try; files of killed programs may be in the way
+constexpr size_t kPartStemBytes = 200;  // of the file's name in its part's: names have at most 255 bytes
 
 bool fail(FileError* error, const char* what, int number) {
   snprintf(error->text, sizeof error->text, "%s: %s", what, strerror(number));
@@ -31,8 +31,8 @@ bool fail_as_too_long(FileError* error) {
 
 bool starts_with(const char* text, const char* start) { return strncmp(text, start, strlen(start)) == 0; }
 
-// The descriptor of this process that a path names, or -1. To open it anew would truncate or overwrite what was written
-// to it before.
+// The descriptor of this process that a path names, or -1. Opening it again would truncate or overwrite data already
+// written to it.
 int descriptor_named(const char* path) {
   if (strcmp(path, "/dev/stdout") == 0) return STDOUT_FILENO;
   if (strcmp(path, "/dev/stderr") == 0) return STDERR_FILENO;
@@ -45,21 +45,21 @@ int descriptor_named(const char* path) {
   return -1;
 }
 
-// The length of a path's folder, its last slash included; 0: the name alone.
+// Length of a path's folder, including its last slash; 0: no folder.
 size_t folder_length(const char* path) {
   const char* slash = strrchr(path, '/');
   return slash ? static_cast<size_t>(slash - path) + 1 : 0;
 }
 
-// Where a path leads when the links that end it are followed, also where there is nothing yet. Ends early at a link
-// that names a descriptor of this process.
+// Follows the links at the end of a path, even if the target does not exist. Stops at a link that names a descriptor of
+// this process.
 bool follow_links(const char* path, char* target, FileError* error) {
   if (strlen(path) >= kWriterPathBytes) return fail_as_too_long(error);
   strcpy(target, path);
   for (int i = 0; i < kLinkCountMax && descriptor_named(target) < 0; ++i) {
     char link[kWriterPathBytes], next[2 * kWriterPathBytes];
     ssize_t n = readlink(target, link, sizeof link - 1);
-    if (n < 0) return true;  // no link, or nothing there
+    if (n < 0) return true;  // not a link, or nothing there
     link[n] = 0;
     size_t folder = link[0] == '/' ? 0 : folder_length(target);
     memcpy(next, target, folder);
@@ -70,23 +70,23 @@ bool follow_links(const char* path, char* target, FileError* error) {
   return descriptor_named(target) >= 0 || fail(error, "cannot be written", ELOOP);
 }
 
-// What writing to a path means.
+// What a path to be written refers to.
 struct Destination {
-  char path[kWriterPathBytes];  // links followed
-  int descriptor = -1;          // to write to, of this process
-  bool is_direct = false;       // what is there is no regular file
+  char path[kWriterPathBytes];  // with links followed
+  int descriptor = -1;          // of this process, to write to
+  bool is_direct = false;       // something other than a regular file exists there
   bool is_there = false;
-  struct stat info = {};  // where it is there
+  struct stat info = {};  // if it exists
 };
 
 bool find_destination(const char* path, Destination* d, FileError* error) {
   if (!*path) {
-    snprintf(error->text, sizeof error->text, "an empty path names no file: give one a name");
+    snprintf(error->text, sizeof error->text, "the path is empty: name a file");
     return false;
   }
   if (!follow_links(path, d->path, error)) return false;
   d->descriptor = descriptor_named(d->path);
-  // A pipe may be named by a link that only the system can follow.
+  // A link to a pipe can only be followed by the system.
   d->is_there = stat(path, &d->info) == 0;
   if (d->descriptor >= 0) {
     d->is_direct = true;
@@ -101,8 +101,7 @@ bool find_destination(const char* path, Destination* d, FileError* error) {
   return faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) == 0 || fail(error, "cannot be written", errno);
 }
 
-// A new file beside the one to be replaced, of a name that nobody has: no other program's part, and no link that
-// somebody left there.
+// A new file next to the one to replace, with an unused name: not another program's part, and not a link planted there.
 bool open_part(const Destination& d, FileWriter* writer, FileError* error) {
   size_t folder = folder_length(d.path);
   size_t name = strlen(d.path) - folder, stem = name < kPartStemBytes ? name : kPartStemBytes;
@@ -116,8 +115,8 @@ bool open_part(const Destination& d, FileWriter* writer, FileError* error) {
   return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
 }
 
-// Gives the part the permissions of the file it replaces. Where its group cannot be kept, the new one may do no more
-// than everybody.
+// Gives the part the permissions of the file it replaces. If its group cannot be kept, the new group gets no more than
+// everybody.
 bool keep_permissions(const Destination& d, int part) {
   mode_t mode = d.info.st_mode & 0777;
   struct stat now;
@@ -128,12 +127,12 @@ bool keep_permissions(const Destination& d, int part) {
   return fchmod(part, mode) == 0;
 }
 
-// Some file systems cannot, and say so.
+// Some file systems cannot, and report it.
 bool bring_to_disk(int descriptor) {
   return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP;
 }
 
-// So that the new name outlives a power cut, too. The file is whole either way: a failure is none of the file's.
+// Makes the new name survive a power cut. The file is complete either way, so a failure is ignored.
 void bring_folder_to_disk(const char* path) {
   char folder[kWriterPathBytes];
   size_t length = folder_length(path);
@@ -169,7 +168,7 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
   if (!d.is_there || keep_permissions(d, writer->descriptor)) return true;
   int number = errno;
   discard_writer(writer);
-  return fail(error, "cannot be replaced by one of the same permissions", number);
+  return fail(error, "cannot be replaced with its permissions kept", number);
 }
 
 void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) {
@@ -193,8 +192,8 @@ bool close_writer(FileWriter* writer, FileError* error) {
   if (!ok) {
     remove_part(writer);
     snprintf(error->text, sizeof error->text,
-             is_direct ? "did not take all that was written: is it full, or closed?"
-                       : "could not be written to the end: is the disk full?");
+             is_direct ? "did not take all data: is it full or closed?"
+                       : "could not be written completely: is the disk full?");
     return false;
   }
   if (is_direct) return true;

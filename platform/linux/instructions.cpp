@@ -18,7 +18,7 @@ bool start_instruction_count() {
   attributes.size = sizeof attributes;
   attributes.type = PERF_TYPE_HARDWARE;
   attributes.config = PERF_COUNT_HW_INSTRUCTIONS;
-  attributes.inherit = 1;  // by the threads to come
+  attributes.inherit = 1;  // include threads started later
   attributes.exclude_kernel = 1;
   attributes.exclude_hv = 1;
   counter = static_cast<int>(syscall(SYS_perf_event_open, &attributes, 0, -1, -1, PERF_FLAG_FD_CLOEXEC));

@@ -30,12 +30,12 @@ void close() {
   state.open = false;
   input_close(&state.input);
   framebuffer_close(&state.framebuffer);
-  console_close();  // last: the console then draws itself anew over what we leave
+  console_close();  // last: the console then redraws itself over our picture
 }
 
 bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   close();
-  console_open(*linux_driver);  // first: its cursor must not blink into the picture
+  console_open(*linux_driver);  // first: its cursor must not blink in the picture
   if (!framebuffer_open(*linux_driver, options, &state.framebuffer, format, error)) {
     console_close();
     return false;

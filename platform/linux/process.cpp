@@ -14,9 +14,9 @@
 namespace platform {
 namespace {
 
-constexpr int kNotStarted = 127;  // as shells have it
+constexpr int kNotStarted = 127;  // as in shells
 
-// Between fork() and exec, where little but system calls is allowed.
+// Runs between fork() and exec, where hardly anything but system calls is allowed.
 [[noreturn]] void become(const char* path, const char* const* words, const char* folder, pid_t parent) {
   int nothing = open("/dev/null", O_RDWR);
   bool ok = nothing >= 0;

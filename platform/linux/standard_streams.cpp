@@ -10,7 +10,8 @@
 namespace platform {
 namespace {
 
-// A pipe that poll() calls writable takes as many bytes as this at once [POSIX, pipe(7)], so that write() cannot wait.
+// poll() reports a pipe as writable only if it takes this many bytes at once [POSIX, pipe(7)], so that write() cannot
+// block.
 constexpr size_t kLineBytesMax = 4096;
 
 }  // namespace
@@ -18,7 +19,8 @@ constexpr size_t kLineBytesMax = 4096;
 void open_standard_streams() {
   for (int descriptor = 0; descriptor <= 2; ++descriptor) {
     if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number is this one. Opened the wrong way round, so that its use is an error and not silence.
+    // The lowest free number is this one. Opened in the wrong direction, so that using it is an error rather than
+    // silent.
     int opened = open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
     if (opened > 2) close(opened);
   }

@@ -12,8 +12,8 @@ namespace {
 
 enum class Request : std::uint8_t { none, wait, stop };
 
-// Shared with the helper, which may outlive vsync_stop() when the driver holds it: static, and not reused until it came
-// back.
+// Shared with the helper thread, which may outlive vsync_stop() while stuck in the driver: static, and not reused until
+// the thread returns.
 struct Waiter {
   pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
   pthread_cond_t changed;
@@ -57,7 +57,7 @@ bool start_helper() {
     pthread_condattr_destroy(&attributes);
     if (!waiter.has_condition) return false;
   }
-  // Signals are the main thread's.
+  // Only the main thread handles signals.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -67,7 +67,7 @@ bool start_helper() {
   return waiter.has_thread;
 }
 
-// One wait, however long the driver takes, but no longer than the timeout.
+// One wait: as long as the driver takes, but at most the timeout.
 VsyncKind wait_bounded() {
   timespec deadline;
   clock_gettime(CLOCK_MONOTONIC, &deadline);
@@ -90,14 +90,14 @@ VsyncKind wait_bounded() {
 
 VsyncKind vsync_start(const Driver& driver, int file) {
   vsync_stop();
-  if (waiter.has_thread) return VsyncKind::never;  // still stuck from last time
+  if (waiter.has_thread) return VsyncKind::never;  // still stuck from an earlier wait
   waiter.driver = &driver;
   waiter.file = file;
   waiter.period_ns = 0;
   waiter.kind = start_helper() ? VsyncKind::works : VsyncKind::absent;
 
-  // The first wait ends somewhere within a frame; the following take a frame each, or nothing when the driver does not
-  // wait.
+  // The first wait ends somewhere within a frame. The following ones take a frame each, or no time if the driver does
+  // not wait.
   constexpr int kTimedWaits = 3;
   constexpr std::uint64_t kPeriodMinNs = 2'000'000;  // 500 Hz
   if (waiter.kind == VsyncKind::works) waiter.kind = wait_bounded();
@@ -122,7 +122,7 @@ void vsync_stop() {
   if (!waiter.has_thread) return;
   pthread_mutex_lock(&waiter.mutex);
   bool stuck = waiter.busy;
-  waiter.request = Request::stop;  // a helper that is stuck finds it when it comes back
+  waiter.request = Request::stop;  // a stuck helper sees it when it returns
   pthread_cond_broadcast(&waiter.changed);
   pthread_mutex_unlock(&waiter.mutex);
   waiter.kind = VsyncKind::absent;

@@ -1,6 +1,6 @@
-// A wait for the screen's vertical blank that comes back, whatever the driver does. Some drivers return at once, some
-// never do, and a call that hangs in the kernel can be interrupted by no signal: so a helper thread makes the call, and
-// we wait for the thread, for a bounded time.
+// Waits for the screen's vertical blank and always returns, whatever the driver does. Some drivers return at once, some
+// never, and no signal interrupts a call that hangs in the kernel: so a helper thread makes the call, and we wait for
+// that thread for a bounded time.
 #pragma once
 #include <cstdint>
 
@@ -19,7 +19,7 @@ enum class VsyncKind : std::uint8_t {
 VsyncKind vsync_start(const Driver& driver, int file);
 // The frame period measured by vsync_start(); 0 unless the wait works.
 std::uint64_t vsync_period_ns();
-// Waits for the next vertical blank, at most the driver's time-out; from the first time it fails on, it returns at once.
+// Waits for the next vertical blank, at most for the driver's timeout; after the first failure it returns at once.
 VsyncKind vsync_wait();
 void vsync_stop();
 

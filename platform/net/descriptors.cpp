@@ -11,7 +11,7 @@ namespace platform {
 int descriptors_left(int wanted) {
   rlimit limit;
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return wanted;
-  // Counts what is open up to the highest that could be given out, and a few thousand at most.
+  // Counts open descriptors up to the highest possible one, but no more than a few thousand.
   constexpr rlim_t kLookedAt = 4096;
   auto free_below = [](rlim_t end) {
     int count = 0;

@@ -1,5 +1,5 @@
-// One direction of a simulated connection: a line that bytes take their time on, and a pipe of bytes underway with when
-// each piece of them arrives.
+// One direction of a simulated connection: a line on which bytes take time, and a pipe of pieces in transit with their
+// arrival times.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,18 +8,18 @@ namespace platform {
 
 constexpr std::uint64_t kNever = ~std::uint64_t{0};
 constexpr int kPiecesMax = 256;
-constexpr std::size_t kPieceBytesMax = 1460;  // as an Ethernet frame holds
+constexpr std::size_t kPieceBytesMax = 1460;  // payload of an Ethernet frame
 
 constexpr std::uint64_t kSecondNs = 1'000'000'000;
 
 struct LinkLine {
   std::uint64_t bytes_per_second = 0;  // 0: no limit
   std::uint64_t latency_ns = 0;        // one way
-  std::uint64_t jitter_ns = 0;         // up to so much more
+  std::uint64_t jitter_ns = 0;         // maximum addition to the latency
 };
 
-// When so many bytes arrive that are sent now, on a line that has sent what it has by *free_ns; moves that on. `random`
-// is the state of random_u64().
+// When bytes sent now arrive, on a line that is busy until *free_ns, which is advanced. `random` is the state of
+// random_u64().
 std::uint64_t line_arrival_ns(const LinkLine& line, std::size_t byte_count, std::uint64_t now_ns,
                               std::uint64_t* free_ns, std::uint64_t* random);
 std::uint64_t random_u64(std::uint64_t* state);
@@ -30,36 +30,36 @@ struct LinkPiece {
 };
 
 struct LinkPipe {
-  unsigned char* bytes;  // a ring of `capacity`
+  unsigned char* bytes;  // ring of `capacity` bytes
   std::size_t capacity, first, used;
-  LinkPiece* pieces;  // a ring of kPiecesMax
+  LinkPiece* pieces;  // ring of kPiecesMax
   int piece_first, piece_count;
   std::uint64_t byte_index;        // of the next byte to be sent
   std::uint64_t arrival_last_ns;   // nothing overtakes
-  std::uint64_t trickle_free_ns;   // when the next byte may go while it trickles
-  std::uint64_t end_ns, reset_ns;  // when their news arrive; kNever: they do not
-  std::uint32_t faults_struck;     // a bit for each
+  std::uint64_t trickle_free_ns;   // next byte allowed while trickling
+  std::uint64_t end_ns, reset_ns;  // when the reader learns of them; kNever: not at all
+  std::uint32_t faults_struck;     // one bit per fault
   bool silent, trickles;
 };
 
-// Bytes of memory that a pipe of that capacity takes, and such a pipe, not yet reset, in memory that is aligned to 8;
-// *memory moves on.
+// Bytes of memory for a pipe of that capacity; a pipe in that memory, aligned to 8, which still must be reset. *memory
+// is advanced.
 std::size_t pipe_need(std::size_t capacity);
 void place_pipe(LinkPipe* pipe, std::size_t capacity, unsigned char** memory);
-// An empty pipe over memory that is there already.
+// Empties a pipe, keeping its memory.
 void reset_pipe(LinkPipe* pipe);
-// Room for one more piece: its bytes; 0: none.
+// Bytes that one more piece may have; 0: no room.
 std::size_t pipe_room(const LinkPipe& pipe);
-// One piece of at most pipe_room() bytes, its first changed by `flip`.
+// Sends one piece of at most pipe_room() bytes; `flip` is XORed into its first byte.
 void push_piece(LinkPipe* pipe, const unsigned char* bytes, std::size_t byte_count, unsigned char flip,
                 std::uint64_t arrival_ns);
-// Bytes that have arrived by now and lie together, at most those of one piece, and where.
+// The contiguous bytes that have arrived by now, at most one piece, and their address.
 std::size_t due_bytes(const LinkPipe& pipe, std::uint64_t now_ns, const unsigned char** bytes);
-// Takes as many of them as that, at most.
+// Removes at most that many of them.
 void drop_bytes(LinkPipe* pipe, std::size_t byte_count);
-// Takes what has arrived by now; returns how many bytes.
+// Reads the bytes that have arrived by now; returns their number.
 std::size_t pull_bytes(LinkPipe* pipe, unsigned char* bytes, std::size_t byte_count_max, std::uint64_t now_ns);
-// When the reader learns something next: bytes, the end or a reset. kNever: not by itself.
+// When the reader next learns something: bytes, the end or a reset. kNever: nothing is scheduled.
 std::uint64_t pipe_news_ns(const LinkPipe& pipe);
 
 }  // namespace platform

@@ -1,5 +1,5 @@
-// How the backends number their streams: a place in an array of slots, and the how manieth stream lives there, so that
-// a stale one is known. A slot has a `phase`, which is `unused` where the place is free, and a `generation`.
+// How the backends number their streams: the index of a slot, and the slot's generation, which exposes stale streams. A
+// slot has a `phase`, which is `unused` if it is free, and a `generation`.
 #pragma once
 #include <cstdio>
 
@@ -14,7 +14,7 @@ int stream_number(const Slot* slots, const Slot* slot) {
   return slot->generation * kLinkStreamsMax + static_cast<int>(slot - slots);
 }
 
-// Null: stale, or never given out.
+// Null: stale, or never assigned.
 template <typename Slot>
 Slot* slot_at(Slot* slots, int slot_count, int stream) {
   if (stream < 0 || stream % kLinkStreamsMax >= slot_count) return nullptr;
@@ -23,7 +23,7 @@ Slot* slot_at(Slot* slots, int slot_count, int stream) {
   return used && slot->generation == stream / kLinkStreamsMax ? slot : nullptr;
 }
 
-// A free place, its generation counted on; null: `error` says that there is none.
+// A free slot with its generation incremented; null: `error` says that there is none.
 template <typename Slot>
 Slot* free_slot(Slot* slots, int slot_count, Error* error) {
   for (int i = 0; i < slot_count; ++i)
@@ -35,9 +35,9 @@ Slot* free_slot(Slot* slots, int slot_count, Error* error) {
   return nullptr;
 }
 
-// What a call with a stale stream says.
+// The error for a call with a stale stream.
 inline LinkResult stale_stream(Error* error) {
-  std::snprintf(error->text, sizeof error->text, "this is no open connection: connect anew");
+  std::snprintf(error->text, sizeof error->text, "the connection is not open: connect again");
   return LinkResult::failed;
 }
 

@@ -35,10 +35,10 @@ bool add_number(LinkAddress* address, const char* host, int port) {
 }
 
 #ifdef POCKETRAY_NUMERIC_ADDRESSES
-// The C library loads its resolver at run time, which a static program cannot count on.
+// The C library loads its resolver at run time, which a static program cannot rely on.
 bool add_name(LinkAddress*, const char* host, int port, Error* error) {
   snprintf(error->text, sizeof error->text,
-           "this build takes numbers alone: give the address of '%.64s' as in 192.168.1.2:%d", host, port);
+           "this build cannot resolve names: give the numeric address of '%.64s', as in 192.168.1.2:%d", host, port);
   return false;
 }
 #else
@@ -48,7 +48,7 @@ bool add_name(LinkAddress* address, const char* host, int port, Error* error) {
   int outcome = getaddrinfo(host, nullptr, &hints, &found);
   if (outcome == EAI_AGAIN) {
     snprintf(error->text, sizeof error->text,
-             "nobody answers what the address of '%.64s' is: is the network up? A number works without", host);
+             "no name server answers for '%.64s': is the network up? A numeric address needs none", host);
     return false;
   }
   for (addrinfo* i = outcome == 0 ? found : nullptr; i; i = i->ai_next) {
@@ -60,7 +60,8 @@ bool add_name(LinkAddress* address, const char* host, int port, Error* error) {
   }
   if (outcome == 0) freeaddrinfo(found);
   if (address->place_count == 0)
-    snprintf(error->text, sizeof error->text, "no host '%.64s' is known: check the name, or give its number", host);
+    snprintf(error->text, sizeof error->text, "host '%.64s' is unknown: check the name, or give a numeric address",
+             host);
   return address->place_count > 0;
 }
 #endif

@@ -1,4 +1,4 @@
-// Addresses of TCP links: from text to the system's form and back.
+// Addresses of TCP links: conversion between text and the system's form.
 #pragma once
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -7,7 +7,7 @@
 
 namespace platform {
 
-// A place of a LinkAddress as the system has it.
+// A place of a LinkAddress in the system's form.
 union SocketAddress {
   sockaddr any;
   sockaddr_in v4;

@@ -8,32 +8,33 @@
 namespace platform {
 namespace {
 
-// `passed`: a listener or an accepted peer, the inner link's alone. `closing`: what was written still has to cross.
+// `passed`: a listener or an accepted peer, handled by the inner link alone. `closing`: written data still has to
+// cross.
 enum class Phase : std::uint8_t { unused, passed, connecting, connected, closing, broken };
 
 struct Slot {
   Phase phase;
   int generation;
   int inner;              // the inner stream; -1: closed
-  LinkResult outcome;     // of the inner link's connecting
-  bool in_time;           // connecting has time for a way there and back
-  bool lost;              // the inner connection is no more
-  bool blocked;           // the inner link has no room until a poll finds some
-  std::uint64_t news_ns;  // when the outcome of connecting is known
+  LinkResult outcome;     // of connecting on the inner link
+  bool in_time;           // the time to connect allows a round trip
+  bool lost;              // the inner connection is gone
+  bool blocked;           // the inner link has no room until poll() reports some
+  std::uint64_t news_ns;  // when the outcome of connecting becomes known
   LinkPipe in, out;
   Error error;  // why it was lost
 };
 
-struct alignas(Slot) ShapedLink : Link {  // slots follow it
+struct alignas(Slot) ShapedLink : Link {  // followed by its slots
   LinkBackend functions;
   Link* inner;
   ShapedLinkSettings settings;
-  std::uint64_t inner_last_ns, clock_ns;  // the inner clock, and the sum of its steps forward
-  std::uint64_t line_free_ns[2];          // when the radio has received and sent what it has
+  std::uint64_t inner_last_ns, clock_ns;  // the inner clock, and the sum of its forward steps
+  std::uint64_t line_free_ns[2];          // until when the radio is busy receiving and sending
   std::uint64_t random;
   int slot_count;
   Slot* slots;
-  LinkWait* waits;  // of the inner poll(), as many as slots
+  LinkWait* waits;  // for the inner poll(), one per slot
 };
 
 constexpr std::uint64_t kHourNs = 3600 * kSecondNs;
@@ -57,13 +58,13 @@ void close_inner(ShapedLink* link, Slot* slot) {
   slot->inner = -1;
 }
 
-// The inner connection is no more; the device learns of it after one latency.
+// The inner connection is gone; the device learns of it after one latency.
 void lose(ShapedLink* link, Slot* slot) {
   slot->lost = true;
   slot->in.reset_ns = link->clock_ns + link->settings.line.latency_ns;
 }
 
-// Lets what has come over the inner link set out for the device, as much as there is room for.
+// Forwards bytes received on the inner link to the device, as many as there is room for.
 void receive(ShapedLink* link, Slot* slot) {
   const LinkLine& line = link->settings.line;
   while (!slot->lost && slot->in.end_ns == kNever && pipe_room(slot->in) > 0) {
@@ -82,7 +83,7 @@ void receive(ShapedLink* link, Slot* slot) {
   }
 }
 
-// Hands to the inner link what has crossed by `now_ns`.
+// Passes bytes that have crossed by `now_ns` to the inner link.
 void send(ShapedLink* link, Slot* slot, std::uint64_t now_ns) {
   const unsigned char* bytes;
   slot->blocked = false;
@@ -102,7 +103,7 @@ void free_closing(ShapedLink* link, Slot* slot) {
   slot->phase = Phase::unused;
 }
 
-// Whatever can happen to a stream by itself.
+// Everything that can happen to a stream by itself.
 void move(ShapedLink* link, Slot* slot) {
   if (slot->phase == Phase::connecting && slot->outcome == LinkResult::later)
     slot->outcome = net(link).connected(link->inner, slot->inner, &slot->error);
@@ -118,7 +119,7 @@ LinkResult fail(ShapedLink* link, Slot* slot, Error* error) {
   return LinkResult::failed;
 }
 
-// A place for a stream; where there is none, one that is closing gives way.
+// A free slot for a stream; if there is none, one that is closing gives way.
 Slot* take_slot(ShapedLink* link, int inner, Phase phase, Error* error) {
   Slot* slot = free_slot(link->slots, link->slot_count, error);
   for (int i = 0; i < link->slot_count && !slot; ++i) {
@@ -152,7 +153,7 @@ int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Er
   return stream_number(link->slots, slot);
 }
 
-// What became of a connection that is being made.
+// Progress of a connection being made.
 LinkResult progress(ShapedLink* link, Slot* slot, Error* error) {
   if (slot->phase == Phase::connected) return LinkResult::done;
   if (slot->phase == Phase::broken) return fail(link, slot, error);
@@ -161,7 +162,7 @@ LinkResult progress(ShapedLink* link, Slot* slot, Error* error) {
   if (slot->news_ns > link->clock_ns) return LinkResult::later;
   if (!slot->in_time) {
     std::snprintf(slot->error.text, sizeof slot->error.text,
-                  "%.95s: no answer: the emulated radio needs longer for a way there and back than the time given",
+                  "%.95s: no answer: a round trip by the emulated radio takes longer than the time given",
                   net(link).stream_name(link->inner, slot->inner));
     return fail(link, slot, error);
   }
@@ -190,7 +191,7 @@ LinkResult accept(Link* base, int listener, int* stream, Error* error) {
   ShapedLink* link = shaped(base);
   Slot* from = slot_of(link, listener);
   if (!from || from->phase != Phase::passed) return stale_stream(error);
-  Slot* slot = take_slot(link, -1, Phase::passed, error);  // first, as one that is closing takes an inner stream, too
+  Slot* slot = take_slot(link, -1, Phase::passed, error);  // first, because a closing one occupies an inner stream, too
   LinkResult result = net(link).accept(link->inner, from->inner, slot ? &slot->inner : stream, error);
   if (result == LinkResult::done && slot) {
     *stream = stream_number(link->slots, slot);
@@ -251,7 +252,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   return *byte_count > 0 ? LinkResult::done : LinkResult::later;
 }
 
-// What the stream of a wait can do now, and when it may do more by itself; kNever: it waits for the inner link.
+// What the stream of a wait can do now, and when it could do more by itself; kNever: only the inner link can tell.
 std::uint64_t look(ShapedLink* link, Slot* slot, LinkWait* wait) {
   Error error;
   LinkResult state = slot ? progress(link, slot, &error) : LinkResult::failed;
@@ -263,7 +264,7 @@ std::uint64_t look(ShapedLink* link, Slot* slot, LinkWait* wait) {
   return wait->want_read ? news_ns : failed ? kNever : slot->in.reset_ns;
 }
 
-// What the inner link is asked about a stream that is not `passed`.
+// What to ask the inner link about a stream that is not `passed`.
 LinkWait ask(const Slot& slot) {
   LinkWait wait;
   bool open = slot.phase == Phase::connected && !slot.lost;
@@ -274,14 +275,14 @@ LinkWait ask(const Slot& slot) {
   return wait;
 }
 
-// One round of poll(): what is ready now or after at most `wait_ns`, for which the inner link waits.
+// One round of poll(): what is ready now or after the inner link has waited for at most `wait_ns`.
 int poll_once(ShapedLink* link, LinkWait* waits, int wait_count, std::uint64_t wait_ns) {
   std::uint64_t next_ns = link->clock_ns + wait_ns;
   int ready_count = 0, inner_count = 0;
   auto consider = [&](std::uint64_t news_ns) {
     if (news_ns > link->clock_ns && news_ns < next_ns) next_ns = news_ns;
   };
-  // 1. What the device can do.
+  // 1. What the device can do now.
   for (int i = 0; i < wait_count; ++i) {
     Slot* slot = slot_of(link, waits[i].stream);
     waits[i].can_read = waits[i].can_write = false;
@@ -289,7 +290,7 @@ int poll_once(ShapedLink* link, LinkWait* waits, int wait_count, std::uint64_t w
     consider(look(link, slot, &waits[i]));
     if (waits[i].can_read || waits[i].can_write) ++ready_count;
   }
-  // 2. What else moves bytes: the inner link, and what crosses the line to it.
+  // 2. What else moves bytes: the inner link, and bytes that cross the line to it.
   for (int i = 0; i < link->slot_count; ++i) {
     const Slot& slot = link->slots[i];
     if (slot.phase == Phase::unused || slot.phase == Phase::broken || slot.phase == Phase::passed) continue;
@@ -304,7 +305,7 @@ int poll_once(ShapedLink* link, LinkWait* waits, int wait_count, std::uint64_t w
     link->waits[inner_count] = waits[i];
     link->waits[inner_count++].stream = slot->inner;
   }
-  // 3. The wait. Where the inner link has nothing to tell, so much time has passed, whatever its clock says.
+  // 3. Wait. If the inner link reports nothing, that much time has passed, whatever its clock says.
   std::uint64_t until_ns = ready_count > 0 ? link->clock_ns : next_ns;
   int told_count = net(link).poll(link->inner, link->waits, inner_count, until_ns - link->clock_ns);
   if (tell_clock(link) < until_ns && told_count == 0) link->clock_ns = until_ns;
@@ -351,7 +352,7 @@ void close_all(Link* base) {
 std::size_t no_need(int) { return 0; }
 
 Link* no_open(const LinkOptions&, Error* error) {
-  std::snprintf(error->text, sizeof error->text, "this link lies over another: open it with shaped_link_open()");
+  std::snprintf(error->text, sizeof error->text, "this link wraps another: open it with shaped_link_open()");
   return nullptr;
 }
 
@@ -386,7 +387,7 @@ Link* shaped_link_open(Link* inner, const LinkOptions& options, const ShapedLink
   if (count < 1 || count > kLinkStreamsMax || !options.memory ||
       options.memory_bytes < shaped_link_need(count, settings)) {
     std::snprintf(error->text, sizeof error->text,
-                  "%d connections of at most %d by radio take %zu bytes, %zu were given", count, kLinkStreamsMax,
+                  "%d connections of at most %d by radio need %zu bytes, %zu were given", count, kLinkStreamsMax,
                   shaped_link_need(count, settings), options.memory_bytes);
     return nullptr;
   }

@@ -1,8 +1,8 @@
-// The radio of an emulated device: a link over another one that lets bytes pass only as a wireless link would. They are
-// taken from the inner link in any call that polls, cross the line in their turn, and come out when they are due.
+// The radio of an emulated device: a link on top of another that delivers bytes only as fast as a wireless link would.
+// They are read from the inner link in any call that polls, cross the line in order, and come out when they are due.
 //
-// Whoever connects is the device, as in null/net/null_link.h: its connections share one radio, which sends and receives
-// at once. Peers that are accepted here pass as they are.
+// The connecting end is the device, as in null/net/null_link.h: its connections share one full-duplex radio.
+// Connections accepted here pass unchanged.
 #pragma once
 #include "platform/devices/device.h"
 #include "platform/link.h"
@@ -12,21 +12,21 @@ namespace platform {
 
 struct ShapedLinkSettings {
   LinkLine line;           // bytes per second of each direction
-  std::uint64_t seed = 1;  // of jitter
+  std::uint64_t seed = 1;  // for the jitter
 };
 // The wireless link of a device.
 ShapedLinkSettings shaped_link_settings(const Device& device);
 
-// Bytes underway in one direction of a connection at most, after which the sender waits: what the line holds over a way
-// there and back, at least 64 KiB.
+// Most bytes in transit in one direction of a connection, beyond which the sender waits: the content of the line over
+// one round trip, at least 64 KiB.
 std::size_t shaped_pipe_bytes(const LinkLine& line);
 
 std::size_t shaped_link_need(int stream_count_max, const ShapedLinkSettings& settings);
-// `inner` has room for as many streams; it stays the caller's and must outlive this link, and others may use it, too.
-// The clock is the inner one; steps of it backwards count as none. Of the options `now_ns` is not used.
+// `inner` must have room for as many streams; the caller keeps it, it must outlive this link, and others may share it.
+// The clock is the inner one without its steps backwards. `options.now_ns` is ignored.
 Link* shaped_link_open(Link* inner, const LinkOptions& options, const ShapedLinkSettings& settings, Error* error);
 
-// The functions of such a link over links of that kind, but for need() and open(), which are those above.
+// The functions of such a link over links of that kind, except need() and open(), which are the ones above.
 LinkBackend shaped_link_backend(const LinkBackend& inner);
 
 }  // namespace platform

@@ -21,26 +21,26 @@ enum class Phase : std::uint8_t { unused, listening, connecting, connected, brok
 struct Slot {
   Phase phase;
   int file;          // -1: none
-  int spare;         // of a listener: a descriptor to give away when there are no more; else -1
-  int generation;    // counts the streams that lived here, so that a stale number is known
-  int place;         // while connecting: of the address, which is tried
-  int error_number;  // of the first place that failed; broken: why
+  int spare;         // of a listener: a descriptor to give up when there are none left; otherwise -1
+  int generation;    // counts the streams in this slot, which exposes stale ones
+  int place;         // while connecting: the place of the address being tried
+  int error_number;  // of the first place that failed; when broken: the reason
   LinkTimer timer;   // while connecting
   LinkAddress address;
   char name[64];
 };
 
-struct alignas(Slot) TcpLink : Link {  // slots follow it
+struct alignas(Slot) TcpLink : Link {  // followed by its slots
   std::uint64_t (*now_ns)();
   int slot_count;
   Slot* slots;
-  pollfd* files;  // of poll(), as many as slots
+  pollfd* files;  // for poll(), one per slot
 };
 
 constexpr int kBacklog = 64;
-constexpr int kUnsentBytes = 16384;  // that a system takes beyond what it has sent
+constexpr int kUnsentBytes = 16384;  // that a system buffers beyond what it has sent
 constexpr std::uint64_t kPollNsMax = 3'600'000'000'000;
-constexpr std::uint64_t kBlindRestNs = 10'000'000;  // between two looks where the system cannot tell what is ready
+constexpr std::uint64_t kBlindRestNs = 10'000'000;  // between two attempts while the system cannot tell what is ready
 
 TcpLink* tcp(Link* link) { return static_cast<TcpLink*>(link); }
 
@@ -58,7 +58,7 @@ Slot* take_slot(TcpLink* link, Error* error) {
 }
 
 void close_file(Slot* slot) {
-  if (slot->file >= 0) close(slot->file);  // not again after EINTR: the file is closed all the same
+  if (slot->file >= 0) close(slot->file);  // not again after EINTR: the file is closed anyway
   if (slot->spare >= 0) close(slot->spare);
   slot->file = slot->spare = -1;
 }
@@ -78,19 +78,19 @@ void tell(const char* peer, int number, Error* error) {
     case EADDRNOTAVAIL:
     case EAFNOSUPPORT:
     case ENETDOWN:
-      what = "no way leads there: is the network up, and the address right?";
+      what = "no route leads there: is the network up, and the address right?";
       break;
     case ECONNRESET:
     case ECONNABORTED:
     case EPIPE:
-      what = "the peer broke the connection off: it was stopped, or did not like what it was sent";
+      what = "the peer closed the connection: it was stopped, or rejected what it received";
       break;
     case EADDRINUSE:
-      what = "another program listens there: stop it, or take another port";
+      what = "another program listens there: stop it, or use another port";
       break;
     case EACCES:
     case EPERM:
-      what = "that is not allowed here: take a port above 1023, or ask whoever runs the firewall";
+      what = "not permitted: use a port above 1023, or ask the administrator of the firewall";
       break;
     case EMFILE:
     case ENFILE:
@@ -117,8 +117,8 @@ LinkResult fail(Slot* slot, int number, Error* error) {
 bool prepare(int file) {
   int flags = fcntl(file, F_GETFL), one = 1;
 #ifdef TCP_NOTSENT_LOWAT
-  // What waits here instead of at the caller's can no longer be changed, and delays what is more urgent. A wish: an
-  // older system knows nothing of it.
+  // Data buffered here rather than at the caller can no longer be changed and delays more urgent data. Only a hint:
+  // older systems do not know it.
   int unsent_bytes = kUnsentBytes;
   setsockopt(file, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_bytes, sizeof unsent_bytes);
 #endif
@@ -137,7 +137,7 @@ Link* open(const LinkOptions& options, Error* error) {
   if (count < 1 || count > kLinkStreamsMax || !options.now_ns || !options.memory ||
       options.memory_bytes < need(count)) {
     snprintf(error->text, sizeof error->text,
-             "%d connections of at most %d take %zu bytes and a clock, %zu bytes were given", count, kLinkStreamsMax,
+             "%d connections of at most %d need %zu bytes and a clock, %zu bytes were given", count, kLinkStreamsMax,
              need(count), options.memory_bytes);
     return nullptr;
   }
@@ -151,8 +151,8 @@ Link* open(const LinkOptions& options, Error* error) {
   return link;
 }
 
-// A socket that is given the port it knocks at, where nobody listens, is connected to itself [RFC 9293, sec. 3.5,
-// simultaneous open]: the same as refused.
+// A socket that is assigned the very port it connects to, where nobody listens, is connected to itself [RFC 9293,
+// sec. 3.5, simultaneous open]; treated as refused.
 bool is_own_peer(int file) {
   SocketAddress own = {}, peer = {};
   socklen_t own_bytes = sizeof own, peer_bytes = sizeof peer;
@@ -166,7 +166,7 @@ void try_places(Slot* slot) {
     SocketAddress at = socket_address(slot->address, slot->place);
     slot->file = socket(at.any.sa_family, SOCK_STREAM, 0);
     bool begun = slot->file >= 0 && prepare(slot->file);
-    // What is connected at once, as on this machine, is told by progress() all the same.
+    // A connection established at once, as on this machine, is still reported by progress().
     if (begun &&
         (::connect(slot->file, &at.any, socket_address_bytes(at)) == 0 || errno == EINPROGRESS || errno == EINTR))
       return;
@@ -190,7 +190,7 @@ int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Er
   return -1;
 }
 
-// What became of a connection that is being made.
+// Progress of a connection being made.
 LinkResult progress(TcpLink* link, Slot* slot, Error* error) {
   if (slot->phase == Phase::connected) return LinkResult::done;
   if (slot->phase == Phase::listening) return stale_stream(error);
@@ -260,7 +260,7 @@ LinkResult accept(Link* base, int listener, int* stream, Error* error) {
     if (is_shortage(errno)) from->spare = turn_away(from->file, from->spare);
     return LinkResult::failed;
   }
-  // A peer that there is no room for is sent away: left waiting, it would have poll() return for ever.
+  // A peer without room is turned away: left waiting, it would make every poll() return at once.
   Slot* slot = take_slot(link, error);
   if (!slot || !prepare(file)) {
     if (slot) tell(from->name, errno, error);
@@ -306,8 +306,8 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   return LinkResult::done;
 }
 
-// Asks the system about the first `file_count` of link->files. Where it cannot tell, for want of memory or because the
-// limit on open files has been lowered, everything counts as ready after a rest: whoever tries sees how it stands.
+// Polls the first `file_count` of link->files. If the system cannot tell, for lack of memory or because the limit on
+// open files was lowered, everything counts as ready after a pause: whoever tries finds out.
 int ask_system(TcpLink* link, int file_count, std::uint64_t wait_ns) {
   auto time_of = [](std::uint64_t ns) {
     return timespec{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
@@ -321,11 +321,11 @@ int ask_system(TcpLink* link, int file_count, std::uint64_t wait_ns) {
   return file_count;
 }
 
-// One round of poll(): what is ready when the system has waited for at most `wait_ns`. Adds to `waited_ns` what has
-// passed in vain.
+// One round of poll(): what is ready after the system has waited for at most `wait_ns`. Adds time waited in vain to
+// `waited_ns`.
 int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait_ns, std::uint64_t* waited_ns) {
-  // 1. What the system is asked: only what is open, since it takes no more entries than files may be open. A connection
-  // that fails in time is looked at when its time is over.
+  // 1. Ask the system only about open files, since it takes no more entries than files may be open. A connection that
+  // fails in time is handled when its time is over.
   int file_count = 0;
   for (int i = 0; i < wait_count; ++i) {
     Slot* slot = slot_of(link, waits[i].stream);
@@ -340,7 +340,7 @@ int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait
       std::uint64_t left = link_timer_left(&slot->timer, link->now_ns());
       if (left < wait_ns) wait_ns = left;
     }
-    waits[i].can_read = true;  // it is asked about
+    waits[i].can_read = true;  // the system is asked about it
     pollfd* file = &link->files[file_count++];
     *file = {slot->file, 0, 0};
     if (waits[i].want_read && !connecting) file->events |= POLLIN;
@@ -349,7 +349,7 @@ int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait
   int woken = ask_system(link, file_count, wait_ns);
   if (woken == 0) *waited_ns += wait_ns;
 
-  // 2. What it says, in the same order.
+  // 2. Its answers, in the same order.
   int ready_count = 0;
   const pollfd* file = link->files;
   for (int i = 0; i < wait_count; ++i) {
@@ -378,12 +378,12 @@ int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait
   return ready_count;
 }
 
-// Waits anew after a signal, and where a connection went on to the next place of its address.
+// Waits again after a signal, and when a connection moved on to the next place of its address.
 int poll(Link* base, LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
   TcpLink* link = tcp(base);
   if (wait_count > link->slot_count) wait_count = link->slot_count;
   LinkTimer timer = link_timer(link->now_ns(), timeout_ns < kPollNsMax ? timeout_ns : kPollNsMax);
-  std::uint64_t waited_ns = 0;  // ends the wait when the clock stands still
+  std::uint64_t waited_ns = 0;  // ends the wait if the clock stands still
   for (;;) {
     std::uint64_t left = link_timer_left(&timer, link->now_ns());
     int ready_count = poll_once(link, waits, wait_count, left, &waited_ns);

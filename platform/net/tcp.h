@@ -1,4 +1,4 @@
-// Links over TCP, IPv4 and IPv6. Nothing raises SIGPIPE; small writes travel at once (TCP_NODELAY).
+// Links over TCP, IPv4 and IPv6. They never raise SIGPIPE; small writes are sent at once (TCP_NODELAY).
 #pragma once
 #include "platform/link.h"
 

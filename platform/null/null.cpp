@@ -27,28 +27,27 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   int width = turned ? options.height : options.width;
   int height = turned ? options.width : options.height;
 
-  // 1. The screen: what is wanted, or what this screen has of it.
+  // 1. The screen: as requested, or as limited by this screen.
   ScreenFormat screen = settings.format;
   if (screen.bits_per_pixel == 0) screen = screen_format(width, height, options.bits_per_pixel, options.blue_first);
   if (screen.width > width) screen.width = width;
   if (screen.height > height) screen.height = height;
 
-  // 2. The page to draw into lies in the caller's memory. A backend whose hardware has pages of its own needs none of
-  // it.
+  // 2. The page to draw into lies in the caller's memory. A backend whose hardware has its own pages needs none of it.
   int line_bytes = screen.width * (screen.bits_per_pixel / 8) + settings.line_padding_bytes;
   std::size_t bytes = static_cast<std::size_t>(line_bytes) * static_cast<std::size_t>(screen.height);
   if (!options.memory || options.memory_bytes < bytes) {
-    std::snprintf(error->text, sizeof error->text, "the back page takes %zu bytes, %zu were given", bytes,
+    std::snprintf(error->text, sizeof error->text, "the back page needs %zu bytes, %zu were given", bytes,
                   options.memory_bytes);
     return false;
   }
   if (settings.screen && settings.screen_bytes < bytes) {
-    std::snprintf(error->text, sizeof error->text, "the screen takes %zu bytes, it has %zu", bytes,
+    std::snprintf(error->text, sizeof error->text, "the screen needs %zu bytes, it has %zu", bytes,
                   settings.screen_bytes);
     return false;
   }
 
-  // 3. The rest starts from nothing: no frame was shown, no button is down, the clock stands at zero.
+  // 3. Reset the rest: no frame was shown, no button is down, the clock is at zero.
   state.page = static_cast<unsigned char*>(options.memory);
   state.format = *format = screen;
   state.record = NullRecord();
@@ -59,8 +58,7 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   return true;
 }
 
-// One page that is copied to the screen: it always holds the frame before. Two pages that are exchanged would have
-// age 2.
+// One page that is copied to the screen always holds the previous frame. Two pages that are exchanged would have age 2.
 Page begin_frame() { return {state.page, state.record.line_bytes, state.record.frames_shown > 0 ? 1 : 0}; }
 
 void end_frame(int row_begin, int row_end) {

@@ -1,5 +1,5 @@
-// The null backend: a screen in memory, buttons from a script and a clock that runs only when told to. It is the
-// template for a port and the harness of the tests: the same script gives the same events at the same times, always.
+// The null backend: a screen in memory, buttons from a script and a clock that only runs on demand. It is the template
+// for a port and the harness of the tests: the same script always gives the same events at the same times.
 #pragma once
 #include "platform/platform.h"
 
@@ -8,18 +8,17 @@ namespace platform {
 extern const Backend kNullBackend;
 
 struct NullSettings {
-  ScreenFormat format;         // bits_per_pixel 0: what is wanted
+  ScreenFormat format;         // bits_per_pixel 0: as requested
   int line_padding_bytes = 0;  // after each row of the page
-  void* screen = nullptr;      // what is shown is copied here, rows of line_bytes; null: nowhere
+  void* screen = nullptr;      // receives a copy of what is shown, rows of line_bytes; null: nowhere
   std::size_t screen_bytes = 0;
-  const Event* script = nullptr;  // by rising time_ns
+  const Event* script = nullptr;  // in order of time_ns
   int script_count = 0;
-  std::uint64_t clock_step_ns =
-      1000;  // each now_ns() moves the clock on by this, so that loops that wait come to an end
-  std::uint64_t frame_ns = 16'666'667;  // so does each end_frame(), by this
+  std::uint64_t clock_step_ns = 1000;   // advance of each now_ns(), so that busy-waiting loops end
+  std::uint64_t frame_ns = 16'666'667;  // advance of each end_frame()
 };
 
-// Takes effect at the next open(). What the pointers point to stays the caller's.
+// Takes effect at the next open(). The caller keeps what the pointers refer to.
 void null_configure(const NullSettings& settings);
 
 struct NullRecord {

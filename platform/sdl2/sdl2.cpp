@@ -16,7 +16,7 @@ struct KeyButton {
   SDL_Scancode key;
   Button button;
 };
-// By place on the keyboard, whatever is printed there. The same as evdev's.
+// By position on the keyboard, whatever is printed there. The same as evdev's.
 constexpr KeyButton kKeys[] = {
     {SDL_SCANCODE_UP, Button::up},
     {SDL_SCANCODE_DOWN, Button::down},
@@ -69,10 +69,10 @@ struct State {
   int stick[2] = {};  // −1, 0, 1
   unsigned char* page = nullptr;
   ScreenFormat format;
-  int view_width = 0, view_height = 0;  // what the window shows: the screen, or the screen turned back
-  int turn = 0;                         // degrees clockwise by which it is
-  bool shown = false;                   // a frame was
-  std::uint32_t held = 0;               // a bit per button
+  int view_width = 0, view_height = 0;  // shown by the window: the screen, or the screen rotated back
+  int turn = 0;                         // degrees clockwise of that rotation
+  bool shown = false;                   // a frame was shown
+  std::uint32_t held = 0;               // one bit per button
   Event queue[kQueueCapacity];
   int first = 0, count = 0;
   char dropped_path[1024] = {};
@@ -103,7 +103,7 @@ void close() {
   state = State();
 }
 
-// The largest whole number that leaves a quarter of the desktop free.
+// The largest whole scale that leaves a quarter of the desktop free.
 int comfortable_scale(int width, int height) {
   SDL_Rect bounds;
   if (SDL_GetDisplayUsableBounds(0, &bounds) != 0) return 1;
@@ -113,18 +113,18 @@ int comfortable_scale(int width, int height) {
 }
 
 bool open_window(const ScreenOptions& options, const char** what) {
-  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C is the program's
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // the program handles Ctrl-C
   SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "nearest");
   *what = "start SDL";
   if (SDL_Init(SDL_INIT_VIDEO) != 0) return false;
-  SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER);  // without controllers there is still the keyboard
+  SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER);  // without controllers the keyboard still works
   int scale = options.scale > 0 ? options.scale : comfortable_scale(state.view_width, state.view_height);
   *what = "open a window";
   state.window = SDL_CreateWindow(options.title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
                                   state.view_width * scale, state.view_height * scale, SDL_WINDOW_RESIZABLE);
   if (!state.window) return false;
   SDL_SetWindowMinimumSize(state.window, state.view_width, state.view_height);
-  // Without waiting for the vertical blank: a hidden window would wait for ever.
+  // Without waiting for the vertical blank: a hidden window would wait forever.
   *what = "draw in the window";
   state.renderer = SDL_CreateRenderer(state.window, -1, 0);
   if (!state.renderer) return false;
@@ -164,7 +164,7 @@ void end_frame(int row_begin, int row_end) {
 }
 
 Event* push(EventType type) {
-  if (state.count == kQueueCapacity) --state.count;  // the newest one gives way
+  if (state.count == kQueueCapacity) --state.count;  // the newest one is dropped
   Event* event = &state.queue[(state.first + state.count++) % kQueueCapacity];
   *event = Event();
   event->type = type;
@@ -261,7 +261,7 @@ void take(const SDL_Event& event) {
   }
 }
 
-// Takes SDL's events until one of them is for us.
+// Processes SDL's events until one of them matters.
 void pump() {
   SDL_Event next;
   while (state.count == 0 && SDL_PollEvent(&next)) take(next);
@@ -277,7 +277,7 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   state.turn = options.upright ? (360 - options.rotation) % 360 : 0;
   std::size_t bytes = page_bytes_max(width, height);
   if (!options.memory || options.memory_bytes < bytes) {
-    std::snprintf(error->text, sizeof error->text, "the back page takes %zu bytes, %zu were given", bytes,
+    std::snprintf(error->text, sizeof error->text, "the back page needs %zu bytes, %zu were given", bytes,
                   options.memory_bytes);
     return false;
   }
@@ -289,7 +289,7 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
     close();
     return false;
   }
-  // A first frame, black, and a first look at the events: what memory SDL takes for them, it takes now.
+  // Shows a first, black frame and polls once, so that SDL takes the memory for both now.
   std::memset(state.page, 0, bytes);
   SDL_UpdateTexture(state.texture, nullptr, state.page, line_bytes());
   show();

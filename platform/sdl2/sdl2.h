@@ -1,5 +1,5 @@
-// The emulator: a window scaled by whole numbers, keyboard and game controllers as the handheld's buttons. Works with
-// SDL's dummy video driver too.
+// The emulator: a window scaled by whole numbers, keyboard and game controllers as the handheld's buttons. Also works
+// with SDL's dummy video driver.
 #pragma once
 #include "platform/platform.h"
 

@@ -1,5 +1,5 @@
-// What every accelerator offers. Closest hit means smallest t, then smallest triangle id, whatever the structure or
-// SIMD width; the answers of all accelerators are the same bits. `brute` is the oracle the others are tested against.
+// The interface of an accelerator. Closest hit means smallest t, then smallest triangle id, whatever the structure or
+// SIMD width; all accelerators return the same bits. `brute` is the oracle that the others are tested against.
 #pragma once
 #include <cstddef>
 
@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-// The geometry an accelerator answers about, and its own data, which lies in an arena or in a baked file.
+// The geometry of an accelerator and its own data, which lies in an arena or in a baked file.
 struct Accel {
   Array<const Vec3> positions;
   Array<const Triangle> triangles;
@@ -20,37 +20,38 @@ struct Accel {
 
 // How rays traverse it.
 struct AccelTraversal {
-  // Nearest hit in (0, ray.t_max); hit->triangle is kNoTriangle and t untouched where there is none. `filter` and
-  // `stats` may be null.
+  // Nearest hit in (0, ray.t_max). Without one, hit->triangle is kNoTriangle and t is unchanged. `filter` and `stats`
+  // may be null.
   void (*closest)(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats);
-  // closest() for every ray of the packet: the same bits, in hits[0 .. rays.count). by_rays.h has one for any.
+  // closest() for every ray of the packet, with the same bits, into hits[0 .. rays.count). by_rays.h has one for any
+  // accelerator.
   void (*closest_packet)(const Accel& accel, const RayPacket& rays, const HitFilter* filter, Hit* hits,
                          TraceStats* stats);
-  // Whether anything is hit in (0, ray.t_max).
+  // Whether the ray hits anything in (0, ray.t_max).
   bool (*occluded)(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats);
-  // occluded() for every ray of the packet: bit i for ray i.
+  // occluded() for every ray of the packet; bit i is ray i.
   std::uint64_t (*occluded_packet)(const Accel& accel, const SegmentPacket& rays, const HitFilter* filter,
                                    TraceStats* stats);
 };
 
 struct AccelInfo : AccelTraversal {
   const char* name;
-  const char* help;     // what sets it apart; may be empty
-  bool is_automatic;    // taken unasked where those before it in the list do not fit
-  std::uint32_t magic;  // first word of its data; 0 where there is none
-  // Upper bounds of the bytes build() keeps in its arena, and of the scratch that it releases again. build() gives back
-  // at once what it does not use of the former, but has to have it while it runs.
+  const char* help;     // what distinguishes it; may be empty
+  bool is_automatic;    // taken by default when the ones before it in the list do not fit
+  std::uint32_t magic;  // first word of its data; 0 if it has none
+  // Upper bounds of the bytes that build() keeps in its arena and of the scratch memory that it releases again. At the
+  // end build() gives back the part of the former that it did not use, but it needs all of it while it runs.
   std::size_t (*need)(std::uint32_t triangle_count);
   std::size_t (*scratch_need)(std::uint32_t triangle_count);
-  // Builds over the triangles of `accel` (positions and triangles are set). Keeps data in `keep`, uses and releases
-  // `scratch`. Never fails: sizes are planned.
+  // Builds over the triangles of `accel` (positions and triangles are set). Keeps data in `keep`; uses and releases
+  // `scratch`. Never fails, since sizes are planned.
   void (*build)(Accel* accel, Arena* keep, Arena* scratch);
-  // Adapts writable data to moved positions, topology unchanged. Null: build() again, for every frame.
+  // Adapts writable data to moved positions with unchanged topology. Null: build() again for every frame.
   void (*refit)(Accel* accel, Array<std::uint8_t> data);
   // Adopts baked data, aligned to 64, after checking every index, bound and vertex in it against the geometry.
   Status (*adopt)(Accel* accel, Array<const std::uint8_t> data);
-  // No triangle is nearer to the point than this: their least distance, less its rounding error. Infinity without
-  // triangles, 0 for a point that is not finite.
+  // Lower bound of the distance from the point to any triangle: the least distance less its rounding error. Infinity
+  // without triangles, 0 for a point that is not finite.
   float (*nearest_distance)(const Accel& accel, const Vec3& point);
 };
 

@@ -1,5 +1,5 @@
-// One line per accelerator. The first is the default; the next that are automatic take its place in their order where
-// it does not fit the memory.
+// One line per accelerator. The first is the default; if it does not fit into memory, the automatic ones after it are
+// tried in order.
 #pragma once
 #include <cstring>
 
@@ -11,7 +11,7 @@ extern const AccelInfo kBvhAccel, kCompactAccel, kBruteAccel;
 
 inline const AccelInfo* const kAccelList[] = {&kBvhAccel, &kCompactAccel, &kBruteAccel};
 
-// Whose baked data that is; null for nobody's.
+// The accelerator that baked the data, or null.
 inline const AccelInfo* accel_of(Array<const std::uint8_t> data) {
   std::uint32_t magic = 0;
   if (data.count >= sizeof magic) std::memcpy(&magic, data.data, sizeof magic);

@@ -1,10 +1,10 @@
 // A ray against the boxes of four children. Part of the kernels: see bvh_kernels.h.
 //
-// A box must never hide a hit of its triangles. The slab test [Kay & Kajiya 1986] is therefore slackened, as [Ize 2013,
-// JCGT 2(2)] asks, but in space: every plane is moved outwards by 16u (|o| + R), with u = 2^-24, o the origin's
-// coordinate along its axis and R the farthest that the scene reaches from the origin along any. That is more than all
-// errors together: t = plane·inverse − offset rounds by 3u (|o| + R), its inverse included; cross_triangle() takes a
-// ray for a hit that passes a triangle by up to 6u R (shear, two products, differences); t itself rounds by u R.
+// A box must never hide a hit of its triangles. The slab test [Kay & Kajiya 1986] is therefore made conservative, as in
+// [Ize 2013, JCGT 2(2)], but in space: every plane is moved outwards by 16u (|o| + R), with u = 2^-24, o the origin's
+// coordinate along its axis and R the farthest that the scene extends from the origin along any axis. That exceeds the
+// sum of all errors: t = plane·inverse − offset rounds by 3u (|o| + R), including the inverse; cross_triangle() accepts
+// hits of rays that miss the triangle by up to 6u R (shear, two products, differences); t itself rounds by u R.
 #pragma once
 #include <limits>
 
@@ -13,7 +13,7 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Rows of BvhNode::bounds by which a ray of these signs (bit 0: d.x < 0 …) enters boxes and leaves them.
+// Rows of BvhNode::bounds where a ray of these signs (bit 0: d.x < 0 …) enters and leaves boxes.
 struct SlabRows {
   std::size_t near[3], far[3];
 };
@@ -30,19 +30,19 @@ constexpr SlabRows kSlabRows[8] = {slab_rows(0), slab_rows(1), slab_rows(2), sla
                                    slab_rows(4), slab_rows(5), slab_rows(6), slab_rows(7)};
 
 struct BoxRay {
-  // t = plane · inverse − offset, along each axis, for the planes by which the ray enters and leaves.
+  // t = plane · inverse − offset along each axis, for the planes where the ray enters and leaves.
   Float4 inverse[3], near_offset[3], far_offset[3];
   const SlabRows* rows;
-  int exponent;  // boxes are entered at t · 2^exponent: keeps directions from 1e-45 to 1e38 in range
+  int exponent;  // boxes are entered at t · 2^exponent, which keeps directions from 1e-45 to 1e38 in range
 };
 
-// The greatest component of the direction d is between 2^-20 and 2^20, by amount.
+// The largest component of the direction d must have a magnitude between 2^-20 and 2^20.
 inline void make_box_ray(Float4 origin, Float4 d, Float4 low, Float4 high, BoxRay* r) {
-  // Parallel to a slab, or as good as: within t ≤ 2^20 R such a ray strays by 2^-40 R. No 0·∞ arises.
+  // Parallel to a slab, or nearly so: within t ≤ 2^20 R such a ray strays by 2^-40 R. No 0·∞ arises.
   Float4 inverse_size = Float4::splat(1) / max(abs(d), Float4::splat(0x1p-60f));
   Float4 inverse = copy_sign(inverse_size, d);
   Float4 reach = max(abs(low - origin), abs(high - origin));
-  // 2^-100 covers denormal rounding; it is relative to nothing, but boxes decide no result.
+  // 2^-100 covers denormal rounding. It is an absolute epsilon, but boxes decide no result.
   Float4 slack = (abs(origin) + Float4::splat(highest(reach))) * Float4::splat(0x1p-20f) + Float4::splat(0x1p-100f);
   Float4 offset = origin * inverse;
   slack = slack * inverse_size;
@@ -53,14 +53,14 @@ inline void make_box_ray(Float4 origin, Float4 d, Float4 low, Float4 high, BoxRa
   r->rows = &kSlabRows[signs(d) & 7];
 }
 
-// The distance up to which boxes have to be entered for hits up to t.
+// The distance up to which boxes must be entered to find all hits up to t.
 inline float box_limit(int exponent, float t) {
-  constexpr float kLeast = std::numeric_limits<float>::denorm_min();  // t may be rounded by half of it
+  constexpr float kLeast = std::numeric_limits<float>::denorm_min();  // t may be rounded by half of this
   return __builtin_expect(exponent == 0, 1) ? t : std::ldexp(t + kLeast, exponent) + std::numeric_limits<float>::min();
 }
 
-// Which children hold no hit up to `limit`; `enter`, none below 0, gets where each is entered.
-// Where a distance comes out as −0 it counts as negative, and no hit lies there.
+// The children without a hit up to `limit`; `enter` receives the distance at which each is entered, never negative.
+// A distance of −0 counts as negative: no hit lies there.
 inline Mask4 miss_boxes(const BoxRay& ray, const BvhNode& node, Float4 limit, Float4* enter) {
   const float* bounds = node.bounds[0];
   const SlabRows& rows = *ray.rows;

@@ -1,4 +1,4 @@
-// The oracle: every triangle, every time. What the other accelerators answer has to be the same bits.
+// The oracle: tests every triangle for every ray. The other accelerators must return the same bits.
 #include <limits>
 
 #include "accel/accel_list.h"
@@ -32,8 +32,8 @@ Status brute_adopt(Accel* accel, Array<const std::uint8_t> data) {
   return success();
 }
 
-// Calls visit(triangle index, crossing) for each crossing in (0, t_max) that the filter lets pass; stops when it
-// returns false.
+// Calls visit(triangle index, crossing) for each crossing in (0, t_max) that the filter accepts; stops when it returns
+// false.
 template <class Visit>
 void for_each_hit(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats, Visit visit) {
   ShearedRay sheared;

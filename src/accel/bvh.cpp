@@ -1,5 +1,5 @@
-// The two hierarchies of the list: `bvh`, the default, and for scenes that fill the memory `compact`, whose leaves have
-// no vertices.
+// The two hierarchies of the list: `bvh`, the default, and `compact`, whose leaves hold no vertices, for scenes that
+// fill the memory.
 #include "accel/bvh.h"
 
 #include "accel/accel_list.h"
@@ -18,7 +18,7 @@ constexpr const AccelTraversal* kBlockKernels[] = {&kBaselineKernels};
 constexpr const AccelTraversal* kCompactKernels[] = {&kBaselineCompactKernels};
 #endif
 
-// What AccelInfo wants, for one kind of leaves and the kernels of every instruction set.
+// The functions of AccelInfo for one kind of leaves, with the kernels of every instruction set.
 template <const LeafKind& kLeaves, const auto& kKernels>
 struct Hierarchy {
   static const AccelTraversal& kernels() { return *kKernels[static_cast<int>(active_isa())]; }
@@ -62,6 +62,6 @@ struct Hierarchy {
 
 const AccelInfo kBvhAccel = Hierarchy<kBlockLeaves, kBlockKernels>::info("bvh", "", kBvhMagic);
 const AccelInfo kCompactAccel = Hierarchy<kCompactLeaves, kCompactKernels>::info(
-    "compact", "16 bytes a triangle instead of 52, at 0.6 to 0.95 of the speed", kCompactMagic);
+    "compact", "16 bytes a triangle instead of 52, at 0.75 to 0.95 of the speed", kCompactMagic);
 
 }  // namespace pocketray

@@ -1,5 +1,5 @@
-// Adopts the bytes of a BVH from a file. They are hostile until checked: after this, no index leads out of the data, no
-// path is longer than the traversal stack, every vertex is the scene's and every box holds what is under it.
+// Adopts the bytes of a BVH from a file. They are hostile until checked. Afterwards no index leaves the data, no path
+// exceeds the traversal stack, every vertex is the scene's and every box encloses what is under it.
 #include <cstring>
 
 #include "accel/bvh.h"
@@ -11,7 +11,7 @@ struct Visit {
   std::uint32_t node, depth;
 };
 
-// What the walk has met so far: the next free numbers.
+// The next free numbers, as the walk assigns them.
 struct Walk {
   const LeafKind& kind;
   const std::uint8_t* data;
@@ -30,12 +30,12 @@ bool leaf_is_sound(const Walk& walk, std::uint32_t reference, const Box& box) {
     ids[i] = leaf_ids(walk.kind, leaf)[i] & ~kUnhittableBit;
     if (ids[i] >= walk.triangles.count) return false;
   }
-  TriangleBlock expected;  // the larger kind
+  TriangleBlock expected;  // the larger of the two kinds
   Box bounds = walk.kind.fill(walk.positions, walk.triangles, ids, count, &expected);
   return std::memcmp(&expected, leaf, walk.kind.bytes) == 0 && same_box(bounds, box);
 }
 
-// Checks the children of a node and appends the nodes among them to the stack.
+// Checks the children of a node and pushes the inner ones onto the stack.
 Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* stack_count) {
   const BvhNode& node = walk->bvh.nodes[visit.node];
   if (visit.depth > kBvhDepthMax)
@@ -69,7 +69,7 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
 
 }  // namespace
 
-// That every triangle is in some leaf, once, is not asked: a file that leaves one out shows a scene without it.
+// Whether every triangle is in exactly one leaf is not checked: a file that omits one shows a scene without it.
 Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data) {
   if (reinterpret_cast<std::uintptr_t>(data.data) % alignof(BvhNode) != 0)
     return failure("accelerator: not aligned to %zu bytes", alignof(BvhNode));

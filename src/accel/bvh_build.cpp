@@ -1,8 +1,8 @@
-// Builds the BVH from the top: a node takes a range of triangles and divides the part with the largest surface until it
-// has four. Ranges of few triangles go to a treelet, which becomes several nodes at once.
+// Builds the BVH top down: a node takes a range of triangles and divides the part with the largest surface until it has
+// four parts. Small ranges become treelets, each of several nodes built at once.
 //
-// Ours: every range has a number of leaves that it may take, little above what its triangles fill, and no division goes
-// beyond it. So memory stays below a bound that can be planned with.
+// Ours: every range has a budget of leaves, little more than its triangles fill, and no division exceeds it. So memory
+// has a bound that can be planned for.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -19,16 +19,17 @@ struct Task {
   std::uint32_t node, depth;
 };
 
-constexpr std::uint32_t kTrianglesPerSpareLeaf = 128;  // what leaves may be short of four; measured with bench_embree
+constexpr std::uint32_t kTrianglesPerSpareLeaf =
+    128;  // spare leaves, because not all hold four; measured with bench_embree
 
 constexpr std::size_t leaf_count_max(std::size_t triangles) {
   return leaves_for(static_cast<std::uint32_t>(triangles)) + triangles / kTrianglesPerSpareLeaf;
 }
-// Nodes above the treelets have four children, treelets or leaves at their ends. So with E ends there are (E - 1) / 3
-// of them, and an end of L leaves accounts for treelet_node_count(L) nodes (a leaf among such nodes for none) and a
-// third of one, which for the L that there are, 1 and at least 4, is at most 7/15 L. Where the root is a treelet, it
-// alone counts. None of that depends on where triangles lie: part_to_divide() has a part to divide until there are
-// four, divide_part() a division for it, and only what is left to choose follows the boxes.
+// Nodes above the treelets have four children; their subtrees end in treelets or leaves. With E ends there are (E - 1)
+// / 3 such nodes. An end of L leaves accounts for treelet_node_count(L) nodes (none for a leaf among such nodes) and a
+// third of a node above; for the values of L that occur, 1 and at least 4, the sum is at most 7/15 L. If the root is a
+// treelet, it is all there is. None of this depends on where triangles lie: part_to_divide() finds a part to divide
+// until there are four, divide_part() finds a division of it, and only the remaining choices depend on the boxes.
 constexpr std::size_t node_count_max(std::size_t leaves) { return 7 * leaves / 15 + 1; }
 constexpr bool ends_are_bounded() {
   for (std::size_t leaves = kSideLeavesMin; leaves <= kTreeletLeafMax; ++leaves)
@@ -38,22 +39,22 @@ constexpr bool ends_are_bounded() {
   return true;
 }
 static_assert(ends_are_bounded(), "as above");
-static_assert(kSideLeavesMin < kTreeletLeafMax / 3, "among three parts of more than a treelet one can be divided");
+static_assert(kSideLeavesMin < kTreeletLeafMax / 3, "of three parts larger than a treelet, one can be divided");
 static_assert(bvh_bytes(node_count_max(leaf_count_max(kTriangleCountMax)), leaf_count_max(kTriangleCountMax)) +
                       2 * kArenaAlignment <=
                   0xFFFFFFFFu,
-              "fits an address of 32 bits");
+              "fits into a 32-bit address space");
 
-// Levels of nodes under which n triangles surely fit when every range is halved: two halvings a level, rounding
-// included.
+// Levels of nodes that always suffice for n triangles when every range is halved: two halvings per level, including
+// rounding.
 std::uint32_t levels_when_halved(std::uint32_t n) {
   std::uint32_t levels = static_cast<std::uint32_t>(treelet_node_count(kTreeletLeafMax));
   for (std::uint64_t capacity = kTreeletMax; capacity < n; capacity *= 3) ++levels;
   return levels;
 }
 
-// The part to divide next: the one with the largest surface, or with the most triangles when the range is halved. -1
-// where none can be divided: never among fewer than four parts of more triangles than a treelet has.
+// The part to divide next: the one with the largest surface, or with the most triangles when ranges are halved. -1 if
+// none can be divided, which never happens with fewer than four parts larger than a treelet.
 int part_to_divide(const BuildPart* parts, int count, bool halve) {
   int best = -1;
   double best_weight = -1;
@@ -135,7 +136,7 @@ void build_lower(Builder* builder, const BuildPart& part, std::uint32_t root) {
   }
 }
 
-// Splits the task's range into the children of its node; the inner ones become tasks, of which the last is met next.
+// Divides the task's range into the children of its node; inner children become tasks, the last of which is next.
 std::uint32_t build_node(Builder* builder, const Task& task, Task* stack, std::uint32_t stack_count) {
   if (task.part.count == 0) {
     clear_node(builder, task.node);
@@ -179,7 +180,7 @@ void build_nodes(Builder* builder, const BuildPart& root) {
   }
 }
 
-// The boxes of all triangles that have vertices to speak of. Degenerate ones are kept: they may open up when refitted.
+// The boxes of all triangles with valid vertices. Degenerate ones are kept: they may become valid in a refit.
 std::uint32_t collect_primitives(const Accel& accel, BuildPrimitive* primitives) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < accel.triangles.count; ++i) {

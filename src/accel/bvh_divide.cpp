@@ -12,11 +12,11 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct BinDivision {
   double cost = kInfinite;
-  int axis = -1;  // -1: there is none
+  int axis = -1;  // -1: none
   std::uint32_t left_bins = 0, left_count = 0;
 };
 
-// Maps centroids to bins; scale is 0 on an axis where all centroids agree.
+// Maps centroids to bins; scale is 0 on an axis where all centroids coincide.
 struct BinMap {
   Float4 low, scale;
   float axis_low[4], axis_scale[4];
@@ -52,7 +52,7 @@ void add_to_bins(const BuildPrimitive& primitive, const BinMap& map, Bins* bins)
   }
 }
 
-// Neighbours go to bins of their own: they often share a bin, and would wait for one another.
+// Alternate primitives use separate bins: neighbours often share a bin, and each would wait for the one before it.
 void fill_bins(const BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, Bins* bins) {
   Bins odd;
   for (Bins* b : {bins, &odd})
@@ -68,7 +68,7 @@ void fill_bins(const BuildPrimitive* primitives, const BuildPart& part, const Bi
     }
 }
 
-// Both sides have to be one leaf or at least four.
+// Each side must be one leaf or at least four.
 bool side_is_allowed(std::uint32_t count) {
   return count > 0 && (leaves_for(count) == 1 || leaves_for(count) >= kSideLeavesMin);
 }
@@ -77,7 +77,7 @@ bool division_is_allowed(const BuildPart& part, std::uint32_t left) {
          leaves_for(left) + leaves_for(part.count - left) <= part.leaf_max;
 }
 
-// The allowed count that is nearest to the one wished for.
+// The allowed count nearest to `wish`.
 std::uint32_t allowed_left_count(const BuildPart& part, std::uint32_t wish) {
   for (std::uint32_t step = 0;; ++step) {
     if (wish > step && division_is_allowed(part, wish - step)) return wish - step;
@@ -109,7 +109,7 @@ BinDivision bin_division(const Bins& bins, const BuildPart& part, const BinMap& 
   return best;
 }
 
-// Brings the primitives of the lower bins to the front, without a branch that depends on them.
+// Moves the primitives of the lower bins to the front, without data-dependent branches.
 void partition(BuildPrimitive* primitives, const BuildPart& part, const BinMap& map, const BinDivision& division) {
   BuildPrimitive *first = primitives + part.begin, *end = first + part.count, *middle = first;
   for (BuildPrimitive* p = first; p < end; ++p) {
@@ -128,7 +128,7 @@ struct CentroidLess {
   }
 };
 
-// Moves the boundary between two sides, taking the primitives that lie nearest to it.
+// Moves the boundary between two sides, taking the primitives nearest to it.
 void move_boundary(BuildPrimitive* primitives, const BuildPart& part, int axis, std::uint32_t from, std::uint32_t to) {
   BuildPrimitive* first = primitives + part.begin;
   for (; from < to; ++from)

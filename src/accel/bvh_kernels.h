@@ -1,11 +1,11 @@
-// The traversals of the BVH, compiled once per instruction set (base/isa.h) by bvh_kernels_*.cpp. All give the same
+// The traversals of the BVH, compiled once per instruction set (base/isa.h) by bvh_kernels_*.cpp. All return the same
 // bits.
 #pragma once
 #include "accel/accel.h"
 
 namespace pocketray {
 
-// `bvh`'s, and `compact`'s where the name says so.
+// For `bvh` and for `compact`.
 extern const AccelTraversal kBaselineKernels, kBaselineCompactKernels;
 #if defined(__x86_64__)
 extern const AccelTraversal kAvx2Kernels, kAvx2CompactKernels, kAvx512Kernels, kAvx512CompactKernels;

@@ -1,4 +1,4 @@
-// The table of one compilation's kernels for one kind of hierarchy. See bvh_kernels.h.
+// The kernel table of one compilation for one kind of hierarchy. See bvh_kernels.h.
 #pragma once
 #include "accel/bvh_kernels.h"
 #include "accel/bvh_packet_entry.h"

@@ -4,8 +4,8 @@
 namespace pocketray {
 namespace {
 
-// The vertices of a triangle, and whether a ray can hit it; all in the origin where they are not valid. Adds valid ones
-// to the box.
+// Fetches the vertices of a triangle; returns whether a ray can hit it. Invalid triangles are moved to the origin;
+// valid ones are added to the box.
 bool fetch_triangle(Array<const Vec3> positions, const Triangle& triangle, Vec3 p[3], Box* box) {
   bool valid = has_valid_vertices(positions, triangle);
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -15,7 +15,7 @@ bool fetch_triangle(Array<const Vec3> positions, const Triangle& triangle, Vec3 
   return valid && !is_degenerate(p[0], p[1], p[2]);
 }
 
-// Lanes without a triangle and triangles that cannot be hit become points, which no ray hits.
+// Unused lanes and unhittable triangles become points, which no ray hits.
 Box fill_block(Array<const Vec3> positions, Array<const Triangle> triangles, const std::uint32_t* ids,
                std::uint32_t count, void* leaf) {
   TriangleBlock* block = static_cast<TriangleBlock*>(leaf);

@@ -1,4 +1,4 @@
-// How near the triangles come to a point.
+// Distance from a point to the nearest triangle.
 #include <limits>
 
 #include "accel/bvh.h"

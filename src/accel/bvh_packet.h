@@ -1,5 +1,5 @@
-// Rays from one point walk the BVH together, as the pyramid over the window that holds them. Like every kernel it is
-// compiled once per instruction set, each time in a namespace of its own.
+// Rays from one point traverse the BVH together, as the pyramid over the window that contains them. Like every kernel,
+// compiled once per instruction set, in a namespace of its own.
 #pragma once
 #include <utility>
 
@@ -9,8 +9,8 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// Mask of the children that the pyramid meets; `depth` gets where they begin. What the bounds on depth exclude is left
-// to branches, here and in leaves: they are predicted, where a mask would have to wait for the last hit.
+// Mask of the children that the pyramid meets; `depth` receives where they begin. Depth bounds are tested with
+// branches, here and in leaves: branches are predicted, while a mask would wait for the last hit.
 inline unsigned enter_boxes(const Packet& p, const BvhNode& node, float* depth) {
   const float *low_x = node.bounds[p.kx], *low_y = node.bounds[p.ky], *low_z = node.bounds[p.kz];
   const float *high_x = node.bounds[3 + p.kx], *high_y = node.bounds[3 + p.ky], *high_z = node.bounds[3 + p.kz];

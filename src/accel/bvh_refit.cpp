@@ -9,7 +9,7 @@ void bvh_refit(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data) {
   CHECK_EQ(bvh.header->triangle_count, accel->triangles.count);
   CHECK_EQ(bvh.header->magic, kind.magic);
   std::uint8_t* leaves = data.data + bvh_bytes(bvh.header->node_count, 0);
-  // Children come after their parents: from the last node to the first, every child is done before it is needed.
+  // Children come after their parents: from the last node to the first, every child is updated before its parent.
   for (std::uint32_t i = bvh.header->node_count; i-- > 0;) {
     BvhNode& node = bvh.nodes[i];
     for (int lane = 0; lane < 4 && node.child[lane] != kNoChild; ++lane) {

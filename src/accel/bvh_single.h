@@ -1,5 +1,5 @@
-// Single rays walk the BVH, four boxes or four triangles at a time: for the closest hit in the order in which they
-// enter the boxes, for any hit in the order of the children. Part of the kernels: see bvh_kernels.h.
+// Single rays traverse the BVH four boxes or four triangles at a time: front to back for the closest hit, in the order
+// of the children for any hit. Part of the kernels: see bvh_kernels.h.
 #pragma once
 #include <cstring>
 
@@ -17,18 +17,18 @@ inline void add_counts(const Counts& counts, TraceStats* stats) {
   if (stats) stats->nodes += counts.nodes, stats->triangles += counts.triangles;
 }
 
-// A ray made ready, and the best hit so far.
+// A ray prepared for traversal, and its best hit so far.
 struct Search {
   LeafRay leaf;
-  const HitFilter* filter;  // with an accept()
+  const HitFilter* filter;  // accept() is not null
   float t_max;
-  float t;  // of the best hit; t_max where there is none
+  float t;  // of the best hit; t_max if none
   std::uint32_t triangle;
   double b, c, sum;  // its weights; with a filter …
-  float u, v;        // … instead, divided already
+  float u, v;        // … the quotients instead
 };
 
-// False where there is nothing to hit.
+// False if there is nothing to hit.
 inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* filter, Search* search, BoxRay* box) {
   Float4 origin = Float4::load3(&ray.origin.x), d = Float4::load3(&ray.direction.x), amount = abs(d);
   Float4 low = Float4::load3(&accel.bounds.low.x), high = Float4::load3(&accel.bounds.high.x);
@@ -56,8 +56,8 @@ inline bool start_search(const Accel& accel, const Ray& ray, const HitFilter* fi
 
 inline unsigned lanes_in_use(std::uint32_t leaf_child) { return 15u >> (4 - leaf_triangle_count(leaf_child)); }
 
-// Of the lanes that pass, takes what is nearer than the best hit so far. Returns whether there was any. A function of
-// its own, to leave the registers to the nodes.
+// Takes the best hit of the passing lanes if it is better than the one so far. Returns whether it was. A separate
+// function, which leaves the registers to the node loop.
 template <bool kFiltered>
 __attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& block, unsigned pass,
                                            unsigned doubtful) {
@@ -82,7 +82,7 @@ __attribute__((noinline)) bool settle_leaf(Search* search, const TriangleBlock& 
   return better;
 }
 
-// Whether any triangle in the lanes that pass is hit in (0, t_max).
+// Whether any triangle in the passing lanes is hit in (0, t_max).
 template <bool kFiltered>
 __attribute__((noinline)) bool any_crossing(const Search& search, const TriangleBlock& block, unsigned pass,
                                             unsigned doubtful) {
@@ -94,7 +94,7 @@ __attribute__((noinline)) bool any_crossing(const Search& search, const Triangle
   });
 }
 
-// A child to be visited: where it is entered, above its reference. No distance is negative, so words sort as distances.
+// A child to visit: its entry distance, above its reference. No distance is negative, so words sort like distances.
 using Entry = std::uint64_t;
 inline Entry make_entry(float enter, std::uint32_t child) {
   std::uint32_t distance;
@@ -107,7 +107,7 @@ inline void sort_two(Entry* a, Entry* b) {
   *a = low, *b = high;
 }
 
-// Pushes the entered children, at least two, but for the nearest, the farthest first. Returns the nearest.
+// Pushes all entered children (at least two) but the nearest, farthest first. Returns the nearest.
 inline std::uint32_t push_farther(const BvhNode& node, unsigned mask, const float* enter, Entry** stack) {
   auto take = [&] {
     int lane = __builtin_ctz(mask);
@@ -137,7 +137,7 @@ inline void search_closest(const Tree& bvh, const BoxRay& box, Search* search, T
   TriangleBlock scratch;
   Entry stack[kBvhStackSize], *top = stack;
   Float4 limit = Float4::splat(box_limit(box.exponent, search->t));
-  Entry last = make_entry(first(limit), ~0u);  // what is worth a visit is not above
+  Entry last = make_entry(first(limit), ~0u);  // entries above this are not worth a visit
   std::uint32_t child = 0;
   for (;;) {
     while (__builtin_expect(!(child & kLeafBit), 1)) {

@@ -1,4 +1,5 @@
-// What the kernels walk: the nodes and leaves of either kind of hierarchy. Part of the kernels: see bvh_kernels.h.
+// The trees that kernels traverse: the nodes and leaves of either kind of hierarchy. Part of the kernels: see
+// bvh_kernels.h.
 #pragma once
 #include "accel/bvh.h"
 #include "base/simd.h"
@@ -11,7 +12,7 @@ inline void prefetch_node(const BvhNode& node) {
   __builtin_prefetch(first), __builtin_prefetch(first + 64);
 }
 
-// Of `bvh`.
+// `bvh`.
 struct BlockTree {
   const BvhNode* nodes;
   const TriangleBlock* leaves;
@@ -19,9 +20,9 @@ struct BlockTree {
     BvhView bvh(accel.data.data);
     nodes = bvh.nodes, leaves = bvh.leaves;
   }
-  // The triangles of a child that is a leaf, in `scratch` unless they lie in the leaf.
+  // The triangles of a leaf child, in `scratch` unless the leaf holds them.
   const TriangleBlock& leaf(std::uint32_t child, TriangleBlock*) const { return leaves[child & kLeafIndexMask]; }
-  // Starts to fetch what a child reference stands for.
+  // Prefetches a child.
   void prefetch(std::uint32_t child) const {
     if (!(child & kLeafBit)) return prefetch_node(nodes[child]);
     const char* first = reinterpret_cast<const char*>(&leaves[child & kLeafIndexMask]);
@@ -29,7 +30,7 @@ struct BlockTree {
   }
 };
 
-// What cannot be hit becomes a point, which no ray hits. Its vertices may be none of the mesh.
+// Replaces unhittable triangles, whose vertices may not exist in the mesh, by points, which no ray hits.
 __attribute__((noinline)) inline void gather_hittable(const Vec3* positions, const Triangle* triangles,
                                                       const CompactLeaf& leaf, TriangleBlock* block) {
   for (int lane = 0; lane < 4; ++lane) {
@@ -62,7 +63,7 @@ inline const TriangleBlock& gather_leaf(const Vec3* positions, const Triangle* t
   return *block;
 }
 
-// Of `compact`.
+// `compact`.
 struct CompactTree {
   const BvhNode* nodes;
   const CompactLeaf* leaves;

@@ -10,17 +10,17 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Nodes of four children are full when halves of a and b leaves can be forests that need no node with an empty lane.
-// As a forest of k roots with k = L modulo 3 a subtree of L leaves needs (L - k) / 3 nodes of four children and none
-// else. Its halves can always be such forests with k roots together, but where one L is a multiple of three and the
-// other one is that or leaves the remainder two.
+// Nodes of four children are full if the halves of a and b leaves can be forests without empty lanes. A subtree of L
+// leaves can be a forest of k roots, k = L modulo 3, with (L - k) / 3 nodes, all of four children. Its halves can
+// always be such forests with k roots in total, unless one L is a multiple of three and the other is one, too, or
+// leaves the remainder two.
 constexpr bool halves_are_full(std::uint32_t a, std::uint32_t b) {
   return a % 3 == 1 || b % 3 == 1 || (a % 3 == 2 && b % 3 == 2);
 }
 
-// The proof that a treelet of L leaves becomes at most treelet_node_count(L) nodes, whatever its boxes are. nodes[L][r]
-// bounds what a subtree of L leaves needs below or as up to r roots, for the worst of the divisions that are allowed:
-// choose_roots() takes the fewest nodes, of the subtree as one root or of its halves with r roots between them.
+// Proves that a treelet of L leaves becomes at most treelet_node_count(L) nodes, whatever its boxes. nodes[L][r] bounds
+// the nodes that a subtree of L leaves needs as up to r roots, for the worst allowed division: choose_roots() takes the
+// fewest nodes, with the subtree as one root or its halves with r roots between them.
 struct TreeletBound {
   std::uint32_t nodes[kTreeletLeafMax + 1][5] = {};
   constexpr TreeletBound() {
@@ -56,7 +56,7 @@ struct SweepDivision {
   std::uint32_t left_count = 0;
 };
 
-// Unsigned integers that sort as the floats do.
+// Unsigned integers that sort like floats.
 std::uint32_t sort_key(float f) {
   std::uint32_t bits;
   f += 0.0f;  // -0 is 0
@@ -74,13 +74,13 @@ void sort_primitives(Treelet* treelet, std::uint32_t count) {
   }
 }
 
-// Whether a division leaves full leaves, and lets nodes be full: see halves_are_full().
+// Whether a division leaves full leaves and allows full nodes: see halves_are_full().
 bool side_by_side_is_full(std::uint32_t left, std::uint32_t right) {
   std::uint32_t left_leaves = leaves_for(left), right_leaves = leaves_for(right);
   return left_leaves + right_leaves == leaves_for(left + right) && halves_are_full(left_leaves, right_leaves);
 }
 
-// The cheapest full division of a node, among all positions on all axes. There is one: four primitives on the left.
+// The cheapest full division of a node, over all positions on all axes. One exists: four primitives on the left.
 SweepDivision sweep(const Treelet& treelet, const TreeletNode& node) {
   SweepDivision best;
   double right_cost[kTreeletMax];
@@ -105,7 +105,7 @@ SweepDivision sweep(const Treelet& treelet, const TreeletNode& node) {
   return best;
 }
 
-// Brings the primitives of the left half to the front in the orders of all axes.
+// Moves the primitives of the left half to the front of the orders of all axes.
 void partition_orders(Treelet* treelet, const TreeletNode& node, const SweepDivision& division) {
   std::uint8_t in_left[kTreeletMax] = {0};
   for (std::uint32_t i = 0; i < division.left_count; ++i) in_left[treelet->order[division.axis][node.begin + i]] = 1;
@@ -141,13 +141,13 @@ void divide_node(Treelet* treelet, TreeletNode* node) {
   node->right = add_node(treelet, node->begin + division.left_count, node->count - division.left_count);
 }
 
-// What roots cost: the fewest nodes first, which keeps to the planned memory, then the least surface. Two numbers and
-// no sum of them: where all boxes are points or lines, there is no surface to weigh nodes by.
+// Compares the cost of roots: fewest nodes first, which keeps to the planned memory, then least surface. The two are
+// not added up: if all boxes are points or lines, there is no surface to weigh nodes by.
 bool is_cheaper(const TreeletCost& a, const TreeletCost& b) {
   return a.node_count != b.node_count ? a.node_count < b.node_count : a.surface < b.surface;
 }
 
-// The cheapest ways to stand for a subtree by one to four roots, from those of its halves [Wald, Benthin & Boulos 2008,
+// The cheapest ways to represent a subtree by one to four roots, from those of its halves [Wald, Benthin & Boulos 2008,
 // "Getting Rid of Packets", sec. 3.2].
 void choose_roots(TreeletNode* node, const Treelet& treelet) {
   double area = half_area(node->box);

@@ -1,4 +1,4 @@
-// Packets for accelerators that have none of their own: one ray after the other.
+// Packets for accelerators without packet traversal: one ray after the other.
 #pragma once
 #include "accel/accel.h"
 #include "accel/packet.h"

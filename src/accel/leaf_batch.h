@@ -1,8 +1,8 @@
 // The rays of a packet against a few leaves. Part of the kernels: see bvh_packet.h.
 //
-// Leaves that are small in the plane are searched in steps, each over all of them: which rays lie in their bounds,
-// which of these pass the float test of a triangle, what those hit. A step's loops do not wait for one another's
-// results, as they would leaf by leaf.
+// Leaves whose projection is small are searched in steps, each over all leaves: find the rays in their bounds, run the
+// float test of a triangle on these, settle the hits of those that pass. The iterations of a step do not wait for each
+// other's results, as they would leaf by leaf.
 #pragma once
 #include "accel/bvh.h"
 #include "accel/packet_leaf.h"
@@ -17,10 +17,10 @@ struct LeafBatch {
   const TriangleBlock* block[kLeavesAtOnce];
   unsigned in_use[kLeavesAtOnce];  // lanes that hold triangles
   LeafProjection projection[kLeavesAtOnce];
-  TriangleBlock scratch[kLeavesAtOnce];  // of leaves whose triangles are fetched
+  TriangleBlock scratch[kLeavesAtOnce];  // for leaves whose triangles are fetched
 };
 
-// Rays from `first` on that may hit a leaf; a ray and a lane of a leaf that passed.
+// RayTest: rays from `first` on that may hit a leaf. Candidate: a ray and a lane of a leaf that passed the float test.
 struct RayTest {
   std::uint8_t leaf, first;
 };
@@ -29,11 +29,11 @@ struct Candidate {
   bool sure;
 };
 
-// Whether each ray in the leaf's bounds should be tested with all its triangles. That takes less time below some ten
-// rays (measured with bench_embree).
+// Whether to test each ray in the leaf's bounds with all four triangles, which is faster for fewer than about ten rays
+// (measured with bench_embree).
 inline bool is_small(const Packet& p, const LeafProjection& leaf) {
   float width = leaf.bounds.x_high - leaf.bounds.x_low, height = leaf.bounds.y_high - leaf.bounds.y_low;
-  width = width < 2 ? width : 2, height = height < 2 ? height : 2;  // no window is larger; nor is 0·∞ asked for
+  width = width < 2 ? width : 2, height = height < 2 ? height : 2;  // no window is larger; avoids 0·∞
   return !leaf.behind && width * height * 1.5f <= p.half_x * p.half_y;
 }
 
@@ -61,7 +61,7 @@ int list_tests(const Packet& p, const LeafProjection& leaf, int index, RayTest* 
   return count;
 }
 
-// The float test of cross_triangle(): kLanes/4 rays from `first` on and the leaf's four triangles.
+// The float test of cross_triangle(): kLanes/4 rays from `first` on against the leaf's four triangles.
 template <int kLanes>
 Passing test_rays(const Packet& p, const LeafProjection& leaf, int first) {
   using F = typename Lanes<kLanes>::Floats;

@@ -1,5 +1,4 @@
-// The triangles of a leaf as they appear in the plane at depth 1, four at a time. Part of the kernels: see
-// bvh_packet.h.
+// The triangles of a leaf projected to the plane at depth 1, four at a time. Part of the kernels: see bvh_packet.h.
 #pragma once
 #include "accel/packet.h"
 #include "accel/triangle.h"
@@ -7,15 +6,15 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// The lines of the edges: x·qx + y·qy + z is the edge function of a ray q, but for its error.
+// Lines of the edges: x·qx + y·qy + z is the edge function of a ray q, up to its error.
 struct EdgeLines {
   alignas(16) float x[3][4], y[3][4], z[3][4];
 };
 
 struct LeafProjection {
   unsigned lanes;   // triangles that may meet the packet's window
-  unsigned behind;  // those with a vertex at or behind the origin: their projection has no bounds
-  Window bounds;    // of all lanes together, where none is behind
+  unsigned behind;  // with a vertex at or behind the origin: their projection is unbounded
+  Window bounds;    // of all lanes together, if none is behind
   float nearest;    // depth of the nearest lane
   alignas(16) float x_low[4], x_high[4], y_low[4], y_high[4], near[4];
   alignas(16) float x[3][4], y[3][4], depth[3][4];  // vertices relative to the origin
@@ -24,10 +23,10 @@ struct LeafProjection {
   alignas(16) float error[4];
 };
 
-// What an edge function may err by, here or in the decision of cross_triangle(). With u = 2^-24, that decision is exact
-// for vertices that are off by less than 4uM, M = |x| + |y| + 2|z|, and the vertices here are off by less than that, so
-// the value is by 16u M S, where S bounds |x| + |y| as seen from any ray of the window; sums and products add 8u S².
-// The constant covers underflow: it is relative to nothing, but says no more than that cross_triangle() shall decide.
+// Bound on the error of an edge function, here or in the decision of cross_triangle(). With u = 2^-24, that decision is
+// exact for vertices displaced by less than 4uM, M = |x| + |y| + 2|z|, and the vertices here are displaced by less than
+// that, so the value errs by 16u M S, where S bounds |x| + |y| as seen from any ray of the window; sums and products
+// add 8u S². The constant covers underflow: it is absolute, but can only leave more decisions to cross_triangle().
 inline Float4 edge_error(const Packet& p, const Float4 (&x)[3], const Float4 (&y)[3], const Float4 (&depth)[3]) {
   Float4 aside = max(max(abs(x[0]) + abs(y[0]), abs(x[1]) + abs(y[1])), abs(x[2]) + abs(y[2]));
   Float4 along = max(max(abs(depth[0]), abs(depth[1])), abs(depth[2]));
@@ -35,7 +34,7 @@ inline Float4 edge_error(const Packet& p, const Float4 (&x)[3], const Float4 (&y
   return s * m * Float4::splat(0x1p-19f) + Float4::splat(0x1p-140f);
 }
 
-// Fills all but the edges.
+// Computes everything but the edges.
 inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjection* leaf) {
   const Float4 tiny = Float4::splat(std::numeric_limits<float>::min());
   Float4 px[3], py[3], depth[3];
@@ -63,7 +62,7 @@ inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjec
   leaf->nearest = lowest(select(alive, near, infinity));
 }
 
-// Fills the edges, as seen from the middle of the window.
+// Computes the edges, as seen from the middle of the window.
 inline void find_edges(const Packet& p, LeafProjection* leaf) {
   Float4 x[3], y[3], depth[3];
   for (int i = 0; i < 3; ++i) {
@@ -81,17 +80,17 @@ inline void find_edges(const Packet& p, LeafProjection* leaf) {
   leaf->has_edges = true;
 }
 
-// The least and the greatest of three edge functions.
+// Smallest and largest of three edge functions.
 template <class F>
 struct EdgeRange {
   F low, high;
 };
 
-// Masks of the lanes that may be hits and of those about which there is no doubt.
+// Masks of the lanes that may be hits and of those that certainly are.
 struct Passing {
   unsigned pass, sure;
 };
-// From edge functions that may err by `error`; `alive` are the lanes that are asked about.
+// Judges edge functions with an error up to `error`; `alive` are the lanes in question.
 template <class F, class Mask>
 inline Passing judge(const EdgeRange<F>& e, F error, Mask alive) {
   F minus = F::splat(0) - error;
@@ -110,7 +109,7 @@ inline EdgeRange<F> edge_range(const EdgeLine<F> (&line)[3], F qx, F qy) {
   return {min(min(e[0], e[1]), e[2]), max(max(e[0], e[1]), e[2])};
 }
 
-// One lane of the projection, in all lanes.
+// One triangle of the projection, broadcast to all lanes.
 template <class F>
 struct SplatTriangle {
   EdgeLine<F> line[3];
@@ -125,7 +124,7 @@ inline SplatTriangle<F> splat_triangle(const LeafProjection& leaf, int lane) {
   return t;
 }
 
-// Four times a rectangle.
+// Four rectangles.
 struct Bounds4 {
   Float4 x_low, x_high, y_low, y_high;
 };
@@ -134,7 +133,7 @@ inline Mask4 meets(const Bounds4& b, const Windows4& w) {
          (b.y_low <= Float4::load(w.y_high)) & (Float4::load(w.y_low) <= b.y_high);
 }
 
-// Mask of the windows with a point where the triangle may be hit; *inside are those where it surely is everywhere.
+// Mask of the windows in which the triangle may be hit at some point; *inside: certainly hit at every point.
 inline unsigned cross_windows(const Packet& p, const SplatTriangle<Float4>& t, const Windows4& w, unsigned* inside) {
   Float4 x = Float4::load(w.x) - p.middle4[0], y = Float4::load(w.y) - p.middle4[1], half_x = Float4::load(w.half_x),
          half_y = Float4::load(w.half_y);

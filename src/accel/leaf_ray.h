@@ -1,9 +1,9 @@
 // A ray against the four triangles of a leaf. Part of the kernels: see bvh_kernels.h.
 //
-// The edge functions of all four are found in float, as cross_triangle() has them; where none is zero their signs
-// decide. What a triangle's depth along the dominant axis excludes, or for a shadow ray settles, ends there: a hit lies
-// between the nearest and the farthest vertex. Only what is left is placed exactly, in double, as intersect_triangle()
-// does: t, u and v are its bits.
+// The edge functions of all four are computed in float as in cross_triangle(); unless one is zero, their signs decide.
+// Triangles whose depth along the dominant axis excludes a hit (or, for a shadow ray, settles one) are done with: a hit
+// lies between the nearest and the farthest vertex. Only the rest is located exactly, in double, as in
+// intersect_triangle(), with the same bits of t, u and v.
 #pragma once
 #include <limits>
 
@@ -12,23 +12,23 @@
 namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
-// The axes, the dominant one of the direction last, and their offsets in the rows of a vertex.
+// The axes, the direction's dominant one last, and their offsets in the rows of a vertex.
 struct Axes {
   int x, y, z;
   std::size_t row_x, row_y, row_z;
 };
 constexpr Axes kAxesX = {1, 2, 0, 4, 8, 0}, kAxesY = {2, 0, 1, 8, 0, 4}, kAxesZ = {0, 1, 2, 0, 4, 8};
-// By which components are the greatest: the last of them dominates, as in make_sheared_ray().
+// By the set of largest components; the last of them dominates, as in make_sheared_ray().
 constexpr Axes kAxesByGreatest[8] = {kAxesX, kAxesX, kAxesY, kAxesY, kAxesZ, kAxesZ, kAxesZ, kAxesZ};
 
 struct LeafRay {
   Float4 origin_x, origin_y, origin_z, shear_x, shear_y;  // along those axes
-  Float4 depth_low, depth_high;                           // what a triangle must overlap to hold a hit that counts
+  Float4 depth_low, depth_high;                           // a triangle must overlap this to hold a hit that counts
   float origin[3], direction[3];
   const Axes* axes;
 };
 
-// Hits at depths beyond those for t are farther than t. 2^-20 is more than the rounding of depths, of t and of this.
+// Hits at depths beyond those for t are farther than t. 2^-20 exceeds the rounding of depths, of t and of this bound.
 inline void bound_depth(LeafRay* ray, float t) {
   constexpr float kSlack = 0x1p-20f;
   float far = (t + std::numeric_limits<float>::denorm_min()) * std::fabs(ray->direction[2]) * (1 + kSlack);
@@ -48,12 +48,13 @@ inline void make_leaf_ray(const Ray& ray, const Axes* axes, LeafRay* r) {
   bound_depth(r, ray.t_max);
 }
 
-// Depths between which all of a triangle certainly lies at t in (0, t_max).
+// A triangle that lies entirely between these depths certainly has t in (0, t_max).
 struct SureDepths {
   Float4 low, high;
 };
 inline SureDepths sure_depths(float t_max, float direction_z) {
-  // Within these t neither overflows nor rounds to 0 or to t_max. No denormals here: they take the CPU long.
+  // Within these t neither overflows nor rounds to 0 or to t_max. Denormals are excluded because they slow the CPU
+  // down.
   constexpr float kMax = std::numeric_limits<float>::max(), kTiny = 0x1p-80f;
   float size = std::fabs(direction_z), far = (t_max < kMax ? t_max : kMax) * size * (1 - 0x1p-20f);
   float near = (size + 1) * kTiny;
@@ -63,9 +64,9 @@ inline SureDepths sure_depths(float t_max, float direction_z) {
 
 // Masks of lanes.
 struct LeafLanes {
-  unsigned pass;      // the edge functions and the depth do not exclude a hit
-  unsigned doubtful;  // where it passes: an edge function is zero
-  unsigned sure;      // where it passes: certainly hit in (0, t_max)
+  unsigned pass;      // edge functions and depth do not exclude a hit
+  unsigned doubtful;  // passes, but an edge function is zero
+  unsigned sure;      // passes, and is certainly hit in (0, t_max)
 };
 
 // A vertex of several triangles, relative to the origin.
@@ -98,7 +99,7 @@ inline LeafLanes test_leaf(const LeafRay& ray, const SureDepths* sure, const Tri
   return lanes;
 }
 
-// exact_weights() and place_crossing() of a triangle of the leaf. False where the weights do not agree in sign.
+// exact_weights() and place_crossing() of a triangle of the leaf. False if the weights differ in sign.
 inline bool place_in_leaf(const LeafRay& ray, const TriangleBlock& block, int lane, Crossing* crossing) {
   double ox = ray.origin[0], oy = ray.origin[1], oz = ray.origin[2];
   double dx = ray.direction[0], dy = ray.direction[1], dz = ray.direction[2];
@@ -110,7 +111,7 @@ inline bool place_in_leaf(const LeafRay& ray, const TriangleBlock& block, int la
   };
   Corner<double> p = corner(0), q = corner(1), r = corner(2);
   EdgeValues<double> w = edge_values<double>(p.x, p.y, q.x, q.y, r.x, r.y);
-  // One branch: the side of a triangle that a ray meets cannot be foreseen.
+  // One branch: which side of a triangle a ray meets is unpredictable.
   bool above = (w.a >= 0) & (w.b >= 0) & (w.c >= 0), below = (w.a <= 0) & (w.b <= 0) & (w.c <= 0);
   if (above == below) return false;
   double sum = w.a + w.b + w.c;
@@ -118,7 +119,7 @@ inline bool place_in_leaf(const LeafRay& ray, const TriangleBlock& block, int la
   return true;
 }
 
-// One triangle by itself: where an edge function is zero or rounding makes decision and weights disagree.
+// Tests one triangle by itself, where an edge function is zero or rounding makes decision and weights disagree.
 __attribute__((noinline)) inline bool cross_alone(const LeafRay& ray, const TriangleBlock& block, int lane,
                                                   Crossing* crossing) {
   const Axes& k = *ray.axes;
@@ -130,7 +131,7 @@ __attribute__((noinline)) inline bool cross_alone(const LeafRay& ray, const Tria
                         block_vertex(block, 2, lane), crossing);
 }
 
-// Calls visit(lane, crossing) for the lanes of the leaf that the ray crosses, until it returns true.
+// Calls visit(lane, crossing) for each lane that the ray crosses, until it returns true.
 template <class Visit>
 inline bool for_each_crossing(const LeafRay& ray, const TriangleBlock& block, unsigned pass, unsigned doubtful,
                               Visit visit) {

@@ -1,12 +1,12 @@
-// Rays from one point on their way through the BVH. Part of the kernels: see bvh_packet.h.
+// Rays from one point, prepared for traversal of the BVH. Part of the kernels: see bvh_packet.h.
 //
-// Seen along the dominant axis of their directions the rays are points q of the plane at depth 1, |q| ≤ 1, and so is
-// everything they can hit. Windows of the plane that hold such points decide what may be left out. Edge lines are
-// seen from the middle of the packet's window: coordinates there are small, and so are their rounding errors.
+// Seen along the dominant axis of their directions, the rays are points q of the plane at depth 1, |q| ≤ 1, and so is
+// everything they can hit. Windows of the plane that contain such points decide what can be skipped. Edge lines are
+// relative to the middle of the packet's window: coordinates there are small, and so are their rounding errors.
 //
-// How far the windows are widened: cross_triangle() takes a ray for a hit that passes the triangle by up to 4u of the
-// depth z at which its vertices lie (u = 2^-24: the shear, two products, a difference), that is by 4u in the plane.
-// Projections and pyramids round by a few u more. 16u = 2^-20 covers both.
+// How far the windows are widened: cross_triangle() accepts hits of rays that miss the triangle by up to 4u of the
+// depth z of its vertices (u = 2^-24: the shear, two products, a difference), which is 4u in the plane. Projections and
+// pyramids round by a few more u. 16u = 2^-20 covers both.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -25,7 +25,7 @@ struct Window {
   float x_low, x_high, y_low, y_high;
 };
 
-// Four of them, also by centre and half size.
+// Four rectangles, also as centre and half size.
 struct alignas(16) Windows4 {
   float x_low[4], x_high[4], y_low[4], y_high[4], x[4], y[4], half_x[4], half_y[4];
 };
@@ -40,32 +40,31 @@ inline Window hull(const Windows4& w) {
           highest(Float4::load(w.y_high))};
 }
 
-// The rays of a packet that share the dominant axis and sign of direction. A group is four of them, a block four
-// groups.
+// The rays of a packet with the same dominant axis and sign of direction. A group is four rays, a block four groups.
 struct Packet {
   int kx, ky, kz;
   float sign;  // of the directions along kz
   Vec3 origin;
   float t_max;
   const HitFilter* filter;
-  const float *direction_x, *direction_y, *direction_z;  // by kx, ky, kz; as many as the widest lanes want
+  const float *direction_x, *direction_y, *direction_z;  // by kx, ky, kz; padded for the widest lanes
   const std::uint8_t* place;                             // of a ray in the caller's arrays
   int count;                                             // a multiple of sixteen
   bool has_groups;
-  float all_far;  // bound on the depth of a hit that would count, for any ray
+  float all_far;  // bound on the depth of a hit that counts, for any ray
   float middle_x, middle_y, half_x, half_y;
-  Float4 sign4, origin4[3], middle4[2], half4[2];  // the same in all lanes; so is
-  Float4 window4[4];                               // the window of all rays: low and high x, low and high y
+  Float4 sign4, origin4[3], middle4[2], half4[2];  // the same value in all lanes
+  Float4 window4[4];                               // window of all rays, in all lanes: low and high x, low and high y
   alignas(64) float x[kPacketMax], y[kPacketMax];  // q: the shears of the ray, times sign
-  alignas(64) float far[kPacketMax];               // that bound for every ray; −∞ for what pads the last group
+  alignas(64) float far[kPacketMax];  // the same bound for each ray; −∞ in the padding of the last group
   alignas(64) float group_far[kPacketMax / 4];
-  // The nearest hits so far; t is t_max and triangle kNoTriangle where there is none.
+  // The nearest hits so far; without one, t is t_max and triangle kNoTriangle.
   alignas(64) float t[kPacketMax], u[kPacketMax], v[kPacketMax];
   alignas(64) std::uint32_t triangle[kPacketMax];
   Windows4 block, group[4];
 };
 
-// Depth that no hit at t exceeds, along a direction of that component.
+// Upper bound of the depth of hits at t along a direction with this component.
 inline float depth_bound(float t, float direction_z) {
   return (t + std::numeric_limits<float>::denorm_min()) * std::fabs(direction_z) * (1 + kPacketSlack);
 }
@@ -74,7 +73,7 @@ inline F depth_bound(F t, F direction_z) {
   return (t + F::splat(std::numeric_limits<float>::denorm_min())) * abs(direction_z) * F::splat(1 + kPacketSlack);
 }
 
-// From axes, origin and directions to everything but the groups.
+// Computes everything but the groups from axes, origin and directions.
 inline void prepare_packet(Packet* p) {
   Float4 x_low = Float4::splat(kInfinity), x_high = Float4::splat(-kInfinity), y_low = x_low, y_high = x_high;
   Float4 sign = Float4::splat(p->sign), far = x_high, t_max = Float4::splat(p->t_max);
@@ -104,7 +103,7 @@ inline void update_all_far(Packet* p) {
                            max(Float4::load(p->group_far + 8), Float4::load(p->group_far + 12))));
 }
 
-// What leaves need; made when the first one is met.
+// Data that only leaves need, computed at the first leaf.
 inline void prepare_groups(Packet* p) {
   p->has_groups = true;
   p->middle4[0] = Float4::splat(p->middle_x), p->middle4[1] = Float4::splat(p->middle_y);
@@ -112,7 +111,7 @@ inline void prepare_groups(Packet* p) {
   for (int g = 0; g < static_cast<int>(kPacketMax) / 4; ++g) {
     Windows4& w = p->group[g / 4];
     if (4 * g >= p->count) {
-      set_window(&w, g % 4, {4, 4, 4, 4});  // beyond all that is seen
+      set_window(&w, g % 4, {4, 4, 4, 4});  // outside everything visible
       p->group_far[g] = -kInfinity;
       store(p->far + 4 * g, Float4::splat(-kInfinity));
       continue;

@@ -1,8 +1,8 @@
 // The rays of a packet against one triangle. Part of the kernels: see bvh_packet.h.
 //
-// Windows and edge lines say which rays surely miss a triangle and which surely hit it; about the others, next to an
-// edge, cross_triangle() decides. Where a hit lies is computed as there, for several rays at once. So the answers are
-// those of single rays, bit for bit.
+// Windows and edge lines tell which rays certainly miss a triangle and which certainly hit it; cross_triangle() decides
+// the others, close to an edge. The hit is located with the same arithmetic, for several rays at once. So the answers
+// are those of single rays, bit for bit.
 #pragma once
 #include "accel/leaf_projection.h"
 
@@ -32,7 +32,7 @@ inline double all_lanes<double>(double x) {
   return x;
 }
 
-// exact_weights() of triangle.h, and what t is made of: t = depth / (sum · direction_z).
+// exact_weights() of triangle.h, and the parts of t: t = depth / (sum · direction_z).
 template <class D>
 struct Location {
   EdgeValues<D> weight;
@@ -50,7 +50,7 @@ inline Location<D> locate(const ExactTriangle& k, D dx, D dy, D dz) {
   return {w, w.a + w.b + w.c, w.a * z[0] + w.b * z[1] + w.c * z[2]};
 }
 
-// Takes a hit at t with weights b and c of their sum, if it counts. Returns whether it did.
+// Takes a hit at t, with b and c the unnormalised weights, if it counts. Returns whether it did.
 inline bool take_hit(Packet* p, int i, float t, double b, double c, double sum, std::uint32_t triangle) {
   if (!(t > 0 && (t < p->t[i] || (t == p->t[i] && triangle < p->triangle[i] && t < p->t_max)))) return false;
   float u = static_cast<float>(b / sum), v = static_cast<float>(c / sum);
@@ -60,7 +60,8 @@ inline bool take_hit(Packet* p, int i, float t, double b, double c, double sum, 
   return true;
 }
 
-// One ray and one triangle by the book: next to an edge, or where rounding makes decision and weights disagree.
+// One ray against one triangle with the full test: close to an edge, or if rounding makes decision and weights
+// disagree.
 inline bool settle_doubtful(Packet* p, const TriangleBlock& block, int lane, int i) {
   float dx = p->direction_x[i], dy = p->direction_y[i], dz = p->direction_z[i];
   ShearedRay ray = {p->origin, {}, p->kx, p->ky, p->kz, dx / dz, dy / dz};
@@ -72,7 +73,7 @@ inline bool settle_doubtful(Packet* p, const TriangleBlock& block, int lane, int
   return take_hit(p, i, crossing.t, crossing.b, crossing.c, crossing.sum, block.triangle[lane]);
 }
 
-// One ray that surely hits the triangle in a lane.
+// One ray that certainly hits the triangle in a lane.
 inline bool settle_ray(Packet* p, const TriangleBlock& block, int lane, int i) {
   double dz = p->direction_z[i];
   Location<double> at = locate<double>(exact_triangle(*p, block, lane), p->direction_x[i], p->direction_y[i], dz);
@@ -81,7 +82,7 @@ inline bool settle_ray(Packet* p, const TriangleBlock& block, int lane, int i) {
   return take_hit(p, i, t, at.weight.b, at.weight.c, at.sum, block.triangle[lane]);
 }
 
-// Several rays of which those of the mask pass, and surely hit but for the doubtful.
+// Several rays; those of the mask pass, and certainly hit unless doubtful.
 template <int kLanes>
 bool settle_rays(Packet* p, const TriangleBlock& block, int lane, const ExactTriangle& k, int first, unsigned mask,
                  unsigned doubtful) {

@@ -8,15 +8,15 @@ namespace pocketray {
 
 constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
 
-// Points origin + t·direction with 0 < t < t_max. The direction need not be unit; t counts in its lengths. A ray with a
-// non-finite origin or a zero or non-finite direction hits nothing (HARDCASES row 9).
+// Points origin + t·direction with 0 < t < t_max. The direction need not be unit; t is in units of its length. A ray
+// with a non-finite origin or a zero or non-finite direction hits nothing (HARDCASES row 9).
 struct Ray {
   Vec3 origin, direction;
   float t_max;
 };
 
-// Rays that share their origin, such as those of a block of pixels; neighbours should follow one another in squares of
-// four, of sixteen … (Morton order). Directions as in Ray, by axis.
+// Rays with a common origin, such as those of a block of pixels. Neighbours should be adjacent, in squares of four, of
+// sixteen … (Morton order). Directions as in Ray, by axis.
 constexpr std::uint32_t kPacketMax = 64;
 struct RayPacket {
   Vec3 origin;
@@ -29,8 +29,8 @@ inline Ray ray_of(const RayPacket& rays, std::uint32_t i) {
   return {rays.origin, {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]}, rays.t_max};
 }
 
-// Rays with origins and ends of their own; fast where they run close to one another, as to one light or along one
-// direction, and neighbours follow one another as in RayPacket.
+// Rays with individual origins and ends. Fast for coherent rays, such as those to one light or along one direction,
+// with neighbours adjacent as in RayPacket.
 struct SegmentPacket {
   std::uint32_t count;  // up to kPacketMax
   alignas(64) float origin[3][kPacketMax], direction[3][kPacketMax], t_max[kPacketMax];
@@ -53,12 +53,12 @@ struct Hit {
   std::uint32_t triangle = kNoTriangle;
 };
 
-// Work done, for --aov cost and bench; one per thread.
+// Work counters for --aov cost and bench; one per thread.
 struct TraceStats {
-  std::uint64_t nodes = 0, triangles = 0;  // boxes-of-four visited, triangles tested
+  std::uint64_t nodes = 0, triangles = 0;  // nodes of four boxes visited, triangles tested
 };
 
-// Decides whether a candidate hit counts; null means every one does. Must depend on its arguments alone.
+// Decides whether a candidate hit counts; null accepts all. Must depend on its arguments alone.
 struct HitFilter {
   bool (*accept)(const void* context, std::uint32_t triangle, float u, float v) = nullptr;
   const void* context = nullptr;

@@ -1,18 +1,18 @@
-// Shadow rays that run to one point or along one direction, on their way through the BVH together. Part of the kernels:
-// see bvh_shaft.h.
+// Shadow rays that run to one point or along one direction, prepared for joint traversal of the BVH. Part of the
+// kernels: see bvh_shaft.h.
 //
-// Such rays are points q of a plane: of the plane at depth 1 from the point they run to, or across the direction they
-// share. Depths are counted along their dominant axis from there on, against the rays, so that a ray begins at the
-// greatest of its depths. Boxes are rectangles of the plane; the shaft [Haines & Wallace 1994] of some rays is the
-// rectangle that holds them.
+// Such rays are points q of a plane: the plane at depth 1 from the point they run to, or across the direction they
+// share. Depths are counted along their dominant axis from there, against the rays, so that a ray begins at the largest
+// of its depths. Boxes are rectangles of the plane; the shaft [Haines & Wallace 1994] of some rays is the rectangle
+// that contains them.
 //
-// How far rectangles are widened: with Z the greatest coordinate of scene and origins as seen from the point, or from
-// the first origin, cross_triangle() takes a ray for a hit that passes the triangle by up to 4u of the depth at which
-// its vertices lie (u = 2^-24), at most 2Z; differences and slopes here err by less than 8u Z. 32u Z = 2^-19 Z covers
-// both. Rays need not meet in the point exactly: each coordinate of their ends may be off by `spread`, at the depth of
-// the point by twice that, as |q| ≤ 1. Rays that begin at depths near the spread are seen at q that err by more; eight
-// times the spread covers both. (Shading moves origins off their surfaces by a few ulp: that is all the spread there.)
-// The q themselves err by less than kPacketSlack.
+// How far rectangles are widened: let Z be the largest coordinate of scene and origins relative to the point, or to the
+// first origin. cross_triangle() accepts hits of rays that miss the triangle by up to 4u of the depth of its vertices
+// (u = 2^-24), at most 2Z; differences and slopes here err by less than 8u Z. 32u Z = 2^-19 Z covers both. Rays need
+// not meet in the point exactly: each coordinate of their ends may be off by `spread`, and by twice that at the depth
+// of the point, since |q| ≤ 1. Rays that begin at depths near the spread appear at q that err by more; eight times the
+// spread covers both. (Shading moves origins off their surfaces by a few ulp, which is all the spread there is.) The q
+// themselves err by less than kPacketSlack.
 #pragma once
 #include "accel/bvh.h"
 #include "accel/packet.h"
@@ -23,7 +23,7 @@ inline namespace POCKETRAY_ISA {
 
 constexpr int kRays = static_cast<int>(kPacketMax), kGroups = kRays / 4;
 
-// The rays of a packet that share dominant axis and sign of direction. Arrays by axis are by kx, ky, kz. A group is
+// The rays of a packet with the same dominant axis and sign of direction. Arrays by axis are by kx, ky, kz. A group is
 // four rays, a block four groups.
 struct Bundle {
   int kx, ky, kz;
@@ -33,17 +33,17 @@ struct Bundle {
   float middle[3];        // the point; else the first origin
   float slope[2];         // parallel: how x and y change with depth
   float slack;            // 2^-19 Z and eight times the spread
-  bool cubes_are_finite;  // of coordinates
+  bool cubes_are_finite;  // cubes of coordinates are finite
   const HitFilter* filter;
-  std::uint64_t open;  // rays not found to be blocked
+  std::uint64_t open;  // rays not yet found to be blocked
   std::uint8_t place[kRays];
   alignas(64) float origin[3][kRays], direction[3][kRays], t_max[kRays];
-  alignas(64) float shear_x[kRays], shear_y[kRays];  // as make_sheared_ray() has them
-  // Differences of coordinates along kz from the origin: where a hit counts, and where a triangle that lies between
-  // them surely is at t in (0, t_max).
+  alignas(64) float shear_x[kRays], shear_y[kRays];  // as in make_sheared_ray()
+  // Coordinate differences along kz from the origin: between hit_low and hit_high a hit counts; a triangle between
+  // sure_low and sure_high certainly has t in (0, t_max).
   alignas(64) float hit_low[kRays], hit_high[kRays], sure_low[kRays], sure_high[kRays];
   alignas(64) float x[kRays], y[kRays];  // q
-  alignas(64) float depth[kRays];        // where the ray begins; less than all others' where it hits nothing
+  alignas(64) float depth[kRays];        // where the ray begins; less than all others if it hits nothing
   alignas(64) float group_depth[kGroups];
   Windows4 block, group[4];
   Float4 window[4];  // of all rays, in all lanes: low and high x, low and high y
@@ -52,7 +52,7 @@ struct Bundle {
 
 inline int padded_count(const Bundle& b) { return (b.count + 15) & ~15; }
 
-// Finds out how the rays are bundled. False where they neither meet in a point nor run parallel.
+// Determines how the rays are bundled. False if they neither meet in a point nor run parallel.
 inline bool find_middle(Bundle* b) {
   Float4 spread = Float4::splat(0), reach = spread, longest = spread, turn = spread;
   Float4 first[3], end[3];
@@ -69,7 +69,7 @@ inline bool find_middle(Bundle* b) {
     longest = max(longest, Float4::load(b->t_max + i));
   }
   b->slope[0] = b->slope[1] = 0;
-  // Within that reach, the slack stays below no_child_box(), and more spread would leave little out.
+  // Within this reach the slack stays below no_child_box(); with more spread hardly anything could be skipped.
   b->converges =
       highest(longest) <= 1 && highest(reach) <= 8 * kCoordinateMax && highest(spread) <= highest(reach) * 0x1p-12f;
   b->slack = b->converges ? 8 * highest(spread) : 0;
@@ -79,7 +79,7 @@ inline bool find_middle(Bundle* b) {
   return true;
 }
 
-// Adds the greatest coordinate's share to the slack.
+// Adds the contribution of the largest coordinate to the slack.
 inline void set_slack(const Box& bounds, Bundle* b) {
   const int axes[] = {b->kx, b->ky, b->kz};
   Float4 reach = Float4::splat(0);
@@ -89,12 +89,12 @@ inline void set_slack(const Box& bounds, Bundle* b) {
     reach = max(reach, abs(Float4::splat(bounds.high[axes[k]]) - middle));
     for (int i = 0; i < padded_count(*b); i += 4) reach = max(reach, abs(Float4::load(b->origin[k] + i) - middle));
   }
-  // Up to there sums of products of an edge function, below 3e25, with depths stay below 2e38.
+  // Up to here the sums of products of an edge function, below 3e25, times depths stay below 2e38.
   b->cubes_are_finite = highest(reach) < 1e12f;
   b->slack += highest(reach) * 0x1p-19f + std::numeric_limits<float>::min();
 }
 
-// Within these depths t neither overflows nor rounds to 0 or to t_max. No denormals there: they take the CPU long.
+// Within these depths t neither overflows nor rounds to 0 or to t_max. Excludes denormals, which slow the CPU down.
 struct CertainDepths {
   Float4 near, far;
 };
@@ -104,7 +104,7 @@ inline CertainDepths certain_depths(Float4 t_max, Float4 direction_z) {
   return {(size + Float4::splat(1)) * tiny, select(tiny <= far, far, Float4::splat(0))};
 }
 
-// Windows of the groups, of the blocks and of all.
+// Windows of the groups, of the blocks and of all rays.
 inline void set_windows(Bundle* b) {
   constexpr Window kNowhere = {1e30f, -1e30f, 1e30f, -1e30f};
   b->all_depth = -kInfinity;
@@ -123,8 +123,8 @@ inline void set_windows(Bundle* b) {
   b->window[2] = Float4::splat(all.y_low), b->window[3] = Float4::splat(all.y_high);
 }
 
-// Fills everything from axes, filter, count, place and the padded origin, direction and t_max, for rays that have valid
-// origins and are of one class. False where they make no bundle.
+// Computes everything from axes, filter, count, place and the padded origin, direction and t_max, for rays of one class
+// with valid origins. False if they form no bundle.
 inline bool prepare_bundle(const Box& bounds, Bundle* b) {
   if (!find_middle(b)) return false;
   set_slack(bounds, b);
@@ -157,12 +157,12 @@ inline bool prepare_bundle(const Box& bounds, Bundle* b) {
   return true;
 }
 
-// Boxes as they appear in the plane, four a time, and their nearest depths.
+// Boxes projected to the plane, four at a time, and their nearest depths.
 struct Rectangles4 {
   Float4 x_low, x_high, y_low, y_high, near, far;
 };
 
-// Of the children of a node.
+// The children of a node.
 inline Rectangles4 project_children(const Bundle& b, const BvhNode& node) {
   auto row = [&](int side, int axis, int k) {
     return Float4::load(node.bounds[side + axis]) - Float4::splat(b.middle[k]);
@@ -171,7 +171,7 @@ inline Rectangles4 project_children(const Bundle& b, const BvhNode& node) {
   Float4 x_low = row(0, b.kx, 0) - slack, x_high = row(3, b.kx, 0) + slack;
   Float4 y_low = row(0, b.ky, 1) - slack, y_high = row(3, b.ky, 1) + slack;
   Float4 near = row(b.sign < 0 ? 0 : 3, b.kz, 2) * sign, far = row(b.sign < 0 ? 3 : 0, b.kz, 2) * sign;
-  Float4 deepest = min(far, Float4::splat(b.all_depth));  // beyond it rays have not begun
+  Float4 deepest = min(far, Float4::splat(b.all_depth));  // no ray has begun beyond it
   if (!b.converges) {
     Float4 slope_x = Float4::splat(b.slope[0]), slope_y = Float4::splat(b.slope[1]);
     Float4 x0 = slope_x * near, x1 = slope_x * deepest, y0 = slope_y * near, y1 = slope_y * deepest;

@@ -1,8 +1,8 @@
 // The rays of a bundle against a few leaves. Part of the kernels: see bvh_shaft.h.
 //
-// First which rays pass through the box of which leaf, then the float test of cross_triangle() for these, four
-// triangles of a leaf and kLanes/4 rays at once, last what that leaves open, by the book. The loops do not wait for
-// one another's results, as they would leaf by leaf.
+// First find which rays pass through the box of which leaf; then run the float test of cross_triangle() on these, four
+// triangles of a leaf and kLanes/4 rays at once; last settle the remaining doubts with the full test. The loops do not
+// wait for each other's results, as they would leaf by leaf.
 #pragma once
 #include "accel/leaf_projection.h"
 #include "accel/shaft.h"
@@ -11,20 +11,20 @@ namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
 constexpr int kShaftLeaves = 8;  // searched at once
-constexpr int kFewTests = 6;     // of a leaf: fewer take less time than meet_window()
+constexpr int kFewTests = 6;     // tests of a leaf: so few are faster than meet_window()
 
 struct ShaftBatch {
   int count = 0;
   std::uint32_t child[kShaftLeaves];
-  const TriangleBlock* block[kShaftLeaves];  // of the leaves that some rays are tested with
-  unsigned in_use[kShaftLeaves];             // lanes whose triangles they may hit
+  const TriangleBlock* block[kShaftLeaves];  // of the leaves to test some rays against
+  unsigned in_use[kShaftLeaves];             // triangles that those rays may hit
   TriangleBlock scratch[kShaftLeaves];
   Window window[kShaftLeaves];  // of the leaf's box
   float near[kShaftLeaves];     // its nearest depth
 };
 
-// Mask of the triangles of a leaf that some ray of the window may cross: edge lines, as in leaf_projection.h, over the
-// whole of it. A vertex counts w in the plane: its depth where the rays converge, else 1.
+// Mask of the triangles of a leaf that some ray of the window may cross, by edge lines over the whole window as in
+// leaf_projection.h. The weight w of a vertex is its depth if the rays converge, otherwise 1.
 inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
   const Float4 half = Float4::splat(0.5f), slack = Float4::splat(b.slack);
   Float4 middle_x = (b.window[0] + b.window[1]) * half, middle_y = (b.window[2] + b.window[3]) * half;
@@ -39,7 +39,7 @@ inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
            middle_y * w[i];
     aside = max(aside, abs(x[i]) + abs(y[i])), along = max(along, max(abs(depth), abs(w[i])));
   }
-  // The vertices are off by less than the slack, and so the edge functions by its product with what they are made of.
+  // The vertices are displaced by less than the slack, so the edge functions err by its product with their terms.
   Float4 size = aside + along * (half_x + half_y) + slack;
   Float4 error = size * slack * Float4::splat(4) + size * (aside + along * Float4::splat(4)) * Float4::splat(0x1p-19f) +
                  Float4::splat(0x1p-140f);
@@ -54,7 +54,7 @@ inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
 }
 
 struct ShaftTest {
-  std::uint8_t leaf, first;  // ray
+  std::uint8_t leaf, first;  // first ray
 };
 
 template <int kLanes, class Tree>
@@ -92,16 +92,16 @@ int list_shaft_tests(const Tree& bvh, const Bundle& b, ShaftBatch* leaves, Shaft
   return count;
 }
 
-// Masks of bits: four triangles of each of kLanes/4 segments.
+// Bit masks: four triangles for each of kLanes/4 segments.
 struct ShaftPassing {
-  unsigned pass;  // a hit that counts is not excluded
-  unsigned sure;  // surely one
+  unsigned pass;  // a hit that counts is possible
+  unsigned sure;  // certain
 };
 
-// Mask of the lanes where the segment starts beyond the triangle, most often because it leaves it: t is surely not
-// above 0 there. With D the greatest depth, edge functions err by up to w (edge_error() of leaf_projection.h tells why)
-// and the sum of their products with the depths by 4wD. Where one edge function is beyond w, the sum of the weights has
-// its sign, or cross_triangle() falls back on weights that do.
+// Mask of the lanes where the segment certainly has t ≤ 0, since it starts beyond the triangle, most often on leaving
+// it. With D the largest depth, edge functions err by up to w (see edge_error() in leaf_projection.h), and the sum of
+// their products with the depths by 4wD. If one edge function is beyond w, the sum of the weights has its sign, or
+// cross_triangle() falls back on weights that do.
 template <class F>
 unsigned surely_behind(const EdgeValues<F>& e, F low, F high, const F (&x)[3], const F (&y)[3], const F (&z)[3],
                        F nearest, F farthest, F sign) {
@@ -113,7 +113,7 @@ unsigned surely_behind(const EdgeValues<F>& e, F low, F high, const F (&x)[3], c
   return bits(((error < high) & (depth < zero - depth_error)) | ((low < zero - error) & (depth_error < depth)));
 }
 
-// The float test of cross_triangle(), and what the triangles' depths tell.
+// The float test of cross_triangle(), and conclusions from the triangles' depths.
 template <int kLanes>
 ShaftPassing test_segments(const Bundle& b, const TriangleBlock& block, int first) {
   using F = typename Lanes<kLanes>::Floats;
@@ -138,7 +138,7 @@ ShaftPassing test_segments(const Bundle& b, const TriangleBlock& block, int firs
   return {pass, sure & pass};
 }
 
-// By the book: whether a triangle blocks a segment.
+// Full test whether a triangle blocks a segment.
 inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int lane, int i) {
   ShearedRay ray = {{}, {}, b.kx, b.ky, b.kz, b.shear_x[i], b.shear_y[i]};
   const int axes[] = {b.kx, b.ky, b.kz};

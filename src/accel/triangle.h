@@ -1,14 +1,14 @@
-// The one triangle test of all accelerators: watertight, two-sided, without any epsilon, the same bits on every CPU.
+// The triangle test of all accelerators: watertight, two-sided, without epsilons, the same bits on every CPU.
 //
-// Whether a ray hits follows [Woop, Benthin, Wald 2013, JCGT 2(1)] secs. 3.1–3.3: vertices are translated to the origin
-// of the ray and sheared so that it runs along one axis, in float, each vertex by itself; then the signs of the three
-// edge functions decide. A rounded product never passes an exact one, so the sign of a float edge function that is not
-// zero is the exact sign; where it is zero, double holds the products exactly. Triangles that share an edge see
-// opposite signs: no ray slips between them. An edge belongs to both its triangles.
+// The hit decision follows [Woop, Benthin, Wald 2013, JCGT 2(1)] secs. 3.1–3.3: vertices are translated to the origin
+// of the ray and sheared so that it runs along one axis, in float, each vertex independently; then the signs of the
+// three edge functions decide. Rounding is monotonic, so a float edge function other than zero has the exact sign;
+// where it is zero, double holds the products exactly. Triangles that share an edge see opposite signs, so no ray slips
+// between them. An edge belongs to both its triangles.
 //
-// Where a ray hits is computed apart from that (our deviation), in double from the original vertices: t, u and v are
-// then within an ulp even for tiny or distant triangles. Where rounding lets those weights disagree with the decision,
-// within a few ulp of an edge, the weights of the sheared vertices are taken, which agree by construction.
+// The location of the hit is computed separately (our deviation), in double from the original vertices: t, u and v are
+// then within an ulp even for tiny or distant triangles. If rounding makes those weights disagree with the decision,
+// within a few ulp of an edge, the weights of the sheared vertices are used, which agree by construction.
 #pragma once
 #include "accel/ray.h"
 #include "base/array.h"
@@ -26,8 +26,8 @@ struct alignas(16) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 160, "nine rows of floats and one of ids");
 
-// Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not on one line.
-// All accelerators leave the others out.
+// Whether a triangle can be hit at all: indices in range, vertices within kCoordinateMax, corners not collinear. All
+// accelerators skip the others.
 inline bool has_valid_vertices(Array<const Vec3> positions, const Triangle& triangle) {
   for (std::uint32_t vertex : triangle.vertices()) {
     if (vertex >= positions.count) return false;
@@ -46,14 +46,14 @@ inline bool is_hittable(Array<const Vec3> positions, const Triangle& triangle) {
 
 inline namespace POCKETRAY_ISA {
 
-// A ray made ready for the test. kz is the dominant axis of the direction.
+// A ray prepared for the test. kz is the dominant axis of the direction.
 struct ShearedRay {
   Vec3 origin, direction;
   int kx, ky, kz;
-  float shear_x, shear_y;  // eq. (2) of the paper, without S_z: t is computed apart
+  float shear_x, shear_y;  // eq. (2) of the paper, without S_z: t is computed separately
 };
 
-// Origins farther out than this hit nothing: within it no product of the test overflows.
+// Origins beyond this hit nothing; within it no product of the test overflows.
 constexpr float kOriginMax = 4 * kCoordinateMax;
 
 inline bool has_valid_origin(const Vec3& origin) {
@@ -61,12 +61,12 @@ inline bool has_valid_origin(const Vec3& origin) {
   return o.x <= kOriginMax && o.y <= kOriginMax && o.z <= kOriginMax;
 }
 
-// False where the ray cannot hit anything: origin not finite or beyond kOriginMax, direction zero or not finite.
+// False if the ray cannot hit anything: origin not finite or beyond kOriginMax, direction zero or not finite.
 inline bool make_sheared_ray(const Ray& ray, ShearedRay* result) {
   Vec3 d = abs(ray.direction);
   if (!has_valid_origin(ray.origin)) return false;
   if (!is_finite(ray.direction) || is_zero(ray.direction)) return false;
-  // Without branches: for scattered rays none could be foreseen.
+  // Branch-free: for incoherent rays branches are unpredictable.
   int wider = !(d.x > d.y), kz = (d.x > d.y ? d.x : d.y) > d.z ? wider : 2;
   constexpr int kNext[] = {1, 2, 0};
   int kx = kNext[kz], ky = kNext[kx];
@@ -93,8 +93,8 @@ inline bool all_zero(const EdgeValues<T>& e) {
   return e.a == 0 && e.b == 0 && e.c == 0;
 }
 
-// Weights of the vertices at the crossing, in double from the vertices as they are. Both coordinates carry a factor
-// direction[kz], which is squared in the weights and so changes neither their signs nor their ratios.
+// Weights of the vertices at the crossing, in double from the original vertices. Both coordinates carry a factor
+// direction[kz]; it appears squared in the weights and so changes neither their signs nor their ratios.
 inline EdgeValues<double> exact_weights(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   double ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
   double dx = ray.direction[ray.kx], dy = ray.direction[ray.ky], dz = ray.direction[ray.kz];
@@ -104,7 +104,7 @@ inline EdgeValues<double> exact_weights(const ShearedRay& ray, const Vec3& a, co
                              (c[ray.kx] - ox) * dz - cz * dx, (c[ray.ky] - oy) * dz - cz * dy);
 }
 
-// Where a ray crosses a triangle: t, and the weights of b and c over the sum of all three.
+// Where a ray crosses a triangle: t, and the weights of b and c relative to the sum of all three.
 struct Crossing {
   double b, c, sum;
   float t;
@@ -117,7 +117,7 @@ inline Crossing place_crossing(const ShearedRay& ray, const Vec3& a, const Vec3&
   return {w.b, w.c, sum, static_cast<float>(t)};
 }
 
-// Whether the ray crosses the triangle a, b, c, and where: t may have any sign or be infinite, the caller bounds it.
+// Whether and where the ray crosses the triangle a, b, c. t may have any sign or be infinite; the caller bounds it.
 inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
   float ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
   float az = a[ray.kz] - oz, bz = b[ray.kz] - oz, cz = c[ray.kz] - oz;
@@ -136,7 +136,7 @@ inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, 
   return true;
 }
 
-// The same as a hit; hit->triangle is left alone, all of hit where there is no crossing.
+// The same as a Hit. hit->triangle is unchanged, and so is all of hit without a crossing.
 inline bool intersect_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Hit* hit) {
   Crossing crossing;
   if (!cross_triangle(ray, a, b, c, &crossing)) return false;

@@ -18,7 +18,8 @@ Arena make_arena(const char* name, void* block, std::size_t capacity) {
 std::size_t arena_free(const Arena& arena) { return arena.capacity - arena.used; }
 
 void* arena_try_allocate(Arena* arena, std::uint64_t bytes) {
-  if (bytes > arena->capacity) return nullptr;  // before it is cut to size_t, and before rounding, which could wrap
+  if (bytes > arena->capacity)
+    return nullptr;  // compared before narrowing to size_t and before rounding up, which could wrap
   std::size_t need = arena_need(static_cast<std::size_t>(bytes));
   if (need > arena_free(*arena)) return nullptr;
   void* result = arena->base + arena->used;

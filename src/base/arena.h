@@ -1,4 +1,4 @@
-// Arena: a named part of the one memory block. Grows by a pointer, is released by mark, never calls the system.
+// A named part of the one memory block: allocates by advancing a pointer, releases to a mark, never calls the system.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,14 +10,14 @@ namespace pocketray {
 
 constexpr std::size_t kArenaAlignment = 64;  // a cache line; every allocation starts on one
 
-// Sizes that are planned, and not taken yet, may exceed what a 32-bit CPU can address. They stop at SIZE_MAX, which
-// exceeds every block, where they would otherwise start again at 0 and seem to fit.
+// Planned sizes may exceed what a 32-bit CPU can address. Sums and products saturate at SIZE_MAX, which no block holds,
+// instead of wrapping around to a size that seems to fit.
 constexpr std::size_t size_sum(std::size_t a, std::size_t b) { return a > SIZE_MAX - b ? SIZE_MAX : a + b; }
 constexpr std::size_t to_size(std::uint64_t bytes) {
   return bytes > SIZE_MAX ? SIZE_MAX : static_cast<std::size_t>(bytes);
 }
 
-// What an allocation of `bytes` takes from an arena.
+// Bytes that an allocation of `bytes` takes from an arena.
 constexpr std::size_t arena_need(std::uint64_t bytes) {
   return bytes > SIZE_MAX - kArenaAlignment
              ? SIZE_MAX
@@ -36,16 +36,16 @@ struct Arena {
   std::size_t used_max = 0;
 };
 
-// Takes `capacity` bytes from the front of `block`; base is aligned upward, so the arena may lose up to 63 bytes.
+// Takes `capacity` bytes from the front of `block`. The base is aligned upward, so up to 63 of them may be lost.
 Arena make_arena(const char* name, void* block, std::size_t capacity);
 
-// Bytes that are still free.
+// Bytes still free.
 std::size_t arena_free(const Arena& arena);
 
 // Aborts when the arena is full: sizes are planned, so that is a programmer error. Memory is not cleared. Sizes are 64
-// bits wide on every CPU, so that a count from a file or a server is compared with the room before it becomes a size_t.
+// bits wide on every CPU, so that a count from a file or a server is checked before it is narrowed to size_t.
 void* arena_allocate(Arena* arena, std::uint64_t bytes);
-// The same, but returns null when the arena is full: for callers that turn it into a Status.
+// The same, but returns null when the arena is full, for callers that report a Status.
 void* arena_try_allocate(Arena* arena, std::uint64_t bytes);
 
 inline std::size_t arena_mark(const Arena& arena) { return arena.used; }

@@ -1,4 +1,4 @@
-// Array: a view of count elements that somebody else owns (an arena, a mapped file).
+// A view of `count` elements owned elsewhere (an arena, a mapped file).
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -19,7 +19,7 @@ inline Box merge(const Box& a, const Box& b) { return {min(a.low, b.low), max(a.
 inline Box merge(const Box& a, const Vec3& p) { return {min(a.low, p), max(a.high, p)}; }
 inline Vec3 extent(const Box& b) { return b.high - b.low; }
 inline Vec3 center(const Box& b) { return b.low * 0.5f + b.high * 0.5f; }
-// Half the surface area: what the surface-area heuristic compares. 0 for an empty box.
+// Half the surface area, as the surface-area heuristic compares it. 0 for an empty box.
 inline float half_area(const Box& b) {
   if (is_empty(b)) return 0;
   Vec3 e = extent(b);

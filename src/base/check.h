@@ -1,4 +1,5 @@
-// CHECK: programmer errors. Prints both operands and aborts; stays on in release builds, so keep it out of inner loops.
+// CHECK guards against programmer errors: prints both operands and aborts. It stays in release builds; keep it out of
+// inner loops.
 #pragma once
 #include <cstdio>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Linear light ↔ sRGB display levels (IEC 61966-2-1). Tables are made by the compiler with +, ×, ÷ alone: no libm, the
-// same everywhere. sRGB 0.5 → 188, 0.18 → 118 (HARDCASES row 64).
+// Linear light ↔ sRGB display levels (IEC 61966-2-1). The compiler makes the tables with +, ×, ÷ alone, without libm,
+// so they are the same everywhere. sRGB 0.5 → 188, 0.18 → 118 (HARDCASES row 64).
 #pragma once
 #include <cstdint>
 
@@ -7,13 +7,12 @@
 
 namespace pocketray {
 
-// Half the width of the narrowest displayed level: what is smaller than this cannot move a pixel by more than one
-// level.
+// Half the width of the narrowest display level: a smaller change moves a pixel by at most one level.
 constexpr float kHalfLevel = 0.5f / (255.0f * 12.92f);
 
 struct SrgbTables {
   float linear[256] = {};     // level → linear light
-  float threshold[256] = {};  // least linear light that is displayed as this level
+  float threshold[256] = {};  // least linear light displayed as this level
 };
 
 constexpr double fifth_root(double x) {
@@ -36,7 +35,7 @@ constexpr SrgbTables make_srgb_tables() {
 }
 inline constexpr SrgbTables kSrgb = make_srgb_tables();
 
-// Level 0–255 of linear light; NaN and what is below zero give 0, what is above one gives 255.
+// Level 0–255 of linear light. NaN and values below zero give 0, values above one give 255.
 inline std::uint8_t srgb_level(float linear) {
   int level = 0;
   for (int step = 128; step; step >>= 1)

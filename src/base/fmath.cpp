@@ -46,7 +46,7 @@ double cos_series(double x) {
 double sin_quadrant(double x, int quadrant) {
   if (!std::isfinite(x)) return std::numeric_limits<double>::quiet_NaN();
   if (std::fabs(x) > 1e9)
-    x = std::fmod(x, 2 * kPi);  // exact, and turns fit their integer; see fmath.h for the accuracy
+    x = std::fmod(x, 2 * kPi);  // exact; makes the turns fit their integer (accuracy: see fmath.h)
   double turns = std::floor(x * (2 / kPi) + 0.5);
   double rest = (x - turns * kPiHalfHigh) - turns * kPiHalfLow;
   int q = static_cast<int>(static_cast<std::int64_t>(turns) + quadrant) & 3;
@@ -108,13 +108,13 @@ double exp2_32nds(int k) {
   return kExp2Table[i] * from_bits(static_cast<std::uint64_t>((k - i) / 32 + 1023) << 52);
 }
 
-// Sixteen intervals of the significand around 1, each with the reciprocal of a point c inside it, cut to 15 bits after
-// the point so that z · (1/c) is exact for a float z, and log2(c). The interval that holds 1 has c = 1, for accuracy
-// there.
+// Sixteen intervals of the significand around 1. Each holds log2(c) for a point c inside it and 1/c, cut to 15 fraction
+// bits so that z · (1/c) is exact for a float z. The interval around 1 has c = 1, for accuracy there.
 struct LogEntry {
   double reciprocal, log2;
 };
-constexpr std::uint32_t kLogOffset = 0x3F330000;  // the least significand's bits: 0.699, so that 1 is not at an end
+constexpr std::uint32_t kLogOffset =
+    0x3F330000;  // bits of the least significand, 0.699: keeps 1 away from an interval's end
 constexpr LogEntry kLogTable[16] = {
     {1.398895263671875, -0.48428795089607085}, {1.340301513671875, -0.42255758527085646},
     {1.28643798828125, -0.3633819147822816},   {1.236724853515625, -0.30652456529226624},
@@ -196,7 +196,7 @@ float det_pow(float x, float y) {
   if (!(x >= 0) || y != y) return std::numeric_limits<float>::quiet_NaN();
   if (x == 0 || x == inf) return (x == 0) == (y > 0) ? 0 : inf;
   double t = y * log2_float(x);
-  if (t > 127.99999991) return inf;  // log2 of the greatest float
+  if (t > 127.99999991) return inf;  // log2 of the largest float
   if (t < -150) return 0;
   double k = std::floor(t * 32 + 0.5);
   double r = (t - k * (1.0 / 32)) * 0.693147180559945309417;  // |r| ≤ 0.011: r^5/5! < 1.4e-12

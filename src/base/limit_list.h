@@ -1,6 +1,6 @@
-// Quantities that reach the renderer by more than one way: the command line, the library's caller, a scene file, a
-// message. Each has one range, in this table, and every way tests with within(): what one of them takes, none of the
-// others refuses, and no NaN or infinity comes in by any.
+// Quantities that reach the renderer by several ways: command line, library, scene file, message. Each has one range,
+// in this table, and every way checks it with within(): all accept the same values, and none lets in a NaN or an
+// infinity.
 #pragma once
 #include "base/fmath.h"
 #include "base/limits.h"
@@ -27,19 +27,18 @@ enum class Quantity : int {
 struct LimitRow {
   Quantity quantity;
   const char* name;
-  double low, high;  // both allowed; of what is kept as float, these are floats
+  double low, high;  // inclusive; representable as float where the quantity is stored as float
 };
 
-// Exposures beyond 60 stops make nothing but black or white of whatever a float holds, and a product of the largest
-// with kRadianceMax is finite. Times beyond 31 years have no frames of their own: a float of seconds has steps of
-// minutes there.
+// Beyond 60 stops of exposure every float becomes black or white; the largest exposure times kRadianceMax is still
+// finite. Beyond 31 years of time a float of seconds has steps of minutes, too coarse for frames.
 constexpr float kExposureMin = 0x1p-60f, kExposureMax = 0x1p60f;
 constexpr float kExposureStopsMax = 60;
 constexpr double kSecondsMax = 1e9;
 constexpr float kFrameRateMin = 1e-3f;
 constexpr float kFieldOfViewMin = static_cast<float>(radians(0.001)),
                 kFieldOfViewMax = static_cast<float>(radians(179));
-constexpr float kVerticalExtentMin = 0x1p-126f;  // the least float that is not denormal
+constexpr float kVerticalExtentMin = 0x1p-126f;  // the smallest normal float
 
 constexpr LimitRow kLimitList[] = {
     {Quantity::width, "the picture's width", 1, kImageSideMax},
@@ -47,7 +46,7 @@ constexpr LimitRow kLimitList[] = {
     {Quantity::samples, "the number of samples per pixel", 1, kSampleCountMax},
     {Quantity::depth, "the depth of reflections and refractions", 0, kRayDepthMax},
     {Quantity::area_light_points, "the number of points per area light", 1, kPointsPerAreaLightMax},
-    {Quantity::cut_off, "the cut-off in displayed levels", 0, double(kCutOffLevelsMax)},
+    {Quantity::cut_off, "the cut-off in display levels", 0, double(kCutOffLevelsMax)},
     {Quantity::camera_index, "the camera's index", 0, kCameraCountMax - 1},
     {Quantity::seconds, "the time in seconds", -kSecondsMax, kSecondsMax},
     {Quantity::frame_rate, "the number of frames per second", double(kFrameRateMin), double(kFrameRateMax)},
@@ -73,8 +72,7 @@ constexpr bool within(Quantity quantity, double x) {  // false for NaN
 }
 constexpr bool within(Quantity quantity, float x) { return within(quantity, static_cast<double>(x)); }
 
-// "the time in seconds is nan: it must lie in -1e+09 … 1e+09". `name` takes the place of the table's, as an option's
-// does on the command line.
+// "the time in seconds is nan: it must lie in -1e+09 … 1e+09". `name`, such as an option's, replaces the table's name.
 inline Status check_limit(Quantity quantity, double x, const char* name = nullptr) {
   if (within(quantity, x)) return success();
   const LimitRow& row = limit_of(quantity);

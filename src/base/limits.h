@@ -1,15 +1,16 @@
-// Every capacity of the renderer. What exceeds one is refused when a scene is read or a frame is planned, never later.
+// Every capacity of the renderer. Exceeding one is refused when a scene is read or a frame is planned, never later.
 #pragma once
 #include <cstdint>
 
 namespace pocketray {
 
-// Of the block: what a handheld has at least, and 64 GiB, or half of what a 32-bit CPU addresses.
+// Size of the memory block: the smallest handheld's, and 64 GiB or half of a 32-bit address space.
 constexpr std::uint64_t kMemoryBytesMin = 1u << 16;
 constexpr std::uint64_t kMemoryBytesMax = sizeof(void*) == 4 ? 0x7FFFFFFFu : std::uint64_t(1) << 36;
 constexpr std::uint32_t kImageSideMax = 8192;          // pixels; spans keep their columns in 16 bits
 constexpr std::uint32_t kTriangleCountMax = 1u << 26;  // leaves room for tag bits in 32-bit child references
-constexpr std::uint32_t kVertexIndexBits = 26;         // in a triangle, which has a share of its material in the others
+constexpr std::uint32_t kVertexIndexBits =
+    26;  // of a triangle's words; the bits above hold a share of its material index
 constexpr std::uint32_t kVertexCountMax = 1u << kVertexIndexBits;
 constexpr std::uint32_t kMaterialCountMax = 1u << 16;
 constexpr std::uint32_t kTextureCountMax = 4096;
@@ -25,17 +26,17 @@ constexpr std::uint32_t kBrdfCountMax = 16;
 constexpr float kPhongExponentMax = 1e6f;  // HARDCASES row 31
 constexpr float kIorMax = 100;
 constexpr std::uint32_t kSampleCountMax = 16;       // per pixel
-constexpr float kCutOffLevelsMax = 64;              // a quarter of what a display shows
+constexpr float kCutOffLevelsMax = 64;              // a quarter of the display's range
 constexpr std::uint32_t kRayDepthMax = 16;          // reflections and refractions along one path
-constexpr std::uint32_t kMediumDepthMax = 8;        // transparent bodies nested in one another
-constexpr std::uint32_t kTransparentLayerMax = 64;  // alpha or glass surfaces that one ray may pass in a straight line
+constexpr std::uint32_t kMediumDepthMax = 8;        // nested transparent bodies
+constexpr std::uint32_t kTransparentLayerMax = 64;  // alpha or glass surfaces that one ray passes in a straight line
 constexpr std::uint32_t kThreadCountMax = 64;
 constexpr std::uint32_t kBvhDepthMax = 64;  // bounds the traversal stack
 constexpr float kCoordinateMax = 1e18f;     // its square is finite; HARDCASES row 8
-// Radiance, intensity and absorption a scene may state, and irradiance that a light gives close by. What a frame makes
-// of them stays finite: no ∞ · 0 arises.
+// Largest radiance, intensity and absorption in a scene, and largest irradiance close to a light. Everything that a
+// frame computes from them stays finite: no ∞ · 0 arises.
 constexpr float kRadianceMax = 1e18f;
-constexpr float kFrameRateMax = 1e6f;  // frames a second
+constexpr float kFrameRateMax = 1e6f;  // frames per second
 
 static_assert(kImageSideMax <= 1u << 16, "span columns are 16 bit");
 

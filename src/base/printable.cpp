@@ -6,7 +6,7 @@
 namespace pocketray {
 namespace {
 
-// The character at the front of the bytes [RFC 3629, sec. 4] and how many it takes; 0 where they begin with none.
+// Decodes the character at the front of the bytes [RFC 3629, sec. 4]; returns its length, 0 if the bytes are not UTF-8.
 std::size_t decode(const unsigned char* at, std::size_t count, std::uint32_t* character) {
   static constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
   std::size_t length = at[0] < 0x80 ? 1 : at[0] >> 5 == 6 ? 2 : at[0] >> 4 == 14 ? 3 : at[0] >> 3 == 30 ? 4 : 0;

@@ -1,12 +1,12 @@
-// Text of files and peers made fit for a terminal: what it would take for a command, or what would show other text than
-// there is, becomes question marks.
+// Makes text from files and peers safe for a terminal: question marks replace anything that the terminal would take for
+// a command or that would disguise the text.
 #pragma once
 #include <cstddef>
 
 namespace pocketray {
 
-// In place, byte for byte: control characters (C0, DEL, C1 whether or not as UTF-8, line and paragraph separators),
-// what changes the direction of text or takes no room, and bytes that are no UTF-8.
+// In place, byte for byte: replaces control characters (C0, DEL, C1 in UTF-8 or not, line and paragraph separators),
+// characters that change the text direction or have no width, and bytes that are not UTF-8.
 void make_printable(char* text, std::size_t byte_count);
 
 }  // namespace pocketray

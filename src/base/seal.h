@@ -1,5 +1,5 @@
-// The seal: while it is on, nothing allocates. Builds with POCKETRAY_SEAL_CHECK abort on a malloc under it
-// (tests/support/seal_malloc.cpp).
+// The seal: while it is on, nothing allocates. Builds with POCKETRAY_SEALED_HEAP link tests/support/seal_malloc.cpp,
+// which aborts on any malloc under the seal.
 #pragma once
 #include <atomic>
 
@@ -10,7 +10,7 @@ inline std::atomic<bool> memory_sealed{false};
 inline void seal_memory() { memory_sealed.store(true); }
 inline void unseal_memory() { memory_sealed.store(false); }
 
-// Lifts the seal, if it is on, for what is no part of a device's work.
+// Lifts the seal, if it is on, for work that a device never does.
 class SealPause {
  public:
   explicit SealPause(bool needed = true) : paused_(needed && memory_sealed) {

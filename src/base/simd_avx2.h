@@ -1,4 +1,4 @@
-// Eight lanes in AVX2. See simd.h.
+// Eight lanes, AVX2. See simd.h.
 #pragma once
 #include <immintrin.h>
 

@@ -1,4 +1,4 @@
-// Sixteen lanes in AVX-512 (F, DQ). See simd.h.
+// Sixteen lanes, AVX-512 (F, DQ). See simd.h.
 #pragma once
 #include <immintrin.h>
 

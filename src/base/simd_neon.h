@@ -1,4 +1,4 @@
-// Four lanes in NEON of aarch64. See simd.h.
+// Four lanes, NEON of aarch64. See simd.h.
 #pragma once
 #include <arm_neon.h>
 

@@ -1,4 +1,4 @@
-// Lanes one after the other, for CPUs without a vector unit that keeps to IEEE. See simd.h.
+// Lanes one after the other, for CPUs without an IEEE vector unit. See simd.h.
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// Four lanes in SSE2. See simd.h.
+// Four lanes, SSE2. See simd.h.
 #pragma once
 #include <emmintrin.h>
 #if defined(__SSE4_1__)
@@ -69,7 +69,7 @@ inline Float4 product_less(Float4 a, Float4 b, Float4 c) { return {_mm_fmsub_ps(
 inline Float4 product_less(Float4 a, Float4 b, Float4 c) { return a * b - c; }
 #endif
 
-// Words are compared in less time than floats.
+// Comparing words is faster than comparing floats.
 #if defined(__SSE4_1__)
 inline Float4 later(Float4 a, Float4 b) {
   return {_mm_castsi128_ps(_mm_max_epi32(_mm_castps_si128(a.v), _mm_castps_si128(b.v)))};
@@ -90,7 +90,7 @@ inline std::uint32_t word_outside(Mask4 m, const std::uint32_t* words) {
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_or_si128(w, _mm_shuffle_epi32(w, 0xB1))));
 }
 
-// The least and the greatest of the lanes.
+// Smallest and largest lane.
 inline float lowest(Float4 a) {
   __m128 b = _mm_min_ps(a.v, _mm_movehl_ps(a.v, a.v));
   return _mm_cvtss_f32(_mm_min_ss(b, _mm_shuffle_ps(b, b, 1)));

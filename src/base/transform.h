@@ -23,7 +23,7 @@ inline Vec3 transform_vector(const Transform& t, const Vec3& v) {
   return {t.m[0][0] * v.x + t.m[0][1] * v.y + t.m[0][2] * v.z, t.m[1][0] * v.x + t.m[1][1] * v.y + t.m[1][2] * v.z,
           t.m[2][0] * v.x + t.m[2][1] * v.y + t.m[2][2] * v.z};
 }
-// a after b.
+// a ∘ b: applies b first.
 inline Transform operator*(const Transform& a, const Transform& b) {
   Transform r;
   for (int i = 0; i < 3; ++i)
@@ -48,8 +48,8 @@ inline double determinant(const Transform& t) {
         c = {t.m[2][0], t.m[2][1], t.m[2][2]};
   return dot(a, cross(b, c));
 }
-// What a transform does to normals: its cofactor matrix. It needs no division, so singular transforms do no harm, and
-// it carries the sign of the determinant: mirrored geometry keeps n·t = 0 and, with its winding flipped, its
+// The effect of a transform on normals: its cofactor matrix. It needs no division, so singular transforms do no harm,
+// and it carries the sign of the determinant: mirrored geometry keeps n·t = 0 and, with its winding flipped, its
 // orientation.
 struct NormalTransform {
   Vec3d row[3];
@@ -61,7 +61,7 @@ inline NormalTransform normal_transform(const Transform& t) {
   double sign = dot(a, bc) < 0 ? -1.0 : 1.0;
   return {{bc * sign, cross(c, a) * sign, cross(a, b) * sign}};
 }
-// Unit; the zero vector where n is zero or is flattened to nothing.
+// Unit; the zero vector where n is zero or is flattened to zero.
 inline Vec3 transform_normal(const NormalTransform& t, const Vec3& n) {
   Vec3d m = {n.x, n.y, n.z};
   Vec3d u = normalize(Vec3d{dot(t.row[0], m), dot(t.row[1], m), dot(t.row[2], m)});
@@ -69,7 +69,7 @@ inline Vec3 transform_normal(const NormalTransform& t, const Vec3& n) {
 }
 inline Vec3 transform_normal(const Transform& t, const Vec3& n) { return transform_normal(normal_transform(t), n); }
 
-// Whether the linear part can be inverted within float range: HARDCASES row 27 refuses what is not.
+// Whether the linear part can be inverted within float range; HARDCASES row 27 refuses transforms that cannot.
 inline bool is_invertible(const Transform& t) {
   double d = std::fabs(determinant(t));
   return d >= std::numeric_limits<float>::min() && d <= std::numeric_limits<float>::max();

@@ -1,4 +1,4 @@
-// Three-vectors and two-vectors. Sums associate from the left, so every build rounds alike.
+// Vectors of three and two components. Sums associate from the left, so every build rounds alike.
 #pragma once
 #include <cmath>
 
@@ -62,8 +62,8 @@ inline T length(const Vec3T<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
-// Unit vector along a. Scales by the largest component where squares might be lost, so neither 1e-30 nor 1e30 is lost
-// (HARDCASES row 30). The zero vector and anything not finite gives the zero vector.
+// Unit vector along a. Scales by the largest component where squares could underflow or overflow, so that 1e-30 and
+// 1e30 both work (HARDCASES row 30). The zero vector and non-finite vectors give the zero vector.
 template <class T>
 inline Vec3T<T> normalize(const Vec3T<T>& a) {
   T square = dot(a, a);

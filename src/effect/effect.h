@@ -1,4 +1,4 @@
-// Effects: what a renderer can be asked to simulate, one bit each.
+// Effects that a renderer can simulate, one bit each.
 #pragma once
 #include <cstdint>
 
@@ -31,8 +31,8 @@ using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }
 constexpr EffectMask kAllEffects = (1u << kEffectCount) - 1;
 
-// The effects that this build has. tests/absence builds the core without those that a scene does not call for, to prove
-// that they cost nothing where they are built in.
+// The effects compiled into this build. tests/absence builds the core without those that a scene does not need, to
+// prove that an absent effect costs nothing in a full build.
 #ifdef POCKETRAY_EFFECTS_BUILT
 constexpr EffectMask kEffectsBuilt = POCKETRAY_EFFECTS_BUILT;
 #else

@@ -1,4 +1,4 @@
-// One row per effect: its name on the command line and what in a scene calls for it.
+// One row per effect: its name on the command line and the scene content that needs it.
 #pragma once
 #include "effect/effect.h"
 
@@ -17,7 +17,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::refraction, "refraction", "a material that transmits light"},
     {Effect::absorption, "absorption", "a transparent body that absorbs"},
     {Effect::alpha_mask, "alpha-mask", "a material with cut-out holes"},
-    {Effect::alpha_blend, "alpha-blend", "a material that lets the background through"},
+    {Effect::alpha_blend, "alpha-blend", "a material that the background shows through"},
     {Effect::emission, "emission", "a material that emits, or shows its colour unlit"},
     {Effect::texture, "texture", "a material with a texture"},
     {Effect::vertex_color, "vertex-color", "a mesh with colours at its vertices"},
@@ -29,7 +29,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::area_light, "area-light", "an emissive surface"},
     {Effect::supersampling, "supersampling", "more than one sample per pixel"},
     {Effect::animation, "animation", "moving geometry, lights or cameras"},
-    {Effect::back_face_culling, "back-face-culling", "a material that is seen from the front alone"},
+    {Effect::back_face_culling, "back-face-culling", "a material visible from the front only"},
 };
 
 }  // namespace pocketray

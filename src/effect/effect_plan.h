@@ -1,4 +1,4 @@
-// EffectPlan: what was decided for a scene and its settings, and why.
+// EffectPlan: the decision for a scene and its settings, with reasons.
 #pragma once
 #include "effect/effect.h"
 

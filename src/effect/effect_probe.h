@@ -1,6 +1,5 @@
-// effect_entered<E>(): every effect's code calls it where it starts. In the product it is nothing at all. In the build
-// that proves the plan (POCKETRAY_PROBE_EFFECTS) it counts the entry, and traps when the plan says the effect is
-// absent.
+// effect_entered<E>(): every effect's code calls it on entry. It compiles to nothing in the product. The build that
+// proves the plan (POCKETRAY_PROBE_EFFECTS) counts entries and traps if the plan says that the effect is absent.
 #pragma once
 #include "effect/effect.h"
 

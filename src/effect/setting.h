@@ -1,4 +1,4 @@
-// What a row of setting_list.h says of a setting.
+// The columns of setting_list.h.
 #pragma once
 #include <initializer_list>
 #include <limits>
@@ -11,15 +11,15 @@ namespace pocketray {
 
 enum class SettingKind : std::uint8_t { count, real, choice };
 
-// Where a setting lies in Quality. Values are doubles, which hold every count and float; of a choice the enumerator's
-// number.
+// Where a setting is stored in Quality. Values are doubles, which hold every count and float; a choice is its
+// enumerator's number.
 struct SettingField {
   SettingKind kind;
-  Quantity quantity;         // its limits; a choice has none but its names
-  const char* const* names;  // of a choice, in the order of its enumerators
+  Quantity quantity;         // its limits; a choice has only its names
+  const char* const* names;  // of a choice, in enumerator order
   int name_count;
   double (*get)(const Quality& quality);
-  void (*set)(Quality* quality, double value);  // within the limits
+  void (*set)(Quality* quality, double value);  // must be within the limits
 };
 
 template <auto member>
@@ -63,19 +63,19 @@ constexpr EffectMask kAlways = ~EffectMask(0);
 constexpr double kAsAsked = std::numeric_limits<double>::quiet_NaN();
 
 struct SettingRow {
-  const char* name;      // "samples": of the option --samples, in fronts and sweeps
+  const char* name;      // "samples", as in the option --samples, in fronts and in sweeps
   const char* what;      // "rays through each pixel"
-  const char* note;      // what the option's help says beyond `what` and the range; may be empty
-  const char* hud_name;  // over the picture; null: not shown there
+  const char* note;      // added to the option's help after `what` and the range; may be empty
+  const char* hud_name;  // as the overlay shows it; null: not shown
   SettingField field;
-  std::uint32_t wire_bytes;       // in the settings of a request, which follow the list's order
-  EffectMask effects;             // it belongs to: what a sweep looks for
-  EffectMask seen_with;           // where none of these is on, no picture depends on it
-  bool places_lights;             // light points, or the bound on radiance, follow from it
-  double exact;                   // what a reference is rendered with; kAsAsked: what was asked for
-  SweepValues sweep;              // the least accurate first
-  double (*price)(double value);  // what a frame takes, up to a factor; null: the value matters little
-  const char* theory;             // of the slope of RMSE over time; empty: theory gives no number
+  std::uint32_t wire_bytes;       // in the settings of a request, in list order
+  EffectMask effects;             // effects that it belongs to; a sweep looks for them
+  EffectMask seen_with;           // if none of these is on, it changes no picture
+  bool places_lights;             // light points or the radiance bound depend on it
+  double exact;                   // value for a reference; kAsAsked: as requested
+  SweepValues sweep;              // least accurate first
+  double (*price)(double value);  // cost of a frame up to a factor; null: hardly depends on the value
+  const char* theory;             // expected slope of RMSE over time; empty: theory predicts none
 };
 
 }  // namespace pocketray

@@ -1,6 +1,6 @@
 // One row per setting that trades accuracy for time. The command line, its validation, fronts, the settings on the
-// wire, the server's reuse of a renderer, sweeps and the budget's choice all follow from the rows: a new setting is a
-// member of Quality and a row here. Its default is the member's, its limits are those of base/limit_list.h.
+// wire, the server's reuse of a renderer, sweeps and the budget's choice are all derived from the rows: a new setting
+// is a member of Quality and a row here. The member holds the default, base/limit_list.h the limits.
 #pragma once
 #include "effect/setting.h"
 
@@ -13,7 +13,7 @@ constexpr EffectMask kReflecting = bit(Effect::mirror) | bit(Effect::refraction)
 constexpr EffectMask kSpawning = kReflecting | bit(Effect::alpha_blend);
 
 inline double samples_price(double samples) { return samples; }
-// What a pixel takes without lights is about a point's worth.
+// A pixel without lights costs about as much as one point.
 inline double points_price(double points) { return points + 1; }
 
 inline constexpr SettingRow kSettingList[] = {
@@ -44,7 +44,7 @@ inline constexpr SettingRow kSettingList[] = {
      nullptr,
      "error falls as reflectance to the power of depth, faster than any power of time"},
     {"area-lights",
-     "points that each area light is taken as",
+     "points per area light",
      "",
      "lights",
      count_field<&Quality::points_per_area_light>(Quantity::area_light_points),
@@ -57,7 +57,7 @@ inline constexpr SettingRow kSettingList[] = {
      points_price,
      "-1/2 for random points; a grid of n points errs by one shadow edge of n, down to -1"},
     {"cut-off",
-     "displayed levels that left-out rays may be worth",
+     "largest error per pixel from skipped rays, in display levels",
      "0: trace every ray",
      "cut-off",
      real_field<&Quality::cut_off_levels>(Quantity::cut_off),
@@ -70,7 +70,7 @@ inline constexpr SettingRow kSettingList[] = {
      nullptr,
      ""},
     {"texture-filter",
-     "how textures are read between texels",
+     "texture filtering",
      "",
      nullptr,
      choice_field<&Quality::texture_filter>(kTextureFilterNames),
@@ -98,31 +98,31 @@ inline constexpr SettingRow kSettingList[] = {
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];
 
-// Bytes of the rows together on the wire.
+// Bytes of all rows on the wire.
 constexpr std::uint32_t setting_wire_bytes() {
   std::uint32_t sum = 0;
   for (const SettingRow& row : kSettingList) sum += row.wire_bytes;
   return sum;
 }
 
-// The row of that name; null where there is none.
+// The row of that name, or null.
 const SettingRow* find_setting(const char* name);
 
-// Whether the setting may have the value; never NaN.
+// Whether the setting may have the value; false for NaN.
 bool within_setting(const SettingRow& row, double value);
-// "the number of samples per pixel is 99: it must lie in 1 … 16"; `name` as check_limit() takes it.
+// "the number of samples per pixel is 99: it must lie in 1 … 16"; `name` as in check_limit().
 Status check_setting(const SettingRow& row, double value, const char* name = nullptr);
-// The choice of that name, which need not be terminated; false where there is none.
+// The choice of that name, which need not be null-terminated; false if there is none.
 bool find_choice(const SettingRow& row, const char* name, std::size_t name_bytes, double* value);
-// Writes "1 … 16", or "scene, nearest or bilinear"; terminated, cut to the size.
+// Writes "1 … 16", or "scene, nearest or bilinear"; terminated, truncated to `size`.
 void describe_range(const SettingRow& row, char* text, std::size_t size);
-// Writes "4", "0.5" or "nearest"; a real with so many significant digits. Terminated, cut to the size.
+// Writes "4", "0.5" or "nearest"; a real with at most `digits` significant digits. Terminated, truncated to `size`.
 void describe_value(const SettingRow& row, double value, int digits, char* text, std::size_t size);
 
 bool same_quality(const Quality& a, const Quality& b);
-// Whether light points and the bound on radiance are the same with both, scene and effects being the same.
+// Whether light points and the radiance bound are the same with both, given the same scene and effects.
 bool same_lights(const Quality& a, const Quality& b);
-// What a reference is rendered with: each setting exact where there is such a value, else as it was asked for.
+// Settings for a reference: each exact if it has an exact value, otherwise as requested.
 Settings reference_settings(const Settings& asked);
 
 constexpr bool setting_rows_valid() {

@@ -1,4 +1,4 @@
-// Settings: what was asked for. Plain data with defaults that just work.
+// Settings as requested: plain data whose defaults just work.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace pocketray {
 enum class TextureFilter : std::uint8_t { as_scene, nearest, bilinear };
 enum class NormalMode : std::uint8_t { as_scene, flat };
 
-// The settings that trade accuracy for time: a row of setting_list.h for each. They may change from frame to frame.
+// The settings that trade accuracy for time, a row of setting_list.h each. They may change from frame to frame.
 struct Quality {
   std::uint32_t samples_per_pixel = 1;
   std::uint32_t ray_depth = 8;  // reflections and refractions along a path
   std::uint32_t points_per_area_light = 4;
-  float cut_off_levels = 0.5f;  // largest error per sample from skipped rays, in displayed levels; 0: none is skipped
+  float cut_off_levels = 0.5f;  // largest error per sample from skipped rays, in display levels; 0: skip none
   TextureFilter texture_filter = TextureFilter::as_scene;
   NormalMode normals = NormalMode::as_scene;
 };

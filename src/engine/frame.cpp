@@ -1,5 +1,5 @@
-// A frame in one sentence: scene → plan → accelerate → trace + shade spans. What is planned was planned before the
-// first frame; which spans are traced, and when, is the source's; showing the frame is the caller's.
+// A frame in one sentence: scene → plan → accelerate → trace + shade spans. Planning was done before the first frame;
+// the source decides which spans are traced, and when; showing the frame is up to the caller.
 #include "engine/frame.h"
 
 #include "base/limit_list.h"

@@ -5,15 +5,15 @@
 
 namespace pocketray {
 
-// Poses, accelerates and lights the scene at a time and clears the tracers' counts. Everything but the tracing.
+// Poses, accelerates and lights the scene at a time and clears the tracers' counters: everything but tracing.
 Status prepare_frame(Renderer* renderer, double seconds);
 
-// Renders the frame at a time into renderer->image, whatever of it the source hands out; tracing is timed in trace_ms.
-// *complete, which may be null: as trace_frame() returns it.
+// Renders the frame at a time into renderer->image, as much of it as the source hands out; tracing is timed in
+// trace_ms.
+// *complete (may be null) receives the result of trace_frame().
 Status render_frame(Renderer* renderer, double seconds, const SpanSource& source, bool* complete = nullptr);
 
-// The same for the renderer's spans, the whole frame. `stop`, where given, ends it early; *rows_done says how far it
-// came.
+// The same for the renderer's spans, the whole frame. `stop`, if given, ends it early; *rows_done is the progress.
 Status render_frame(Renderer* renderer, double seconds, Aov aov = Aov::none, const std::atomic<bool>* stop = nullptr,
                     std::uint32_t* rows_done = nullptr);
 

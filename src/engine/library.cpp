@@ -1,4 +1,4 @@
-// The library's version, errors, and the checks that its calls share.
+// The library's version, errors, and checks shared by its calls.
 #include "engine/library.h"
 
 #include <cstring>
@@ -24,13 +24,13 @@ Status check_struct(const char* name, const void* structure, std::size_t first_s
   std::size_t given;
   std::memcpy(&given, structure, sizeof given);
   if (given >= first_size && given <= size) return success();
-  return failure("%s->struct_size is %zu, and this library knows %zu … %zu: start from the structure's _INIT", name,
-                 given, first_size, size);
+  return failure("%s->struct_size is %zu, this library supports %zu … %zu: initialise it with the structure's _INIT",
+                 name, given, first_size, size);
 }
 
 Status check_instance(const pocketray_instance* instance) {
   if (instance) return success();
-  return failure("the instance is a null pointer: open one first, and look at the result");
+  return failure("the instance is a null pointer: open one first and check the result");
 }
 
 Status check_choice(const char* name, int value, int choice_count) {
@@ -79,7 +79,7 @@ Status read_camera(const pocketray_camera* given, const Settings& settings, Came
 Status plan_again(pocketray_instance* instance, const Settings& settings) {
   Renderer* renderer = &instance->renderer;
   RETURN_IF_ERROR(change_settings(renderer, settings));
-  renderer->lit_mask = ~EffectMask(0);  // lights are placed anew
+  renderer->lit_mask = ~EffectMask(0);  // place lights again
   instance->refining = false;
   return success();
 }

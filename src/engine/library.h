@@ -1,4 +1,4 @@
-// What the files of the library share. The library's callers see pocketray.h alone.
+// Shared by the library's files. Its callers only see pocketray.h.
 #pragma once
 #include <atomic>
 
@@ -8,12 +8,12 @@
 
 struct pocketray_instance {
   pocketray::Renderer renderer;
-  pocketray::Array<pocketray::Light> lights;            // as the caller sets them; empty: those of the scene stay
-  pocketray::Array<pocketray::Light> posed_lights;      // room for as many, where something moves
-  pocketray::Array<pocketray::NodeOverride> overrides;  // one per node; empty: the animation alone moves them
-  pocketray::Array<pocketray::Span> row_spans;          // of pocketray_refine()
+  pocketray::Array<pocketray::Light> lights;            // set by the caller; empty: the scene's lights
+  pocketray::Array<pocketray::Light> posed_lights;      // room for as many, if anything moves
+  pocketray::Array<pocketray::NodeOverride> overrides;  // one per node; empty: only the animation moves nodes
+  pocketray::Array<pocketray::Span> row_spans;          // for pocketray_refine()
   pocketray::Progressive progressive;
-  bool refining = false;  // a frame was begun, and nothing has changed since
+  bool refining = false;  // a frame was begun and nothing has changed since
   std::uint32_t rows_done = 0;
   std::atomic<bool> stop{false};
   pocketray_progress progress = nullptr;
@@ -22,15 +22,15 @@ struct pocketray_instance {
 
 namespace pocketray {
 
-// Keeps the message for pocketray_error_message() and returns the result.
+// Stores the message for pocketray_error_message() and returns the result.
 pocketray_result refuse(pocketray_result result, const Status& status);
-// POCKETRAY_OK, or the result with the status's message.
+// POCKETRAY_OK, or `result` with the status's message stored.
 inline pocketray_result to_result(const Status& status, pocketray_result result) {
   return status.ok ? POCKETRAY_OK : refuse(result, status);
 }
 
-// Whether a caller's structure can be read: not null, and of a size that this library knows. Those of earlier versions
-// are as long as the fields that they had, `first_size` at least.
+// Whether a caller's structure is readable: not null, and of a size that this library knows. Structures of earlier
+// versions end after the fields that those versions had, `first_size` at least.
 Status check_struct(const char* name, const void* structure, std::size_t first_size, std::size_t size);
 
 // Copies a caller's structure over the defaults in *result.
@@ -41,7 +41,7 @@ Status read_struct(const char* name, const T* given, T* result) {
   result->struct_size = sizeof(T);
   return success();
 }
-// Copies a structure to a caller's, as far as that reaches.
+// Copies a structure to a caller's, up to that one's size.
 template <class T>
 Status write_struct(const char* name, T value, T* given) {
   RETURN_IF_ERROR(check_struct(name, given, sizeof(T), sizeof(T)));
@@ -56,17 +56,16 @@ Status check_choice(const char* name, int value, int choice_count);  // 0 … ch
 inline Vec3 to_vec3(const float* v) { return {v[0], v[1], v[2]}; }
 inline void from_vec3(const Vec3& v, float* result) { result[0] = v.x, result[1] = v.y, result[2] = v.z; }
 
-// Quality settings as the caller states them, into *settings; range by range.
+// Reads a caller's quality settings into *settings and checks their ranges.
 Status read_settings(const pocketray_settings& given, Settings* settings);
-// Fails where make_camera_rays() would.
+// Fails whenever make_camera_rays() would.
 Status read_camera(const pocketray_camera* given, const Settings& settings, Camera* camera);
 
-// Bytes that pocketray_open() needs for what the renderer has planned.
+// Bytes that pocketray_open() needs for the renderer as planned.
 std::size_t instance_need(const Renderer& renderer);
 void write_plan(const Renderer& renderer, std::size_t scratch_bytes, pocketray_plan* plan);
 
-// Plans effects anew after a change of the scene or settings, within the memory that was planned. A frame that was
-// begun ends.
+// Plans effects again after a change of the scene or settings, within the planned memory. Ends a frame in progress.
 Status plan_again(pocketray_instance* instance, const Settings& settings);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// Frames for the library's caller: whole or refined, packed into his pixels.
+// Frames for the library's caller: whole or refined, packed into the caller's pixels.
 #include <climits>
 #include <cstring>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr PixelFormat kFormats[] = {kXrgb8888, kXbgr8888, kRgb565, kBgr565, kRgb888, kBgr888};
 constexpr int kFormatCount = POCKETRAY_RGB_FLOAT + 1;
-static_assert(sizeof kFormats / sizeof kFormats[0] == POCKETRAY_RGB_FLOAT, "one for each but floats");
+static_assert(sizeof kFormats / sizeof kFormats[0] == POCKETRAY_RGB_FLOAT, "one for each format but floats");
 
 // A caller's pixels, checked.
 struct Target {
@@ -26,7 +26,7 @@ struct Target {
 Status read_pixels(const pocketray_pixels* given, const Settings& settings, Target* target) {
   pocketray_pixels p = POCKETRAY_PIXELS_INIT;
   RETURN_IF_ERROR(read_struct("the pixels", given, &p));
-  if (!p.data) return failure("the pixels' data is a null pointer: pass room for the picture");
+  if (!p.data) return failure("the pixels' data is a null pointer: pass a buffer for the picture");
   RETURN_IF_ERROR(check_choice("the pixels' format", p.format, kFormatCount));
   RETURN_IF_ERROR(check_choice("dither", p.dither, 2));
   if (!rotation_from_degrees(p.rotation_degrees, &target->rotation))
@@ -38,12 +38,12 @@ Status read_pixels(const pocketray_pixels* given, const Settings& settings, Targ
   std::size_t bits = floats ? 8 * sizeof(Vec3) : static_cast<std::size_t>(kFormats[p.format].bits_per_pixel);
   std::size_t row_bytes = columns * bits / 8, alignment = floats ? sizeof(float) : bits == 24 ? 1 : bits / 8;
   if (p.line_bytes < row_bytes || p.line_bytes > INT_MAX)
-    return failure("a row of %zu pixels takes %zu bytes and line_bytes is %zu", columns, row_bytes, p.line_bytes);
+    return failure("a row of %zu pixels needs %zu bytes, line_bytes is %zu", columns, row_bytes, p.line_bytes);
   if (p.line_bytes % alignment || reinterpret_cast<std::uintptr_t>(p.data) % alignment)
     return failure("rows of these pixels must be aligned to %zu bytes", alignment);
   std::uint64_t needed = std::uint64_t(p.line_bytes) * (rows - 1) + row_bytes;
   if (p.byte_count < needed)
-    return failure("%zu rows take %llu bytes and byte_count is %zu", rows, static_cast<unsigned long long>(needed),
+    return failure("%zu rows need %llu bytes, byte_count is %zu", rows, static_cast<unsigned long long>(needed),
                    p.byte_count);
   target->data = p.data;
   target->line_bytes = static_cast<int>(p.line_bytes);
@@ -79,7 +79,7 @@ void clear_costs(pocketray_instance* instance) {
   instance->refining = false;
 }
 
-// Bands of rows with a call after each, which may end the frame.
+// Bands of rows, with a call of the progress function after each, which may end the frame.
 Status render_bands(pocketray_instance* instance, double seconds) {
   Renderer* renderer = &instance->renderer;
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
@@ -132,8 +132,7 @@ pocketray_result pocketray_refine(pocketray_instance* instance, double milliseco
   constexpr double kMillisecondsMax = 1e12;
   Status status = check_instance(instance);
   if (status.ok && !(milliseconds >= 0 && milliseconds <= kMillisecondsMax))
-    status = failure("a frame cannot be refined for %g milliseconds: the number must lie in 0 … %g", milliseconds,
-                     kMillisecondsMax);
+    status = failure("milliseconds is %g: it must lie in 0 … %g", milliseconds, kMillisecondsMax);
   Target target;
   if (status.ok) status = read_pixels(pixels, instance->renderer.settings, &target);
   if (status.ok && !instance->refining) status = failure("there is no frame to refine: begin one after every change");
@@ -152,7 +151,7 @@ pocketray_result pocketray_refine(pocketray_instance* instance, double milliseco
     std::uint32_t row = progressive->row;
     std::uint64_t before = progressive->trace_ns;
     bool finished =
-        progressive->step == 0 || advance_progressive(renderer, instance->row_spans, 0, progressive);  // a row
+        progressive->step == 0 || advance_progressive(renderer, instance->row_spans, 0, progressive);  // one row
     if (row < renderer->row_ns.count) renderer->row_ns[row] += progressive->trace_ns - before;
     if (finest && progressive->trace_ns > before) ++instance->rows_done;
     if (finished) result = POCKETRAY_OK;
@@ -199,8 +198,8 @@ pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, std
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
   if (!nanoseconds) return refuse(POCKETRAY_ERROR_ARGUMENT, failure("nanoseconds: a null pointer"));
   if (row_count != instance->renderer.settings.height)
-    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("row_count is %u, and the picture has %u rows", row_count,
-                                                    instance->renderer.settings.height));
+    return refuse(POCKETRAY_ERROR_ARGUMENT,
+                  failure("row_count is %u, the picture has %u rows", row_count, instance->renderer.settings.height));
   Array<std::uint64_t> row_ns = instance->renderer.row_ns;
   std::memcpy(nanoseconds, row_ns.data, row_ns.bytes());
   return POCKETRAY_OK;

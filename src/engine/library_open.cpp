@@ -1,4 +1,4 @@
-// Opening scenes: what the caller asks for → a planned and built renderer in his memory.
+// Opening scenes: the caller's request → a planned and built renderer in the caller's memory.
 #include <cstring>
 #include <new>
 
@@ -17,13 +17,13 @@ static_assert(kEffectCount <= POCKETRAY_EFFECTS_MAX, "a plan holds all effects")
 static_assert(kMemoryPartMax <= POCKETRAY_MEMORY_PARTS_MAX, "and all parts of the memory");
 static_assert(kNone == POCKETRAY_NONE, "no such index");
 
-// What was asked for, read and checked.
+// The request, read and checked.
 struct Request {
   pocketray_source source;
   pocketray_options options;
   Settings settings;
   Camera camera;
-  const AccelInfo* accel = nullptr;       // null: the plan is to choose
+  const AccelInfo* accel = nullptr;       // null: let the plan choose
   const BuiltinScene* builtin = nullptr;  // null: source.bytes
 };
 
@@ -74,9 +74,9 @@ Status read_options(const pocketray_options* given, Request* q) {
   RETURN_IF_ERROR(check_choice("movable", o.movable, 2));
   RETURN_IF_ERROR(check_limit(Quantity::camera_index, o.camera_index));
   if (o.light_count_max > kLightCountMax)
-    return failure("light_count_max is %u: at most %u lights fit", o.light_count_max, kLightCountMax);
-  if (o.part_count > kNodeCountMax) return failure("%u parts, at most %u fit", o.part_count, kNodeCountMax);
-  if (o.part_count && !o.parts) return failure("the parts are a null pointer, and there are %u", o.part_count);
+    return failure("light_count_max is %u: at most %u lights are supported", o.light_count_max, kLightCountMax);
+  if (o.part_count > kNodeCountMax) return failure("%u parts, at most %u are supported", o.part_count, kNodeCountMax);
+  if (o.part_count && !o.parts) return failure("parts is a null pointer, part_count is %u", o.part_count);
   pocketray_settings settings = POCKETRAY_SETTINGS_INIT;
   if (o.settings) RETURN_IF_ERROR(read_struct("the settings", o.settings, &settings));
   RETURN_IF_ERROR(read_settings(settings, s));
@@ -98,7 +98,7 @@ std::size_t parts_need(const Request& q) {
          arena_need<Animation>(1);
 }
 
-// What load_scene() takes from the scene arena.
+// Bytes that load_scene() takes from the scene arena.
 std::size_t load_need(const Request& q, bool copies) {
   std::size_t scene = q.builtin ? q.builtin->need() : copies ? arena_need(q.source.byte_count) : 0;
   return size_sum(scene, parts_need(q));
@@ -109,19 +109,20 @@ std::size_t overrides_need(const Request& q, const Scene& scene) {
   return moves_nodes(q) ? arena_need<NodeOverride>(scene.nodes.count) : 0;
 }
 
-// The run of vertices that the triangles of a material use.
+// The run of vertices used by the triangles of a material.
 Status find_run(const Scene& scene, std::uint32_t part, std::uint32_t material, MovingMesh* mesh) {
   std::uint32_t first = kNone, last = 0;
   for (const Triangle& t : scene.triangles) {
     if (t.material() != material) continue;
     for (std::uint32_t v : t.vertices()) first = v < first ? v : first, last = v > last ? v : last;
   }
-  if (first == kNone) return failure("parts[%u]: no triangle is of material %u", part, material);
+  if (first == kNone) return failure("parts[%u]: no triangle has material %u", part, material);
   for (const Triangle& t : scene.triangles)
     for (std::uint32_t v : t.vertices())
       if (t.material() != material && v >= first && v <= last)
-        return failure("parts[%u]: vertex %u, within those of material %u, is another's, too: state a run of vertices",
-                       part, v, material);
+        return failure(
+            "parts[%u]: vertex %u, among those of material %u, has another material: state a run of vertices", part, v,
+            material);
   mesh->vertex_begin = first;
   mesh->vertex_count = last - first + 1;
   return success();
@@ -136,7 +137,7 @@ Status read_part(const Scene& scene, const Request& q, std::uint32_t part, Movin
   if (p.vertex_count == 0) RETURN_IF_ERROR(find_run(scene, part, p.material, mesh));
   std::uint32_t count = scene.positions.count;
   if (mesh->vertex_begin > count || mesh->vertex_count > count - mesh->vertex_begin)
-    return failure("parts[%u] reaches beyond the %u vertices there are", part, count);
+    return failure("parts[%u] extends beyond the scene's %u vertices", part, count);
   mesh->rest_begin = mesh->vertex_begin;
   return success();
 }
@@ -147,7 +148,7 @@ Status add_parts(const Request& q, Renderer* renderer) {
   Scene* scene = &renderer->scene;
   if (count == 0) return success();
   if (scene->nodes.count || scene->animations.count)
-    return failure("the scene is animated, and its nodes are what moves: leave parts out and set movable");
+    return failure("the scene is animated and has nodes of its own: leave parts out and set movable");
   Array<Node> nodes = arena_array<Node>(&renderer->scene_arena, count);
   Array<MovingMesh> meshes = arena_array<MovingMesh>(&renderer->scene_arena, count);
   Array<Animation> animation = arena_array_zeroed<Animation>(&renderer->scene_arena, 1);
@@ -155,13 +156,13 @@ Status add_parts(const Request& q, Renderer* renderer) {
     nodes[part] = Node();
     MovingMesh mesh;
     RETURN_IF_ERROR(read_part(*scene, q, part, &mesh));
-    std::uint32_t at = part;  // runs ascend
+    std::uint32_t at = part;  // keep runs in ascending order
     for (; at > 0 && meshes[at - 1].vertex_begin > mesh.vertex_begin; --at) meshes[at] = meshes[at - 1];
     meshes[at] = mesh;
   }
   for (std::uint32_t i = 1; i < count; ++i)
     if (meshes[i].vertex_begin - meshes[i - 1].vertex_begin < meshes[i - 1].vertex_count)
-      return failure("parts[%u] and parts[%u] have vertices in common", meshes[i - 1].node, meshes[i].node);
+      return failure("parts[%u] and parts[%u] share vertices", meshes[i - 1].node, meshes[i].node);
   scene->nodes = nodes;
   scene->moving_meshes = meshes;
   scene->animations = animation;
@@ -203,16 +204,17 @@ pocketray_result plan_request(const Request& q, const SceneStorage& storage, Ren
       renderer->memory.total_bytes == SIZE_MAX || renderer->memory.total_bytes > renderer->memory.limit_bytes;
   if (!status.ok) return refuse(too_small ? POCKETRAY_ERROR_MEMORY : POCKETRAY_ERROR_SCENE, status);
   if (renderer->light_count_max && renderer->light_count_max < scene.lights.count)
-    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("light_count_max is %u, and the scene has %u lights already",
+    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("light_count_max is %u, the scene already has %u lights",
                                                     renderer->light_count_max, scene.lights.count));
   return POCKETRAY_OK;
 }
 
 pocketray_result need_more(const char* what, std::size_t needed, std::size_t given) {
-  return refuse(POCKETRAY_ERROR_MEMORY, failure("%s needs %zu bytes of memory and %zu are given", what, needed, given));
+  return refuse(POCKETRAY_ERROR_MEMORY, failure("%s needs %zu bytes of memory, %zu were given", what, needed, given));
 }
 
-// Gives the caller's lights and transforms the room that was planned for them. The first frame's pose was made without.
+// Gives the memory planned for the caller's lights and transforms to them. The first frame's pose was made without
+// them.
 void attach_changes(pocketray_instance* instance) {
   Pose* pose = &instance->renderer.pose;
   if (pose->nodes.empty()) return;  // nothing moves
@@ -254,7 +256,7 @@ pocketray_result open_request(const Request& q, void* memory, std::size_t memory
   if (loaded != POCKETRAY_OK) return loaded;
   std::size_t change_bytes = lights_need(q) + overrides_need(q, renderer->scene);
   if (change_bytes > arena_free(renderer->scene_arena))
-    return need_more("what may be changed", size_sum(memory_bytes, change_bytes), memory_bytes);
+    return need_more("room for changes", size_sum(memory_bytes, change_bytes), memory_bytes);
   if (q.options.light_count_max) {
     instance->lights = arena_array<Light>(&renderer->scene_arena, q.options.light_count_max);
     instance->posed_lights = arena_array<Light>(&renderer->scene_arena, q.options.light_count_max);
@@ -321,7 +323,7 @@ pocketray_result pocketray_make_plan(const pocketray_source* source, const pocke
   Request q;
   Status status = read_request(source, options, &q);
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
-  // Bytes that need not be copied to be read stay where they are, and only their copy's memory is planned.
+  // Bytes that can be read in place are not copied, so memory is planned only for a copy that is needed.
   bool copies = !q.builtin && !is_aligned(q.source.bytes);
   std::size_t need = load_need(q, copies);
   if (need > 0) need = size_sum(need, kArenaAlignment);
@@ -345,12 +347,10 @@ pocketray_result pocketray_make_plan(const pocketray_source* source, const pocke
 pocketray_result pocketray_open(const pocketray_source* source, const pocketray_options* options, void* memory,
                                 std::size_t memory_bytes, pocketray_instance** instance) {
   if (!instance)
-    return refuse(POCKETRAY_ERROR_ARGUMENT,
-                  failure("there is nowhere to put the instance: pass the address of a pointer"));
+    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("the instance's address is null: pass the address of a pointer"));
   *instance = nullptr;
   if (!memory)
-    return refuse(POCKETRAY_ERROR_ARGUMENT,
-                  failure("the memory is a null pointer: pass a block for the instance to lie in"));
+    return refuse(POCKETRAY_ERROR_ARGUMENT, failure("the memory is a null pointer: pass a block for the instance"));
   Request q;
   Status status = read_request(source, options, &q);
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);

@@ -1,4 +1,4 @@
-// What a caller reads and changes of an open scene between frames.
+// Reading and changing an open scene between frames.
 #include <cstring>
 
 #include "base/limit_list.h"
@@ -52,7 +52,7 @@ Light from_caller(const pocketray_light& light) {
 
 pocketray_result change_lights(pocketray_instance* instance, const pocketray_light* lights, std::uint32_t count) {
   Renderer* renderer = &instance->renderer;
-  Array<Light> changed = {instance->posed_lights.data, count};  // which every frame fills anew
+  Array<Light> changed = {instance->posed_lights.data, count};  // refilled for every frame
   for (std::uint32_t i = 0; i < count; ++i) changed[i] = from_caller(lights[i]);
   const Array<const Light> before = renderer->scene.lights;
   renderer->scene.lights = changed;
@@ -164,7 +164,7 @@ pocketray_result pocketray_set_lights(pocketray_instance* instance, const pocket
   const void* given = light_count ? static_cast<const void*>(lights) : instance;
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_changing(instance, "lights", given));
   if (light_count > instance->lights.count)
-    return refuse(POCKETRAY_ERROR_LIMIT, failure("%u lights, and memory was reserved for %u: open with light_count_max",
+    return refuse(POCKETRAY_ERROR_LIMIT, failure("%u lights, memory is reserved for %u: open with light_count_max",
                                                  light_count, instance->lights.count));
   for (std::uint32_t i = 0; i < light_count; ++i)
     REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_choice("the kind of a light", lights[i].kind, 3));
@@ -215,7 +215,7 @@ pocketray_result pocketray_set_node(pocketray_instance* instance, std::uint32_t 
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_instance(instance));
   REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_node(instance, node));
   if (instance->renderer.pose.overrides.empty())
-    return refuse(POCKETRAY_ERROR_LIMIT, failure("no memory was reserved for moving nodes: open with movable, or with "
+    return refuse(POCKETRAY_ERROR_LIMIT, failure("no memory is reserved for moving nodes: open with movable, or with "
                                                  "parts, and with the effect animation"));
   for (int i = 0; to_parent && i < 12; ++i)
     REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_limit(Quantity::coordinate, static_cast<double>(to_parent[i]),

@@ -13,8 +13,7 @@
 namespace pocketray {
 namespace {
 
-// Whether the lights of the last frame are this one's, too: nothing moves, and nothing that they follow from has
-// changed.
+// Whether the lights of the last frame are still valid: nothing moves, and nothing that they depend on has changed.
 bool is_lit(const Renderer& renderer) {
   return renderer.lit_mask == renderer.effects.mask && !renderer.pose.positions.count && !renderer.pose.lights.count &&
          same_lights(renderer.lit_settings, renderer.settings);

@@ -6,10 +6,10 @@
 namespace pocketray {
 namespace {
 
-constexpr std::int64_t kOwedNsMax = 200'000;       // less is left to the next wait: a sleep overruns by a quarter of it
+constexpr std::int64_t kOwedNsMax = 200'000;  // less is left to the next wait: a sleep overruns by a quarter of this
 constexpr std::int64_t kExcessNsMax = 50'000'000;  // more is not made up for: this CPU is too slow for the pace
-constexpr std::int64_t kSleepNsMax = 20'000'000;   // between two looks at `stop`
-constexpr double kPacedNsMax = 3600e9;             // nothing waits for longer
+constexpr std::int64_t kSleepNsMax = 20'000'000;   // between two checks of `stop`
+constexpr double kPacedNsMax = 3600e9;             // no wait is longer
 
 std::uint64_t to_ns(double ns) { return static_cast<std::uint64_t>(ns < kPacedNsMax ? ns : kPacedNsMax); }
 

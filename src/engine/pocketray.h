@@ -17,16 +17,16 @@
  *              up, right-handed. Vectors are float[3]: x, y, z or red, green, blue. Row 0 is the top of the picture.
  *   Results    Every call that can fail returns a pocketray_result: 0 or above is no error. Null pointers, NaN, numbers
  *              out of range and damaged files are refused with an error; a call that fails changes nothing.
- *   Memory     The library allocates nothing but its threads (options.threads − 1 of them). What you pass in is copied
- *              or used during the call; only `memory`, and the bytes of a scene that is not copied, must stay in place
- *              until pocketray_close().
- *   Threads    Several instances may be used by several threads. One instance takes one call at a time;
- *              pocketray_set_stop() alone may be called at any time, from any thread or signal handler.
+ *   Memory     The library allocates nothing but its threads (options.threads − 1 of them). Arguments are copied or
+ * used during the call; only `memory`, and the bytes of a scene that is not copied, must stay in place until
+ *              pocketray_close().
+ *   Threads    Several threads may use several instances. One instance takes one call at a time; only
+ *              pocketray_set_stop() may be called at any time, from any thread or signal handler.
  *   Versions   A structure that may grow starts with struct_size, which its _INIT sets together with the defaults. A
- *              library takes the structures of all earlier versions with the same POCKETRAY_VERSION_MAJOR and, while
+ *              library accepts the structures of all earlier versions with the same POCKETRAY_VERSION_MAJOR and, while
  *              that is 0, the same POCKETRAY_VERSION_MINOR.
  *   Pictures   The same scene, settings, camera and time give the same pixels on every CPU, with any number of threads,
- *              and from the program `pocketray`.
+ *              and the same as the program `pocketray`.
  */
 #ifndef POCKETRAY_H
 #define POCKETRAY_H
@@ -50,7 +50,7 @@
 extern "C" {
 #endif
 
-/* POCKETRAY_VERSION_NUMBER of the library, to be compared with that of this header. */
+/* POCKETRAY_VERSION_NUMBER of the library; compare it with this header's. */
 POCKETRAY_API uint32_t pocketray_version(void);
 
 typedef enum pocketray_result {
@@ -60,11 +60,11 @@ typedef enum pocketray_result {
   POCKETRAY_ERROR_ARGUMENT = -1, /* a null pointer, a number out of range, a name that does not exist */
   POCKETRAY_ERROR_SCENE = -2,    /* the scene's bytes are damaged, or it cannot be rendered */
   POCKETRAY_ERROR_MEMORY = -3,   /* the memory given is too small */
-  POCKETRAY_ERROR_LIMIT = -4     /* more than what was reserved by the options of pocketray_open() */
+  POCKETRAY_ERROR_LIMIT = -4     /* more than the options of pocketray_open() reserved */
 } pocketray_result;
 
-/* What was wrong with the calling thread's last call that returned an error, and how to mend it: one line of UTF-8.
- * Yours until the thread's next call. Empty before the first error. */
+/* The error of the calling thread's last failed call and its remedy: one line of UTF-8. Valid until the thread's next
+ * call. Empty before the first error. */
 POCKETRAY_API const char* pocketray_error_message(void);
 
 /* ---- Scenes, options, plan ----------------------------------------------------------------------------------------*/
@@ -88,13 +88,13 @@ typedef struct pocketray_source {
 enum { POCKETRAY_FILTER_AS_SCENE = 0, POCKETRAY_FILTER_NEAREST = 1, POCKETRAY_FILTER_BILINEAR = 2 };
 enum { POCKETRAY_NORMALS_AS_SCENE = 0, POCKETRAY_NORMALS_FLAT = 1 };
 
-/* What trades accuracy for time; may change between frames. */
+/* Settings that trade accuracy for time; may change between frames. */
 typedef struct pocketray_settings {
   size_t struct_size;
   int samples_per_pixel;     /* 1 … 16 */
   int ray_depth;             /* reflections and refractions along a path, 0 … 16 */
-  int points_per_area_light; /* 1 … 256; reserved is memory for as many as there were at pocketray_open() */
-  float cut_off_levels;      /* largest error per sample from skipped rays, in displayed levels, 0 … 64 */
+  int points_per_area_light; /* 1 … 256; memory is reserved for the number at pocketray_open() */
+  float cut_off_levels;      /* largest error per sample from skipped rays, in display levels, 0 … 64 */
   int texture_filter;        /* POCKETRAY_FILTER_… */
   int normals;               /* POCKETRAY_NORMALS_… */
 } pocketray_settings;
@@ -114,24 +114,24 @@ typedef struct pocketray_camera {
 #define POCKETRAY_CAMERA_INIT \
   { sizeof(pocketray_camera), {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0, 45, 1, 0 }
 
-/* A part of a scene without animation that is to be moved: a run of its vertices. Triangles between vertices of two
- * parts stretch. */
+/* A movable part of a scene without animation: a run of its vertices. Triangles between vertices of two parts
+ * stretch. */
 typedef struct pocketray_part {
-  uint32_t vertex_begin, vertex_count; /* in the file's order; count 0: the run of vertices that `material` uses, */
-  uint32_t material;                   /* which must belong to it alone */
+  uint32_t vertex_begin, vertex_count; /* in the file's order; count 0: the run of vertices used by `material`, */
+  uint32_t material;                   /* which no other material may use */
 } pocketray_part;
 
-/* What is fixed from pocketray_open() on. */
+/* Fixed from pocketray_open() on. */
 typedef struct pocketray_options {
   size_t struct_size;
   int width, height;                  /* pixels, 1 … 8192 */
-  int threads;                        /* to trace with, the caller's included: 1 … 64 */
-  int measure_exposure;               /* 1: measured from the first picture, whatever the scene says */
+  int threads;                        /* that trace, including the caller's: 1 … 64 */
+  int measure_exposure;               /* 1: measure it on the first picture, whatever the scene says */
   const pocketray_settings* settings; /* null: POCKETRAY_SETTINGS_INIT */
   const pocketray_camera* camera;     /* null: the scene's camera `camera_index` */
   uint32_t camera_index;
-  uint32_t light_count_max;    /* reserve memory for pocketray_set_lights(); 0: lights stay as they are */
-  const char* effects;         /* "auto" less or more some: "auto,-shadow"; null: auto, what the scene calls for */
+  uint32_t light_count_max;    /* reserve memory for pocketray_set_lights(); 0: lights are fixed */
+  const char* effects;         /* "auto" plus or minus some: "auto,-shadow"; null: auto, what the scene needs */
   const char* accelerator;     /* "bvh", "compact", …; null: the file's, else the fastest that fits */
   const pocketray_part* parts; /* of a scene without animation: each becomes a node, in this order */
   uint32_t part_count;
@@ -141,10 +141,10 @@ typedef struct pocketray_options {
   { sizeof(pocketray_options), 320, 240, 1, 0, NULL, NULL, 0, 0, NULL, NULL, NULL, 0, 0 }
 
 typedef struct pocketray_effect {
-  const char* name;          /* as options.effects takes it; never freed */
-  const char* called_for_by; /* what in a scene calls for it; never freed */
+  const char* name;          /* as in options.effects; never freed */
+  const char* called_for_by; /* scene content that needs it; never freed */
   int on;                    /* whether it is simulated */
-  char reason[96];           /* and why, or why not */
+  char reason[96];           /* why it is, or is not */
 } pocketray_effect;
 
 typedef struct pocketray_memory_part {
@@ -155,26 +155,25 @@ typedef struct pocketray_memory_part {
 #define POCKETRAY_EFFECTS_MAX 32
 #define POCKETRAY_MEMORY_PARTS_MAX 16
 
-/* What was decided for a scene, options and settings. */
+/* The plan for a scene, options and settings. */
 typedef struct pocketray_plan {
   size_t struct_size;
-  size_t memory_bytes;     /* that pocketray_open() needs; where they end lower, it may fall back on a smaller
-                              accelerator */
-  size_t scratch_bytes;    /* that pocketray_make_plan() needs, 0 for a .pray file aligned to 64 and without parts */
+  size_t memory_bytes;     /* that pocketray_open() needs; with less, it may fall back on a smaller accelerator */
+  size_t scratch_bytes;    /* that pocketray_make_plan() needs; 0 for a .pray file aligned to 64 and without parts */
   const char* accelerator; /* never freed */
   uint32_t vertex_count, triangle_count, material_count, light_count, camera_count, node_count;
-  int default_camera, default_lights; /* 1: the scene has none, and was given some */
-  uint32_t frame_count;               /* as the scene says */
+  int default_camera, default_lights; /* 1: the scene has none and got defaults */
+  uint32_t frame_count;               /* as stated by the scene */
   float frames_per_second;
-  double duration_seconds; /* of its animation, which then starts again; 0: nothing moves by itself */
+  double duration_seconds; /* of its animation, which then repeats; 0: no animation */
   uint32_t effect_count, memory_part_count;
   pocketray_effect effects[POCKETRAY_EFFECTS_MAX];
   pocketray_memory_part memory_parts[POCKETRAY_MEMORY_PARTS_MAX];
 } pocketray_plan;
 
 /* Plans without rendering: which effects are simulated and why, and how much memory pocketray_open() needs with the
- * same arguments. plan->struct_size must be set. `scratch` is used during the call; it may be null where
- * plan->scratch_bytes turns out to be 0. Where it is too small, the call returns POCKETRAY_ERROR_MEMORY and sets
+ * same arguments. plan->struct_size must be set. `scratch` is used during the call; it may be null if
+ * plan->scratch_bytes turns out to be 0. If it is too small, the call returns POCKETRAY_ERROR_MEMORY and sets
  * plan->scratch_bytes. */
 POCKETRAY_API pocketray_result pocketray_make_plan(const pocketray_source* source, const pocketray_options* options,
                                                    void* scratch, size_t scratch_bytes, pocketray_plan* plan);
@@ -183,45 +182,46 @@ POCKETRAY_API pocketray_result pocketray_make_plan(const pocketray_source* sourc
 
 typedef struct pocketray_instance pocketray_instance; /* one scene, ready to render; lies in the memory given */
 
-/* Opens a scene. `memory` belongs to the instance until pocketray_close() and is all that it uses. *instance is null
- * after an error. */
+/* Opens a scene. `memory` belongs to the instance until pocketray_close(); the instance uses no other. *instance is
+ * null after an error. */
 POCKETRAY_API pocketray_result pocketray_open(const pocketray_source* source, const pocketray_options* options,
                                               void* memory, size_t memory_bytes, pocketray_instance** instance);
-/* Ends the instance's threads; the memory is yours again. Null is allowed. */
+/* Ends the instance's threads and returns the memory to you. Null is allowed. */
 POCKETRAY_API void pocketray_close(pocketray_instance* instance);
-/* What was planned, and holds with the changes made since. plan->struct_size must be set. */
+/* The plan, including changes made since. plan->struct_size must be set. */
 POCKETRAY_API pocketray_result pocketray_get_plan(const pocketray_instance* instance, pocketray_plan* plan);
 
-/* Settings for the coming frames. POCKETRAY_ERROR_LIMIT: the area lights would take more points than were reserved. */
+/* Settings for the next frames. POCKETRAY_ERROR_LIMIT: the area lights need more points than were reserved. */
 POCKETRAY_API pocketray_result pocketray_get_settings(const pocketray_instance* instance, pocketray_settings* settings);
 POCKETRAY_API pocketray_result pocketray_set_settings(pocketray_instance* instance, const pocketray_settings* settings);
 
-/* The camera: that of the last frame or the one set since; one that replaces the scene's; the scene's camera
- * `camera_index` again, which moves where it is animated. Of a scene without cameras, index 0 is the default camera. */
+/* The camera. Get: that of the last frame or the one set since. Set: replaces the scene's. Use scene: the scene's
+ * camera `camera_index` again, which moves if it is animated; in a scene without cameras, index 0 is the default one.
+ */
 POCKETRAY_API pocketray_result pocketray_get_camera(const pocketray_instance* instance, pocketray_camera* camera);
 POCKETRAY_API pocketray_result pocketray_set_camera(pocketray_instance* instance, const pocketray_camera* camera);
 POCKETRAY_API pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, uint32_t camera_index);
 
 enum { POCKETRAY_POINT_LIGHT = 0, POCKETRAY_SPOT_LIGHT = 1, POCKETRAY_DIRECTIONAL_LIGHT = 2 };
 
-/* A light that is no surface; emissive materials are area lights by themselves. */
+/* A light other than a surface; emissive materials are area lights anyway. */
 typedef struct pocketray_light {
   int kind;                   /* POCKETRAY_…_LIGHT */
   float position[3];          /* point, spot */
   float direction[3];         /* spot, directional: the way the light travels, of length 1 */
   float intensity[3];         /* point, spot: radiant intensity; directional: irradiance on a surface that faces it */
-  float range;                /* beyond this it gives nothing; 0: no limit */
-  float cos_inner, cos_outer; /* spot: cosines of the angles of full light and of none */
-  uint32_t node;              /* that carries it: position and direction are in its space; POCKETRAY_NONE: none */
+  float range;                /* no light beyond this distance; 0: no limit */
+  float cos_inner, cos_outer; /* spot: cosines of the angles of full and of no light */
+  uint32_t node;              /* it moves with: position and direction are in its space; POCKETRAY_NONE: none */
 } pocketray_light;
 #define POCKETRAY_LIGHT_INIT \
   { 0, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0, 1, 0, POCKETRAY_NONE }
 
-/* The lights as the scene states them, before nodes carry them. Writes the first `capacity` of them to `lights`, which
- * may be null where that is 0, and how many there are to *light_count. */
+/* The lights as stated by the scene, before nodes move them. Writes the first `capacity` of them to `lights`, which may
+ * be null if that is 0, and their total number to *light_count. */
 POCKETRAY_API pocketray_result pocketray_get_lights(const pocketray_instance* instance, pocketray_light* lights,
                                                     uint32_t capacity, uint32_t* light_count);
-/* Replaces all of them, by options.light_count_max lights at most. */
+/* Replaces all of them by at most options.light_count_max lights. */
 POCKETRAY_API pocketray_result pocketray_set_lights(pocketray_instance* instance, const pocketray_light* lights,
                                                     uint32_t light_count);
 
@@ -236,8 +236,8 @@ POCKETRAY_API pocketray_result pocketray_set_surroundings(pocketray_instance* in
 typedef struct pocketray_node {
   size_t struct_size;
   uint32_t parent;     /* a lower index, or POCKETRAY_NONE */
-  int overridden;      /* 1: by pocketray_set_node() */
-  float to_parent[12]; /* for the coming frame where overridden, else as of the last one */
+  int overridden;      /* 1: set by pocketray_set_node() */
+  float to_parent[12]; /* if overridden for the next frame, otherwise as of the last one */
   float to_world[12];  /* as of the last frame */
 } pocketray_node;
 #define POCKETRAY_NODE_INIT                               \
@@ -247,15 +247,15 @@ typedef struct pocketray_node {
 
 POCKETRAY_API pocketray_result pocketray_get_node(const pocketray_instance* instance, uint32_t node,
                                                   pocketray_node* result);
-/* Places a node in its parent's space (a part: in the scene's) in all coming frames, whatever its animation says; null
- * gives it back to the animation, and a part back to its place. Its children, meshes, skins, lights and cameras follow.
- * A transform that mirrors turns surfaces inside out. POCKETRAY_ERROR_LIMIT: neither options.movable nor
- * options.parts asked for this. */
+/* Places a node in its parent's space (a part: in the scene's) in all further frames, whatever its animation says. Null
+ * returns it to the animation, or a part to its original place. Its children, meshes, skins, lights and cameras follow.
+ * A mirroring transform turns surfaces inside out. POCKETRAY_ERROR_LIMIT: neither options.movable nor options.parts
+ * asked for this. */
 POCKETRAY_API pocketray_result pocketray_set_node(pocketray_instance* instance, uint32_t node,
                                                   const float to_parent[12]);
 
-/* Displayed is exposure × radiance: 2⁻⁶⁰ … 2⁶⁰. Measuring takes what shows the scene's geometric mean as middle grey,
- * as the camera sees it at a time, and sets it; `exposure` may be null there. */
+/* Displayed is exposure × radiance: 2⁻⁶⁰ … 2⁶⁰. Measuring sets the exposure that shows the scene's geometric mean, as
+ * the camera sees it at a time, as middle grey; its `exposure` may be null. */
 POCKETRAY_API pocketray_result pocketray_get_exposure(const pocketray_instance* instance, float* exposure);
 POCKETRAY_API pocketray_result pocketray_set_exposure(pocketray_instance* instance, float exposure);
 POCKETRAY_API pocketray_result pocketray_measure_exposure(pocketray_instance* instance, double seconds,
@@ -277,7 +277,7 @@ enum {
 typedef struct pocketray_pixels {
   size_t struct_size;
   void* data;           /* top left of the screen; aligned as its pixels, to 1, 2 or 4 bytes */
-  size_t byte_count;    /* there are in all: line_bytes for every row but the last, which may end with its pixels */
+  size_t byte_count;    /* in total: line_bytes for every row but the last, which may end with its pixels */
   size_t line_bytes;    /* from one screen row to the next; a multiple of that alignment */
   int format;           /* POCKETRAY_XRGB8888, … */
   int rotation_degrees; /* of the picture, clockwise: 0, 90, 180 or 270; a quarter turn puts width × height pixels on a
@@ -288,42 +288,42 @@ typedef struct pocketray_pixels {
 #define POCKETRAY_PIXELS_INIT \
   { sizeof(pocketray_pixels), NULL, 0, 0, 0, 0, 0, 0 }
 
-/* Renders the scene at a time, within ±1e9 seconds. POCKETRAY_STOPPED: the rows that were finished are written, from
- * the top; pocketray_get_frame() says how many. */
+/* Renders the scene at a time, within ±1e9 seconds. POCKETRAY_STOPPED: only the finished rows are written, from the
+ * top; pocketray_get_frame() tells how many. */
 POCKETRAY_API pocketray_result pocketray_render(pocketray_instance* instance, double seconds,
                                                 const pocketray_pixels* pixels);
 
-/* The same picture, coarse first: begins a frame, then refines it for some milliseconds a call, at least by one row.
- * Pass the same pixels each time: only rows that changed are written. POCKETRAY_OK: the frame is finished;
- * POCKETRAY_UNFINISHED: call again; POCKETRAY_STOPPED: call again, once the stop flag is cleared. Any change of the
- * instance and pocketray_render() end a frame that was begun. */
+/* The same picture, coarse first: begins a frame, then refines it for some milliseconds per call, by at least one row.
+ * Pass the same pixels each time: only changed rows are written. POCKETRAY_OK: the frame is finished;
+ * POCKETRAY_UNFINISHED: call again; POCKETRAY_STOPPED: call again when the stop flag is cleared. pocketray_render() and
+ * any change of the instance end a frame in progress. */
 POCKETRAY_API pocketray_result pocketray_begin(pocketray_instance* instance, double seconds);
 POCKETRAY_API pocketray_result pocketray_refine(pocketray_instance* instance, double milliseconds,
                                                 const pocketray_pixels* pixels);
 
-/* 1: rendering stops within a few rows, and does not start, until it is set to 0. From any thread or signal handler. A
- * null instance is allowed. */
+/* 1: rendering stops within a few rows and does not start again until this is set to 0. May be called from any thread
+ * or signal handler. A null instance is allowed. */
 POCKETRAY_API void pocketray_set_stop(pocketray_instance* instance, int stop);
 
-/* Called by pocketray_render() after some rows, on its thread; anything but 0 stops the frame. It may call
- * pocketray_set_stop() and nothing else of the instance. `user` is passed on. Null: none. */
+/* Called by pocketray_render() after every few rows, on its thread; any result but 0 stops the frame. The only call it
+ * may make on the instance is pocketray_set_stop(). `user` is passed on. Null: none. */
 typedef int (*pocketray_progress)(void* user, uint32_t rows_done, uint32_t row_count);
 POCKETRAY_API pocketray_result pocketray_set_progress(pocketray_instance* instance, pocketray_progress progress,
                                                       void* user);
 
-/* What the last frame cost. */
+/* Cost of the last frame. */
 typedef struct pocketray_frame {
   size_t struct_size;
   double build_ms; /* of the accelerator, when the scene was opened */
   double pose_ms, refit_ms, trace_ms;
-  uint64_t ray_count, rays_skipped; /* rays_skipped: could not have changed a displayed level */
+  uint64_t ray_count, rays_skipped; /* rays_skipped: could not have changed a display level */
   uint32_t rows_done, row_count;    /* of a frame being refined: rows of its finest grid */
 } pocketray_frame;
 #define POCKETRAY_FRAME_INIT \
   { sizeof(pocketray_frame), 0, 0, 0, 0, 0, 0, 0, 0 }
 POCKETRAY_API pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketray_frame* frame);
-/* What each row of the last frame took, in nanoseconds of one thread; 0 where it was not traced. Rows traced together
- * count alike. `row_count` must be the picture's height. */
+/* Cost of each row of the last frame, in nanoseconds of one thread; 0 if it was not traced. Rows traced together count
+ * the same. `row_count` must be the picture's height. */
 POCKETRAY_API pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, uint64_t* nanoseconds,
                                                        uint32_t row_count);
 

@@ -1,11 +1,11 @@
-// Poses the scene and brings the accelerator after it.
+// Poses the scene and updates the accelerator.
 #include "effect/effect_probe.h"
 #include "engine/prepare.h"
 
 namespace pocketray {
 namespace {
 
-// An accelerator that cannot be refitted is built anew, in the memory that plan_memory() set aside for that.
+// An accelerator without refit is rebuilt, in memory that plan_memory() set aside.
 void follow_motion(Renderer* renderer) {
   renderer->accel.positions = renderer->frame.positions;
   if (renderer->accel_info->refit) return renderer->accel_info->refit(&renderer->accel, renderer->accel_data);

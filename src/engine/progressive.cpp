@@ -8,9 +8,9 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kChunk = 32;  // pixels a thread takes at a time on the finest grid
+constexpr std::uint32_t kChunk = 32;  // pixels per span on the finest grid
 
-// The pixels of a row that are on this grid and on no coarser one, as spans.
+// The pixels of a row that are on this grid but on no coarser one, as spans.
 std::uint32_t list_row(const Settings& settings, std::uint32_t row, std::uint32_t step, Array<Span> spans) {
   std::uint32_t count = 0;
   auto y = static_cast<std::uint16_t>(row);
@@ -39,7 +39,7 @@ void next_row(void* context, SpanBatch* batch) {
   batch->span_count = list_row(r.renderer->settings, r.progressive->row, r.progressive->step, r.row_spans);
 }
 
-// Spreads each traced pixel over its cell.
+// Copies each traced pixel to its whole cell.
 void fill_cells(void* context, const SpanBatch& batch) {
   const Renderer& renderer = *static_cast<Refinement*>(context)->renderer;
   const std::uint32_t step = static_cast<Refinement*>(context)->progressive->step;

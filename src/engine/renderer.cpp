@@ -74,8 +74,8 @@ Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage&
                      renderer->light_points.count, output_bytes, &renderer->memory);
 }
 
-// Settles the accelerator and plans the memory with it: what was asked for, else what the scene was baked with, else
-// the default, else, where that does not fit, the first automatic one that does.
+// Chooses the accelerator and plans the memory with it: the requested one, else the one the scene was baked with, else
+// the default, else, if that does not fit, the first automatic one that does.
 Status choose_accel(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
   const AccelInfo* baked = accel_of(renderer->scene.accel);
   if (renderer->accel_info) {
@@ -100,17 +100,16 @@ void start_renderer(void* block, std::size_t block_bytes, const Settings& settin
   renderer->settings = settings;
   renderer->scene_arena = make_arena("scene", block, block_bytes);
   renderer->settings.memory_bytes =
-      renderer->scene_arena.capacity;  // aligning the block's start may have cost a few bytes
+      renderer->scene_arena.capacity;  // aligning the block's start may have lost a few bytes
 }
 
 Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
   RETURN_IF_ERROR(validate_settings(renderer->settings));
   if (renderer->camera_index > 0 && renderer->camera_index >= renderer->scene.cameras.count)
     return failure("there is no camera %u: the scene has %u", renderer->camera_index, renderer->scene.cameras.count);
-  for (const Material& m : renderer->scene.materials)  // a file may come from a program with more lobes
+  for (const Material& m : renderer->scene.materials)  // the file's program may have had more lobes
     if (m.brdf >= kBrdfCount)
-      return failure("a material uses glossy lobe %u and this program has %u: bake the scene again", m.brdf,
-                     kBrdfCount);
+      return failure("a material uses glossy lobe %u, this program has %u: bake the scene again", m.brdf, kBrdfCount);
   add_what_is_missing(renderer);
   renderer->effects = plan_effects(renderer->scene, renderer->settings);
   std::uint32_t point_count;
@@ -122,7 +121,7 @@ Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_
 }
 
 Status build_renderer_unexposed(Renderer* renderer) {
-  // The scene arena so far reached over the whole block; from here on each arena has just what was planned for it.
+  // So far the scene arena spanned the whole block; from here on each arena has exactly its planned size.
   Arena rest = renderer->scene_arena;
   rest.used = arena_need(rest.used);
   renderer->scene_arena.capacity = renderer->scene_arena.used;
@@ -179,7 +178,7 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   std::uint32_t point_count;
   RETURN_IF_ERROR(light_point_count(renderer->scene, settings, effects.mask, &point_count));
   if (point_count > renderer->light_point_count_max)
-    return failure("the lights would take %u points and memory was planned for %u: plan with that many", point_count,
+    return failure("the lights need %u points, memory is planned for %u: plan for that many", point_count,
                    renderer->light_point_count_max);
   std::size_t memory_bytes = now.memory_bytes;
   renderer->settings = settings;

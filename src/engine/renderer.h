@@ -1,5 +1,4 @@
-// Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. Allocates nothing
-// itself.
+// Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. It allocates nothing.
 #pragma once
 #include "engine/pace.h"
 #include "plan/plan_memory.h"
@@ -18,55 +17,55 @@ struct Renderer {
   Scene scene;
   EffectPlan effects;
   MemoryPlan memory;
-  const AccelInfo* accel_info = nullptr;  // null until planned: the plan is to choose
+  const AccelInfo* accel_info = nullptr;  // null until planned: the plan chooses
   bool accel_is_fallback = false;         // the default did not fit
   Accel accel;
-  Array<std::uint8_t> accel_data;  // writable where geometry moves
+  Array<std::uint8_t> accel_data;  // writable if geometry moves
   Pose pose;
   Array<LightPoint> light_points;
-  std::uint32_t light_point_count_max = 0;  // planned for
-  std::uint32_t light_count_max = 0;        // lights that may be set later: their points are planned for, too
+  std::uint32_t light_point_count_max = 0;  // as planned
+  std::uint32_t light_count_max = 0;        // lights that may be set later; their points are planned for
   FrameData frame;
   Array<Span> spans;            // one per scanline
-  Array<std::uint64_t> row_ns;  // what each cost in the last frame
+  Array<std::uint64_t> row_ns;  // cost of each in the last frame
   Array<Tracer> tracers;        // one per thread
   Array<Vec3> image;            // width × height, linear
   Camera camera;
-  Settings lit_settings;                 // that the frame's lights were placed for,
-  EffectMask lit_mask = ~EffectMask(0);  // and effects; ~0: they were not
+  Settings lit_settings;                 // the settings that the frame's lights were placed for,
+  EffectMask lit_mask = ~EffectMask(0);  // and the effects; ~0: not placed
   bool camera_overridden = false;
   std::uint32_t camera_index = 0;
   float exposure = 1;
   Timings timings;
-  Pace pace;                   // of an emulated device; as it stands: none
-  Workers* workers = nullptr;  // null: the caller's thread alone
+  Pace pace;                   // of an emulated device; default: none
+  Workers* workers = nullptr;  // null: only the caller's thread
   Light default_lights[2];
 };
 
-// First step: carves the scene arena out of the block, so that the scene can be put there. The block stays the caller's
-// and must outlive the renderer.
+// First step: carves the scene arena out of the block, to load the scene into. The caller keeps ownership of the block,
+// which must outlive the renderer.
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* renderer);
 
-// Second step, with renderer->scene set: gives it the camera and lights it lacks, plans effects and memory. On failure
-// the plans are filled as far as they were made, to be shown. `output_bytes` as plan_memory() takes it.
+// Second step, with renderer->scene set: adds a missing camera and lights, plans effects and memory. On failure the
+// plans are filled as far as they got, so that they can be shown. `output_bytes` as in plan_memory().
 Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes);
 
-// Third step: carves the arenas, builds the accelerator, poses the scene at time 0. May be called once.
+// Third step: carves the arenas, builds the accelerator, poses the scene at time 0. Call it only once.
 Status build_renderer(Renderer* renderer);
 
-// In place of the second and third step, for a device that shows what others render: has memory for the output alone
-// and renders nothing. Camera, exposure, effects and what else of the scene the caller uses are his to set.
+// Replaces the second and third step on a device that only shows what others render: has memory for the output alone
+// and renders nothing. The caller sets camera, exposure, effects and whatever else it uses of the scene.
 Status plan_without_scene(Renderer* renderer, std::size_t output_bytes);
 
-// Changes for the coming frames what trades accuracy for time, within the memory that was planned: samples, depth,
-// points per area light, cut-off, texture filter and normals may differ. Fails, and leaves everything as it was, where
-// one is out of range or the lights would take more points than were planned for.
+// Changes the settings that trade accuracy for time for the next frames, within the planned memory: samples, depth,
+// points per area light, cut-off, texture filter and normals may differ. If one is out of range or the lights would
+// need more points than were planned for, fails and changes nothing.
 Status change_settings(Renderer* renderer, const Settings& settings);
 
-// Sets the camera for the coming frames.
+// Sets the camera for the next frames.
 Status set_camera(Renderer* renderer, const Camera& camera);
 
-// What all threads together did in the last frame.
+// Counters of the last frame, over all threads.
 Tracer total_counts(const Renderer& renderer);
 
 // Measures exposure on a coarse grid of pixels: the scene's key value becomes middle grey [Reinhard et al. 2002,

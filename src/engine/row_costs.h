@@ -1,4 +1,4 @@
-// Rows that do not all cost the same on an emulated CPU, for simulations.
+// Rows with different costs on an emulated CPU, for simulations.
 #pragma once
 #include <cstdint>
 
@@ -6,8 +6,7 @@
 
 namespace pocketray {
 
-// The pace at which these rows are rendered. `row_costs`: of each row of the picture, over the mean; null: all cost the
-// same.
+// The pace of rendering these rows. `row_costs`: cost of each row of the picture relative to the mean; null: all equal.
 inline Pace pace_of_rows(Pace pace, const float* row_costs, std::uint32_t row_begin, std::uint32_t row_end) {
   if (!row_costs || row_begin >= row_end) return pace;
   double sum = 0;

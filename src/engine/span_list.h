@@ -1,33 +1,33 @@
-// The source of a list of spans: a whole frame, bands of one with progress, or the pixels that have changed.
+// Span sources made from a list of spans: a whole frame, bands with progress, or the pixels that have changed.
 #pragma once
 #include "engine/renderer.h"
 #include "engine/span_source.h"
 
 namespace pocketray {
 
-// Spans in any order; those of neighbouring rows next to one another, rows from the top, are traced fastest. None may
-// occur twice. The caller's, as is what they cost.
+// Spans in any order, none twice; fastest with spans of neighbouring rows adjacent, from the top. The caller owns the
+// spans and their costs.
 struct SpanList {
   const Span* spans = nullptr;
   std::uint32_t span_count = 0;
   std::uint64_t* span_ns = nullptr;                                     // null: not measured
-  std::uint32_t batch_spans = ~0u;                                      // handed out at once, at most
-  void (*progress)(void* context, std::uint32_t done_count) = nullptr;  // after each batch; null: not told
+  std::uint32_t batch_spans = ~0u;                                      // most spans per batch
+  void (*progress)(void* context, std::uint32_t done_count) = nullptr;  // called after each batch; null: none
   void* progress_context = nullptr;
 
-  std::uint32_t done_count = 0;  // spans traced so far: the first ones
+  std::uint32_t done_count = 0;  // spans traced so far, from the front
 };
 
-// The list stays the caller's and must outlive the source.
+// The caller owns the list, which must outlive the source.
 SpanSource list_source(SpanList* list);
 
-// All of the renderer's spans: one per scanline, timed in row_ns.
+// All spans of the renderer: one per scanline, timed in row_ns.
 SpanList whole_frame(Renderer* renderer);
-// The same in bands of rows, each as high as keeps all threads busy.
+// The same in bands of rows, each just high enough to keep all threads busy.
 SpanList row_bands(Renderer* renderer);
 
-// Divides pixels [begin, end) of a row into `part_count` spans of about the same length, one at least. No span is empty
-// where there are as many pixels.
+// Divides pixels [begin, end) of a row into `part_count` (at least 1) spans of about equal length. No span is empty if
+// there are that many pixels.
 void divide_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end, std::uint32_t part_count, Span* spans);
 
 }  // namespace pocketray

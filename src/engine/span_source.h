@@ -1,6 +1,6 @@
-// Span source: where a frame's spans come from. A source hands them out in batches and is told which are finished.
-// Whatever a caller wants of a frame (all of it, coarse first, its share of the rows, what has moved) is a source;
-// trace_frame() is the only loop over one.
+// A span source hands out a frame's spans in batches and is notified when they are finished. Whatever a caller wants of
+// a frame (all of it, coarse first, its share of the rows, what has moved) is a source; trace_frame() is the only loop
+// over one.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -12,31 +12,32 @@ namespace pocketray {
 constexpr std::uint64_t kNoDeadline = ~std::uint64_t(0);
 
 struct SpanBatch {
-  const Span* spans = nullptr;       // the source's; must stay until the batch is finished
-  std::uint32_t span_count = 0;      // 0: nothing can be traced now
-  std::uint64_t* span_ns = nullptr;  // receives what each span costs; null: not measured
-  bool stoppable = false;            // a stop may leave the last spans untraced; otherwise it waits for the batch
+  const Span* spans = nullptr;       // owned by the source; must stay valid until the batch is finished
+  std::uint32_t span_count = 0;      // 0: nothing to trace now
+  std::uint64_t* span_ns = nullptr;  // receives the cost of each span; null: not measured
+  bool stoppable = false;            // true: a stop may leave the last spans untraced; false: it waits for the batch
 
-  // The loop's.
-  std::uint32_t done_count = 0;  // spans traced: the first ones
-  std::uint64_t took_ns = 0;     // by the source's clock: tracing, packing and what the pace adds
+  // Set by the loop.
+  std::uint32_t done_count = 0;  // spans traced, from the front
+  std::uint64_t took_ns = 0;     // by the source's clock: tracing, packing and pacing
 };
 
 struct SpanSource {
-  void* context;  // of the functions below, which run on the caller's thread
+  void* context;  // passed to the functions below, which run on the caller's thread
   // Fills in the next batch.
   void (*next)(void* context, SpanBatch* batch);
-  // Takes note of a batch, whose pixels are in the image. True: the frame is complete.
+  // Receives a finished batch, whose pixels are in the image. True: the frame is complete.
   bool (*finished)(void* context, const SpanBatch& batch);
-  // Makes pixels for showing of those just traced; counts as part of the batch's work. Null: nothing to do.
+  // Packs the pixels just traced for display; counts as part of the batch's work. Null: nothing to do.
   void (*pack)(void* context, const SpanBatch& batch) = nullptr;
 
   Aov aov = Aov::none;
-  std::uint64_t deadline_ns = kNoDeadline;  // by the source's clock; a call of trace_frame() traces one batch at least
+  std::uint64_t deadline_ns =
+      kNoDeadline;  // by the source's clock; each call of trace_frame() traces at least one batch
   const std::atomic<bool>* stop = nullptr;  // set: no further batch
 
-  // A clock of the source's own, and its pace: waits until work begun at `begin_ns` has lasted as long as on the
-  // emulated device and returns how long that is. Null, both: the renderer's pace and its clock.
+  // The source's own clock and pace. The latter waits until work begun at `begin_ns` has taken as long as on the
+  // emulated device and returns how long that is. Both null: the renderer's pace and its clock.
   std::uint64_t (*now_ns)(void* context) = nullptr;
   std::uint64_t (*pace)(void* context, const SpanBatch& batch, std::uint64_t begin_ns) = nullptr;
 };

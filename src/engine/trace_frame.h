@@ -5,9 +5,9 @@
 
 namespace pocketray {
 
-// Traces what the source hands out into renderer->image, until the frame is complete (true), or the deadline has passed
-// or the stop is set (false); it goes on where it left off when called again. prepare_frame() has been called, unless
-// the source hands out nothing but empty batches.
+// Traces the source's spans into renderer->image until the frame is complete (true), or the deadline has passed or the
+// stop flag is set (false). The next call continues where this one ended. Call prepare_frame() first, unless the source
+// hands out only empty batches.
 bool trace_frame(Renderer* renderer, const SpanSource& source);
 
 }  // namespace pocketray

@@ -12,7 +12,7 @@
 
 namespace pocketray {
 
-// Threads of POSIX: std::thread throws where the system has none to give, and the library has no exceptions.
+// POSIX threads: std::thread throws when the system has none left, and the library has no exceptions.
 struct Worker {
   pthread_t thread;
   Workers* workers;
@@ -21,7 +21,7 @@ struct Worker {
 
 struct Workers {
   Worker threads[kThreadCountMax];
-  std::uint32_t count = 0;  // beside the caller's
+  std::uint32_t count = 0;  // in addition to the caller's
   std::mutex mutex;
   std::condition_variable begin, end;
   void (*work)(void* context, std::uint32_t thread) = nullptr;
@@ -37,7 +37,7 @@ std::uint64_t clock_ns() {
 
 namespace {
 
-// Spans to take at once: those of a strip of tiles, fewer towards the end so that all threads end together.
+// Spans to take at once: those of a strip of tiles, fewer towards the end so that all threads finish together.
 std::uint32_t spans_at_once(const Span* spans, std::uint32_t left, std::uint32_t thread_count) {
   std::uint32_t share = left / (2 * thread_count), count = strip_span_count(spans, left);
   if (thread_count > 1)

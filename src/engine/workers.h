@@ -1,4 +1,4 @@
-// Threads that take spans, a few at a time. Started before the seal; the picture does not depend on how many there are.
+// Threads that take a few spans at a time. Started before the seal; the picture does not depend on their number.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -9,14 +9,14 @@ namespace pocketray {
 
 struct Workers;
 
-// Starts thread_count − 1 threads beside the caller's, at most kThreadCountMax in all; fewer where the system has no
-// more to give: worker_thread_count() tells. Null where it gives none, or one is enough.
+// Starts thread_count − 1 threads in addition to the caller's, at most kThreadCountMax in total. The system may give
+// fewer; worker_thread_count() tells. Null if it gives none or one thread is enough.
 Workers* start_workers(std::uint32_t thread_count);
 void stop_workers(Workers* workers);
-// The caller's included.
+// Including the caller's.
 std::uint32_t worker_thread_count(const Workers* workers);
-// Calls work(context, thread) once on each thread, the caller's being 0, and returns when all are done. `workers` may
-// be null: the caller's thread does it alone.
+// Calls work(context, thread) once on each thread, the caller's being 0, and returns when all are done. If `workers` is
+// null, the caller's thread does all of it.
 void run_with(Workers* workers, void (*work)(void* context, std::uint32_t thread), void* context);
 
 // Calls take(context, thread, item) for each item of [begin, end), on whichever thread is free. Returns when all are
@@ -30,13 +30,13 @@ struct TraceJob {
   Aov aov;
   Vec3* image;
   Tracer* tracers;                          // one per thread
-  std::uint64_t* span_ns;                   // what each span cost, those taken together alike; null: not measured
-  const std::atomic<bool>* stop = nullptr;  // set: leave the remaining spans
+  std::uint64_t* span_ns;                   // cost of each span, equal for spans taken together; null: not measured
+  const std::atomic<bool>* stop = nullptr;  // set: skip the remaining spans
 };
 
-// Traces all spans and returns how many were done. `workers` may be null: the caller's thread does it alone.
+// Traces all spans and returns how many were done. If `workers` is null, the caller's thread does all of it.
 std::uint32_t trace_with(Workers* workers, const TraceJob& job);
 
-std::uint64_t clock_ns();  // steady
+std::uint64_t clock_ns();  // monotonic
 
 }  // namespace pocketray

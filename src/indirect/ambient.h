@@ -1,4 +1,4 @@
-// The ambient term: the same radiance from everywhere, which a diffuse surface reflects by its albedo.
+// The ambient term: the same radiance from everywhere, reflected by a diffuse surface according to its albedo.
 #pragma once
 #include "effect/effect_probe.h"
 #include "indirect/indirect.h"

@@ -1,14 +1,14 @@
-// Indirect light: what reaches a surface from others and not from lights. A method is a struct in a file of its own and
-// a line of indirect_list.h:
+// Indirect light: light that reaches a surface from other surfaces rather than from lights. A method is a struct in a
+// file of its own and a line of indirect_list.h:
 //
 //   kName           on the command line and in plans
-//   kEffects        its effect, one bit; it is compiled into the kernels of plans that have it. 0: it adds nothing
-//   kReference      what the reference makes of it
-//   need(scene)     bytes that prepare() takes, at most
-//   prepare(scene, keep)    once, before the first frame; returns what radiance() reads, or null
-//   radiance(point)         that leaves a diffuse surface towards all sides; inlined where surfaces are evaluated
+//   kEffects        its effect, one bit; compiled into the kernels of plans that have it. 0: it adds nothing
+//   kReference      how the reference treats it
+//   need(scene)     upper bound of the bytes that prepare() takes
+//   prepare(scene, keep)    once, before the first frame; returns the data that radiance() reads, or null
+//   radiance(point)         leaving a diffuse surface, the same in all directions; inlined into surface evaluation
 //   exact(scene, diffuse)   radiance() in double precision, for the reference
-//   bound(scene, material)  no radiance() of the material's is more, in any component
+//   bound(scene, material)  upper bound of radiance() on the material, per component
 #pragma once
 #include <cstddef>
 
@@ -26,11 +26,11 @@ struct IndirectPoint {
   const Vec3& diffuse;  // albedo there
 };
 
-// Whether the reference has the light of a method: never; in its lighting model, where the method stands in for the
-// transport of light; always, since light comes from outside the scene.
+// When the reference includes a method's light: never; in its lighting model only, where the method stands in for light
+// transport; always, because the light comes from outside the scene.
 enum class IndirectReference { nothing, model, always };
 
-// A method as data, for what loops over the list.
+// A method as data, for loops over the list.
 struct IndirectInfo {
   const char* name;
   EffectMask effects;
@@ -49,8 +49,8 @@ struct IndirectMethods {
                                              Methods::prepare, Methods::radiance, Methods::exact, Methods::bound}...};
   static constexpr EffectMask kEffects = (Methods::kEffects | ...);
 
-  // Adds the radiance of the methods that the mask has; the others are not compiled. `prepared` as prepare_indirect()
-  // left it.
+  // Adds the radiance of the methods in the mask; the others are not compiled. `prepared` comes from
+  // prepare_indirect().
   template <EffectMask mask>
   static void add_radiance(const Scene& scene, const void* const* prepared, const Vec3& point, const Vec3& normal,
                            const Vec3& diffuse, Vec3* sum) {

@@ -10,12 +10,12 @@ using IndirectList = IndirectMethods<  //
     AmbientIndirect                    //
     >;
 
-// What the methods read, in the list's order; null where a method is off or has nothing.
+// Data that the methods read, in list order; null where a method is off or has none.
 struct IndirectData {
   const void* prepared[IndirectList::kCount] = {};
 };
 
-// Bytes of the persistent arena that the methods of a plan take.
+// Bytes that the methods of a plan take from the persistent arena.
 inline std::size_t indirect_need(const Scene& scene, EffectMask mask) {
   std::size_t bytes = 0;
   for (const IndirectInfo& info : IndirectList::kInfos)
@@ -36,7 +36,7 @@ inline float indirect_bound(const Scene& scene, const Material& material) {
   return bound;
 }
 
-// For the reference. `is_model`: of the lighting model, else of the transport of light.
+// For the reference. `is_model`: for the lighting model, otherwise for light transport.
 inline Vec3d exact_indirect(const Scene& scene, const Vec3d& diffuse, bool is_model) {
   Vec3d sum = {0, 0, 0};
   for (const IndirectInfo& info : IndirectList::kInfos)

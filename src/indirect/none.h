@@ -1,4 +1,4 @@
-// No indirect light: what no light reaches is black.
+// No indirect light: surfaces that no light reaches are black.
 #pragma once
 #include "indirect/indirect.h"
 

@@ -26,7 +26,7 @@ const Candidate* find_candidate(const Front& front, const Quality& quality) {
 
 float clamped_price(double ns) {
   constexpr double kMin = static_cast<double>(kPriceNsMin), kMax = static_cast<double>(kPriceNsMax);
-  return static_cast<float>(ns > kMin ? ns < kMax ? ns : kMax : kMin);  // NaN: the least
+  return static_cast<float>(ns > kMin ? ns < kMax ? ns : kMax : kMin);  // NaN: the minimum
 }
 
 Candidate candidate_of(const Quality& quality) {
@@ -104,7 +104,7 @@ Front builtin_front() {
     c.ray_depth = row.depth;
     c.points_per_area_light = row.area_lights;
     c.cut_off_levels = row.cut_off;
-    // Guessed: as `pocketray bench` finds it on the built-in scenes, to a factor of two.
+    // Guesses within a factor of two of `pocketray bench` on the built-in scenes.
     double reach = row.depth < 4 ? row.depth : 4, points = row.area_lights;
     double exact = row.cut_off == 0 ? 1.2 : row.cut_off > 1 ? 0.95 : 1.0;
     double sample_ns = exact * (200 + 40 * reach + (c.texture_filter == TextureFilter::nearest ? 0 : 10) +
@@ -122,7 +122,7 @@ void drop_what_scene_ignores(Front* front, EffectMask effects) {
     for (const SettingRow& row : kSettingList)
       if (row.seen_with != kAlways && !(row.seen_with & effects))
         row.field.set(&front->candidates[i], row.field.get(usual));
-  for (std::uint32_t i = 1; i < front->count;) {  // of the same pictures the first is the cheapest
+  for (std::uint32_t i = 1; i < front->count;) {  // of equal qualities the first is the cheapest
     std::uint32_t k = 0;
     while (k < i && !same_quality(front->candidates[k], front->candidates[i])) ++k;
     if (k < i)

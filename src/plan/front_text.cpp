@@ -1,4 +1,4 @@
-// Fronts as text. A file's bytes are hostile until read: nothing is looked at beyond them, every length is bounded.
+// Fronts as text. A file's bytes are hostile: nothing beyond them is read, every length is bounded.
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -14,7 +14,7 @@ constexpr char kFirstLine[] = "pocketray-front 1";
 constexpr char kFirstWord[] = "pocketray-front";
 // Settings come first, in the order of their list.
 enum Key : int { flip = kSettingCount, ns, kKeyCount };
-static_assert(kKeyCount <= 32, "one bit each for those that a line has");
+static_assert(kKeyCount <= 32, "one bit per key");
 const char* key_name(int key) { return key == flip ? "flip" : key == ns ? "ns" : kSettingList[key].name; }
 
 struct Text {
@@ -26,7 +26,7 @@ bool equals(const Text& text, const char* word) {
   return std::strlen(word) == text.count && std::memcmp(word, text.begin, text.count) == 0;
 }
 
-// Cuts the text before the first `end` off *rest, and the end, too.
+// Removes the text up to the first `end`, and the end itself, from the front of *rest; returns it without the end.
 Text cut(Text* rest, char end) {
   const void* at = rest->count ? std::memchr(rest->begin, end, rest->count) : nullptr;
   std::size_t count = at ? static_cast<std::size_t>(static_cast<const char*>(at) - rest->begin) : rest->count;
@@ -59,7 +59,7 @@ bool read_real(const Text& text, float* value) {
   return *end == 0 && end != digits && std::isfinite(*value);
 }
 
-// False where the text is no value of the setting's kind; whether it is within the limits is for check_setting().
+// False if the text is not a value of the setting's kind; check_setting() checks the limits.
 bool read_setting(const SettingRow& row, const Text& text, double* value) {
   std::uint32_t count;
   float real;
@@ -81,7 +81,7 @@ bool read_value(int key, const Text& text, Candidate* c, double* setting) {
   return read_setting(kSettingList[key], text, setting);
 }
 
-// For messages: what a file says may be anything.
+// Safe for messages: a file may contain anything.
 struct Printable {
   char text[41];
   explicit Printable(const Text& t) {
@@ -103,9 +103,9 @@ Status read_candidate(Text line, unsigned line_number, Candidate* c) {
     int key = 0;
     while (key < kKeyCount && !equals(name, key_name(key))) ++key;
     if (key == kKeyCount || (seen >> key & 1u))
-      return failure("line %u: '%s' is no setting, or the second of its name", line_number, shown.text);
+      return failure("line %u: '%s' is an unknown or repeated setting", line_number, shown.text);
     if (!read_value(key, value, c, &settings[key]))
-      return failure("line %u: '%s' has no value that it may have", line_number, shown.text);
+      return failure("line %u: '%s' has an invalid value", line_number, shown.text);
     seen |= 1u << key;
   }
   for (int key = 0; key < kKeyCount; ++key)
@@ -128,26 +128,26 @@ Status parse_lines(Text rest, Front* front) {
       is_front = equals(line, kFirstLine);
       if (is_front) continue;
       if (line.count >= sizeof kFirstWord && std::memcmp(line.begin, kFirstWord, sizeof kFirstWord - 1) == 0)
-        return failure("line 1: '%s': this program reads version 1 alone", Printable(line).text);
+        return failure("line 1: '%s': this program only reads version 1", Printable(line).text);
       break;
     }
     if (line.count == 0 || line.begin[0] == '#') continue;
     if (line.count > kFrontLineMax) return failure("line %u: longer than %zu characters", line_number, kFrontLineMax);
     if (front->count == kFrontCandidateMax)
-      return failure("line %u: there may be %u candidates at most", line_number, kFrontCandidateMax);
+      return failure("line %u: more than %u candidates", line_number, kFrontCandidateMax);
     Candidate* c = &front->candidates[front->count];
     RETURN_IF_ERROR(read_candidate(line, line_number, c));
     for (std::uint32_t i = 0; i < front->count; ++i)
       if (same_quality(front->candidates[i], *c))
-        return failure("line %u: these settings stand above already", line_number);
+        return failure("line %u: these settings are already listed above", line_number);
     ++front->count;
   }
   if (!is_front) return failure("line 1: a front begins with '%s'", kFirstLine);
-  if (front->count == 0) return failure("line %u: no candidate stands in it", line_number);
+  if (front->count == 0) return failure("line %u: the front has no candidate", line_number);
   return success();
 }
 
-// Appends to a terminated text, cut to its size.
+// Appends to a terminated text, truncated to its size.
 __attribute__((format(printf, 4, 5))) void append(char* text, std::size_t size, std::size_t* length, const char* format,
                                                   ...) {
   va_list arguments;
@@ -166,7 +166,7 @@ struct Value {
 };
 
 void append_quality(const Quality& quality, char* text, std::size_t size, std::size_t* length) {
-  constexpr int kDigits = 9;  // a float's, all of them
+  constexpr int kDigits = 9;  // as many as a float needs
   for (const SettingRow& row : kSettingList)
     append(text, size, length, "%s%s=%s", *length && text[*length - 1] != '\n' ? " " : "", row.name,
            Value(row, quality, kDigits).text);

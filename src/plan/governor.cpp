@@ -10,13 +10,14 @@
 namespace pocketray {
 namespace {
 
-// Logarithms; by tests/plan/governor_test.cpp, where 95 % of the frames stay within 110 % of the budget.
+// Natural logarithms. Chosen by tests/plan/governor_test.cpp so that 95 % of the frames stay within 110 % of the
+// budget.
 constexpr double kLate = 0.0953;                           // 1.1
-constexpr double kLimit = 0.077;                           // 1.08: a candidate that is expected to exceed it is left,
-constexpr double kReturn = 0.03;                           // and one that is expected to stay below this may be gone to
-constexpr double kUnsettled = 0.1;                         // added to the load while few frames are known
-constexpr double kDoubtGrowth = 0.001, kDoubtGrown = 0.2;  // a frame, of what does not run; how far that goes
-constexpr double kDoubtLeast = 0.02;                       // that makes a trial worth while
+constexpr double kLimit = 0.077;                           // 1.08: leave a candidate expected to exceed it,
+constexpr double kReturn = 0.03;                           // and go to one expected to stay below this
+constexpr double kUnsettled = 0.1;                         // added to the load while few frames have been seen
+constexpr double kDoubtGrowth = 0.001, kDoubtGrown = 0.2;  // per frame for candidates that do not run; its limit
+constexpr double kDoubtLeast = 0.02;                       // least doubt that makes a trial worthwhile
 constexpr double kCorrectionMax = 3.5;
 constexpr std::uint32_t kFewFrames = 4, kManyFrames = 40;
 constexpr std::uint32_t kAttributedFrames = 3,
@@ -30,7 +31,7 @@ double log_price(const Governor& g, std::uint32_t i) {
 std::uint32_t load_count(const Governor& g) { return std::min(g.load_count, kLoadFrameCount); }
 double last_load(const Governor& g) { return g.loads[(g.load_count - 1) % kLoadFrameCount]; }
 
-// The middle of the last few loads.
+// Median of the last few loads.
 double middle_load(const Governor& g) {
   constexpr std::uint32_t kCount = 5;
   std::uint32_t count = std::min(g.load_count, kCount);
@@ -43,7 +44,7 @@ double middle_load(const Governor& g) {
 
 constexpr std::uint32_t kRankMax = 4;
 
-// The rank-th highest, from 1.
+// The rank-th highest, counted from 1.
 double highest(const double* values, std::uint32_t count, std::uint32_t rank) {
   double best[kRankMax] = {-1e300, -1e300, -1e300, -1e300};
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -54,7 +55,7 @@ double highest(const double* values, std::uint32_t count, std::uint32_t rank) {
   return best[rank - 1];
 }
 
-// The load to be prepared for.
+// A cautious prediction of the load.
 double high_load(const Governor& g) {
   std::uint32_t count = load_count(g);
   if (count == 0) return kUnsettled;
@@ -66,7 +67,7 @@ double high_load(const Governor& g) {
   return std::max(high, std::min(last_load(g), before));
 }
 
-// Whether a is the more accurate.
+// Whether a is more accurate.
 bool is_better(const Governor& g, std::uint32_t a, std::uint32_t b) {
   float error_a = g.front.candidates[a].flip, error_b = g.front.candidates[b].flip;
   if (std::isnan(error_a) || std::isnan(error_b) || error_a == error_b) return a > b;
@@ -80,8 +81,8 @@ std::uint32_t fastest(const Governor& g) {
   return best;
 }
 
-// The best of those that are expected to stay within a limit, the fastest where none is. The one at work has more room:
-// between two that are on the edge it is kept.
+// The best candidate expected to stay within a limit, or the fastest if none is. The current one has a higher limit, so
+// that of two borderline candidates it is kept.
 std::uint32_t choose(const Governor& g) {
   double load = high_load(g), budget = det_log(g.budget_ns);
   std::uint32_t best = g.front.count;
@@ -94,7 +95,7 @@ std::uint32_t choose(const Governor& g) {
   return best < g.front.count ? best : fastest(g);
 }
 
-// Better ones that may fit if their price is wrong in our favour; of these the cheapest. front.count: none.
+// Better candidates that fit if their price is wrong in our favour, and of these the cheapest. front.count: none.
 std::uint32_t choose_trial(const Governor& g) {
   double load = high_load(g), budget = det_log(g.budget_ns);
   std::uint32_t best = g.front.count;
@@ -106,7 +107,7 @@ std::uint32_t choose_trial(const Governor& g) {
   return best;
 }
 
-// What never ran is tried soon; what ran and did not fit again after pauses that grow as long as it does not.
+// Candidates that never ran are tried soon; those that ran and did not fit are retried after ever longer pauses.
 std::uint32_t try_another(Governor* g) {
   std::uint32_t trial = choose_trial(*g);
   g->frames_to_trial = kTrialPause;
@@ -119,7 +120,7 @@ std::uint32_t try_another(Governor* g) {
   return trial;
 }
 
-// Corrections are of prices against each other: their mean goes into the loads.
+// Corrections are relative: their mean is moved into the loads.
 void center_corrections(Governor* g) {
   double sum = 0;
   int count = 0;
@@ -134,7 +135,7 @@ void center_corrections(Governor* g) {
   g->reference_high += mean;
 }
 
-// After a switch: what neither the last frame's load nor that of the frames before it explains is the candidate's own.
+// After a switch: attributes to the candidate what the loads before the switch do not explain.
 void attribute(Governor* g, double load) {
   std::uint32_t i = g->current;
   double surprise = load - std::max(g->reference_low, std::min(g->reference_high, load));
@@ -171,7 +172,7 @@ void start_governor(const Front& front, double budget_ns, double pixel_count, do
   g->pixel_count = pixel_count;
   for (std::uint32_t i = 0; i < front.count; ++i) g->doubts[i] = det_log(doubt);
   g->current = g->home = load_known ? choose(*g) : fastest(*g);
-  g->frames_at_current = kAttributedFrames;  // there is no load yet to measure a surprise by
+  g->frames_at_current = kAttributedFrames;  // no load yet to compare with
   g->frames_to_trial = kTrialPause;
   g->trial_pause = kAgainPauseMin;
 }
@@ -184,7 +185,7 @@ void set_doubt(Governor* g, std::uint32_t candidate, double doubt) {
 std::uint32_t next_candidate(Governor* g) {
   if (g->load_count == 0) return g->current;
   std::uint32_t chosen = choose(*g);
-  if (g->on_trial && chosen == g->current) g->trial_pause = kAgainPauseMin;  // it fits: it stays
+  if (g->on_trial && chosen == g->current) g->trial_pause = kAgainPauseMin;  // it fits, so it stays
   bool settled = chosen == g->home && !g->on_trial && g->load_count >= kFewFrames;
   g->on_trial = false;
   g->home = chosen;
@@ -209,7 +210,7 @@ void observe_frame(Governor* g, double frame_ns) {
   std::uint32_t at = g->load_count++ % kLoadFrameCount;
   g->loads[at] = load;
   g->load_sum += load;
-  if (g->load_count == 2) g->loads[0] = std::min(g->loads[0], load);  // the first frame of all often is a cold one
+  if (g->load_count == 2) g->loads[0] = std::min(g->loads[0], load);  // the very first frame often runs cold
   g->rises[at] = g->load_count > 1 ? load - middle : 0;
   if (g->frames_at_current++ < kAttributedFrames) attribute(g, load);
   for (std::uint32_t i = 0; i < g->front.count; ++i)

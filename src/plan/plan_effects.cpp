@@ -8,14 +8,14 @@
 namespace pocketray {
 namespace {
 
-// How many of the materials that triangles use have a property.
+// Counts of materials with a property, among those that triangles use.
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
-// Where emission is forced off, unlit materials scatter like others.
+// If emission is forced off, unlit materials scatter like others.
 Census take_census(const Scene& scene, const Settings& settings) {
   bool shows_unlit = !has(settings.forced_off, Effect::emission);
   Census c;
@@ -58,7 +58,7 @@ struct PlanWriter {
     if (count)
       set(effect, true, "%u of %u materials %s", count, material_count, verb);
     else
-      set(effect, false, "none of %u materials would %s", material_count, verb);
+      set(effect, false, "none of %u materials %s", material_count, verb);
   }
   void set_by_count(Effect effect, std::uint32_t count, const char* what) {
     if (count)
@@ -77,29 +77,29 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::specular, c.specular, "shine");
   w.set_by_materials(Effect::mirror, c.mirror, "mirror");
   w.set_by_materials(Effect::refraction, c.transmitting, "transmit");
-  w.set_by_materials(Effect::absorption, c.absorbing, "absorb inside");
-  w.set_by_materials(Effect::alpha_mask, c.masked, "have cut-out holes");
-  w.set_by_materials(Effect::alpha_blend, c.blended, "blend with what is behind");
+  w.set_by_materials(Effect::absorption, c.absorbing, "absorb");
+  w.set_by_materials(Effect::alpha_mask, c.masked, "have holes");
+  w.set_by_materials(Effect::alpha_blend, c.blended, "blend with the background");
   w.set_by_materials(Effect::emission, c.emissive + c.unlit, c.unlit ? "emit or are unlit" : "emit");
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
-  w.set_by_materials(Effect::back_face_culling, c.one_sided, "hide their backs");
-  w.set_by_materials(Effect::area_light, c.emissive, "emit onto others");
+  w.set_by_materials(Effect::back_face_culling, c.one_sided, "are one-sided");
+  w.set_by_materials(Effect::area_light, c.emissive, "emit light");
   w.set_by_count(Effect::point_light, c.lights[static_cast<int>(LightKind::point)], "point light");
   w.set_by_count(Effect::spot_light, c.lights[static_cast<int>(LightKind::spot)], "spot light");
   w.set_by_count(Effect::directional_light, c.lights[static_cast<int>(LightKind::directional)], "directional light");
   bool lit = scene.lights.count > 0 || c.emissive > 0;
   if (lit && c.scattering)
-    w.set(Effect::shadow, true, "lights, and %u of %u materials scatter", c.scattering, c.materials);
+    w.set(Effect::shadow, true, "lit, and %u of %u materials scatter", c.scattering, c.materials);
   else
     w.set(Effect::shadow, false, lit ? "no material scatters light" : "no light");
   bool colored = scene.colors.count > 0, smooth = scene.normals.count > 0 && settings.normals == NormalMode::as_scene;
   w.set(Effect::vertex_color, colored, colored ? "vertices have colours" : "no vertex has a colour");
   w.set(Effect::smooth_normal, smooth,
         smooth                ? "vertices have normals"
-        : scene.normals.count ? "flat normals were asked for"
+        : scene.normals.count ? "flat normals requested"
                               : "no vertex has a normal");
   bool ambient = !is_zero(scene.info.ambient);
-  w.set(Effect::ambient, ambient, ambient ? "the scene has a constant indirect light" : "no constant indirect light");
+  w.set(Effect::ambient, ambient, ambient ? "constant indirect light" : "no constant indirect light");
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
   bool animated = is_animated(scene);
@@ -112,7 +112,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     bool on = (d.on || has(settings.forced_on, effect)) && !has(settings.forced_off, effect);
     if (on != d.on) {
       char reason[sizeof d.reason];
-      std::snprintf(reason, sizeof reason, "%s (%.60s)", on ? "asked for" : "switched off", d.reason);
+      std::snprintf(reason, sizeof reason, "%s (%.60s)", on ? "forced on" : "forced off", d.reason);
       std::memcpy(d.reason, reason, sizeof reason);
       d.on = on;
     }
@@ -142,7 +142,7 @@ Status parse_effects(const char* text, Settings* settings) {
       for (const EffectRow& row : kEffectList)
         if (is(row.name)) mask = bit(row.effect);
       if (!mask)
-        return failure("--effects: there is no effect '%.*s'; `pocketray plan SCENE` lists them",
+        return failure("--effects: unknown effect '%.*s'; `pocketray plan SCENE` lists the effects",
                        static_cast<int>(name_count), name);
     }
     if (minus) {

@@ -1,4 +1,4 @@
-// Scene + settings → which effects are simulated, and why.
+// Scene + settings → effects to simulate, with reasons.
 #pragma once
 #include "base/status.h"
 #include "effect/effect_plan.h"
@@ -7,11 +7,11 @@
 
 namespace pocketray {
 
-// Decides every effect. Settings::forced_on and forced_off override what the scene calls for; the reason says so.
+// Decides every effect. Settings::forced_on and forced_off override the scene's needs; the reason then says so.
 EffectPlan plan_effects(const Scene& scene, const Settings& settings);
 
-// Reads a list as --effects takes it: "auto", "all" or names, each with an optional "-" before it, separated by commas.
-// "auto,-shadow" is what the scene calls for without shadows; "shadow,mirror" is these two alone.
+// Parses a list as in --effects: "auto", "all" or names, each optionally preceded by "-", separated by commas.
+// "auto,-shadow" is the scene's needs without shadows; "shadow,mirror" is only these two.
 Status parse_effects(const char* text, Settings* settings);
 
 // Checks every setting against base/limit_list.h.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
 
-// A piece of an area light: a triangle, or two that make a parallelogram.
+// A piece of an area light: a triangle, or two that form a parallelogram.
 struct Emitter {
   std::uint32_t triangle;
   bool parallelogram;
@@ -27,7 +27,7 @@ double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   const Triangle& t = frame.scene->triangles[triangle];
   Vec3 e1 = frame.positions[t.vertex(1)] - frame.positions[t.vertex(0)];
   Vec3 e2 = frame.positions[t.vertex(2)] - frame.positions[t.vertex(0)];
-  // Edges of any length: the powers of two are exact, and out of range is nothing then.
+  // Scaled by a power of two, which is exact, so that edges of any length stay in range.
   int exponent;
   std::frexp(max_component(max(abs(e1), abs(e2))), &exponent);
   for (int axis = 0; axis < 3; ++axis)
@@ -35,7 +35,7 @@ double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
 }
 
-// The emitter that starts at a triangle: (a, b, c) followed by (a, c, d) with b − a = c − d is a parallelogram.
+// The emitter that starts at a triangle; (a, b, c) followed by (a, c, d) with b − a = c − d is a parallelogram.
 Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
   const Scene& scene = *frame.scene;
   Emitter e = {triangle, false, triangle_area(frame, triangle)};
@@ -64,14 +64,14 @@ void each_emitter(const FrameData& frame, std::uint32_t material, Visit visit) {
   }
 }
 
-// Where the point of a cell lies on the emitter: barycentrics of the triangle, or of one half of the parallelogram. It
-// is the centroid of what the cell is mapped to, so that the points' mean is the emitter's own centroid.
+// Position of a cell's point on the emitter: barycentrics in the triangle, or in one half of the parallelogram. It is
+// the centroid of the cell's image, so that the mean of the points is the emitter's own centroid.
 void place_on_emitter(const Emitter& e, const Cell& cell, std::uint32_t* triangle, float* u, float* v) {
   *triangle = e.triangle;
   float x = static_cast<float>(0.5 * (cell.x_begin + cell.x_end)), y = static_cast<float>(cell.y);
   if (!e.parallelogram) {
-    // Points (√x(1 − y), √xy) are uniform where x and y are [Turk 1990, "Generating random points in triangles", method
-    // 1]; of √x the mean over the cell.
+    // Points (√x(1 − y), √xy) are uniform if x and y are [Turk 1990, "Generating random points in triangles", method
+    // 1]; √x is averaged over the cell.
     double begin = cell.x_begin * std::sqrt(cell.x_begin), end = cell.x_end * std::sqrt(cell.x_end);
     double root = 2 * (end - begin) / (3 * (cell.x_end - cell.x_begin));
     *u = static_cast<float>(root * (1 - cell.y));
@@ -105,7 +105,7 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
   return p;
 }
 
-// The points that stand for one emissive material, each for an equal share of its area.
+// The points that represent one emissive material, each with an equal share of its area.
 std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, LightPoint* points) {
   std::uint32_t n = frame.settings.points_per_area_light;
   double total = 0;
@@ -149,13 +149,13 @@ LightPoint to_point(const Light& light) {
   return p;
 }
 
-// Least squared distance from a point to a box.
+// Smallest squared distance from a point to a box.
 float box_distance_square(const Box& box, const Vec3& p) {
   Vec3 d = max(max(box.low - p, p - box.high), Vec3{0, 0, 0});
   return dot(d, d);
 }
 
-// The greatest irradiance a light gives on any triangle but its own.
+// Upper bound of a light's irradiance on any triangle but its own.
 float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind) {
   float intensity = max_component(light.intensity), most = 0;
   if (!(intensity > 0)) return 0;
@@ -163,7 +163,7 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
   for (const Triangle& t : frame.scene->triangles) {
     if (t.material() == light.material) continue;
     Box box = empty_box();
-    float height = 0;  // above the emitter's plane: cos ≤ height / distance
+    float height = 0;  // over the emitter's plane: cos ≤ height / distance
     for (std::uint32_t v : t.vertices()) {
       const Vec3& p = frame.positions[v];
       box = merge(box, p);
@@ -193,7 +193,7 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
     for (std::uint32_t i = 0; i < scene.materials.count; ++i)
       if (is_emissive(scene, i)) n += settings.points_per_area_light;
   if (n > kPointLightCountMax)
-    return failure("the scene's lights make %llu points, more than %u: use fewer per area light",
+    return failure("the scene's lights need %llu light points, at most %u are supported: use fewer per area light",
                    static_cast<unsigned long long>(n), kPointLightCountMax);
   *count = static_cast<std::uint32_t>(n);
   return success();
@@ -249,7 +249,7 @@ float radiance_bound(const FrameData& frame) {
     float next = leaves + (reflectance > 0 ? reflectance * bound : 0);
     bound = next > background ? next : background;
   }
-  return bound * 1.0001f;  // for the rounding of the sums
+  return bound * 1.0001f;  // covers rounding of the sums
 }
 
 }  // namespace pocketray

@@ -1,21 +1,20 @@
-// Lights as trace_spans uses them: sorted by kind, area lights taken as points [Aranha07] sec. 3.1.
+// Lights as trace_spans uses them: sorted by kind, area lights represented by points [Aranha07] sec. 3.1.
 #pragma once
 #include "base/status.h"
 #include "shade/frame_data.h"
 
 namespace pocketray {
 
-// How many LightPoints the scene makes for the effects of the mask; fails when there would be more than
-// kPointLightCountMax.
+// Number of LightPoints of the scene for the effects of the mask; fails above kPointLightCountMax.
 Status light_point_count(const Scene& scene, const Settings& settings, EffectMask mask, std::uint32_t* count);
 
 // Fills `points` (light_point_count() of them) from posed lights and frame->positions, and sets the frame's lights and
 // runs for the effects of its mask. Allocates nothing.
 void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame);
 
-// An upper bound of the radiance any ray can bring, for the cut-off: emission, direct light at the least distance of
-// every light from the geometry, and what ray_depth interreflections at the strongest mirror can add. Infinite where
-// there is none.
+// Upper bound of the radiance along any ray, for the cut-off: emission, direct light at the smallest distance of every
+// light from the geometry, and the most that ray_depth interreflections at the strongest mirror can add. Infinite if
+// unbounded.
 float radiance_bound(const FrameData& frame);
 
 }  // namespace pocketray

@@ -21,7 +21,7 @@ void add_part(MemoryPlan* plan, const char* name, ArenaKind arena, std::size_t b
   plan->total_bytes = size_sum(plan->total_bytes, bytes);
 }
 
-// Each arena's start has to be aligned.
+// Aligns the start of each arena.
 void align_arenas(MemoryPlan* plan) {
   for (std::size_t& bytes : plan->arena_bytes) {
     if (bytes == 0) continue;
@@ -50,7 +50,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
     keep = accel.need(triangles);
     scratch = accel.scratch_need(triangles);
   } else if (moves) {
-    keep = arena_need(scene.accel.bytes());  // refit needs a copy that can be written
+    keep = arena_need(scene.accel.bytes());  // refit needs a writable copy
   }
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
@@ -61,7 +61,8 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
-  // The scratch of a single build is free again when the first frame is shown: the two share the frame arena.
+  // The scratch of a single build is free again when the first frame is shown, so output shares its part of the frame
+  // arena.
   if (rebuilds) add_part(plan, "build scratch", ArenaKind::frame, std::exchange(scratch, 0));
   add_part(plan, scratch > output_bytes ? "build scratch, then output" : "output", ArenaKind::frame,
            std::max(scratch, output_bytes));
@@ -73,7 +74,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
     if (plan->parts[i].bytes > largest->bytes) largest = &plan->parts[i];
   std::size_t fits = megabytes_up(plan->total_bytes);
   return failure(
-      "the scene needs %.1f MiB of memory and %.1f MiB are allowed; the largest part is %s with %.1f MiB%s; "
+      "the scene needs %.1f MiB of memory, %.1f MiB are allowed; the largest part is %s with %.1f MiB%s; "
       "%zu MiB would do",
       megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
       scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
@@ -86,7 +87,7 @@ Status plan_output_memory(const Settings& settings, std::size_t output_bytes, Me
   align_arenas(plan);
   if (plan->total_bytes <= plan->limit_bytes) return success();
   return failure(
-      "pictures of %ux%u pixels need %.1f MiB of memory without a scene and %.1f MiB are allowed; %zu MiB would do, "
+      "pictures of %ux%u pixels need %.1f MiB of memory without a scene, %.1f MiB are allowed; %zu MiB would do, "
       "or a smaller picture",
       settings.width, settings.height, megabytes(plan->total_bytes), megabytes(plan->limit_bytes),
       megabytes_up(plan->total_bytes));

@@ -1,4 +1,4 @@
-// Sums every part's need() into the map of the one memory block.
+// Sums every part's need() into a map of the memory block.
 #pragma once
 #include <cstddef>
 
@@ -28,22 +28,22 @@ struct MemoryPlan {
   std::size_t total_bytes = 0, limit_bytes = 0;
 };
 
-// What holds the scene before planning.
+// Where the scene's data is before planning.
 struct SceneStorage {
-  std::size_t arena_bytes = 0;   // already taken from the scene arena
+  std::size_t arena_bytes = 0;  // already taken from the scene arena
 };
 
 // Plans the block. `output_bytes` is what the caller needs to show or write a frame (packed pixels, PNG encoder).
-// Fails with the figures and a setting that would fit when the total exceeds settings.memory_bytes; the plan is filled
-// in either case.
+// Fails with the figures and a setting that would fit if the total exceeds settings.memory_bytes; fills the plan in
+// either case.
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
                    const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
                    MemoryPlan* plan);
 
-// The same for a device that shows what others render: there is nothing but the output.
+// The same for a device that only shows what others render: its plan has only the output.
 Status plan_output_memory(const Settings& settings, std::size_t output_bytes, MemoryPlan* plan);
 
-// Draws the map as text, one line a part, into `text` (of `size` bytes, always terminated). Returns its length.
+// Draws the map as text, one line per part, into `text` (`size` bytes, always terminated). Returns its length.
 std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size);
 
 }  // namespace pocketray

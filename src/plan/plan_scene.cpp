@@ -20,7 +20,8 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
   Vec3 right = normalize(cross(Vec3{0, 1, 0}, backward)), up;
   if (is_zero(right)) make_basis(backward, &right, &camera.up);
   up = cross(backward, right);
-  // Each corner c must project inside: |c·up| ≤ (distance − c·backward)·tan(fov/2), likewise to the right.
+  // Each corner c must project into the picture: |c·up| ≤ (distance − c·backward)·tan(fov/2), and likewise to the
+  // right.
   float tan_half = static_cast<float>(det_sin(radians(20)) / det_cos(radians(20)));
   float distance = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -31,7 +32,8 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
   }
   if (!(distance > 0)) distance = max_component(abs(camera.target)) > 0 ? max_component(abs(camera.target)) : 1;
   camera.eye = camera.target + backward * (distance * 1.05f);
-  for (float* x : {&camera.eye.x, &camera.eye.y, &camera.eye.z})  // of a scene as large as may be: as far as may be
+  for (float* x :
+       {&camera.eye.x, &camera.eye.y, &camera.eye.z})  // keeps the eye of the largest scene within coordinates
     *x = *x > kCoordinateMax ? kCoordinateMax : *x < -kCoordinateMax ? -kCoordinateMax : *x;
   return camera;
 }
@@ -46,8 +48,8 @@ Camera inside_camera(const Box& bounds) {
 }
 
 bool is_room(const Scene& scene, const Box& bounds, Vec3* opening) {
-  // By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative where normals point inward,
-  // and the area vectors of a closed surface add up to zero: what is left is that of the side that is missing.
+  // By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative if normals point inward.
+  // The area vectors of a closed surface add up to zero; a remainder is the area vector of the missing side.
   Vec3 middle = center(bounds), size = extent(bounds);
   Vec3d area = {0, 0, 0};
   double volume = 0;
@@ -72,7 +74,7 @@ Camera default_camera(const Scene& scene, float aspect) {
   Box bounds = scene_bounds(scene);
   Vec3 opening;
   if (!is_room(scene, bounds, &opening)) return framing_camera(bounds, aspect, normalize(Vec3{0.45f, 0.35f, 1.0f}));
-  bool looks_in = !is_zero(opening) && std::fabs(opening.y) < 0.5f;  // not through a missing roof
+  bool looks_in = !is_zero(opening) && std::fabs(opening.y) < 0.5f;  // but not through a missing roof
   return looks_in ? framing_camera(bounds, aspect, opening) : inside_camera(bounds);
 }
 
@@ -87,7 +89,7 @@ void default_lights(const Scene& scene, const Camera& camera, Light* lights) {
   lights[0] = lights[1] = Light();
   Box bounds = scene_bounds(scene);
   Vec3 opening;
-  if (is_room(scene, bounds, &opening)) {  // the sun does not get in
+  if (is_room(scene, bounds, &opening)) {  // the sun cannot get in
     Vec3 half = extent(bounds) * 0.5f;
     float square = dot(half, half);
     lights[0].position = center(bounds) + Vec3{0, half.y * 0.6f, 0};
@@ -113,7 +115,7 @@ Vec3 default_background() { return {0.045f, 0.05f, 0.06f}; }
 bool has_light(const Scene& scene) {
   if (scene.lights.count || !is_zero(scene.info.ambient)) return true;
   bool needs_light = false;
-  for (const Triangle& t : scene.triangles) {  // what no triangle uses gives no light
+  for (const Triangle& t : scene.triangles) {  // unused materials emit no light
     const Material& m = scene.materials[t.material()];
     if (!is_zero(m.emission)) return true;
     needs_light |= !m.unlit;

@@ -1,4 +1,4 @@
-// A font of 5 × 7 pixels in cells of 6 × 8, drawn for this program: all printable ASCII.
+// A font of 5 × 7 pixels in cells of 6 × 8, drawn for this program; covers printable ASCII.
 #pragma once
 #include <cstdint>
 

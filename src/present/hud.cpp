@@ -8,7 +8,7 @@
 namespace pocketray {
 namespace {
 
-constexpr int kMargin = 2;  // pixels of the font, around the text
+constexpr int kMargin = 2;  // font pixels around the text
 
 void* pixel_at(const Canvas& canvas, int column, int row) {
   ScreenPosition at = screen_position(column, row, canvas.width, canvas.height, canvas.rotation);

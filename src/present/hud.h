@@ -1,11 +1,11 @@
-// Text over a picture: a translucent dark box with lines in a small font, drawn into packed pixels, turned as the
-// picture is.
+// Text over a picture: a translucent dark box with lines in a small font, drawn into packed pixels, rotated like the
+// picture.
 #pragma once
 #include "present/pack.h"
 
 namespace pocketray {
 
-// Packed pixels of a picture, as pack_rows() wrote them: a screen's page, or a picture of bytes R, G, B (kRgb888).
+// Packed pixels of a picture, as written by pack_rows(): a screen's page, or a picture of bytes R, G, B (kRgb888).
 struct Canvas {
   void* pixels = nullptr;
   int line_bytes = 0;
@@ -14,14 +14,13 @@ struct Canvas {
   Rotation rotation = Rotation::none;
 };
 
-// Picture pixels that a box of that much text covers, its margin included. `scale`: pixels per pixel of the font, at
-// least 1.
+// Picture pixels covered by a box of that much text, including its margin. `scale`: pixels per font pixel, at least 1.
 int text_box_width(int characters, int scale);
 int text_box_height(int lines, int scale);
 
-// Draws the box with its top left corner at (column, row) of the picture, as wide as its longest line; what lies
-// outside of the picture is cut. Characters that are not printable ASCII show as '?'. What is below is dimmed to a
-// quarter, so draw over freshly packed rows: those from row to row + text_box_height().
+// Draws the box with its top left corner at (column, row) of the picture, as wide as its longest line, clipped to the
+// picture. Characters other than printable ASCII show as '?'. The picture below is dimmed to a quarter, so draw over
+// freshly packed rows: those from row to row + text_box_height().
 void draw_text_box(const Canvas& canvas, int column, int row, int scale, const char* const* lines, int line_count);
 
 }  // namespace pocketray

@@ -22,7 +22,7 @@ void add_hud_text(HudText* text, const char* words) {
     std::size_t length = std::strlen(words), end = length;
     if (length > kColumns) {
       for (end = kColumns; end > 0 && words[end] != ' ';) --end;
-      if (end == 0) end = kColumns;  // one long word
+      if (end == 0) end = kColumns;  // a single long word
     }
     add_hud_line(text, "%.*s", static_cast<int>(end), words);
     words += end;

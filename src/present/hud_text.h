@@ -13,13 +13,13 @@ struct HudText {
   int line_count = 0;
 };
 
-// Adds a line, cut to the display's width, where there is room for one.
+// Adds a line, truncated to the display's width, if there is room.
 void add_hud_line(HudText* text, const char* format, ...) __attribute__((format(printf, 2, 3)));
 
-// Adds a text in as many lines as it takes, broken between words where it has some.
+// Adds a text in as many lines as it needs, broken between words where possible.
 void add_hud_text(HudText* text, const char* words);
 
-// Rows of the picture the display covers.
+// Rows of the picture that the display covers.
 std::uint32_t hud_rows(const HudText& text);
 void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height,
                    void* pixels, int line_bytes);

@@ -1,5 +1,5 @@
-// Pictures as files without any library: PPM, PFM, raw pixels. Encoders write to a sink and take no memory; a sink that
-// fails remembers it, and says so when it is closed.
+// Pictures as files without any library: PPM, PFM, raw pixels. Encoders write to a sink and take no memory. A sink
+// remembers failures and reports them when it is closed.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,11 +14,11 @@ struct ByteSink {
 // Portable pixmap, binary (P6): width × height pixels of bytes R, G, B, row 0 on top.
 void encode_ppm(const std::uint8_t* rgb, int width, int height, const ByteSink& sink);
 
-// Portable float map: linear values, 3 channels (PF: R, G, B) or 1 (Pf), little-endian, the bottom row first as the
-// format has it. `values` is row 0 on top.
+// Portable float map: linear values, 3 channels (PF: R, G, B) or 1 (Pf), little-endian, bottom row first as the format
+// demands. `values` has row 0 on top.
 void encode_pfm(const float* values, int channels, int width, int height, const ByteSink& sink);
 
-// Pixels as they lie on a screen, without what lies between the rows.
+// Pixels as on a screen, without the padding between rows.
 void encode_raw(const void* pixels, int row_bytes, int line_bytes, int rows, const ByteSink& sink);
 
 }  // namespace pocketray

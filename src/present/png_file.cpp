@@ -27,7 +27,7 @@ Encoder* encoder_of(void* pointer) { return static_cast<Encoder*>(pointer); }
 png_voidp take(png_structp png, png_alloc_size_t bytes) {
   return arena_try_allocate(encoder_of(png_get_mem_ptr(png))->arena, bytes);
 }
-void give_back(png_structp, png_voidp) {}  // all at once, by the arena's mark
+void give_back(png_structp, png_voidp) {}  // the arena's mark frees everything at once
 
 void write(png_structp png, png_bytep bytes, png_size_t count) {
   const ByteSink& sink = encoder_of(png_get_io_ptr(png))->sink;
@@ -42,7 +42,7 @@ void flush(png_structp) {}
 }
 void ignore_warning(png_structp, png_const_charp) {}
 
-// Everything between setjmp and the jumps back to it; no local of it is used afterwards.
+// Everything between setjmp and the jumps back to it; none of its locals is used afterwards.
 bool encode(png_structp png, png_infop info, const std::uint8_t* rgb, int width, int height) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, png_get_error_ptr(png), write, flush);
@@ -62,7 +62,8 @@ bool encode(png_structp png, png_infop info, const std::uint8_t* rgb, int width,
 }  // namespace
 
 std::size_t encode_png_need(int width) {
-  // Measured by tests/present/image_file_test.cpp: libpng's own structures and buffers, and zlib's beside its tables.
+  // Measured by tests/present/image_file_test.cpp: the structures and buffers of libpng, and those of zlib besides its
+  // tables.
   constexpr std::size_t kStructures = 32 << 10;
   return kDeflateBytes + kStructures + 4 * arena_need(3 * static_cast<std::size_t>(width) + 16);
 }
@@ -77,7 +78,7 @@ Status encode_png(const std::uint8_t* rgb, int width, int height, Arena* arena, 
   if (png) png_destroy_write_struct(&png, &info);
   arena_release(arena, mark);
   if (done) return success();
-  return failure("cannot write a PNG: %s (it takes %zu bytes of memory, %zu are free in the %s arena)",
+  return failure("cannot write a PNG: %s (needs %zu bytes of memory, %zu are free in the %s arena)",
                  encoder.message[0] ? encoder.message : "out of memory", encode_png_need(width), arena_free(*arena),
                  arena->name);
 }

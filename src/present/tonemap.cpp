@@ -3,7 +3,7 @@
 namespace pocketray {
 namespace {
 
-// c^(1/2.4) = (c^(1/12))^5, by Newton's method for the twelfth root, as +, ×, ÷ alone.
+// c^(1/2.4) = (c^(1/12))^5, the twelfth root by Newton's method, using only +, ×, ÷.
 constexpr double twelfth_root(double c) {
   double y = 1;
   for (int i = 0; i < 40; ++i) {
@@ -18,7 +18,7 @@ constexpr double srgb_encode(double linear) {
   return 1.055 * root2 * root2 * root - 0.055;
 }
 
-// A non-negative float below 2 as bits, by +, ×, ÷ alone: memcpy is no constant expression.
+// The bits of a non-negative float below 2, using only +, ×, ÷: memcpy is not constexpr.
 constexpr std::uint32_t bits_of(float value) {
   if (value == 0) return 0;
   std::uint32_t exponent = 127;

@@ -1,6 +1,6 @@
-// Linear light → display values, fast enough for a CPU without FPU: floats are compared as integers, and the sRGB curve
-// is a table of the exponent and the upper seven mantissa bits. Between 2⁻¹³ and 1 an octave's 128 buckets are so
-// narrow that at most one threshold of an 8-bit level falls into each.
+// Linear light → display values, fast on a CPU without FPU: floats are compared as integers, and the sRGB curve is a
+// table indexed by the exponent and the upper seven mantissa bits. Between 2⁻¹³ and 1 the 128 buckets of an octave are
+// so narrow that each contains at most one threshold of an 8-bit level.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -9,7 +9,7 @@
 
 namespace pocketray {
 
-// Radiance that no display can show; counted per channel, after exposure.
+// Counts of radiance values that no display can show, per channel, after exposure.
 struct ToneCounts {
   std::uint64_t nan = 0;       // shown as 0
   std::uint64_t infinite = 0;  // +Inf, shown as 1; -Inf is negative
@@ -22,13 +22,12 @@ inline ToneCounts& operator+=(ToneCounts& a, const ToneCounts& b) {
 
 constexpr int kToneOctaves = 13;
 constexpr std::uint32_t kToneBucketCount = kToneOctaves * 128;
-constexpr std::uint32_t kToneBitsMin = (127u - kToneOctaves)
-                                       << 23;  // 2⁻¹³ as a float's bits; below it every level is 0
+constexpr std::uint32_t kToneBitsMin = (127u - kToneOctaves) << 23;  // the bits of 2⁻¹³; below it every level is 0
 constexpr std::uint32_t kToneBitsOne = 127u << 23;
 
 struct ToneTables {
   std::uint8_t level[kToneBucketCount];      // 8-bit level at the lower edge of a bucket
-  std::uint32_t threshold[257];              // least float, as bits, of a level; [256]: never reached
+  std::uint32_t threshold[257];              // smallest float, as bits, of a level; [256]: never reached
   std::uint16_t fine[kToneBucketCount + 1];  // 16-bit display value at the lower edge of a bucket
 };
 extern const ToneTables kToneTables;
@@ -39,7 +38,7 @@ inline std::uint32_t float_bits(float value) {
   return bits;
 }
 
-// What [0, 1) does not hold: 0 or 1 as the display shows it, and the count. Out of line: it is rare.
+// Values outside [0, 1): returns 0 or 1 as displayed, and counts them. Not inlined, because they are rare.
 bool tone_saturates(std::uint32_t bits, ToneCounts* counts);
 
 // 8-bit sRGB level; equal to srgb_level() for every float.

@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kCellCountMax = 1u << 14, kTableSize = 4 * kCellCountMax;
-constexpr double kGuidedShare = 0.15;  // of the directions where there are spots
-constexpr double kSpotSizeMax = 3;     // cells; what is farther apart is another spot
+constexpr double kGuidedShare = 0.15;  // of the directions, if there are spots
+constexpr double kSpotSizeMax = 3;     // cells; points farther apart belong to different spots
 constexpr std::uint32_t kMirrorSpotCountMax = 4;
 
-// Which cell a point is in, by its place along each axis; false: beyond all.
+// The cell of a point, by its place along each axis; false if out of range.
 bool cell_at(const ReferenceGuide& guide, const Vec3d& point, std::int32_t (&at)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
     double place = point[axis] / guide.cell_size;
@@ -25,7 +25,7 @@ bool cell_at(const ReferenceGuide& guide, const Vec3d& point, std::int32_t (&at)
   return true;
 }
 
-// Where the table has the cell, or has room for it.
+// The table slot of the cell, or one that is free for it.
 struct Found {
   ReferenceSlot* slot;
   std::uint32_t hash;
@@ -45,7 +45,7 @@ Found slot_of(const ReferenceGuide& guide, const std::int32_t (&at)[3]) {
   }
 }
 
-// The largest side of a spot that has grown by a point.
+// The largest side of a spot after adding a point.
 double grown_size(const ReferenceSpot& spot, const Vec3d& point) {
   double size = 0;
   for (int axis = 0; axis < 3; ++axis)
@@ -61,8 +61,8 @@ void add_to_spot(const Vec3d& point, ReferenceSpot* spot) {
   ++spot->count;
 }
 
-// It belongs to the first spot of its kind that stays small with it, else to a new one, else to the one that stays
-// smallest. The bright spots of a light are one each, whatever their size.
+// Adds the point to the first spot of its kind that stays small, else to a new spot, else to the one that stays
+// smallest. A light's bright spot is a single one, whatever its size.
 void add_to_cell(const ReferenceWay& way, double size_max, ReferenceCell* cell) {
   std::uint32_t best = 0, count = 0;
   double least = kInfinity;
@@ -84,7 +84,7 @@ void add_to_cell(const ReferenceWay& way, double size_max, ReferenceCell* cell) 
   cell->spot[best].margin = std::fmax(cell->spot[best].margin, way.margin);
 }
 
-// A spot as a sphere, seen from a point: the way to its middle, its radius and how far it is, both squared.
+// A spot as a sphere seen from a point: the vector to its centre, its radius and its distance, both squared.
 struct View {
   Vec3d way;
   double radius2, distance2;
@@ -95,7 +95,7 @@ View view_of(const ReferenceSpot& spot, const Vec3d& point) {
   return {way, radius * radius, dot(way, way)};
 }
 bool is_within(const View& view) { return !(view.distance2 > view.radius2); }
-// 1 − cosine of the half angle of the cone that holds it: all directions from within.
+// 1 − cosine of the half angle of the cone around it; from inside, all directions.
 double cone_height(const View& view) {
   if (is_within(view)) return 2;
   double sine2 = view.radius2 / view.distance2;

@@ -1,4 +1,4 @@
-// Light followed from the lights, for the guide.
+// Paths from the lights, for the guide.
 #include <limits>
 
 #include "base/fmath.h"
@@ -13,15 +13,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kBounceCountMax = 8;
-constexpr double kMirrorMargin = 0.3;  // cells; of spots on mirrors and glass
-constexpr int kNearTrials = 256;       // directions in which a surface near a light is looked for
-constexpr double kNearMax = 1.0 / 6;   // of the scene's size: what is near a light
-// Times that distance: what is bright of the surface, the middle of it, and how far beyond what was found it may reach.
+constexpr double kMirrorMargin = 0.3;  // cells; for spots on mirrors and glass
+constexpr int kNearTrials = 256;       // directions in which to look for a surface near a light
+constexpr double kNearMax = 1.0 / 6;   // relative to the scene's size: closer counts as near
+// In units of that distance: radius of the bright spot on the surface, its middle, and how far it may extend beyond the
+// points found.
 constexpr double kBrightReach = 3, kMiddleReach = 1.5, kBrightMargin = 0.25;
 
 bool is_specular(const Material& m) { return !is_zero(m.mirror) || !is_zero(m.transmission); }
 
-// Follows light from a point of an emitter to one on a mirror or glass and on.
+// Follows light from a point on an emitter to a point on a mirror or glass, and on.
 void follow_light(const Reference& reference, const ReferenceSurface& light, const Vec3d& target, Rng* rng,
                   ReferenceGuide* guide) {
   const FrameData& frame = *reference.world.frame;
@@ -50,7 +51,7 @@ void follow_light(const Reference& reference, const ReferenceSurface& light, con
   }
 }
 
-// A light that is a point, by its direction's share of the sphere: all of it, or a cone about where it shines.
+// A light without area, and the part of the sphere that it lights: all of it, or a cone.
 struct PunctualLight {
   Vec3d position, axis, intensity;
   double height;  // 1 − cosine of the cone's half angle; 2: the sphere
@@ -63,7 +64,7 @@ bool is_punctual(const LightPoint& light, LightSampler kind, PunctualLight* p) {
   return true;
 }
 
-// What light meets that leaves it in a direction of its cone.
+// The first surface that light meets in a random direction of its cone.
 bool leave_light(const ReferenceWorld& world, const PunctualLight& light, Rng* rng, ReferenceRay* ray,
                  ReferenceHit* hit) {
   double below = light.height * next_double(rng), sine = std::sqrt(below * (2 - below));
@@ -87,13 +88,13 @@ double nearest_surface(const ReferenceWorld& world, const PunctualLight& light) 
   return nearest;
 }
 
-// The power of a light with a surface so near that what it lights there is a small bright spot; 0: it needs no guide.
+// The power of a light so near to a surface that it makes a small bright spot there; 0: it needs no guide.
 double near_power(const ReferenceWorld& world, const PunctualLight& light, double scene_size) {
   if (!(nearest_surface(world, light) < kNearMax * scene_size)) return 0;
   return light.height * max_component(light.intensity);
 }
 
-// Follows light to what is near the light and on by the lobes there.
+// Follows light to the surface near the light, and on by the lobes there.
 void follow_near_light(const Reference& reference, const PunctualLight& light, std::uint32_t path_count,
                        std::uint32_t ordinal, ReferenceGuide* guide) {
   const FrameData& frame = *reference.world.frame;
@@ -116,7 +117,7 @@ void follow_near_light(const Reference& reference, const PunctualLight& light, s
   }
 }
 
-// Calls f(light) for each light that is a point.
+// Calls f(light) for each light without area.
 template <class Function>
 void for_punctual_lights(const FrameData& frame, Function f) {
   for (int r = 0; r < frame.light_run_count; ++r)
@@ -126,14 +127,14 @@ void for_punctual_lights(const FrameData& frame, Function f) {
     }
 }
 
-// Side of a square of the area of all.
+// Side of a square with the area of all parts.
 double size_of(const Array<ReferenceEmitter>& parts) {
   double area = 0;
   for (const ReferenceEmitter& part : parts) area += part.area;
   return std::sqrt(area);
 }
 
-// The longest side of what the frame holds.
+// The longest side of the bounds of the frame's geometry.
 double scene_extent(const FrameData& frame) {
   double extent = 0;
   for (int axis = 0; axis < 3; ++axis) {

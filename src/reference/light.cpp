@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What one contact lets through, unbent, at a distance; adds what it begins or ends to the absorption.
+// Transmittance of one contact at a distance, without refraction; adds bodies that begin or end to the absorption.
 Vec3d contact_transmittance(const FrameData& frame, const ReferenceContact& contact, const ReferenceRay& ray,
                             double distance, Vec3d* absorbed, Vec3d* open) {
   Vec3d result = {1, 1, 1};
@@ -39,7 +39,7 @@ Vec3d contact_transmittance(const FrameData& frame, const ReferenceContact& cont
   return result * (1 - boundary_reflectance(cosine, from / to, &cos_t));
 }
 
-// The share of light that arrives along a ray, unbent.
+// The fraction of light that arrives along a ray, without refraction.
 Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules) {
   Obstacle obstacle = find_obstacle(world, ray, rules);
   if (obstacle == Obstacle::opaque) return {0, 0, 0};
@@ -51,7 +51,7 @@ Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const 
     after = hit;
     if (!casts_shadow(frame, hit.triangle, rules)) continue;
     ReferenceContact contact = gather_contact(world, ray, hit);
-    for (std::uint32_t i = 0; i < contact.count; ++i) {  // those within rounding behind the light, too
+    for (std::uint32_t i = 0; i < contact.count; ++i) {  // including faces within rounding behind the light
       std::uint32_t triangle = contact.face[i].triangle;
       if (casts_shadow(frame, triangle, rules) && blocks(material_of(frame, triangle), rules)) return {0, 0, 0};
     }
@@ -66,7 +66,7 @@ Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const 
   return result;
 }
 
-// A light of the frame at a point: the way to it, its distance and its irradiance on what faces it.
+// A light of the frame at a point: its direction, distance, and irradiance on a surface facing it.
 bool reach(const LightPoint& light, LightSampler kind, const Vec3d& point, Vec3d* direction, double* distance,
            Vec3d* irradiance) {
   if (kind == find_light_sampler(Effect::directional_light)) {
@@ -178,7 +178,7 @@ ReferencePlace pick_place(const FrameData& frame, const Array<ReferenceEmitter>&
   }
   ReferencePlace place;
   place.triangle = parts[low].triangle;
-  double before = low > 0 ? parts[low - 1].share_end : 0;  // within the pick lies the place
+  double before = low > 0 ? parts[low - 1].share_end : 0;  // position within the picked triangle
   double root = std::sqrt((pair.u - before) / (parts[low].share_end - before));
   place.v = pair.v * root, place.u = root - place.v;
   place.point = corner_of(frame, place.triangle, 0) * (1 - place.u - place.v) +

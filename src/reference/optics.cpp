@@ -9,7 +9,7 @@
 namespace pocketray {
 namespace {
 
-constexpr double kTogether = 0x1p-40;  // of coordinates: faces so near lie on one another
+constexpr double kTogether = 0x1p-40;  // relative to coordinates: faces this close are in contact
 
 void cross_faces(const Scene& scene, const ReferenceContact& contact, MediumStack* media) {
   for (bool entering : {false, true})
@@ -119,7 +119,7 @@ ReferenceBoundary meet_boundary(const FrameData& frame, const ReferenceSurface& 
   }
   if (s.material->thin) return b;
   Vec3d bent = normalize(direction * eta + n * (eta * cos_i - cos_t));
-  if (dot(bent, s.geometric) < 0) b.direction = bent;  // else a shading normal far off the surface
+  if (dot(bent, s.geometric) < 0) b.direction = bent;  // otherwise the shading normal deviates too far
   return b;
 }
 

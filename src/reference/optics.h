@@ -1,47 +1,46 @@
-// How the reference gets from a ray to what it meets, and past mirrors and glass.
+// From a ray to the surface it meets, and past mirrors and glass.
 #pragma once
 #include "reference/surface.h"
 #include "shade/surface.h"
 
 namespace pocketray {
 
-// A ray of the camera through a point of the picture, in pixels from the upper left corner.
+// A camera ray through a point of the picture, in pixels from the upper left corner.
 ReferenceRay reference_camera_ray(const CameraRays& camera, double column, double row);
 
-// Faces that lie on one another, see contact.h; here those within rounding of doubles.
+// Faces that coincide, see contact.h; here within the rounding of doubles.
 struct ReferenceContact {
   ReferenceHit face[kMediumDepthMax];
   bool front[kMediumDepthMax];
   std::uint32_t count;
-  ReferenceHit last;  // of all of them in the order of hits
+  ReferenceHit last;  // the last of them in the order of hits
 };
 ReferenceContact gather_contact(const ReferenceWorld& world, const ReferenceRay& ray, const ReferenceHit& first);
 
-// Whether a ray may get past a face of the material.
+// Whether a ray may pass a face of the material.
 inline bool may_be_passed(const Material& m) {
   return !m.double_sided || m.alpha_mode == AlphaMode::blend || !is_zero(m.transmission);
 }
-// Whether a face of a contact lies over what is behind, and is seen.
+// Whether a face of a contact blends over what is behind it, and is visible.
 inline bool lies_over(const FrameData& frame, const ReferenceContact& contact, std::uint32_t i) {
   const Material& m = material_of(frame, contact.face[i].triangle);
   return m.alpha_mode == AlphaMode::blend && !is_culled(m, contact.front[i]);
 }
 double alpha_of(const FrameData& frame, const ReferenceHit& face);
-// What a ray meets behind those: something opaque, else a body that is entered or left, else a thin sheet. Null: the
-// ray passes.
+// The face behind those: an opaque one, else a body that is entered or left, else a thin sheet. Null: the ray passes.
 const ReferenceHit* face_behind(const FrameData& frame, const ReferenceContact& contact);
 
-// What the innermost body lets through along a distance.
+// Transmittance of the innermost body along a distance.
 Vec3d medium_transmittance(const Scene& scene, const MediumStack& media, double distance);
 
-// Reflectance of a smooth boundary for unpolarised light that meets it at cos_i, eta = n_from / n_to [Born & Wolf 1999,
-// sec. 1.5.2, eqs. 21]; *cos_t is the cosine of the refracted ray, 0 where all is reflected.
+// Reflectance of a smooth boundary for unpolarised light at cos_i, eta = n_from / n_to [Born & Wolf 1999, sec. 1.5.2,
+// eqs. 21]; *cos_t is the cosine of the refracted ray, 0 for total internal reflection.
 double boundary_reflectance(double cos_i, double eta, double* cos_t);
 
-// Where the mirror sends a ray. Where the shading normal would send it under the surface, the geometric one is used.
+// The mirror direction. If the shading normal would send the ray below the surface, the geometric normal is used.
 Vec3d mirrored(const Vec3d& direction, const ReferenceSurface& s);
 
-// A ray at a boundary of glass: the share that is reflected; what passes is tinted, bent and in other bodies.
+// A ray at a glass boundary: the reflected fraction; the rest is tinted, refracted and in other bodies.
 struct ReferenceBoundary {
   double reflectance;
   Vec3d tint, direction;

@@ -13,26 +13,26 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kSureDepth = 4;  // scatterings before Russian roulette
-constexpr double kSurvivalMax = 0.98;    // with which every path ends some time
+constexpr double kSurvivalMax = 0.98;    // every path ends eventually
 
 struct Path {
   Vec3d weight = {1, 1, 1};
-  double worth = 1;  // the share of light that surfaces so far send on, however directions were sampled
+  double worth = 1;  // throughput by the surfaces alone, however directions were sampled
   MediumStack media;
-  bool sees_lights = true;  // in full: no next-event estimation has looked for them
-  Vec3d scattered_at;       // the point that next-event estimation looked from,
+  bool sees_lights = true;  // in full: next-event estimation has not sampled them
+  Vec3d scattered_at;       // origin of the last next-event estimation,
   double density = 0;       // and the density with which the path left it
 };
 
-// The face of a contact that the ray is at: one that lies over others as often as it covers them, else what is behind.
-// Null: the ray passes.
+// The face of a contact that the ray interacts with: a blending one with the probability of its opacity, else the one
+// behind. Null: the ray passes.
 const ReferenceHit* pick_face(const FrameData& frame, const ReferenceContact& contact, ReferenceSamples* samples) {
   for (std::uint32_t i = 0; i < contact.count; ++i)
     if (lies_over(frame, contact, i) && samples->next() < alpha_of(frame, contact.face[i])) return &contact.face[i];
   return face_behind(frame, contact);
 }
 
-// The surface that a ray meets, past what it does not see. False: none. Takes what bodies absorb on the way.
+// The surface that a ray meets, past those it passes. False: none. Applies absorption on the way.
 bool find_surface(const Reference& reference, const ReferenceRay& ray, Path* path, ReferenceSamples* samples,
                   ReferenceSurface* s, ReferenceContact* contact) {
   const FrameData& frame = *reference.world.frame;
@@ -55,8 +55,7 @@ bool find_surface(const Reference& reference, const ReferenceRay& ray, Path* pat
   return false;
 }
 
-// Where the path goes on, by one of the surface's lobes; false: nowhere. Sets the weight and what the next emitter it
-// meets has to know.
+// Continues the path by one of the surface's lobes; false: it ends. Sets the weight and what the next emitter needs.
 bool scatter(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
              const ReferenceContact& contact, ReferenceRay* ray, Path* path, ReferenceSamples* samples) {
   const FrameData& frame = *reference.world.frame;
@@ -67,7 +66,7 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
     lobe_share = max_component(s.diffuse) + static_cast<double>(max_component(m.specular));
   double total = mirror_share + glass_share + lobe_share;
   if (!(total > 0)) return false;
-  double choice = samples->choice() * total;  // what is left of it after the choice is uniform again
+  double choice = samples->choice() * total;  // rescaled after the choice, it is uniform again
   path->worth *= std::fmin(1, total);
   path->sees_lights = true;
   Vec3d direction;
@@ -98,7 +97,7 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
   return !is_zero(path->weight);
 }
 
-// The share of an emitter's radiance that falls to a path which meets it.
+// The share of an emitter's radiance due to a path that meets it.
 double emission_weight(const Reference& reference, const ReferenceSurface& s, const Vec3d& direction,
                        const Path& path) {
   if (path.sees_lights) return 1;
@@ -108,7 +107,7 @@ double emission_weight(const Reference& reference, const ReferenceSurface& s, co
   return power_heuristic(path.density, area_density * dot(way, way) / cos_light);
 }
 
-// Radiance that arrives along a ray: one sample of it.
+// One sample of the radiance that arrives along a ray.
 Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, ReferenceRay ray,
                  ReferenceSamples* samples) {
   const FrameData& frame = *reference.world.frame;

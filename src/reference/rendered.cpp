@@ -24,7 +24,7 @@ Vec3d spawn(const Reference& reference, const ReferenceSurface& s, const Vec3d& 
   return weight * follow(reference, leave(frame, s, direction, kInfinity), {from.depth + 1, media});
 }
 
-// What leaves a surface against the ray.
+// Radiance that leaves a surface back along the ray.
 Vec3d shade(const Reference& reference, const ReferenceRay& ray, const ReferenceSurface& s,
             const ReferenceContact& contact, const Branch& branch) {
   const FrameData& frame = *reference.world.frame;
@@ -45,7 +45,7 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
 
 Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& branch) {
   const FrameData& frame = *reference.world.frame;
-  Vec3d sum = {0, 0, 0}, carried = {1, 1, 1};  // through the surfaces that lie over others
+  Vec3d sum = {0, 0, 0}, carried = {1, 1, 1};  // throughput of the blended surfaces
   double passed = 0;
   ReferenceContact contact;
   ReferenceHit hit = next_hit(reference.world, ray, nullptr);

@@ -1,6 +1,6 @@
-// The random numbers of a path. Those that matter most, of its first scatterings, are coordinates of scrambled Sobol
-// points, so that the paths of a pixel differ from one another as evenly as they can; all others are independent. Each
-// number is uniform in [0, 1).
+// The random numbers of a path. The most important ones, those of its first scatterings, are coordinates of scrambled
+// Sobol points, so that the paths of a pixel are spread evenly; all others are independent. Each number is uniform in
+// [0, 1).
 #pragma once
 #include "base/rng.h"
 #include "reference/sobol.h"
@@ -13,14 +13,14 @@ struct Pair {
 
 class ReferenceSamples {
  public:
-  // Independent numbers alone.
+  // Independent numbers only.
   explicit ReferenceSamples(const Rng& rng) : rng_(rng) {}
-  // For one pixel; begin_path() then begins each of its paths, which follows from seed, pixel and index alone.
+  // For one pixel; begin_path() then begins each path, which depends only on seed, pixel and index.
   ReferenceSamples(std::uint64_t seed, std::uint64_t pixel);
   void begin_path(std::uint32_t index);
 
   double next() { return next_double(&rng_); }
-  // For what a path does once, or at each scattering.
+  // For decisions made once per path, or once per scattering.
   Pair pixel() { return pair(0, 0); }
   Pair light() { return ++lights_ == 1 ? pair(0, 2) : lights_ == 2 ? pair(2, 0) : independent(); }
   Pair direction() { return ++directions_ == 1 ? pair(1, 0) : directions_ == 2 ? pair(2, 2) : independent(); }
@@ -28,7 +28,7 @@ class ReferenceSamples {
   const Rng& rng() const { return rng_; }
 
  private:
-  static constexpr int kGroupCount = 3;  // of four dimensions each, independent of one another
+  static constexpr int kGroupCount = 3;  // of four dimensions each, mutually independent
   double coordinate(int group, int dimension);
   Pair pair(int group, int dimension);
   Pair independent();

@@ -11,11 +11,12 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-// The sum of direction numbers, bits reversed, that each value of each four bits of an index stands for.
+// For each value of each four bits of an index, the sum of direction numbers, with bits reversed.
 struct Table {
   std::uint32_t sum[8][16][kSobolDimensionCount] = {};
   constexpr Table() {
-    constexpr int kDegree[kSobolDimensionCount] = {0, 1, 2, 3};  // of the primitive polynomial, its inner coefficients,
+    constexpr int kDegree[kSobolDimensionCount] = {0, 1, 2,
+                                                   3};  // of the primitive polynomial, with its inner coefficients,
     constexpr std::uint32_t kInner[kSobolDimensionCount] = {0, 0, 1, 1};
     constexpr std::uint32_t kFirst[kSobolDimensionCount][3] = {{1, 1, 1}, {1, 0, 0}, {1, 3, 0}, {1, 3, 1}};
     for (int d = 0; d < kSobolDimensionCount; ++d) {
@@ -39,7 +40,7 @@ struct Table {
 };
 constexpr Table kTable;
 
-// The point with the bits of each coordinate reversed.
+// The point, with the bits of each coordinate reversed.
 SobolPoint reversed_point(std::uint32_t index) {
   SobolPoint point = {};
   for (int part = 0; index; ++part, index >>= 4)
@@ -47,7 +48,7 @@ SobolPoint reversed_point(std::uint32_t index) {
   return point;
 }
 
-// Changes each bit by what lower ones say alone [Laine & Karras 2011, "Stratified Sampling for Stochastic
+// Flips each bit depending only on the lower ones [Laine & Karras 2011, "Stratified Sampling for Stochastic
 // Transparency", sec. 3.1]; constants of [Burley 2020, listing 2].
 std::uint32_t permute_upwards(std::uint32_t x, std::uint32_t seed) {
   x += seed;
@@ -58,7 +59,7 @@ std::uint32_t permute_upwards(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-// A seed of its own for each use of a seed: the finaliser of [Wellons 2018, "Prospecting for Hash Functions"].
+// Derives independent seeds from one: the finaliser of [Wellons 2018, "Prospecting for Hash Functions"].
 std::uint32_t hash(std::uint32_t x) {
   x ^= x >> 16;
   x *= 0x7FEB352Du;

@@ -8,12 +8,12 @@
 namespace pocketray {
 namespace {
 
-// Of coordinates: beyond it lies what rounding cannot tell from the surface itself.
+// Relative to coordinates: nearer hits may be the surface itself, by rounding.
 constexpr double kOwnSurface = 0x1p-40;
 
 const BrdfInfo& glossy_lobe(const ReferenceSurface& s) { return *kBrdfList[s.material->brdf]; }
 
-// How often the glossy lobe is sampled rather than the diffuse one.
+// Probability of sampling the glossy lobe rather than the diffuse one.
 double glossy_share(const ReferenceSurface& s) {
   double glossy = static_cast<double>(max_component(s.material->specular)), diffuse = max_component(s.diffuse);
   return glossy > 0 ? glossy / (glossy + diffuse) : 0;

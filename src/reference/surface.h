@@ -1,4 +1,4 @@
-// What the reference knows of a point on a surface, and its lobes.
+// A point on a surface as the reference sees it, and its lobes.
 #pragma once
 #include "reference/reference.h"
 #include "reference/samples.h"
@@ -7,28 +7,28 @@ namespace pocketray {
 
 struct ReferenceSurface {
   Vec3d point;
-  double magnitude;         // of the coordinates that the point was made of: bounds its rounding
+  double magnitude;         // of the coordinates behind the point: bounds its rounding error
   Vec3d geometric, normal;  // unit, both on the side the ray came from
   Vec3d diffuse, emission;
   bool front;
   std::uint32_t triangle;
   double u, v;
   const Material* material;
-  const ReferenceCell* cell = nullptr;  // of the guide, where there is one
+  const ReferenceCell* cell = nullptr;  // of the guide, if it has one here
 };
 
 ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction);
 
-// A ray from the surface. Directions below the flat triangle but above the curved surface that the vertex normals speak
-// of start where the renderer starts them, see curved_origin() in surface.h.
+// A ray from the surface. Directions below the flat triangle but above the curved surface described by the vertex
+// normals start where the renderer starts them, see curved_origin() in surface.h.
 ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3d& direction, double t_max);
 
-// Value of the diffuse and the glossy lobe, 1/sr.
+// Value of the diffuse plus the glossy lobe, 1/sr.
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
-// Density of sample_lobes(), 1/sr; 0 where there are no lobes.
+// Density of sample_lobes(), 1/sr; 0 without lobes.
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
-// A direction by the lobes' own shape, from numbers uniform in [0, 1): `choice` says which lobe, `pair` where in it.
-// False where it leads under the surface or there are none.
+// A direction sampled by the lobes, from numbers uniform in [0, 1): `choice` selects the lobe, `pair` the direction in
+// it. False if it points below the surface or there are no lobes.
 bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choice, const Pair& pair, Vec3d* direction);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// The hierarchy of the reference's triangles, built by the surface-area heuristic.
+// Builds the hierarchy of the reference's triangles by the surface-area heuristic.
 #include <limits>
 
 #include "base/box.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kLeafCountMax = 4, kBinCount = 16, kHalveDepth = 24;
 
-// A triangle while the tree is built.
+// A triangle during the build.
 struct Item {
   Box box;
   std::uint32_t triangle;
@@ -23,9 +23,9 @@ int bin_of(float middle, float low, float extent) {
   return static_cast<int>((middle - low) / extent * (kBinCount * 0.99999f));
 }
 
-// Least sum of area × count over kBinCount slices of the triangles' middles along an axis [Wald 2007, "On fast
-// Construction of SAH-based Bounding Volume Hierarchies", sec. 3]; *bin is the first one of the right side. Infinite
-// where nothing is parted.
+// Least sum of area × count over kBinCount slices of the triangles' centroids along an axis [Wald 2007, "On fast
+// Construction of SAH-based Bounding Volume Hierarchies", sec. 3]; *bin is the first on the right side. Infinite if all
+// fall into one slice.
 double best_slice(const Item* items, std::uint32_t count, const Box& middles, int axis, int* bin) {
   float low = middles.low[axis], extent = middles.high[axis] - low;
   if (!(extent > 0)) return std::numeric_limits<double>::infinity();
@@ -55,7 +55,8 @@ double best_slice(const Item* items, std::uint32_t count, const Box& middles, in
   return best;
 }
 
-// Sorts the items of a range into two sides; returns how many are on the left. In halves where nothing else parts them.
+// Sorts the items of a range into two sides; returns the size of the left one. Halves the range if nothing else divides
+// it.
 std::uint32_t part(Item* items, std::uint32_t count, bool halve) {
   Box middles = empty_box();
   for (std::uint32_t i = 0; i < count; ++i) middles = merge(middles, center(items[i].box));
@@ -83,7 +84,7 @@ Box box_of(const Item* items, std::uint32_t count) {
   return box;
 }
 
-// Parts a range into up to four: again and again the one that rays meet most often with most in it.
+// Divides a range into up to four parts, each time the one with the largest area × count.
 int part_in_four(Item* items, Range* ranges, bool halve) {
   int count = 1;
   while (count < 4) {

@@ -18,8 +18,8 @@ bool is_hole(const FrameData& frame, std::uint32_t triangle, double u, double v)
                         frame.settings.texture_filter) < m.alpha_cutoff;
 }
 
-// A ray as boxes see it, in floats. What its rounding may err by is given to the boxes: near faces are moved towards
-// the ray's origin and far ones away, by a part of the coordinates for the origin and of the distance for the rest.
+// A ray prepared for box tests in float. Boxes are enlarged by its rounding error: near faces move towards the ray's
+// origin and far ones away, by a fraction of the coordinates for the origin and of the distance for the rest.
 struct BoxRay {
   static constexpr float kSlack = 0x1p-21f;
   Float4 near_origin[3], far_origin[3], inverse[3];
@@ -43,7 +43,7 @@ BoxRay make_box_ray(const ReferenceWorld& world, const ReferenceRay& ray, double
   return b;
 }
 
-// Bits of the children whose boxes the ray is in somewhere up to t_max; *entry is where it enters them.
+// Bits of the children whose boxes the ray enters before t_max; *entry is where.
 unsigned enter(const ReferenceNode& n, const BoxRay& ray, float t_max, Float4* entry) {
   Float4 near = Float4::splat(ray.t_min), far = Float4::splat(t_max);
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,8 +55,8 @@ unsigned enter(const ReferenceNode& n, const BoxRay& ray, float t_max, Float4* e
   return bits(near <= far * Float4::splat(1 + BoxRay::kSlack));
 }
 
-// Axes permuted and sheared so that the ray runs along the third [Woop, Benthin, Wald 2013, sec. 3]: what lies on an
-// edge lies on it for both of its triangles.
+// Axes permuted and sheared so that the ray runs along the third [Woop, Benthin, Wald 2013, sec. 3]: a ray that hits an
+// edge hits it for both of its triangles.
 struct Shear {
   int x, y, z;
   Double4 sx, sy, sz, origin_x, origin_y, origin_z;
@@ -91,18 +91,18 @@ unsigned meet(const ReferenceLeaf& leaf, const Shear& s, double t_min, double t_
   auto inside = ((zero <= a) & (zero <= b) & (zero <= c)) | ((a <= zero) & (b <= zero) & (c <= zero));
   if (!bits(inside)) return 0;
   Double4 sum = a + b + c;
-  Double4 t = (a * z[0] + b * z[1] + c * z[2]) * s.sz / sum;  // not a number where the sum is zero: no hit
+  Double4 t = (a * z[0] + b * z[1] + c * z[2]) * s.sz / sum;  // NaN if the sum is zero: no hit
   unsigned met = bits(inside & (Double4::splat(t_min) < t) & (t <= Double4::splat(t_max)));
   if (met) spill(t, hits->t), spill(b / sum, hits->u), spill(c / sum, hits->v);
   return met;
 }
 
-// Leaves whose boxes the ray enters before *t_max, which at_leaf() may lower; those that are entered first come first.
+// Visits the leaves whose boxes the ray enters before *t_max, nearest first; at_leaf() may lower *t_max.
 template <class AtLeaf>
 void walk(const ReferenceWorld& world, const BoxRay& ray, const double* t_max, AtLeaf at_leaf) {
   struct Entry {
     std::uint32_t child;
-    float t;  // at which the ray enters it
+    float t;  // where the ray enters it
   } stack[3 * kReferenceDepthMax + 4];
   std::uint32_t stack_count = 1;
   stack[0] = {0, ray.t_min};
@@ -170,7 +170,7 @@ Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, con
           is_hole(frame, triangle, hits.u[i], hits.v[i]))
         continue;
       worst = blocks(material_of(frame, triangle), rules) ? Obstacle::opaque : Obstacle::clear;
-      if (worst == Obstacle::opaque) t_max = -1;  // no box is entered before it
+      if (worst == Obstacle::opaque) t_max = -1;  // no box is entered any more
     }
   });
   return worst;

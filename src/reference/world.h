@@ -1,30 +1,30 @@
 // The triangles of a frame for the reference: a bounding volume hierarchy that shares nothing with the renderer's
-// accelerators, so that neither inherits the other's errors. Boxes are floats, as the vertices are, and never decide on
-// a hit; hits are computed in double precision.
+// accelerators, so that neither inherits the other's errors. Boxes are floats, like the vertices, and never decide a
+// hit; hits are computed in double precision.
 #pragma once
 #include "base/arena.h"
 #include "shade/frame_data.h"
 
 namespace pocketray {
 
-// Four children side by side, for one box test of all.
+// Four children side by side, for one box test.
 struct alignas(16) ReferenceNode {
-  float bounds[2][3][4];   // low and high, by axis, of each child; an empty box where there is none
-  std::uint32_t child[4];  // a node; with kReferenceLeafBit a leaf; kNone
+  float bounds[2][3][4];   // low and high, by axis, of each child; an empty box for missing ones
+  std::uint32_t child[4];  // a node; a leaf if kReferenceLeafBit is set; kNone
 };
-// Up to four triangles side by side; no vertex of one that is missing is a number.
+// Up to four triangles side by side; the vertices of missing ones are NaN.
 struct alignas(16) ReferenceLeaf {
   float corner[3][3][4];  // by vertex and axis
   std::uint32_t triangle[4];
 };
 constexpr std::uint32_t kReferenceLeafBit = 1u << 31;
-constexpr std::uint32_t kReferenceDepthMax = 60;  // of the tree: 24 levels by the heuristic, then halves
+constexpr std::uint32_t kReferenceDepthMax = 60;  // of the tree: 24 levels by the heuristic, then halving
 
 struct ReferenceWorld {
   const FrameData* frame = nullptr;
   Array<ReferenceNode> nodes;  // the first is the root
   Array<ReferenceLeaf> leaves;
-  float magnitude[3];  // of the coordinates along each axis, at most
+  float magnitude[3];  // upper bound of the coordinates along each axis
 };
 
 struct ReferenceRay {
@@ -32,27 +32,27 @@ struct ReferenceRay {
   double t_min, t_max;  // open interval
 };
 
-// Hits have an order: by t, then by triangle. The one behind the last is the same with kNone and infinite t.
+// Hits are ordered by t, then by triangle. After the last comes one with kNone and infinite t.
 struct ReferenceHit {
   double t, u, v;  // u, v: weights of the triangle's vertices 1 and 2
   std::uint32_t triangle;
 };
 
-// Bytes of arena that the hierarchy takes.
+// Bytes that the hierarchy takes from the arena.
 std::size_t reference_world_need(std::uint32_t triangle_count);
-// Over the frame's posed triangles; the frame has to outlive it.
+// Built over the frame's posed triangles; the frame must outlive it.
 ReferenceWorld make_reference_world(const FrameData& frame, Arena* arena);
 
-// The first hit behind `after` in the order of hits (null: of all) that cut-outs leave: their holes are no hits.
+// The first hit after `after` in the order of hits (null: the very first), not counting holes of cut-outs.
 ReferenceHit next_hit(const ReferenceWorld& world, const ReferenceRay& ray, const ReferenceHit* after);
 
-// What casts no shadow, and what of the rest casts a whole one.
+// What casts no shadow, and whether transparent surfaces cast a full one.
 struct ShadowRules {
-  std::uint32_t but_triangle, but_material;  // kNone: none
-  bool transparent_blocks;                   // glass does; what blends does not
+  std::uint32_t but_triangle, but_material;  // these cast none; kNone: none
+  bool transparent_blocks;                   // glass blocks light; blending surfaces do not
 };
 enum class Obstacle { none, clear, opaque };
-// What a ray meets: something opaque; else something that may let light through; else nothing.
+// The strongest obstacle on a ray: something opaque; else something that may transmit light; else none.
 Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules);
 
 inline std::uint32_t material_index(const FrameData& frame, std::uint32_t triangle) {

@@ -11,7 +11,7 @@
 namespace pocketray {
 namespace {
 
-// Whatever is computed of a pose goes no farther than coordinates may: the products of two stay finite.
+// Poses stay within the range of coordinates, so that the product of two values is finite.
 float hold(float x) {
   if (std::fabs(x) <= kCoordinateMax) return x;
   return x > 0 ? kCoordinateMax : x < 0 ? -kCoordinateMax : 0.0f;
@@ -95,8 +95,8 @@ bool is_identity(const Transform& t) {
   return true;
 }
 
-// Where a mesh's rest pose is its place in the world and nothing moved it, it stays as it was, to the bit: normals are
-// not normalized once more.
+// A mesh whose rest pose equals its place in the world, and which nothing moved, keeps its bits: its normals are not
+// normalised a second time.
 bool stays_at_rest(const Scene& scene, const MovingMesh& mesh, const Transform& placed) {
   return scene.rest_positions.data == scene.positions.data && mesh.rest_begin == mesh.vertex_begin &&
          mesh.skin == kNone && mesh.morph_count == 0 && is_identity(placed);

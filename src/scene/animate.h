@@ -5,34 +5,34 @@
 
 namespace pocketray {
 
-// What a caller says of a node in place of its animation.
+// The caller's transform of a node, in place of its animation.
 struct NodeOverride {
   Transform to_parent;
   bool on = false;
 };
 
-// What moves, at one time. All arrays are empty for a static scene; otherwise they are writable and as long as the
-// scene's.
+// Everything that moves, at one time. All arrays are empty for a static scene; otherwise they are writable and as long
+// as the scene's.
 struct Pose {
   Array<Vec3> positions;                // world space; empty when no vertex moves: use Scene::positions
   Array<Vec3> normals;                  // world space; empty when no vertex moves or the scene has none
   Array<Transform> nodes;               // node → world
   Array<Light> lights;                  // world space; their node is kNone
   Array<Camera> cameras;                // world space; their node is kNone
-  Array<Node> local_nodes;              // nodes as the animation sets them, before their parents
-  Array<float> weights;                 // morph weights as the animation sets them
+  Array<Node> local_nodes;              // as the animation sets them, relative to their parents
+  Array<float> weights;                 // as the animation sets them
   Array<Transform> joints;              // rest pose → world, one per Scene::joints
-  Array<const NodeOverride> overrides;  // one per node, the caller's; empty: the animation alone moves them
+  Array<const NodeOverride> overrides;  // one per node, from the caller; empty: only the animation moves nodes
 };
 
-// Bytes make_pose() takes from its arena, exactly. 0 for a scene that is not animated.
+// Exact number of bytes make_pose() takes from its arena; 0 for a scene without animation.
 std::size_t pose_need(const Scene& scene);
 // Allocates and poses animation 0 at time 0, without overrides; call once. For a static scene all arrays stay empty.
 Pose make_pose(const Scene& scene, Arena* arena);
-// Evaluates animation `animation_index` at `seconds` (wraps at its duration, so the duration itself shows time 0) into
-// `pose`, whatever it held before. Before a channel's first key and after its last one, that key holds. Allocates
-// nothing. Coordinates that would leave ±kCoordinateMax stay there, so a pose is always finite. Does nothing for a
-// static scene.
+// Evaluates animation `animation_index` at `seconds` into `pose`, overwriting it. Time wraps at the animation's
+// duration, so the duration itself shows time 0. A channel holds its first key's value before it and its last key's
+// value after it. Coordinates are clamped to ±kCoordinateMax, so a pose is always finite. Allocates nothing; does
+// nothing for a static scene.
 void pose_at(const Scene& scene, std::uint32_t animation_index, double seconds, Pose* pose);
 
 }  // namespace pocketray

@@ -12,8 +12,8 @@ namespace {
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
               "files are used as they lie: a big-endian CPU would have to swap");
 
-// The elements of a file are these structs as they lie. None may have padding: their sizes are the sums of their
-// members', on every ABI, and writing them is copying them.
+// The file holds these structs as they are in memory. None may have padding: their sizes are the sums of their members'
+// on every ABI, and writing them is copying them.
 static_assert(sizeof(SceneInfo) == 64 + 6 * 4 + 6 * 4, "no padding");
 static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && sizeof(Triangle) == 12, "no padding");
 static_assert(sizeof(Texture) == 4 + 2 * 2 + 4, "no padding");
@@ -44,8 +44,8 @@ struct Section {
 };
 static_assert(sizeof(Section) == 24, "no padding");
 
-// Calls visit(name, array) for every array of the scene. A section's kind is its place here, and so is its place in the
-// file: append new ones and raise kBakedVersion.
+// Calls visit(name, array) for every array of the scene. A section's kind, and its place in the file, is its place
+// here: append new arrays at the end and raise kBakedVersion.
 template <class SceneType, class Visit>
 void for_each_array(SceneType& scene, Visit visit) {
   visit("positions", scene.positions);
@@ -99,9 +99,8 @@ std::uint32_t file_checksum(const std::uint8_t* bytes, std::size_t byte_count) {
   return crc(0, bytes + kChecksumBegin, byte_count - kChecksumBegin);
 }
 
-// Where every section lies follows from the counts alone: sections come in order of their kinds, each at the next
-// multiple of 64. A table that says anything else is refused, which rules out overlaps, gaps, duplicates and stray
-// kinds at once.
+// The counts alone determine where every section lies: sections come in order of kind, each at the next multiple of 64.
+// Any other table is refused, which rules out overlaps, gaps, duplicates and unknown kinds at once.
 Status check_section(const Section& section, std::uint32_t kind, const char* name, std::uint32_t element_bytes,
                      std::uint64_t byte_count, std::uint64_t* next_offset) {
   if (section.kind != kind) return failure("section %u is of kind %u, not %s: bake it again", kind, section.kind, name);
@@ -119,7 +118,7 @@ Status check_section(const Section& section, std::uint32_t kind, const char* nam
 
 Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeader* header) {
   if (reinterpret_cast<std::uintptr_t>(bytes) % kSectionAlignment != 0)
-    return failure("must be read to a multiple of 64 bytes in memory");
+    return failure("must be aligned to 64 bytes in memory");
   if (byte_count < sizeof kMagic || std::memcmp(bytes, kMagic, sizeof kMagic) != 0)
     return failure("not a .pray file: make one with pocketray bake");
   if (byte_count < sizeof(FileHeader)) return failure("cut short after %zu bytes: copy or bake it again", byte_count);

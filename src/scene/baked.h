@@ -1,6 +1,6 @@
-// The .pray file: one little-endian block that is used as it lies. A header (magic, version, byte count, CRC-32 of the
+// The .pray file: one little-endian block that is used in place. A header (magic, version, byte count, CRC-32 of the
 // rest), a table of sections (kind, element size, offset, count), then the arrays of Scene, each aligned to 64 bytes.
-// Bytes of a file are hostile until baked_open() has checked them.
+// A file's bytes are hostile until baked_open() has checked them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,21 +12,21 @@ namespace pocketray {
 
 constexpr std::uint32_t kBakedVersion = 2;
 
-// Bytes of the file that baked_write() makes of the scene.
+// Size in bytes of the file that baked_write() makes.
 std::size_t baked_size(const Scene& scene);
 // Writes the scene into `bytes`, baked_size() of them.
 void baked_write(const Scene& scene, std::uint8_t* bytes);
 
-// Makes `scene` a view of the file in `bytes` (aligned to 64). Checks magic, version, length, checksum, and then every
-// count, offset, index and float, so that the scene may be trusted afterwards. Allocates nothing, copies nothing.
+// Makes `scene` a view of the file in `bytes` (aligned to 64). Checks magic, version, length and checksum, then every
+// count, offset, index and float; after that the scene can be trusted. Allocates nothing, copies nothing.
 Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene);
 
-// The checks of baked_open() on a scene from anywhere: indices in range, floats finite and below kCoordinateMax, nodes
-// after their parents, key times increasing. Says which element is wrong.
+// The checks of baked_open() on any scene: indices in range, floats finite and below kCoordinateMax, nodes after their
+// parents, key times increasing. The message names the faulty element.
 Status validate_scene(const Scene& scene);
 
-// Identity of the content, wherever its arrays lie: the CRC-32s of all arrays, combined so that their order is of no
-// account. For caches and tests.
+// Identity of the content, wherever its arrays lie: the CRC-32s of all arrays, combined independently of order. For
+// caches and tests.
 std::uint32_t scene_hash(const Scene& scene);
 
 }  // namespace pocketray

@@ -6,7 +6,7 @@ namespace pocketray {
 
 // Writes the channel's value at `time` (seconds), `width` floats, to `value`: translations, scales, morph weights.
 void channel_value(const Scene& scene, const Channel& channel, double time, std::uint32_t width, float* value);
-// The same for rotations, along the shorter arc; unit. The identity where the keys have no direction.
+// The same for rotations, along the shorter arc. Returns a unit quaternion; the identity if the keys give no direction.
 Quaternion channel_rotation(const Scene& scene, const Channel& channel, double time);
 
 }  // namespace pocketray

@@ -1,6 +1,6 @@
 // Identity of a scene's bytes, wherever they lie: 128 bits, MurmurHash3_x64_128 [Appleby 2011], seed 0. Two scenes do
-// not share one by accident; a hostile peer could make them do so, and gains nothing by it: what it sends is checked as
-// any file, and its pixels were its own choice anyway.
+// not collide by accident. A hostile peer could make them collide but gains nothing: its scene is checked like any
+// file, and its pixels were its own choice anyway.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@ inline bool operator!=(const ContentHash& a, const ContentHash& b) { return !(a 
 
 ContentHash content_hash(const void* bytes, std::size_t byte_count);
 
-// The same of bytes that come in parts: every part but the last has a multiple of 16.
+// The same for bytes that arrive in parts; the size of every part but the last is a multiple of 16.
 struct ContentHasher {
   std::uint64_t a = 0, b = 0, byte_count = 0;
 };

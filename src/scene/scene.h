@@ -1,4 +1,4 @@
-// The scene: plain arrays of structs, fields used together lying together [Aranha07] sec. 3.1.
+// The scene: plain arrays of structs, fields used together stored together [Aranha07] sec. 3.1.
 // A Scene owns nothing: its arrays lie in a mapped .pray file or in the scene arena. Everything in it has been checked:
 // indices are in range, floats are finite, nodes come after their parents.
 // Units: distances in scene units, angles in radians, colours linear with sRGB primaries, +Y up, right-handed.
@@ -16,8 +16,8 @@ namespace pocketray {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;  // "no such index"
 
-// Three vertices, counter-clockwise seen from the front, and a material, in 12 bytes: every word has a vertex in its
-// low bits and a share of the material above them.
+// Three vertices, counter-clockwise seen from the front, and a material, in 12 bytes: each word holds a vertex in its
+// low bits and a third of the material above them.
 class Triangle {
  public:
   Triangle() = default;
@@ -28,8 +28,7 @@ class Triangle {
     return word_[0] >> kVertexIndexBits | word_[1] >> kVertexIndexBits << kShareBits |
            word_[2] >> kVertexIndexBits << 2 * kShareBits;
   }
-  // Abort where the value has more bits than there are for it, which is below kVertexCountMax or kMaterialCountMax
-  // never.
+  // Aborts if the value does not fit its bits; values below kVertexCountMax or kMaterialCountMax always fit.
   void set_vertex(std::uint32_t corner, std::uint32_t value);
   void set_material(std::uint32_t value);
 
@@ -40,7 +39,7 @@ class Triangle {
   std::uint32_t word_[3] = {0, 0, 0};
 };
 
-// A linear colour as it is stored per vertex: 16 bits a channel, 65535 = 1.
+// A linear colour as stored per vertex: 16 bits a channel, 65535 = 1.
 struct Rgba16 {
   std::uint16_t r, g, b, a;
 };
@@ -63,37 +62,37 @@ struct TextureUse {
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
-// What a surface does with light. Any lobe may be absent (zero); an absent lobe costs nothing.
+// How a surface interacts with light. Any lobe may be absent (zero); an absent lobe costs nothing.
 struct Material {
   Vec3 diffuse = {0.8f, 0.8f, 0.8f};  // Lambertian albedo; × texture × vertex colour
   Vec3 specular = {0, 0, 0};          // albedo of the glossy lobe at its peak direction, see brdf/
   float exponent = 0;                 // of the Phong lobe, 0 to kPhongExponentMax
   Vec3 mirror = {0, 0, 0};            // reflectance of the perfect mirror
-  Vec3 transmission = {0, 0, 0};  // of the dielectric; zero: opaque. Reflects by Fresnel, transmits the rest × this
+  Vec3 transmission = {0, 0, 0};  // of the dielectric; zero: opaque. Reflects by Fresnel and transmits the rest × this
   float ior = 1.5f;               // index of refraction, 1 to kIorMax
   Vec3 absorption = {0, 0, 0};    // per scene unit inside the body (Beer–Lambert)
   Vec3 emission = {0, 0, 0};      // radiance; × emission texture
   float opacity = 1;              // alpha; × texture alpha × vertex alpha
-  float alpha_cutoff = 0.5f;      // alpha mode mask: less than this is a hole
+  float alpha_cutoff = 0.5f;      // alpha mode mask: lower alpha is a hole
   TextureUse diffuse_texture, emission_texture;
-  std::uint32_t brdf = 0;  // index into brdf_list(): the glossy lobe
+  std::uint32_t brdf = 0;  // index into kBrdfList: the glossy lobe
   AlphaMode alpha_mode = AlphaMode::opaque;
   std::uint8_t double_sided = 1;
-  std::uint8_t unlit = 0;  // shows its diffuse colour as it is, and nothing else (KHR_materials_unlit)
-  std::uint8_t thin = 0;   // transmits without bending and encloses nothing (glTF without KHR_materials_volume)
+  std::uint8_t unlit = 0;  // shows its diffuse colour unchanged and nothing else (KHR_materials_unlit)
+  std::uint8_t thin = 0;   // transmits without refraction and encloses nothing (glTF without KHR_materials_volume)
 };
 
 enum class LightKind : std::uint32_t { point, spot, directional };
 
-// Lights that are no surface. Emissive materials are the area lights; they are found by the plan.
+// Lights other than surfaces. Emissive materials are the area lights; the plan finds them.
 struct Light {
   LightKind kind = LightKind::point;
   Vec3 position = {0, 0, 0};    // point, spot
   Vec3 direction = {0, -1, 0};  // unit, the way the light travels; spot, directional
   Vec3 intensity = {1, 1, 1};   // point, spot: radiant intensity; directional: irradiance on a surface that faces it
-  float range = 0;              // beyond this it gives nothing (KHR_lights_punctual); 0: no limit
-  float cos_inner = 1, cos_outer = 0;  // spot: full within inner, none beyond outer
-  std::uint32_t node = kNone;          // moves with this node: position and direction are then in its space
+  float range = 0;              // no light beyond this distance (KHR_lights_punctual); 0: no limit
+  float cos_inner = 1, cos_outer = 0;  // spot: full intensity within inner, none beyond outer
+  std::uint32_t node = kNone;          // moves with this node: position and direction are in its space
 };
 
 enum class Projection : std::uint32_t { perspective, orthographic };
@@ -103,11 +102,8 @@ struct Camera {
   float vertical_fov = 0.8f;  // radians, perspective
   float vertical_extent = 1;  // scene units from bottom to top, orthographic
   Projection projection = Projection::perspective;
-  std::uint32_t node = kNone;  // moves with this node: eye, target and up are then in its space
+  std::uint32_t node = kNone;  // moves with this node: eye, target and up are in its space
 };
-
-// ---- animation
-// -------------------------------------------------------------------------------------------------------
 
 struct Node {
   std::uint32_t parent = kNone;  // index lower than the node's own
@@ -122,8 +118,8 @@ enum class Interpolation : std::uint8_t { step, linear, cubic };  // cubic: in-t
 
 struct Channel {
   std::uint32_t node;
-  std::uint32_t key_begin, key_count;  // in Scene::key_times, seconds, strictly increasing
-  std::uint32_t value_begin;           // in Scene::key_values; 3, 4 or weight_count floats a key, × 3 if cubic
+  std::uint32_t key_begin, key_count;  // in Scene::key_times; seconds, strictly increasing
+  std::uint32_t value_begin;           // in Scene::key_values; 3, 4 or weight_count floats per key, × 3 if cubic
   ChannelPath path;
   Interpolation interpolation;
   std::uint16_t reserved = 0;
@@ -149,8 +145,8 @@ struct SkinWeight {
   float weight[4];
 };
 
-// A run of vertices that moves; runs ascend and do not overlap. Its rest pose is in object space; its pose at time 0 is
-// what Scene::positions holds.
+// A run of vertices that moves; runs are in ascending order and do not overlap. The rest pose is in object space;
+// Scene::positions holds the pose at time 0.
 struct MovingMesh {
   std::uint32_t vertex_begin, vertex_count;  // in Scene::positions (and normals)
   std::uint32_t rest_begin;                  // in Scene::rest_positions (and rest_normals)
@@ -158,24 +154,21 @@ struct MovingMesh {
   std::uint32_t skin = kNone;
   std::uint32_t skin_weight_begin = 0;  // in Scene::skin_weights, vertex_count of them
   std::uint32_t morph_begin = 0,
-                morph_count = 0;  // first delta in Scene::morph_positions; targets lie one after another
+                morph_count = 0;  // first delta in Scene::morph_positions; one target after another
   Transform instance;             // between the node and the mesh (instancing); ignored where there is a skin
 };
-
-// ---- the whole
-// -------------------------------------------------------------------------------------------------------
 
 struct SceneInfo {
   char name[64] = {0};
   Vec3 background = {0, 0, 0};  // radiance where nothing is hit
-  Vec3 ambient = {0, 0, 0};     // indirect light taken as constant: radiance from everywhere
+  Vec3 ambient = {0, 0, 0};     // constant indirect light: radiance from everywhere
   float exposure = 1;           // displayed = exposure × radiance
   std::uint32_t frame_count = 1;
   float frames_per_second = 30;
   std::uint32_t default_lights =
-      0;  // 1: the scene asks for the stated lights (plan/plan_scene.h), or has been given them
+      0;  // 1: the scene asks for the default lights (plan/plan_scene.h), or already has them
   std::uint32_t default_camera = 0;  // 1: framed by its bounds
-  float auto_exposure = 0;           // 1: exposure is to be measured before the first frame
+  float auto_exposure = 0;           // 1: measure exposure before the first frame
 };
 
 struct BvhNode;  // accel/bvh.h
@@ -184,7 +177,7 @@ struct BvhLeaf;  // accel/bvh.h
 struct Scene {
   SceneInfo info;
   Array<const Vec3> positions;  // world space, at time 0
-  Array<const Vec3> normals;    // unit, one per vertex, or empty; the zero vector asks for the geometric normal
+  Array<const Vec3> normals;    // unit, one per vertex, or empty; the zero vector means the geometric normal
   Array<const Vec2> uvs;        // one per vertex, or empty
   Array<const Rgba16> colors;   // one per vertex, or empty
   Array<const Triangle> triangles;
@@ -203,7 +196,7 @@ struct Scene {
   Array<const Vec3> rest_positions, rest_normals;
   Array<const SkinWeight> skin_weights;
   Array<const Vec3> morph_positions, morph_normals;
-  Array<const std::uint8_t> accel;  // baked accelerator, as accel/ lays it out; may be empty
+  Array<const std::uint8_t> accel;  // baked accelerator in the layout of accel/; may be empty
 };
 
 inline bool is_animated(const Scene& scene) {

@@ -1,4 +1,4 @@
-// What stands still: geometry, materials, textures, lights, cameras.
+// Static content: geometry, materials, textures, lights, cameras.
 #include <cstring>
 
 #include "base/limit_list.h"
@@ -12,7 +12,7 @@ constexpr float kFloatMax = std::numeric_limits<float>::max();
 
 Status check_count(const char* array, std::uint32_t count, std::uint32_t limit) {
   if (count <= limit) return success();
-  return failure("%u %s, at most %u fit: simplify the model", count, array, limit);
+  return failure("%u %s, at most %u are supported: simplify the model", count, array, limit);
 }
 
 Status check_per_vertex(const char* array, std::uint32_t count, const Scene& scene) {
@@ -34,10 +34,10 @@ Status validate_counts(const Scene& scene) {
 }
 
 Status validate_info(const SceneInfo& info) {
-  if (!std::memchr(info.name, 0, sizeof info.name)) return failure("the scene's name does not end");
-  if (info.frame_count < 1) return failure("info.frame_count is 0, it must be at least 1");
+  if (!std::memchr(info.name, 0, sizeof info.name)) return failure("the scene's name is not terminated");
+  if (info.frame_count < 1) return failure("info.frame_count is 0: it must be at least 1");
   if (info.default_lights > 1 || info.default_camera > 1)
-    return failure("info.default_lights and _camera must be 0 or 1");
+    return failure("info.default_lights and info.default_camera must be 0 or 1");
   const FieldRange fields[] = {
       {"background.x", info.background.x, 0, kRadianceMax},
       {"background.y", info.background.y, 0, kRadianceMax},
@@ -108,7 +108,7 @@ Status validate_texture(const Scene& scene, std::uint32_t index) {
     return failure("textures[%u] is %u by %u texels, its sides must lie in 1 to %u", index, t.width, t.height,
                    kTextureSideMax);
   if (!is_range(t.texel_begin, std::uint64_t(t.width) * t.height, scene.texels.count))
-    return failure("textures[%u] reaches beyond the %u texels there are", index, scene.texels.count);
+    return failure("textures[%u] extends beyond the scene's %u texels", index, scene.texels.count);
   if (t.wrap_u > Wrap::clamp || t.wrap_v > Wrap::clamp || t.nearest > 1)
     return failure("textures[%u] has an unknown wrap mode or filter", index);
   return success();
@@ -138,7 +138,7 @@ Status validate_camera(const Scene& scene, std::uint32_t index) {
   const Camera& camera = scene.cameras[index];
   if (!is_coordinate(camera.eye) || !is_coordinate(camera.target) || !is_coordinate(camera.up))
     return failure("cameras[%u] has a vector that is not finite or too long", index);
-  if (camera.eye == camera.target) return failure("cameras[%u] looks at the point where it stands", index);
+  if (camera.eye == camera.target) return failure("cameras[%u] has its eye and target at the same point", index);
   if (is_zero(camera.up)) return failure("cameras[%u].up is zero", index);
   if (camera.projection > Projection::orthographic) return failure("cameras[%u] has an unknown projection", index);
   if (!is_index_or_none(camera.node, scene.nodes.count))

@@ -1,4 +1,4 @@
-// The checks that validate_*.cpp share. Bounds are tested on the bits of a float, which is quick on a CPU without FPU.
+// Checks shared by validate_*.cpp. Bounds are tested on the bits of a float, which is fast on a CPU without FPU.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -27,7 +27,7 @@ inline bool is_coordinate(const Transform& t) {
   return true;
 }
 
-// Unit to one part in a hundred: what normals and directions must be. Written so that NaN fails.
+// Unit to within 1 %, as normals and directions must be. NaN fails.
 inline bool is_unit(const Vec3& n) {
   if (!is_coordinate(n)) return false;
   float square = dot(n, n);
@@ -36,11 +36,11 @@ inline bool is_unit(const Vec3& n) {
 
 // Whether [begin, begin + count) lies in [0, total).
 inline bool is_range(std::uint64_t begin, std::uint64_t count, std::uint64_t total) {
-  return begin <= total && count <= total - begin;  // count may be a product: its factors are below 2^32
+  return begin <= total && count <= total - begin;  // no overflow: count may be a product of factors below 2^32
 }
 inline bool is_index_or_none(std::uint32_t index, std::uint32_t count) { return index == kNone || index < count; }
 
-// A number and the interval it must lie in.
+// A value and its allowed interval.
 struct FieldRange {
   const char* field;
   float value, low, high;

@@ -1,5 +1,6 @@
-// What moves: nodes, animations, skins, moving meshes. Every pass is linear in what the file holds: ranges that several
-// elements may share are bounded by kChannelKeyCountMax and kMorphTargetCountMax, moving meshes may not overlap.
+// Moving content: nodes, animations, skins, moving meshes. Every pass is linear in the size of the file: ranges that
+// several elements may share are bounded by kChannelKeyCountMax and kMorphTargetCountMax, and moving meshes may not
+// overlap.
 #include "base/limit_list.h"
 #include "scene/validate_checks.h"
 
@@ -19,13 +20,13 @@ Status validate_node(const Scene& scene, std::uint32_t index) {
   if (!is_coordinate(node.translation) || !is_coordinate(node.scale) || !is_unit(node.rotation))
     return failure("nodes[%u] has a translation, rotation or scale that is not finite, or no unit quaternion", index);
   if (!is_invertible(compose({0, 0, 0}, node.rotation, node.scale)))
-    return failure("nodes[%u] has scale %g %g %g, which flattens or bursts what it holds", index,
-                   static_cast<double>(node.scale.x), static_cast<double>(node.scale.y),
-                   static_cast<double>(node.scale.z));
+    return failure("nodes[%u] has scale %g %g %g, which cannot be inverted", index, static_cast<double>(node.scale.x),
+                   static_cast<double>(node.scale.y), static_cast<double>(node.scale.z));
   if (node.weight_count > kMorphTargetCountMax)
-    return failure("nodes[%u] has %u morph weights, at most %u fit", index, node.weight_count, kMorphTargetCountMax);
+    return failure("nodes[%u] has %u morph weights, at most %u are supported", index, node.weight_count,
+                   kMorphTargetCountMax);
   if (!is_range(node.weight_begin, node.weight_count, scene.weights.count))
-    return failure("nodes[%u] has morph weights beyond the %u there are", index, scene.weights.count);
+    return failure("nodes[%u] has morph weights beyond the scene's %u", index, scene.weights.count);
   return success();
 }
 
@@ -51,10 +52,10 @@ Status validate_channel(const Scene& scene, std::uint32_t index) {
   std::uint64_t width = value_width(channel, scene.nodes[channel.node]);
   if (width == 0) return failure("channels[%u] sets morph weights of node %u, which has none", index, channel.node);
   if (channel.key_count < 1 || !is_range(channel.key_begin, channel.key_count, scene.key_times.count))
-    return failure("channels[%u] has no keys or keys beyond the %u there are", index, scene.key_times.count);
+    return failure("channels[%u] has no keys, or keys beyond the scene's %u", index, scene.key_times.count);
   std::uint64_t floats = channel.key_count * width * (channel.interpolation == Interpolation::cubic ? 3 : 1);
   if (!is_range(channel.value_begin, floats, scene.key_values.count))
-    return failure("channels[%u] has values beyond the %u there are", index, scene.key_values.count);
+    return failure("channels[%u] has values beyond the scene's %u", index, scene.key_values.count);
   const float* times = scene.key_times.data + channel.key_begin;
   if (!(times[0] >= 0)) return failure("channels[%u] starts before time 0", index);
   for (std::uint32_t k = 1; k < channel.key_count; ++k)
@@ -67,7 +68,7 @@ Status validate_channels(const Scene& scene) {
   std::uint64_t key_count = 0;
   for (const Channel& channel : scene.channels) key_count += channel.key_count;
   if (key_count > kChannelKeyCountMax)
-    return failure("%llu animation keys, at most %u fit: resample the animation",
+    return failure("%llu animation keys, at most %u are supported: resample the animation",
                    static_cast<unsigned long long>(key_count), kChannelKeyCountMax);
   for (std::uint32_t i = 0; i < scene.channels.count; ++i) RETURN_IF_ERROR(validate_channel(scene, i));
   return success();
@@ -84,7 +85,7 @@ Status validate_skins(const Scene& scene) {
   for (std::uint32_t i = 0; i < scene.skins.count; ++i) {
     const Skin& skin = scene.skins[i];
     if (skin.joint_count < 1 || !is_range(skin.joint_begin, skin.joint_count, scene.joints.count))
-      return failure("skins[%u] has no joints or joints beyond the %u there are", i, scene.joints.count);
+      return failure("skins[%u] has no joints, or joints beyond the scene's %u", i, scene.joints.count);
   }
   return success();
 }
@@ -95,7 +96,7 @@ Status validate_skinned(const Scene& scene, std::uint32_t index) {
   if (mesh.skin >= scene.skins.count)
     return failure("moving_meshes[%u] has skin %u of %u", index, mesh.skin, scene.skins.count);
   if (!is_range(mesh.skin_weight_begin, mesh.vertex_count, scene.skin_weights.count))
-    return failure("moving_meshes[%u] has skin weights beyond the %u there are", index, scene.skin_weights.count);
+    return failure("moving_meshes[%u] has skin weights beyond the scene's %u", index, scene.skin_weights.count);
   std::uint32_t joint_count = scene.skins[mesh.skin].joint_count;
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v)
     for (std::uint16_t joint : scene.skin_weights[mesh.skin_weight_begin + v].joint)
@@ -114,7 +115,7 @@ Status validate_morphed(const Scene& scene, std::uint32_t index) {
     return failure("moving_meshes[%u] has %u morph targets, its node %u weights", index, mesh.morph_count,
                    scene.nodes[mesh.node].weight_count);
   if (!is_range(mesh.morph_begin, std::uint64_t(mesh.morph_count) * mesh.vertex_count, scene.morph_positions.count))
-    return failure("moving_meshes[%u] has morph targets beyond the %u deltas there are", index,
+    return failure("moving_meshes[%u] has morph targets beyond the scene's %u deltas", index,
                    scene.morph_positions.count);
   return success();
 }
@@ -124,7 +125,8 @@ Status validate_skin_weights(const Scene& scene) {
     const float* w = scene.skin_weights[i].weight;
     bool each = w[0] >= 0 && w[1] >= 0 && w[2] >= 0 && w[3] >= 0;
     float sum = w[0] + w[1] + w[2] + w[3];
-    if (!each || !(sum >= 0.999f && sum <= 1.001f)) return failure("skin_weights[%u] are not four weights of sum 1", i);
+    if (!each || !(sum >= 0.999f && sum <= 1.001f))
+      return failure("skin_weights[%u] must be four weights that sum to 1", i);
   }
   return success();
 }
@@ -162,7 +164,7 @@ Status validate_animations(const Scene& scene) {
   for (std::uint32_t i = 0; i < scene.animations.count; ++i) {
     const Animation& animation = scene.animations[i];
     if (!is_range(animation.channel_begin, animation.channel_count, scene.channels.count))
-      return failure("animations[%u] has channels beyond the %u there are", i, scene.channels.count);
+      return failure("animations[%u] has channels beyond the scene's %u", i, scene.channels.count);
     if (!within(Quantity::seconds, animation.duration) || animation.duration < 0)
       return failure("animations[%u] has a duration that is negative, beyond %g seconds or not finite", i, kSecondsMax);
   }
@@ -176,11 +178,11 @@ Status validate_moving_meshes(const Scene& scene) {
   for (std::uint32_t i = 0; i < scene.moving_meshes.count; ++i) {
     const MovingMesh& mesh = scene.moving_meshes[i];
     if (mesh.vertex_begin < end || !is_range(mesh.vertex_begin, mesh.vertex_count, scene.positions.count))
-      return failure("moving_meshes[%u] starts inside the one before or reaches beyond the %u vertices there are", i,
+      return failure("moving_meshes[%u] overlaps the one before or extends beyond the scene's %u vertices", i,
                      scene.positions.count);
     end = std::uint64_t(mesh.vertex_begin) + mesh.vertex_count;
     if (!is_range(mesh.rest_begin, mesh.vertex_count, scene.rest_positions.count))
-      return failure("moving_meshes[%u] reaches beyond the %u rest_positions there are", i, scene.rest_positions.count);
+      return failure("moving_meshes[%u] extends beyond the scene's %u rest_positions", i, scene.rest_positions.count);
     if (!is_coordinate(mesh.instance) || !is_invertible(mesh.instance))
       return failure("moving_meshes[%u] has an instance transform that is not finite or flattens it", i);
     RETURN_IF_ERROR(validate_skinned(scene, i));

@@ -87,7 +87,7 @@ Status read_baked(const std::string& path, const std::function<std::uint8_t*(std
   *bytes = take(file.byte_count);
   bool ok = *bytes != nullptr;
   if (!ok)
-    std::snprintf(error.text, sizeof error.text, "has %llu bytes: there is no memory for them",
+    std::snprintf(error.text, sizeof error.text, "has %llu bytes: not enough memory",
                   static_cast<unsigned long long>(file.byte_count));
   ok = ok && platform::read_bytes(&file, *bytes, static_cast<std::size_t>(file.byte_count), &error);
   platform::close_reader(&file);

@@ -11,7 +11,7 @@ Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t
   Vec3 forward = normalize(camera.target - camera.eye);
   if (is_zero(forward)) return failure("the camera's eye and target are the same point: move one of them");
   Vec3 right = normalize(cross(forward, normalize(camera.up)));
-  if (is_zero(right)) {  // looking along up: any right will do (HARDCASES row 28)
+  if (is_zero(right)) {  // looking along up: any right vector works (HARDCASES row 28)
     Vec3 up;
     make_basis(forward, &right, &up);
   }

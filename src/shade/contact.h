@@ -1,6 +1,5 @@
-// Contact: faces that lie on one another where a ray meets them, within rounding: glass that touches glass, a glass
-// block on a table, a label on a wall, two one-sided surfaces back to back. A ray that passes one of them has to pass
-// or meet them all.
+// Contact: faces that coincide, within rounding, where a ray meets them: glass against glass, a glass block on a table,
+// a label on a wall, two one-sided surfaces back to back. A ray that passes one of them must pass or meet them all.
 #pragma once
 #include "shade/surface.h"
 
@@ -13,16 +12,15 @@ struct Face {
 };
 
 struct Contact {
-  Face face[kMediumDepthMax];  // the one that was hit first; one of each material and side, what exceeds that is left
-                               // out
+  Face face[kMediumDepthMax];  // the first hit first; one per material and side, any excess is dropped
   std::uint32_t count;
 };
 
-// The faces between the safe origins on both sides of `s`, which `hit` gave. `filter` may be null.
+// The faces between the safe origins on both sides of `s`, the surface at `hit`. `filter` may be null.
 void gather_contact(const FrameData& frame, const Surface& s, const Hit& hit, const HitFilter* filter, Contact* contact,
                     TraceStats* stats);
 
-// Whether a ray may get past a material, by the effects of the mask.
+// Whether a ray may pass a material, given the effects of the mask.
 inline bool transmits(const Material& m, EffectMask mask) {
   return has(mask, Effect::refraction) && !is_zero(m.transmission);
 }

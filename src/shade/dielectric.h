@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-// Reflectance of unpolarised light that meets the boundary at cos_i ∈ [0, 1] with relative index eta = n_from / n_to
+// Reflectance of unpolarised light at a boundary, for cos_i ∈ [0, 1] and relative index eta = n_from / n_to
 // [Born & Wolf 1999, sec. 1.5.2, eqs. 21]. Sets *cos_t, the cosine of the refracted ray; total internal reflection
 // gives 1 and cos_t = 0.
 inline float fresnel(float cos_i, float eta, float* cos_t) {
@@ -20,9 +20,9 @@ inline float fresnel(float cos_i, float eta, float* cos_t) {
   return 0.5f * (s * s + p * p);
 }
 
-// d mirrored at the plane of the unit normal n.
+// d mirrored in the plane with unit normal n.
 inline Vec3 reflect(const Vec3& d, const Vec3& n) { return d - n * (2 * dot(d, n)); }
-// d refracted; n on the side d comes from, cos_i = −d·n, cos_t from fresnel().
+// d refracted. n is on the side that d comes from, cos_i = −d·n, cos_t from fresnel().
 inline Vec3 refract(const Vec3& d, const Vec3& n, float eta, float cos_i, float cos_t) {
   return d * eta + n * (eta * cos_i - cos_t);
 }

@@ -14,8 +14,8 @@
 
 namespace pocketray {
 
-// Whether a contribution of at most `bound` may be left out: the sum of what is left out of a sample stays below half
-// the narrowest displayed level, so no pixel moves by more than one.
+// Whether to skip a contribution of at most `bound`: all that is skipped of a sample stays below half the narrowest
+// display level, so no pixel changes by more than one level.
 inline bool leave_out(Tracer* tracer, float bound) {
   if (!(bound <= tracer->budget)) return false;
   tracer->budget -= bound;
@@ -23,8 +23,8 @@ inline bool leave_out(Tracer* tracer, float bound) {
   return true;
 }
 
-// What a contact lets through of a ray that is not bent: Fresnel once, from the body that ends there to the one that
-// begins (air where there is none), and the tint of all that is entered.
+// Transmittance of a contact for an unrefracted ray: Fresnel once, from the body that ends there to the one that begins
+// (air if none), times the tints of all bodies entered.
 inline Vec3 interface_transmittance(const FrameData& frame, const Contact& contact, float cos_i) {
   Vec3 tint = {1, 1, 1};
   float from = 1, to = 1;
@@ -43,24 +43,25 @@ inline Vec3 interface_transmittance(const FrameData& frame, const Contact& conta
   return tint * (1 - fresnel(cos_i, from / to, &cos_t));
 }
 
-// Σ absorption × distance through bodies, of the sums at their entries and exits and of what is `open` to the end of
-// the ray, which may be at infinity. Sums beyond float cannot be told apart: nothing passes.
+// Σ absorption × distance through bodies, from the sums at their entries and exits and the absorption still `open` at
+// the end of the ray, which may be at infinity. If the sums overflow, their difference is unknown: nothing passes.
 inline float optical_depth(float begin, float end, float open, float distance) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   if (!(begin < kInfinity && end < kInfinity)) return kInfinity;
   return open > 0 ? (end - begin) + open * distance : end - begin;
 }
 
-// What transparent surfaces between the point and the light let through, unbent, in order along the ray: products of
-// floats do not commute in the last bit, and every accelerator must give the same.
+// Transmittance of the transparent surfaces between the point and the light, without refraction, in order along the
+// ray: products of floats do not commute in the last bit, and every accelerator must give the same.
 template <EffectMask mask>
 Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) {
   const FrameData& frame = *tracer->frame;
   HitFilter filter = {frame.accept_clear, &context};
   Vec3 result = {1, 1, 1};
-  Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and at exits
-  Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not left
-  int open_count = 0;  // how many they are: the sum alone keeps a rounding error that an infinite ray makes opaque
+  Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and exits
+  Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not yet left
+  int open_count =
+      0;  // number of these bodies: `open` alone keeps a rounding error, which would make an infinite ray opaque
   float unit = length(ray.direction), passed = 0;
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
@@ -114,7 +115,7 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) 
   return {0, 0, 0};
 }
 
-// The share of a light that arrives: zero or one, or between where something transparent is in the way.
+// The fraction of a light that arrives: zero or one, or between if something transparent is in the way.
 template <EffectMask mask>
 Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t light, bool at_first_hit) {
   effect_entered<Effect::shadow>();
@@ -133,8 +134,8 @@ Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t light, bool at_first_h
   return {1, 1, 1};
 }
 
-// Radiance towards the viewer by light that arrives straight from the lights. `weight` is what the path so far lets
-// through.
+// Radiance towards the viewer from light that arrives straight from the lights. `weight` is the throughput of the path
+// so far.
 template <EffectMask mask>
 Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const Vec3& weight) {
   const FrameData& frame = *tracer->frame;

@@ -6,10 +6,10 @@
 namespace pocketray {
 namespace {
 
-// For each count the row of the point in each column. Found by simulated annealing: least mean square, over all
-// straight edges across the square, of the error of the area on one side, which is half the energy distance between the
-// points and the square [Székely & Rizzo 2013, "Energy statistics", eq. 4.5]. `build/test_shade -tc='even_points_*'`
-// sees that no two points can be exchanged to lessen it.
+// For each count, the row of the point in each column. Found by simulated annealing: least mean square error, over all
+// straight edges across the square, of the area on one side, which is half the energy distance between the points and
+// the square [Székely & Rizzo 2013, "Energy statistics", eq. 4.5]. `build/test_shade -tc='even_points_*'` verifies that
+// exchanging no two points reduces it.
 constexpr std::uint8_t kRook[] = {0,                                                             //
                                   0, 1,                                                          //
                                   0, 2,  1,                                                      //

@@ -6,7 +6,7 @@
 namespace pocketray {
 namespace {
 
-// Whether the point lies in a hole of a cut-out surface.
+// Whether the point lies in a hole of an alpha-masked surface.
 bool is_hole(const FrameData& frame, const Material& m, std::uint32_t triangle, float u, float v) {
   return hit_alpha<Effect::alpha_mask>(*frame.scene, m, triangle, u, v, frame.settings.texture_filter) < m.alpha_cutoff;
 }

@@ -1,4 +1,4 @@
-// Everything trace_spans reads while a frame is traced. Filled by plan/ and app/, constant while threads run.
+// Everything trace_spans reads while a frame is traced. Filled by plan/ and engine/, constant while threads run.
 #pragma once
 #include "accel/accel.h"
 #include "base/limits.h"
@@ -9,15 +9,15 @@
 
 namespace pocketray {
 
-// A light as it is used: points, spots, directions, and the points that stand for area lights.
+// A light as shading uses it: point, spot, directional, or one of the points that represent an area light.
 struct LightPoint {
   Vec3 position;
-  Vec3 direction;  // spot, directional: the way light travels; area: normal of the emitter
+  Vec3 direction;  // spot, directional: direction of travel of the light; area: normal of the emitter
   Vec3 intensity;  // radiant intensity along `direction` (area) or everywhere (point, spot); directional: irradiance
   float range;     // 0: no limit
   float cos_inner, cos_outer;
-  std::uint32_t material;   // of the emitter: it casts no shadow of itself and does not light itself; kNone otherwise
-  std::uint32_t two_sided;  // area: emits to both sides
+  std::uint32_t material;   // of the emitter, which casts no shadow and does not light itself; otherwise kNone
+  std::uint32_t two_sided;  // area: emits on both sides
 };
 
 struct LightSample {
@@ -26,7 +26,7 @@ struct LightSample {
   Vec3 irradiance;  // on a surface that faces the light
   float t_max;
 };
-// False where the light gives nothing.
+// False if the light contributes nothing.
 using LightSampler = bool (*)(const LightPoint& light, const Vec3& point, LightSample* sample);
 
 struct LightRun {
@@ -41,7 +41,7 @@ struct CameraRays {
   bool orthographic;
 };
 
-// Bodies the ray is inside of, innermost last, as material indices.
+// Bodies that contain the ray, innermost last, as material indices.
 struct MediumStack {
   std::uint32_t material[kMediumDepthMax];
   std::uint32_t depth = 0;
@@ -52,9 +52,9 @@ struct Surface;
 struct TileShadows;
 struct Tracer;
 
-// The instantiated parts of the kernel, chosen once per frame for the plan.
+// The instantiated parts of the kernel, selected once per frame for the plan.
 using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
-// What comes along a ray, given what it hits first, and the surface there where it is known already (else null).
+// Radiance along a ray, given its first hit and the surface there if already known (otherwise null).
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
 using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                                  TraceStats* stats);
@@ -65,7 +65,7 @@ struct FrameData {
   const AccelInfo* accel_info = nullptr;
   Accel accel;
   CameraRays camera;
-  MediumStack eye_media;  // bodies the camera is inside of
+  MediumStack eye_media;  // bodies that contain the camera
   Array<const LightPoint> lights;
   LightRun light_runs[4];
   int light_run_count = 0;
@@ -73,16 +73,16 @@ struct FrameData {
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;
   RadianceFunction radiance = nullptr;
-  ShadowsFunction find_shadows = nullptr;  // null where nothing casts a shadow
-  HitFilter visible_filter;                // accept is null where nothing is cut out; see filters.h
+  ShadowsFunction find_shadows = nullptr;  // null if nothing casts a shadow
+  HitFilter visible_filter;                // accept is null if nothing is cut out; see filters.h
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
-  bool filter_every_shadow = false;  // false: only area lights' shadow rays need the filter
-  float radiance_bound = 0;          // no ray brings more
-  float left_out_max = 0;            // what may be left out of one sample, in radiance
+  bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
+  float radiance_bound = 0;          // upper bound for any ray
+  float left_out_max = 0;            // radiance that may be skipped of one sample
   IndirectData indirect;
 };
 
-// What a ray that looks may see: null where nothing is cut out.
+// The filter for camera and secondary rays: null if nothing is cut out.
 inline const HitFilter* visible_filter(const FrameData& frame) {
   return frame.visible_filter.accept ? &frame.visible_filter : nullptr;
 }
@@ -91,16 +91,16 @@ enum class RayKind : int { primary, shadow, mirror, refraction, blend };
 constexpr int kRayKindCount = 5;
 constexpr const char* kRayKindNames[kRayKindCount] = {"primary", "shadow", "mirror", "refraction", "blend"};
 
-// One thread's state; counters add up. Aligned so that threads share no cache line.
+// One thread's state; counters accumulate. Aligned so that threads do not share a cache line.
 struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0;
   TraceStats stats;
-  const TileShadows* tile_shadows = nullptr;  // of the tile at work; null where there are none
-  std::uint32_t tile_pixel = 0;               // the pixel of it that is shaded
-  float budget = 0;                           // radiance that may still be left out of the current sample
-  float left_out_max = 0;                     // largest sum left out of one sample so far
+  const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
+  std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded
+  float budget = 0;                           // radiance that may still be skipped of the current sample
+  float left_out_max = 0;                     // largest sum skipped of one sample so far
 };
 
 }  // namespace pocketray

@@ -1,5 +1,5 @@
-// A part of the kernel, instantiated for every combination of the effects it knows; the plan's is picked once per
-// frame.
+// A part of the kernel, instantiated for every combination of the effects that it depends on; the plan's is selected
+// once per frame.
 #pragma once
 #include <cstddef>
 #include <utility>

@@ -9,14 +9,12 @@
 namespace pocketray {
 namespace {
 
-constexpr float kInverseSquareMax = std::numeric_limits<float>::max() / 2;  // finite × a cosine just above 1, too
+constexpr float kInverseSquareMax = std::numeric_limits<float>::max() / 2;  // stays finite times a cosine just above 1
 
-// What a light gives, of which even a point on the light itself gets no more than kRadianceMax: all that shading makes
-// of it stays finite.
+// Clamps a light's irradiance, even at a point on the light itself, to kRadianceMax, so that shading stays finite.
 Vec3 bounded(const Vec3& irradiance) { return min(irradiance, Vec3{kRadianceMax, kRadianceMax, kRadianceMax}); }
 
-// Direction and inverse square of a light at a position. False where the point is the light or the light is out of
-// range.
+// Direction and inverse square of a light seen from a point. False if they coincide or the light is out of range.
 bool reach(const LightPoint& light, const Vec3& point, LightSample* s, float* inverse_square) {
   s->to_light = light.position - point;
   float square = dot(s->to_light, s->to_light);
@@ -27,7 +25,7 @@ bool reach(const LightPoint& light, const Vec3& point, LightSample* s, float* in
   float inverse = 1 / square;
   *inverse_square = inverse < kInverseSquareMax ? inverse : kInverseSquareMax;
   if (light.range > 0) {
-    // The smooth end that KHR_lights_punctual recommends: max(min(1 − (d/range)⁴, 1), 0) / d².
+    // The smooth falloff recommended by KHR_lights_punctual: max(min(1 − (d/range)⁴, 1), 0) / d².
     float q = square / (light.range * light.range);
     float window = 1 - q * q;
     if (!(window > 0)) return false;
@@ -64,7 +62,7 @@ bool sample_directional_light(const LightPoint& light, const Vec3&, LightSample*
   return true;
 }
 
-// One of the points an area light is taken as [Aranha07] sec. 3.1: a Lambertian emitter of a share of its area.
+// One of the points that represent an area light [Aranha07] sec. 3.1: a Lambertian emitter with a share of its area.
 bool sample_area_light(const LightPoint& light, const Vec3& point, LightSample* s) {
   effect_entered<Effect::area_light>();
   float inverse_square;

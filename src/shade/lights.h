@@ -1,10 +1,10 @@
-// How each kind of light reaches a point.
+// The light that each kind of light sends to a point.
 #pragma once
 #include "shade/surface.h"
 
 namespace pocketray {
 
-// Whether a light gives the surface anything, should nothing be in the way. An emitter does not light itself.
+// Whether a light, if unblocked, contributes anything to the surface. An emitter does not light itself.
 inline bool lights_up(const FrameData& frame, const Surface& s, const LightRun& run, const LightPoint& light,
                       LightSample* sample) {
   if (light.material != kNone && &frame.scene->materials[light.material] == s.material) return false;

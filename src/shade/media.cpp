@@ -19,7 +19,8 @@ void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stac
 }
 
 MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direction) {
-  // Walking outward, an exit without its entry belongs to a body that holds the eye; the first such is the innermost.
+  // Walking outward, an exit without its entry belongs to a body that contains the eye; the first such is the
+  // innermost.
   std::uint32_t exits[kMediumDepthMax];
   std::uint32_t exit_count = 0;
   MediumStack open;

@@ -1,4 +1,4 @@
-// The stack of transparent bodies a ray is inside of.
+// The stack of transparent bodies that contain a ray.
 #pragma once
 #include "base/fmath.h"
 #include "shade/contact.h"
@@ -12,7 +12,7 @@ inline float medium_ior(const Scene& scene, const MediumStack& stack) {
 inline void enter_medium(MediumStack* stack, std::uint32_t material) {
   if (stack->depth < kMediumDepthMax) stack->material[stack->depth++] = material;
 }
-// Removes the innermost entry of that material, wherever it lies: bodies may overlap.
+// Removes the innermost entry of that material, wherever it is: bodies may overlap.
 inline void exit_medium(MediumStack* stack, std::uint32_t material) {
   for (std::uint32_t i = stack->depth; i-- > 0;) {
     if (stack->material[i] != material) continue;
@@ -21,7 +21,7 @@ inline void exit_medium(MediumStack* stack, std::uint32_t material) {
     return;
   }
 }
-// What a ray is inside of beyond a contact: the bodies it leaves are left before others are entered.
+// The bodies that contain a ray beyond a contact. It leaves bodies before it enters others.
 void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stack);
 // Transmittance along a distance (Beer–Lambert).
 inline Vec3 transmittance(const Vec3& absorption, float distance) {
@@ -31,7 +31,7 @@ inline Vec3 transmittance(const Vec3& absorption, float distance) {
   return {one(absorption.x), one(absorption.y), one(absorption.z)};
 }
 
-// The bodies that the point `eye` lies inside of, found by walking a ray from it to infinity.
+// The bodies that contain the point `eye`, found by following a ray from it to infinity.
 MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direction);
 
 }  // namespace pocketray

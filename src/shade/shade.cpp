@@ -1,5 +1,5 @@
 // From a ray to radiance: recursive ray tracing after [Whitted 1980], [Aranha07] sec. 3.1, instantiated for the effects
-// that the plan has; an absent one is not a branch, it is not there.
+// of the plan; an absent effect is not a branch, it does not exist.
 #include "shade/shade.h"
 
 #include <type_traits>
@@ -11,14 +11,14 @@
 namespace pocketray {
 namespace {
 
-// Where nothing refracts there is nothing to be inside of.
+// Without refraction there are no media.
 struct NoMedia {};
 template <EffectMask mask>
 using Media = std::conditional_t<has(mask, Effect::refraction), MediumStack, NoMedia>;
 
 template <EffectMask mask>
 struct Path {
-  Vec3 weight;          // what the path so far lets through: bounds what a ray can still add to the sample
+  Vec3 weight;          // throughput of the path so far; bounds the contribution of a ray to the sample
   std::uint32_t depth;  // reflections and refractions so far
   Media<mask> media;
 };
@@ -26,7 +26,7 @@ struct Path {
 template <EffectMask mask>
 Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path);
 
-// Radiance along a spawned ray, or nothing where it could not matter or the path is long enough.
+// Radiance along a spawned ray, or zero if it could not matter or the path has reached its maximum depth.
 template <EffectMask mask>
 Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path<mask>& path,
            const Vec3& weight) {
@@ -41,7 +41,7 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
 }
 
-// The perfect mirror. Where the shading normal would send the ray under the surface, the geometric one is used.
+// The perfect mirror. If the shading normal would reflect the ray below the surface, the geometric normal is used.
 template <EffectMask mask>
 Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, const Path<mask>& path,
             const Vec3& weight) {
@@ -50,7 +50,7 @@ Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, cons
   return spawn<mask>(tracer, kind, s, normalize(direction), 1, path, weight);
 }
 
-// A dielectric boundary: reflects by Fresnel, transmits the rest, bent by Snell.
+// A dielectric boundary: reflects by Fresnel; the rest is transmitted, refracted by Snell.
 template <EffectMask mask>
 Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path<mask>& path) {
   effect_entered<Effect::refraction>();
@@ -68,7 +68,7 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   Vec3 n = -dot(ray.direction, s.normal) > 0 ? s.normal : s.geometric;
   float cos_i = -dot(ray.direction, n), cos_t;
   float reflected = fresnel(cos_i, eta, &cos_t);
-  if (eta == 1) reflected = 0, cos_t = cos_i;  // bodies of one index that touch: no rounding makes a mirror of that
+  if (eta == 1) reflected = 0, cos_t = cos_i;  // touching bodies of equal index: no reflection from rounding
   if (m.thin && reflected < 1) reflected = 2 * reflected / (1 + reflected);  // both faces of the sheet, all orders
   Vec3 sum = {0, 0, 0};
   if (reflected > 0) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, {reflected, reflected, reflected});
@@ -79,13 +79,13 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
       if (transmits(entered, mask) && (contact.face[i].front || entered.thin)) tint *= entered.transmission;
     }
     Vec3 direction = m.thin ? ray.direction : normalize(refract(ray.direction, n, eta, cos_i, cos_t));
-    if (!(dot(direction, s.geometric) < 0)) direction = ray.direction;  // a shading normal far off the surface
+    if (!(dot(direction, s.geometric) < 0)) direction = ray.direction;  // the shading normal deviates too far
     sum += spawn<mask>(tracer, RayKind::refraction, s, direction, -1, beyond, tint * (1 - reflected));
   }
   return sum;
 }
 
-// What leaves the surface against the ray. `contact` is needed where it transmits.
+// Radiance that leaves the surface back along the ray. `contact` is required if it transmits.
 template <EffectMask mask>
 Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
   const Material& m = *s.material;
@@ -105,7 +105,7 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
   return sum;
 }
 
-// Adds the blending surfaces of a contact, one upon the other. False where what is behind them does not matter.
+// Adds the blending surfaces of a contact, one over the other. False if whatever is behind them does not matter.
 template <EffectMask mask>
 bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* sum, Vec3* carried, Path<mask>* path) {
   const FrameData& frame = *tracer->frame;
@@ -130,8 +130,8 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
   return !any || (most > 0 && !leave_out(tracer, most * frame.radiance_bound));
 }
 
-// What a ray meets behind the blending surfaces of a contact: something opaque, else a body that it enters or leaves,
-// else a thin sheet; null: nothing.
+// The face that a ray meets behind the blending surfaces of a contact: an opaque one, else a body that it enters or
+// leaves, else a thin sheet; null if none.
 const Face* face_behind_layers(const Scene& scene, const Contact& contact, EffectMask mask) {
   const Face *body = nullptr, *sheet = nullptr;
   for (std::uint32_t i = 0; i < contact.count; ++i) {
@@ -145,13 +145,13 @@ const Face* face_behind_layers(const Scene& scene, const Contact& contact, Effec
   return body ? body : sheet;
 }
 
-// What comes along a ray that was found to hit first what `hit` says; `first` is the surface there, or null.
+// Radiance along a ray with first hit `hit`; `first` is the surface there, or null.
 template <EffectMask mask>
 Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<mask> path) {
   const FrameData& frame = *tracer->frame;
   const Scene& scene = *frame.scene;
   const HitFilter* filter = visible_filter(frame);
-  Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // through the surfaces that blend
+  Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // throughput of the blended surfaces
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) return sum + carried * scene.info.background;
@@ -214,7 +214,7 @@ struct RadiancePart {
                                         Effect::refraction,       Effect::absorption, Effect::alpha_blend,
                                         Effect::back_face_culling};
   template <EffectMask mask>
-  static constexpr Function instance() {  // nothing absorbs where there is nothing to be inside of
+  static constexpr Function instance() {  // no absorption without media
     if constexpr (has(mask, Effect::refraction))
       return primary_radiance<mask>;
     else

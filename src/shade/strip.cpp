@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// Bits of a row's eight pixels, from the left, at their places in Morton order.
+// Spreads the bits of a row's eight pixels, from the left, to their places in Morton order.
 std::uint64_t spread_columns(std::uint32_t bits) {
   return (bits & 0x03) | (bits & 0x0C) << 2 | (bits & 0x30) << 12 | (bits & 0xC0) << 14;
 }

@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// Turns the interpolated normal to the geometric normal's side; falls back to it where there is none.
+// Flips the interpolated normal to the side of the geometric normal; falls back to the latter if there is none.
 Vec3 smooth_normal(const FrameData& frame, const Triangle& t, float w, float u, float v, const Vec3& geometric) {
   Vec3 n = normalize(frame.normals[t.vertex(0)] * w + frame.normals[t.vertex(1)] * u + frame.normals[t.vertex(2)] * v);
   if (is_zero(n)) return geometric;
@@ -22,12 +22,12 @@ Vec3 vertex_color(const Scene& scene, const Triangle& t, float w, float u, float
   return at(0) * w + at(1) * u + at(2) * v;
 }
 
-// Moves a point that lies at an edge of its triangle, within rounding, a little towards the middle. From beside the
-// edge a ray would start beyond the face that meets the triangle there, and leave a closed room through it (HARDCASES
-// row 24). How near and how far was found with rays along the edges of the Cornell box (tests/shade/room_test.cpp).
+// Moves a point that lies on an edge of its triangle, within rounding, slightly towards the middle. From a point beside
+// the edge, a ray would start beyond the adjoining face and leave a closed room through it (HARDCASES row 24). The
+// limit and the distance were found with rays along the edges of the Cornell box (tests/shade/room_test.cpp).
 void keep_off_edges(const Vec3& a, const Vec3& b, const Vec3& c, float least_weight, float double_area,
                     float corner_distance, float offset, Vec3* point) {
-  // The height over an edge is the doubled area by the edge's length, which is at most 2√3 corner_distance.
+  // The height over an edge is the doubled area divided by the edge's length, which is at most 2√3 corner_distance.
   if (least_weight * double_area > corner_distance * (16 * offset)) return;
   Vec3 inward = (a + b + c) * (1.0f / 3) - *point;
   float size = max_component(abs(inward)), step = 8 * offset;

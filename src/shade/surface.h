@@ -1,4 +1,4 @@
-// From a hit to what shading needs to know of the surface there.
+// From a hit to the properties of the surface there.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -12,29 +12,29 @@ struct Surface {
   Vec3 offset;             // from the point to a safe origin on the side the ray came from
   Vec3 geometric, normal;  // unit, both on the side the ray came from
   Vec3 diffuse;            // albedo
-  Vec3 glow;               // radiance that leaves without any light: emission, ambient
+  Vec3 glow;               // radiance that leaves without any lights: emission, ambient
   bool front;              // the ray met the front (counter-clockwise) side
   const Material* material;
   Hit hit;
 };
 
-// Whether the ray met the back of a surface that is seen from the front alone. Bodies of glass have both sides. Only
-// what is looked at is culled: such a surface casts its shadow whichever side the light is on.
+// Whether the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:
+// a one-sided surface casts its shadow whichever side the light is on.
 inline bool is_culled(const Material& m, bool front) { return !front && !m.double_sided && is_zero(m.transmission); }
 
-// Picks the instantiation for the plan's mask.
+// Selects the instantiation for the plan's mask.
 SurfaceFunction find_surface_function(EffectMask mask);
 
-// A ray origin beside a computed point that no rounding error puts on the wrong side. Each coordinate of the point errs
-// by at most γ₈·Σ|bᵢ vᵢ| [PBR3 sec. 3.9.4]; moving by that error, projected on the normal, leaves the slab of
-// uncertainty. It vanishes on a plane through a zero coordinate; there the next intersection's own rounding decides.
-// Within a few ulp of an edge that is of float precision relative to the triangle as seen from the point
-// (accel/triangle.h), hence the second term; it was found with 10⁶ spawns a shape (tests/shade/spawn_test.cpp).
+// Distance from a computed point to a ray origin that no rounding error puts on the wrong side. Each coordinate of the
+// point errs by at most γ₈·Σ|bᵢ vᵢ| [PBR3 sec. 3.9.4]; moving by that error, projected on the normal, leaves the slab
+// of uncertainty. It vanishes on a plane through a zero coordinate; there the rounding of the next intersection
+// decides. Within a few ulp of an edge, that has float precision relative to the triangle as seen from the point
+// (accel/triangle.h), hence the second term; it was found with 10⁶ spawned rays per shape (tests/shade/spawn_test.cpp).
 // Scale-free: everything is relative to the coordinates.
 inline float origin_offset(const Vec3& point_magnitude, float corner_distance, const Vec3& geometric) {
   constexpr float u = std::numeric_limits<float>::epsilon() * 0.5f;
   constexpr float gamma = 8 * u / (1 - 8 * u);
-  // Twice: once for the point, once for the rounding of the moved origin.
+  // Twice: once for the point, once for rounding the moved origin.
   return dot(abs(geometric), point_magnitude) * (2 * gamma) + corner_distance * (4 * u);
 }
 inline float away_from(float value, float step) {
@@ -43,15 +43,15 @@ inline float away_from(float value, float step) {
   if (step < 0) return std::nextafterf(moved, -std::numeric_limits<float>::infinity());
   return moved;
 }
-// The point moved to its safe origin on one side (+1: where the ray came from, -1: beyond).
+// The point moved to its safe origin on one side (+1: the side the ray came from, -1: the other).
 inline Vec3 safe_origin(const Surface& s, float side) {
   return {away_from(s.point.x, s.offset.x * side), away_from(s.point.y, s.offset.y * side),
           away_from(s.point.z, s.offset.z * side)};
 }
 
-// Where a shadow ray starts that leaves below the flat triangle but above the curved surface that the vertex normals
-// speak of: the point is moved onto the planes through the vertices [Hanika 2021, Ray Tracing Gems II ch. 4]. On a
-// surface that is flat or hollow there it does not move, and the ray meets the triangle itself.
+// Origin of a shadow ray that starts below the flat triangle but above the curved surface that the vertex normals
+// describe: the point is moved onto the planes through the vertices [Hanika 2021, Ray Tracing Gems II ch. 4]. On a flat
+// or concave surface it does not move, and the ray meets the triangle itself.
 Vec3 curved_origin(const FrameData& frame, const Surface& s);
 
 }  // namespace pocketray

@@ -8,13 +8,13 @@
 namespace pocketray {
 namespace {
 
-// In texels, held where a float has long lost the fraction: the difference of two infinities would be none.
+// In texels, clamped where a float no longer has a fraction: the difference of two infinities would be NaN.
 float texel_coordinate(float u, int size) {
   float x = u * static_cast<float>(size);
   return x < 1e9f ? (x > -1e9f ? x : -1e9f) : 1e9f;
 }
 
-// Index of a texel coordinate after wrapping. The coordinate is any integer in float; sizes are at most 2^14.
+// Index of a texel coordinate after wrapping. The coordinate is any integral float; sizes are at most 2^14.
 int wrap_texel(float coordinate, int size, Wrap wrap) {
   float n = static_cast<float>(size);
   if (wrap == Wrap::clamp) return coordinate >= n ? size - 1 : coordinate > 0 ? static_cast<int>(coordinate) : 0;
@@ -22,7 +22,7 @@ int wrap_texel(float coordinate, int size, Wrap wrap) {
   float period = wrap == Wrap::mirror ? 2 * n : n;
   int i = static_cast<int>(coordinate - std::floor(coordinate / period) * period);
   int last = static_cast<int>(period) - 1;
-  i = i < 0 ? 0 : i > last ? last : i;  // floor of a rounded quotient may err by one period
+  i = i < 0 ? 0 : i > last ? last : i;  // the floor of a rounded quotient may be off by one period
   return i < size ? i : 2 * size - 1 - i;
 }
 

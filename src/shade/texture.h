@@ -12,7 +12,7 @@ struct Rgba {
 
 enum class TextureFilter : std::uint8_t;
 
-// The colour of `use` at uv. Coordinates wrap as the texture's sampler says; row 0 is at v = 0.
+// The colour of `use` at uv. Coordinates wrap as in the texture's sampler; row 0 is at v = 0.
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
 
 // uv of a hit, interpolated from its triangle.
@@ -27,7 +27,7 @@ inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v)
 float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
                      TextureFilter filter);
 
-// The same, for the effect that needs it: alpha_mask or alpha_blend.
+// The same, for the effect in question: alpha_mask or alpha_blend.
 template <Effect effect>
 float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
                 TextureFilter filter) {

@@ -9,14 +9,14 @@ namespace {
 
 bool receives(const Surface& s) { return !(is_zero(s.diffuse) && is_zero(s.material->specular)); }
 
-// Whether direct_light() is likely to leave the ray out; highlights are not estimated.
+// Whether direct_light() will probably skip the ray; highlights are not estimated.
 bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& sample) {
   if (!is_zero(s.material->specular)) return false;
   Vec3 most = s.diffuse * (1 / kPiF) * sample.irradiance * dot(s.normal, sample.direction);
   return max_component(most) <= frame.left_out_max;
 }
 
-// The pixels whose first hits light falls on.
+// The pixels whose first hits receive light.
 std::uint32_t find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                              std::uint8_t* receivers) {
   std::uint32_t count = 0;

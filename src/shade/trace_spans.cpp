@@ -18,7 +18,7 @@ Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t row, c
   return camera_ray(frame.camera, static_cast<float>(column) + offset.x, static_cast<float>(row) + offset.y);
 }
 
-// One sample of a pixel, whose ray hits first what `hit` says; `surface` is there, or null.
+// One sample of a pixel, whose ray first hits `hit`; `surface` is there, or null.
 Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
   const FrameData& frame = *tracer->frame;
   tracer->budget = frame.left_out_max;
@@ -52,14 +52,14 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   }
   Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
   ++tracer->rays[static_cast<int>(RayKind::primary)];
-  float passed = 0;  // in front of culled surfaces
+  float passed = 0;  // distance to the culled surfaces passed
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
     frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) break;
     Surface s;
     frame.surface(frame, ray, hit, &s);
-    if (culls(*s.material, s.front, frame.mask)) {  // what lies on its back may be seen
+    if (culls(*s.material, s.front, frame.mask)) {  // a face that touches its back may be visible
       Contact contact;
       gather_contact(frame, s, hit, visible_filter(frame), &contact, &tracer->stats);
       for (std::uint32_t i = 1; i < contact.count; ++i) {
@@ -82,7 +82,7 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   return {0, 0, 0};
 }
 
-// Up to 64 pixels that are traced together, neighbours next to one another.
+// Up to 64 pixels traced together, in an order that keeps neighbours adjacent.
 struct Tile {
   std::uint32_t count = 0;
   std::uint16_t column[kPacketMax], row[kPacketMax];
@@ -129,8 +129,8 @@ void add_pixels(const TileStrip& strip, std::uint32_t index, Tile* tile) {
   }
 }
 
-// Fewer rays are faster one by one: measured by bench --sparse and by progressive frames of view, from 4 to 64 in turn,
-// on cornell, statue, a mesh of 100,000 triangles and a room.
+// Fewer rays are faster one by one: measured with bench --sparse and progressive frames of view, for 4 to 64 rays, on
+// cornell, statue, a mesh of 100,000 triangles and a room.
 constexpr std::uint32_t kPacketRaysMin = kPacketMax / 2 + 1;
 
 void trace_pixels(Tracer* tracer, const Tile& tile, Vec3* image) {
@@ -140,8 +140,8 @@ void trace_pixels(Tracer* tracer, const Tile& tile, Vec3* image) {
     image[tile.row[i] * width + tile.column[i]] = pixel_radiance(tracer, tile.column[i], tile.row[i]);
 }
 
-// Tiles of fewer rows share a packet with those beside them, up to 64 pixels. Others do not, however few their pixels
-// are: rays that are far apart have no boxes in common.
+// Tiles with few rows share a packet with the tiles beside them, up to 64 pixels. Other tiles do not, however few their
+// pixels: rays that are far apart have no boxes in common.
 void trace_strip(Tracer* tracer, const TileStrip& strip, Vec3* image) {
   if (strip.tile_count == 0) return;
   const std::uint32_t tiles_max = kTileRows / strip.row_count;
@@ -153,7 +153,7 @@ void trace_strip(Tracer* tracer, const TileStrip& strip, Vec3* image) {
   }
 }
 
-// Ray by ray, where rays share no origin or each is looked at for itself.
+// Ray by ray, when rays share no origin or each is inspected separately.
 void trace_span(Tracer* tracer, const Span& span, Aov aov, Vec3* image) {
   Vec3* row = image + static_cast<std::size_t>(span.row) * tracer->frame->settings.width;
   for (std::uint32_t column = span.column_begin; column < span.column_end; ++column)

@@ -3,7 +3,7 @@
 
 namespace pocketray {
 
-// Nanoseconds per pixel: to render it on the device (T_m), on the server (T_s), to bring it over (T_t).
+// Nanoseconds per pixel: to render it on the device (T_m), to render it on the server (T_s), to transfer it (T_t).
 struct PixelTimes {
   double device_ns = 0, server_ns = 0, transfer_ns = 0;
 };
@@ -13,14 +13,14 @@ struct ClosedSplit {
   double ns_per_pixel;  // of the whole frame, finite
 };
 
-// Device and server finish together, where m·T_m = (1 − m)·(T_s + T_t): m = (T_s + T_t) / (T_m + T_s + T_t).
-// Times that are no times (NaN, infinite, negative, above kPixelNsMax) make the device do all of it, for which its own
-// time then counts as 0 or kPixelNsMax.
+// Device and server finish together if m·T_m = (1 − m)·(T_s + T_t): m = (T_s + T_t) / (T_m + T_s + T_t).
+// With invalid times (NaN, infinite, negative, above kPixelNsMax) the device does everything; its own time, if invalid,
+// counts as 0 or kPixelNsMax.
 ClosedSplit closed_form_split(const PixelTimes& times);
 
-// The same with the server sending pixels while it renders others, which takes it max(T_s, T_t) instead of the sum.
+// The same with the server sending pixels while it renders others, which takes max(T_s, T_t) instead of the sum.
 ClosedSplit overlapped_split(const PixelTimes& times);
 
-constexpr double kPixelNsMax = 1e12;  // a quarter of an hour for a pixel
+constexpr double kPixelNsMax = 1e12;  // about a quarter of an hour per pixel
 
 }  // namespace pocketray

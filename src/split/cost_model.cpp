@@ -7,11 +7,11 @@
 namespace pocketray {
 namespace {
 
-constexpr double kUnitsOfCap = 0x1p30;  // the cap as an integer; rows' costs round up
+constexpr double kUnitsOfCap = 0x1p30;  // the cap as an integer; costs of rows are rounded up
 
 double value_of(const Smoothed& s, double unknown) { return is_known(s) ? static_cast<double>(s.value) : unknown; }
 
-// Entry of a row table. NaN and what is below zero count as nothing.
+// Entry of a row table. NaN and negative values count as 0.
 std::uint64_t table_entry(double x) {
   constexpr double max = static_cast<double>(kRowTableMax);
   if (!(x > 0)) return 0;
@@ -36,13 +36,13 @@ double mean_bytes(const CostModel& model) {
   return count ? sum / count : 0;
 }
 
-// The device's rows, and all others by the factor that these changed by together.
+// Updates the rows that the device rendered, and scales all others by their common change.
 void fold_device_rows(CostModel* model) {
   double before = 0, after = 0;
   for (RowModel& row : model->rows) {
     if (!(row.device_ns_seen > 0)) continue;
     double old_value = value_of(row.device_ns, 0);
-    if (row.guessed) row.device_ns = Smoothed();  // beside a guess, what is measured could seem to be an outlier
+    if (row.guessed) row.device_ns = Smoothed();  // next to a guess, a measurement could seem an outlier
     smooth(&row.device_ns, static_cast<double>(row.device_ns_seen));
     row.guessed = false;
     if (old_value > 0) before += old_value, after += static_cast<double>(row.device_ns.value);
@@ -78,13 +78,13 @@ void fold_times(ByteTimes* times, Smoothed* ns_per_byte) {
   *times = ByteTimes();
 }
 
-// Cost as the integers of a problem: factor to the caller's unit.
+// Factor from integer costs of a problem to the caller's unit.
 double cost_scale(const SplitWish& wish) {
   if (wish.goal == SplitGoal::time_and_cost) return is_amount(wish.ns_per_cost) ? wish.ns_per_cost : 0;
   return wish.cap > 0 && is_amount(wish.cap) ? kUnitsOfCap / wish.cap : 1e30;
 }
 
-// Writes sums over rows of entry(row) into the next table of the model.
+// Writes the prefix sums of entry(row) into the next table of the model.
 template <class Entry>
 RowTable add_table(CostModel* model, std::uint32_t* table_count, Entry entry) {
   std::uint64_t* table = model->tables.data + std::size_t(*table_count) * (model->rows.count + 1);
@@ -152,7 +152,7 @@ void observe_server_rows(CostModel* model, std::uint32_t server, std::uint32_t r
     RowModel* row = &model->rows[r];
     row->server_ns_seen = is_amount(render_ns) ? static_cast<float>(render_ns / row_count) : 0;
     row->server_seen = static_cast<std::uint8_t>(server);
-    // A row in which nothing changed takes no bytes, which is as good a measurement as any.
+    // An unchanged row takes no bytes, which is as good a measurement as any.
     if (is_amount(bytes)) smooth(&row->bytes, std::fmax(1, bytes / row_count));
   }
 }

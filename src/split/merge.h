@@ -1,7 +1,7 @@
-// Merge: which rows of the current frame came from where. The device takes rows from the top, its own and then those
-// that have not come; servers' chunks arrive from the bottom; they meet. Pixels are the same from everyone who is
-// honest, so whoever is first wins, and a lost server costs time and no pixel; rows of one that sends wrong pixels can
-// be discarded. Not for several threads at once.
+// Merge: the origin of each row of the current frame. The device takes rows from the top, first its own and then those
+// that have not arrived; servers' chunks arrive from the bottom; they meet. Honest servers send the same pixels as the
+// device, so whoever is first wins, and a lost server costs time but no pixel; rows of a server that sends wrong pixels
+// can be discarded. Not thread-safe.
 #pragma once
 #include <cstdint>
 
@@ -10,11 +10,11 @@
 
 namespace pocketray {
 
-enum class RowState : std::uint8_t { missing, taken, device, server };  // taken: the device is at work on it
+enum class RowState : std::uint8_t { missing, taken, device, server };  // taken: the device is working on it
 
 struct MergeRow {
   RowState state = RowState::missing;
-  std::uint8_t server = 0;  // which one, of state server
+  std::uint8_t server = 0;  // which one, if the state is server
 };
 
 inline bool is_done(const MergeRow& row) { return row.state == RowState::device || row.state == RowState::server; }
@@ -23,7 +23,7 @@ struct Merge {
   std::uint32_t frame = 0;
   Array<MergeRow> rows;
   std::uint32_t next_row = 0;        // no row above it is missing
-  std::uint32_t row_count_done = 0;  // of states device and server
+  std::uint32_t row_count_done = 0;  // in state device or server
 };
 
 std::size_t merge_need(std::uint32_t row_count);
@@ -32,24 +32,24 @@ Merge make_merge(std::uint32_t row_count, Arena* arena);
 // Begins a frame: every row is missing.
 void begin_merge(Merge* merge, std::uint32_t frame);
 
-// Rows that the device is to render next: the topmost run of missing rows, at most row_count_max of them, now taken.
-// False where none is missing.
+// Takes the rows that the device renders next: the topmost run of missing rows, at most row_count_max of them. False if
+// none is missing.
 bool take_rows(Merge* merge, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
 
-// The device has rendered rows that it took. Those that came meanwhile stay the server's.
+// The device has rendered rows that it took. Rows that arrived meanwhile stay the server's.
 void finish_rows(Merge* merge, std::uint32_t row_begin, std::uint32_t row_end);
 
-// A chunk has arrived. Returns how many of its rows were still open and are now done: their pixels are to be shown.
-// None of a stale or future frame, of rows outside the picture, or of rows that were done before.
+// A chunk has arrived. Returns how many of its rows were open and are now done: their pixels must be shown. 0 for a
+// stale or future frame, for rows outside the picture, and for rows that were done before.
 std::uint32_t accept_rows(Merge* merge, std::uint32_t frame, std::uint32_t row_begin, std::uint32_t row_end,
                           std::uint32_t server);
 
-// The rows of that server are not to be trusted: they are missing again. Returns how many there were.
+// Marks the rows of an untrustworthy server as missing again. Returns their number.
 std::uint32_t discard_rows(Merge* merge, std::uint32_t server);
 
 inline bool is_complete(const Merge& merge) { return merge.row_count_done == merge.rows.count; }
 
-// Rows of the frame that are the device's (server: kDeviceRows) or a server's.
+// Rows of the frame done by the device (server: kDeviceRows) or by a server.
 constexpr std::uint32_t kDeviceRows = ~0u;
 std::uint32_t count_rows(const Merge& merge, std::uint32_t server);
 

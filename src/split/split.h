@@ -1,6 +1,6 @@
-// The split of a frame's rows among the device and its servers, such that it is finished soonest, or cheapest beside.
-// Rows [boundary[0], boundary[1]) are the first server's, and so on downward; the device has those above boundary[0].
-// Integers throughout: the same split on every CPU, and no float where there is no unit for it.
+// The split of a frame's rows among the device and its servers that finishes soonest, or also weighs cost. Rows
+// [boundary[0], boundary[1]) are the first server's, and so on downward; the device has the rows above boundary[0].
+// Integers throughout: the same split on every CPU, and no float where the unit is undefined.
 #pragma once
 #include <cstdint>
 
@@ -12,30 +12,29 @@ namespace pocketray {
 constexpr std::uint32_t kServerCountMax = 8;
 constexpr std::uint64_t kRowTableMax = std::uint64_t(1) << 40;  // of one row in any table; 18 minutes as nanoseconds
 
-// Sums over the rows above: table[r] is the sum over rows 0 … r − 1, row_count + 1 entries, of at most kRowTableMax a
-// row.
+// Prefix sums: table[r] is the sum over rows 0 … r − 1; row_count + 1 entries, at most kRowTableMax per row.
 using RowTable = const std::uint64_t*;
 
 struct ServerTables {
   bool usable = false;             // false: gets no rows, its tables may be null
   RowTable render_ns = nullptr;    // to render a row on the server
   RowTable transfer_ns = nullptr;  // to send it, as it compresses
-  RowTable cost = nullptr;         // of having it sent
+  RowTable cost = nullptr;         // of transferring it
   std::uint64_t start_ns = 0;      // once per band: latency and preparation; at most kRowTableMax
   std::uint32_t chunk_rows = 1;    // rows sent at once
-  std::uint64_t chunk_row_ns = 0;  // the lesser of rendering and sending a row: what the pipeline's first or last
-                                   // chunk takes beside the larger; at most kRowTableMax
+  std::uint64_t chunk_row_ns = 0;  // smaller of rendering and sending a row: the first or last chunk in the pipeline
+                                   // adds it to the larger; at most kRowTableMax
 };
 
 struct SplitProblem {
   std::uint32_t row_count = 0;                           // at most kImageSideMax
   std::uint32_t server_count = 0;                        // at most kServerCountMax
   RowTable device_ns = nullptr;                          // to render a row on the device
-  RowTable unpack_ns = nullptr;                          // device time that a received row takes
-  RowTable link_ns = nullptr;                            // time a received row takes of the link that all servers share
+  RowTable unpack_ns = nullptr;                          // device time per received row
+  RowTable link_ns = nullptr;                            // time per received row on the link that all servers share
   RowTable device_cost = nullptr;                        // of rendering a row on the device
   std::uint64_t device_start_ns = 0, link_start_ns = 0;  // before the first row; at most kRowTableMax
-  bool weigh_cost = false;                               // minimise time + cost; otherwise time, and cost among equals
+  bool weigh_cost = false;  // true: minimise time + cost; false: time, then cost among equals
   std::uint64_t cost_cap = ~std::uint64_t(0);
   ServerTables servers[kServerCountMax];
 };
@@ -44,8 +43,8 @@ struct Split {
   std::uint32_t server_count = 0;
   std::uint32_t boundary[kServerCountMax + 1] = {};  // ascending; boundary[server_count] is the row count
   std::uint64_t time_ns = 0, cost = 0;               // predicted
-  bool cap_met = true;                               // false: no split is as cheap; this is the cheapest
-  bool exact = true;  // false: too many splits weigh time against cost alike; this is the best of kSearchMax looked at
+  bool cap_met = true;                               // false: no split is that cheap; this is the cheapest
+  bool exact = true;  // false: too many splits weigh time against cost equally; this is the best of kSearchMax
 };
 
 // Scratch memory of find_split().
@@ -58,24 +57,23 @@ std::size_t split_need(std::uint32_t row_count, std::uint32_t server_count);
 SplitWorkspace make_split_workspace(std::uint32_t row_count, std::uint32_t server_count, Arena* arena);
 
 // Predicted time of a band of rows on a server: the larger of rendering and sending, which overlap, plus one chunk of
-// the lesser, after the start. 0 for no rows. Never falls as a band grows.
+// the smaller, after the start. 0 for no rows. Never decreases as a band grows.
 std::uint64_t band_ns(const ServerTables& server, std::uint32_t row_begin, std::uint32_t row_end);
 
-// Sets time_ns and cost of a split from its boundaries: the time when the last of device, link and servers has
-// finished.
+// Sets time_ns and cost of a split from its boundaries: the time is when the last of device, link and servers finishes.
 void predict_split(const SplitProblem& problem, Split* split);
 
-// The best of all splits that cost at most the cap: least time, of equally soon ones the cheapest; or least time +
-// cost. Of equally good ones, that whose slowest server is done soonest. Effort: about 30 · servers · rows steps, 60
-// with several servers; (kSearchMax + 60) · servers · rows at most.
+// The best of all splits that cost at most the cap: least time, then least cost; or least time + cost. Of equally good
+// splits, the one whose slowest server finishes soonest. Effort: about 30 · servers · rows steps, 60 with several
+// servers; at most (kSearchMax + 60) · servers · rows.
 Split find_split(const SplitProblem& problem, SplitWorkspace* workspace);
 
-// The same with a dead band: stays with `previous` while that, and the slowest of its servers, is predicted to be worse
-// by no more than a kDeadBandDivisor-th of the time.
+// The same with hysteresis: keeps `previous` while it, and the slowest of its servers, is predicted to be worse by no
+// more than a kDeadBandDivisor-th of the time.
 Split next_split(const SplitProblem& problem, const Split& previous, SplitWorkspace* workspace);
 
 constexpr std::uint32_t kSearchMax = 1024;
-constexpr std::uint64_t kDeadBandDivisor = 50;  // 2 %: noise of measurements moves no rows, and less than half of the
+constexpr std::uint64_t kDeadBandDivisor = 50;  // 2 %: measurement noise moves no rows, and it is less than half of the
                                                 // 5 % by which a split may miss the best
 
 }  // namespace pocketray

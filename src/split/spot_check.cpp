@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-constexpr double kChecksPaidMax = 1e6;  // by a frame; more than are ever made, and exact as a double
+constexpr double kChecksPaidMax = 1e6;  // per frame; more than are ever made, and exact as a double
 
 bool contains(const std::uint32_t* numbers, std::uint32_t count, std::uint32_t number) {
   for (std::uint32_t i = 0; i < count; ++i)
@@ -43,7 +43,7 @@ double catch_probability(const SpotCheck& check, std::uint32_t frames) {
 
 std::uint32_t random_below(Rng* random, std::uint32_t n) {
   CHECK_GT(n, 0u);
-  // The high half of a product, without the few products that would favour some numbers [Lemire 2019, algorithm 5].
+  // The high half of a product, rejecting the few products that would favour some numbers [Lemire 2019, algorithm 5].
   std::uint64_t product = std::uint64_t(next_u32(random)) * n;
   if (static_cast<std::uint32_t>(product) < n) {
     std::uint32_t least = (0u - n) % n;
@@ -94,8 +94,8 @@ std::uint32_t due_checks(CheckSchedule* s, double checks, Rng* random) {
   s->paid += checks < kChecksPaidMax ? checks : kChecksPaidMax;
   std::uint32_t count = 0;
   for (; s->due < s->paid && count < kSpotChecksMax; ++count) s->due = ++s->interval + next_double(random);
-  if (s->due < s->paid) s->paid = s->interval;  // more than are made at once are not made up for
-  // Only the difference means something: kept small, it stays exact.
+  if (s->due < s->paid) s->paid = s->interval;  // checks beyond the maximum at once are not made up for
+  // Only the difference matters; kept small, it stays exact.
   s->paid -= s->interval, s->due -= s->interval, s->interval = 0;
   return count;
 }

@@ -1,4 +1,4 @@
-// What both ends of the codec have in common: memory and zlib's allocator.
+// State common to both ends of the codec: memory and zlib's allocator.
 #include "wire/codec_state.h"
 
 #include <cstring>
@@ -14,7 +14,7 @@ void* take(void* arena, uInt count, uInt bytes) {
   std::uint64_t total = std::uint64_t(count) * bytes;
   return total <= SIZE_MAX ? arena_try_allocate(static_cast<Arena*>(arena), static_cast<std::size_t>(total)) : nullptr;
 }
-void give_back(void*, void*) {}  // all at once, with the arena
+void give_back(void*, void*) {}  // the arena frees everything at once
 
 std::uint32_t chunk_pixels(const CodecShape& shape, std::uint32_t row_count) { return shape.width * row_count; }
 
@@ -29,14 +29,14 @@ std::uint32_t body_bytes_max(const CodecShape& shape, std::uint32_t row_count) {
   return kNumberBytesMax + run_bytes_max(pixels) + pixels * pixel_bytes(shape.format);
 }
 
-// Deflation that finds nothing stores: less than an eighth more with any of zlib's settings, and a few bytes to flush.
+// Incompressible data is stored: less than an eighth more with any of zlib's settings, and a few bytes to flush.
 std::uint32_t encoded_bytes_max(const CodecShape& shape, std::uint32_t row_count) {
   std::uint32_t body = body_bytes_max(shape, row_count);
   return body + body / 8 + 64;
 }
 
 std::size_t codec_state_need(const CodecShape& shape, std::size_t zlib_bytes) {
-  // One byte more than a body may have, which tells one that is too long.
+  // One byte more than a body may have, to detect bodies that are too long.
   return arena_need(picture_bytes(shape)) + arena_need(run_bytes_max(chunk_pixels(shape, shape.chunk_rows_max))) +
          arena_need(body_bytes_max(shape, shape.chunk_rows_max) + 1) + arena_need(zlib_bytes);
 }

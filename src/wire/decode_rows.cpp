@@ -6,12 +6,12 @@
 namespace pocketray {
 namespace {
 
-// zlib.h: the window, and its structure, measured by tests/wire/codec_test.cpp.
+// From zlib.h: the window, plus zlib's structure, measured by tests/wire/codec_test.cpp.
 constexpr std::size_t kInflateBytes = (1u << 15) + (12u << 10);
 
-// Bytes of the body, which lies in s->body; 0 where the stream is not one or the body would be longer than one can be.
+// Inflates the body into s->body; returns its size, or 0 if the stream is invalid or the body too long.
 std::uint32_t inflate_body(CodecState* s, const RowChunk& chunk) {
-  static constexpr std::uint8_t kFlushEnd[4] = {0x00, 0x00, 0xFF, 0xFF};  // the sender left it out
+  static constexpr std::uint8_t kFlushEnd[4] = {0x00, 0x00, 0xFF, 0xFF};  // omitted by the sender
   z_stream* z = &s->stream;
   std::uint32_t capacity = body_bytes_max(s->shape, chunk.row_count) + 1;
   z->next_out = s->body.data, z->avail_out = capacity;
@@ -22,7 +22,7 @@ std::uint32_t inflate_body(CodecState* s, const RowChunk& chunk) {
   return capacity - z->avail_out;
 }
 
-// Gives the pixels of the runs their values. False where runs or values do not fit.
+// Writes the values to the pixels of the runs. False if runs or values do not fit.
 template <class Pixel>
 bool apply_body(const std::uint8_t* body, std::uint32_t byte_count, bool predicted, std::uint32_t width,
                 std::uint32_t pixel_count, std::uint8_t* pixels) {

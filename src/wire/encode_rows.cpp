@@ -9,9 +9,10 @@
 namespace pocketray {
 namespace {
 
-// zlib.h: windowBits and memLevel give the tables; the rest is its structure, measured by tests/wire/codec_test.cpp.
+// From zlib.h: the tables follow from windowBits and memLevel; the rest is zlib's structure, measured by
+// tests/wire/codec_test.cpp.
 constexpr std::size_t kDeflateBytes = (1u << (15 + 2)) + (1u << (kMemoryLevel + 9)) + (12u << 10);
-constexpr std::uint32_t kRawBytesMax = 8;  // deflation makes so few bytes no fewer
+constexpr std::uint32_t kRawBytesMax = 8;  // deflation does not shrink so few bytes
 
 // Writes the runs of pixels that differ from the picture; returns the end.
 template <class Pixel>
@@ -50,15 +51,16 @@ void for_each_given(std::uint32_t width, const std::uint8_t* runs, const std::ui
   }
 }
 
-// What deflation makes of pixels, in bits: those that repeat their neighbours take little, the others their entropy.
+// Estimated size of deflated pixels, in bits: pixels that repeat their neighbours take little, the others their
+// entropy.
 struct Estimate {
   ByteCounts literals;
   std::uint32_t repeat_count = 0;
   std::uint64_t bits() const { return entropy_bits(literals) + std::uint64_t(repeat_count) * 5 / 16; }
 };
 
-// Deflation finds more in pixels as they are than this estimate sees; by so much the differences have to be smaller.
-// Measured by tests/wire/codec_frames_test.cpp.
+// Deflation finds more redundancy in unpredicted pixels than the estimate sees, so differences must be smaller by this
+// factor. Measured by tests/wire/codec_frames_test.cpp.
 constexpr std::uint64_t kPlainBonus = 5, kPlainBonusOf = 4;
 
 struct Choice {
@@ -90,7 +92,7 @@ Choice choose_encoding(const std::uint8_t* pixels, std::uint32_t width, const st
   });
   Choice choice;
   choice.predict = predicted.bits() * kPlainBonus < plain.bits() * kPlainBonusOf;
-  // Bytes that are all as frequent are noise: a 32nd less is not worth the time of either end.
+  // Bytes of equal frequency are noise: saving a 32nd is not worth either end's time.
   std::uint64_t bits = choice.predict ? predicted.bits() : plain.bits();
   choice.deflate = given_bits > 8 * kRawBytesMax && bits < given_bits - given_bits / 32;
   return choice;
@@ -133,7 +135,7 @@ std::uint32_t deflate_body(CodecState* s, std::uint32_t body_bytes, int level, s
   CHECK_EQ(deflate(z, Z_SYNC_FLUSH), Z_OK);
   CHECK_EQ(z->avail_in, 0u);
   CHECK_GT(z->avail_out, 0u);
-  // A flush ends in 00 00 FF FF, which the receiver puts back [RFC 7692, sec. 7.2.1].
+  // A flush ends in 00 00 FF FF, which the receiver restores [RFC 7692, sec. 7.2.1].
   std::uint32_t byte_count = capacity - z->avail_out;
   CHECK_GT(byte_count, 4u);
   return byte_count - 4;

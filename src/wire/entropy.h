@@ -1,5 +1,4 @@
-// What bytes would take if each were coded by its frequency alone: an estimate of what deflation makes of them where it
-// finds nothing to repeat.
+// Size of bytes if each were coded by its frequency alone: an estimate of deflation without repetitions.
 #pragma once
 #include <cstdint>
 
@@ -13,7 +12,7 @@ inline void count_bytes(ByteCounts* counts, std::uint32_t bytes, std::uint32_t b
   for (; byte_count > 0; --byte_count, bytes >>= 8) ++counts->count[bytes & 255];
 }
 
-// 256 · log2(x), x ≥ 1, by a straight line between powers of two: at most 22 too little.
+// 256 · log2(x), x ≥ 1, linear between powers of two: at most 22 too low.
 inline std::uint32_t log2_fixed(std::uint32_t x) {
   std::uint32_t power = 31 - static_cast<std::uint32_t>(__builtin_clz(x));
   std::uint64_t rest = x - (std::uint64_t(1) << power);

@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint32_t kMagic = 0x59415250;  // "PRAY"
 constexpr std::uint32_t kChecksumAt = 4;
 
-// Reader and Writer go through the fields of a message by the same functions, fields(io, &message), so that both sides
-// agree. The length has been checked before either runs.
+// Reader and Writer process the fields of a message with the same function, fields(io, &message), so that both sides
+// agree. The length is checked before either runs.
 struct Reader {
   const std::uint8_t* at;
   const std::uint8_t* end;
@@ -59,7 +59,7 @@ struct Writer {
   }
 };
 
-// Goes through the fields of a message that is to be sent, and writes nothing.
+// Visits the fields of a message to be sent and writes nothing.
 struct Checker {
   bool valid = true;
 
@@ -97,7 +97,7 @@ void raw_real(Io& io, double* value) {
   number(io, &bits);
   std::memcpy(value, &bits, sizeof bits);
 }
-// A number within its limits, which are everybody's.
+// A number within the limits of its quantity.
 template <class Io, class T>
 void real(Io& io, T* value, Quantity quantity) {
   raw_real(io, value);
@@ -108,7 +108,7 @@ void count(Io& io, T* value, Quantity quantity, std::uint32_t byte_count = sizeo
   number(io, value, byte_count);
   io.require(within(quantity, static_cast<double>(*value)));
 }
-// 0 stands for the scene's own.
+// 0 means the scene's own.
 template <class Io>
 void own_or_exposure(Io& io, float* value) {
   raw_real(io, value);
@@ -166,7 +166,7 @@ void fields(Io& io, Camera* c) {
   choice(io, &c->projection, Projection::orthographic);
 }
 
-// A count or a choice is an integer of the row's bytes.
+// A count or a choice is an integer of the row's size.
 template <class Io>
 void setting(Io& io, const SettingRow& row, Settings* settings) {
   double value = row.field.get(*settings);
@@ -184,7 +184,7 @@ void setting(Io& io, const SettingRow& row, Settings* settings) {
   if (valid) row.field.set(settings, value);
 }
 
-// Those that change pixels.
+// The settings that change pixels.
 constexpr std::uint32_t kSettingsBytes = 2 * 2 + setting_wire_bytes() + 2 * sizeof(EffectMask);
 template <class Io>
 void fields(Io& io, Settings* settings) {
@@ -212,7 +212,7 @@ void fields(Io& io, FrameRequest* m) {
   io.require(m->deflate_level <= 9);
 }
 
-// What changes from frame to frame.
+// The fields that change from frame to frame.
 template <class Io>
 void change_fields(Io& io, FrameRequest* m) {
   number(io, &m->frame), real(io, &m->seconds, Quantity::seconds);
@@ -308,7 +308,7 @@ void fields_of_type(Io& io, Message* m) {
   }
 }
 
-// Bytes after the header: of the fields, and the most that may follow them.
+// Bytes after the header: those of the fields, and the maximum of the data after them.
 struct PayloadSize {
   std::uint32_t fields, tail_max;
 };
@@ -333,7 +333,7 @@ constexpr PayloadSize kPayloadSizes[] = {
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
 static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::frame_change) + 1, "one for each type");
 
-// A hello of another version ends after magic and version, or goes on as it likes.
+// A hello of another version ends after magic and version, or continues in any way.
 constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
 
 std::uint32_t tail_bytes(const Message& m) {
@@ -403,7 +403,7 @@ bool can_encode(const Message& message) {
 void encode_message(const Message& message, std::uint8_t* bytes) {
   std::uint32_t payload = message_bytes(message) - kHeaderBytes;
   CHECK_LE(tail_bytes(message), kPayloadSizes[static_cast<std::uint32_t>(message.type)].tail_max);
-  Message copy = message;  // writing reads through the same pointers that reading writes through
+  Message copy = message;  // encoding only reads through the pointers that decoding writes through
   Writer writer = {bytes + kHeaderBytes};
   fields_of_type(writer, &copy);
   CHECK_EQ(writer.at - (bytes + kHeaderBytes), static_cast<std::ptrdiff_t>(payload));

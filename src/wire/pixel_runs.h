@@ -1,15 +1,14 @@
-// Runs of changed pixels, as a chunk's body holds them: numbers of 7 bits a byte, low ones first, the top bit set where
-// another follows. They alternate: pixels to skip, pixels that are given; skipped is what is left after the last.
+// Runs of changed pixels in the body of a chunk: numbers of 7 bits per byte, low bits first, the top bit set if another
+// byte follows. They alternate between pixels to skip and pixels given; all pixels after the last are skipped.
 #pragma once
 #include <cstdint>
 
 namespace pocketray {
 
-// Unchanged pixels between changed ones are given, too, where they are fewer than this: a run of its own takes two
-// bytes at least.
+// Fewer unchanged pixels than this between changed ones are given, too: a separate run takes at least two bytes.
 constexpr std::uint32_t kGapMin = 4;
 
-// The most bytes that the runs of that many pixels take: two for five pixels, four beyond 127.
+// Upper bound of the bytes of the runs of that many pixels: two for five pixels, four beyond 127.
 constexpr std::uint32_t run_bytes_max(std::uint32_t pixel_count) { return pixel_count / 2 + 16; }
 
 constexpr std::uint32_t kNumberBytesMax = 5;
@@ -20,7 +19,7 @@ inline std::uint8_t* put_number(std::uint8_t* at, std::uint32_t value) {
   return at;
 }
 
-// Null where the bytes end within the number or it has more than 32 bits.
+// Null if the bytes end within the number or it has more than 32 bits.
 inline const std::uint8_t* get_number(const std::uint8_t* at, const std::uint8_t* end, std::uint32_t* value) {
   *value = 0;
   for (std::uint32_t shift = 0; at < end && shift < 35; shift += 7) {

@@ -1,6 +1,6 @@
-// Prediction: a pixel as its difference, per channel and modulo the channel's levels, to the median of its left and
-// upper neighbours and of the plane through them (LOCO-I [Weinberger, Seroussi & Sapiro 2000, sec. III-A]); what red
-// and blue have in common with green is then taken off them. Neighbours are those within the chunk.
+// Prediction: a pixel as its difference, per channel and modulo the channel's levels, from the median of its left and
+// upper neighbours and the plane through them (LOCO-I [Weinberger, Seroussi & Sapiro 2000, sec. III-A]); the difference
+// of green is then subtracted from those of red and blue. Only neighbours within the chunk count.
 #pragma once
 #include <cstdint>
 
@@ -14,7 +14,7 @@ struct Pixel565 {
   static void store(std::uint8_t* p, std::uint32_t pixel) {
     p[0] = static_cast<std::uint8_t>(pixel), p[1] = static_cast<std::uint8_t>(pixel >> 8);
   }
-  // A difference of green as one of red and blue, which have half its levels: modulo those, halving needs no sign.
+  // The difference of green for red and blue, which have half its levels: modulo those, halving needs no sign.
   static std::uint32_t green_share(std::uint32_t difference) {
     std::uint32_t half = (difference >> 5 & 63) >> 1;
     return half | half << 11;
@@ -51,7 +51,7 @@ std::uint32_t subtract_channels(std::uint32_t a, std::uint32_t b) {
   return difference;
 }
 
-// What the pixel at index `at` of a chunk is taken to be; `column` is its place in its row.
+// The prediction of the pixel at `index` in a chunk; `column` is its place in its row.
 template <class Pixel>
 std::uint32_t predict(const std::uint8_t* pixels, std::uint32_t at, std::uint32_t column, std::uint32_t width) {
   const std::uint8_t* here = pixels + at * Pixel::kBytes;

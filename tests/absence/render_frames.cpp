@@ -1,6 +1,6 @@
-// absence_SCENE FRAMES : renders a built-in scene FRAMES times in a build of the effects that it calls for alone, or
-// (absence_all SCENE FRAMES) of all. Prints the plan's effects and the bytes of every part of memory. absence_test.sh has
-// valgrind count its instructions.
+// absence_SCENE FRAMES : renders a built-in scene FRAMES times in a build with only the scene's effects, or
+// (absence_all SCENE FRAMES) with all. Prints the plan's effects and the bytes of every part of memory. absence_test.sh
+// counts its instructions with valgrind.
 #include <cstdio>
 #include <cstdlib>
 

@@ -11,7 +11,7 @@ using namespace pocketray;
 
 namespace {
 
-// A ray about the mesh: from outside or inside, at a random point, a vertex, an edge or along an axis.
+// A ray near the mesh: from outside or inside, at a random point, a vertex, an edge or along an axis.
 Ray ray_about(Rng* rng, const Mesh& mesh, const Box& bounds) {
   Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
   float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
@@ -35,7 +35,7 @@ Ray ray_about(Rng* rng, const Mesh& mesh, const Box& bounds) {
 
 namespace {
 
-// Refuses odd triangles and the half of each even one where u > v; counts what it is asked.
+// Rejects odd triangles, and half of each even one, where u > v; counts calls.
 struct Sieve {
   mutable int asked = 0;
   static bool accept(const void* context, std::uint32_t triangle, float u, float v) {
@@ -46,8 +46,8 @@ struct Sieve {
 
 }  // namespace
 
-// Goal: a filter decides which hits count, and gets the hit's own u and v. Method: compare with brute force under the
-// same filter, and check that what is returned passes it; a filter without a function is no filter.
+// Goal: a filter decides which hits count, and receives the hit's own u and v. Method: compare with brute force under
+// the same filter, and check that returned hits pass it; a filter without a function accepts everything.
 TEST_CASE("accel_filter_is_respected") {
   Mesh mesh = soup("soup", 300, 1, 0.7f, 103);
   auto oracle = make_world(mesh, &kBruteAccel);
@@ -75,8 +75,8 @@ TEST_CASE("accel_filter_is_respected") {
   }
 }
 
-// Goal: among hits of equal t the smallest id wins, wherever it lies in the structure. Method: a fan of coplanar
-// triangles over one another in shuffled order, and their edges in common.
+// Goal: among hits of equal t the smallest id wins, wherever it lies in the structure. Method: a fan of overlapping
+// coplanar triangles in shuffled order, and their common edges.
 TEST_CASE("accel_ties_go_to_the_smallest_id") {
   Mesh mesh;
   Rng rng = make_rng(105);
@@ -104,8 +104,8 @@ TEST_CASE("accel_ties_go_to_the_smallest_id") {
   }
 }
 
-// Goal: no traversal raises the invalid-operation flag (0·∞, ∞ − ∞): nothing is left to what a CPU makes of NaN.
-// Method: the rays above, over all meshes, with axis-parallel rays in box faces among them; the flag stays down.
+// Goal: no traversal raises the invalid-operation flag (0·∞, ∞ − ∞), so that nothing depends on how a CPU handles NaN.
+// Method: the rays above, over all meshes, including axis-parallel rays in box faces; the flag stays down.
 TEST_CASE("accel_raises_no_invalid_operation") {
   for (const Mesh& mesh : generated_meshes())
     for (const AccelInfo* info : kAccelList) {
@@ -118,8 +118,8 @@ TEST_CASE("accel_raises_no_invalid_operation") {
     }
 }
 
-// Goal: nearest_distance() never exceeds the distance to any point of any triangle, and comes within a millionth of the
-// nearest. Method: sampled points of all triangles; a sphere, whose distance is known; brute force gives the same.
+// Goal: nearest_distance() never exceeds the distance to any point of any triangle, and is within a millionth of the
+// nearest. Method: sampled points of all triangles; a sphere, with known distance; brute force gives the same.
 TEST_CASE("accel_nearest_distance_is_a_tight_lower_bound") {
   for (const Mesh& mesh : generated_meshes()) {
     auto oracle = make_world(mesh, &kBruteAccel);
@@ -154,8 +154,8 @@ TEST_CASE("accel_nearest_distance_is_a_tight_lower_bound") {
   CHECK(kBvhAccel.nearest_distance(make_world(Mesh(), &kBvhAccel)->accel, {0, 0, 0}) == kInfinity);
 }
 
-// Goal: build() takes no more than need() says, keeps no more than its data, and returns its scratch; the default stays
-// within 53 bytes a triangle on a mesh, the compact one within 16. Method: every generated mesh; a sphere of 20,480
+// Goal: build() takes no more than need() says, keeps no more than its data, and returns its scratch; on a mesh the
+// default stays within 53 bytes a triangle, the compact one within 16. Method: every generated mesh; a sphere of 20,480
 // triangles.
 TEST_CASE("accel_memory_is_within_its_plan") {
   for (const AccelInfo* info : kAccelList) {

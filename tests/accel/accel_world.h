@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-// An accelerator over a mesh, with memory of its own of exactly the planned size.
+// An accelerator over a mesh, in its own memory of exactly the planned size.
 struct World {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;

@@ -9,7 +9,7 @@ using namespace pocketray;
 
 namespace {
 
-// A copy of an accelerator's bytes, aligned, of exactly their size so that a sanitizer sees the end.
+// A copy of an accelerator's bytes, aligned and of exactly their size, so that a sanitizer sees an overrun.
 struct Bytes {
   explicit Bytes(std::uint32_t count) : block(new std::uint8_t[count + 64]), data{align(block.get()), count} {}
   static std::uint8_t* align(std::uint8_t* p) { return p + (64 - reinterpret_cast<std::uintptr_t>(p) % 64) % 64; }
@@ -23,7 +23,7 @@ Bytes copy_of(const World& world, std::uint32_t count) {
   return bytes;
 }
 
-// Whether the bytes are adopted; then they are `world`'s as long as they live.
+// Whether the bytes are adopted; `world` then uses them as long as they live.
 bool adopt(World* world, const Bytes& bytes) { return world->info->adopt(&world->accel, bytes.data).ok; }
 bool refuses(const World& world, const Bytes& bytes) {
   Accel accel = world.accel;
@@ -32,7 +32,7 @@ bool refuses(const World& world, const Bytes& bytes) {
 
 const AccelInfo* const kBaked[] = {&kBvhAccel, &kCompactAccel};
 
-// Traces rays through whatever was adopted: must end and stay in bounds.
+// Traces rays through whatever was adopted: must terminate and stay in bounds.
 void trace_some(const World& world, int ray_count) {
   Rng rng = make_rng(111);
   TraceStats stats;
@@ -42,7 +42,7 @@ void trace_some(const World& world, int ray_count) {
 
 }  // namespace
 
-// Goal: what was built is adopted and answers alike, bounds included. Method: all generated meshes.
+// Goal: a built tree is adopted and answers the same, including bounds. Method: all generated meshes.
 TEST_CASE("bvh_adopts_what_it_built") {
   for (const AccelInfo* info : kBaked)
     for (const Mesh& mesh : generated_meshes()) {
@@ -58,8 +58,8 @@ TEST_CASE("bvh_adopts_what_it_built") {
     }
 }
 
-// Goal: no damaged byte does harm. Method: each byte of a small tree flipped in several ways; adopt() refuses, or the
-// rays traced through it end. (Signs of zeros may flip; nothing else is accepted.)
+// Goal: no damaged byte does harm. Method: each byte of a small tree flipped in several ways; either adopt() refuses,
+// or rays traced through it terminate. (Signs of zeros may flip; nothing else is accepted.)
 TEST_CASE("bvh_refuses_every_flipped_byte_or_traces_it_safely") {
   Mesh mesh = soup("", 60, 1, 0.5f, 112);
   for (const AccelInfo* info : kBaked) {
@@ -81,7 +81,7 @@ TEST_CASE("bvh_refuses_every_flipped_byte_or_traces_it_safely") {
   }
 }
 
-// Goal: no prefix, no byte too many. Method: every length.
+// Goal: prefixes and excess bytes are refused. Method: every length.
 TEST_CASE("bvh_refuses_every_prefix_and_excess_bytes") {
   for (const AccelInfo* info : kBaked) {
     auto world = make_world(soup("", 30, 1, 0.5f, 113), info);
@@ -94,8 +94,7 @@ TEST_CASE("bvh_refuses_every_prefix_and_excess_bytes") {
 }
 
 // Goal: crafted trees that would never end or overrun the stack are refused. Method: a child that is its own parent, a
-// child shared by two lanes, a chain deeper than kBvhDepthMax of boxes that are otherwise right, a leaf of another
-// scene.
+// child shared by two lanes, a chain deeper than kBvhDepthMax with otherwise correct boxes, a leaf of another scene.
 TEST_CASE("bvh_refuses_cycles_shared_children_deep_chains_and_other_geometry") {
   auto world = make_world(soup("", 200, 1, 0.5f, 114), &kBvhAccel);
   auto with_child = [&](int lane, std::uint32_t child) {
@@ -105,7 +104,7 @@ TEST_CASE("bvh_refuses_cycles_shared_children_deep_chains_and_other_geometry") {
   };
   const BvhNode& root = BvhView(world->accel.data.data).nodes[0];
   REQUIRE(!(root.child[0] & kLeafBit));
-  CHECK(with_child(0, root.child[0]));  // the harness itself damages nothing
+  CHECK(with_child(0, root.child[0]));  // without a change it is adopted
   CHECK_FALSE(with_child(0, 0));
   CHECK_FALSE(with_child(1, root.child[0]));
   CHECK_FALSE(with_child(0, kNoChild));
@@ -129,8 +128,8 @@ TEST_CASE("bvh_refuses_cycles_shared_children_deep_chains_and_other_geometry") {
   CHECK(refuses(*other, copy_of(*world, world->accel.data.count)));
 }
 
-// Goal: a leaf of ids whose marks lie about what can be hit, or that names a triangle the scene has not, is refused,
-// and so are the bytes of the other kind. Method: one good and one degenerate triangle; each id changed.
+// Goal: a leaf of ids with wrong marks of what can be hit, or with a triangle that the scene lacks, is refused, as are
+// the bytes of the other kind. Method: one good and one degenerate triangle; each id changed.
 TEST_CASE("compact_refuses_false_marks_foreign_ids_and_the_other_kind") {
   Mesh mesh;
   add_triangle(&mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});

@@ -1,4 +1,4 @@
-// What the builder of the BVH promises about the tree.
+// Guarantees of the builder of the BVH about the tree.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::uint64_t hash_of(const World& world) {
   return hash;
 }
 
-// Triangles in a cloud, drawn in an order that no compiler changes.
+// A cloud of triangles, drawn in an order that no compiler changes.
 Mesh ordered_cloud(int count) {
   Mesh mesh;
   Rng rng = make_rng(126);
@@ -51,9 +51,9 @@ Mesh ordered_cloud(int count) {
 
 }  // namespace
 
-// Goal: however many triangles there are, all are in the tree, and it has no more leaves and nodes than planned: a leaf
-// in 128 triangles above what four in each need, 7/15 of that in nodes. Method: every count up to past two treelets,
-// then some larger ones, of triangles in a cloud and of triangles without a place of their own.
+// Goal: for any number of triangles, all are in the tree, and it has no more leaves and nodes than planned: one leaf
+// per 128 triangles above a quarter of the triangles, and 7/15 of that in nodes. Method: every count up to past two
+// treelets, then some larger ones, of triangles in a cloud and of triangles that all coincide.
 TEST_CASE("bvh_has_no_more_leaves_and_nodes_than_planned_for_any_triangle_count") {
   for (std::uint32_t n = 1; n < 6000; n += n < 300 ? 1 : 571)
     for (const Mesh& mesh :
@@ -68,7 +68,7 @@ TEST_CASE("bvh_has_no_more_leaves_and_nodes_than_planned_for_any_triangle_count"
 }
 
 // Goal: leaves and nodes of meshes are nearly full, which keeps the bytes per triangle low. Method: a soup and a sphere
-// of some thousand triangles; the bounds are what the builder reaches, less some slack.
+// of some thousand triangles; the bounds are what the builder achieves, less some slack.
 TEST_CASE("bvh_leaves_and_nodes_are_nearly_full") {
   for (const Mesh& mesh : {soup("soup", 5000, 1, 0.05f, 121), jittered_sphere(5, 1, {0, 0, 0}, 0.02f, 122)}) {
     auto world = make_world(mesh, &kBvhAccel);
@@ -93,8 +93,8 @@ TEST_CASE("bvh_treelet_collapses_into_the_fewest_nodes") {
   }
 }
 
-// Goal: the tree separates what lies apart. Method: clusters far from one another; rays through one of them meet
-// hardly more nodes and triangles than in a tree over it alone.
+// Goal: the tree separates distant parts. Method: clusters far from one another; rays through one of them visit hardly
+// more nodes and triangles than in a tree over that cluster alone.
 TEST_CASE("bvh_separates_clusters_that_lie_apart") {
   Mesh alone = soup("alone", 800, 1, 0.1f, 123), all = alone;
   for (int k = 1; k < 7; ++k) {
@@ -116,9 +116,9 @@ TEST_CASE("bvh_separates_clusters_that_lie_apart") {
   CHECK(many.triangles < few.triangles + few.triangles / 10);
 }
 
-// Goal: no tree is too deep for the stack of a traversal. Method: triangles that shrink by powers of two, first along
-// x, then along y. Each node can part but the largest five powers from the rest, which would go on for more levels than
-// there may be: beyond a depth ranges have to be halved instead.
+// Goal: no tree is too deep for the traversal stack. Method: triangles that shrink by powers of two, first along x,
+// then along y. A node can only separate the five largest from the rest, which would take more levels than allowed:
+// beyond some depth ranges must be halved instead.
 TEST_CASE("bvh_halves_ranges_before_the_tree_is_too_deep") {
   Mesh mesh;
   for (int axis = 0; axis < 2; ++axis)
@@ -136,11 +136,11 @@ TEST_CASE("bvh_halves_ranges_before_the_tree_is_too_deep") {
       if (!(child & kLeafBit)) depth[child] = depth[i] + 1;
   std::uint32_t deepest = *std::max_element(depth.begin(), depth.end());
   CHECK(deepest <= kBvhDepthMax);
-  CHECK(deepest > kBvhDepthMax - 14);  // as deep as ranges that need 11 levels for their treelets may get
+  CHECK(deepest > kBvhDepthMax - 14);  // the maximum for ranges that need 11 levels for their treelets
 }
 
-// Goal: the same tree on every CPU, with every compiler and library. Method: hashes of trees whose builds split ranges,
-// sweep treelets and break ties.
+// Goal: the same tree on every CPU, with every compiler and library. Method: hashes of trees whose builds divide
+// ranges, sweep treelets and break ties.
 TEST_CASE("bvh_is_the_same_tree_everywhere") {
   CHECK(hash_of(*make_world(ordered_cloud(3000), &kBvhAccel)) == 11288840811611591648u);
   CHECK(hash_of(*make_world(lattice_box(12), &kBvhAccel)) == 17093041408473538993u);

@@ -1,5 +1,4 @@
-// Meshes that go wrong: a seeded mixture of points, lines, copies and sizes from denormal to huge. All numbers are
-// finite.
+// Degenerate meshes: a seeded mixture of points, lines, copies and sizes from denormal to huge. All numbers are finite.
 #pragma once
 #include <cmath>
 
@@ -8,20 +7,20 @@
 namespace pocketray {
 
 enum class Degenerate : std::uint32_t {
-  one_point,      // all triangles in one place, by equal vertices
-  one_vertex,     // the same by equal indices, as `f 1 1 1` has it
-  points,         // each triangle in a place of its own
+  one_point,      // all triangles at one point, with equal vertices
+  one_vertex,     // the same with equal indices, as in `f 1 1 1`
+  points,         // each triangle at its own point
   axis_line,      // on a line along an axis: boxes without surface
-  other_line,     // on a line across
-  plane,          // soup in a plane across an axis
+  other_line,     // on an oblique line
+  plane,          // soup in a plane perpendicular to an axis
   copies,         // of one sound triangle
-  same_centroid,  // of different size
-  halves,         // each half the size of the last one
+  same_centroid,  // of different sizes
+  halves,         // each half the size of the one before
   sound,          // soup
   count
 };
 
-// A power of two: ordinary most of the time, else as large or as small as coordinates get.
+// A power of two: ordinary most of the time, otherwise as large or as small as coordinates get.
 inline float random_scale(Rng* rng) {
   switch (next_u32(rng) % 8) {
     case 0:
@@ -79,8 +78,8 @@ inline void add_degenerate(Mesh* mesh, Degenerate kind, std::uint32_t count, flo
   }
 }
 
-// The mesh of that seed: 1 … count_max triangles (every order of magnitude as often) of one to four kinds, in shuffled
-// order in half of the meshes.
+// The mesh of that seed: 1 … count_max triangles (every order of magnitude equally often) of one to four kinds, half of
+// the meshes in shuffled order.
 inline Mesh degenerate_mesh(std::uint64_t seed, std::uint32_t count_max) {
   Mesh mesh;
   Rng rng = make_rng(seed);

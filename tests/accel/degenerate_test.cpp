@@ -1,5 +1,4 @@
-// Meshes of triangles that fall together, by the thousand: they are built within the plan and answered as by brute
-// force.
+// Thousands of coinciding triangles: they are built within the plan and answered as by brute force.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -64,7 +63,7 @@ int wrong_answers(const World& world, const Questions& q) {
   return wrong;
 }
 
-// Whether the tree is one, has each triangle once, and no more leaves and nodes than planned.
+// Whether the tree is valid, has each triangle once, and has no more leaves and nodes than planned.
 bool is_within_plan(const World& world) {
   BvhView bvh(world.accel.data.data);
   std::size_t n = world.triangles.size(), leaves = bvh.header->leaf_count, found = 0;
@@ -77,17 +76,17 @@ bool is_within_plan(const World& world) {
          world.info->adopt(&copy, world.accel.data).ok;
 }
 
-// Degenerate triangles open up: every vertex goes elsewhere.
+// Opens degenerate triangles up by moving every vertex elsewhere.
 void open_up(Rng* rng, Mesh* mesh) {
   for (Vec3& p : mesh->positions) p = p * 0.5f + random_vec3(rng, 1);
 }
 
 }  // namespace
 
-// Goal: whatever the triangles are, they are built within what was planned, the tree holds each of them, and its
-// answers are the bits of brute force, also when they move afterwards. Method: seeded mixtures of points, lines,
-// copies, planes and sound triangles from denormal to huge; every accelerator, one after the other of the instruction
-// sets; single rays and packets, closest hits and shadows. The whole gate has 10^4 meshes of up to 10^5 triangles.
+// Goal: all triangles are built within the plan, the tree holds each of them, and its answers are the bits of brute
+// force, even when they move afterwards. Method: seeded mixtures of points, lines, copies, planes and sound triangles
+// from denormal to huge; every accelerator, the instruction sets in turn; single rays and packets, closest hits and
+// shadows. The full gate has 10^4 meshes of up to 10^5 triangles.
 TEST_CASE("differential_degenerate_meshes_are_built_within_plan_and_answered_as_by_brute_force") {
   int mesh_count = gate_share(1000, 10000);
   std::uint32_t count_max = whole_gate() ? 100000 : 2000;

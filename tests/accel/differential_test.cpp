@@ -1,4 +1,4 @@
-// Every accelerator and every way to ask it against brute force, bit for bit, and against the oracle in double.
+// Every accelerator, with single rays and packets, against brute force, bit for bit, and against the oracle in double.
 #include <doctest/doctest.h>
 
 #include "accel/oracle.h"
@@ -9,11 +9,11 @@ using namespace pocketray;
 
 namespace {
 
-// Refuses a third of the triangles and a part of each other one.
+// Rejects a third of the triangles and a part of each other one.
 bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return triangle % 3 != 0 && u <= v + 0.25f; }
 constexpr HitFilter kSome = {accept_some, nullptr};
 
-// Rays that share an origin and t_max, and what brute force says of them.
+// Rays that share an origin and t_max, and the answers of brute force.
 struct Group {
   std::vector<Ray> rays;
   std::vector<Hit> hits, filtered;
@@ -30,7 +30,7 @@ Vec3 random_origin(Rng* rng, const Mesh& mesh, const Vec3& middle, float size) {
   return kind < 7 ? min(min(a, b), c) * 0.5f + max(max(a, b), c) * 0.5f : a;
 }
 
-// Directions: at edges and corners, at anything, along axes and diagonals; a few that are none.
+// Directions: at edges and corners, random, along axes and diagonals; a few are invalid.
 Vec3 random_direction(Rng* rng, const Mesh& mesh, const Vec3& origin, const Vec3& middle, float size) {
   if (next_u32(rng) % 100 == 0) return {0, next_u32(rng) % 2 ? 0 : std::numeric_limits<float>::quiet_NaN(), 0};
   std::uint32_t kind = next_u32(rng) % 8;
@@ -46,7 +46,7 @@ Vec3 random_direction(Rng* rng, const Mesh& mesh, const Vec3& origin, const Vec3
   return (kind < 5 ? a : a + (b - a) * next_float(rng)) - origin;
 }
 
-// The rays of a group: scattered, or side by side as those of a picture. A quarter of the groups ends early.
+// The rays of a group: scattered, or side by side as in a picture. A quarter of the groups ends early.
 std::vector<Ray> random_rays(Rng* rng, const Mesh& mesh, const Box& bounds, int count) {
   Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
   float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
@@ -64,7 +64,7 @@ std::vector<Ray> random_rays(Rng* rng, const Mesh& mesh, const Box& bounds, int 
   return rays;
 }
 
-// Ends a group's rays just at, after or before what one of them hits: t_max is exclusive.
+// Ends a group's rays just at, after or before a hit of one of them: t_max is exclusive.
 void cut_at_hit(Rng* rng, const World& oracle, std::vector<Ray>* rays) {
   Hit hit = closest(oracle, (*rays)[next_u32(rng) % rays->size()]);
   if (hit.triangle == kNoTriangle) return;
@@ -72,7 +72,7 @@ void cut_at_hit(Rng* rng, const World& oracle, std::vector<Ray>* rays) {
   for (Ray& ray : *rays) ray.t_max = kind == 0 ? hit.t : std::nextafter(hit.t, kind == 1 ? kInfinity : 0.0f);
 }
 
-// Groups come in kinds; fewer than eight would leave some out.
+// Groups alternate between kinds; fewer than eight would omit some.
 std::vector<Group> random_groups(Rng* rng, const Mesh& mesh, const World& oracle, int count) {
   if (count < 8) count = 8;
   std::vector<Group> groups(static_cast<std::size_t>(count));
@@ -108,9 +108,9 @@ int wrong_in_group(const Variant& variant, const World& world, const Group& grou
 
 }  // namespace
 
-// Goal: the same (t, u, v, id), whatever structure, instruction set and packet answers, and whether anything is hit.
-// Method: differential against brute force on meshes of every kind; rays from within boxes, from outside and afar, at
-// corners and edges, along axes, ended by t_max just at their hits, with a filter and without.
+// Goal: the same (t, u, v, id) from every structure, instruction set and packet size, and the same occlusion.
+// Method: differential against brute force on meshes of every kind; rays from inside boxes, from outside and afar, at
+// corners and edges, along axes, with t_max just at their hits, with and without a filter.
 TEST_CASE("differential_every_variant_answers_as_brute_force") {
   for (const Mesh& mesh : generated_meshes()) {
     auto oracle = make_world(mesh, &kBruteAccel);
@@ -132,11 +132,11 @@ TEST_CASE("differential_every_variant_answers_as_brute_force") {
   }
 }
 
-// Goal: brute force, and so all, hit what exact arithmetic hits, outside a band of 4 ulp. Method: the oracle in double,
-// which tests by another method, on the same meshes and rays; it decides about most of them.
+// Goal: brute force, and thus all others, hit what exact arithmetic hits, outside a band of 4 ulp. Method: the oracle
+// in double, which uses another method, on the same meshes and rays; it decides most of them.
 TEST_CASE("differential_brute_force_answers_as_double_outside_4_ulp") {
   for (const Mesh& mesh : generated_meshes()) {
-    if (mesh.name == "denormal") continue;  // float has no ulp to speak of there
+    if (mesh.name == "denormal") continue;  // ulps are meaningless there
     auto oracle = make_world(mesh, &kBruteAccel);
     Rng rng = make_rng(102);
     int rays = 0, wrong = 0, decided = 0;

@@ -75,7 +75,7 @@ inline Mesh slivers() {
   return mesh;
 }
 
-// Boxes nested 2^-i: what drives the depth of a tree.
+// Boxes nested by 2^-i: these drive the depth of a tree.
 inline Mesh nested(const char* name, int count, float first) {
   Mesh mesh;
   mesh.name = name;

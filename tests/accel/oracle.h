@@ -1,6 +1,6 @@
-// The independent oracle: brute force in double, by another method than the renderer's. A ray is projected along
-// itself; how far it passes inside or outside each triangle is a distance in the plane across it. Float arithmetic may
-// only err where that distance is below a stated band.
+// The independent oracle: brute force in double, by a method other than the renderer's. A ray is projected along
+// itself; how far it passes inside or outside each triangle is a distance in the perpendicular plane. Float arithmetic
+// may only err where that distance is below a given band.
 #pragma once
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace pocketray {
 
 constexpr double kFloatUlp = 0x1p-23;
 
-enum class Verdict { miss, hit, open };  // open: inside the band, either answer is right
+enum class Verdict { miss, hit, open };  // open: inside the band, either answer is correct
 
 // Signed distance in the plane from the origin to a triangle: positive inside, ≤ 0 outside.
 inline double inside_distance(const double (&x)[3], const double (&y)[3]) {
@@ -30,10 +30,10 @@ inline double inside_distance(const double (&x)[3], const double (&y)[3]) {
 
 struct OracleHit {
   Verdict verdict;
-  double t, t_error;  // crossing of the plane; what a lateral error within the band can move it by
+  double t, t_error;  // crossing of the plane, and how far a lateral error within the band can move it
 };
 
-// The band is `ulps` float ulp of the farthest vertex's distance from the origin of the ray.
+// The band is `ulps` float ulp of the farthest vertex's distance from the ray's origin.
 inline OracleHit oracle_triangle(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c, double ulps) {
   Vec3d d = to_double(ray.direction), o = to_double(ray.origin), across = {0, 0, 0};
   across[std::fabs(d.x) < std::fabs(d.y) ? (std::fabs(d.x) < std::fabs(d.z) ? 0 : 2)
@@ -52,8 +52,8 @@ inline OracleHit oracle_triangle(const Ray& ray, const Vec3& a, const Vec3& b, c
   return {inside > band ? Verdict::hit : inside < -band ? Verdict::miss : Verdict::open, t, band / (slope * size)};
 }
 
-// Checks one answer of closest() against all triangles of the mesh. True where it is right or the oracle cannot tell.
-// *decided counts the rays about which the oracle could tell.
+// Checks one answer of closest() against all triangles of the mesh. True if it is correct or the oracle cannot tell.
+// *decided counts the rays that the oracle could decide.
 inline bool oracle_agrees(const World& world, const Ray& ray, const Hit& found, double ulps, int* decided) {
   double nearest = std::numeric_limits<double>::infinity(), second = nearest, open = nearest;
   std::uint32_t id = kNoTriangle;
@@ -64,7 +64,7 @@ inline bool oracle_agrees(const World& world, const Ray& ray, const Hit& found, 
                                     world.positions[triangle.vertex(2)], ulps);
     if (hit.verdict == Verdict::miss) continue;
     double margin = hit.t_error + 4 * kFloatUlp * std::fabs(hit.t);
-    if (!std::isfinite(hit.t + margin)) {  // the ray runs within the plane: it may meet the triangle anywhere
+    if (!std::isfinite(hit.t + margin)) {  // the ray lies in the plane: it may meet the triangle anywhere
       open = 0;
       continue;
     }
@@ -80,7 +80,7 @@ inline bool oracle_agrees(const World& world, const Ray& ray, const Hit& found, 
   }
   double tie = nearest * (1 + 8 * kFloatUlp);
   if (id == kNoTriangle && open == std::numeric_limits<double>::infinity()) return ++*decided, found.triangle == id;
-  if (id == kNoTriangle || open <= tie) return true;  // anything may be right
+  if (id == kNoTriangle || open <= tie) return true;  // any answer may be correct
   ++*decided;
   if (found.triangle == kNoTriangle) return false;
   bool t_right = std::fabs(found.t - nearest) <= 8 * kFloatUlp * nearest;

@@ -8,7 +8,8 @@ using namespace pocketray;
 
 namespace {
 
-// Rays from one point: towards a part of the mesh that is `spread` of its size wide, some at vertices, or all around.
+// Rays from one point: towards a part of the mesh that is `spread` of its size wide, some at vertices, or in all
+// directions.
 RayPacket packet_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spread) {
   Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
   float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
@@ -31,8 +32,8 @@ bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return
 
 }  // namespace
 
-// Goal: a packet's answers are those of its rays. Method: packets that point one way, several ways and all around,
-// whole and in part, with a filter and without, against closest() of brute force, bit for bit.
+// Goal: a packet answers like its rays. Method: packets with one dominant axis, several and all, full and partial, with
+// and without a filter, against closest() of brute force, bit for bit.
 TEST_CASE("accel_packets_hit_what_their_rays_hit") {
   HitFilter some = {accept_some, nullptr};
   for (const Mesh& mesh : generated_meshes()) {
@@ -63,8 +64,8 @@ TEST_CASE("accel_packets_hit_what_their_rays_hit") {
 
 namespace {
 
-// Rays from places about a part of the mesh, some of them aimed past a vertex, to one light or along one direction.
-// Ends miss the light by some of the scene's size at times, and a packet in six goes beyond it: it is no bundle then.
+// Rays from places around a part of the mesh, some aimed past a vertex, to one light or along one direction. Their ends
+// sometimes miss the light by a fraction of the scene's size, and a packet in six passes it: those are not bundles.
 SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spread) {
   Vec3 middle = is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds);
   float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
@@ -90,8 +91,8 @@ SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, floa
 
 }  // namespace
 
-// Goal: a packet of shadow rays finds blocked what its rays find blocked. Method: packets to a light and along a
-// direction, near and wide, with ends before, at and beyond the light, against occluded() of brute force.
+// Goal: a packet of shadow rays is blocked where its rays are. Method: packets to a light and along a direction, near
+// and wide, with ends before, at and beyond the light, against occluded() of brute force.
 TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
   HitFilter some = {accept_some, nullptr};
   for (const Mesh& mesh : generated_meshes()) {
@@ -120,8 +121,8 @@ TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
   select_isa(best_isa());
 }
 
-// Goal: what rays miss their point by hides nothing. Method: packets of two, a long ray and one whose end or begin lies
-// off the long one's by as much as a bundle allows, about a small triangle; and ends farther out than any scene.
+// Goal: rays that miss their common point lose no hits. Method: packets of two, a long ray and one whose end or origin
+// is off the long one's by as much as a bundle allows, around a small triangle; and ends farther out than any scene.
 TEST_CASE("accel_packets_of_shadow_rays_allow_for_what_misses_the_light") {
   constexpr float s = 0x1p-12f;
   struct Case {

@@ -1,5 +1,5 @@
-// The ways to ask for hits: every accelerator of the list with every instruction set that this CPU has, one ray at a
-// time and in packets. Suites loop over them; all have to give the same bits.
+// The ways to query hits: every accelerator of the list with every instruction set of this CPU, with single rays and
+// with packets. Suites loop over them; all must give the same bits.
 #pragma once
 #include <string>
 
@@ -17,7 +17,7 @@ inline std::string name_of(const Variant& variant) {
   return std::string(variant.accel->name) + ", " + isa_name(variant.isa) + (variant.in_packets ? ", in packets" : "");
 }
 
-// All but brute force, which is what they are compared with.
+// All but brute force, the reference for comparisons.
 inline std::vector<Variant> all_variants() {
   std::vector<Variant> list;
   for (const AccelInfo* info : kAccelList)
@@ -45,12 +45,12 @@ inline void answer(const Variant& variant, const World& world, const Ray* rays, 
   variant.accel->closest_packet(world.accel, packet, filter, hits, nullptr);
 }
 
-// What a comparison with brute force came to.
+// Result of a comparison with brute force.
 struct Tally {
   std::uint64_t rays = 0, hits = 0, wrong = 0;
 };
 
-// Asks about one ray: closest hit, and whether there is any.
+// Compares the answers for one ray: closest hit and occlusion.
 inline void compare(const Variant& variant, const World& world, const World& oracle, const Ray& ray, Tally* tally) {
   Hit hit, expected = closest(oracle, ray);
   answer(variant, world, &ray, 1, nullptr, &hit);

@@ -1,4 +1,4 @@
-/* What the tests of pocketray.h share: plain C, which a C++ compiler takes, too. */
+/* Shared by the tests of pocketray.h: plain C that a C++ compiler accepts, too. */
 #ifndef POCKETRAY_TESTS_API_H
 #define POCKETRAY_TESTS_API_H
 
@@ -7,13 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A test reports what it expected and goes on. */
+/* A test reports failed expectations and continues. */
 extern int api_failures;
 void api_fail(const char* file, int line, const char* what);
 #define EXPECT(condition) ((condition) ? (void)0 : api_fail(__FILE__, __LINE__, #condition))
 #define EXPECT_OK(call) EXPECT((call) == POCKETRAY_OK)
 
-/* The picture of the tests: small, and neither side a multiple of a tile. */
+/* The tests' picture: small, with neither side a multiple of a tile. */
 enum { API_WIDTH = 90, API_HEIGHT = 61, API_MEMORY = 12 << 20 };
 
 /* Two blocks for instances, aligned to 64. */
@@ -36,7 +36,7 @@ int api_same(const api_picture* a, const api_picture* b);
 /* Sum of the differences of all channels of all pixels. */
 long api_distance(const api_picture* a, const api_picture* b);
 
-/* The bytes of a .pray file with animation, aligned to 64: of the program's argument. */
+/* The bytes of a .pray file with animation, aligned to 64, named by the program's argument. */
 extern unsigned char* api_file;
 extern size_t api_file_bytes;
 

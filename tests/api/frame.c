@@ -37,7 +37,7 @@ static void formats_show_the_same_picture(void) {
   pocketray_close(instance);
 }
 
-/* Wide rows, a turned picture, and bytes beyond it that stay as they are. */
+/* Wide rows, a rotated picture, and bytes beyond it that stay unchanged. */
 static void pictures_turn_and_stay_within_their_rows(void) {
   enum { kWide = 100, kTall = 90 };
   static api_picture upright;
@@ -83,7 +83,7 @@ static uint32_t rows_done(const pocketray_instance* instance) {
   return frame.rows_done;
 }
 
-/* Stopped frames show the rows that they claim, and leave the others as they were. */
+/* Stopped frames have the rows that they report, and leave the others unchanged. */
 static void expect_rows(const api_picture* part, const api_picture* whole, uint32_t rows) {
   uint32_t y;
   EXPECT(memcmp(part, whole, rows * sizeof part->pixel[0]) == 0);
@@ -186,7 +186,7 @@ static void refined_frames_are_whole_ones(void) {
   pocketray_close(instance);
 }
 
-/* Whatever changes ends a frame that was begun. */
+/* Every change ends a frame in progress. */
 static void changes_end_a_frame(void) {
   static api_picture picture;
   const float colour[3] = {0.1f, 0.1f, 0.1f}, still[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};

@@ -1,6 +1,7 @@
-/* test_api FILE [SCENE PICTURE] : each function of pocketray.h at work, and given what it must refuse. Compiled as C
- * and as C++, within the build and against an installed copy. FILE is a .pray file with nodes and an animation. SCENE
- * PICTURE: nothing is tested; the built-in scene is rendered to PICTURE at 320×240 as binary PPM, FILE is not read. */
+/* test_api FILE [SCENE PICTURE] : every function of pocketray.h at work, and with arguments that it must refuse.
+ * Compiled as C and as C++, within the build and against an installed copy. FILE is a .pray file with nodes and an
+ * animation. With SCENE PICTURE nothing is tested: renders the built-in scene to PICTURE at 320×240 as binary PPM; FILE
+ * is not read. */
 #include "api.h"
 
 int api_failures = 0;

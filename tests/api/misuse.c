@@ -1,5 +1,5 @@
-/* What each function makes of arguments that it cannot use: an error code and a message for each, and no crash. The
- * messages are for people who never saw the command line. */
+/* Every function with invalid arguments: an error code and a message for each, and no crash. The messages are for
+ * people who never saw the command line. */
 #include <limits.h>
 #include <math.h>
 
@@ -75,7 +75,7 @@ static void options_out_of_range(void) {
   WRONG(o.effects = "auto,-nothing", "effects");
   WRONG(o.effects = "", "effects");
   WRONG(o.accelerator = "grate", "no accelerator 'grate'");
-  WRONG(o.part_count = 1, "parts are a null pointer");
+  WRONG(o.part_count = 1, "parts is a null pointer");
   WRONG(o.part_count = POCKETRAY_NONE, "parts");
 #undef WRONG
 }
@@ -88,21 +88,21 @@ static void parts_that_do_not_fit(void) {
   options.part_count = 3;
   wrong_open("animated", &seesaw, &options, "animated");
   parts[2].vertex_begin = 9;
-  wrong_open("beyond", &cube, &options, "parts[2] reaches beyond");
+  wrong_open("beyond", &cube, &options, "parts[2] extends beyond");
   parts[2].vertex_begin = 0xFFFFFFFFu;
-  wrong_open("far beyond", &cube, &options, "parts[2] reaches beyond");
+  wrong_open("far beyond", &cube, &options, "parts[2] extends beyond");
   parts[2].vertex_begin = 7;
-  wrong_open("overlap", &cube, &options, "in common");
+  wrong_open("overlap", &cube, &options, "share vertices");
   parts[2].vertex_begin = 8;
-  parts[0].vertex_begin = 5; /* and of which the first starts behind the second */
-  wrong_open("overlap", &cube, &options, "in common");
+  parts[0].vertex_begin = 5; /* the first of which starts after the second */
+  wrong_open("overlap", &cube, &options, "share vertices");
   parts[0].vertex_begin = 0;
   parts[2].vertex_begin = 0;
   parts[2].vertex_count = 0;
   parts[2].material = 77;
   wrong_open("no such material", &cube, &options, "material 77");
   parts[2].material = 0;
-  wrong_open("shared vertices", &cube, &options, "another's");
+  wrong_open("shared vertices", &cube, &options, "has another material");
 }
 
 static void memory_that_is_too_small(void) {
@@ -339,7 +339,7 @@ static void odd_times_and_pixels(pocketray_instance* instance) {
 #undef WRONG
 }
 
-/* Nothing that was refused has changed the instance. */
+/* Refused calls have not changed the instance. */
 static void instance_refuses_and_stays_as_it_was(void) {
   static api_picture before, after;
   pocketray_options options = api_options();

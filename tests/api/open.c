@@ -21,7 +21,7 @@ static pocketray_plan make_plan(const pocketray_source* source, const pocketray_
   return plan;
 }
 
-/* The planned bytes suffice wherever the block starts, are not exceeded, and not far more than needed. */
+/* The planned bytes suffice wherever the block starts, are not exceeded, and are not much more than needed. */
 static void expect_exact(const pocketray_source* source, const pocketray_options* options) {
   static api_picture picture;
   pocketray_pixels pixels = api_pixels(&picture);
@@ -110,7 +110,7 @@ static void plans_say_which_effects_and_why(void) {
   options.effects = "auto,-mirror";
   before = make_plan(&source, &options);
   EXPECT(find_effect(&before, "shadow")->on && strlen(find_effect(&before, "shadow")->called_for_by) > 0);
-  EXPECT(!find_effect(&before, "mirror")->on && strstr(find_effect(&before, "mirror")->reason, "switched off"));
+  EXPECT(!find_effect(&before, "mirror")->on && strstr(find_effect(&before, "mirror")->reason, "forced off"));
   EXPECT(before.triangle_count > 40000 && before.vertex_count > 20000 && before.material_count > 3);
   EXPECT(before.camera_count == 1 && !before.default_camera && !before.default_lights && before.frame_count == 1);
   EXPECT(before.duration_seconds == 0 && strcmp(before.accelerator, "bvh") == 0);
@@ -125,7 +125,7 @@ static void plans_say_which_effects_and_why(void) {
   pocketray_close(instance);
 }
 
-/* The bytes of a file may be used where they lie, or be copied from any address and go away. */
+/* A file's bytes may be used in place, or copied from any address and discarded. */
 static void files_are_used_in_place_or_copied(void) {
   static api_picture in_place, copied;
   static unsigned char elsewhere[1 << 20];
@@ -170,7 +170,7 @@ static void damaged_files_are_refused(void) {
   }
 }
 
-/* Threads, accelerators and all effects forced on change no pixel; the memory may be used again. */
+/* Threads, accelerators and forcing all effects on change no pixel; the memory may be reused. */
 static void options_that_change_no_pixel(void) {
   static api_picture usual, other;
   pocketray_options options = api_options();

@@ -1,4 +1,4 @@
-/* What may be changed of an open scene: settings, camera, lights, surroundings, nodes, exposure. */
+/* Everything that may be changed in an open scene: settings, camera, lights, surroundings, nodes, exposure. */
 #include "api.h"
 
 static void settings_are_those_of_opening(void) {
@@ -74,7 +74,7 @@ static int effect_is_on(const pocketray_instance* instance, const char* name) {
   return -1;
 }
 
-/* One scene stands still, the other moves; room for lights changes no pixel. */
+/* One scene is static, the other moves; room for lights changes no pixel. */
 static void expect_lights_change(const char* scene) {
   static api_picture plain, first, added, dark, again;
   pocketray_light lights[9], torch = POCKETRAY_LIGHT_INIT;
@@ -188,7 +188,7 @@ static void nodes_take_transforms_for_their_animation(void) {
   plan.struct_size = sizeof plan;
   EXPECT_OK(pocketray_get_plan(instance, &plan));
   EXPECT(plan.node_count > 0);
-  /* Where the animation has them, they stay at any time. */
+  /* If controlled by the animation, they stay at any time. */
   for (i = 0; i < plan.node_count; ++i) {
     EXPECT_OK(pocketray_get_node(instance, i, &node));
     EXPECT(!node.overridden && (node.parent == POCKETRAY_NONE || node.parent < i));
@@ -220,7 +220,7 @@ static void render_linear(pocketray_instance* instance, float* radiance) {
   EXPECT_OK(pocketray_render(instance, 0, &pixels));
 }
 
-/* A scene that stands still, as one part: unmoved it is the same to the bit; moved with its camera it looks alike. */
+/* A static scene as one part: unmoved it is the same to the bit; moved with its camera it looks alike. */
 static void parts_make_a_still_scene_movable(void) {
   static api_picture still, first, moved, followed, again;
   static float still_radiance[API_HEIGHT * API_WIDTH * 3], radiance[API_HEIGHT * API_WIDTH * 3];
@@ -267,7 +267,7 @@ static void parts_make_a_still_scene_movable(void) {
   }
 }
 
-/* Parts are named by vertices or by a material, in any order, and move by themselves. */
+/* Parts are given by vertices or by a material, in any order, and move independently. */
 static void parts_move_by_themselves(void) {
   static api_picture still, one, other, both;
   const float up[12] = {1, 0, 0, 0, 0, 1, 0, 0.1f, 0, 0, 1, 0}, flat[12] = {0};

@@ -14,7 +14,7 @@ expect bad_size_zero 1 'width' render cube --size 0x3 -o a.ppm
 expect bad_ending 1 '\.png' render cube "${small[@]}" -o a.jpeg
 expect bad_folder 1 'cannot be written' render cube "${small[@]}" -o no/such/folder/a.ppm
 expect bad_depth 1 'depth' render cube "${small[@]}" --depth 99 -o a.ppm
-expect bad_effect 1 'no effect' render cube "${small[@]}" --effects auto,-sparkle -o a.ppm
+expect bad_effect 1 'unknown effect' render cube "${small[@]}" --effects auto,-sparkle -o a.ppm
 expect bad_camera 1 'VFOV' render cube "${small[@]}" --camera "1 2" -o a.ppm
 expect camera_at_its_target 1 'same point' render cube "${small[@]}" --camera "1,1,1 1,1,1 0,1,0 40" -o a.ppm
 expect camera_index 1 'no camera 7' render cube "${small[@]}" --camera-index 7 -o a.ppm

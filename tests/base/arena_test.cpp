@@ -13,7 +13,7 @@ using namespace pocketray;
 
 namespace {
 
-// What a child process prints to stderr while it runs `act`; *aborted tells whether it ended by SIGABRT.
+// Runs `act` in a child process and returns its stderr; *aborted: it ended by SIGABRT.
 template <class Act>
 std::string stderr_of(Act act, bool* aborted) {
   int ends[2];
@@ -39,7 +39,7 @@ std::string stderr_of(Act act, bool* aborted) {
 
 }  // namespace
 
-// Goal: need() is what an allocation takes, rounded up to cache lines.
+// Goal: need() is the size of an allocation, rounded up to cache lines.
 TEST_CASE("arena_need_rounds_up_to_cache_lines") {
   CHECK(arena_need(0) == 0);
   CHECK(arena_need(1) == 64);
@@ -80,7 +80,7 @@ TEST_CASE("arena_release_returns_to_the_mark_and_keeps_the_peak") {
   CHECK(arena_allocate(&arena, 1) == first);
 }
 
-// Goal: a full arena gives null to those who ask, also for sizes that would wrap when rounded.
+// Goal: a full arena returns null from arena_try_allocate(), even for sizes that would wrap when rounded.
 TEST_CASE("arena_try_allocate_gives_null_when_full") {
   alignas(64) std::uint8_t block[128];
   Arena arena = make_arena("test", block, sizeof block);
@@ -122,8 +122,8 @@ TEST_CASE("check_prints_both_operands_and_aborts") {
   CHECK(text.find("64 against 0") != std::string::npos);
 }
 
-// Goal: sizes that no CPU can address stop at the largest number instead of starting again at zero, and none of them
-// fits. Method: the ends of 32 and 64 bits.
+// Goal: sizes beyond any CPU's address space saturate instead of wrapping around to zero, and never fit. Method: the
+// limits of 32 and 64 bits.
 TEST_CASE("arena_sizes_stop_at_the_largest") {
   CHECK(size_sum(SIZE_MAX, 1) == SIZE_MAX);
   CHECK(size_sum(SIZE_MAX - 5, 5) == SIZE_MAX);

@@ -19,8 +19,8 @@ constexpr float kInfinityF = std::numeric_limits<float>::infinity();
 constexpr bool kLongDoubleIsLonger = sizeof(long double) > sizeof(double);  // not on 32-bit ARM, mostly emulated
 constexpr int kSampleCount = kLongDoubleIsLonger ? 200000 : 10000;
 
-// Greatest error of `ours` against the C library's long double function over random samples in [low, high]. Where long
-// double is double (32-bit ARM) the library's own error of up to an ulp is allowed for.
+// Largest error of `ours` against the C library's long double function over random samples in [low, high]. Where long
+// double is double (32-bit ARM), allows for the library's own error of up to an ulp.
 double greatest_error(double (*ours)(double), long double (*exact)(long double), double low, double high,
                       bool relative) {
   Rng rng = make_rng(7);
@@ -37,7 +37,7 @@ double greatest_error(double (*ours)(double), long double (*exact)(long double),
 
 }  // namespace
 
-// Goal: the bounds that fmath.h states. Method: dense random samples against the C library in long double, seed 7.
+// Goal: the bounds stated in fmath.h. Method: dense random samples against the C library in long double, seed 7.
 TEST_CASE("fmath_sin_and_cos_keep_their_bounds") {
   for (double reach : {1.0, 7.0, 1e3, 1e5}) {
     CAPTURE(reach);
@@ -91,7 +91,7 @@ TEST_CASE("fmath_log_keeps_its_bounds") {
   CHECK(std::isnan(det_log(kNan)));
 }
 
-// Goal: det_pow's bound. Method: four families: highlights, exponents up to 10^6 near 1, all magnitudes, anything.
+// Goal: det_pow's bound. Method: four families: highlights, exponents up to 10^6 near 1, all magnitudes, random bits.
 TEST_CASE("fmath_pow_keeps_its_bound") {
   Rng rng = make_rng(11);
   for (int family = 0; family < 4; ++family) {
@@ -132,14 +132,14 @@ TEST_CASE("fmath_pow_is_defined_at_the_edges") {
   CHECK(det_pow(2, -149) == 0x1p-149f);
   CHECK(det_pow(2, -151) == 0);
   CHECK(det_pow(0x1p-149f, 0.5f) == doctest::Approx(std::sqrt(0x1p-149)).epsilon(1e-7));
-  CHECK(det_pow(0.999999f, 1e6f) == doctest::Approx(0.3679).epsilon(2e-2));  // HARDCASES row 31's greatest exponent
+  CHECK(det_pow(0.999999f, 1e6f) == doctest::Approx(0.3679).epsilon(2e-2));  // HARDCASES row 31's largest exponent
   CHECK(std::isnan(det_pow(-1, 2)));
   CHECK(std::isnan(det_pow(nan, 2)));
   CHECK(std::isnan(det_pow(2, nan)));
 }
 
 // Goal: the same bits on every CPU (HARDCASES row 63). Method: FNV-1a over results; the value was recorded on x86-64,
-// armel and armhf agree.
+// and armel and armhf agree.
 TEST_CASE("hard_63_fmath_gives_the_same_bits_everywhere") {
   count_assertions("the same bits in every build");
   Rng rng = make_rng(13);

@@ -15,8 +15,8 @@ std::string printable(std::string text) {
 
 }  // namespace
 
-// Goal: nothing that a terminal obeys or that hides text is left, and what people write is. Method: one of each kind;
-// every byte alone; every cut of a text.
+// Goal: nothing remains that a terminal obeys or that hides text, while ordinary text does. Method: one example of each
+// kind; every single byte; every truncation of a text.
 TEST_CASE("printable_text_commands_no_terminal") {
   CHECK(printable("") == "");
   CHECK(printable("Büste, 像 🗿.pray") == "Büste, 像 🗿.pray");

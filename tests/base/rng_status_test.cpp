@@ -16,8 +16,8 @@ TEST_CASE("rng_matches_the_reference_sequence") {
     CHECK(next_u32(&rng) == expected);
 }
 
-// Goal: floats are uniform in [0, 1), never 1. Method: chi-squared over 64 bins: for 63 degrees of freedom 120 is
-// beyond one in 10^5. The largest 32-bit word must still give less than one.
+// Goal: floats are uniform in [0, 1), never 1. Method: chi-squared over 64 bins: with 63 degrees of freedom, 120 is
+// exceeded less than once in 10^5. The largest 32-bit word must still give less than one.
 TEST_CASE("rng_floats_are_uniform_below_one") {
   CHECK(static_cast<float>(0xFFFFFFFFu >> 8) * 0x1p-24f < 1.0f);
   for (std::uint64_t seed : {1, 2, 3}) {
@@ -66,7 +66,7 @@ Status quarter(int x) {
 
 }  // namespace
 
-// Goal: the first error comes through unchanged; text that is too long is cut, not written past its end.
+// Goal: the first error arrives unchanged; text that is too long is truncated, not written past the end.
 TEST_CASE("status_carries_the_first_error_and_cuts_long_text") {
   CHECK(quarter(8).ok);
   CHECK(quarter(8).message[0] == 0);

@@ -12,7 +12,7 @@ using namespace pocketray;
 
 namespace {
 
-// A vector type as the array that it is in memory.
+// A vector type as an array, as it lies in memory.
 template <class Vector, class T, int kLanes>
 struct Kind {
   using Lane = T;
@@ -99,15 +99,15 @@ int wrong_operations() {
 }  // namespace
 
 // Goal: each lane of each operation is the scalar operation, bit for bit, with NaN, infinities, denormals and both
-// zeros. Method: all pairs of awkward values, in every lane; min and max give the second operand where < and > are
-// false.
+// zeros. Method: all pairs of awkward values, in every lane; min and max return the second operand if neither < nor >
+// holds.
 TEST_CASE("simd_lanes_are_the_scalar_operations") {
   CHECK(wrong_operations<Float4, float, 4>() == 0);
   CHECK(wrong_operations<Double4, double, 4>() == 0);
 }
 
-// Goal: what floats alone have: load and store, ==, abs, the least and the greatest lane, masks from bits. Method: as
-// above; lowest and highest without NaN, where the order of comparisons would show.
+// Goal: operations that only floats have: load and store, ==, abs, smallest and largest lane, masks from bits. Method:
+// as above; lowest and highest without NaN, which would expose the order of comparisons.
 TEST_CASE("simd_floats_load_compare_and_reduce_by_lane") {
   using K = Kind<Float4, float, 4>;
   int wrong = 0;
@@ -145,8 +145,8 @@ TEST_CASE("simd_floats_load_compare_and_reduce_by_lane") {
   for (unsigned mask = 0; mask < 16; ++mask) CHECK(bits(Float4::mask_of(mask)) == mask);
 }
 
-// Goal: the coordinates of four points, by axis, read from nowhere else. Method: points of distinct numbers in arrays
-// of exactly their size, so that a sanitizer sees the end.
+// Goal: the coordinates of four points, by axis, without reading anything else. Method: distinct numbers in arrays of
+// exactly their size, so that a sanitizer sees an overrun.
 TEST_CASE("simd_points_are_loaded_by_axis") {
   std::unique_ptr<float[]> point[4];
   const float* pointers[4];
@@ -161,9 +161,9 @@ TEST_CASE("simd_points_are_loaded_by_axis") {
           0);
 }
 
-// Goal: later, sooner and is_later are max, min and > of distances: exact unless the result is negative, which then
-// either operand may be that is negative. word_outside is the one word that the mask leaves. Method: all pairs of
-// awkward values but −0 and NaN, in every lane; every mask of three lanes.
+// Goal: later, sooner and is_later are max, min and > of distances: exact unless the result is negative, which may then
+// be either negative operand. word_outside is the one word that the mask leaves. Method: all pairs of awkward values
+// but −0 and NaN, in every lane; every mask of three lanes.
 TEST_CASE("simd_distances_are_ordered_and_the_word_outside_a_mask_is_found") {
   int wrong = 0;
   for_each_pair<float, 4>([&](const float* a, const float* b) {
@@ -186,8 +186,8 @@ TEST_CASE("simd_distances_are_ordered_and_the_word_outside_a_mask_is_found") {
   for (unsigned i = 0; i < 4; ++i) CHECK(word_outside(Float4::mask_of(15 ^ 1u << i), words) == words[i]);
 }
 
-// Goal: floats widen exactly and doubles round to the nearest float. Method: awkward values and values halfway between
-// two floats, in every lane.
+// Goal: floats widen exactly, and doubles round to the nearest float. Method: awkward values and values half-way
+// between two floats, in every lane.
 TEST_CASE("simd_widens_and_narrows_as_the_language_does") {
   int wrong = 0;
   for_each_pair<float, 4>([&](const float* a, const float*) {

@@ -38,9 +38,9 @@ Vec3d applied(const Transform& t, const Vec3d& v) {
 }  // namespace
 
 // Goal: HARDCASES row 26: n′·t′ = 0 within 1e-6 and orientation kept under shear, mirroring and non-uniform scale.
-// Method: random transforms; two tangents of a surface span it, the transformed normal must be perpendicular to both of
-// their images (in double, so that the float tangents' own rounding does not count) and, where the map mirrors, agree
-// with the winding flipped: n′ · (t1′ × t2′) · det > 0.
+// Method: random transforms; the transformed normal must be perpendicular to the images of two tangents that span the
+// surface (in double, so that rounding of the float tangents does not count) and agree with the winding, flipped if the
+// map mirrors: n′ · (t1′ × t2′) · det > 0.
 TEST_CASE("hard_26_normals_stay_perpendicular_and_keep_their_side") {
   count_assertions("perpendicular within 1e-6, side kept");
   Rng rng = make_rng(26);
@@ -53,7 +53,7 @@ TEST_CASE("hard_26_normals_stay_perpendicular_and_keep_their_side") {
     if (length(n) < 0.05) continue;
     Vec3d unit = normalize(n);
     Vec3 n_float = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
-    // The float normal is perpendicular to slightly turned tangents: take those.
+    // The float normal is perpendicular to slightly rotated tangents: use those.
     Vec3d nd = {n_float.x, n_float.y, n_float.z};
     a = a - nd * (dot(a, nd) / dot(nd, nd)), b = b - nd * (dot(b, nd) / dot(nd, nd));
     Vec3 normal = transform_normal(t, n_float);
@@ -66,8 +66,8 @@ TEST_CASE("hard_26_normals_stay_perpendicular_and_keep_their_side") {
   }
 }
 
-// Goal: HARDCASES row 27: what cannot be inverted within float range is told apart; normals never become NaN. Method:
-// determinants 0, 1e-38, infinite, NaN.
+// Goal: HARDCASES row 27: transforms that cannot be inverted within float range are detected; normals never become NaN.
+// Method: determinants 0, 1e-38, infinite, NaN.
 TEST_CASE("hard_27_singular_transforms_are_told_apart") {
   count_assertions("told apart");
   Transform t;
@@ -88,7 +88,7 @@ TEST_CASE("hard_27_singular_transforms_are_told_apart") {
   CHECK(!is_invertible(t));
   CHECK(transform_normal(t, {0, 0, 1}) == Vec3{0, 0, 1});
   t = Transform();
-  t.m[2][2] = 0;  // flattened onto a plane: its normal is the one direction left
+  t.m[2][2] = 0;  // flattened onto a plane: only its own normal remains
   CHECK(transform_normal(t, {0, 0, 1}) == Vec3{0, 0, 1});
   CHECK(transform_normal(t, {1, 0, 0}) == Vec3{0, 0, 0});
 }
@@ -109,7 +109,7 @@ TEST_CASE("transform_product_is_composition") {
   CHECK(transform_vector(shift * grow, {1, 1, 1}) == Vec3{2, 2, 2});
 }
 
-// Goal: quaternions turn by the right hand [glTF 2.0, sec. 3.5.3]; scale comes first, then rotation, then translation.
+// Goal: quaternions rotate by the right-hand rule [glTF 2.0, sec. 3.5.3]; scale first, then rotation, then translation.
 TEST_CASE("compose_scales_then_turns_then_moves") {
   const float h = std::sqrt(0.5f);
   Transform t = compose({10, 0, 0}, {0, 0, h, h}, {2, 3, 4});

@@ -35,7 +35,7 @@ TEST_CASE("hard_30_normalize_takes_every_magnitude") {
       Vec3 unit = normalize(scaled);
       CHECK(std::fabs(length(widen(unit)) - 1) <= 2e-7);
       CHECK(length(cross(widen(unit), normalize(widen(scaled)))) <= 2e-7);
-      if (exponent > -100) CHECK(unit == normalize(v));  // a scale by a power of two changes no bit
+      if (exponent > -100) CHECK(unit == normalize(v));  // scaling by a power of two changes no bit
     }
   }
   for (float size : {1e30f, 1e-30f, 3e38f, 1e-45f}) {
@@ -47,7 +47,7 @@ TEST_CASE("hard_30_normalize_takes_every_magnitude") {
     CHECK(is_zero(normalize(bad)));
 }
 
-// Goal: an orthonormal basis for every unit vector, the poles and ±0 among them [Duff et al. 2017].
+// Goal: an orthonormal basis for every unit vector, including the poles and ±0 [Duff et al. 2017].
 TEST_CASE("make_basis_is_orthonormal_everywhere") {
   Rng rng = make_rng(31);
   for (int i = 0; i < 1000; ++i) {

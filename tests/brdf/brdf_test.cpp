@@ -30,13 +30,13 @@ Vec3 upward(Rng* rng) {
   }
 }
 
-// Where the lobe is highest: a sample of the sharpest one.
+// The direction of the lobe's peak: a sample of the sharpest lobe.
 Vec3 axis_of(std::uint32_t brdf, const Vec3& to_viewer) {
   Vec3d axis = kBrdfList[brdf]->sample(lobe(brdf, 1e9f), to_double(kNormal), normalize(to_double(to_viewer)), 0.5, 0.5);
   return {static_cast<float>(axis.x), static_cast<float>(axis.y), static_cast<float>(axis.z)};
 }
 
-// ∫ f cosθ dω over the hemisphere, by a polar grid about the lobe's axis that grows finer towards it.
+// ∫ f cosθ dω over the hemisphere, by a polar grid around the lobe's axis that gets finer towards it.
 double reflected_share(const Material& m, const Vec3& to_viewer) {
   const BrdfInfo& brdf = *kBrdfList[m.brdf];
   Vec3 axis = axis_of(m.brdf, to_viewer), s, t;
@@ -59,7 +59,8 @@ double reflected_share(const Material& m, const Vec3& to_viewer) {
 
 }  // namespace
 
-// Goal: light may run either way [Helmholtz]. Method: invariant over random pairs of directions, for every lobe listed.
+// Goal: light paths are reversible [Helmholtz]. Method: invariant over random pairs of directions, for every lobe
+// listed.
 TEST_CASE("brdf_is_reciprocal") {
   for (std::uint32_t b = 0; b < kBrdfCount; ++b)
     for (float exponent : kExponents) {
@@ -78,7 +79,7 @@ TEST_CASE("brdf_is_reciprocal") {
     }
 }
 
-// Goal: a lobe reflects no more than its albedo. Method: quadrature of the albedo over angles of view, for every lobe
+// Goal: a lobe reflects no more than its albedo. Method: quadrature of the albedo over viewing angles, for every lobe
 // listed; at normal incidence the Phong lobe reflects all of it.
 TEST_CASE("brdf_conserves_energy") {
   for (std::uint32_t b = 0; b < kBrdfCount; ++b)
@@ -99,9 +100,8 @@ TEST_CASE("brdf_conserves_energy") {
       }
 }
 
-// Goal: no value exceeds the peak that the cut-off relies on, none is negative or no number, for exponents from 0 to
-// 10⁶ (HARDCASES row 31). Method: sampling, aimed at the axis of the lobe and beyond: vectors a little longer than
-// unit.
+// Goal: no value exceeds the peak that the cut-off relies on or is negative or NaN, for exponents from 0 to 10⁶
+// (HARDCASES row 31). Method: sampling around the lobe's axis and elsewhere, with vectors slightly longer than unit.
 TEST_CASE("hard_31_brdf_is_finite_and_below_its_peak") {
   count_assertions("finite, at most the peak");
   for (std::uint32_t b = 0; b < kBrdfCount; ++b)
@@ -121,12 +121,12 @@ TEST_CASE("hard_31_brdf_is_finite_and_below_its_peak") {
         most = std::max(most, f.x);
       }
       CHECK(bounded);
-      CHECK(most >= 0.8f * peak.x);  // and the bound is a least one
+      CHECK(most >= 0.8f * peak.x);  // and the bound is tight
     }
 }
 
-// Goal: the reference has the same lobes. Method: the value in double precision against the float's, random directions
-// and near the axis, for every lobe listed. A float's cosine errs by 1e-7, which a power of n magnifies.
+// Goal: the reference has the same lobes. Method: the value in double precision against the float value, for random
+// directions and near the axis, for every lobe listed. A float cosine errs by 1e-7, magnified by powers of n.
 TEST_CASE("brdf_exact_value_is_the_value") {
   for (std::uint32_t b = 0; b < kBrdfCount; ++b)
     for (float exponent : kExponents) {
@@ -148,9 +148,9 @@ TEST_CASE("brdf_exact_value_is_the_value") {
     }
 }
 
-// Goal: samples have the density that is claimed, so that a mean over them is an integral. Method: the albedo as the
-// mean of value · cosine / density over random directions by sample(), against its quadrature; the standard error tells
-// how near they must be. For every lobe listed.
+// Goal: samples have the stated density, so that their mean is an integral. Method: the albedo as the mean of value ·
+// cosine / density over random directions from sample(), against its quadrature, within the standard error. For every
+// lobe listed.
 TEST_CASE("brdf_samples_integrate_to_the_albedo") {
   constexpr int kSamples = 40000;
   for (std::uint32_t b = 0; b < kBrdfCount; ++b)
@@ -177,7 +177,7 @@ TEST_CASE("brdf_samples_integrate_to_the_albedo") {
       }
 }
 
-// Goal: the order of the list is part of the file format, names are told apart. Method: uniqueness, the first is Phong.
+// Goal: names are unique, and the order of the list, part of the file format, begins with Phong.
 TEST_CASE("brdf_list_begins_with_phong") {
   CHECK(std::string(kBrdfList[0]->name) == "phong");
   for (std::uint32_t i = 0; i < kBrdfCount; ++i)

@@ -1,5 +1,4 @@
-// Every row of the settings' list, in every place that follows from the list. A new row is tested here without a line
-// more.
+// Every row of the settings' list, in every place derived from the list. A new row is tested here without another line.
 #include "effect/setting_list.h"
 
 #include <doctest/doctest.h>
@@ -24,7 +23,7 @@ using namespace pocketray;
 
 namespace {
 
-// A value of the sweep's that is not the default.
+// A value from the sweep other than the default.
 double other_value(const SettingRow& row) {
   const double usual = row.field.get(Quality());
   for (int i = 0; i < row.sweep.count; ++i)
@@ -44,7 +43,7 @@ std::string range_of(const SettingRow& row) {
   return text;
 }
 
-// Settings as a command has them that is called with these words.
+// Settings of a command called with these words.
 Status read_line(std::vector<std::string> words, Settings* settings) {
   CLI::App app;
   CommonOptions options;
@@ -61,7 +60,7 @@ Status read_line(std::vector<std::string> words, Settings* settings) {
 
 }  // namespace
 
-// Goal: rows are told apart, their defaults are allowed, and get and set are of one member each. Method: set each value
+// Goal: rows are distinct, their defaults are allowed, and get and set access one member each. Method: set each value
 // in turn and read all rows.
 TEST_CASE("settings_are_set_one_at_a_time") {
   for (const SettingRow& row : kSettingList) {
@@ -87,8 +86,8 @@ TEST_CASE("settings_are_set_one_at_a_time") {
   CHECK(find_setting("no such setting") == nullptr);
 }
 
-// Goal: all rows are options, with help, default and limits, and one that names a value sets it. Method: a command line
-// for each; beyond its limits it is refused by the option's name and by the library's.
+// Goal: all rows are options with help, default and limits, which set the value they name. Method: a command line for
+// each; values beyond the limits are refused under the option's name, and by the library under its own.
 TEST_CASE("settings_are_options") {
   CLI::App app;
   CommonOptions options;
@@ -122,8 +121,8 @@ TEST_CASE("settings_are_options") {
   }
 }
 
-// Goal: a front's file holds all of them. Method: each with another value, written and read; a line without it, and one
-// with a value beyond the limits, are refused; what people read of a change names it.
+// Goal: a front's file holds all settings. Method: each with another value, written and read; a line without it, and
+// one with a value beyond the limits, are refused; the description of a change names it.
 TEST_CASE("settings_are_in_fronts") {
   for (const SettingRow& row : kSettingList) {
     CAPTURE(std::string(row.name));
@@ -158,9 +157,9 @@ TEST_CASE("settings_are_in_fronts") {
 }
 
 #ifdef POCKETRAY_HAVE_NETWORK
-// Goal: requests carry all of them, in the list's order and as many bytes each as its row and PROTOCOL.md say. Method:
-// two requests that differ in one differ in these bytes alone, but for the checksum; others than allowed are malformed;
-// the document's table, row by row.
+// Goal: requests carry all settings, in list order and with the sizes of the rows and of PROTOCOL.md. Method: two
+// requests that differ in one setting differ only in its bytes and the checksum; invalid values are malformed; the
+// document's table, row by row.
 TEST_CASE("settings_are_on_the_wire") {
   const std::uint32_t header = kHeaderBytes;
   std::uint32_t place = header + 83;  // frame to height
@@ -208,7 +207,7 @@ TEST_CASE("settings_are_on_the_wire") {
 #endif
 
 #ifdef POCKETRAY_HAVE_ACCURACY
-// Goal: a sweep turns all of them. Method: the knob of the row's name takes each of the row's values, by its name, and
+// Goal: a sweep covers all settings. Method: the knob with the row's name takes each of the row's values by name, and
 // knows effect, theory and price.
 TEST_CASE("settings_are_knobs") {
   for (const SettingRow& row : kSettingList) {

@@ -1,7 +1,7 @@
 // No frame makes a NaN on its way: no operation of a frame is invalid in IEEE's sense (0/0, ∞ − ∞, 0·∞, the root of a
-// negative number, a comparison < with a NaN, an integer made of what does not fit it). Overflow and division by zero
-// do occur and are meant to: 1/d of a direction with a zero component is an infinity that the box test replaces, and
-// distances to a light squared may overflow in scenes as large as coordinates may be.
+// negative number, a comparison < with a NaN, a conversion to an integer that does not fit). Overflow and division by
+// zero do occur, on purpose: 1/d of a direction with a zero component is an infinity that the box test replaces, and
+// the squared distance to a light may overflow in scenes that reach the limit of coordinates.
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
@@ -27,8 +27,8 @@ using namespace pocketray;
 
 namespace {
 
-// Soft-float CPUs have no flags to raise. Clang takes flags for unobserved and computes both sides of a choice, also
-// the one that is not taken: what it raises says nothing about the source.
+// Soft-float CPUs have no flags to raise. Clang assumes that nobody reads flags and evaluates both sides of a choice,
+// even the one not taken: flags then say nothing about the source.
 bool flags_are_kept() {
 #if defined(FE_INVALID) && !defined(__clang__)
   volatile double zero = 0;
@@ -60,7 +60,7 @@ void pack_everywhere(const Renderer& r) {
                 width * format.bits_per_pixel / 8);
 }
 
-// Renders every AOV at these times, flags cleared before each frame and read after it is traced and after it is packed.
+// Renders every AOV at these times; clears the flags before each frame and reads them after tracing and after packing.
 void check_frames(const Scene& scene, const Settings& settings, const AccelInfo* accel,
                   const std::vector<double>& times) {
   Status status;
@@ -71,7 +71,7 @@ void check_frames(const Scene& scene, const Settings& settings, const AccelInfo*
       CAPTURE(seconds);
       CAPTURE(static_cast<int>(aov));
       std::feclearexcept(FE_ALL_EXCEPT);
-      if (!render_frame(&test->renderer, seconds, aov).ok) continue;  // a camera that moves out of what it may be
+      if (!render_frame(&test->renderer, seconds, aov).ok) continue;  // a camera that moves out of its limits
       CHECK_MESSAGE(!invalid_raised(), "while tracing");
       std::feclearexcept(FE_ALL_EXCEPT);
       pack_everywhere(test->renderer);
@@ -166,7 +166,7 @@ void make_light_extreme(Rng* rng, Light* light) {
   }
 }
 
-// Puts numbers at the ends of what a scene may hold into a few places of a scene.
+// Replaces a few numbers of a scene by the limits of what a scene may hold.
 void make_extreme(Rng* rng, GeneratedScene* s) {
   switch (next_u32(rng) % 9) {
     case 0:
@@ -206,8 +206,8 @@ void make_extreme(Rng* rng, GeneratedScene* s) {
 
 }  // namespace
 
-// Goal: zero invalid operations in frames of the built-in scenes. Method: the CPU's flags, on the thread that renders,
-// over times, quantities, samples, depths and accelerators.
+// Goal: no invalid operations in frames of the built-in scenes. Method: the CPU's flags, on the rendering thread, over
+// times, quantities, samples, depths and accelerators.
 TEST_CASE("frames_of_builtin_scenes_raise_no_invalid_operation") {
   if (!flags_are_kept()) return;
   int count;
@@ -229,7 +229,7 @@ TEST_CASE("frames_of_builtin_scenes_raise_no_invalid_operation") {
   }
 }
 
-// Goal: the same in generated scenes that show every effect, and each by itself.
+// Goal: the same in generated scenes with every effect together, and each alone.
 TEST_CASE("frames_of_generated_scenes_raise_no_invalid_operation") {
   if (!flags_are_kept()) return;
   for (int feature = -1; feature < kFeatureCount; ++feature) {
@@ -241,8 +241,8 @@ TEST_CASE("frames_of_generated_scenes_raise_no_invalid_operation") {
   }
 }
 
-// Goal: the same in whatever else a scene may hold. Method: generated scenes with up to four numbers at the ends of
-// their ranges, as far as a loader takes them.
+// Goal: the same for any other valid content of a scene. Method: generated scenes with up to four numbers at the ends
+// of their ranges, as far as a loader accepts them.
 TEST_CASE("frames_of_extreme_scenes_raise_no_invalid_operation") {
   if (!flags_are_kept()) return;
   int taken = 0;
@@ -262,7 +262,7 @@ TEST_CASE("frames_of_extreme_scenes_raise_no_invalid_operation") {
 }
 
 #ifdef POCKETRAY_HAVE_IMPORT
-// Goal: the same in models as users have them. Method: those at hand, small pictures.
+// Goal: the same in real models. Method: those available, in small pictures.
 TEST_CASE("frames_of_models_raise_no_invalid_operation") {
   if (!flags_are_kept()) return;
   const char* const models[] = {

@@ -1,5 +1,5 @@
-// CRC-32 of the linear image of each built-in scene at 64×48, and of the scene it was made from. Where a scene or the
-// renderer is meant to change, `build/test_golden` prints the new rows.
+// CRC-32 of the linear image of each built-in scene at 64×48, and of the scene itself. After an intended change of a
+// scene or of the renderer, `build/test_golden` prints the new rows.
 #pragma once
 #include <cstdint>
 

@@ -13,9 +13,8 @@
 
 using namespace pocketray;
 
-// Goal: the same pixels, bit for bit, whatever compiler, optimisation and CPU made them (HARDCASES row 63), by whatever
-// accelerator and number of threads. Method: golden hashes, one table for all builds; .ci/run makes builds at both
-// ends.
+// Goal: the same pixels, bit for bit, with every compiler, optimisation and CPU (HARDCASES row 63), every accelerator
+// and number of threads. Method: golden hashes, one table for all builds; .ci/run makes builds at both extremes.
 TEST_CASE("hard_63_golden_frames_are_the_same_in_every_build") {
   count_assertions("the same hash in every build");
   int count, rows = 0;

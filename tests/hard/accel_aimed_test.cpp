@@ -1,4 +1,4 @@
-// Rays aimed where triangles meet: HARDCASES rows 1, 2, 13 and 16.
+// Rays aimed at edges and vertices: HARDCASES rows 1, 2, 13 and 16.
 #include <doctest/doctest.h>
 
 #include "accel/variant.h"
@@ -8,7 +8,7 @@ using namespace pocketray;
 
 namespace {
 
-// A point of an edge of triangle i, in float as a user would compute it; a corner where `corner`.
+// A point on an edge of triangle i, in float as a user would compute it; with `corner`, a vertex.
 Vec3 edge_point(const Mesh& mesh, std::uint32_t i, int side, float s, bool corner) {
   Vec3 a = mesh.positions[mesh.triangles[i].vertex(side)], b = mesh.positions[mesh.triangles[i].vertex((side + 1) % 3)];
   return corner ? a : a + (b - a) * s;
@@ -17,11 +17,11 @@ Vec3 edge_point(const Mesh& mesh, std::uint32_t i, int side, float s, bool corne
 struct Aimed {
   Mesh mesh;
   Vec3 center;
-  float radius;  // the cube of this side about the center lies inside
+  float radius;  // a cube of this side about the center lies inside
 };
 
-// Rays from inside a closed mesh at its edges and corners, in groups that share an origin: every one must hit. Returns
-// how many miss or, of one group in `oracle_every`, differ from brute force.
+// Rays from inside a closed mesh at its edges and corners, in groups with a common origin: every one must hit. Returns
+// the number that miss or, for one group in `oracle_every`, differ from brute force.
 int wrong_from_inside(const Variant& variant, const World& world, const World& oracle, const Aimed& aimed, Rng* rng,
                       int ray_count, int oracle_every) {
   int wrong = 0;
@@ -61,7 +61,7 @@ std::vector<Aimed> aimed_meshes() {
 }  // namespace
 
 // Goal: no ray slips between triangles. Method: closed meshes near the origin, far from it, tiny and huge; rays from
-// inside at points of edges and at corners; each must hit something, a share of them just what brute force hits.
+// inside at points of edges and at corners; each must hit, and some are compared with brute force.
 TEST_CASE("hard_01_rays_aimed_at_edges_and_vertices_never_miss") {
   std::vector<Aimed> meshes = aimed_meshes();
   std::vector<Variant> variants = all_variants();
@@ -114,7 +114,7 @@ struct Crossings {
   std::vector<std::uint32_t> ids;
   static bool collect(const void* context, std::uint32_t triangle, float, float) {
     static_cast<Crossings*>(const_cast<void*>(context))->ids.push_back(triangle);
-    return false;  // so the traversal goes on to the last
+    return false;  // continues the traversal to the end
   }
 };
 
@@ -131,9 +131,9 @@ bool share_vertex(const Triangle& a, const Triangle& b) {
 
 }  // namespace
 
-// Goal: a ray through a vertex makes one logical crossing, and its id is decided. Method: a convex sphere; all
-// triangles a ray from outside meets (a filter that refuses all collects them) form one fan on the near side and one on
-// the far side: an even number. The closest hit is the smallest id among those of smallest t, for every accelerator.
+// Goal: a ray through a vertex crosses the surface once, with a well-defined id. Method: a convex sphere; the triangles
+// that a ray from outside meets (collected by a filter that rejects all) form one fan on the near side and one on the
+// far side: an even number. The closest hit is the smallest id among those of smallest t, for every accelerator.
 TEST_CASE("hard_02_rays_at_vertices_cross_once_and_have_a_decided_id") {
   Mesh mesh = jittered_sphere(3, 1, {0, 0, 0}, 0, 26);
   auto oracle = make_world(mesh, &kBruteAccel);
@@ -197,7 +197,7 @@ TEST_CASE("hard_13_flat_boxes_are_entered_wherever_their_triangle_is_hit") {
     }
 }
 
-// Goal: axis-parallel rays on a lattice, whose boxes touch face to face, fall through no hole and do not wander.
+// Goal: axis-parallel rays on a lattice, whose boxes touch face to face, fall through no hole and visit few nodes.
 // Method: rays along each axis through lattice points and lines; each hits twice (through the box); its node visits
 // stay within twice those of rays moved by a fraction of a cell.
 TEST_CASE("hard_16_axis_parallel_rays_on_a_lattice_find_no_hole_and_visit_few_nodes") {

@@ -24,7 +24,7 @@ std::uint32_t depth_of(const World& world) {
   return *std::max_element(depth.begin(), depth.end());
 }
 
-// Whether every child's box holds exactly what is under it, and each triangle lies in one leaf.
+// Whether every child's box is exactly the bounds of its content, and each triangle lies in one leaf.
 bool is_sound(const World& world) {
   Accel copy = world.accel;
   return world.info->adopt(&copy, world.accel.data).ok;
@@ -52,7 +52,7 @@ bool contains_children(const World& world, const LeafKind& kind) {
   return true;
 }
 
-// Rays at and around the mesh: how many answers differ from brute force.
+// Traces rays at and around the mesh; returns how many answers differ from brute force.
 int wrong_answers(const Variant& variant, const World& world, const Mesh& mesh, int ray_count, std::uint64_t seed) {
   auto oracle = make_world(mesh, &kBruteAccel);
   Rng rng = make_rng(seed);
@@ -114,8 +114,8 @@ TEST_CASE("hard_08_spoilt_triangles_are_left_out_and_the_rest_agrees_with_brute_
   }
 }
 
-// Goal: every combination of signs and zeros in the direction, -0 among them, is as brute force. Method: soup and
-// lattice, origins at vertices' coordinates so that slabs are met on their faces.
+// Goal: for every combination of signs and zeros in the direction, including -0, hits match brute force. Method: soup
+// and lattice, origins at vertices' coordinates so that slabs are met on their faces.
 TEST_CASE("hard_11_all_sign_and_zero_combinations_of_the_direction_are_as_brute_force") {
   const float values[] = {-1, -0.0f, 0.0f, 1, -1e-30f, 1e-30f, 0.3f};
   for (const Mesh& mesh : {lattice_box(6), soup("soup", 300, 4, 2, 42)})
@@ -138,9 +138,8 @@ TEST_CASE("hard_11_all_sign_and_zero_combinations_of_the_direction_are_as_brute_
     }
 }
 
-// Goal: rays that lie in faces of boxes, where slabs give 0·∞, are as brute force. Method: a lattice, whose boxes have
-// their faces on whole numbers; origins on whole numbers, directions along axes and face diagonals, from inside and
-// out.
+// Goal: rays that lie in faces of boxes, where slabs give 0·∞, match brute force. Method: a lattice, whose boxes have
+// their faces at integers; integral origins, directions along axes and face diagonals, from inside and outside.
 TEST_CASE("hard_12_rays_lying_in_box_faces_are_as_brute_force") {
   const int n = 5;
   Mesh mesh = lattice_box(n);
@@ -160,9 +159,9 @@ TEST_CASE("hard_12_rays_lying_in_box_faces_are_as_brute_force") {
   }
 }
 
-// Goal: what a compact structure leaves out hides nothing. Ours quantises no box and keeps no vertex: every node holds
-// the exact box of what is under it, its own as the default's, and hits are the default's. Method: all nodes of all
-// generated meshes; rays against the default, of every instruction set, one by one and in packets.
+// Goal: the data that a compact structure omits hides no hit. Ours quantises no box and stores no vertex: every node
+// holds the exact box of its content, like the default's, and hits are the default's. Method: all nodes of all
+// generated meshes; rays against the default, with every instruction set, one by one and in packets.
 TEST_CASE("hard_17_compact_nodes_hold_the_exact_boxes_and_hits_are_those_of_the_default") {
   for (const Mesh& mesh : generated_meshes()) {
     auto full = make_world(mesh, &kBvhAccel), compact = make_world(mesh, &kCompactAccel);
@@ -193,9 +192,9 @@ TEST_CASE("hard_17_compact_nodes_hold_the_exact_boxes_and_hits_are_those_of_the_
   }
 }
 
-// Goal: rays through corners and along edges of any box that a tree or a grid may draw about triangles are as brute
-// force, from outside and from on the boundary, with triangles that span many boxes among small ones. Method: every
-// face of such a box lies at a coordinate of some vertex; corners, edges and origins are made of those.
+// Goal: rays through corners and along edges of any box that a tree or a grid may put around triangles match brute
+// force, from outside and from the boundary, with triangles that span many boxes among small ones. Method: every face
+// of such a box lies at a coordinate of some vertex; corners, edges and origins are made of those.
 TEST_CASE("hard_18_rays_through_box_corners_and_on_boundaries_are_as_brute_force") {
   Mesh mixed = soup("small and spanning", 300, 1, 0.1f, 45);
   Rng shapes = make_rng(47);
@@ -223,8 +222,8 @@ TEST_CASE("hard_18_rays_through_box_corners_and_on_boundaries_are_as_brute_force
     }
 }
 
-// Goal: triangles that no split can tell apart end the build within the planned depth and bytes (make_world() gives the
-// arenas exactly what need() says). Method: 10^4 identical triangles; 10^4 with the same centroid.
+// Goal: with triangles that no division can tell apart, the build ends within the planned depth and bytes (make_world()
+// gives the arenas exactly what need() says). Method: 10^4 identical triangles; 10^4 with the same centroid.
 TEST_CASE("hard_14_identical_triangles_and_equal_centroids_end_the_build_within_plan") {
   Mesh concentric;
   Rng rng = make_rng(403);
@@ -255,8 +254,8 @@ TEST_CASE("hard_14_identical_triangles_and_equal_centroids_end_the_build_within_
     }
 }
 
-// Goal: boxes nested 2^-i, which drive a greedy tree into depth, end the build within plan. Method: all the powers of
-// two that float holds below 1e18, one triangle of each and many of each; ratios nearer one go deeper.
+// Goal: with boxes nested by 2^-i, which drive a greedy tree into depth, the build ends within the plan. Method: all
+// powers of two below 1e18 in float, one triangle of each and many of each; ratios nearer one go deeper.
 TEST_CASE("hard_15_boxes_nested_by_powers_of_two_end_the_build_within_plan") {
   for (int copies : {1, 4, 40})
     for (float ratio : {0.5f, 0.7f}) {
@@ -278,13 +277,12 @@ TEST_CASE("hard_15_boxes_nested_by_powers_of_two_end_the_build_within_plan") {
     }
 }
 
-// Goal: a refitted tree answers as one that is built anew, and parents hold their children. Method: move the vertices
-// of several meshes, a little and beyond recognition, through NaN and back; compare with brute force and a rebuilt
-// tree.
+// Goal: a refitted tree answers like a rebuilt one, and parents contain their children. Method: move the vertices of
+// several meshes, slightly and beyond recognition, through NaN and back; compare with brute force and a rebuilt tree.
 TEST_CASE("hard_19_refit_after_motion_contains_children_and_hits_as_a_rebuild") {
   for (Mesh start : {jittered_sphere(3, 1, {0, 0, 0}, 0.05f, 43), soup("soup", 500, 1, 0.2f, 44), degenerates()})
     for (const Variant& variant : all_variants()) {
-      if (!variant.accel->refit) continue;  // is rebuilt instead
+      if (!variant.accel->refit) continue;  // rebuilt instead
       Mesh mesh = start;
       auto world = make_world(mesh, variant.accel);
       Rng rng = make_rng(406);

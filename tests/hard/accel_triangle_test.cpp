@@ -1,4 +1,4 @@
-// The triangle test by itself: HARDCASES rows 3, 4, 5, 9, 10 and 62.
+// The triangle test alone: HARDCASES rows 3, 4, 5, 9, 10 and 62.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -48,7 +48,7 @@ TEST_CASE("hard_03_tiny_triangles_are_hit_with_t_within_4_ulp") {
           origin.z = between(&rng, 0.5f, 2.0f);
         }
         Ray ray = {origin, centroid - origin, kInfinity};
-        // An oblique ray nearly within the plane may pass the triangle by the rounding of its own direction.
+        // An oblique ray nearly in the plane may miss the triangle by the rounding of its own direction.
         if (i % 2 && oracle_triangle(ray, a, b, c, 4).verdict != Verdict::hit) continue;
         Hit hit = closest(*world, ray);
         missed += hit.triangle != 0, ++rays;
@@ -66,7 +66,7 @@ TEST_CASE("hard_03_tiny_triangles_are_hit_with_t_within_4_ulp") {
 }
 
 // Goal: triangles without area are never hit, and nothing is written. Method: points and collinear corners at many
-// places and sizes, oblique and axis-parallel rays at them.
+// places and sizes; oblique and axis-parallel rays at them.
 TEST_CASE("hard_04_pointlike_and_collinear_triangles_are_missed_and_t_is_untouched") {
   for (const AccelInfo* info : kAccelList) {
     Rng rng = make_rng(302);
@@ -91,7 +91,7 @@ TEST_CASE("hard_04_pointlike_and_collinear_triangles_are_missed_and_t_is_untouch
 }
 
 // Goal: slivers of 1:10^6 and rays in their planes get the answer of exact arithmetic outside a band of 4 ulp. Method:
-// the double oracle, rays at the sliver, beside it, and within its plane.
+// the double oracle, rays at the sliver, beside it, and in its plane.
 TEST_CASE("hard_05_slivers_and_edge_on_rays_are_as_double_says_outside_4_ulp") {
   for (const AccelInfo* info : kAccelList) {
     Rng rng = make_rng(303);
@@ -119,7 +119,7 @@ TEST_CASE("hard_05_slivers_and_edge_on_rays_are_as_double_says_outside_4_ulp") {
   }
 }
 
-// Goal: rays that are no rays hit nothing and do no work; extreme but valid ones hit. Method: every combination of NaN,
+// Goal: invalid rays hit nothing and do no work; extreme but valid ones hit. Method: every combination of NaN,
 // infinities and zero in origin and direction; directions of length 1e-40 to 1e38.
 TEST_CASE("hard_09_rays_that_are_not_finite_or_have_no_direction_miss_at_no_cost") {
   Mesh mesh = jittered_sphere(3, 1, {0, 0, 0}, 0.05f, 31);
@@ -156,8 +156,8 @@ TEST_CASE("hard_09_rays_that_are_not_finite_or_have_no_direction_miss_at_no_cost
   }
 }
 
-// Goal: t, u and v of a well-shaped triangle, its edges and corners included. Method: the unit triangle, exact rays
-// from a grid of points and directions that are sums of powers of two; what comes out is known without rounding.
+// Goal: exact t, u and v for a well-shaped triangle, including its edges and corners. Method: the unit triangle, exact
+// rays from a grid of points and directions that are sums of powers of two; the results are known without rounding.
 TEST_CASE("hard_10_unit_triangle_gives_t_u_v_within_16_ulp_edges_included") {
   const float slopes[] = {-0.75f, -0.25f, 0, 0.5f, 1};
   auto unit_ulps = [](float x, double expected) { return std::fabs(x - expected) / kFloatUlp; };
@@ -185,10 +185,10 @@ TEST_CASE("hard_10_unit_triangle_gives_t_u_v_within_16_ulp_edges_included") {
 }
 
 // Goal: float and double choose the same triangle outside a band of 4 ulp. Method: soup of all sizes and positions,
-// rays at random; the oracle decides nearly all of them.
+// random rays; the oracle decides nearly all of them.
 TEST_CASE("hard_62_float_ids_are_those_of_double_outside_a_band_of_4_ulp") {
   for (const Mesh& mesh : generated_meshes()) {
-    if (mesh.triangles.size() > 700 || mesh.name == "denormal") continue;  // float has no ulp to speak of there
+    if (mesh.triangles.size() > 700 || mesh.name == "denormal") continue;  // ulps are meaningless there
     auto world = make_world(mesh, &kBvhAccel);
     Rng rng = make_rng(304);
     float size = mesh.triangles.empty() ? 1.0f : max_component(extent(world->accel.bounds));

@@ -26,8 +26,8 @@ Picture picture_of(const Scene& scene, const AccelInfo* accel, double seconds, A
 }  // namespace
 
 // Goal: every built-in scene × 2^±20 gives the same picture, bit for bit, and depths × 2^±20: no absolute epsilon
-// anywhere on the way from a scene to a picture. Method: differential, every accelerator but brute force, the animated
-// scene in motion.
+// anywhere between a scene and its picture. Method: differential, every accelerator but brute force, the animated scene
+// in motion.
 TEST_CASE("hard_29_builtin_scenes_scaled_by_powers_of_two_same_image") {
   int scene_count;
   const BuiltinScene* list = builtin_list(&scene_count);

@@ -1,4 +1,4 @@
-// Methods of indirect light: what holds for every one of the list, and for those to come.
+// Methods of indirect light: properties of every one in the list, present and future.
 #include <doctest/doctest.h>
 
 #include <set>
@@ -16,16 +16,16 @@ Vec3 random_color(Rng* rng) { return {next_float(rng), next_float(rng), next_flo
 
 }  // namespace
 
-// Goal: a method keeps to what it says. Method: random ambient terms, albedos and normals; the radiance is no more than
-// the bound, the same in double precision but for rounding, and none without an effect; prepare() takes what need()
-// says.
+// Goal: a method keeps its promises. Method: random ambient terms, albedos and normals; the radiance does not exceed
+// the bound, equals the double-precision value up to rounding, and is zero without the effect; prepare() takes as much
+// as need() says.
 TEST_CASE("indirect_methods_keep_their_promises") {
   std::set<std::string> names;
   EffectMask effects = 0;
   for (const IndirectInfo& info : IndirectList::kInfos) {
     CAPTURE(info.name);
     CHECK(names.insert(info.name).second);
-    CHECK((effects & info.effects) == 0);  // one bit each, nobody else's
+    CHECK((effects & info.effects) == 0);  // one bit each, not shared
     CHECK((info.effects & (info.effects - 1)) == 0);
     CHECK((info.effects == 0) == (info.reference == IndirectReference::nothing));
     effects |= info.effects;
@@ -56,7 +56,7 @@ TEST_CASE("indirect_methods_keep_their_promises") {
 }
 
 // Goal: a plan has the methods of its effects and no others. Method: a white surface in ambient light, with the effect
-// and without; the reference's lighting model has it, the transport of light does not.
+// and without; the reference's lighting model includes it, full light transport does not.
 TEST_CASE("indirect_light_follows_the_plan") {
   Scene scene;
   scene.info.ambient = {0.25f, 0.5f, 1};
@@ -77,7 +77,7 @@ TEST_CASE("indirect_light_follows_the_plan") {
 
 namespace {
 
-// A method for the test alone, with data of its own and an effect that has no other method.
+// A method for this test only, with its own data and an effect that no other method has.
 struct StoredIndirect {
   static constexpr const char* kName = "stored";
   static constexpr EffectMask kEffects = bit(Effect::animation);
@@ -95,8 +95,8 @@ struct StoredIndirect {
 
 }  // namespace
 
-// Goal: a method more is a struct and a line. Method: a list of three; each plan has its own methods' light, and the
-// third reads what it prepared.
+// Goal: one more method is a struct and a line. Method: a list of three; each plan has the light of its own methods,
+// and the third reads the data that it prepared.
 TEST_CASE("indirect_method_more_is_a_line_more") {
   using Longer = IndirectMethods<NoIndirect, AmbientIndirect, StoredIndirect>;
   Scene scene;

@@ -23,9 +23,9 @@ bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 }  // namespace
 
-// Goal: a renderer whose settings were changed is one that was started with them. Method: scenes with every effect,
-// started with as many points per area light as there are and turned, one setting after the other and in both
-// directions; the bits of the picture against those of a fresh renderer.
+// Goal: a renderer with changed settings equals one started with them. Method: scenes with every effect, started with
+// the maximum of points per area light; change one setting after the other, in both directions; compare the bits of the
+// picture with those of a fresh renderer.
 TEST_CASE("change_settings_equals_a_fresh_start") {
   using Change = std::function<void(Settings*)>;
   std::vector<Change> changes = {[](Settings* s) { s->samples_per_pixel = 4; },
@@ -60,11 +60,11 @@ TEST_CASE("change_settings_equals_a_fresh_start") {
       before = now;
     }
     CAPTURE(seed);
-    CHECK(differing >= 6);  // the settings were not without effect
+    CHECK(differing >= 6);  // the settings had an effect
   }
 }
 
-// Goal: what was not planned for is refused and changes nothing. Method: more points per area light than at the start,
+// Goal: changes beyond the plan are refused and change nothing. Method: more points per area light than at the start,
 // and settings out of range; the picture before and after.
 TEST_CASE("change_settings_refuses_what_was_not_planned") {
   std::uint32_t features = bit(Feature::emission);
@@ -77,7 +77,7 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   more.points_per_area_light = 5;
   Status refused = change_settings(&test->renderer, more);
   CHECK_FALSE(refused.ok);
-  CHECK(std::strstr(refused.message, "plan with that many") != nullptr);
+  CHECK(std::strstr(refused.message, "plan for that many") != nullptr);
   Settings wrong = settings;
   wrong.ray_depth = kRayDepthMax + 1;
   CHECK_FALSE(change_settings(&test->renderer, wrong).ok);

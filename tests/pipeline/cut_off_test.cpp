@@ -6,15 +6,15 @@
 
 #include "base/color.h"
 #include "scene/builtin_helpers.h"
-#include "support/generated_scene.h"
 #include "support/effort.h"
+#include "support/generated_scene.h"
 
 using namespace pocketray;
 
 namespace {
 
 struct CutOff {
-  double difference_max = 0;  // linear, beyond the rounding of the sums
+  double difference_max = 0;  // linear, in excess of the rounding of the sums
   double left_out_max = 0, allowed = 0;
   int level_difference_max = 0;
   std::uint64_t rays_left_out = 0, rays_left_out_without = 0, rays_with = 0, rays_without = 0;
@@ -42,7 +42,7 @@ CutOff compare_cut_off(const Scene& scene, Settings settings) {
   for (std::uint32_t i = 0; i < a.image.count; ++i)
     for (int axis = 0; axis < 3; ++axis) {
       double left = a.image[i][axis], right = b.image[i][axis];
-      double difference = std::fabs(left - right) - 1e-6 * right;  // a dozen sums round at 6e-8 each
+      double difference = std::fabs(left - right) - 1e-6 * right;  // a dozen sums, each rounded at 6e-8
       if (difference > c.difference_max) c.difference_max = difference;
       int levels = std::abs(srgb_level(a.image[i][axis] * a.exposure) - srgb_level(b.image[i][axis] * b.exposure));
       if (levels > c.level_difference_max) c.level_difference_max = levels;
@@ -60,8 +60,8 @@ void check_bounded(const CutOff& c) {
 
 }  // namespace
 
-// Goal: what the cut-off leaves out of a pixel stays below what it reports, that below half a level, and no displayed
-// level moves by more than one. Method: differential, with and without, on the Cornell box.
+// Goal: the radiance that the cut-off skips stays below the amount it reports, that below half a level, and no display
+// level changes by more than one. Method: differential, with and without, on the Cornell box.
 TEST_CASE("cut_off_is_bounded_on_cornell") {
   auto built = build_builtin("cornell");
   Settings settings;
@@ -71,7 +71,7 @@ TEST_CASE("cut_off_is_bounded_on_cornell") {
   CHECK(c.rays_left_out > 0);
 }
 
-// Goal and method as above, on generated scenes with mirrors, glass and blending, where paths branch and grow faint.
+// Goal and method as above, on generated scenes with mirrors, glass and blending, where paths branch and fade.
 TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
   const std::uint32_t lit = bit(Feature::point_light) | bit(Feature::ambient);
   const std::uint32_t sets[] = {lit | bit(Feature::mirror), lit | bit(Feature::refraction) | bit(Feature::absorption),
@@ -82,7 +82,7 @@ TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       auto generated = generate_scene(features, seed);
       for (Material& m : generated->materials)
-        if (!is_zero(m.mirror)) m.mirror = {0.05f, 0.05f, 0.05f};  // faint enough to matter
+        if (!is_zero(m.mirror)) m.mirror = {0.05f, 0.05f, 0.05f};  // faint enough for the cut-off
       generated->scene.info.exposure = seed % 2 ? 0.02f : 1.0f;
       Settings settings = settings_for(features, effort_side(48), effort_side(36));
       settings.ray_depth = 16;
@@ -95,8 +95,8 @@ TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
   CHECK(left_out > static_cast<std::uint64_t>(effort(1000)));
 }
 
-// Goal: no ray brings more than the bound that the cut-off relies on. Method: sampling, rays from everywhere to
-// everywhere through scenes with every kind of light and surface.
+// Goal: no ray exceeds the bound that the cut-off relies on. Method: sampling, rays from everywhere to everywhere
+// through scenes with every kind of light and surface.
 TEST_CASE("radiance_bound_bounds_every_ray") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     std::uint32_t features = (kAllFeatures & ~bit(Feature::supersampling)) ^ (seed % 2 ? bit(Feature::refraction) : 0u);
@@ -120,8 +120,7 @@ TEST_CASE("radiance_bound_bounds_every_ray") {
   }
 }
 
-// Goal: the bound is not far above what there is to see. Method: closed form, one mirror facing an emitter: L = Le +
-// ρ·Le.
+// Goal: the bound is not far above the real maximum. Method: closed form, one mirror facing an emitter: L = Le + ρ·Le.
 TEST_CASE("radiance_bound_is_reached_by_a_mirror_before_an_emitter") {
   GeneratedScene s;
   Material lamp, mirror;
@@ -139,6 +138,7 @@ TEST_CASE("radiance_bound_is_reached_by_a_mirror_before_an_emitter") {
   auto test = make_renderer(s.scene, settings);
   float seen = trace_ray(test->renderer, {0, 0, 0}, {0, 0, -1}).x;
   CHECK(seen <= test->renderer.frame.radiance_bound);
-  CHECK(test->renderer.frame.radiance_bound <= 4 * 1.01f);  // 2/(1 − ½), every surface taken for the strongest
-  CHECK(seen == doctest::Approx(2 / 0.75).epsilon(1e-4));   // Σ (ρ²)ᵏ · 2
+  CHECK(test->renderer.frame.radiance_bound <=
+        4 * 1.01f);  // 2/(1 − ½), all surfaces assumed as strong as the strongest
+  CHECK(seen == doctest::Approx(2 / 0.75).epsilon(1e-4));  // Σ (ρ²)ᵏ · 2
 }

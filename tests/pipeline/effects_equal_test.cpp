@@ -19,8 +19,8 @@ bool auto_equals_all(const Scene& scene, Settings settings, double seconds) {
 
 }  // namespace
 
-// Goal: leaving out what a scene does not call for changes no bit. Method: differential, `--effects auto` against
-// `--effects all`, on every built-in scene.
+// Goal: leaving out absent effects changes no bit. Method: differential, `--effects auto` against `--effects all`, on
+// every built-in scene.
 TEST_CASE("effects_auto_equals_all_on_builtin_scenes") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
@@ -35,7 +35,7 @@ TEST_CASE("effects_auto_equals_all_on_builtin_scenes") {
 }
 
 // Goal and method as above, on generated scenes: every combination of the features that kernels are instantiated for,
-// every pair and triple of all features, and random ones.
+// every pair and triple of all features, and random sets.
 TEST_CASE("effects_auto_equals_all_on_generated_scenes") {
   int wrong = 0, scenes = 0;
   std::uint32_t first_wrong = 0;
@@ -50,15 +50,15 @@ TEST_CASE("effects_auto_equals_all_on_generated_scenes") {
   CHECK(scenes > effort(1000));
 }
 
-// Goal: the proof above looks at pictures that show their features: a feature changes the picture, or the comparison
-// would prove nothing. Method: invariant, each feature alone against none of them.
+// Goal: the pictures compared above show their features; otherwise the comparison would prove nothing. Method: each
+// feature alone changes the picture.
 TEST_CASE("generated_scenes_show_each_feature") {
   std::uint32_t base = bit(Feature::point_light);
   Picture plain = render_picture(generate_scene(base, 9)->scene, settings_for(base, 24, 18), 0.6);
   for (int i = 0; i < kFeatureCount; ++i) {
     std::uint32_t features = base | 1u << i;
     if (features == base) features = 0;
-    if (features == (base | bit(Feature::absorption))) continue;  // shows inside glass
+    if (features == (base | bit(Feature::absorption))) continue;  // only visible inside glass
     CAPTURE(i);
     CHECK_FALSE(
         same_picture(plain, render_picture(generate_scene(features, 9)->scene, settings_for(features, 24, 18), 0.6)));

@@ -28,7 +28,7 @@ void shuffle(Rng* rng, std::vector<Span>* spans) {
 
 }  // namespace
 
-// Goal: the suites look at scenes that a file could hold. Method: every generated scene passes the checks of a loader.
+// Goal: the suites use valid scenes. Method: every generated scene passes the checks of a loader.
 TEST_CASE("generated_scenes_are_valid") {
   for (std::uint32_t features : feature_sets()) {
     auto generated = generate_scene(features, features);
@@ -38,7 +38,7 @@ TEST_CASE("generated_scenes_are_valid") {
   }
 }
 
-// Goal: the picture does not depend on the number of threads. Method: differential, also of the counted rays.
+// Goal: the picture does not depend on the number of threads. Method: differential, including the ray counts.
 TEST_CASE("picture_is_independent_of_threads") {
   auto generated = generate_scene(kRich, 5);
   Settings settings = small_settings();
@@ -61,8 +61,8 @@ TEST_CASE("picture_is_independent_of_threads") {
   }
 }
 
-// Goal: the picture does not depend on how a frame is cut into spans, nor on their order: threads, servers and temporal
-// coherence rest on that. Method: differential, shuffled pieces of random length by one tracer.
+// Goal: the picture does not depend on how a frame is divided into spans, nor on their order: threads, servers and
+// temporal coherence rely on that. Method: differential, shuffled pieces of random length by one tracer.
 TEST_CASE("picture_is_independent_of_spans") {
   auto generated = generate_scene(kRich, 6);
   auto test = make_renderer(generated->scene, small_settings());
@@ -100,8 +100,8 @@ TEST_CASE("picture_is_independent_of_accelerator") {
   }
 }
 
-// Goal: coarse first, then refined ends at the picture that a direct frame gives, each pixel traced once. Method:
-// differential, stopping at every row.
+// Goal: progressive refinement ends with the picture of a direct frame, each pixel traced once. Method: differential,
+// stopping at every row.
 TEST_CASE("picture_is_independent_of_progressive_refinement") {
   auto generated = generate_scene(kRich, 8);
   for (std::uint32_t threads : {1u, 3u}) {
@@ -121,7 +121,7 @@ TEST_CASE("picture_is_independent_of_progressive_refinement") {
   }
 }
 
-// Goal: a frame depends on its time alone, not on the frames before it. Method: differential, times in two orders.
+// Goal: a frame depends only on its time, not on earlier frames. Method: differential, times in two orders.
 TEST_CASE("picture_is_independent_of_earlier_frames") {
   auto generated = generate_scene(kRich, 9);
   auto test = make_renderer(generated->scene, small_settings());

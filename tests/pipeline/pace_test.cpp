@@ -1,4 +1,4 @@
-// The emulated CPU: frames take its time and are the same frames.
+// The emulated CPU: frames take its time and stay the same.
 #include "engine/pace.h"
 
 #include <doctest/doctest.h>
@@ -46,7 +46,7 @@ constexpr Clock kVirtualClock = {[] { return virtual_now_ns += 500; },
 
 }  // namespace
 
-// Goal: the arithmetic of the pace. Method: by hand, at its edges too.
+// Goal: the arithmetic of the pace. Method: by hand, including the limits.
 TEST_CASE("pace_arithmetic") {
   Pace none, slow, fixed;
   slow.slowdown = 12.5;
@@ -65,15 +65,15 @@ TEST_CASE("pace_arithmetic") {
   pace_spans(slow, spans, 2, 2, span_ns);
   CHECK(span_ns[0] == 12500);
   CHECK(span_ns[1] == 625);
-  pace_spans(fixed, spans, 2, 2, span_ns);  // two threads that share a pixel's time each take twice as long for one
+  pace_spans(fixed, spans, 2, 2, span_ns);  // two threads, each taking twice as long per pixel
   CHECK(span_ns[0] == 2 * 320 * 8841);
   CHECK(span_ns[1] == 2 * 10 * 8841);
 }
 
-// Goal: a paced frame takes slowdown times as long as one that is not, and so do its rows. Method: the processor time
-// that tracing took, which does not count how long the thread slept or waited for others on a busy machine: the rows
-// say that they took slowdown times as much or more, and the frame took no less than its rows. How much more is the
-// machine's affair; paced_ns() has the factor exactly.
+// Goal: a paced frame takes slowdown times as long as an unpaced one, and so do its rows. Method: the processor time of
+// tracing, which excludes sleeping and waiting for others on a busy machine: the rows report at least slowdown times as
+// much, and the frame took no less than its rows. An upper bound would depend on the machine; paced_ns() tests the
+// factor exactly.
 TEST_CASE("pace_slows_a_frame_by_its_factor") {
   Subject subject;
   Renderer* r = subject.r;
@@ -90,12 +90,12 @@ TEST_CASE("pace_slows_a_frame_by_its_factor") {
     double begin_ms = processor_ms(), trace_ms = subject.trace_ms(), used_ms = processor_ms() - begin_ms;
     MESSAGE("at 1/" << slowdown << " of the speed: " << trace_ms << " ms, rows " << rows_ms() << " ms, processor "
                     << used_ms << " ms");
-    CHECK(rows_ms() >= 0.6 * slowdown * used_ms);  // the rest prepares the frame, sleeps and wakes
+    CHECK(rows_ms() >= 0.6 * slowdown * used_ms);  // the rest is preparing the frame, sleeping and waking
     CHECK(trace_ms >= 0.999 * rows_ms());
   }
 }
 
-// Goal: the picture is the same at any pace. Method: whole frames by one and by two threads, bit by bit.
+// Goal: the picture is the same at any pace. Method: whole frames with one and two threads, bit by bit.
 TEST_CASE("pace_leaves_the_picture_as_it_is") {
   Subject plain;
   plain.trace_ms();
@@ -141,7 +141,7 @@ TEST_CASE("pace_keeps_a_fixed_time_per_pixel") {
   }
 }
 
-// Goal: the display says first what is emulated, whole. Method: the longest name, slow frames, two threads.
+// Goal: the display names the emulated device first, in full. Method: the longest name, slow frames, two threads.
 TEST_CASE("pace_is_shown_in_the_first_line_of_the_display") {
   Subject subject(2);
   subject.r->pace.device = "miyoo-mini";
@@ -158,8 +158,8 @@ TEST_CASE("pace_is_shown_in_the_first_line_of_the_display") {
   CHECK(emulation_text(subject.r->pace).empty());
 }
 
-// Goal: who wants to leave does not wait for the emulated CPU. Method: a pace of hours, stopped from another thread, by
-// what the frame is told to look at and by what the pace itself looks at.
+// Goal: leaving does not wait for the emulated CPU. Method: a pace of hours, stopped from another thread, by the
+// frame's own stop flag and by the pace's.
 TEST_CASE("pace_wait_ends_when_stopped") {
   for (bool by_pace : {false, true}) {
     Subject subject;

@@ -1,4 +1,4 @@
-// An accelerator that cannot be refitted is built anew for every frame of a scene that moves.
+// An accelerator without refit is rebuilt for every frame of a moving scene.
 #include <doctest/doctest.h>
 
 #include "accel/accel_list.h"
@@ -20,8 +20,9 @@ std::size_t frame_bytes(const Renderer& r) { return r.memory.arena_bytes[static_
 
 }  // namespace
 
-// Goal: without refit() the pictures are the same and the memory is that of the plan, with an accelerator baked in or
-// without. Method: a list entry for the test alone, which builds and has no refit(); frames forth and back in time.
+// Goal: without refit() the pictures are the same and the memory is within the plan, with and without a baked
+// accelerator. Method: a list entry for this test only, which has build() but no refit(); frames forth and back in
+// time.
 TEST_CASE("rebuild_stands_in_for_refit_within_the_plan") {
   auto generated = generate_scene(bit(Feature::animation) | bit(Feature::point_light), 3);
   Settings settings = settings_for(0, 24, 18);
@@ -50,8 +51,8 @@ TEST_CASE("rebuild_stands_in_for_refit_within_the_plan") {
   }
 }
 
-// Goal: the scratch of a build for every frame lies beside the output, which may be in use then; what moves without any
-// vertex, or not at all, has no build but the first. Method: plans of the same scene.
+// Goal: the scratch of per-frame builds is planned next to the output, which may be in use then; animations without
+// moving vertices, and static scenes, only have the first build. Method: plans of the same scene.
 TEST_CASE("rebuild_scratch_is_planned_beside_the_output") {
   constexpr std::size_t kOutput = 1u << 16;
   AccelInfo rebuilt = without_refit(kBvhAccel);

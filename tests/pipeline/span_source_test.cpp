@@ -21,7 +21,7 @@ void clear(Renderer* r) {
   for (Vec3& pixel : r->image) pixel = kUntraced;
 }
 
-// Spans of random pixels, a share of them in runs, from the top.
+// Spans of random pixels, some of them in runs, from the top.
 std::vector<Span> random_spans(const Settings& s, Rng* rng, double fraction) {
   std::vector<Span> spans;
   std::uint32_t run_max = 1 + next_u32(rng) % 12;
@@ -36,7 +36,7 @@ std::vector<Span> random_spans(const Settings& s, Rng* rng, double fraction) {
   return spans;
 }
 
-// The picture with the list's pixels alone.
+// The picture with only the list's pixels.
 Picture masked(const Settings& s, const Picture& picture, const std::vector<Span>& spans) {
   Picture out(picture.size(), kUntraced);
   for (const Span& span : spans)
@@ -68,7 +68,7 @@ void check_sparse_lists(const Scene& scene, Settings settings, Rng* rng) {
   }
 }
 
-// A source by hand: rows one by one, empty batches between them, and a clock of its own.
+// A handmade source: rows one by one, empty batches between them, and its own clock.
 struct ByHand {
   Renderer* renderer;
   std::uint64_t now_ns = 1000, pace_ns = 0;
@@ -124,9 +124,9 @@ struct Subject {
 
 }  // namespace
 
-// Goal: any list of pixels is traced to the pixels of the whole frame, and no others are touched: temporal coherence
-// rests on that. Method: differential, random lists of every built-in scene at odd sizes, by 1, 2 and 4 threads, with 1
-// and with 3 samples.
+// Goal: any list of pixels is traced to the pixels of the whole frame, without touching others: temporal coherence
+// relies on that. Method: differential, random lists of every built-in scene at odd sizes, with 1, 2 and 4 threads and
+// with 1 and 3 samples.
 TEST_CASE("sparse_lists_equal_the_whole_frame_on_builtin_scenes") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
@@ -143,7 +143,7 @@ TEST_CASE("sparse_lists_equal_the_whole_frame_on_builtin_scenes") {
     }
 }
 
-// Goal: the same of scenes with every feature. Method: as above, generated scenes.
+// Goal: the same for scenes with every feature. Method: as above, generated scenes.
 TEST_CASE("sparse_lists_equal_the_whole_frame_on_generated_scenes") {
   Rng rng = make_rng(6);
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -153,7 +153,7 @@ TEST_CASE("sparse_lists_equal_the_whole_frame_on_generated_scenes") {
   }
 }
 
-// Goal: the benchmark's lists are what they are said to be. Method: pixels in order and about the fraction.
+// Goal: the benchmark's lists are as described. Method: pixels in order and about the right fraction.
 TEST_CASE("sparse_spans_of_the_benchmark_have_the_fraction") {
   Settings settings;
   settings.width = 317, settings.height = 241;
@@ -174,8 +174,8 @@ TEST_CASE("sparse_spans_of_the_benchmark_have_the_fraction") {
     }
 }
 
-// Goal: a source that has nothing for the moment is asked again, until it says that the frame is complete. Method: rows
-// one by one with empty batches between them.
+// Goal: a source without work at the moment is asked again, until it reports the frame complete. Method: rows one by
+// one with empty batches between them.
 TEST_CASE("frame_loop_asks_on_after_empty_batches") {
   Subject subject;
   ByHand hand;
@@ -185,14 +185,14 @@ TEST_CASE("frame_loop_asks_on_after_empty_batches") {
   CHECK(same_picture(picture_of(*subject.r), subject.expected));
 }
 
-// Goal: a deadline ends a call after at least one batch, by the source's clock and pace, and the next call goes on; a
-// batch takes what the pace says. Method: a virtual clock, batches of 37 pixels of 10 ns.
+// Goal: a deadline ends a call after at least one batch, by the source's clock and pace, and the next call continues; a
+// batch takes as long as the pace says. Method: a virtual clock, batches of 37 pixels of 10 ns.
 TEST_CASE("frame_loop_keeps_a_virtual_deadline_and_pace") {
   Subject subject;
   ByHand hand;
   hand.renderer = subject.r, hand.pace_ns = 10;
   SpanSource source = by_hand(&hand);
-  source.deadline_ns = 0;  // long gone
+  source.deadline_ns = 0;  // long past
   CHECK_FALSE(trace_frame(subject.r, source));
   CHECK(hand.row == 1);
   source.deadline_ns = hand.now_ns + 3 * 370;
@@ -204,8 +204,8 @@ TEST_CASE("frame_loop_keeps_a_virtual_deadline_and_pace") {
   CHECK(same_picture(picture_of(*subject.r), subject.expected));
 }
 
-// Goal: a stop ends the loop before the next batch, and a frame that is gone on with is the same. Method: a source that
-// stops itself after some rows; a list that is stopped before it begins.
+// Goal: a stop ends the loop before the next batch, and a continued frame is the same. Method: a source that stops
+// itself after some rows; a list that is stopped before it begins.
 TEST_CASE("frame_loop_stops_and_goes_on") {
   Subject subject;
   ByHand hand;
@@ -228,7 +228,7 @@ TEST_CASE("frame_loop_stops_and_goes_on") {
   CHECK(same_picture(picture_of(*subject.r), subject.expected));
 }
 
-// Goal: bands tell how far they have come, and are the frame. Method: bands of five rows.
+// Goal: bands report their progress and make the whole frame. Method: bands of five rows.
 TEST_CASE("bands_tell_their_progress") {
   Subject subject;
   std::vector<std::uint32_t> told;

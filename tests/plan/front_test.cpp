@@ -25,7 +25,7 @@ std::string text_of(const Front& front) {
 }
 
 Status parse(const std::string& text, Front* front) {
-  std::unique_ptr<char[]> exact(new char[text.size()]);  // a sanitizer sees what is read beyond it
+  std::unique_ptr<char[]> exact(new char[text.size()]);  // lets a sanitizer see any read beyond it
   std::memcpy(exact.get(), text.data(), text.size());
   return parse_front(exact.get(), text.size(), front);
 }
@@ -51,8 +51,8 @@ bool is_sorted(const Front& front) {
 
 }  // namespace
 
-// Goal: a front comes back from its file with the same bits, what is dominated, too. Method: equivalence, random fronts
-// of every size, of half of them all errors known, written, read and written once more.
+// Goal: a front comes back from its file with the same bits, including dominated candidates. Method: random fronts of
+// every size, half of them with all errors known, written, read and written again.
 TEST_CASE("front_text_round_trips") {
   Rng rng = make_rng(7);
   for (std::uint32_t count = 1; count <= kFrontCandidateMax; ++count) {
@@ -77,8 +77,8 @@ TEST_CASE("front_text_round_trips") {
   }
 }
 
-// Goal: the format stays what its documentation shows. Method: the documented line, field by field; names in any order,
-// comments, empty lines and the line ends of another system change nothing.
+// Goal: the format matches its documentation. Method: the documented line, field by field; names in any order,
+// comments, empty lines and the line endings of another system change nothing.
 TEST_CASE("front_text_is_as_documented") {
   Front front;
   REQUIRE(parse(kHead + kLine, &front).ok);
@@ -100,7 +100,7 @@ TEST_CASE("front_text_is_as_documented") {
   CHECK(text_of(other) == text_of(front));
 }
 
-// Goal: what is wrong in a file is said with its line. Method: one fault each; every message names line and cause, and
+// Goal: faults in a file are reported with their line. Method: one fault each; every message names line and cause, and
 // nothing of the file is kept.
 TEST_CASE("front_text_faults_are_named") {
   const struct {
@@ -119,14 +119,14 @@ TEST_CASE("front_text_faults_are_named") {
       {kHead + "samples=" + kLine.substr(9), "line 2: 'samples='"},
       {kHead + "samples=4294967300" + kLine.substr(9), "line 2: 'samples=4294967300'"},
       {kHead + "sparkle=4 " + kLine, "line 2: 'sparkle=4'"},
-      {kHead + "samples=4 " + kLine, "second of its name"},
+      {kHead + "samples=4 " + kLine, "repeated setting"},
       {kHead + kLine.substr(0, kLine.find("ns=")) + "ns=0\n", "'ns=0'"},
       {kHead + kLine.substr(0, kLine.find("ns=")) + "ns=inf\n", "'ns=inf'"},
       {kHead + kLine.substr(0, kLine.find("ns=")) + "ns=1e39\n", "'ns=1e39'"},
       {kHead + kLine.substr(0, kLine.find("flip=")) + "flip=1.5 ns=1\n", "'flip=1.5'"},
       {kHead + kLine.substr(0, kLine.find("flip=")) + "flip=nan ns=1\n", "'flip=nan'"},
       {kHead + "cut-off=65 " + "samples=4 depth=8 area-lights=16 texture-filter=scene normals=scene ns=812\n",
-       "line 2: the cut-off in displayed levels is 65"},
+       "line 2: the cut-off in display levels is 65"},
       {kHead + kLine.substr(0, kLine.find("ns=")) + "ns=" + std::string(60, '0') + "8\n", "line 2: 'ns=000"},
       {kHead + std::string(kFrontLineMax + 1, 'x') + "\n", "longer than"},
   };
@@ -148,8 +148,8 @@ TEST_CASE("front_text_faults_are_named") {
   CHECK(!parse(many, &front).ok);
 }
 
-// Goal: no file makes the reader read beyond it, and none that it takes holds a number out of range. Method: every
-// prefix, and every bit flipped of a file of a few lines, in memory of just their size.
+// Goal: no file makes the reader read beyond it, and accepted files hold no number out of range. Method: every prefix,
+// and every flipped bit of a file of a few lines, in memory of exactly their size.
 TEST_CASE("front_text_takes_hostile_bytes") {
   Rng rng = make_rng(11);
   Front front;
@@ -179,8 +179,8 @@ TEST_CASE("front_text_takes_hostile_bytes") {
   CHECK(taken > 0);  // a flipped digit is as good as any
 }
 
-// Goal: a front holds nothing that costs more and is no better. Method: random candidates with errors; each of those
-// left out is dominated by one that stays, none that stays is by another.
+// Goal: a front holds no candidate that costs more without being better. Method: random candidates with errors; each
+// one dropped is dominated by one that stays, and none that stays is dominated.
 TEST_CASE("front_keeps_what_nothing_dominates") {
   Rng rng = make_rng(3);
   for (int round = 0; round < 50; ++round) {
@@ -212,7 +212,7 @@ TEST_CASE("front_keeps_what_nothing_dominates") {
   }
 }
 
-// Goal: prices of this machine take the place of others, and what was not measured follows them. Method: closed form.
+// Goal: measured prices replace others, and unmeasured ones are scaled accordingly. Method: closed form.
 TEST_CASE("front_adopts_prices") {
   Front front = builtin_front(), measured;
   CHECK(!adopt_prices(&front, measured));
@@ -224,7 +224,7 @@ TEST_CASE("front_adopts_prices") {
   float before = front.candidates[9].ns_per_pixel;
   Candidate untouched = front.candidates[9];
   REQUIRE(adopt_prices(&front, measured));
-  CHECK(!is_sorted(front));  // its order is that of accuracy, which no price changes
+  CHECK(!is_sorted(front));  // it is ordered by accuracy, which no price changes
   for (std::uint32_t i = 1; i < front.count; ++i)
     CHECK(front.candidates[i].samples_per_pixel >= front.candidates[i - 1].samples_per_pixel);
   for (std::uint32_t i = 0; i < front.count; ++i) {
@@ -235,8 +235,8 @@ TEST_CASE("front_adopts_prices") {
   }
 }
 
-// Goal: a price that was computed is one that a file may state. Method: closed form beyond both ends; measured prices
-// of the extremes, which others follow out of the range.
+// Goal: a computed price is valid in a file. Method: closed form beyond both ends; measured prices at the extremes,
+// which push the scaled ones out of range.
 TEST_CASE("front_prices_stay_in_range") {
   CHECK(clamped_price(1e300) == kPriceNsMax);
   CHECK(clamped_price(0) == kPriceNsMin);
@@ -254,8 +254,8 @@ TEST_CASE("front_prices_stay_in_range") {
   }
 }
 
-// Goal: the built-in ladder only ever adds accuracy, and a scene is offered no two settings that give it one picture.
-// Method: invariant, every knob of a step is at least that of the step before; for every set of effects, no two are the
+// Goal: the built-in ladder only ever adds accuracy, and a scene is offered no two settings with the same picture.
+// Method: each knob of a step is at least that of the step before; for every set of effects, no two candidates are the
 // same, and those that matter to it stay.
 TEST_CASE("front_builtin_ascends") {
   Front front = builtin_front();
@@ -284,7 +284,7 @@ TEST_CASE("front_builtin_ascends") {
   CHECK(plain.count == 5);  // 1, 2, 4, 8 and 16 samples
 }
 
-// Goal: people read what changed. Method: examples.
+// Goal: changes are described in words. Method: examples.
 TEST_CASE("front_describes_changes") {
   char text[256];
   Candidate a, b;

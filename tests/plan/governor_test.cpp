@@ -17,12 +17,12 @@ using namespace pocketray;
 namespace {
 
 constexpr double kPixels = 320 * 240;
-constexpr double kNextBelow = 1.34;  // the error of the next cheaper candidate over that of one
+constexpr double kNextBelow = 1.34;  // ratio between the errors of a candidate and of the next cheaper one
 
 // By det_log() and det_exp(), so that every machine simulates the same frames.
 double power(double base, double exponent) { return det_exp(det_log(base) * exponent); }
 
-// A dozen candidates, each 1.4 times the price of the one before and .75 of its error.
+// A dozen candidates, each at 1.4 times the price of the one before and .75 of its error.
 Front test_front() {
   Front front;
   for (std::uint32_t i = 0; i < 12; ++i) {
@@ -40,9 +40,9 @@ struct Simulation {
   bool load_known = true;
   double noise = 0.02;                               // of the logarithm of a frame's time
   double outliers = 0, outlier_factor = 2;           // share of the frames
-  std::function<double(std::uint32_t frame)> load =  // what a frame takes over what its price says
+  std::function<double(std::uint32_t frame)> load =  // a frame's time over the time predicted by its price
       [](std::uint32_t) { return 1.0; };
-  double factors[kFrontCandidateMax];  // by which true prices differ from the front's
+  double factors[kFrontCandidateMax];  // ratio of true prices to the front's
   std::uint32_t frames = 600, settled = 100;
   std::uint64_t seed = 1;
   Simulation() { std::fill_n(factors, kFrontCandidateMax, 1.0); }
@@ -93,7 +93,7 @@ Result simulate(const Simulation& s) {
   return result;
 }
 
-// Runs seeds and budgets; prints the worst of each figure and asserts them.
+// Runs seeds and budgets; prints and checks the worst of each figure.
 void check_budget_is_kept(const std::string& name, const Simulation& prototype, std::uint32_t switches_max,
                           double error_max, const std::function<void(Simulation*, Rng*)>& vary = nullptr) {
   double within = 1, ratio = 0, within_sum = 0, ratio_sum = 0;
@@ -128,9 +128,9 @@ void check_budget_is_kept(const std::string& name, const Simulation& prototype, 
 
 }  // namespace
 
-// Goal: 95 % of the frames stay within 110 % of the budget, whatever befalls their times, with an error no worse than
-// that of the best candidate held fixed that keeps them within 105 %, and without flickering. Method: simulated frames
-// with seeded noise, several budgets each.
+// Goal: 95 % of the frames stay within 110 % of the budget, however their times vary, with an error no worse than that
+// of the best fixed candidate that keeps 95 % within 105 %, and without flickering. Method: simulated frames with
+// seeded noise, several budgets each.
 TEST_CASE("governor_keeps_a_constant_load") {
   for (double noise : {0.005, 0.02, 0.05}) {
     Simulation s;
@@ -185,7 +185,7 @@ TEST_CASE("governor_learns_the_machine") {
   }
 }
 
-// Goal: a budget that nothing keeps gets the fastest candidate, and it is said. Method: closed form.
+// Goal: a budget that no candidate keeps gets the fastest one, and this is reported. Method: closed form.
 TEST_CASE("governor_takes_the_fastest_where_none_fits") {
   Simulation s;
   s.budget_ns = 1e6;
@@ -197,7 +197,8 @@ TEST_CASE("governor_takes_the_fastest_where_none_fits") {
   CHECK(!budget_too_small(simulate(s).governor));
 }
 
-// Goal: of what ran, times and prices become known, whatever the front said. Method: closed form, without noise.
+// Goal: times and prices of candidates that ran become known, whatever the front said. Method: closed form, without
+// noise.
 TEST_CASE("governor_knows_what_ran") {
   Simulation s;
   s.noise = 0;
@@ -210,7 +211,7 @@ TEST_CASE("governor_knows_what_ran") {
   CHECK(learnt_price(g, chosen) == doctest::Approx(2 * 60 * power(1.4, chosen)).epsilon(0.01));
 }
 
-// Goal: what is no time changes nothing. Method: equivalence, NaN, infinity, zero and negative times thrown in.
+// Goal: invalid times change nothing. Method: interleave NaN, infinite, zero and negative times.
 TEST_CASE("governor_ignores_what_is_no_time") {
   Governor a, b;
   start_governor(test_front(), 40e6, kPixels, 1.25, true, &a);

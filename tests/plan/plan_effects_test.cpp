@@ -32,7 +32,7 @@ Parsed parse(const char* text) {
 
 }  // namespace
 
-// Goal: a scene gets exactly the effects it calls for. Method: each feature by itself against the effects it needs.
+// Goal: a scene gets exactly the effects it needs. Method: each feature alone against the effects it needs.
 TEST_CASE("plan_effects_follow_the_scene") {
   struct Row {
     std::uint32_t features;
@@ -68,12 +68,12 @@ TEST_CASE("plan_effects_follow_the_scene") {
   }
 }
 
-// Goal: every decision says why, in the scene's own figures. Method: examples.
+// Goal: every decision states its reason, in the scene's own figures. Method: examples.
 TEST_CASE("plan_effects_give_reasons") {
   std::uint32_t features = bit(Feature::mirror) | bit(Feature::point_light);
   EffectPlan plan = plan_effects(generate_scene(features, 1)->scene, settings_for(features, 8, 6));
   CHECK(reason(plan, Effect::mirror) == "1 of 10 materials mirror");
-  CHECK(reason(plan, Effect::refraction) == "none of 10 materials would transmit");
+  CHECK(reason(plan, Effect::refraction) == "none of 10 materials transmit");
   CHECK(reason(plan, Effect::point_light) == "1 point light");
   CHECK(reason(plan, Effect::spot_light) == "no spot light");
   CHECK(reason(plan, Effect::supersampling) == "1 sample per pixel");
@@ -82,14 +82,14 @@ TEST_CASE("plan_effects_give_reasons") {
   Settings settings = settings_for(features, 8, 6);
   settings.forced_on = bit(Effect::absorption), settings.forced_off = bit(Effect::mirror) | bit(Effect::animation);
   plan = plan_effects(generate_scene(features, 1)->scene, settings);
-  CHECK(reason(plan, Effect::absorption) == "asked for (none of 10 materials would absorb inside)");
-  CHECK(reason(plan, Effect::mirror) == "switched off (1 of 10 materials mirror)");
+  CHECK(reason(plan, Effect::absorption) == "forced on (none of 10 materials absorb)");
+  CHECK(reason(plan, Effect::mirror) == "forced off (1 of 10 materials mirror)");
   CHECK(reason(plan, Effect::animation) == "nothing moves");  // was off anyway
   CHECK(has(plan.mask, Effect::absorption));
   CHECK_FALSE(has(plan.mask, Effect::mirror));
 }
 
-// Goal: what no triangle uses calls for nothing. Method: a mirror material that lies idle.
+// Goal: unused materials need no effects. Method: a mirror material that no triangle uses.
 TEST_CASE("plan_effects_ignore_unused_materials") {
   auto generated = generate_scene(0, 1);
   Material idle;
@@ -99,7 +99,7 @@ TEST_CASE("plan_effects_ignore_unused_materials") {
   CHECK(plan_effects(generated->scene, Settings()).mask == 0);
 }
 
-// Goal: the grammar of --effects. Method: its sentences and their meaning, and what is none.
+// Goal: the grammar of --effects. Method: valid lists and their meaning, and invalid ones.
 TEST_CASE("parse_effects_reads_its_grammar") {
   CHECK((parse("auto").ok && parse("auto").on == 0 && parse("auto").off == 0));
   CHECK((parse("all").on == kAllEffects && parse("all").off == 0));
@@ -126,7 +126,7 @@ TEST_CASE("parse_effects_reads_its_grammar") {
   CHECK(parse("auto,blooming").message.find("'blooming'") != std::string::npos);
 }
 
-// Goal: every setting outside its range is refused by name. Method: each limit and what lies just beyond it.
+// Goal: every setting outside its range is refused by name. Method: each limit and the values just beyond it.
 TEST_CASE("validate_settings_names_what_is_out_of_range") {
   CHECK(validate_settings(Settings()).ok);
   struct Row {

@@ -39,7 +39,7 @@ std::unique_ptr<GeneratedScene> lamp_scene() {
 
 }  // namespace
 
-// Goal: N points give the power of the surface they stand for, whatever N: emission × area × π [Lambert]. Method:
+// Goal: N points have the power of the surface that they represent, for any N: emission × area × π [Lambert]. Method:
 // closed form, on a square, a triangle, a box and a sphere.
 TEST_CASE("plan_lights_keep_the_power_of_an_area_light") {
   for (int shape = 0; shape < 4; ++shape)
@@ -76,8 +76,8 @@ TEST_CASE("plan_lights_keep_the_power_of_an_area_light") {
     }
 }
 
-// Goal: the points lie on the surface, spread evenly, and their mean is its centre, whatever their number: a light
-// does not move with it. Method: a square and a triangle, every count; one point alone is the centre; their moment of
+// Goal: the points lie on the surface, spread evenly, and their mean is its centre, whatever their number, so that a
+// light does not move. Method: a square and a triangle, every count; a single point is the centre; their moment of
 // inertia tends to the surface's.
 TEST_CASE("plan_lights_points_lie_evenly_on_the_surface") {
   for (bool triangle : {false, true}) {
@@ -115,7 +115,7 @@ TEST_CASE("plan_lights_points_lie_evenly_on_the_surface") {
   }
 }
 
-// Goal: the shares go where the area is. Method: closed form, two squares of one material, one nine times the other.
+// Goal: points are distributed by area. Method: closed form, two squares of one material, one nine times the other.
 TEST_CASE("plan_lights_points_follow_the_area") {
   auto s = lamp_scene();
   std::uint32_t m = add_material(s.get(), lamp(1));
@@ -138,7 +138,7 @@ TEST_CASE("plan_lights_are_deterministic") {
   }
 }
 
-// Goal: a scene with too many points is refused before anything is taken for them. Method: at the limit and beyond.
+// Goal: a scene with too many points is refused before memory is taken for them. Method: at the limit and beyond.
 TEST_CASE("plan_lights_refuse_more_points_than_fit") {
   auto s = lamp_scene();
   for (int i = 0; i < 16; ++i) {
@@ -159,7 +159,7 @@ TEST_CASE("plan_lights_refuse_more_points_than_fit") {
   CHECK(std::string(status.message).find("per area light") != std::string::npos);
 }
 
-// Goal: the bound on radiance holds on both sides of a light that has two. Method: a wall at the same distance before
+// Goal: the radiance bound holds on both sides of a two-sided light. Method: a wall at the same distance in front of
 // and behind it: the same bound, and more than the light itself.
 TEST_CASE("plan_lights_radiance_bound_knows_both_sides_of_a_light") {
   float bound[2];

@@ -27,8 +27,8 @@ Settings settings_of(std::uint32_t features) {
 
 }  // namespace
 
-// Goal: the map adds up. Method: invariant, the total is the sum of its arenas, an arena that of its parts and of what
-// its alignment may take.
+// Goal: the map adds up. Method: the total is the sum of its arenas, an arena the sum of its parts and of what
+// alignment may take.
 TEST_CASE("plan_memory_sums_its_parts") {
   for (std::uint32_t features : {0u, kAllFeatures, bit(Feature::emission), bit(Feature::animation)}) {
     auto generated = generate_scene(features, 2);
@@ -44,7 +44,7 @@ TEST_CASE("plan_memory_sums_its_parts") {
   }
 }
 
-// Goal: an effect that is absent takes no byte. Method: the parts that belong to an effect, with and without it.
+// Goal: an absent effect takes no byte. Method: the parts that belong to an effect, with and without it.
 TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
   auto plan_for = [](std::uint32_t features, EffectMask off) {
     auto generated = generate_scene(features, 2);
@@ -63,8 +63,7 @@ TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
   CHECK(part_bytes(plan_for(bit(Feature::point_light), bit(Effect::point_light)), "lights") == 0);
 }
 
-// Goal: what runs stays inside what was planned, and the plan is not much larger. Method: high-water marks of real
-// runs.
+// Goal: a run stays inside its plan, and the plan is not much larger. Method: high-water marks of real runs.
 TEST_CASE("plan_memory_holds_in_a_run") {
   for (std::uint32_t features : feature_sets()) {
     if (features % 3) continue;
@@ -82,8 +81,8 @@ TEST_CASE("plan_memory_holds_in_a_run") {
   }
 }
 
-// Goal: a scene that does not fit is refused with the figures, and what the refusal says would fit does fit. Method:
-// limits from nothing to enough; the size is read back from the message.
+// Goal: a scene that does not fit is refused with the figures, and the size suggested does fit. Method: limits from
+// zero to enough; the size is read back from the message.
 TEST_CASE("plan_memory_refusal_names_what_fits") {
   auto generated = generate_scene(kAllFeatures, 3);
   Settings settings = settings_for(kAllFeatures, 640, 480);
@@ -103,8 +102,8 @@ TEST_CASE("plan_memory_refusal_names_what_fits") {
   }
 }
 
-// Goal: where the default accelerator does not fit, the compact one takes its place, unless another was asked for.
-// Method: limits about what each needs; what runs then gives the same picture.
+// Goal: if the default accelerator does not fit, the compact one replaces it, unless another was requested. Method:
+// limits around the need of each; the picture stays the same.
 TEST_CASE("plan_memory_takes_the_compact_accelerator_where_the_default_does_not_fit") {
   auto generated = generate_scene(bit(Feature::point_light), 5);
   Settings settings = settings_for(0, 16, 12);
@@ -133,7 +132,7 @@ TEST_CASE("plan_memory_takes_the_compact_accelerator_where_the_default_does_not_
 }
 
 // Goal: a block that just holds the plan is enough, and one byte less is refused rather than overrun, wherever the
-// block starts. Method: exhaustive over the misalignments of a cache line, at the edge.
+// block starts. Method: all misalignments within a cache line, at the exact size.
 TEST_CASE("plan_memory_is_exact_at_the_edge_for_any_alignment") {
   auto generated = generate_scene(bit(Feature::point_light), 4);
   Settings settings = settings_for(0, 16, 12);
@@ -158,7 +157,7 @@ TEST_CASE("plan_memory_is_exact_at_the_edge_for_any_alignment") {
   CHECK(refused >= 4 * 64);
 }
 
-// Goal: the drawn map is one line a part and ends within its buffer, however short. Method: every length.
+// Goal: the map is drawn with one line per part and stays within its buffer, however short. Method: every length.
 TEST_CASE("plan_memory_draws_within_its_buffer") {
   auto generated = generate_scene(kAllFeatures, 3);
   auto test = make_renderer(generated->scene, settings_of(kAllFeatures));

@@ -11,7 +11,7 @@ using namespace pocketray;
 
 namespace {
 
-// Where a point appears: −1 … 1 from edge to edge, or far outside where it lies behind the camera.
+// Picture position of a point: −1 … 1 from edge to edge, or far outside if it lies behind the camera.
 Vec2 project(const CameraRays& c, const Vec3& p) {
   Vec3d v = {double(p.x) - c.eye.x, double(p.y) - c.eye.y, double(p.z) - c.eye.z};
   auto along = [&](const Vec3& a) { return v.x * a.x + v.y * a.y + v.z * a.z; };
@@ -30,8 +30,8 @@ std::unique_ptr<GeneratedScene> dark_scene() {
 
 }  // namespace
 
-// Goal: the framing camera keeps the whole scene in view and lets it fill the picture. Method: project the corners, for
-// boxes of every shape, size and place and pictures of every aspect.
+// Goal: the framing camera keeps the whole scene in view and fills the picture with it. Method: project the corners,
+// for boxes of every shape, size and place and pictures of every aspect.
 TEST_CASE("framing_camera_shows_all_corners") {
   const Box boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
                        {{0, 0, 0}, {10, 0, 0.1f}},
@@ -59,7 +59,7 @@ TEST_CASE("framing_camera_shows_all_corners") {
     }
 }
 
-// Goal: a scene of a single point, or of none, still gets a camera that works. Method: degenerate boxes.
+// Goal: a scene with a single point, or none, still gets a working camera. Method: degenerate boxes.
 TEST_CASE("framing_camera_is_defined_for_degenerate_bounds") {
   const Box boxes[] = {empty_box(), {{0, 0, 0}, {0, 0, 0}}, {{3, 4, 5}, {3, 4, 5}}};
   for (const Box& box : boxes) {
@@ -68,7 +68,7 @@ TEST_CASE("framing_camera_is_defined_for_degenerate_bounds") {
   }
 }
 
-// Goal: default lights come only where nothing gives light, and then the scene is lit. Method: one source at a time.
+// Goal: default lights are added only if nothing gives light, and then the scene is lit. Method: one source at a time.
 TEST_CASE("default_lights_come_only_where_nothing_gives_light") {
   auto dark = dark_scene();
   CHECK_FALSE(has_light(dark->scene));
@@ -100,7 +100,7 @@ TEST_CASE("default_lights_come_only_where_nothing_gives_light") {
 
   Material idle;
   idle.emission = {1, 1, 1};
-  add_material(dark.get(), idle);  // which no triangle uses
+  add_material(dark.get(), idle);  // used by no triangle
   dark->bind();
   CHECK_FALSE(has_light(dark->scene));
 }

@@ -21,7 +21,7 @@ namespace {
 
 const recorded::Geometry kPanel = {"panel", 320, 240, 240, 16, 640, {11, 5}, {5, 6}, {0, 5}, {}};
 
-// What a child process did to the console, as its parent sees it.
+// A child's effect on the console, as seen by its parent.
 struct Seen {
   volatile int mode, keyboard;
   volatile int mode_while_running, keyboard_while_running;
@@ -46,7 +46,7 @@ int overflow_stack(int depth) {
   return depth < 0 ? 0 : overflow_stack(depth + 1) + room[0];
 }
 
-// Runs `body` in a child with the screen open, and returns how the child ended.
+// Runs `body` in a child with the screen open; returns how the child ended.
 template <class Body>
 int run_child(Body body, void (*term_handler)(int) = SIG_DFL) {
   void* shared = mmap(nullptr, sizeof(Seen), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -89,8 +89,8 @@ void check_restored() {
 
 }  // namespace
 
-// Goal: console and keyboard come back on close, on exit(), on every signal that ends a program and on a crash, and the
-// program ends as it would have without us. Method: children that end each way, against the recorded console.
+// Goal: console and keyboard are restored on close, on exit(), on every signal that ends a program and on a crash, and
+// the program ends as it would have without us. Method: children that end in each way, against the recorded console.
 TEST_CASE("console_is_restored_on_close_and_exit") {
   int status = run_child([] {
     kLinuxBackend.close();
@@ -126,8 +126,8 @@ TEST_CASE("console_is_restored_on_a_crash") {
   check_restored();
 }
 
-// Goal: a program that handles SIGTERM itself is asked to quit and ends in good order. Method: its handler is called,
-// poll() says quit once, the console stays ours until close().
+// Goal: a program that handles SIGTERM itself is asked to quit and ends in order. Method: its handler is called, poll()
+// reports quit once, and we keep the console until close().
 TEST_CASE("console_leaves_polite_signals_to_the_programs_own_handler") {
   int status = run_child(
       [] {
@@ -157,7 +157,7 @@ TEST_CASE("console_ignores_signals_that_were_ignored") {
   check_restored();
 }
 
-// Goal: what a crashed program left behind is repaired, and a machine without a console is fine. Method: both.
+// Goal: the console left by a crashed program is repaired, and a machine without a console works. Method: both.
 TEST_CASE("console_repairs_what_was_left_behind_and_may_be_absent") {
   Machine machine;
   recorded::reset(&machine, kPanel);

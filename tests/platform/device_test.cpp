@@ -8,7 +8,7 @@
 
 using namespace platform;
 
-// Goal: the device files can be relied on. Method: every entry of the list within the bounds its fields name.
+// Goal: the device files are plausible. Method: every entry of the list within bounds for its fields.
 TEST_CASE("device_list_has_plausible_and_distinct_entries") {
   std::set<std::string> names;
   for (const Device& device : kDevices) {
@@ -36,7 +36,7 @@ TEST_CASE("device_list_has_plausible_and_distinct_entries") {
     CHECK((!device.keys || keys.size() == 12));
   }
   CHECK(names.size() == kDeviceCount);
-  CHECK(find_device("desktop")->slowdown <= 1);  // what the others are compared with
+  CHECK(find_device("desktop")->slowdown <= 1);  // the others are relative to it
   CHECK(find_device("miyoo-") == nullptr);
   CHECK(find_device("miyoo-mini-plus") == nullptr);
   CHECK(find_device("") == nullptr);

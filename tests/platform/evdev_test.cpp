@@ -49,7 +49,7 @@ struct Pad {
 
 }  // namespace
 
-// Goal: the keys of a keyboard and of a gamepad are the pad's, from several devices, repeats left out. Method: recorded
+// Goal: keys of a keyboard and of a gamepad map to the pad, from several devices, without repeats. Method: recorded
 // events.
 TEST_CASE("evdev_keys_and_pad_buttons_are_the_handhelds") {
   Pad pad(3);
@@ -61,7 +61,7 @@ TEST_CASE("evdev_keys_and_pad_buttons_are_the_handhelds") {
   CHECK(pad.taken() == "+up -up");
   pad.send(EV_KEY, BTN_A, 1, 2);
   CHECK(pad.taken() == "+a");
-  pad.send(EV_KEY, KEY_X, 1, 1);  // the same button from another device: it is down already
+  pad.send(EV_KEY, KEY_X, 1, 1);  // the same button from another device: already down
   CHECK(pad.taken() == "");
   pad.send(EV_KEY, BTN_A, 0, 2);
   pad.send(EV_KEY, KEY_F1, 1);
@@ -70,7 +70,7 @@ TEST_CASE("evdev_keys_and_pad_buttons_are_the_handhelds") {
   CHECK(pad.taken() == "-a +hud");
 }
 
-// Goal: a device's own key table comes first. Method: a table in which Esc is select and Ctrl is A.
+// Goal: a device's own key table takes precedence. Method: a table in which Esc is select and Ctrl is A.
 TEST_CASE("evdev_key_table_of_a_device_comes_first") {
   const std::uint16_t keys[kPadButtonCount] = {KEY_UP,       KEY_DOWN,      KEY_LEFT,  KEY_RIGHT,
                                                KEY_LEFTCTRL, KEY_LEFTALT,   KEY_SPACE, KEY_LEFTSHIFT,
@@ -100,7 +100,7 @@ TEST_CASE("evdev_escape_and_control_c_quit") {
   CHECK(pad.taken() == "quit");
 }
 
-// Goal: sticks and hats press from half way on. Method: a stick of 0 … 255 and a hat, swept over.
+// Goal: sticks and hats press from half-way on. Method: a sweep of a stick of 0 … 255 and a hat.
 TEST_CASE("evdev_sticks_and_hats_are_the_cross") {
   Pad pad(2, nullptr, true, true);
   pad.send(EV_ABS, ABS_X, 100);
@@ -121,7 +121,7 @@ TEST_CASE("evdev_sticks_and_hats_are_the_cross") {
   CHECK(pad.taken() == "");
 }
 
-// Goal: no button stays down for ever. Method: events were dropped; a device is unplugged; the others still work.
+// Goal: no button stays down forever. Method: dropped events; an unplugged device; the others still work.
 TEST_CASE("evdev_releases_buttons_when_events_are_lost_or_a_device_goes") {
   Pad pad(2);
   pad.send(EV_KEY, KEY_LEFT, 1);
@@ -140,7 +140,7 @@ TEST_CASE("evdev_releases_buttons_when_events_are_lost_or_a_device_goes") {
   CHECK(pad.taken() == "+b");
 }
 
-// Goal: a device that floods us with what we do not need does not keep poll(). Method: 10,000 movements, then a key.
+// Goal: a device that floods us with irrelevant events does not block poll(). Method: 10,000 movements, then a key.
 TEST_CASE("evdev_poll_is_bounded_under_a_flood") {
   Pad pad(1);
   for (int i = 0; i < 10000; ++i) pad.send(EV_REL, REL_X, 1);

@@ -18,7 +18,7 @@ using recorded::Vsync;
 
 namespace {
 
-// As drivers reported them: the first two from the emulated boards, the others after the headers of the drivers named.
+// As reported by drivers: the first two by the emulated boards, the others from the headers of the drivers named.
 const Geometry kGeometries[] = {
     {"PL110, ARM926, blind until switched on", 320, 240, 240, 16, 640, {11, 5}, {5, 6}, {0, 5}, {}, 0, true},
     {"virtio-gpu, blank until switched on", 320, 240, 240, 32, 1280, {16, 8}, {8, 8}, {0, 8}, {}, 0},
@@ -36,7 +36,7 @@ const Geometry kGeometries[] = {
     {"128 x 96: smaller than the picture", 128, 96, 192, 16, 256, {11, 5}, {5, 6}, {0, 5}, {}, 1},
 };
 
-constexpr std::uint64_t kPatienceNs = 60'000'000'000;  // with a driver that answers, on a machine that is busy
+constexpr std::uint64_t kPatienceNs = 60'000'000'000;  // for a driver that answers, on a busy machine
 
 struct Screen {
   Machine machine;
@@ -81,7 +81,7 @@ void draw(const Screen& screen, const Page& page, int frame, int row_begin, int 
                              pattern(format, x, y, frame));
 }
 
-// Pixels of [row_begin, row_end) of the picture that are not shown as drawn in `frame`.
+// Number of pixels of rows [row_begin, row_end) not shown as drawn in `frame`.
 int wrong_pixels(const Screen& screen, int frame, int row_begin, int row_end) {
   const Geometry& g = screen.machine.geometry;
   int left = (static_cast<int>(g.width) - screen.format.width) / 2;
@@ -100,8 +100,8 @@ int wrong_pixels(const Screen& screen, int frame, int row_begin, int row_end) {
 
 }  // namespace
 
-// Goal: each geometry shows exactly what was drawn, frame after frame, and black around it. Method: three frames on the
-// recorded driver, every pixel; the parts of a row behind its pixels stay the driver's.
+// Goal: each geometry shows exactly the drawing, frame after frame, and black around it. Method: three frames on the
+// recorded driver, every pixel; row padding is never written.
 TEST_CASE("fbdev_shows_every_pixel_of_every_recorded_geometry") {
   for (const Geometry& geometry : kGeometries) {
     CAPTURE(geometry.name);
@@ -131,7 +131,7 @@ TEST_CASE("fbdev_shows_every_pixel_of_every_recorded_geometry") {
   }
 }
 
-// Goal: the picture turned on a panel that is mounted on its side. Method: 320 × 240 by a quarter on the 240 × 320
+// Goal: the rotated picture fits a panel that is mounted sideways. Method: 320 × 240 by a quarter turn on the 240 × 320
 // panel, packed by pack_rows(), a pixel near each corner.
 TEST_CASE("fbdev_fits_a_turned_picture_on_a_portrait_panel") {
   Screen screen(kGeometries[2]);
@@ -153,7 +153,7 @@ TEST_CASE("fbdev_fits_a_turned_picture_on_a_portrait_panel") {
   CHECK(pixel == 0x07e0);
 }
 
-// Goal: the copy takes the changed rows and no others. Method: draw all rows, name some.
+// Goal: only the changed rows are copied. Method: draw all rows, name some.
 TEST_CASE("fbdev_copies_only_the_changed_rows") {
   Screen screen(kGeometries[0]);
   REQUIRE(screen.open());
@@ -170,8 +170,8 @@ TEST_CASE("fbdev_copies_only_the_changed_rows") {
   CHECK(wrong_pixels(screen, 1, 110, 240) == 0);
 }
 
-// Goal: flipping draws into the page that is not shown, and says how old it is. Method: two pages; what is shown does
-// not change before end_frame().
+// Goal: flipping draws into the hidden page and reports its age. Method: two pages; the visible one does not change
+// before end_frame().
 TEST_CASE("fbdev_flips_two_pages_and_tells_their_age") {
   Screen screen(kGeometries[3], Vsync::works);
   REQUIRE(screen.open());
@@ -187,11 +187,11 @@ TEST_CASE("fbdev_flips_two_pages_and_tells_their_age") {
     CHECK(screen.machine.yoffset == (before ? 0u : 240u));
     CHECK(wrong_pixels(screen, frame, 0, 240) == 0);
   }
-  CHECK(screen.machine.slept_ns == 0);  // the vertical blank is what is waited for
+  CHECK(screen.machine.slept_ns == 0);  // waits for the vertical blank instead
   CHECK(screen.machine.vsync_calls == 4 + 3);
 }
 
-// Goal: no wait when the flip is long past. Method: a frame of 100 ms between two flips.
+// Goal: no wait if the flip is long past. Method: a frame of 100 ms between two flips.
 TEST_CASE("fbdev_does_not_wait_when_a_frame_has_passed_since_the_flip") {
   Screen screen(kGeometries[3], Vsync::works);
   REQUIRE(screen.open());
@@ -203,7 +203,7 @@ TEST_CASE("fbdev_does_not_wait_when_a_frame_has_passed_since_the_flip") {
   CHECK(screen.machine.vsync_calls == calls);
 }
 
-// Goal: a vsync call that returns at once, is refused, or never returns is found out, is not called again, and frames
+// Goal: a vsync call that returns at once, is refused, or never returns is detected and not called again, and frames
 // still keep their distance to the flip. Method: each kind; the one that never returns must cost one timeout of real
 // time, once.
 TEST_CASE("fbdev_survives_every_kind_of_vsync") {
@@ -235,7 +235,7 @@ TEST_CASE("fbdev_survives_every_kind_of_vsync") {
   CHECK(vsync_period_ns() > 16'000'000);
 }
 
-// Goal: a driver whose vsync stops working in mid-run costs one timeout. Method: it hangs from the second frame on.
+// Goal: a driver whose vsync stops working midway costs one timeout. Method: it hangs from the second frame on.
 TEST_CASE("fbdev_bounds_a_vsync_that_hangs_later") {
   Screen screen(kGeometries[3], Vsync::works);
   REQUIRE(screen.open());
@@ -252,8 +252,8 @@ TEST_CASE("fbdev_bounds_a_vsync_that_hangs_later") {
   CHECK(screen.machine.vsync_calls == 4 + 1 + 1);
 }
 
-// Goal: panning that is refused, at once or later, ends in copying, without losing a frame. Method: a driver that
-// refuses from the n-th call on; after that also single rows are right.
+// Goal: panning that is refused, at once or later, falls back to copying without losing a frame. Method: a driver that
+// refuses from the n-th call on; single rows are correct after that, too.
 TEST_CASE("fbdev_falls_back_to_copying_when_panning_is_refused") {
   for (int accepted : {0, 1, 2, 3}) {
     CAPTURE(accepted);
@@ -280,7 +280,7 @@ TEST_CASE("fbdev_falls_back_to_copying_when_panning_is_refused") {
   }
 }
 
-// Goal: what cannot be drawn to is refused with its reason, and everything is given back. Method: one of each kind.
+// Goal: unsupported screens are refused with a reason, and everything is restored. Method: one of each kind.
 TEST_CASE("fbdev_refuses_what_it_cannot_draw_to") {
   Geometry paletted = kGeometries[0], short_rows = kGeometries[0], dark = kGeometries[0], nothing = {};
   paletted.bits = 8;
@@ -299,7 +299,7 @@ TEST_CASE("fbdev_refuses_what_it_cannot_draw_to") {
   Screen small(kGeometries[0]);
   small.options.memory_bytes = 320 * 240 * 2 - 1;
   CHECK_FALSE(small.open());
-  CHECK(std::strstr(small.error.text, "back page takes 153600 bytes") != nullptr);
+  CHECK(std::strstr(small.error.text, "back page needs 153600 bytes") != nullptr);
   CHECK(small.machine.files_open == 0);
   small.options.memory_bytes += 1;
   CHECK(small.open());

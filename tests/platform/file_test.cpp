@@ -12,14 +12,14 @@
 
 using namespace folder_test;
 
-// Goal: what cannot be read or written is an error that says why. Method: each kind.
+// Goal: errors of reading and writing state their cause. Method: each kind.
 TEST_CASE("file_errors_say_why") {
   Folder folder;
   FileError error;
   CHECK(content_of(folder.file("a")) == "cannot be opened: No such file or directory");
-  CHECK(content_of(folder.path) == "is not a regular file: name one that is");
+  CHECK(content_of(folder.path) == "is not a regular file: name a regular file");
   REQUIRE(write_file(folder.file("a"), "", &error));
-  CHECK(content_of(folder.file("a")) == "is empty: make it again");
+  CHECK(content_of(folder.file("a")) == "is empty: create it again");
   CHECK_FALSE(write_file(folder.file("no/a"), "x", &error));
   CHECK(std::strstr(error.text, "No such file") != nullptr);
   CHECK_FALSE(write_file("/tmp/" + std::string(2000, 'x'), "x", &error));
@@ -27,11 +27,11 @@ TEST_CASE("file_errors_say_why") {
   CHECK_FALSE(write_file(folder.path, "x", &error));  // a folder
   CHECK(std::strstr(error.text, "is a folder") != nullptr);
   CHECK_FALSE(write_file("", "x", &error));
-  CHECK(std::strstr(error.text, "empty path") != nullptr);
+  CHECK(std::strstr(error.text, "path is empty") != nullptr);
 }
 
-// Goal: a folder is made where there is none, and one that is there will do; anything else is an error. Method: twice,
-// within a missing folder, over a file.
+// Goal: a missing folder is made, and an existing one is accepted; anything else is an error. Method: twice, within a
+// missing folder, over a file.
 TEST_CASE("file_folder_is_made_or_there") {
   Folder folder;
   FileError error;
@@ -47,22 +47,22 @@ TEST_CASE("file_folder_is_made_or_there") {
   rmdir(made.c_str());
 }
 
-// Goal: nothing that is no regular file is waited for. Method: a pipe that nobody writes to, a device, a loop of links;
-// an alarm ends the test where it hangs.
+// Goal: anything but a regular file is refused without waiting. Method: a pipe that nobody writes to, a device, a loop
+// of links; an alarm ends the test if it hangs.
 TEST_CASE("file_that_is_none_is_refused_at_once") {
   Folder folder;
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
   REQUIRE(symlink("loop", folder.file("loop").c_str()) == 0);
   alarm(20);
-  CHECK(content_of(folder.file("pipe")) == "is not a regular file: name one that is");
-  CHECK(content_of("/dev/zero") == "is not a regular file: name one that is");
+  CHECK(content_of(folder.file("pipe")) == "is not a regular file: name a regular file");
+  CHECK(content_of("/dev/zero") == "is not a regular file: name a regular file");
   CHECK(content_of("/dev/tty").find("bytes") == std::string::npos);
   CHECK(content_of(folder.file("loop")).find("cannot be opened") == 0);
   alarm(0);
 }
 
-// Goal: what was read stays, whatever becomes of the file, and a file that is cut short while it is read is an error,
-// not a signal. Method: cut and written over, by its one inode, as `cp` and a full disk do it.
+// Goal: data in memory does not change with the file, and a file truncated while being read is an error, not a signal.
+// Method: truncate and overwrite the same inode, as `cp` and a full disk do.
 TEST_CASE("file_in_memory_does_not_follow_the_file") {
   Folder folder;
   FileError error;
@@ -88,7 +88,7 @@ TEST_CASE("file_in_memory_does_not_follow_the_file") {
   CHECK(read_bytes(&reader, &bytes[0], 1000, &error));
   REQUIRE(truncate(path.c_str(), 5000) == 0);
   CHECK_FALSE(read_bytes(&reader, &bytes[1000], bytes.size() - 1000, &error));
-  CHECK(std::strstr(error.text, "became shorter") != nullptr);
+  CHECK(std::strstr(error.text, "was truncated") != nullptr);
   close_reader(&reader);
   CHECK(reader.descriptor == -1);
 }

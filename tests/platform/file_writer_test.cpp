@@ -1,4 +1,4 @@
-// Files are replaced as a whole, and stay what they were: their permissions, their links, their devices.
+// Files are replaced as a whole and keep their permissions, links and devices.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -21,7 +21,7 @@ using namespace folder_test;
 
 namespace {
 
-// Called with each descriptor that is brought to the disk; its result is that of fsync().
+// Called with each descriptor flushed to the disk; its result is that of fsync().
 std::function<int(int)> on_fsync;
 
 mode_t mode_of(const std::string& path) {
@@ -34,13 +34,13 @@ bool is_root() { return geteuid() == 0; }
 
 }  // namespace
 
-// In place of the system's.
+// Replaces the system's.
 extern "C" int fsync(int descriptor) {
   if (on_fsync) return on_fsync(descriptor);
   return static_cast<int>(syscall(SYS_fsync, descriptor));
 }
 
-// Goal: a file is replaced as a whole, and readers keep the old one until then. Method: write, write again, look in
+// Goal: a file is replaced as a whole, and readers keep the old one until then. Method: write, write again, read in
 // between.
 TEST_CASE("file_is_replaced_as_a_whole") {
   Folder folder;
@@ -66,8 +66,8 @@ TEST_CASE("file_is_replaced_as_a_whole") {
   CHECK(folder.names() == std::vector<std::string>{"a"});
 }
 
-// Goal: two programs that write one file both succeed, and it is that of the last one as a whole. Method: another
-// process writes it while this one does.
+// Goal: two programs that write one file both succeed, and the last one's content is complete. Method: another process
+// writes it while this one does.
 TEST_CASE("file_of_two_writers_is_whole") {
   Folder folder;
   FileError error;
@@ -87,8 +87,8 @@ TEST_CASE("file_of_two_writers_is_whole") {
   CHECK(folder.names() == std::vector<std::string>{"a"});
 }
 
-// Goal: a disk that is full loses neither the old file nor leaves half a new one. Method: a file size limit, which
-// makes write() come up short and then fail, as a full disk does.
+// Goal: a full disk neither loses the old file nor leaves half a new one. Method: a file size limit, which makes
+// write() return short and then fail, as a full disk does.
 TEST_CASE("file_that_does_not_fit_leaves_the_old_one") {
   Folder folder;
   FileError error;
@@ -107,7 +107,7 @@ TEST_CASE("file_that_does_not_fit_leaves_the_old_one") {
   CHECK(folder.names() == std::vector<std::string>{"a"});
 }
 
-// Goal: devices stay devices, and one that takes nothing is noticed. Method: a link to /dev/full and to /dev/null.
+// Goal: devices stay devices, and one that accepts nothing is noticed. Method: a link to /dev/full and to /dev/null.
 TEST_CASE("file_writer_writes_devices_directly") {
   Folder folder;
   FileError error;
@@ -123,8 +123,8 @@ TEST_CASE("file_writer_writes_devices_directly") {
   CHECK(std::strstr(error.text, "did not take all") != nullptr);
 }
 
-// Goal: a power cut leaves the old file or the new one, whole. Method: what lies under the name, and what is brought to
-// the disk, in the order in which that is asked for; a disk that fails then.
+// Goal: a power cut leaves either the old file or the new one, complete. Method: the content under the name and the
+// files flushed to the disk, in the order of the calls; a disk that fails at that point.
 TEST_CASE("file_reaches_the_disk_before_its_name") {
   Folder folder;
   FileError error;
@@ -145,8 +145,8 @@ TEST_CASE("file_reaches_the_disk_before_its_name") {
   CHECK(folder.names() == std::vector<std::string>{"a"});
 }
 
-// Goal: a file that is replaced keeps its permissions and its owner, a new one has those of the umask. Method: modes
-// that no umask gives; as root, a file of somebody else's; a group that cannot be kept is covered by root's absence.
+// Goal: a replaced file keeps its permissions and its owner, a new one follows the umask. Method: modes that no umask
+// gives; as root, another user's file; without root, a group that cannot be kept.
 TEST_CASE("file_keeps_its_permissions") {
   Folder folder;
   FileError error;
@@ -166,8 +166,7 @@ TEST_CASE("file_keeps_its_permissions") {
   umask(before);
 }
 
-// Goal: what a user has protected is not replaced. Method: a file without the right to write, by somebody who is not
-// root: a child that gives that up.
+// Goal: a protected file is not replaced. Method: a file without write permission, in a child that gives up root.
 TEST_CASE("file_that_is_read_only_stays") {
   Folder folder;
   FileError error;
@@ -186,7 +185,7 @@ TEST_CASE("file_that_is_read_only_stays") {
   CHECK(content_of(folder.file("a")) == "old");
 }
 
-// Goal: a link stays a link, and what it names is written, be it there or not; links in a circle are an error. Method:
+// Goal: a link stays a link, and its target is written, whether or not it exists; circular links are an error. Method:
 // links of one and two steps, relative ones from another folder, one to nothing.
 TEST_CASE("file_behind_a_link_is_written") {
   Folder folder;
@@ -210,8 +209,8 @@ TEST_CASE("file_behind_a_link_is_written") {
   remove_folder(within.c_str());
 }
 
-// Goal: nobody can have another file written by a link where the part will lie, and what a killed program left there is
-// in nobody's way. Method: links and files of all the likely names, to a file that must not change.
+// Goal: a link planted at the part's name cannot make us write another file, and files left by killed programs do no
+// harm. Method: links and files of all the likely names, to a file that must not change.
 TEST_CASE("file_part_is_no_one_elses") {
   Folder folder;
   FileError error;
@@ -228,7 +227,7 @@ TEST_CASE("file_part_is_no_one_elses") {
   CHECK(folder.names().size() == 6);
 }
 
-// Goal: the longest name that a file can have can be written. Method: 255 bytes.
+// Goal: a file with the longest possible name can be written. Method: 255 bytes.
 TEST_CASE("file_of_the_longest_name_is_written") {
   Folder folder;
   FileError error;
@@ -237,8 +236,8 @@ TEST_CASE("file_of_the_longest_name_is_written") {
   CHECK(content_of(folder.file(name.c_str())) == "long");
 }
 
-// Goal: descriptors and pipes are written as they are. Method: a descriptor of a file by its number, after what was
-// written there before; a FIFO that a child reads.
+// Goal: descriptors and pipes are written directly. Method: a file's descriptor by number, after data already written;
+// a FIFO that a child reads.
 TEST_CASE("file_writer_writes_descriptors_and_pipes") {
   Folder folder;
   FileError error;
@@ -253,7 +252,7 @@ TEST_CASE("file_writer_writes_descriptors_and_pipes") {
   close(file);
   CHECK_FALSE(can_write(named.c_str(), &error));
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
-  CHECK(can_write(folder.file("pipe").c_str(), &error));  // and does not wait for a reader
+  CHECK(can_write(folder.file("pipe").c_str(), &error));  // without waiting for a reader
   pid_t child = fork();
   if (child == 0) {
     char text[16] = {0};
@@ -268,8 +267,7 @@ TEST_CASE("file_writer_writes_descriptors_and_pipes") {
   CHECK(S_ISFIFO(mode_of(folder.file("pipe"))));
 }
 
-// Goal: it is known beforehand whether a file can be written, and asking leaves nothing. Method: each kind, and what
-// open_writer() says of it.
+// Goal: can_write() predicts open_writer() and leaves no trace. Method: each kind, compared with open_writer().
 TEST_CASE("file_can_be_asked_for_beforehand") {
   Folder folder;
   FileError error, other;
@@ -288,7 +286,7 @@ TEST_CASE("file_can_be_asked_for_beforehand") {
   CHECK(content_of(folder.file("a")) == "old");
 }
 
-// Goal: two paths of one file are known to be that, there or not. Method: links of both kinds, detours, others.
+// Goal: two paths of one file are recognised, whether or not it exists. Method: links of both kinds, detours, others.
 TEST_CASE("file_paths_of_one_file_are_known") {
   Folder folder;
   FileError error;
@@ -305,5 +303,5 @@ TEST_CASE("file_paths_of_one_file_are_known") {
   for (const char* name : {"new", "to_new", "./new"}) CHECK(same("new", name));
   for (const char* name : {"b", "new", "no/a"}) CHECK_FALSE(same("a", name));
   CHECK_FALSE(same("new", "newer"));
-  CHECK_FALSE(is_same_file("/dev/null", "/dev/null"));  // two results may both go nowhere
+  CHECK_FALSE(is_same_file("/dev/null", "/dev/null"));  // two results may both be discarded
 }

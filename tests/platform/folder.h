@@ -1,4 +1,4 @@
-// A folder of its own for a test, and whole files in it.
+// A private folder for a test, and whole files in it.
 #pragma once
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ struct Folder {
     for (const std::string& name : names()) std::remove(file(name.c_str()).c_str());
     rmdir(path);
   }
-  // Of all that lies in it, sorted.
+  // Of all its entries, sorted.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
     FileError error;

@@ -7,8 +7,8 @@
 
 using namespace platform;
 
-// Goal: where instructions are counted, twice the work is about twice as many, a thread's included; where they are not,
-// there are none. Method: a loop that the compiler keeps.
+// Goal: if instructions are counted, twice the work is about twice as many, including a thread's; otherwise the count
+// is 0. Method: a loop that the compiler keeps.
 TEST_CASE("instructions_count_work_or_say_that_they_cannot") {
   bool counts = start_instruction_count();
   CHECK(start_instruction_count() == counts);

@@ -14,7 +14,7 @@ using namespace platform;
 
 namespace {
 
-// The flags that /proc/self/smaps gives the mapping of an address; empty where it has none.
+// The flags of an address's mapping in /proc/self/smaps; empty if it has none.
 std::string flags_at(const void* address) {
   std::ifstream maps("/proc/self/smaps");
   std::string line;
@@ -33,9 +33,9 @@ std::string flags_at(const void* address) {
 
 }  // namespace
 
-// Goal: a block may be made of large pages afterwards, all of it that is whole pages and nothing besides, and its
-// content stays. Method: wish them for the middle of a mapping, begun and ended within pages, and read what Linux notes
-// down for it; systems without large pages note nothing.
+// Goal: large pages can be requested for a block, affecting all its whole pages and nothing else, without changing its
+// content. Method: request them for the middle of a mapping, with ends within pages, and read Linux's record of it;
+// systems without large pages record nothing.
 TEST_CASE("memory_wishes_large_pages_for_a_block_and_nothing_besides") {
   const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), bytes = 64 * page;
   void* mapping = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

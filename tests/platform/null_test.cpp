@@ -21,7 +21,7 @@ ScreenOptions options_with(std::vector<std::uint32_t>* memory, int width, int he
 
 }  // namespace
 
-// Goal: a backend is found by its name, null is last and there is always one. Method: the list.
+// Goal: a backend is found by name; null is last, and there is always one. Method: the list.
 TEST_CASE("platform_finds_every_backend_and_null_last") {
   REQUIRE(kBackendCount >= 1);
   CHECK(kBackends[kBackendCount - 1] == &kNullBackend);
@@ -30,7 +30,7 @@ TEST_CASE("platform_finds_every_backend_and_null_last") {
   for (int i = 0; i < kBackendCount; ++i) CHECK(kBackends[i]->needs[0] != 0);
 }
 
-// Goal: events come in order, each when its time has come. Method: a script and the virtual clock.
+// Goal: events come in order, each at its time. Method: a script and the virtual clock.
 TEST_CASE("null_plays_its_script_by_the_virtual_clock") {
   Event script[3];
   script[0] = {EventType::button_down, Button::left, nullptr, 0};
@@ -67,7 +67,7 @@ TEST_CASE("null_plays_its_script_by_the_virtual_clock") {
   null_configure(NullSettings());
 }
 
-// Goal: what is shown is what was drawn, in the rows named, with any format and padding. Method: RGB565, two frames.
+// Goal: the screen shows the drawing, in the rows named, with any format and padding. Method: RGB565, two frames.
 TEST_CASE("null_shows_the_changed_rows_of_a_configured_screen") {
   constexpr int kLine = 16 * 2 + 6;
   std::vector<std::uint8_t> screen(kLine * 8, 0);
@@ -103,7 +103,7 @@ TEST_CASE("null_shows_the_changed_rows_of_a_configured_screen") {
   null_configure(NullSettings());
 }
 
-// Goal: no page is drawn beyond the memory given. Method: too little memory, and a turned screen.
+// Goal: nothing is drawn beyond the given memory. Method: too little memory, and a rotated screen.
 TEST_CASE("null_refuses_too_little_memory_and_turns_the_screen") {
   null_configure(NullSettings());
   std::vector<std::uint32_t> memory;

@@ -1,4 +1,4 @@
-// Programs that are started.
+// Starting programs.
 #include "platform/process.h"
 
 #include <doctest/doctest.h>
@@ -36,8 +36,9 @@ bool is_there(const std::string& path) { return access(path.c_str(), F_OK) == 0;
 
 }  // namespace
 
-// Goal: a program gets its words as they are and runs in its folder; how it ends is told. Method: a shell that compares
-// a word no shell would leave alone, writes a file and ends with either status, a signal, or is not there at all.
+// Goal: a program receives its words unchanged and runs in its folder; its end is reported. Method: a shell that
+// compares a word that no shell would leave unchanged, writes a file and ends with either status or a signal, or does
+// not exist.
 TEST_CASE("process_runs_with_its_words_in_its_folder") {
   Folder folder;
   Process process;
@@ -77,7 +78,7 @@ TEST_CASE("process_is_watched_and_killed") {
   CHECK(state == ProcessState::succeeded);
 }
 
-// Goal: none outlives the one that started it. Method: one that sleeps, started by a thread that ends.
+// Goal: no program outlives the thread that started it. Method: a sleeping one, started by a thread that ends.
 TEST_CASE("process_ends_with_who_started_it") {
   Process process;
   Folder folder;
@@ -88,8 +89,8 @@ TEST_CASE("process_ends_with_who_started_it") {
   CHECK_FALSE(wait_for(&process));
 }
 
-// Goal: programs are found as a shell finds them. Method: a PATH with an empty folder, one that is not there, one with
-// a file that is no program and one with the program; room for the path and a byte too little.
+// Goal: programs are found as by a shell. Method: a PATH with an empty folder, a missing one, one with a non-executable
+// file and one with the program; room for the path, and one byte less.
 TEST_CASE("process_program_is_found_along_the_path") {
   Folder data, programs;
   std::string old_path = getenv("PATH") ? getenv("PATH") : "";
@@ -111,7 +112,7 @@ TEST_CASE("process_program_is_found_along_the_path") {
   setenv("PATH", old_path.c_str(), 1);
 }
 
-// Goal: a program knows its file and its words. Method: this test's; a byte too little room.
+// Goal: a program knows its file and its words. Method: this test's; one byte too little room.
 TEST_CASE("process_knows_what_it_was_started_as") {
   char path[1024], words[8192];
   REQUIRE(own_program(path, sizeof path));

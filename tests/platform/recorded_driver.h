@@ -1,5 +1,5 @@
-// A framebuffer, a console and input devices as recorded from real ones, behind the Linux backend's system calls. One
-// at a time.
+// A framebuffer, a console and input devices recorded from real ones, behind the Linux backend's system calls. One at a
+// time.
 #pragma once
 #include <linux/fb.h>
 #include <linux/input.h>
@@ -23,7 +23,7 @@ struct Geometry {
   bool blind_until_put = false;  // stride 0 and no colour fields before FBIOPUT_VSCREENINFO: PL11x without fbcon
   bool refuses_put = false;
   std::uint32_t map_offset = 0;  // smem_start within its memory page
-  std::uint32_t yoffset = 0;     // a driver that insists on showing from there
+  std::uint32_t yoffset = 0;     // of a driver that always displays from there
 };
 
 struct InputDevice {
@@ -34,9 +34,9 @@ struct InputDevice {
 struct Machine {
   Geometry geometry;
   Vsync vsync = Vsync::absent;
-  int pans_accepted = 1 << 30;  // then the driver refuses
+  int pans_accepted = 1 << 30;  // after that many the driver refuses
   bool has_console = true;
-  std::vector<std::uint8_t> memory;  // mapped whole; the pixels start at map_offset
+  std::vector<std::uint8_t> memory;  // mapped as a whole; the pixels start at map_offset
   std::vector<InputDevice> inputs;
 
   bool put = false;
@@ -44,7 +44,7 @@ struct Machine {
   int pans = 0, puts = 0, restores = 0;
   std::atomic<int> vsync_calls{0};
   std::atomic<std::uint64_t> clock_ns{1'000'000'000};
-  std::atomic<bool> release{false};  // lets a wait that never returns go
+  std::atomic<bool> release{false};  // releases a wait that never returns
   std::atomic<bool> stuck{false};
   std::uint64_t slept_ns = 0;
   int console_mode = 0, keyboard_mode = 3;  // KD_TEXT, K_UNICODE
@@ -56,7 +56,7 @@ extern const platform::Driver kDriver;
 
 // A machine with that screen; memory filled with 0xee.
 void reset(Machine* fresh, const Geometry& geometry, Vsync vsync = Vsync::absent);
-// The pixel that is shown at (x, y) of the panel: after panning.
+// The pixel visible at (x, y) of the panel, after panning.
 const std::uint8_t* shown(int x, int y);
 
 }  // namespace recorded

@@ -58,7 +58,7 @@ std::string taken() {
 
 }  // namespace
 
-// Goal: the window shows the picture scaled by a whole number, black around it. Method: SDL's dummy driver; read the
+// Goal: the window shows the picture at an integer scale, with black around it. Method: SDL's dummy driver; read the
 // pixels back.
 TEST_CASE("sdl2_window_shows_the_picture_by_whole_numbers") {
   Window screen;
@@ -90,8 +90,8 @@ TEST_CASE("sdl2_window_shows_the_picture_by_whole_numbers") {
   CHECK(wrong == 0);
 }
 
-// Goal: the window of an emulated device shows 16-bit pixels in its order, and a screen that is mounted turned upright.
-// Method: as before, with each order and rotation; a picture of levels that both formats have, turned by its position.
+// Goal: the window of an emulated device shows 16-bit pixels in its order, and a screen mounted sideways upright.
+// Method: as above, with each order and rotation; a picture of levels common to both formats, rotated by its position.
 TEST_CASE("sdl2_window_shows_an_emulated_screen_upright") {
   for (bool blue_first : {false, true})
     for (int rotation : {0, 90, 180, 270}) {
@@ -137,7 +137,7 @@ TEST_CASE("sdl2_window_shows_an_emulated_screen_upright") {
     }
 }
 
-// Goal: keys are the handheld's buttons, once each. Method: pushed events.
+// Goal: keys map to the handheld's buttons, once each. Method: pushed events.
 TEST_CASE("sdl2_keys_are_the_handhelds_buttons") {
   Window screen;
   REQUIRE(screen.open());
@@ -158,7 +158,7 @@ TEST_CASE("sdl2_keys_are_the_handhelds_buttons") {
   CHECK(taken() == "quit");
 }
 
-// Goal: controllers are the handheld's buttons, and a file dropped is told. Method: pushed events.
+// Goal: controllers map to the handheld's buttons, and a dropped file is reported. Method: pushed events.
 TEST_CASE("sdl2_controllers_and_dropped_files_are_events") {
   Window screen;
   REQUIRE(screen.open());
@@ -182,7 +182,7 @@ TEST_CASE("sdl2_controllers_and_dropped_files_are_events") {
   CHECK(taken() == "drop:scene.glb");
 }
 
-// Goal: a turned picture gets a turned window; too little memory is refused; the window may be opened again. Method:
+// Goal: a rotated picture gets a rotated window; too little memory is refused; the window may be opened again. Method:
 // each.
 TEST_CASE("sdl2_window_opens_turned_and_again") {
   Window screen;

@@ -13,7 +13,7 @@ using namespace platform;
 
 namespace {
 
-// Runs `body` in a process of its own; whether it says true.
+// Runs `body` in a separate process; returns whether it returned true.
 template <class Body>
 bool holds_in_child(Body body) {
   pid_t child = fork();
@@ -25,8 +25,8 @@ bool holds_in_child(Body body) {
 
 }  // namespace
 
-// Goal: nothing else takes the place of a standard stream, and one that was closed stays unusable. Method: each set of
-// them closed, in a process of its own.
+// Goal: nothing else takes the place of a standard stream, and one that was closed stays unusable. Method: each subset
+// closed, in a separate process.
 TEST_CASE("standard_streams_are_all_open") {
   for (int closed = 0; closed < 8; ++closed) {
     CAPTURE(closed);
@@ -46,8 +46,8 @@ TEST_CASE("standard_streams_are_all_open") {
   }
 }
 
-// Goal: a line is printed, or lost, and never waited for. Method: a pipe that is read, one that nobody reads from until
-// it is full, one whose reader has gone.
+// Goal: a line is printed or lost, without waiting. Method: a pipe that is read, one that nobody reads until it is
+// full, one whose reader has gone.
 TEST_CASE("line_is_printed_at_once_or_lost") {
   CHECK(holds_in_child([] {
     alarm(20);

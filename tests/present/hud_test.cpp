@@ -48,7 +48,7 @@ struct Page {
 
 }  // namespace
 
-// Goal: a legible font: every printable character differs from every other and stays in its cell. Method: the table.
+// Goal: a legible font: every printable character has a distinct glyph and stays in its cell. Method: the table.
 TEST_CASE("hud_font_has_a_glyph_of_its_own_for_every_printable_character") {
   std::set<std::string> glyphs;
   for (const auto& glyph : kFont) {
@@ -58,8 +58,8 @@ TEST_CASE("hud_font_has_a_glyph_of_its_own_for_every_printable_character") {
   CHECK(glyphs.size() == 95);
 }
 
-// Goal: the box covers what the header says, dims it to a quarter, and nothing else changes; the text is where it
-// belongs, whatever way the picture is turned. Method: every pixel against the plain picture, by the font's own bits.
+// Goal: the box covers the documented area, dims it to a quarter and changes nothing else; the text is in place,
+// however the picture is rotated. Method: every pixel against the plain picture, by the font's own bits.
 TEST_CASE("hud_box_dims_its_pixels_and_touches_no_others") {
   const char* const lines[] = {"H", "|?"};
   for (const PixelFormat& format : {kRgb565, kXrgb8888, kRgb888}) {
@@ -98,7 +98,7 @@ TEST_CASE("hud_box_dims_its_pixels_and_touches_no_others") {
 }
 
 // Goal: text never leaves the picture. Method: boxes over each edge, far outside, and characters beyond ASCII; guard
-// bytes behind the picture stay.
+// bytes after the picture stay intact.
 TEST_CASE("hud_cuts_what_lies_outside_of_the_picture") {
   const char* const lines[] = {"outside", "\xc3\xa4\x01"};
   Page page(kRgb888, Rotation::none, false);
@@ -125,8 +125,8 @@ TEST_CASE("hud_cuts_what_lies_outside_of_the_picture") {
 }
 
 #if defined(POCKETRAY_HAVE_PNG)
-// Goal: pictures to look at. Method: with POCKETRAY_PICTURES=FOLDER set, the HUD on RGB8, and a screen as a panel
-// turned by 90 degrees gets it, RGB565 dithered; both must at least be written.
+// Goal: pictures for inspection. Method: with POCKETRAY_PICTURES=FOLDER set, the HUD on RGB8, and a screen for a panel
+// rotated by 90 degrees, RGB565 dithered; both must at least be written.
 TEST_CASE("hud_pictures_can_be_written_to_look_at") {
   const char* const lines[] = {"33.4 ms/frame   435 ns/pixel",
                                "rays 152,340: camera 76,800 shadow 61,440",

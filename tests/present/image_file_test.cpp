@@ -31,7 +31,7 @@ std::vector<std::uint8_t> noise(int width, int height, std::uint32_t seed) {
 
 }  // namespace
 
-// Goal: the files are what the formats' descriptions say, byte for byte. Method: two pixels by hand.
+// Goal: the files follow the formats' specifications, byte for byte. Method: two pixels by hand.
 TEST_CASE("encode_ppm_and_raw_write_the_bytes_of_the_format") {
   const std::uint8_t rgb[6] = {1, 2, 3, 253, 254, 255};
   written.clear();
@@ -60,7 +60,7 @@ TEST_CASE("encode_pfm_writes_little_endian_rows_from_the_bottom") {
 }
 
 #if defined(POCKETRAY_HAVE_PNG)
-// Goal: a PNG holds the picture, takes no more arena than announced and gives it back. Method: noise and a gradient at
+// Goal: a PNG holds the picture, takes no more arena than announced and returns it. Method: noise and a gradient at
 // several sizes, read back with libpng's simplified interface.
 TEST_CASE("encode_png_round_trips_within_the_memory_announced") {
   for (int width : {1, 3, 320, 1920, 8192}) {
@@ -89,8 +89,8 @@ TEST_CASE("encode_png_round_trips_within_the_memory_announced") {
   }
 }
 
-// Goal: too little memory is a Status that says how much is needed, at whatever point it runs out. Method: every arena
-// size in steps up to the need.
+// Goal: too little memory is a Status that states the need, wherever memory runs out. Method: every arena size in steps
+// up to the need.
 TEST_CASE("encode_png_says_how_much_memory_is_missing") {
   std::vector<std::uint8_t> rgb = noise(320, 8, 7);
   std::vector<std::uint8_t> block(encode_png_need(320) + kArenaAlignment);

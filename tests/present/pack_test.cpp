@@ -34,8 +34,8 @@ double encode_exactly(double linear) {
 
 }  // namespace
 
-// Goal: the fast tone curve is the plain one. Method: every float around each threshold and each bucket's edges, and a
-// stride through all floats.
+// Goal: the fast tone curve equals the plain one. Method: every float around each threshold and each bucket's edges,
+// and a stride through all floats.
 TEST_CASE("hard_64_tone_level_equals_the_search_for_every_kind_of_float") {
   count_assertions("the level of the plain search");
   ToneCounts counts;
@@ -54,7 +54,8 @@ TEST_CASE("hard_64_tone_level_equals_the_search_for_every_kind_of_float") {
   CHECK(tone_level(0.18f, &counts) == 118);
 }
 
-// Goal: what no display can show is shown as the header says and counted once per channel. Method: one picture of each.
+// Goal: values that no display can show appear as documented and are counted once per channel. Method: one picture of
+// each.
 TEST_CASE("hard_64_pack_counts_nan_infinite_and_negative_radiance") {
   count_assertions("defined and counted");
   float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
@@ -111,7 +112,7 @@ TEST_CASE("hard_65_rgb565_is_idempotent_and_near") {
 }
 
 // Goal: the mean of a dithered tile is the display value to 1/64 step. Method: tiles of one colour over the whole
-// range, with every rotation (the pattern turns with the picture, a tile is a tile whichever way it is turned).
+// range, with every rotation (the pattern rotates with the picture, so a tile stays a tile).
 TEST_CASE("hard_65_dither_mean_is_within_a_64th_of_a_step") {
   count_assertions("mean within 1/64 step");
   std::vector<Vec3> radiance(64);
@@ -132,7 +133,8 @@ TEST_CASE("hard_65_dither_mean_is_within_a_64th_of_a_step") {
   CHECK(error_max <= 1.0 / 64);
 }
 
-// Goal: dithering does not touch what the screen can show exactly at the ends. Method: black and white.
+// Goal: dithering does not change the levels at the ends of the range, which the screen shows exactly. Method: black
+// and white.
 TEST_CASE("pack_dither_leaves_black_and_white_alone") {
   std::vector<Vec3> radiance(128, Vec3{0, 0, 0});
   for (int i = 64; i < 128; ++i) radiance[static_cast<std::size_t>(i)] = {1, 1, 1};
@@ -141,9 +143,9 @@ TEST_CASE("pack_dither_leaves_black_and_white_alone") {
   for (int i = 0; i < 128; ++i) CHECK(pixels[i] == (i < 64 ? 0 : 0xffff));
 }
 
-// Goal: every format, rotation and odd stride puts each pixel where and as it belongs, and writes nothing else. Method:
-// a picture of random levels, packed in three pieces; read back pixel by pixel at screen_position(); guard bytes
-// between the rows.
+// Goal: with every format, rotation and odd stride each pixel is correct and in place, and nothing else is written.
+// Method: a picture of random levels, packed in three pieces; read back pixel by pixel at screen_position(); guard
+// bytes between the rows.
 TEST_CASE("pack_places_every_pixel_in_every_format_rotation_and_stride") {
   constexpr int kWidth = 13, kHeight = 7;
   std::uint32_t seed = 1;
@@ -182,9 +184,9 @@ TEST_CASE("pack_places_every_pixel_in_every_format_rotation_and_stride") {
   }
 }
 
-// Goal: rotation means what the header says. Method: the corners of a 3 × 2 picture, by hand.
+// Goal: rotation works as documented. Method: the corners of a 3 × 2 picture, by hand.
 TEST_CASE("pack_rotation_turns_clockwise") {
-  // Turned clockwise by a quarter, the top left corner comes to the top right.
+  // A clockwise quarter turn moves the top left corner to the top right.
   CHECK(screen_position(0, 0, 3, 2, Rotation::quarter).x == 1);
   CHECK(screen_position(0, 0, 3, 2, Rotation::quarter).y == 0);
   CHECK(screen_position(2, 0, 3, 2, Rotation::quarter).y == 2);
@@ -199,7 +201,7 @@ TEST_CASE("pack_rotation_turns_clockwise") {
   CHECK_FALSE(rotation_from_degrees(-90, &rotation));
 }
 
-// Goal: formats that a driver may report and we cannot write are refused. Method: one of each kind.
+// Goal: formats that a driver may report but we cannot write are refused. Method: one of each kind.
 TEST_CASE("pixel_format_valid_refuses_what_cannot_be_packed") {
   for (const PixelFormat& format : kFormats) CHECK(pixel_format_valid(format));
   CHECK_FALSE(pixel_format_valid({8, {0, 3}, {3, 3}, {6, 2}, {}}));
@@ -211,7 +213,7 @@ TEST_CASE("pixel_format_valid_refuses_what_cannot_be_packed") {
 }
 
 // Goal: pixels of spans are the bytes that pack_rows() writes for them, wherever they go. Method: spans of every length
-// in an uneven picture, every format, with dither and without, into memory that is aligned to nothing.
+// in a picture of odd size, every format, with and without dither, into unaligned memory.
 TEST_CASE("pack_spans_equal_the_rows_they_are_of") {
   constexpr int kWidth = 13, kHeight = 11;
   std::vector<Vec3> radiance(kWidth * kHeight);

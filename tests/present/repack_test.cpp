@@ -9,9 +9,9 @@
 
 using namespace pocketray;
 
-// Goal: a picture that went through the wire's formats shows as one that was packed for the screen at once, in every
-// format and rotation. RGB888 holds all levels; RGB565, which may be dithered, goes to 565 screens. Method: random
-// radiance, both ways.
+// Goal: a picture that went through a wire format appears as if packed directly for the screen, in every format and
+// rotation. RGB888 holds all levels; RGB565, which may be dithered, goes to 565 screens. Method: random radiance, both
+// ways.
 TEST_CASE("repack_equals_packing_at_once") {
   constexpr int kWidth = 13, kHeight = 7;
   std::vector<Vec3> radiance(kWidth * kHeight);

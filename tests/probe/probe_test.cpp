@@ -19,7 +19,7 @@ namespace {
 
 std::uint64_t entries(Effect effect) { return effect_probe.entries[static_cast<int>(effect)].load(); }
 
-// Renders while the effects that the scene's own plan leaves out are trapped; *mask is that plan.
+// Renders with traps on the effects that are absent from the scene's own plan, which is returned in *mask.
 Picture render_trapped(const Scene& scene, const Settings& settings, double seconds, EffectMask* mask) {
   effect_probe.allowed = kAllEffects;
   auto test = make_renderer(scene, settings);
@@ -38,7 +38,7 @@ Picture render_all(const Scene& scene, Settings settings, double seconds) {
   return render_picture(scene, settings, seconds);
 }
 
-// What ends a child that renders while one effect is trapped that the scene calls for: the signal, or 0.
+// The signal that ends a child which renders with a trap on one effect of the scene, or 0.
 int signal_of_render_without(Effect effect, Renderer* r) {
   pid_t child = fork();
   if (child == 0) {
@@ -55,8 +55,8 @@ int signal_of_render_without(Effect effect, Renderer* r) {
 
 }  // namespace
 
-// Goal: a build in which an absent effect's entry traps renders the frames of the normal build. Method: golden hashes,
-// which the normal build is held to as well.
+// Goal: a build that traps on entering an absent effect renders the frames of the normal build. Method: golden hashes,
+// which the normal build must match, too.
 TEST_CASE("probe_builtin_scenes_render_the_golden_frames") {
   for (const GoldenFrame& golden : kGoldenFrames) {
     const BuiltinScene* builtin = find_builtin(golden.scene);
@@ -72,11 +72,11 @@ TEST_CASE("probe_builtin_scenes_render_the_golden_frames") {
   }
 }
 
-// Goal: absent effects are never entered, present ones are, and the frame is that of a render with everything on.
-// Method: counters and traps over generated scenes of all kinds of combinations.
+// Goal: absent effects are never entered, present ones are, and the frame equals that of a render with everything on.
+// Method: counters and traps over generated scenes with all kinds of combinations.
 TEST_CASE("probe_generated_scenes_enter_what_the_plan_has_and_nothing_else") {
   for (std::uint32_t features : feature_sets()) {
-    if (features % 2 && features != kAllFeatures) continue;  // half of them: the pipeline suite looks at all
+    if (features % 2 && features != kAllFeatures) continue;  // half of them: the pipeline suite has all
     auto generated = generate_scene(features, features + 1);
     Settings settings = settings_for(features, 24, 18);
     EffectMask mask;
@@ -95,8 +95,8 @@ TEST_CASE("probe_generated_scenes_enter_what_the_plan_has_and_nothing_else") {
   }
 }
 
-// Goal: the trap is there: entering an effect that is not allowed ends the process. Method: death test of each effect
-// in a child process, on a scene that has them all.
+// Goal: the trap works: entering an effect that is not allowed ends the process. Method: death test of each effect in a
+// child process, on a scene that has them all.
 TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   auto generated = generate_scene(kAllFeatures, 1);
   effect_probe.allowed = kAllEffects;

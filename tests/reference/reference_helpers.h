@@ -1,4 +1,4 @@
-// A reference of a scene in memory of its own, and its estimates of single rays, for the suites that prove it.
+// A reference of a scene in its own memory, and its estimates of single rays, for the suites that verify it.
 #pragma once
 #include <doctest/doctest.h>
 
@@ -52,7 +52,7 @@ inline Estimate estimate(const TestReference& t, Transport transport, const Vec3
   return {mean, std::sqrt(std::fmax(0, squares / count - mean * mean) / count)};
 }
 
-// Within five standard errors and a part of what is expected: by default what the scene's numbers, floats, may err by.
+// Within five standard errors and a relative tolerance, by default the rounding of the scene's floats.
 inline void check_equal(const Estimate& e, double expected, double tolerance = 1e-6) {
   CAPTURE(e.mean);
   CAPTURE(expected);

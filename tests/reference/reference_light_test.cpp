@@ -1,9 +1,9 @@
-// Light that the reference gathers, against closed forms.
+// Light gathered by the reference, against closed forms.
 #include "base/fmath.h"
 #include "reference/light.h"
 #include "reference/optics.h"
-#include "scene/builtin_helpers.h"
 #include "reference/reference_helpers.h"
+#include "scene/builtin_helpers.h"
 #include "support/effort.h"
 
 using namespace pocketray;
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Transport kTransports[] = {Transport::model, Transport::physical};
 
-// A white floor about the origin.
+// A white floor around the origin.
 void add_floor(GeneratedScene* s, float side = 20) {
   add_quad(s, {-side, 0, side}, {side, 0, side}, {side, 0, -side}, {-side, 0, -side}, add_material(s, white()));
 }
@@ -31,7 +31,7 @@ Estimate look_at(const TestReference& t, Transport transport, const Vec3d& eye, 
 
 }  // namespace
 
-// Goal: `furnace` has the radiance E / (1 − ρ) everywhere, and a part ρⁿ of it less where n reflections are left out
+// Goal: `furnace` has the radiance E / (1 − ρ) everywhere, less by a fraction ρⁿ if n reflections are left out
 // (HARDCASES row 49). Method: its scene with ρ of .5, .8 and .95; rays from inside at its walls and its block.
 TEST_CASE("reference_furnace_has_its_closed_form") {
   auto built = build_builtin("furnace");
@@ -46,15 +46,15 @@ TEST_CASE("reference_furnace_has_its_closed_form") {
     for (int i = 0; i < 2; ++i) {
       Vec3d direction = normalize(Vec3d{next_double(&rng) - 0.5, next_double(&rng) - 0.5, next_double(&rng) - 0.5});
       check_equal(estimate(t, Transport::physical, {0.7, 0.6, 0.7}, direction, effort(3000), 7), all);
-      for (std::uint32_t depth : {0u, 1u, 3u})  // and the light's own reflection
+      for (std::uint32_t depth : {0u, 1u, 3u})  // plus the reflection of light from the lights
         check_equal(estimate(t, Transport::physical, {0.7, 0.6, 0.7}, direction, 1000, 7, depth),
                     all * (1 - std::pow(static_cast<double>(m.diffuse.x), depth + 2)));
     }
   }
 }
 
-// Goal: the guide takes nothing and adds nothing. Method: a furnace with a block that is half a mirror and glows with
-// the half that is missing, so that all has the radiance E / (1 − ρ) still, whichever way light came.
+// Goal: the guide neither loses nor adds light. Method: a furnace with a block that is half a mirror and emits the
+// missing half, so that the radiance is still E / (1 − ρ) everywhere, whichever way light came.
 TEST_CASE("reference_furnace_with_a_mirror_has_its_closed_form") {
   GeneratedScene s;
   Material wall = emitter(0.5f), mirror = emitter(0.5f);
@@ -70,8 +70,8 @@ TEST_CASE("reference_furnace_with_a_mirror_has_its_closed_form") {
 }
 
 // Goal: a square light at height 1 gives the centre below it the form factor .2394565 and the corner .1385316
-// (HARDCASES row 37), by both kinds of transport. Method: a white floor seen at a slant; its radiance is that times the
-// light's.
+// (HARDCASES row 37), with both kinds of transport. Method: a white floor seen at a slant; its radiance is the form
+// factor times the light's.
 TEST_CASE("reference_square_light_has_its_closed_form") {
   GeneratedScene s;
   add_floor(&s);
@@ -85,7 +85,7 @@ TEST_CASE("reference_square_light_has_its_closed_form") {
   }
 }
 
-// Goal: a disk light of radius r at height h gives the point below it L·r²/(r² + h²), and L as h falls to nothing
+// Goal: a disk light of radius r at height h gives the point below it L·r²/(r² + h²), and L as h tends to zero
 // (HARDCASES row 36). Method: a white floor and a disk of 256 sides, whose area is 1 part in 10⁴ less than the disk's.
 TEST_CASE("reference_disk_light_has_its_closed_form") {
   for (double height : {2.0, 0.5, 0.1, 0.01}) {
@@ -97,16 +97,16 @@ TEST_CASE("reference_disk_light_has_its_closed_form") {
     TestReference t(s.scene);
     double h = static_cast<double>(static_cast<float>(height));
     for (Transport transport : kTransports) {
-      if (transport == Transport::model && height < 0.1) continue;  // points on the light alone tell little of it there
+      if (transport == Transport::model && height < 0.1) continue;  // points on the light alone converge slowly there
       CAPTURE(height);
       check_equal(look_at(t, transport, {0, height / 2, 0}, {0, 0, 0}, 10000), 3 / (1 + h * h), 2e-4);
     }
   }
 }
 
-// Goal: points on lights are picked with the density they claim: a plane at height h whose geometry term is cut at b
+// Goal: points on lights are picked with the stated density: a plane at height h whose geometry term is clamped at b
 // gives E / (πL) = 2s − s², s = h√b (HARDCASES row 41). Method: a disk of radius 3, without the h² / (h² + R²) that
-// lies beyond it; the term is cut here, the reference cuts nothing.
+// lies beyond it; the test clamps the term, the reference never does.
 TEST_CASE("reference_plane_with_its_geometry_term_cut_has_its_closed_form") {
   for (double b : {2.0, 0.5, 8.0}) {
     GeneratedScene s;
@@ -135,11 +135,11 @@ TEST_CASE("reference_plane_with_its_geometry_term_cut_has_its_closed_form") {
   }
 }
 
-// Goal: of a light that crosses the horizon counts what is above, and none once it has set (HARDCASES row 38). Method:
-// a vertical square that sinks into the floor; form factor of an upright rectangle [Howell, catalogue of configuration
-// factors, B-5].
+// Goal: of a light that crosses the horizon only the part above counts, and nothing after it has set (HARDCASES row
+// 38). Method: a vertical square that sinks into the floor; form factor of an upright rectangle [Howell, catalogue of
+// configuration factors, B-5].
 TEST_CASE("reference_light_that_crosses_the_horizon_is_clipped") {
-  auto factor = [](double width, double height, double distance) {  // one corner before the point
+  auto factor = [](double width, double height, double distance) {  // one corner in front of the point
     double x = height / width, y = distance / width, r = std::sqrt(x * x + y * y);
     return (std::atan(1 / y) - y / r * std::atan(1 / r)) / (2 * kPi);
   };
@@ -166,8 +166,8 @@ TEST_CASE("reference_light_that_crosses_the_horizon_is_clipped") {
   }
 }
 
-// Goal: an area light that shrinks to a point is one (HARDCASES row 40). Method: a square of side r that sends the same
-// intensity I down whatever r is; below it I/(π h²), less than a part r² of it off.
+// Goal: an area light that shrinks to a point becomes a point light (HARDCASES row 40). Method: a square of side r with
+// constant downward intensity I; below it I/(π h²), with an error of less than a fraction r².
 TEST_CASE("reference_light_that_shrinks_becomes_a_point_light") {
   for (float r : {0.1f, 1e-3f, 1e-6f, 1e-9f}) {
     GeneratedScene s;
@@ -185,7 +185,7 @@ TEST_CASE("reference_light_that_shrinks_becomes_a_point_light") {
   }
 }
 
-// Goal: the wall of a sphere of albedo .5 about a point light of intensity π has the radiance 1 (HARDCASES row 50).
+// Goal: the wall of a sphere of albedo .5 around a point light of intensity π has the radiance 1 (HARDCASES row 50).
 // Method: a tessellated sphere, all orders of reflection, within .002.
 TEST_CASE("reference_sphere_about_a_light_has_its_closed_form") {
   GeneratedScene s;
@@ -205,9 +205,9 @@ TEST_CASE("reference_sphere_about_a_light_has_its_closed_form") {
   }
 }
 
-// Goal: lobes that are sampled send back what they have, diffuse and glossy together, and do so either way. Method: a
-// sheet in the midst of light from everywhere, seen straight on, where the glossy lobe's albedo is `specular` whatever
-// its exponent; and obliquely, where it is the integral of the value.
+// Goal: sampled lobes return their albedo, diffuse and glossy together, and are reversible. Method: a sheet surrounded
+// by uniform light, seen straight on, where the glossy lobe's albedo is `specular` for any exponent, and obliquely,
+// where it is the integral of the value.
 TEST_CASE("reference_lobes_have_their_albedo_in_a_white_furnace") {
   for (float exponent : {0.0f, 4.0f, 300.0f}) {
     GeneratedScene s;
@@ -240,8 +240,8 @@ TEST_CASE("reference_lobes_have_their_albedo_in_a_white_furnace") {
   }
 }
 
-// Goal: light that comes by way of a mirror is found, with the guide or without, and with less noise with it. Method: a
-// square light beside a mirror, the point below it sees both it and its image; form factors of rectangles from below a
+// Goal: light by way of a mirror is found with and without the guide, and with less noise with it. Method: a square
+// light next to a mirror, so that the point below it sees it and its image; form factors of rectangles from below a
 // corner [Howell, catalogue of configuration factors, B-4].
 TEST_CASE("reference_light_by_way_of_a_mirror_has_its_closed_form") {
   auto corner = [](double a, double b) {
@@ -268,9 +268,9 @@ TEST_CASE("reference_light_by_way_of_a_mirror_has_its_closed_form") {
   CHECK(error[1] < 0.6 * error[0]);
 }
 
-// Goal: a point light close under a ceiling lights it in a small bright spot, and what that lights is found, with the
-// guide or without, and with less noise with it. Method: one bounce, integrated over the rings of the ceiling; a light
-// that shines everywhere, and a spot light that shines up.
+// Goal: a point light close under a ceiling lights a small bright spot, whose light is found with and without the
+// guide, and with less noise with it. Method: one bounce, integrated over the rings of the ceiling; a light that shines
+// everywhere, and a spot light that shines up.
 TEST_CASE("reference_light_by_way_of_a_bright_spot_has_its_closed_form") {
   constexpr double kHeight = 2, kSide = 20, kAlbedo = 0.8;
   for (bool is_spot : {false, true}) {
@@ -294,7 +294,7 @@ TEST_CASE("reference_light_by_way_of_a_bright_spot_has_its_closed_form") {
     double cosine = static_cast<double>(light.cos_outer);
     double reach = is_spot ? below * std::sqrt(1 - cosine * cosine) / cosine : kSide;
     constexpr int kRings = 200000;
-    for (int i = 0; i < kRings; ++i) {  // rings whose radii grow by a factor: narrow in the middle
+    for (int i = 0; i < kRings; ++i) {  // rings whose radii grow geometrically: narrow in the middle
       double r = reach * std::exp(-16.0 * (kRings - i - 0.5) / kRings), width = r * 16.0 / kRings;
       double irradiance = below / std::pow(below * below + r * r, 1.5);
       double form = kHeight * kHeight / std::pow(kHeight * kHeight + r * r, 2) / kPi;
@@ -313,9 +313,9 @@ TEST_CASE("reference_light_by_way_of_a_bright_spot_has_its_closed_form") {
   }
 }
 
-// Goal: a picture is the same however its rows are shared out, seeds make different ones, and their mean is that of
-// independent random numbers: what makes the samples even leaves no bias. Method: a room with a lamp and a mirror; five
-// standard errors, of ten seeds and of as many independent paths.
+// Goal: a picture does not depend on how its rows are shared out; seeds give different pictures, whose mean is that of
+// independent random numbers: even sampling introduces no bias. Method: a room with a lamp and a mirror; five standard
+// errors, for ten seeds and as many independent paths.
 TEST_CASE("reference_pictures_of_seeds_agree") {
   GeneratedScene s;
   Material wall, mirror = emitter(0.1f);
@@ -365,7 +365,7 @@ TEST_CASE("reference_pictures_of_seeds_agree") {
     double independent_error2 = (independent_squares - independent * independent) / count;
     CHECK(std::fabs(mean - independent) <= 5 * std::sqrt(error2 + independent_error2));
     CHECK(error2 < 0.02 * 0.02 * mean * mean);
-    // Pixels of two seeds are as far apart as independent ones are: their mean's error is that of the pixels by eight.
+    // Pixels of two seeds differ like independent ones: the mean's error is that of the pixels divided by eight.
     double apart = difference2 / 2 / 64 / (kSeedCount - 1);
     CHECK(error2 < 6 * apart);
     CHECK(apart < 6 * error2);

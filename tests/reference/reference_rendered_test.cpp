@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "scene/builtin_helpers.h"
 #include "reference/reference_helpers.h"
+#include "scene/builtin_helpers.h"
 #include "support/effort.h"
 
 using namespace pocketray;
@@ -15,10 +15,10 @@ namespace {
 
 struct Comparison {
   int pixel_count = 0, unequal = 0;
-  double worst_equal = 0;  // relative difference among the others
+  double worst_equal = 0;  // relative difference of the others
 };
 
-// Renders without cut-off and compares; pixels differ that are further apart than `bound` of their radiance.
+// Renders without cut-off and compares; pixels count as different beyond a fraction `bound` of their radiance.
 Comparison compare(const Scene& scene, Settings settings, double bound) {
   settings.cut_off_levels = 0;
   TestReference t(scene, settings);
@@ -39,9 +39,9 @@ Comparison compare(const Scene& scene, Settings settings, double bound) {
 
 }  // namespace
 
-// Goal: what the renderer's picture differs by from the same in double precision is rounding. Method: generated scenes
-// of every feature by itself and of all, two samples a pixel where asked for, both projections; differences beyond 10⁻⁴
-// of a pixel's radiance, which rays beside an edge may have, in one pixel of two hundred at most.
+// Goal: the renderer's picture differs from the same in double precision only by rounding. Method: generated scenes
+// with every single feature and with all, two samples per pixel with supersampling, both projections; differences
+// beyond 10⁻⁴ of a pixel's radiance, as rays next to an edge may have, in at most one pixel of two hundred.
 TEST_CASE("reference_as_rendered_is_the_renderer_but_for_rounding") {
   std::uint32_t side = effort_side(24);
   for (int i = 0; i <= kFeatureCount; ++i) {
@@ -59,7 +59,7 @@ TEST_CASE("reference_as_rendered_is_the_renderer_but_for_rounding") {
   }
 }
 
-// Goal, method: the same for `cornell`, whose sphere is a mirror and whose light is an area.
+// Goal, method: the same for `cornell`, whose sphere is a mirror and whose light is an area light.
 TEST_CASE("reference_as_rendered_is_the_renderer_in_cornell") {
   auto cornell = build_builtin("cornell");
   Settings settings;

@@ -51,7 +51,7 @@ TEST_CASE("reference_optics_have_their_closed_forms") {
   TestReference t(s.scene);
   for (Transport transport : {Transport::model, Transport::physical}) {
     check_equal(estimate(t, transport, slab_eye, down, effort(10000)), 2 * 12.0 / 13);
-    // From between wall and slab: what the slab sends back of the wall, which reflects nothing.
+    // From between wall and slab: light of the wall reflected by the slab; the wall reflects nothing.
     check_equal(estimate(t, transport, wall_eye, up, effort(10000)), 2 / 13.0);
     check_equal(estimate(t, transport, mirror_eye, along, effort(10000)), 1 / (1 - 0.75));
   }
@@ -73,7 +73,7 @@ TEST_CASE("reference_optics_have_their_closed_forms") {
   }
 }
 
-// Goal: boundaries reflect as HARDCASES rows 32 and 33 have it, to 1e-6. Method: their table.
+// Goal: boundaries reflect as in HARDCASES rows 32 and 33, to 1e-6. Method: their table.
 TEST_CASE("reference_boundary_reflects_by_fresnel") {
   struct Case {
     double ior, degrees, reflectance;
@@ -89,10 +89,10 @@ TEST_CASE("reference_boundary_reflects_by_fresnel") {
   CHECK(boundary_reflectance(std::cos(std::asin(1 / 1.5) - 2e-7), 1.5, &cos_t) < 1);
 }
 
-// Goal: directions of the lobes come with the density that is claimed. Method: chi² over the cosine and the azimuth
-// about the mirror direction, every lobe listed, exponents from blunt to sharp; 99.9 % bound for the cells.
+// Goal: the lobes' directions have the stated density. Method: chi² over the cosine and the azimuth around the mirror
+// direction, every lobe listed, exponents from blunt to sharp; 99.9 % bound for the cells.
 TEST_CASE("reference_density_is_that_of_its_samples") {
-  // Written with the surface alone: no scene is needed.
+  // Needs only the surface, no scene.
   constexpr int kRings = 12, kSectors = 8;
   constexpr float kExponents[] = {0, 1, 20, 400};
   for (std::uint32_t row = 0; row < 4 * kBrdfCount; ++row) {
@@ -110,7 +110,7 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
       double turn = std::atan2(dot(d, bitangent), dot(d, tangent)) / (2 * kPi) + 0.5;
       return ring * kSectors + std::min(kSectors - 1, static_cast<int>(turn * kSectors));
     };
-    // What the density claims, by the midpoint rule over each cell.
+    // The stated density, by the midpoint rule over each cell.
     std::vector<double> claimed(kRings * kSectors), found(kRings * kSectors);
     constexpr int kFine = 60;
     double total = 0;
@@ -147,9 +147,9 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
   }
 }
 
-// Goal: the renderer's radiance is the limit of its own model. Method: generated scenes of each feature and of all,
-// rays of the camera, no cut-off. Where nothing is left to chance both agree to float's precision; mirrors and glass,
-// which the reference picks by chance, within five standard errors. Rays that floats lead past an edge are few.
+// Goal: the renderer's radiance is the limit of its own model. Method: generated scenes with each single feature and
+// with all, camera rays, no cut-off. Without random choices both agree to float precision; mirrors and glass, which the
+// reference selects at random, within five standard errors. Rays that float rounding moves across an edge are few.
 TEST_CASE("reference_model_is_the_renderers_limit") {
   std::uint32_t without = bit(Feature::emission) | bit(Feature::animation) | bit(Feature::supersampling);
   std::uint32_t chance =
@@ -169,7 +169,7 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
     int count = effort(50), unequal = 0;
     double worst = 0;
     for (int i = 0; i < count; ++i) {
-      // At small things as often as at large ones: towards any triangle.
+      // Small objects as often as large ones: towards a random triangle.
       const Triangle& at = s->scene.triangles[next_u32(&rng) % s->scene.triangles.count];
       float u = 0.5f * next_float(&rng), v = 0.5f * next_float(&rng);
       Vec3 point = frame.positions[at.vertex(0)] * (1 - u - v) + frame.positions[at.vertex(1)] * u +

@@ -17,7 +17,7 @@ double value(std::uint32_t x) { return x * 0x1p-32; }
 
 }  // namespace
 
-// Goal: the sequence is Sobol's. Method: its first points as [Joe & Kuo 2008] print them, in the order of Gray's code.
+// Goal: the sequence is Sobol's. Method: its first points as printed by [Joe & Kuo 2008], in Gray code order.
 TEST_CASE("sobol_begins_with_the_published_points") {
   constexpr double kPoints[8][4] = {{0, 0, 0, 0},
                                     {0.5, 0.5, 0.5, 0.5},
@@ -31,9 +31,9 @@ TEST_CASE("sobol_begins_with_the_published_points") {
     for (int d = 0; d < kSobolDimensionCount; ++d) CHECK(value(sobol_point(i ^ i >> 1).x[d]) == kPoints[i][d]);
 }
 
-// Goal: scrambling keeps what makes the points even. Method: each of the 2ᵏ elementary intervals of the first two
-// dimensions, of every shape, holds one of 2ᵏ points; so does each of 2ᵏ parts of any one dimension. Runs that begin at
-// any multiple of 2ᵏ.
+// Goal: scrambling keeps the points even. Method: each of the 2ᵏ elementary intervals of the first two dimensions, of
+// every shape, holds one of 2ᵏ points; so does each of 2ᵏ parts of any one dimension. Runs begin at arbitrary multiples
+// of 2ᵏ.
 TEST_CASE("sobol_is_even_after_scrambling") {
   for (std::uint32_t seed : {1u, 77u, 0xFFFFFFFFu})
     for (std::uint32_t k : {0u, 3u, 6u, 10u}) {
@@ -54,9 +54,9 @@ TEST_CASE("sobol_is_even_after_scrambling") {
     }
 }
 
-// Goal: each point is uniform by itself, and the points of two seeds, as the dimensions of one point, have nothing to
-// do with one another: estimates have no bias and seeds can be compared. Method: chi² over sixteen parts (15 degrees of
-// freedom: beyond 50 once in 80,000) and correlations (five standard errors) over many seeds.
+// Goal: each point is uniform by itself, and the points of two seeds, like the dimensions of one point, are
+// independent: estimates are unbiased and seeds can be compared. Method: chi² over sixteen parts (15 degrees of
+// freedom: above 50 once in 80,000) and correlations (five standard errors) over many seeds.
 TEST_CASE("sobol_is_uniform_over_seeds") {
   const int count = effort(16000);
   Rng rng = make_rng(9);
@@ -83,8 +83,8 @@ TEST_CASE("sobol_is_uniform_over_seeds") {
   }
 }
 
-// Goal: what a path does follows from seed, pixel and index alone, and differs in each. Method: independent and even
-// numbers of paths begun in order, out of it and by another.
+// Goal: a path depends only on seed, pixel and index, and differs for each. Method: independent and even numbers of
+// paths begun in order, out of order and by another object.
 TEST_CASE("sobol_paths_follow_from_seed_pixel_and_index") {
   auto numbers = [](ReferenceSamples* samples, std::uint32_t index) {
     samples->begin_path(index);

@@ -17,8 +17,8 @@ using namespace pocketray;
 
 namespace {
 
-// One animated node with one channel, one mesh of one vertex at (1, 0, 0) with normal (1, 0, 0) on it, a light and a
-// camera.
+// One animated node with one channel, a mesh of one vertex at (1, 0, 0) with normal (1, 0, 0), a light and a camera on
+// it.
 struct Stage {
   FullScene full;
   std::vector<std::uint8_t> block;
@@ -75,7 +75,7 @@ TEST_CASE("animate_step_holds_until_the_next_key") {
   CHECK(stage.vertex(3).y == 5);
 }
 
-// Goal: linear between keys; before the first and after the last one that key holds; exact at keys.
+// Goal: linear between keys, constant before the first and after the last; exact at keys.
 TEST_CASE("animate_linear_interpolates_and_clamps_at_both_ends") {
   Stage stage;
   stage.channel(ChannelPath::translation, Interpolation::linear, {1, 2, 3}, {0, 0, 0, 0, 8, 4, 0, 8, -4});
@@ -89,7 +89,7 @@ TEST_CASE("animate_linear_interpolates_and_clamps_at_both_ends") {
 }
 
 // Goal: [glTF 2.0, appendix C.5]. Method: keys and tangents of p(t) = t³ − 2t² + 3 over two seconds: a Hermite spline
-// is exact for cubics; the tangents are per second, so the key distance of 2 shows whether they are scaled by it.
+// is exact for cubics. Tangents are per second, so the key distance of 2 shows whether they are scaled by it.
 TEST_CASE("animate_cubic_spline_reproduces_a_cubic") {
   Stage stage;
   auto value = [](float t) { return t * t * t - 2 * t * t + 3; };
@@ -104,7 +104,7 @@ TEST_CASE("animate_cubic_spline_reproduces_a_cubic") {
   CHECK(stage.vertex(3.5).y == value(3));
 }
 
-// Goal: slerp has constant angular speed. Method: a turn by 90° about z puts (1, 0, 0) at angle 90°·t.
+// Goal: slerp has constant angular speed. Method: a rotation by 90° about z puts (1, 0, 0) at angle 90°·t.
 TEST_CASE("animate_rotation_turns_at_constant_speed") {
   Stage stage;
   stage.channel(ChannelPath::rotation, Interpolation::linear, {0, 1}, {0, 0, 0, 1, 0, 0, kHalf, kHalf});
@@ -118,7 +118,7 @@ TEST_CASE("animate_rotation_turns_at_constant_speed") {
   }
 }
 
-// Goal: the shorter of two arcs. Method: the second key negated is the same rotation; halfway must still be 45°.
+// Goal: the shorter of two arcs. Method: the negated second key is the same rotation; half-way must still be 45°.
 TEST_CASE("animate_rotation_takes_the_shorter_arc") {
   Stage stage;
   stage.channel(ChannelPath::rotation, Interpolation::linear, {0, 1}, {0, 0, 0, 1, 0, 0, -kHalf, -kHalf});
@@ -126,8 +126,7 @@ TEST_CASE("animate_rotation_takes_the_shorter_arc") {
   check_near(stage.vertex(0.5), {kHalf, kHalf, 0});
 }
 
-// Goal: neither equal keys nor keys 1e-4 apart lose precision. Method: turn angles down to zero; halfway is half the
-// angle.
+// Goal: neither equal keys nor keys 1e-4 apart lose precision. Method: angles down to zero; half-way is half the angle.
 TEST_CASE("animate_rotation_between_almost_equal_keys_is_accurate") {
   for (double angle : {0.0, 1e-7, 1e-4, 1e-3, 2.8e-3, 3e-3, 1e-2, 0.25}) {
     CAPTURE(angle);
@@ -140,7 +139,7 @@ TEST_CASE("animate_rotation_between_almost_equal_keys_is_accurate") {
   }
 }
 
-// Goal: cubic rotations are normalised; keys of no direction give the identity, never NaN.
+// Goal: cubic rotations are normalised; keys without direction give the identity, never NaN.
 TEST_CASE("animate_rotation_by_spline_is_normalised_and_zero_is_the_identity") {
   Stage stage;
   std::vector<float> values(24, 0.0f);
@@ -170,7 +169,7 @@ TEST_CASE("animate_time_wraps_at_the_duration") {
   CHECK(stage.vertex(std::numeric_limits<double>::infinity()).y == 0);
 }
 
-// Goal: an animation of one key, and one of no length, show that key at every time.
+// Goal: an animation with one key, or of zero length, shows that key at every time.
 TEST_CASE("animate_single_key_holds_at_every_time") {
   for (Interpolation interpolation : {Interpolation::step, Interpolation::linear, Interpolation::cubic}) {
     Stage stage;
@@ -183,8 +182,8 @@ TEST_CASE("animate_single_key_holds_at_every_time") {
   }
 }
 
-// Goal: children follow their parents, nearest first. Method: a parent that moves and turns, a child that is offset and
-// scaled; composed by hand.
+// Goal: children follow their parents, nearest first. Method: a parent that moves and rotates, a child that is offset
+// and scaled; composed by hand.
 TEST_CASE("animate_nodes_follow_their_parents") {
   Stage stage;
   Node child;
@@ -197,7 +196,7 @@ TEST_CASE("animate_nodes_follow_their_parents") {
   check_near(stage.vertex(1), {5, 5, 0}, 1e-5);  // 1 → 3 → 5 along x, turned to y, moved by 5 along x
 }
 
-// Goal: an instance's transform lies between node and mesh, and normals obey it. Method: mirrored and stretched
+// Goal: an instance's transform lies between node and mesh and applies to normals. Method: a mirrored and stretched
 // instance.
 TEST_CASE("animate_instances_place_the_same_rest_pose") {
   Stage stage;
@@ -265,7 +264,7 @@ TEST_CASE("animate_skin_in_bind_pose_is_the_rest_pose") {
 }
 
 // Goal: linear blend skinning [glTF 2.0, sec. 3.7.3.3]. Method: the fore-arm at 90°: its tip turns about the elbow, the
-// elbow itself stays, the upper arm does not move, the elbow's normal lies half way.
+// elbow itself stays, the upper arm does not move, the elbow's normal lies half-way.
 TEST_CASE("animate_skin_bends_two_bones") {
   Stage stage;
   two_bones(&stage);
@@ -279,7 +278,7 @@ TEST_CASE("animate_skin_bends_two_bones") {
   check_near(stage.pose.normals[2], {-1, 0, 0});
 }
 
-// Goal: lights and cameras with a node follow it, others stay; the posed ones say that they are in world space.
+// Goal: lights and cameras with a node follow it, others stay; posed ones are marked as being in world space.
 TEST_CASE("animate_lights_and_cameras_follow_their_nodes") {
   Stage stage;
   Light lamp, fixed;
@@ -304,7 +303,7 @@ TEST_CASE("animate_lights_and_cameras_follow_their_nodes") {
   CHECK(stage.pose.cameras[1].target == still.target);
 }
 
-// Goal: a pose depends on its time alone, and vertices that do not move are the scene's. Method: every array in use;
+// Goal: a pose depends only on its time, and vertices that do not move are the scene's. Method: every array in use;
 // pose in different orders and compare bytes.
 TEST_CASE("animate_pose_is_a_function_of_time") {
   FullScene full;
@@ -335,7 +334,7 @@ TEST_CASE("animate_pose_is_a_function_of_time") {
   CHECK(std::memcmp(a.weights.data, full.weights.data(), a.weights.bytes()) == 0);
 }
 
-// Goal: same bits on every CPU. Method: the bytes of a pose that uses every interpolation, hashed; the value was
+// Goal: the same bits on every CPU. Method: hash of the bytes of a pose that uses every interpolation; the value was
 // recorded on x86-64.
 TEST_CASE("animate_pose_has_the_same_bits_everywhere") {
   FullScene full;
@@ -354,8 +353,8 @@ TEST_CASE("animate_pose_has_the_same_bits_everywhere") {
   CHECK(hash == 2225349766u);
 }
 
-// Goal: what leaves the range of coordinates stays finite, and no operation on the way is invalid (∞ − ∞, ∞ · 0).
-// Method: 40 nodes that each scale by 1e10; the CPU's flags, where it keeps some.
+// Goal: values beyond the range of coordinates stay finite, and no operation on the way is invalid (∞ − ∞, ∞ · 0).
+// Method: 40 nodes that each scale by 1e10; the CPU's flags, if it has them.
 TEST_CASE("animate_overflow_stays_within_coordinates") {
   Stage stage;
   stage.full.nodes.assign(40, Node());

@@ -1,4 +1,4 @@
-// A .pray file in aligned memory, with access to what the format keeps to itself, to damage it on purpose.
+// A .pray file in aligned memory, with access to private details of the format, to damage it on purpose.
 #pragma once
 #include <zlib.h>
 
@@ -43,7 +43,7 @@ inline void put_u64(const BakedFile& file, std::size_t at, std::uint64_t value) 
   std::memcpy(file.data() + at, &value, 8);
 }
 
-// Makes the checksum match again, as somebody who means harm would.
+// Makes the checksum match again, as an attacker would.
 inline void fix_checksum(const BakedFile& file) {
   uLong value = crc32(0, file.data() + kByteCountAt, static_cast<uInt>(file.size() - kByteCountAt));
   put_u32(file, kChecksumAt, static_cast<std::uint32_t>(value));

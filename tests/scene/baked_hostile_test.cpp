@@ -1,5 +1,4 @@
-// Files that lie: every truncation, every flipped bit, and crafted tables. The answer is an error, or a scene that is
-// valid.
+// Hostile files: every truncation, every flipped bit, and crafted tables. The result is an error or a valid scene.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,7 +22,7 @@ BakedFile small_file() {
   return bake(full.scene);
 }
 
-// The message of opening the file, or "" where it opens.
+// The message of opening the file, or "" if it opens.
 std::string open_error(const BakedFile& file) {
   Scene scene;
   return baked_open(file.data(), file.size(), &scene).message;
@@ -45,7 +44,7 @@ void use(const Scene& scene) {
     for (double seconds : {0.3, 1.7}) pose_at(scene, a, seconds, &pose);
 }
 
-// How many floats the scene holds, and how many of them are not finite.
+// Number of floats in the scene, and of those that are not finite.
 struct FloatCount {
   int all = 0, bad = 0;
   void add(const float* values, std::size_t count) {
@@ -87,15 +86,16 @@ FloatCount count_floats(const Scene& s) {
 
 }  // namespace
 
-// Goal: HARDCASES row 8 in a .pray file: no float of any kind may be NaN, infinite or, as a coordinate, too large; the
-// refusal names the element. Method: each word of a sound file in turn; what still opens holds finite floats alone.
+// Goal: HARDCASES row 8 in a .pray file: no float may be NaN, infinite or, as a coordinate, too large; the refusal
+// names the element. Method: each word of a sound file in turn; files that still open hold only finite floats.
 TEST_CASE("hard_08_baked_numbers_that_are_not_finite_are_refused_by_element") {
   BakedFile file = small_file();
   Scene scene;
   REQUIRE(baked_open(file.data(), file.size(), &scene).ok);
   int float_count = count_floats(scene).all;
   CHECK(float_count > 400);
-  const std::size_t step = kEffortDivisor > 1 ? 13 : 1;  // words; a prime, so as to keep to no field of a struct
+  const std::size_t step =
+      kEffortDivisor > 1 ? 13 : 1;  // words; a prime, so as not to hit the same field of a struct each time
   for (float bad : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
     std::uint32_t word, sound;
     std::memcpy(&word, &bad, sizeof word);
@@ -116,8 +116,8 @@ TEST_CASE("hard_08_baked_numbers_that_are_not_finite_are_refused_by_element") {
   }
 }
 
-// Goal: a file cut short anywhere is refused. Method: every length, in a block of exactly that length, so that a
-// sanitizer sees any read beyond it; then again with a header that states the shorter length and a right checksum.
+// Goal: a truncated file is refused. Method: every length, in a block of exactly that length, so that a sanitizer sees
+// any read beyond it; then again with a header that states the shorter length and a correct checksum.
 TEST_CASE("baked_open_rejects_every_truncation") {
   BakedFile whole = small_file();
   for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -132,7 +132,7 @@ TEST_CASE("baked_open_rejects_every_truncation") {
   }
 }
 
-// Goal: damage is noticed. Method: every single bit of a file flipped.
+// Goal: damage is detected. Method: every single bit of a file flipped.
 TEST_CASE("baked_open_rejects_every_flipped_bit") {
   BakedFile file = small_file();
   for (std::size_t i = 0; i < file.size() * 8; ++i) {
@@ -143,9 +143,9 @@ TEST_CASE("baked_open_rejects_every_flipped_bit") {
   }
 }
 
-// Goal: a file made with intent is refused or fully valid. Method: every bit flipped and every byte set to 0xFF, with a
-// right checksum; what opens passes validate_scene() and can be posed. The share that is refused shows that the checks
-// bite.
+// Goal: a malicious file is refused or fully valid. Method: every bit flipped and every byte set to 0xFF, with a
+// correct checksum; files that open pass validate_scene() and can be posed. The share refused shows that the checks
+// work.
 TEST_CASE("baked_open_rejects_or_validates_every_change_with_a_right_checksum") {
   BakedFile file = small_file();
   std::size_t rejected = 0, tried = 0;
@@ -171,7 +171,7 @@ TEST_CASE("baked_open_rejects_or_validates_every_change_with_a_right_checksum") 
   CHECK(rejected > tried / 5);
 }
 
-// Goal: the table of sections is checked word by word. Method: each field of each section set to values that harm.
+// Goal: the table of sections is checked word by word. Method: each field of each section set to harmful values.
 TEST_CASE("baked_open_rejects_crafted_section_tables") {
   BakedFile file = small_file();
   BakedFile original = small_file();
@@ -209,7 +209,7 @@ TEST_CASE("baked_open_rejects_reserved_words_in_use") {
   }
 }
 
-// Goal: two sections in one place, or one kind twice, are refused. Method: a copy of a neighbour's row of the table.
+// Goal: overlapping and duplicate sections are refused. Method: a copy of a neighbour's row of the table.
 TEST_CASE("baked_open_rejects_overlapping_and_duplicate_sections") {
   BakedFile file = small_file();
   BakedFile original = small_file();
@@ -231,7 +231,7 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(baked_open(file.data(), 0, &scene).message, "not a .pray file"));
   CHECK(mentions(baked_open(file.data(), 40, &scene).message, "cut short after 40 bytes"));
   CHECK(mentions(baked_open(file.data(), file.size() - 64, &scene).message, "it should be"));
-  CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "multiple of 64"));
+  CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "aligned to 64"));
   put_u32(file, kVersionAt, 1);
   CHECK(open_error(file) == "made by version 1, this program reads version 2: bake it again");
   put_u32(file, kVersionAt, kBakedVersion);

@@ -32,7 +32,7 @@ bool same_scene(const Scene& a, const Scene& b) {
 
 }  // namespace
 
-// Goal: what is baked is what was there. Method: scenes with every array in use, seeds 1 to 20, compared byte by byte.
+// Goal: baking is lossless. Method: scenes with every array in use, seeds 1 to 20, compared byte by byte.
 TEST_CASE("baked_round_trip_is_bit_identical") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
@@ -58,7 +58,7 @@ TEST_CASE("baked_round_trip_empty_scene") {
   CHECK(same_scene(empty, opened));
 }
 
-// Goal: every array lies at a multiple of 64 bytes, so that structures and SIMD loads may rely on it.
+// Goal: every array lies at a multiple of 64 bytes, as structures and SIMD loads require.
 TEST_CASE("baked_open_arrays_are_aligned_and_inside_the_file") {
   FullScene full;
   make_full_scene(3, 13, 5, &full);
@@ -74,7 +74,7 @@ TEST_CASE("baked_open_arrays_are_aligned_and_inside_the_file") {
   }
 }
 
-// Goal: baking is a function of the scene, whatever memory held before. Method: write over two different fillings.
+// Goal: baking is a function of the scene, whatever memory held before. Method: bake over two different fillings.
 TEST_CASE("baked_write_is_deterministic") {
   FullScene full;
   make_full_scene(5, 17, 9, &full);
@@ -86,7 +86,7 @@ TEST_CASE("baked_write_is_deterministic") {
   CHECK(std::memcmp(zeros.data(), ones.data(), zeros.size()) == 0);
 }
 
-// Goal: the hash tells scenes apart and is blind to where they lie. Method: change each of a few arrays by one bit.
+// Goal: the hash distinguishes scenes and ignores where they lie. Method: change each of a few arrays by one bit.
 TEST_CASE("scene_hash_depends_on_content_alone") {
   FullScene a, b;
   make_full_scene(8, 15, 6, &a);

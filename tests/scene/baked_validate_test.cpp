@@ -1,4 +1,4 @@
-// Every rule of validate_scene(): a scene that breaks it is refused, and the message names the element.
+// Every rule of validate_scene(): a scene that violates it is refused, and the message names the element.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -52,7 +52,7 @@ E unknown(int value) {
 
 }  // namespace
 
-// Goal: HARDCASES row 8: what is not a coordinate, or no index, never gets in. Method: each in each array.
+// Goal: HARDCASES row 8: invalid coordinates and indices never get in. Method: each kind in each array.
 TEST_CASE("hard_08_vertices_and_indices_out_of_range_are_refused") {
   count_assertions("refused, saying why");
   for (float bad : {kNan, -kNan, kInf, -kInf, 1.0001e18f, -2e18f, 3e38f}) {
@@ -79,8 +79,8 @@ TEST_CASE("hard_08_vertices_and_indices_out_of_range_are_refused") {
   refuses("triangles[2]", [](FullScene* f) { f->triangles[2].set_material(2); });
 }
 
-// Goal: HARDCASES row 27: transforms that flatten or burst are refused, naming the node. Method: determinants 0, below
-// the smallest normal float, infinite; tiny and huge ones inside the range are fine.
+// Goal: HARDCASES row 27: singular and overflowing transforms are refused, naming the node. Method: determinants 0,
+// below the smallest normal float, infinite; tiny and huge ones inside the range are accepted.
 TEST_CASE("hard_27_singular_nodes_are_refused_by_name") {
   count_assertions("refused by name");
   refuses("nodes[2]", [](FullScene* f) { f->nodes[2].scale = {1, 0, 1}; });
@@ -91,7 +91,7 @@ TEST_CASE("hard_27_singular_nodes_are_refused_by_name") {
   accepts([](FullScene* f) { f->nodes[2].scale = {1e12f, 1e12f, -1e12f}; });
 }
 
-// Goal: arrays fit each other and the limits.
+// Goal: array sizes agree with each other and with the limits.
 TEST_CASE("validate_scene_refuses_counts_that_do_not_fit") {
   refuses("13 normals for 14 vertices", [](FullScene* f) { f->normals.pop_back(); });
   refuses("13 uvs for 14 vertices", [](FullScene* f) { f->uvs.pop_back(); });
@@ -109,7 +109,7 @@ TEST_CASE("validate_scene_refuses_counts_that_do_not_fit") {
       [](FullScene* f) { f->normals.clear(), f->rest_normals.clear(), f->morph_normals.clear(), f->colors.clear(); });
 }
 
-// Goal: the scene's own numbers.
+// Goal: the scene's general numbers are checked.
 TEST_CASE("validate_scene_refuses_bad_info") {
   refuses("name", [](FullScene* f) {
     for (char& c : f->scene.info.name) c = 'x';
@@ -127,7 +127,8 @@ TEST_CASE("validate_scene_refuses_bad_info") {
   refuses("exposure", [](FullScene* f) { f->scene.info.exposure = 0; });
 }
 
-// Goal: materials that would gain energy, or that point nowhere, are refused. HARDCASES row 31: exponents up to 10^6.
+// Goal: materials that would gain energy, or with invalid references, are refused. HARDCASES row 31: exponents up to
+// 10^6.
 TEST_CASE("validate_scene_refuses_bad_materials") {
   for (float bad : {kNan, kInf, -0.001f, 1.001f}) {
     refuses("materials[1].diffuse.x", [=](FullScene* f) { f->materials[1].diffuse.x = bad; });
@@ -201,7 +202,7 @@ TEST_CASE("hard_28_degenerate_lights_and_cameras_are_refused") {
   refuses("nothing is animated", [](FullScene* f) { f->animations.clear(), f->lights[0].node = kNone; });
 }
 
-// Goal: a pose never reads outside an array and always ends.
+// Goal: a pose never reads outside an array and always terminates.
 TEST_CASE("validate_scene_refuses_bad_nodes_and_channels") {
   refuses("nodes[0]", [](FullScene* f) { f->nodes[0].parent = 0; });
   refuses("nodes[1]", [](FullScene* f) { f->nodes[1].parent = 2; });

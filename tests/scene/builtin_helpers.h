@@ -1,4 +1,4 @@
-// A built-in scene in memory of its own, for the tests of src/scene/builtin.
+// A built-in scene in its own memory, for the tests of src/scene/builtin.
 #pragma once
 #include <memory>
 #include <vector>

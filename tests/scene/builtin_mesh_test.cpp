@@ -16,7 +16,7 @@ namespace {
 using Point = std::array<float, 3>;
 Point point(const Vec3& p) { return {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f}; }  // -0 becomes 0
 
-// Directed edges between distinct positions, those of opposite direction cancelling: empty for a closed surface.
+// Directed edges between distinct positions, opposite ones cancelled: empty for a closed surface.
 std::map<std::pair<Point, Point>, int> open_edges(const Scene& scene) {
   std::map<std::pair<Point, Point>, int> edges;
   for (const Triangle& t : scene.triangles) {
@@ -40,7 +40,7 @@ Vec3 area_vector(const Scene& scene, const Triangle& t) {
 
 }  // namespace
 
-// Goal: the counts that the papers give. Method: count.
+// Goal: the triangle counts given by the papers. Method: count.
 TEST_CASE("builtin_triangle_counts_are_the_papers") {
   const std::map<std::string, std::uint32_t> expected = {
       {"cornell", 45109}, {"statue", 67244}, {"seesaw", 6000}, {"cube", 20}, {"furnace", 24}};
@@ -55,7 +55,7 @@ TEST_CASE("builtin_triangle_counts_are_the_papers") {
   CHECK(find_builtin("cornel") == nullptr);
 }
 
-// Goal: need() is what build() takes, and what is built passes the checks of a hostile file. Method: measure the arena.
+// Goal: build() takes exactly need(), and its result passes the checks for hostile files. Method: measure the arena.
 TEST_CASE("builtin_need_is_exact_and_the_scene_is_valid") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
@@ -69,8 +69,8 @@ TEST_CASE("builtin_need_is_exact_and_the_scene_is_valid") {
   }
 }
 
-// Goal: no leaks: closed things are closed, the Cornell box open in front only. Method: every edge is used as often in
-// one direction as in the other, vertices compared by position.
+// Goal: closed things are closed; only the Cornell box is open, in front. Method: every edge is used as often in one
+// direction as in the other, vertices compared by position.
 TEST_CASE("builtin_surfaces_are_closed_but_for_the_front_of_the_cornell_box") {
   for (const char* name : {"cube", "furnace"}) {
     CAPTURE(std::string(name));
@@ -86,8 +86,8 @@ TEST_CASE("builtin_surfaces_are_closed_but_for_the_front_of_the_cornell_box") {
 }
 
 // Goal: shading normals are unit, or zero for flat faces, and lie on the side of the geometric normal. Method: all
-// corners; the statue's finest folds may turn a corner's normal by more than a right angle on at most 1 triangle in
-// 500.
+// corners; in the statue's finest folds, at most 1 triangle in 100 may have a corner normal off by more than a right
+// angle.
 TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
@@ -113,8 +113,8 @@ TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
   }
 }
 
-// Goal: cornell's sphere takes any number of columns within the memory stated, and cornell itself is one of them.
-// Method: triangles by count, a mirror of them on the sphere, whose facets stand off it less the finer they are.
+// Goal: cornell's sphere takes any number of columns within the stated memory, and cornell itself is one of them.
+// Method: count triangles; the sphere's facets are mirrors, and the finer they are, the closer they lie to the sphere.
 TEST_CASE("builtin_cornell_is_tessellated_as_asked") {
   auto cornell = build_builtin("cornell");
   double sag_before = 1e9;

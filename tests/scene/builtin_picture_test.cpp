@@ -13,8 +13,8 @@ using namespace pocketray;
 
 namespace {
 
-// Material of the nearest triangle along the ray of the scene's camera through (x, y), each from -1 (left, bottom) to 1
-// of a 4:3 picture; kNone where there is nothing. Brute force in double.
+// Material of the nearest triangle along the camera ray through (x, y), each from -1 (left, bottom) to 1 in a 4:3
+// picture; kNone if there is none. Brute force in double.
 std::uint32_t material_seen(const Scene& scene, double x, double y) {
   auto wide = [](const Vec3& v) { return Vec3d{v.x, v.y, v.z}; };
   const Camera& camera = scene.cameras[0];
@@ -36,12 +36,12 @@ std::uint32_t material_seen(const Scene& scene, double x, double y) {
 
 template <class T>
 std::uint32_t add_crc(std::uint32_t crc, Array<T> array) {
-  if (array.empty()) return crc;  // zlib starts anew at a null pointer
+  if (array.empty()) return crc;  // zlib restarts at a null pointer
   return static_cast<std::uint32_t>(
       crc32(crc, reinterpret_cast<const Bytef*>(array.data), static_cast<uInt>(array.bytes())));
 }
 std::uint32_t geometry_crc(const Scene& scene) {
-  // What moves lies last and is posed by animate.cpp, which has tests of its own: its rest pose counts here.
+  // Moving parts come last and are posed by animate.cpp, which has its own tests: their rest pose counts here.
   std::uint32_t still = scene.moving_meshes.empty() ? scene.positions.count : scene.moving_meshes[0].vertex_begin;
   std::uint32_t crc = add_crc(0, Array<const Vec3>{scene.positions.data, still});
   crc = add_crc(crc, Array<const Vec3>{scene.normals.data, still});
@@ -56,8 +56,8 @@ std::uint32_t geometry_crc(const Scene& scene) {
 
 }  // namespace
 
-// Goal: the same bits from every compiler and CPU. Method: CRC-32 of the arrays of numbers against constants, from
-// memory that was filled with two different patterns.
+// Goal: the same bits from every compiler and CPU. Method: CRC-32 of the arrays of numbers against constants, built in
+// memory filled with two different patterns.
 TEST_CASE("hard_63_builtin_scenes_are_the_same_bits_everywhere") {
   count_assertions("the same bits in every build");
   const std::map<std::string, std::uint32_t> expected = {{"cornell", 436609683u},
@@ -80,8 +80,8 @@ TEST_CASE("hard_63_builtin_scenes_are_the_same_bits_everywhere") {
   }
 }
 
-// Goal: the picture is the one people know: red left, green right, light above, statue left of the mirror sphere.
-// Method: one ray each, told by what the material does.
+// Goal: the picture is the familiar one: red left, green right, light above, statue left of the mirror sphere.
+// Method: one ray each, recognised by the material.
 TEST_CASE("builtin_cornell_looks_like_the_photograph") {
   auto built = build_builtin("cornell");
   const Scene& scene = built->scene;
@@ -100,7 +100,7 @@ TEST_CASE("builtin_cornell_looks_like_the_photograph") {
   CHECK(material_seen(scene, -.9, 0) == kNone);  // beside the box there is nothing
 }
 
-// Goal: cameras look at something; inside closed scenes no ray escapes. Method: a grid of rays through the picture.
+// Goal: cameras see something, and in closed scenes no ray escapes. Method: a grid of rays through the picture.
 TEST_CASE("builtin_cameras_see_the_scene") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
@@ -114,7 +114,7 @@ TEST_CASE("builtin_cameras_see_the_scene") {
   }
 }
 
-// Goal: every material is there for a reason, and every scene can be lit. Method: count uses.
+// Goal: every material is used, and every scene can be lit. Method: count uses.
 TEST_CASE("builtin_materials_are_all_used_and_something_shines") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
@@ -134,7 +134,8 @@ TEST_CASE("builtin_materials_are_all_used_and_something_shines") {
   }
 }
 
-// Goal: the furnace's answer holds: one material, emission Le and albedo ρ with Le/(1 − ρ) = 1. Method: read them.
+// Goal: the furnace's closed form applies: one material, emission Le and albedo ρ with Le/(1 − ρ) = 1. Method: read
+// them.
 TEST_CASE("builtin_furnace_has_radiance_1_after_full_interreflection") {
   auto built = build_builtin("furnace");
   REQUIRE(built->scene.materials.count == 1);

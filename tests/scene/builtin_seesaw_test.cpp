@@ -34,7 +34,7 @@ enum { kBoard, kWeight, kWorm };
 
 }  // namespace
 
-// Goal: the sequence is [Jevans92] sec. 5's in numbers. Method: read them.
+// Goal: the sequence has the numbers of [Jevans92] sec. 5. Method: read them.
 TEST_CASE("builtin_seesaw_has_351_frames_4_lights_and_a_static_camera") {
   auto built = build_builtin("seesaw");
   const Scene& scene = built->scene;
@@ -61,7 +61,7 @@ TEST_CASE("builtin_seesaw_scene_is_the_pose_at_time_0") {
 }
 
 // Goal: the story: the weight falls on the board, the worm flies, lands on the floor and stays. Method: bounds of the
-// three moving meshes frame by frame; nothing may sink into the floor or leave the picture's tent.
+// three moving meshes frame by frame; nothing may sink into the floor or leave the tent.
 TEST_CASE("builtin_seesaw_weight_launches_the_worm_and_it_lands") {
   Posed posed;
   posed.at_frame(0);
@@ -86,8 +86,8 @@ TEST_CASE("builtin_seesaw_weight_launches_the_worm_and_it_lands") {
   CHECK(worm_end.high.y > 2.2f);
 }
 
-// Goal: little moves late in the sequence [Jevans92] table 2, but something always does. Method: the longest way of a
-// vertex between one frame and the next.
+// Goal: little moves late in the sequence [Jevans92] table 2, but something always does. Method: the longest distance
+// that a vertex moves between frames.
 TEST_CASE("builtin_seesaw_calms_down_after_frame_150") {
   Posed posed;
   float early = 0, late = 0;
@@ -109,7 +109,7 @@ TEST_CASE("builtin_seesaw_calms_down_after_frame_150") {
   CHECK(late < 0.03f);
 }
 
-// Goal: the motion has no jumps. Method: nothing moves faster than 20 m/s at any of the frames' boundaries.
+// Goal: the motion has no jumps. Method: nothing moves faster than 20 m/s between frames.
 TEST_CASE("builtin_seesaw_motion_is_continuous") {
   SeesawState before = seesaw_at(0);
   for (int step = 1; step <= 11700; ++step) {
@@ -123,8 +123,8 @@ TEST_CASE("builtin_seesaw_motion_is_continuous") {
   }
 }
 
-// Goal: between the frames the worm goes the short way, also where its somersault ends. Method: half a frame moves no
-// vertex further than 30 m/s would.
+// Goal: between the frames the worm takes the short way, even where its somersault ends. Method: in half a frame no
+// vertex moves further than at 30 m/s.
 TEST_CASE("builtin_seesaw_poses_between_frames_are_between") {
   Posed posed;
   const double frame_seconds = 1 / static_cast<double>(posed.built->scene.info.frames_per_second);

@@ -1,4 +1,4 @@
-// A small valid scene that uses every array and every kind of element, its numbers drawn from a seed.
+// A small valid scene that uses every array and every kind of element, with numbers drawn from a seed.
 #pragma once
 #include <vector>
 

@@ -5,8 +5,8 @@
 
 using namespace pocketray;
 
-// Goal: a triangle of 12 bytes keeps any vertices and any material there may be, and setting one of them changes no
-// other. Method: all combinations of the least, the greatest and one in between.
+// Goal: a triangle of 12 bytes holds any valid vertices and material, and setting one changes no other. Method: all
+// combinations of the smallest, the largest and one in between.
 TEST_CASE("triangle_keeps_all_vertices_and_materials_there_may_be") {
   static_assert(sizeof(Triangle) == 12, "three words");
   const std::uint32_t vertices[] = {0, 0x2AAAAAA, kVertexCountMax - 1};
@@ -30,8 +30,8 @@ TEST_CASE("triangle_keeps_all_vertices_and_materials_there_may_be") {
         }
 }
 
-// Goal: a scene of more vertices than triangles can name is refused by name. Method: counts alone; they are looked at
-// before the arrays.
+// Goal: a scene with more vertices than triangles can reference is refused with a message about vertices. Method:
+// counts only; they are checked before the arrays.
 TEST_CASE("validate_refuses_more_vertices_than_a_triangle_can_name") {
   Vec3 point = {0, 0, 0};
   Scene scene;

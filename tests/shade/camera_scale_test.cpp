@@ -18,8 +18,7 @@ Status rays_of(const Camera& camera, std::uint32_t width, std::uint32_t height, 
 
 }  // namespace
 
-// Goal: cameras that cannot be are refused and extreme ones give finite unit rays. Method: the degenerate cases by
-// name.
+// Goal: impossible cameras are refused, and extreme ones give finite unit rays. Method: the degenerate cases by name.
 TEST_CASE("hard_28_degenerate_cameras") {
   count_assertions("defined or refused, no NaN");
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
@@ -78,7 +77,7 @@ TEST_CASE("camera_rays_closed_forms") {
 }
 
 // Goal: no absolute epsilon anywhere: the scene × 2^±20 gives the same picture, bit for bit. Method: differential with
-// every feature, lengths scaled everywhere, radiance left alone.
+// every feature; all lengths are scaled, radiance is not.
 TEST_CASE("hard_29_scene_scaled_by_powers_of_two_same_image") {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Settings settings = settings_for(kAllFeatures, effort_side(48), effort_side(36));
@@ -94,8 +93,8 @@ TEST_CASE("hard_29_scene_scaled_by_powers_of_two_same_image") {
   }
 }
 
-// Goal: normals of any length, none at all, and opposite ones leave no NaN in a picture, and those of no length give
-// the picture of a scene without. Method: sweep of what a file might hold in a normal; differential.
+// Goal: normals of any length, missing and opposite ones leave no NaN in a picture, and zero normals give the picture
+// of a scene without normals. Method: sweep of what a file might hold in a normal; differential.
 TEST_CASE("hard_30_strange_normals_give_finite_pictures") {
   count_assertions("finite; without length as without normals");
   Settings settings = settings_for(kAllFeatures, 24, 18), flat = settings;

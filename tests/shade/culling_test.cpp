@@ -1,12 +1,12 @@
-// Surfaces that are seen from the front alone.
+// One-sided surfaces.
 #include <doctest/doctest.h>
 
 #include "support/generated_scene.h"
 
 using namespace pocketray;
 
-// Goal: glTF's one-sided materials vanish from behind, and only there. Method: a quad between the camera and a wall,
-// seen from both sides; the colour of the centre pixel tells which of the two is seen.
+// Goal: glTF's one-sided materials are invisible from behind, and only there. Method: a quad between the camera and a
+// wall, seen from both sides; the colour of the centre pixel tells which of the two is visible.
 TEST_CASE("back_face_culling_shows_what_is_behind_the_back_of_a_one_sided_surface") {
   for (bool double_sided : {false, true}) {
     for (bool from_front : {false, true}) {
@@ -40,8 +40,8 @@ TEST_CASE("back_face_culling_shows_what_is_behind_the_back_of_a_one_sided_surfac
   }
 }
 
-// Goal: two one-sided surfaces back to back show each its own front, whichever comes first in the list. Method: a ray
-// from either side, colour and depth.
+// Goal: of two one-sided surfaces back to back, each shows its own front, whichever comes first in the list. Method: a
+// ray from either side, colour and depth.
 TEST_CASE("back_face_culling_shows_the_front_of_surfaces_back_to_back") {
   for (bool swapped : {false, true}) {
     for (float side : {1.0f, -1.0f}) {

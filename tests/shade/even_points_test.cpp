@@ -37,8 +37,8 @@ Points cells(std::uint32_t count) {
   }
   return points;
 }
-// Hammersley's points with so many bits of y, in the middle of their interval: what a pixel had before (4), off centre
-// but for one.
+// Hammersley points with that many bits of y, in the middle of their interval: the former samples of a pixel (4 bits),
+// off centre for every count but one.
 Points hammersley(std::uint32_t count, int bits) {
   Points points;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -67,9 +67,9 @@ double corner_distance(double a, double b) {
   return (2 * a * b * d + a * a * a * std::log((b + d) / a) + b * b * b * std::log((a + d) / b)) / 6;
 }
 
-// Over all straight lines that meet the unit square, alike in direction and place: the root mean square of the error of
-// the area on one side, when points stand for it. For one direction the mean over the places is an energy distance
-// [Székely & Rizzo 2013, "Energy statistics", eq. 4.5], whose |x − y| over all directions are distances in the plane;
+// Over all straight lines that meet the unit square, uniform in direction and position: root mean square error of the
+// area on one side when the points represent it. For one direction the mean over positions is an energy distance
+// [Székely & Rizzo 2013, "Energy statistics", eq. 4.5]; over all directions its |x − y| become distances in the plane;
 // the mean distance of two points of the square is (2 + √2 + 5 arsinh 1) / 15.
 double edge_error(const Points& points) {
   const double between = (2 + std::sqrt(2.0) + 5 * std::asinh(1.0)) / 15;
@@ -92,7 +92,7 @@ double star_error(const Points& points) {
   return std::sqrt(std::fmax(0, 1.0 / 9 - one / (2 * n) + two / (n * n)));
 }
 
-// Where samples see the edge of a white wall whose right (axis 0) or upper (axis 1) edge is so many pixels from the
+// Where samples see the edge of a white wall whose right (axis 0) or upper (axis 1) edge is that many pixels from the
 // left or the lower border of a picture of 8 × 8: the sum of the pixels across it.
 double edge_seen(std::uint32_t samples, int axis, double edge, bool orthographic) {
   constexpr int kSide = 8, kMiddle = kSide / 2;
@@ -128,8 +128,8 @@ double error_at_random(std::uint32_t count, Error error) {
 
 }  // namespace
 
-// Goal: the measure of what edges make of points is the one it is said to be. Method: many random lines, for points
-// that err much and little.
+// Goal: the measure of edge errors is what it claims to be. Method: many random lines, for point sets with large and
+// small errors.
 TEST_CASE("even_points_edge_error_is_that_of_random_lines") {
   Rng rng = make_rng(5);
   const int lines = effort(4000), steps = 64;
@@ -153,9 +153,9 @@ TEST_CASE("even_points_edge_error_is_that_of_random_lines") {
   }
 }
 
-// Goal: a pixel's samples are centred, one of each column and row, and as even as such sets get, whatever their count;
-// one sample is the centre. Method: means, bounds that random points and the points used before exceed, and the
-// exchange of every two points, which must not be better.
+// Goal: a pixel's samples are centred, one per column and row, and as even as such sets get, for every count; one
+// sample is the centre. Method: means, bounds that random points and the former points exceed, and exchanging any two
+// points, which must not be an improvement.
 TEST_CASE("even_points_of_a_pixel_are_centred_and_even") {
   CHECK((rook_point(0, 1).x == 0.5f && rook_point(0, 1).y == 0.5f));
   for (std::uint32_t n = 1; n <= kSampleCountMax; ++n) {
@@ -179,7 +179,7 @@ TEST_CASE("even_points_of_a_pixel_are_centred_and_even") {
         CHECK(edge_error(other) > own - 1e-9);
       }
     if (n == 1) continue;
-    if (n < 16) CHECK(off_centre(before) > 0.03);  // sixteen were centred by four bits
+    if (n < 16) CHECK(off_centre(before) > 0.03);  // sixteen were centred, with four bits
     CHECK(edge_error(before) > edge_bound(n));
     CHECK(star_error(before) > star_bound(n));
     CHECK(error_at_random(n, edge_error) > edge_bound(n));
@@ -187,9 +187,9 @@ TEST_CASE("even_points_of_a_pixel_are_centred_and_even") {
   }
 }
 
-// Goal: the cells of a light fill the square, each of the same area, and their middles are centred and even, whatever
-// their count; a square number makes a grid. Method: the cells' own arithmetic, means, and bounds that random points
-// exceed, and those used before, but for squares, exceed or are off centre.
+// Goal: the cells of a light tile the square with equal areas, and their middles are centred and even, for every count;
+// a square number gives a grid. Method: the cells' own arithmetic, means, and bounds that random points exceed; the
+// former points exceed them or are off centre, except for squares.
 TEST_CASE("even_points_cells_are_equal_centred_and_even") {
   const std::uint32_t step = kEffortDivisor > 1 ? 7 : 1;
   for (std::uint32_t n = 1; n <= kPointsPerAreaLightMax; n += step) {
@@ -228,8 +228,8 @@ TEST_CASE("even_points_cells_are_equal_centred_and_even") {
   }
 }
 
-// Goal: more samples do not move the picture. Method: edges of a wall, level and upright, at many places within a
-// pixel: where the sums of a row or column say they are is where they are, on average over the places, for each count.
+// Goal: more samples do not shift the picture. Method: horizontal and vertical edges of a wall at many positions within
+// a pixel: for each count, the sums of a row or column place them correctly, averaged over the positions.
 TEST_CASE("even_points_do_not_move_the_picture") {
   constexpr int kPlaces = 32;
   for (std::uint32_t n = 1; n <= kSampleCountMax; n += kEffortDivisor > 1 ? 5 : 1)

@@ -14,14 +14,14 @@ namespace {
 
 constexpr float kAlbedo = 0.8f;
 
-// Irradiance at a point of a floor z = 0 under what is in the scene.
+// Irradiance at a point of a floor z = 0 under the scene's content.
 double irradiance(const TestRenderer& t, float x, float y) {
   return double(look(t, {x, y, 0.01f}, {x, y, 0}).x) * kPiD / double(kAlbedo);
 }
 
 void add_floor(GeneratedScene* s) { add_sheet(s, 0, add_material(s, matte(kAlbedo))); }
 
-// An area light of radiance 1 that faces down; dark of itself.
+// An area light of radiance 1 that faces down; it reflects nothing.
 std::uint32_t add_lamp(GeneratedScene* s) {
   Material m = matte(0);
   m.emission = {1, 1, 1};
@@ -70,10 +70,10 @@ TEST_CASE("light_point_spot_and_directional_closed_forms") {
   }
 }
 
-// Goal: a disk light of radius r at height h gives E = πL·r²/(r² + h²) below its centre, however many points stand for
-// it. Method: closed form. 256 points err by 0.2 % from h = 2r on, 1 % at h = r, 9 % at h = r/2. Fewer than sixteen
-// leave out some of its sixteen triangles, which are alike seen from below the centre: one point in each is two thirds
-// of the way to the rim.
+// Goal: a disk light of radius r at height h gives E = πL·r²/(r² + h²) below its centre, for any number of points.
+// Method: closed form. 256 points err by 0.2 % from h = 2r on, 1 % at h = r, 9 % at h = r/2. Fewer than sixteen points
+// omit some of its sixteen triangles, which look alike from below the centre: one point in each is two thirds of the
+// way to the rim.
 TEST_CASE("hard_36_disk_light") {
   count_assertions("closed form, 0.2 % from h = 2r on; 2 % with any number of points from h = 4r on");
   for (float h : {4.0f, 2.0f, 1.0f, 0.5f}) {
@@ -81,7 +81,7 @@ TEST_CASE("hard_36_disk_light") {
     add_floor(&s);
     add_disk(&s, 1, h);
     double polygon = 16 / (2 * kPiD) * std::sin(2 * kPiD / 16);  // its area over the circle's
-    double r2 = polygon;                                         // a disk of the polygon's area
+    double r2 = polygon;                                         // a disk of the same area as the polygon
     double expected = kPiD * r2 / (r2 + double(h) * double(h));
     CAPTURE(h);
     CHECK(irradiance(*ray_renderer(&s), 0, 0) == doctest::Approx(expected).epsilon(h > 1    ? 0.002
@@ -96,7 +96,7 @@ TEST_CASE("hard_36_disk_light") {
 }
 
 // Goal: the unit square at height 1: form factors .2394565 to the centre below and .1385316 below a corner. Method:
-// closed form; 256 points give them to one part in a thousand, n points to 0.36 / n, as the midpoints of cells do.
+// closed form; 256 points reach it to one part in a thousand, n points to 0.36 / n, as midpoints of cells do.
 TEST_CASE("hard_37_unit_square_light") {
   count_assertions("closed form within 0.1 %, within 0.36 / n with n points");
   GeneratedScene s;
@@ -111,15 +111,15 @@ TEST_CASE("hard_37_unit_square_light") {
   }
 }
 
-// Goal: a light that sinks through the horizon fades without a jump and never goes below zero. Method: sweep of a
-// tilted square; the steps are bounded by what one of its points gives, for several numbers of them.
+// Goal: a light that sinks below the horizon fades without a jump and never goes negative. Method: sweep of a tilted
+// square; the steps are bounded by the share of one of its points, for several numbers of them.
 TEST_CASE("hard_38_light_crosses_the_horizon") {
   count_assertions("at least 0, no jump");
   for (std::uint32_t n : {256u, 1u, 2u, 3u, 4u, 7u, 8u, 12u, 50u}) {
     double before = -1;
     for (int i = 0; i <= 100; ++i) {
       GeneratedScene s;
-      add_sheet(&s, 0, add_material(&s, matte(kAlbedo)), false, 0.5f);  // small: it does not hide the light
+      add_sheet(&s, 0, add_material(&s, matte(kAlbedo)), false, 0.5f);  // small: it must not hide the light
       add_square(&s, 2, 1 - 0.02f * static_cast<float>(i), 0.5f);
       double e = irradiance(*ray_renderer(&s, 16, n), 0.01f, 0);
       CAPTURE(n);
@@ -143,8 +143,8 @@ TEST_CASE("hard_40_area_light_shrinks_to_a_point") {
   }
 }
 
-// Goal: the furnace. Without indirect light every point shows Le; a point within a closed emitter of radiance L
-// receives πL. Method: closed forms; the second by 256 points on a sphere, to 2 %.
+// Goal: the furnace. Without indirect light every point shows Le; a point inside a closed emitter of radiance L
+// receives πL. Method: closed forms; the second with 256 points on a sphere, to 2 %.
 TEST_CASE("hard_49_furnace_direct_light") {
   count_assertions("closed form");
   auto built = build_builtin("furnace");
@@ -159,8 +159,8 @@ TEST_CASE("hard_49_furnace_direct_light") {
   CHECK(irradiance(*ray_renderer(&s), 0, 0) == doctest::Approx(kPiD).epsilon(0.02));
 }
 
-// Goal: what stands 8 ulp before a light blocks it, and a light never stands in its own way: of an area light every
-// point arrives. Method: an occluder just before a point light and before an area light, near and far from the origin,
+// Goal: an occluder 8 ulp in front of a light blocks it, and a light never occludes itself: all points of an area light
+// arrive. Method: an occluder just in front of a point light and of an area light, near and far from the origin, from
 // points all over the floor; without it the closed form.
 TEST_CASE("hard_22_occluder_just_before_the_light") {
   for (float h : {1.0f, 1000.0f, 1e6f})
@@ -168,7 +168,7 @@ TEST_CASE("hard_22_occluder_just_before_the_light") {
       for (bool blocked : {false, true}) {
         GeneratedScene s;
         add_sheet(&s, 0, add_material(&s, matte(kAlbedo)), false, 4 * h);
-        float half = 0.02f * h;  // small: the closed form takes its centre; one of its 256 points would be missed
+        float half = 0.02f * h;  // small: the closed form is for its centre; one of its 256 points would be missed
         if (area) {
           add_quad(&s, {-half, half, h}, {half, half, h}, {half, -half, h}, {-half, -half, h}, add_lamp(&s));
         } else {
@@ -198,8 +198,8 @@ TEST_CASE("hard_22_occluder_just_before_the_light") {
 }
 
 // Goal: along a coarse sphere with smooth normals light fades to the terminator: never dark within the lit part, never
-// lit beyond, and no facet dark that the smooth surface has in the light. Method: walks along great circles from the
-// light's pole to the other; irradiance follows the interpolated normal.
+// lit beyond, and no facet dark where the smooth surface is lit. Method: walks along great circles from the light's
+// pole to the other; irradiance follows the interpolated normal.
 TEST_CASE("hard_23_terminator_of_a_coarse_smooth_sphere") {
   GeneratedScene s;
   add_sphere(&s, {0, 0, 0}, 1, 12, 8, add_material(&s, matte(kAlbedo)));
@@ -228,7 +228,8 @@ TEST_CASE("hard_23_terminator_of_a_coarse_smooth_sphere") {
       float facing = dot(surface.normal, pole);
       float radiance = look(*t, eye, {0, 0, 0}).x;
       bool lit = radiance > 0;
-      brighter += radiance > before + 2e-7f;  // the normals of this sphere are its directions: Lambert's cosine falls
+      brighter +=
+          radiance > before + 2e-7f;  // normals equal directions on this sphere, so Lambert's cosine only decreases
       before = radiance;
       relit += dark && lit;
       dark |= !lit;
@@ -241,8 +242,8 @@ TEST_CASE("hard_23_terminator_of_a_coarse_smooth_sphere") {
   count_hard(180 * 721, relit + dark_facets + brighter, "monotone, no lit-dark-lit");
 }
 
-// Goal: what lies beyond a light casts no shadow. Method: a floor under a point light, with and without a wall above
-// the light: the same radiance, bit for bit; and none where the wall is between them.
+// Goal: objects beyond a light cast no shadow. Method: a floor under a point light, with and without a wall above the
+// light: the same radiance, bit for bit; and none with the wall between them.
 TEST_CASE("light_is_not_shadowed_by_what_lies_beyond_it") {
   Vec3 seen[3];
   for (int i = 0; i < 3; ++i) {

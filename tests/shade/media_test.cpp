@@ -1,4 +1,4 @@
-// The stack of bodies that a ray is inside of.
+// The stack of bodies that contain a ray.
 #include "shade/media.h"
 
 #include <doctest/doctest.h>
@@ -7,8 +7,8 @@
 
 using namespace pocketray;
 
-// Goal: bodies that overlap are left in any order, and the others stay. Method: of three nested entries the middle one,
-// then the last, then one that is not there, then the first.
+// Goal: overlapping bodies may be left in any order, and the others stay. Method: of three nested entries remove the
+// middle one, then the last, then one that is not there, then the first.
 TEST_CASE("media_leave_the_body_that_is_left_wherever_it_lies") {
   MediumStack stack;
   for (std::uint32_t material : {7u, 8u, 9u}) enter_medium(&stack, material);
@@ -25,7 +25,7 @@ TEST_CASE("media_leave_the_body_that_is_left_wherever_it_lies") {
 }
 
 // Goal: where bodies touch, those that end are left before others are entered, so that a full stack has room. Method: a
-// full stack; a contact with the face that enters before the one that leaves.
+// full stack; a contact whose entering face comes before the leaving one.
 TEST_CASE("media_leave_before_they_enter_at_a_contact") {
   constexpr std::uint32_t last = kMediumDepthMax - 1;
   Material materials[kMediumDepthMax + 1];

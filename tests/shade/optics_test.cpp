@@ -17,8 +17,8 @@ double reflectance(double degrees, double eta) {
 
 }  // namespace
 
-// Goal: total internal reflection begins at the critical angle and gives neither more than 1 nor no number around it.
-// Method: sweep of ±2e-7 rad and beyond about asin(1/1.5).
+// Goal: total internal reflection begins at the critical angle, without values above 1 or NaN around it. Method: sweep
+// of ±2e-7 rad and beyond around asin(1/1.5).
 TEST_CASE("hard_32_fresnel_around_the_critical_angle") {
   count_assertions("R at most 1, 1 beyond the angle");
   double critical = std::asin(1 / 1.5) * 180 / kPiD;
@@ -31,7 +31,7 @@ TEST_CASE("hard_32_fresnel_around_the_critical_angle") {
   CHECK(reflectance(critical - 0.1, 1.5) < 0.9);
 }
 
-// Goal: the exact Fresnel equations. Method: closed-form values, either way through the boundary.
+// Goal: the exact Fresnel equations. Method: closed-form values, in both directions through the boundary.
 TEST_CASE("hard_33_fresnel_closed_forms") {
   count_assertions("closed forms within 1e-6");
   const double known[][3] = {{0, 1.33, .0200593}, {0, 1.5, .04},      {0, 2.42, .172395},      {45, 1.5, .0502399},
@@ -43,8 +43,8 @@ TEST_CASE("hard_33_fresnel_closed_forms") {
   }
 }
 
-// Goal: what a surface does not reflect it transmits: R + T = 1. Method: a slab of clear glass between equally bright
-// surroundings vanishes, whatever the angle, but for what ends at the depth of rays, r^16 at most.
+// Goal: light that a surface does not reflect is transmitted: R + T = 1. Method: a slab of clear glass in uniform
+// surroundings is invisible at any angle, up to what the maximum ray depth cuts off, r^16 at most.
 TEST_CASE("hard_33_clear_glass_in_uniform_light_vanishes") {
   count_assertions("R + T = 1 within 1e-6");
   for (float ior : {1.33f, 1.5f, 2.42f}) {
@@ -64,7 +64,7 @@ TEST_CASE("hard_33_clear_glass_in_uniform_light_vanishes") {
 }
 
 // Goal: a slab of n = 1.5 transmits 12/13 and reflects 1/13 at normal incidence. Method: closed form, and its partial
-// sums at every depth of rays: T = (1 − r)²·Σ r²ᵏ over the orders that fit.
+// sums at every ray depth: T = (1 − r)²·Σ r²ᵏ over the orders that fit.
 TEST_CASE("hard_34_slab_transmits_12_of_13") {
   count_assertions("partial sums within 1e-5");
   for (bool beyond : {true, false}) {
@@ -99,7 +99,7 @@ void add_facing_mirrors(GeneratedScene* s, float rho) {
 
 }  // namespace
 
-// Goal: facing mirrors of reflectance ρ that glow with 1 show Σρᵏ. Method: closed form at every depth of rays.
+// Goal: facing mirrors of reflectance ρ and emission 1 show Σρᵏ. Method: closed form at every ray depth.
 TEST_CASE("hard_35_facing_mirrors_sum_the_series") {
   count_assertions("partial sums within 1e-5");
   for (float rho : {0.5f, 0.9f, 1.0f}) {
@@ -114,8 +114,8 @@ TEST_CASE("hard_35_facing_mirrors_sum_the_series") {
   }
 }
 
-// Goal: a path that is cut off at weight w errs by w/(1 − ρ) at most, which is what it states, and that by less than
-// half a displayed level. Method: the series' limit, for several exposures; rays are left out, but none that count.
+// Goal: a path cut off at weight w errs by at most w/(1 − ρ), as it states, and by less than half a display level.
+// Method: limit of the series, for several exposures; rays are skipped, but none that matter.
 TEST_CASE("hard_35_cut_off_errs_by_the_rest_of_the_series_at_most") {
   count_assertions("at most w/(1 - rho)");
   std::uint64_t left_out = 0;
@@ -148,7 +148,7 @@ TEST_CASE("hard_35_cut_off_errs_by_the_rest_of_the_series_at_most") {
   CHECK(left_out >= 6);
 }
 
-// Goal: a thin sheet passes 1 − 2r/(1 + r) of the light, unbent, and its tint. Method: closed form.
+// Goal: a thin sheet passes 1 − 2r/(1 + r) of the light, unbent and tinted. Method: closed form.
 TEST_CASE("optics_thin_sheet_closed_form") {
   GeneratedScene s;
   Material sheet = glass(1.5f, {0.5f, 1, 1});
@@ -164,8 +164,8 @@ TEST_CASE("optics_thin_sheet_closed_form") {
   }
 }
 
-// Goal: light along a body's inside fades as exp(−a·d), for the eye and for shadow rays. Method: closed form, a slab of
-// index 1, so that nothing else happens to the light.
+// Goal: light inside a body fades as exp(−a·d), for the eye and for shadow rays. Method: closed form, a slab of index
+// 1, so that nothing else affects the light.
 TEST_CASE("optics_absorption_is_beer_lambert") {
   GeneratedScene s;
   add_box(&s, {-5, -5, 0.5f}, {5, 5, 2}, add_material(&s, glass(1, {1, 1, 1}, {0.7f, 0, 2})));
@@ -184,7 +184,7 @@ TEST_CASE("optics_absorption_is_beer_lambert") {
   }
 }
 
-// Goal: bodies that touch count each once: no medium is lost at their common face and the stack is empty behind them.
+// Goal: touching bodies count once each: no medium is lost at their common face, and the stack is empty behind them.
 // Method: closed forms through stacks of touching slabs, for the eye and for shadow rays, with the bodies in either
 // order.
 TEST_CASE("hard_25_touching_bodies_balance") {
@@ -215,7 +215,7 @@ TEST_CASE("hard_25_touching_bodies_balance") {
   }
 }
 
-// Goal: two touching slabs of one glass are one slab: no reflection at the face between them. Method: closed form
+// Goal: two touching slabs of the same glass are one slab: no reflection at the face between them. Method: closed form
 // 12/13.
 TEST_CASE("hard_25_touching_slabs_of_one_glass_are_one_slab") {
   count_assertions("12/13");
@@ -229,8 +229,8 @@ TEST_CASE("hard_25_touching_slabs_of_one_glass_are_one_slab") {
   }
 }
 
-// Goal: glass that stands on a table does not hide the table: the coincident face does not swallow it. Method: closed
-// form through glass of index 1, rays all over it, with the glass before and behind the table in the list of triangles.
+// Goal: glass that stands on a table does not hide it: the coincident face is not lost. Method: closed form through
+// glass of index 1, rays all over it, with the glass before and after the table in the list of triangles.
 TEST_CASE("hard_25_glass_on_a_table_shows_the_table") {
   count_assertions("the table is seen");
   for (bool glass_first : {true, false}) {
@@ -251,8 +251,8 @@ TEST_CASE("hard_25_glass_on_a_table_shows_the_table") {
   }
 }
 
-// Goal: nested media and an eye inside glass: the stack knows the bodies around the eye, innermost last. Method: three
-// nested boxes, the eye in each, rays of all directions.
+// Goal: nested media and an eye inside glass: the stack has the bodies around the eye, innermost last. Method: three
+// nested boxes, the eye in each, rays in all directions.
 TEST_CASE("hard_25_media_around_the_eye") {
   count_assertions("the bodies around the eye");
   GeneratedScene s;

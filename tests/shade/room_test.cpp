@@ -19,8 +19,8 @@ Vec3 random_direction(Rng* rng) {
   return normalize(Vec3{x, y, between(rng, -1, 1)});
 }
 
-// The Cornell box with its open front shut. Its walls are the first 17 triangles and the last 3; walls meet in vertices
-// and edges that they share.
+// The Cornell box with its open front closed. Its walls are the first 17 triangles and the last 3; walls share vertices
+// and edges.
 std::unique_ptr<ScaledScene> closed_cornell(const Scene& cornell, float scale) {
   auto room = scale_scene(cornell, scale);
   constexpr std::uint32_t kFront[3][3] = {{12, 0, 4}, {12, 4, 5}, {12, 5, 1}};  // floor, ceiling, the floor's middle
@@ -35,8 +35,8 @@ struct Room {
   std::uint32_t first_walls, last_walls;
 };
 
-// Paths that start inside, half of them aimed at a point of an edge or at a corner of a wall, and go on in random
-// directions from where they arrive. Returns how many of `ray_count` rays leave the room.
+// Traces paths that start inside, half of them aimed at an edge or a corner of a wall, and continue in random
+// directions. Returns how many of `ray_count` rays leave the room.
 int rays_that_escape(const Room& room, Rng* rng, int ray_count) {
   constexpr int kPath = 4;
   const Renderer& r = *room.renderer;
@@ -73,8 +73,8 @@ int rays_that_escape(const Room& room, Rng* rng, int ray_count) {
 
 }  // namespace
 
-// Goal: nothing escapes from a closed room, neither the eye's rays nor those that leave its walls, least of all through
-// edges and corners. Method: paths in the Cornell box with its front shut, large and small, and in the built-in rooms.
+// Goal: nothing escapes from a closed room, neither camera rays nor rays from its walls, not even through edges and
+// corners. Method: paths in the Cornell box with its front closed, large and small, and in the built-in rooms.
 TEST_CASE("hard_24_nothing_escapes_from_a_closed_room") {
   auto cornell = build_builtin("cornell"), cube = build_builtin("cube"), furnace = build_builtin("furnace");
   auto large = closed_cornell(cornell->scene, 1), small = closed_cornell(cornell->scene, 1e-3f);

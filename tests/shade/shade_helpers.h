@@ -1,4 +1,4 @@
-// What the shading suites share: surfaces of known radiance and single rays.
+// Helpers of the shading suites: surfaces of known radiance and single rays.
 #pragma once
 #include <cmath>
 
@@ -27,7 +27,7 @@ inline Material glass(float ior, const Vec3& tint = {1, 1, 1}, const Vec3& absor
   m.absorption = absorption;
   return m;
 }
-// A large square that faces +z at a height z, or −z where `down`.
+// A large square at height z that faces +z, or −z with `down`.
 inline void add_sheet(GeneratedScene* s, float z, std::uint32_t material, bool down = false, float side = 10) {
   if (down)
     add_quad(s, {-side, side, z}, {side, side, z}, {side, -side, z}, {-side, -side, z}, material);
@@ -35,11 +35,11 @@ inline void add_sheet(GeneratedScene* s, float z, std::uint32_t material, bool d
     add_quad(s, {-side, -side, z}, {side, -side, z}, {side, side, z}, {-side, side, z}, material);
 }
 
-// A renderer that leaves nothing out; one pixel, for single rays.
+// A renderer that skips nothing; one pixel, for single rays.
 inline std::unique_ptr<TestRenderer> ray_renderer(GeneratedScene* s, std::uint32_t depth = 16,
                                                   std::uint32_t area_points = 256) {
   if (s->cameras.empty()) aim(s, {0.1f, 0.2f, 50}, {0, 0, 0}, 40);
-  if (s->lights.empty()) {  // a dark one, so that no default lights come
+  if (s->lights.empty()) {  // a dark one, to avoid default lights
     s->lights.resize(1);
     s->lights[0].intensity = {0, 0, 0};
   }

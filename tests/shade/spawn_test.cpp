@@ -14,7 +14,7 @@ namespace {
 float between(Rng* rng, float low, float high) { return low + (high - low) * next_float(rng); }
 Vec3 random_vec3(Rng* rng) { return {between(rng, -1, 1), between(rng, -1, 1), between(rng, -1, 1)}; }
 
-// Spawns rays from points of random triangles on both sides and counts those that meet the triangle they leave.
+// Spawns rays from points of random triangles on both sides and counts those that hit the triangle they leave.
 int self_hits(GeneratedScene* s, int spawns) {
   auto t = ray_renderer(s);
   const FrameData& frame = t->renderer.frame;
@@ -47,8 +47,8 @@ int self_hits(GeneratedScene* s, int spawns) {
   return hits;
 }
 
-// Meets a convex body from outside, a third of the rays aimed at edges and corners, and spawns a ray outward from where
-// it was met: that ray must meet nothing at all. Counts those that do.
+// Hits a convex body from outside, a third of the rays aimed at edges and corners, and spawns a ray outward from each
+// hit, which must hit nothing. Counts those that do.
 int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
   auto t = ray_renderer(s);
   const Renderer& r = t->renderer;
@@ -68,7 +68,7 @@ int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
     Surface surface;
     r.frame.surface(r.frame, ray, hit, &surface);
     Vec3 outgoing = normalize(random_vec3(&rng));
-    if (!surface.front) continue;  // at a vertex of the outline, where a hit on the back is as good
+    if (!surface.front) continue;  // at a vertex of the outline a hit on the back is equally valid
     if (dot(outgoing, surface.geometric) < 0) outgoing = -outgoing;
     if (!(dot(outgoing, surface.geometric) > 1e-6f)) continue;
     r.accel_info->closest(r.accel, {safe_origin(surface, 1), outgoing, __builtin_inff()}, nullptr, &again, nullptr);
@@ -80,7 +80,7 @@ int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
 }  // namespace
 
 // Goal: the geometric normal of a triangle, to 16 ulp of a unit vector, on the side the ray came from. Method:
-// triangles whose corners differ by multiples of 1/16, so that their edges are exact, near the origin and beside it;
+// triangles whose corners differ by multiples of 1/16, so that their edges are exact, near the origin and away from it;
 // the normal in double.
 TEST_CASE("hard_10_geometric_normal_is_within_16_ulp") {
   GeneratedScene s;
@@ -121,8 +121,8 @@ TEST_CASE("hard_10_geometric_normal_is_within_16_ulp") {
   count_hard(tried, wrong, "Ng within 16 ulp");
 }
 
-// Goal: a ray that leaves a surface does not meet it. Method: 10⁶ spawns per shape, a quarter of them grazing: spheres
-// of sizes from 10⁻⁸ to 10⁸, at the origin and far from it, planes through zero coordinates.
+// Goal: a ray that leaves a surface does not hit it. Method: 10⁶ spawned rays per shape, a quarter of them grazing:
+// spheres of sizes from 10⁻⁸ to 10⁸, at the origin and far from it, planes through zero coordinates.
 TEST_CASE("hard_20_spawned_rays_do_not_meet_their_surface") {
   const int kSpawns = gate_share(250000, 1000000);
   struct Shape {
@@ -157,8 +157,8 @@ TEST_CASE("hard_20_spawned_rays_do_not_meet_their_surface") {
   }
 }
 
-// Goal: of two surfaces a few ulp apart the nearer is seen, from either side, and light that falls on it is not cut off
-// by the farther. Method: sheets 4 ulp apart and more; shells of radius 1 and 1 + 4e-5.
+// Goal: of two surfaces a few ulp apart the nearer is visible, from either side, and the farther does not block light
+// that falls on it. Method: sheets 4 ulp apart and more; shells of radius 1 and 1 + 4e-5.
 TEST_CASE("hard_21_near_surface_of_a_narrow_gap_is_seen") {
   int smallest = 1 << 20, tried = 0, all_wrong = 0, rays = gate_share(5000, 100000);
   for (int ulps : {1, 2, 4, 8, 64, 4096}) {

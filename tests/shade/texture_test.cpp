@@ -39,7 +39,7 @@ TEST_CASE("texture_centres_give_texels") {
   CHECK(at(.75f, .25f).alpha == 128 / 255.0f);
 }
 
-// Goal: between centres colours mix linearly in linear light. Method: closed form half-way and at a quarter.
+// Goal: between centres colours mix linearly, in linear light. Method: closed form half-way and at a quarter.
 TEST_CASE("texture_bilinear_mixes_linear_light") {
   CHECK(at(.5f, .25f).rgb == Vec3{.5f, .5f, 0});
   CHECK(at(.375f, .25f).rgb == Vec3{.75f, .25f, 0});
@@ -47,7 +47,7 @@ TEST_CASE("texture_bilinear_mixes_linear_light") {
   CHECK(at(.5f, .5f).alpha == doctest::Approx((255 + 128 + 64) / 4.0 / 255));
 }
 
-// Goal: coordinates wrap as the sampler says. Method: closed form beyond the edges, near and far.
+// Goal: coordinates wrap as the sampler specifies. Method: closed form beyond the edges, near and far.
 TEST_CASE("texture_wraps") {
   for (float turns : {-3.0f, -1.0f, 1.0f, 2.0f, 1000.0f}) {
     CAPTURE(turns);
@@ -63,9 +63,8 @@ TEST_CASE("texture_wraps") {
   for (float wild : {1e30f, -1e30f, 1e9f}) CHECK(is_finite(at(wild, wild).rgb));
 }
 
-// Goal: the integers that texture coordinates become saturate: the last texel beyond the far edge, the first before the
-// near one, some texel of a repeated texture. Method: coordinates up to the largest that a scene may hold, both
-// filters.
+// Goal: integer texel coordinates saturate: the last texel beyond the far edge, the first before the near one, any
+// texel of a repeated texture. Method: coordinates up to the largest that a scene may hold, both filters.
 TEST_CASE("hard_62_texture_coordinates_saturate") {
   const float values[] = {0.0f, 1e-45f, 0.99f, 1.5f, 1e6f, 1e9f, 2147483648.0f, 4.3e9f, 1e18f};
   std::uint64_t wrong = 0, tried = 0;
@@ -89,8 +88,8 @@ TEST_CASE("texture_filter_can_be_overridden") {
   CHECK(at(.5f, .25f, Wrap::repeat, Wrap::repeat, true, TextureFilter::bilinear).rgb == Vec3{.5f, .5f, 0});
 }
 
-// Goal: textures reach the picture where they belong: uv, transform and base colour. Method: rays at texel centres of a
-// textured, unlit square.
+// Goal: textures reach the picture in the right place: uv, transform and base colour. Method: rays at texel centres of
+// a textured, unlit square.
 TEST_CASE("texture_shows_on_a_square") {
   GeneratedScene s;
   Material m;
@@ -133,7 +132,7 @@ TEST_CASE("unlit_without_emission_is_lit_like_others") {
   CHECK(square(1, 0)[24 * 9 + 12] == Vec3{0.5f, 1, 0.25f});
 }
 
-// Goal: vertex colours interpolate. Method: closed form at vertices' mean.
+// Goal: vertex colours interpolate. Method: closed form at the mean of the vertices.
 TEST_CASE("vertex_colors_interpolate") {
   GeneratedScene s;
   Material m;
@@ -152,7 +151,7 @@ TEST_CASE("vertex_colors_interpolate") {
     }
 }
 
-// Goal: below its cut-off a surface is a hole, for the eye and for light; above, it is whole. Method: closed form.
+// Goal: below its cut-off a surface has a hole, for the eye and for light; above, it is whole. Method: closed form.
 TEST_CASE("alpha_mask_cuts_holes") {
   for (float opacity : {0.4f, 0.6f}) {
     GeneratedScene s;
@@ -172,9 +171,9 @@ TEST_CASE("alpha_mask_cuts_holes") {
   }
 }
 
-// Goal: blending surfaces mix with what is behind, also where they lie upon it, and pass 1 − α of the light. Method:
-// closed form, two layers before an opaque one, apart and coincident, in every order of their triangles. Of coincident
-// surfaces the first in the list is met first: an opaque one hides what is laid upon it later.
+// Goal: blending surfaces mix with what is behind them, even if coincident, and pass 1 − α of the light. Method: closed
+// form, two layers in front of an opaque one, apart and coincident, in every order of their triangles. Of coincident
+// surfaces the first in the list is hit first: an opaque one hides surfaces laid upon it later.
 TEST_CASE("alpha_blend_mixes_with_what_is_behind") {
   for (float gap : {1.0f, 0.0f})
     for (int order = 0; order < 3; ++order) {

@@ -24,8 +24,9 @@ Picture trace_all(const FrameData& frame, Tracer* tracer) {
 
 }  // namespace
 
-// Goal: shadow rays that a tile traces in packets, before shading asks, change no pixel, nor how many rays are asked for. Method:
-// generated scenes with every feature by turns, and one with more lights than tiles know of, with packets and without.
+// Goal: shadow rays that a tile traces in packets before shading needs them change neither pixels nor the number of
+// rays requested. Method: generated scenes with every feature in turn, and one with more lights than tiles handle, with
+// and without packets.
 TEST_CASE("tile_shadows_change_no_pixel") {
   for (std::uint32_t seed = 0; seed < static_cast<std::uint32_t>(effort(24)); ++seed) {
     CAPTURE(seed);
@@ -54,8 +55,8 @@ TEST_CASE("tile_shadows_change_no_pixel") {
   }
 }
 
-// Goal: what a tile knows is asked for its first hits alone. Method: one pixel's answers, asked about from its point,
-// from elsewhere, and about lights beyond those known.
+// Goal: a tile's results are used for its first hits only. Method: one pixel's results, requested for its point, for
+// another point, and for lights beyond those known.
 TEST_CASE("tile_shadows_are_known_at_first_hits_alone") {
   TileShadows shadows = {};
   shadows.surface[5].point = {1, 2, 3}, shadows.origin[5] = {1, 2, 4};

@@ -13,7 +13,7 @@
 using namespace pocketray;
 
 // Goal: the closed form is the paper's. Method: [Aranha07] table 1, whose text gives T_t = 400 ns: shares to the last
-// printed digit, times within 2 ns; and beside it what overlapping would give.
+// printed digit, times within 2 ns; also prints what overlapping would give.
 TEST_CASE("closed_form_split_reproduces_table_1") {
   struct Row {
     const char* scene;
@@ -37,7 +37,7 @@ TEST_CASE("closed_form_split_reproduces_table_1") {
   }
 }
 
-// Goal: both sides finish together, and a server that costs nothing gets everything.
+// Goal: both sides finish together, and a server of no cost gets everything.
 TEST_CASE("closed_form_split_balances_the_two_sides") {
   for (double device : {1.0, 300.0, 1e6})
     for (double server : {0.0, 1.0, 77.0, 1e5})
@@ -51,7 +51,7 @@ TEST_CASE("closed_form_split_balances_the_two_sides") {
       }
 }
 
-// Goal: HARDCASES row 60 for the closed form. Method: every combination of the bad numbers.
+// Goal: HARDCASES row 60 for the closed form. Method: every combination of invalid numbers.
 TEST_CASE("hard_60_degenerate_times_closed_form_share_in_range") {
   const double inf = std::numeric_limits<double>::infinity();
   const double values[] = {0, -0.0, std::numeric_limits<double>::quiet_NaN(), inf, -inf, -1, 5e-324, 1e300, 400};

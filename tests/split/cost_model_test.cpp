@@ -1,4 +1,4 @@
-// What the model makes of measurements.
+// What the model learns from measurements.
 #include "split/cost_model.h"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ namespace {
 const double kInfinity = std::numeric_limits<double>::infinity();
 const double kBad[] = {0, -0.0, std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, -1, 5e-324, 1e300};
 
-// Whether the split is one, and its numbers are finite.
+// Whether the split is valid and its numbers are finite.
 bool is_sound(const Split& split, std::uint32_t row_count) {
   for (std::uint32_t i = 0; i < split.server_count; ++i)
     if (split.boundary[i] > split.boundary[i + 1]) return false;
@@ -29,7 +29,7 @@ bool is_sound(const Split& split, std::uint32_t row_count) {
 
 }  // namespace
 
-// Goal: without measurements, and without a server, everything is the device's.
+// Goal: without measurements, and without a server, all rows are the device's.
 TEST_CASE("cost_model_knows_nothing_all_rows_on_the_device") {
   OwnModel own(320, 240, 2);
   CHECK(own.plan().boundary[0] == 240);
@@ -41,7 +41,7 @@ TEST_CASE("cost_model_knows_nothing_all_rows_on_the_device") {
   CHECK(own.plan().time_ns == doctest::Approx(240e6));
 }
 
-// Goal: the overture alone gives the paper's balance, overlapped. Method: Table 1, first row, chunks of one row.
+// Goal: the first estimate alone gives the paper's balance, overlapped. Method: Table 1, first row, chunks of one row.
 TEST_CASE("cost_model_overture_gives_the_overlapped_share") {
   OwnModel own(320, 240, 1);
   own.model.servers[0].connected = true;
@@ -53,7 +53,7 @@ TEST_CASE("cost_model_overture_gives_the_overlapped_share") {
   CHECK(own.plan().boundary[0] == 240);
 }
 
-// Goal: rows cost what they were measured to. Method: the lower half is three times as dear, on either side.
+// Goal: rows cost what was measured. Method: the lower half is three times as expensive, on either side.
 TEST_CASE("cost_model_learns_what_each_row_costs") {
   OwnModel own(320, 240, 1);
   own.model.servers[0].connected = true;
@@ -79,8 +79,8 @@ TEST_CASE("cost_model_learns_what_each_row_costs") {
   CHECK(own.plan().boundary[0] <= 98);
 }
 
-// Goal: a throttled device is told from a slower server. Method: all rows of the device take twice as long, the
-// server's the same: the server's speed relative to the device's doubles, the split goes to it.
+// Goal: a throttled device is distinguished from a slower server. Method: all rows of the device take twice as long,
+// the server's take the same: the server's relative speed doubles, and it gets more rows.
 TEST_CASE("cost_model_tells_a_slow_device_from_a_slow_server") {
   for (bool device : {true, false}) {
     OwnModel own(320, 240, 1);
@@ -99,7 +99,7 @@ TEST_CASE("cost_model_tells_a_slow_device_from_a_slow_server") {
   }
 }
 
-// Goal: rows in which nothing changes come to cost next to nothing to send.
+// Goal: the model learns that unchanged rows cost next to nothing to send.
 TEST_CASE("cost_model_learns_that_rows_take_no_bytes") {
   OwnModel own(320, 240, 1);
   own.model.servers[0].connected = true;
@@ -113,7 +113,8 @@ TEST_CASE("cost_model_learns_that_rows_take_no_bytes") {
   CHECK(own.plan().boundary[0] < 30);
 }
 
-// Goal: a frame's measurements count once. Method: a server that was slow once is not again where it sent nothing.
+// Goal: a frame's measurements count once. Method: a server that was slow in one frame is not made slower by frames in
+// which it sends nothing.
 TEST_CASE("cost_model_counts_measurements_once") {
   OwnModel own(320, 240, 1);
   observe_overture(&own.model, 0, {1000, 100, 10}, 1, 1000);
@@ -125,7 +126,7 @@ TEST_CASE("cost_model_counts_measurements_once") {
   CHECK(own.model.servers[0].ns_per_byte.value == per_byte);
 }
 
-// Goal: money and energy move rows: λ, and a cap that is kept wherever it can be.
+// Goal: money and energy affect the split: λ, and a cap that is kept whenever possible.
 TEST_CASE("cost_model_weighs_time_against_cost") {
   OwnModel own(320, 240, 1);
   own.model.servers[0].connected = true;
@@ -152,22 +153,22 @@ TEST_CASE("cost_model_weighs_time_against_cost") {
     if (share == 0.1) CHECK(split.boundary[0] == 216);
     if (share == 2.0) CHECK(split.boundary[0] == soonest.boundary[0]);
   }
-  // Energy of the device alone cannot come under the cap: the cheapest split, which is all on the server.
+  // The device's energy alone exceeds the cap: the cheapest split has all rows on the server.
   own.model.cost_per_device_pixel = 1, own.model.servers[0].cost_per_megabyte = 1e6;
   wish.cap = 1;
   Split cheapest = own.plan(wish);
   CHECK(!cheapest.cap_met);
 }
 
-// Goal: HARDCASES row 60: whatever is handed in, the split lies in [0, H] and its numbers are finite. Method: every
-// combination of the bad numbers and good ones in the six numbers of an overture and a wish; then in every observation.
+// Goal: HARDCASES row 60: whatever the input, the split lies in [0, H] and its numbers are finite. Method: every
+// combination of bad and good values in the six numbers of a first estimate and a wish; then in every observation.
 TEST_CASE("hard_60_degenerate_measurements_split_in_range") {
   double values[9];
   for (int i = 0; i < 8; ++i) values[i] = kBad[i];
   values[8] = 300;
   OwnModel own(4, 3, 1);
   std::uint64_t wrong = 0, count = 0;
-  int step = whole_gate() ? 1 : 7;  // of all combinations; coprime to 9
+  int step = whole_gate() ? 1 : 7;  // stride through all combinations; coprime to 9
   for (int code = 0; code < 9 * 9 * 9 * 9 * 9 * 9; code += step) {
     double v[6];
     for (int i = 0, rest = code; i < 6; ++i, rest /= 9) v[i] = values[rest % 9];
@@ -183,7 +184,7 @@ TEST_CASE("hard_60_degenerate_measurements_split_in_range") {
   count_hard(count, wrong, "split in [0, H], finite");
 }
 
-// Goal: the same for what is observed frame by frame: bad numbers change nothing, so the split stays.
+// Goal: the same for observations frame by frame: bad numbers change nothing, so the split stays.
 TEST_CASE("hard_60_degenerate_observations_split_in_range") {
   for (double bad : kBad) {
     OwnModel own(320, 240, 2);

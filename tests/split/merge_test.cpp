@@ -1,4 +1,4 @@
-// Which rows came from where.
+// The origin of rows.
 #include "split/merge.h"
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ struct OwnMerge {
 
 }  // namespace
 
-// Goal: the device goes down from the top, a server comes up from the bottom, they meet, and nothing is done twice.
+// Goal: the device goes down from the top, a server comes up from the bottom, they meet, and no row is done twice.
 TEST_CASE("merge_device_and_server_meet") {
   OwnMerge own(10);
   Merge* m = &own.merge;
@@ -45,7 +45,7 @@ TEST_CASE("merge_device_and_server_meet") {
   CHECK(count_rows(*m, 1) == 0);
 }
 
-// Goal: stale, future, duplicate and outlying chunks change nothing.
+// Goal: stale, future, duplicate and out-of-range chunks change nothing.
 TEST_CASE("merge_ignores_chunks_that_do_not_fit") {
   OwnMerge own(10);
   Merge* m = &own.merge;
@@ -66,7 +66,7 @@ TEST_CASE("merge_ignores_chunks_that_do_not_fit") {
   CHECK(accept_rows(m, 7, 5, 8, 0) == 0);
 }
 
-// Goal: rows that come while the device is at work on them are the server's, once.
+// Goal: rows that arrive while the device is working on them are the server's, once.
 TEST_CASE("merge_rows_that_come_while_taken_count_once") {
   OwnMerge own(4);
   Merge* m = &own.merge;
@@ -80,8 +80,8 @@ TEST_CASE("merge_rows_that_come_while_taken_count_once") {
   CHECK(accept_rows(m, 0, 0, 4, 3) == 0);
 }
 
-// Goal: whatever arrives in whatever order, the frame ends complete, each row done once. Method: random chunks of three
-// servers, late, doubled or never sent; the device takes what is missing.
+// Goal: whatever arrives in whatever order, the frame is completed, each row done once. Method: random chunks of three
+// servers, late, duplicated or never sent; the device takes the missing rows.
 TEST_CASE("merge_completes_under_random_arrivals") {
   Rng rng = make_rng(99);
   for (int round = 0; round < effort(2000); ++round) {
@@ -109,8 +109,8 @@ TEST_CASE("merge_completes_under_random_arrivals") {
   }
 }
 
-// Goal: rows of a server that is not trusted are missing again, those of others stay, and the device takes them from
-// the top. Method: against a plain account, over random courses of a frame.
+// Goal: rows of an untrusted server are missing again, those of others stay, and the device takes them from the top.
+// Method: against simple bookkeeping, over random frames.
 TEST_CASE("merge_discards_the_rows_of_a_server") {
   Rng rng = make_rng(23);
   for (int round = 0; round < effort(300); ++round) {

@@ -1,4 +1,4 @@
-// A cost model and its workspace in memory of their own.
+// A cost model and its workspace in their own memory.
 #pragma once
 #include <vector>
 

@@ -1,5 +1,5 @@
-// Frames in a simulated world: how soon the split settles after a change, that it then rests, and how far from the best
-// it is. Prints a table.
+// Frames in a simulated world: how soon the split settles after a change, whether it then rests, and how far from the
+// best it is. Prints a table.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr std::uint32_t kRows = 240, kWidth = 320, kChunkRows = 8;
 
 struct World {
   std::vector<double> device_ns = std::vector<double>(kRows, 3e5);  // per row
-  std::vector<double> bytes = std::vector<double>(kRows, 200);      // per row, as they compress
+  std::vector<double> bytes = std::vector<double>(kRows, 200);      // per row, compressed
   double speed[3] = {0.2, 0.2, 0.2};                                // server's time over the device's
   double ns_per_byte = 100, latency_ns = 2e6;
 
@@ -37,7 +37,7 @@ struct World {
 };
 
 // A frame of the world: the device from the top, every server its band from the bottom in chunks, all into a merge.
-// Returns when the last row is there; tells the model, if there is one, with measurements off by up to `noise`.
+// Returns the time of the last row; reports to the model, if given, with measurements off by up to `noise`.
 double play(const World& world, const Split& split, CostModel* model, double noise, Rng* rng) {
   struct Arrival {
     double ns, render_ns;
@@ -93,7 +93,7 @@ double play(const World& world, const Split& split, CostModel* model, double noi
   return now;
 }
 
-// The time of the best split of this world, whose true costs are known; with one server, of all splits.
+// The time of the best split of this world, whose true costs are known; with one server, over all splits.
 double best_time(const World& world, std::uint32_t servers) {
   GeneratedProblem g;
   SplitProblem* p = &g.problem;
@@ -122,19 +122,19 @@ double best_time(const World& world, std::uint32_t servers) {
   return best;
 }
 
-constexpr int kChangeFrame = 40, kFrameCount = 120, kRestFrames = 60;  // the last ones
+constexpr int kChangeFrame = 40, kFrameCount = 120, kRestFrames = 60;  // kRestFrames: the last ones
 
 struct Outcome {
   int settle_frames = 0;         // from the change until frames stay near the best
-  int late_run = 0;              // the most frames in a row that were not, of the last 60
+  int late_run = 0;              // longest run of frames that were not, in the last 60
   int moves_after = 0;           // changes of the split in the last 60 frames
-  double worst_after = 0;        // time over the best in these
-  double mean_ns_after = 0;      // of a frame in these
-  double mean_best_after = 0;    // of the best split of each
-  std::uint32_t rows_moved = 0;  // the furthest that a boundary went in one move in these
+  double worst_after = 0;        // time over the best in these frames
+  double mean_ns_after = 0;      // per frame in these
+  double mean_best_after = 0;    // for the best split of each
+  std::uint32_t rows_moved = 0;  // largest move of a boundary in these
 };
 
-// Plays 120 frames of world(frame), of which the first 40 are of the old world.
+// Plays 120 frames of world(frame), the first 40 of which are in the old world.
 Outcome simulate(std::uint32_t servers, double noise, const std::function<World(int)>& world_of, double near = 1.05) {
   OwnModel own(kWidth, kRows, servers);
   Rng rng = make_rng(7);
@@ -185,11 +185,11 @@ void print(const char* name, std::uint32_t servers, const Outcome& outcome) {
               name, servers, outcome.settle_frames, outcome.moves_after, 100 * (outcome.worst_after - 1));
 }
 
-// 0: all rows alike. 1, 2: dearer and longer towards the bottom or the top. 3: outdoors, a sky that costs little and
-// compresses to nothing, a horizon full of detail, a ground whose texture compresses badly. 4: indoors, dear smooth
-// rows and cheap ragged ones, each unlike its neighbour.
+// 0: equal rows. 1, 2: more expensive and longer towards the bottom or the top. 3: outdoors, a cheap sky that
+// compresses to nothing, a horizon full of detail, a ground whose texture compresses badly. 4: indoors, expensive
+// smooth rows and cheap ragged ones, alternating.
 constexpr int kSceneKinds = 5;
-constexpr int kKindStep = kEffortDivisor > 1 ? 4 : 1;  // the first and the last alone
+constexpr int kKindStep = kEffortDivisor > 1 ? 4 : 1;  // only the first and the last
 World scene_world(int kind) {
   World world;
   for (std::uint32_t r = 0; r < kRows; ++r) {
@@ -207,7 +207,7 @@ World scene_world(int kind) {
   return world;
 }
 
-// The least mean time of a frame that one and the same split gives in the last 60 frames, over the best of each.
+// The smallest mean frame time of a constant split in the last 60 frames, over the best of each frame.
 double best_constant(const std::function<World(int)>& world_of) {
   Rng rng = make_rng(0);
   Split split;
@@ -224,7 +224,7 @@ double best_constant(const std::function<World(int)>& world_of) {
 
 }  // namespace
 
-// Goal: in a world that does not change, the split rests within 5 % of the best, with measurements 10 % off.
+// Goal: in an unchanging world the split rests within 5 % of the best, with measurements 10 % off.
 TEST_CASE("simulation_steady_world_split_rests") {
   for (std::uint32_t servers = 1; servers <= 3; ++servers)
     for (int kind = 0; kind < kSceneKinds; kind += kKindStep) {
@@ -235,7 +235,7 @@ TEST_CASE("simulation_steady_world_split_rests") {
     }
 }
 
-// Goal: a server that slows fivefold, or recovers, is followed within 4 frames.
+// Goal: when a server becomes five times slower, or recovers, the split follows within 4 frames.
 TEST_CASE("simulation_server_slows_fivefold_split_follows") {
   for (std::uint32_t servers = 1; servers <= 3; ++servers)
     for (double factor : {5.0, 0.2}) {
@@ -252,8 +252,9 @@ TEST_CASE("simulation_server_slows_fivefold_split_follows") {
     }
 }
 
-// Goal: another scene, its dear rows elsewhere, is followed within 12 frames: to 5 % of the best, to 10 % with three
-// servers. Between these nothing tells dear rows from a slow server until the boundaries have moved over them.
+// Goal: the split follows a change of scene, with its expensive rows elsewhere, within 12 frames: to 5 % of the best,
+// to 10 % with three servers, whose common boundaries cannot tell expensive rows from a slow server until they have
+// moved over them.
 TEST_CASE("simulation_scene_change_split_follows") {
   for (std::uint32_t servers = 1; servers <= 3; ++servers)
     for (int from = 0; from < kSceneKinds; from += kKindStep)
@@ -269,10 +270,10 @@ TEST_CASE("simulation_scene_change_split_follows") {
       }
 }
 
-// Hard case 61. Goal: bandwidth that alternates makes no split that swings with it, and costs little time. Method:
-// against the best split of each single frame, of all 241, and against the best constant one. Bandwidth that changes
-// every frame or every second moves no boundary and takes no frame 5 % longer on average than what knew of it
-// beforehand. Bandwidth that stays for ten frames is followed, after four at most.
+// Hard case 61. Goal: alternating bandwidth makes the split neither oscillate nor lose much time. Method: against the
+// best split of each single frame, of all 241, and against the best constant one. If bandwidth changes every frame or
+// every second one, no boundary moves and frames take on average at most 5 % longer than with advance knowledge. If it
+// stays for ten frames, the split follows after at most four.
 TEST_CASE("hard_61_alternating_bandwidth_does_not_oscillate") {
   for (int kind = 0; kind < kSceneKinds; kind += kKindStep)
     for (int period : {1, 2, 10})
@@ -300,8 +301,8 @@ TEST_CASE("hard_61_alternating_bandwidth_does_not_oscillate") {
       }
 }
 
-// Goal: a bandwidth that falls to a tenth for good, or rises tenfold, is followed whether or not it is what holds up
-// the servers: within 4 frames, within 8 where it rises and the boundary moves into rows that no server has yet sent.
+// Goal: the split follows bandwidth that permanently falls to a tenth, or rises tenfold, whether or not it limits the
+// servers: within 4 frames, within 8 if it rises and the boundary moves into rows that no server has sent yet.
 TEST_CASE("simulation_bandwidth_changes_tenfold_split_follows") {
   for (std::uint32_t servers = 1; servers <= 3; ++servers)
     for (int kind = 0; kind < kSceneKinds; kind += kKindStep)

@@ -30,7 +30,7 @@ TEST_CASE("smooth_stays_near_a_noisy_value") {
   CHECK(worst < 28);
 }
 
-// Goal: a lone outlier in either direction moves nothing.
+// Goal: a single outlier in either direction changes nothing.
 TEST_CASE("smooth_ignores_a_lone_outlier") {
   for (double outlier : {5000.0, 2.0}) {
     Smoothed s;
@@ -44,7 +44,7 @@ TEST_CASE("smooth_ignores_a_lone_outlier") {
   }
 }
 
-// Goal: a change that lasts is taken over with the third sample, up as down.
+// Goal: a lasting change is adopted with the third sample, up or down.
 TEST_CASE("smooth_follows_a_lasting_change_within_three_samples") {
   for (double factor : {5.0, 0.2, 1.5, 0.7}) {
     Smoothed s;
@@ -70,7 +70,7 @@ TEST_CASE("smooth_settles_between_alternating_values") {
   }
 }
 
-// Goal: what is no measurement changes nothing, known or not; extreme ones leave the value finite and positive.
+// Goal: invalid samples change nothing, whether or not a value is known; extreme ones leave it finite and positive.
 TEST_CASE("smooth_ignores_what_is_no_measurement") {
   const double inf = std::numeric_limits<double>::infinity();
   for (double bad : {0.0, -0.0, -1.0, inf, -inf, std::nan(""), 5e-324, 1e300}) {

@@ -1,4 +1,4 @@
-// Split problems from random numbers, and the best split by trying all of them.
+// Random split problems, and the best split by exhaustive search.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace pocketray {
 
-// A problem with tables of its own.
+// A problem with its own tables.
 struct GeneratedProblem {
   SplitProblem problem;
   std::vector<std::unique_ptr<std::vector<std::uint64_t>>> tables;
@@ -25,7 +25,7 @@ RowTable make_table(GeneratedProblem* g, Entry entry) {
   return g->tables.back()->data();
 }
 
-// Rows alike, random, rising, or mostly nothing; up to `max` each.
+// Equal, random, rising, or mostly zero rows, up to `max` each.
 inline RowTable random_table(GeneratedProblem* g, Rng* rng, std::uint64_t max) {
   std::uint32_t kind = next_u32(rng) % 4;
   std::uint64_t level = 1 + static_cast<std::uint64_t>(next_double(rng) * static_cast<double>(max));
@@ -37,7 +37,7 @@ inline RowTable random_table(GeneratedProblem* g, Rng* rng, std::uint64_t max) {
   });
 }
 
-// `scale`: about what a row takes on the device. Small ones give many splits that are equally good.
+// `scale`: approximate cost of a row on the device. Small values give many equally good splits.
 inline std::unique_ptr<GeneratedProblem> random_problem(std::uint32_t row_count, std::uint32_t server_count,
                                                         std::uint64_t scale, Rng* rng) {
   auto g = std::make_unique<GeneratedProblem>();
@@ -62,7 +62,7 @@ inline std::unique_ptr<GeneratedProblem> random_problem(std::uint32_t row_count,
   return g;
 }
 
-// Of the servers' bands, the one that takes longest.
+// The longest of the servers' bands.
 inline std::uint64_t slowest_band(const SplitProblem& p, const std::uint32_t* boundary) {
   std::uint64_t slowest = 0;
   for (std::uint32_t i = 0; i < p.server_count; ++i) {
@@ -76,7 +76,7 @@ inline std::uint64_t slowest_band(const SplitProblem& p, const std::uint32_t* bo
   return slowest;
 }
 
-// What the comments of split.h say of a split, once more. Returns time; *cost is set.
+// The definition of a split's time and cost in split.h, implemented again. Returns the time; sets *cost.
 inline std::uint64_t judge(const SplitProblem& p, const std::uint32_t* boundary, std::uint64_t* cost) {
   auto sum = [](RowTable table, std::uint32_t begin, std::uint32_t end) { return table[end] - table[begin]; };
   std::uint32_t own = boundary[0], all = p.row_count;
@@ -95,11 +95,11 @@ inline std::uint64_t judge(const SplitProblem& p, const std::uint32_t* boundary,
 
 struct Best {
   std::uint64_t objective = ~std::uint64_t(0), cost = ~std::uint64_t(0);
-  std::uint64_t slowest_band = ~std::uint64_t(0);  // the least of those that are as good
+  std::uint64_t slowest_band = ~std::uint64_t(0);  // least among equally good splits
   std::uint64_t least_cost = ~std::uint64_t(0);    // of any split, whatever the cap
 };
 
-// Over all splits.
+// Searches all splits.
 inline Best best_of_all(const SplitProblem& p) {
   Best best;
   std::uint32_t boundary[kServerCountMax + 1];
@@ -123,7 +123,7 @@ inline Best best_of_all(const SplitProblem& p) {
   return best;
 }
 
-// A workspace in memory of its own.
+// A workspace in its own memory.
 struct OwnWorkspace {
   std::vector<std::uint8_t> block;
   SplitWorkspace workspace;

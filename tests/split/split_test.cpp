@@ -1,4 +1,4 @@
-// The exact split against trying all splits.
+// The exact split against exhaustive search.
 #include "split/split.h"
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ void set_kind(Kind kind, Rng* rng, SplitProblem* p) {
         static_cast<std::uint64_t>(next_double(rng) * 1.5 * static_cast<double>(p->device_cost[p->row_count]));
 }
 
-// Compares with best_of_all(); returns how many least costs it took.
+// Compares with best_of_all(); returns how many least costs were computed.
 std::uint32_t compare(const SplitProblem& p) {
   OwnWorkspace own(p.row_count, p.server_count);
   Split split = find_split(p, &own.workspace);
@@ -48,8 +48,8 @@ std::uint32_t compare(const SplitProblem& p) {
 
 }  // namespace
 
-// Goal: the split is the best of all, also among equals, for every goal. Method: random problems of 240 rows and one,
-// two and three servers against all splits (2.3 million for three); small ones with many ties.
+// Goal: the split is the best of all, including ties, for every goal. Method: random problems of 240 rows and one, two
+// and three servers against all splits (2.3 million for three); small ones with many ties.
 TEST_CASE("hard_61_split_equals_the_best_of_all_splits") {
   Rng rng = make_rng(61);
   std::uint32_t search_max = 0;
@@ -76,7 +76,7 @@ TEST_CASE("hard_61_split_equals_the_best_of_all_splits") {
   count_assertions("= the best of all splits");
 }
 
-// Goal: HARDCASES row 61: servers that take no time get every row; ones that take forever, none.
+// Goal: HARDCASES row 61: servers that take no time get every row; infinitely slow ones get none.
 TEST_CASE("hard_61_server_time_zero_takes_all_rows") {
   for (std::uint32_t rows : {0u, 1u, 240u}) {
     GeneratedProblem g;
@@ -101,8 +101,8 @@ TEST_CASE("hard_61_server_time_zero_takes_all_rows") {
   }
 }
 
-// Goal: where rows are alike, the split is the closed form's. Method: Table 1's first row without starts and chunks:
-// 240 rows of 320 pixels; the overlapped share within a row.
+// Goal: with equal rows the split is the closed form's. Method: Table 1's first row without starts and chunks: 240 rows
+// of 320 pixels; the overlapped share to within a row.
 TEST_CASE("split_of_equal_rows_is_the_closed_form") {
   GeneratedProblem g;
   g.problem.row_count = 240, g.problem.server_count = 1;
@@ -118,8 +118,8 @@ TEST_CASE("split_of_equal_rows_is_the_closed_form") {
   CHECK(static_cast<double>(split.time_ns) / (320 * 240) < 890 * 1.005);
 }
 
-// Goal: three equal servers without a shared link take equal bands; where the link is the limit, more servers do not
-// help, the device does the rest, and the bands are equal still.
+// Goal: three equal servers without a shared link take equal bands. If the link is the limit, more servers do not help,
+// the device does the rest, and the bands are still equal.
 TEST_CASE("split_divides_among_servers_until_the_link_is_full") {
   GeneratedProblem g;
   g.problem.row_count = 240, g.problem.server_count = 3;
@@ -142,8 +142,8 @@ TEST_CASE("split_divides_among_servers_until_the_link_is_full") {
   for (std::uint32_t i = 0; i < 4; ++i) CHECK(split.boundary[i] == 120 + 40 * i);
 }
 
-// Goal: the dead band holds a split while another would gain less than it, and lets go beyond, at once where a server
-// is gone or the number of rows is another.
+// Goal: hysteresis keeps a split while another would gain less than the dead band, and drops it beyond, or at once if a
+// server is gone or the number of rows changes.
 TEST_CASE("next_split_stays_until_the_gain_is_worth_it") {
   GeneratedProblem g;
   g.problem.row_count = 240, g.problem.server_count = 1;
@@ -167,8 +167,8 @@ TEST_CASE("next_split_stays_until_the_gain_is_worth_it") {
   CHECK(next_split(g.problem, other, &own.workspace).boundary[0] != 120);
 }
 
-// Goal: the dead band keeps no split that leaves servers idle while one has no time to spare, though the link bounds
-// the time of both.
+// Goal: hysteresis drops a split that leaves servers idle while one has no time to spare, even if the link bounds the
+// time of both.
 TEST_CASE("next_split_lets_go_of_unequal_bands") {
   GeneratedProblem g;
   g.problem.row_count = 240, g.problem.server_count = 2;
@@ -188,7 +188,7 @@ TEST_CASE("next_split_lets_go_of_unequal_bands") {
   CHECK(next_split(g.problem, split, &own.workspace).boundary[1] == 121);
 }
 
-// Goal: a workspace takes what split_need() says, exactly.
+// Goal: a workspace takes exactly split_need().
 TEST_CASE("split_need_is_what_the_workspace_takes") {
   std::vector<std::uint8_t> block(1 << 22);
   for (std::uint32_t rows : {0u, 1u, 240u, 8192u})

@@ -1,4 +1,4 @@
-// Spot checks: the odds of finding wrong pixels, and that pixels are chosen as those odds assume.
+// Spot checks: the probability of finding wrong pixels, and whether pixels are drawn as it assumes.
 #include "split/spot_check.h"
 
 #include <doctest/doctest.h>
@@ -16,7 +16,7 @@ using namespace pocketray;
 
 namespace {
 
-// Of all sets of `count` out of `n` pixels, the share that holds one of the first `wrong`.
+// The share of all sets of `count` out of `n` pixels that contain one of the first `wrong`.
 double enumerated(std::uint32_t n, std::uint32_t wrong, std::uint32_t count) {
   std::uint64_t sets = 0, caught = 0;
   for (std::uint32_t set = 0; set < 1u << n; ++set) {
@@ -29,7 +29,7 @@ double enumerated(std::uint32_t n, std::uint32_t wrong, std::uint32_t count) {
 
 }  // namespace
 
-// Goal: the closed form is the truth. Method: every set of pixels of a small picture, for every number of wrong and of
+// Goal: the closed form is exact. Method: every set of pixels of a small picture, for every number of wrong and of
 // checked ones.
 TEST_CASE("spot_check_odds_equal_an_enumeration") {
   for (std::uint32_t rows : {3u, 4u})
@@ -50,8 +50,8 @@ TEST_CASE("spot_check_odds_equal_an_enumeration") {
         }
 }
 
-// Goal: what is drawn is caught as often as the odds say, over frames, too. Method: Monte Carlo with a seed; five
-// standard deviations.
+// Goal: draws catch wrong pixels with the stated probability, also over several frames. Method: Monte Carlo with a
+// seed; five standard deviations.
 TEST_CASE("spot_check_odds_equal_a_simulation") {
   struct Row {
     SpotCheck check;
@@ -70,19 +70,19 @@ TEST_CASE("spot_check_odds_equal_a_simulation") {
       for (std::uint32_t f = 0; f < row.frames; ++f) {
         std::uint32_t picks[64];
         draw_distinct(&random, c.rows * c.width, c.pixels, picks);
-        // The wrong ones lie apart, as an adversary may well have it.
+        // The wrong ones are spread out, as an adversary might arrange.
         for (std::uint32_t k = 0; k < c.pixels; ++k) any = any || picks[k] % (c.rows * c.width / wrong) == 0;
       }
       caught += any;
     }
-    // Where the wrong ones do not divide the pixels there are a few more of them.
+    // If the number of wrong ones does not divide the pixels, there are a few more of them.
     double sigma = std::sqrt(rounds * expected * (1 - expected)) + 1;
     CAPTURE(expected);
     CHECK(std::fabs(caught - rounds * expected) <= 5 * sigma);
   }
 }
 
-// Goal: tiny chances add up instead of being rounded away, certain ones stay certain. Method: closed forms.
+// Goal: tiny probabilities add up instead of being rounded away, and certainty stays certain. Method: closed forms.
 TEST_CASE("spot_check_odds_at_the_ends") {
   SpotCheck one_pixel = {8192, 8192, 1, 0, 1};
   double p = 1.0 / (8192.0 * 8192.0);
@@ -118,7 +118,7 @@ TEST_CASE("spot_check_table") {
     }
 }
 
-// Goal: every pixel is as likely as any other, and every number below n. Method: chi² with a seed.
+// Goal: all pixels are equally likely, and all numbers below n. Method: chi² with a seed.
 TEST_CASE("spot_check_draws_are_even") {
   Rng random = make_rng(5);
   constexpr std::uint32_t kPixels = 50, kCount = 7;
@@ -136,7 +136,7 @@ TEST_CASE("spot_check_draws_are_even") {
   }
   double expected = static_cast<double>(rounds) * kCount / kPixels, chi = 0;
   for (double count : seen) chi += (count - expected) * (count - expected) / expected;
-  CHECK(chi < 100);  // 49 degrees of freedom less what distinctness takes: 1e-5 at 100
+  CHECK(chi < 100);  // 49 degrees of freedom, fewer by distinctness: 1e-5 at 100
   std::uint32_t all[kPixels];
   draw_distinct(&random, kPixels, kPixels, all);
   CHECK(std::set<std::uint32_t>(all, all + kPixels).size() == kPixels);
@@ -144,8 +144,8 @@ TEST_CASE("spot_check_draws_are_even") {
     for (int i = 0; i < 100; ++i) CHECK(random_below(&random, n) < n);
 }
 
-// Goal: no sender is left out where there are enough checks, and none is safe where there are not. Method: counts over
-// many draws.
+// Goal: no sender is left out if there are enough checks, and none is safe if there are not. Method: counts over many
+// draws.
 TEST_CASE("spot_check_allots_to_every_sender") {
   Rng random = make_rng(3);
   const std::uint32_t pixels[4] = {1000, 0, 3, 3000};
@@ -173,8 +173,8 @@ TEST_CASE("spot_check_allots_to_every_sender") {
   CHECK(counts[0] + counts[1] == 0);
 }
 
-// Goal: never more checks than were paid for, but one; all of them in the long run; and no phase of the frames is safe,
-// however little a frame pays. Method: frames that pay for fractions, for many, for too many, for nothing.
+// Goal: never more than one check beyond those paid for, all of them in the long run, and no frame is safe, however
+// little a frame pays. Method: frames that pay for fractions, for many, for too many, for nothing.
 TEST_CASE("spot_check_schedule_spends_what_was_paid") {
   for (double paid : {0.013, 0.25, 0.999, 1.0, 3.7, 200.0}) {
     Rng random = make_rng(17);

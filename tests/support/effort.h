@@ -1,5 +1,5 @@
-// How much a test does: all of it on the machine itself, a share where every instruction is emulated and floats are,
-// too, or where nothing is optimised, and a larger one where every access is checked.
+// How much a test does: everything natively, a share under CPU or float emulation and in unoptimised builds, a larger
+// share under a sanitizer.
 #pragma once
 
 namespace pocketray {
@@ -12,7 +12,7 @@ constexpr int kEffortDivisor = 6;
 constexpr int kEffortDivisor = 1;
 #endif
 
-// A number of rays, scenes or rounds: at least one of them.
+// A number of rays, scenes or rounds, at least one.
 constexpr int effort(int count) { return count / kEffortDivisor > 0 ? count / kEffortDivisor : 1; }
 // A side of a picture in pixels.
 constexpr unsigned effort_side(unsigned side) { return kEffortDivisor > 1 ? (side + 2) / 3 : side; }

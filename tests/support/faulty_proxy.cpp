@@ -36,7 +36,7 @@ void send_all(int to, const std::uint8_t* bytes, std::size_t byte_count) {
 
 }  // namespace
 
-// Pings that come twice do no harm: rows are what is to be repeated.
+// Duplicate pings do no harm: only rows are to be repeated.
 bool FaultyProxy::is_meant(const std::vector<std::uint8_t>& message) const {
   bool repeats =
       plan.fault == ProxyFault::duplicate || plan.fault == ProxyFault::swap || plan.fault == ProxyFault::replay;
@@ -57,9 +57,10 @@ void ServerProcess::start(const std::function<void(int)>& run) {
   if (pipe(ends) != 0) return;
   pid = fork();
   if (pid == 0) {
-    for (int file = 3; file < 256; ++file)  // connections that are not this process's end when the others close them
+    for (int file = 3; file < 256;
+         ++file)  // other ends of connections, which would keep them open when the others close them
       if (file != ends[1]) close(file);
-    signal(SIGTERM, SIG_DFL);  // not the tests'
+    signal(SIGTERM, SIG_DFL);  // not the tests' handler
     run(ends[1]);
     _exit(1);
   }
@@ -98,10 +99,10 @@ struct FaultyProxy::Connection {
   int message_count = 0;
   bool silent = false, trickles = false;
   std::vector<std::uint8_t> input;             // from the server
-  std::vector<std::uint8_t> held;              // to be sent behind the next ones
-  int held_for = 0;                            // so many of them
+  std::vector<std::uint8_t> held;              // to be sent after later messages
+  int held_for = 0;                            // number of these messages
   std::vector<std::uint8_t> slow;              // trickles
-  std::chrono::steady_clock::time_point last;  // byte of it
+  std::chrono::steady_clock::time_point last;  // last byte of it
 };
 
 FaultyProxy::FaultyProxy(const ProxyPlan& given, ServerProcess* of) : plan(given), server(of) {
@@ -125,7 +126,7 @@ void FaultyProxy::run() {
     Connection connection = {};
     connection.device = device;
     connection.server = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    timeval limit = {0, 50'000};  // a server that is stopped accepts no more
+    timeval limit = {0, 50'000};  // a stopped server accepts nothing
     setsockopt(connection.server, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
     connection.faulty = faulty && plan.fault != ProxyFault::none;
     faulty = false;
@@ -136,7 +137,7 @@ void FaultyProxy::run() {
   }
 }
 
-// Carries bytes until one side ends; what comes from the server goes on message by message.
+// Carries bytes until one side ends; passes the server's data on message by message.
 void FaultyProxy::serve(Connection* c) {
   std::uint8_t bytes[8192];
   while (!quit) {
@@ -186,7 +187,7 @@ bool FaultyProxy::forward_messages(Connection* c) {
   }
 }
 
-// False: the connection is to be closed.
+// False: the connection must be closed.
 bool FaultyProxy::strike(Connection* c, const std::vector<std::uint8_t>& message) {
   std::vector<std::uint8_t> bytes = message;
   std::size_t part = plan.middle ? message.size() / 2 : 0;

@@ -1,5 +1,5 @@
-// A render server in a process of its own, which can be killed and stopped, and a proxy before it, over real sockets,
-// that lets one thing go wrong with a message on its way to the device. Needs POSIX.
+// A render server in its own process, which can be killed and stopped, and a proxy in front of it, over real sockets,
+// that damages one message on its way to the device. Needs POSIX.
 #pragma once
 #include <sys/types.h>
 
@@ -19,10 +19,10 @@ struct ServerProcess {
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
-  // `run` gets a descriptor to write the port to, as an int, and does not return.
+  // `run` receives a descriptor to write the port to, as an int, and does not return.
   void start(const std::function<void(int)>& run);
   void kill();
-  void stop();  // it does nothing any more, its sockets stay
+  void stop();  // it does nothing more, but its sockets stay open
 };
 
 enum class ProxyFault : std::uint8_t {
@@ -32,20 +32,20 @@ enum class ProxyFault : std::uint8_t {
   truncate,   // both sides see the end
   reset,      // the device sees a reset
   flip,       // one bit of the message
-  silence,    // nothing comes any more
+  silence,    // nothing arrives any more
   trickle,    // one byte a second
-  duplicate,  // the message comes twice
-  swap,       // it comes behind the next rows
-  replay,     // it comes once more behind the next but one
+  duplicate,  // the message arrives twice
+  swap,       // it arrives after the next rows
+  replay,     // it arrives again after the next but one
   replace,    // by bytes
 };
 const char* proxy_fault_name(ProxyFault fault);
 
-// What befalls the first connection; those that follow are well.
+// The fault of the first connection; later ones have none.
 struct ProxyPlan {
   ProxyFault fault = ProxyFault::none;
-  int message = 0;      // the how manieth to the device, from 0
-  bool middle = false;  // half of it has gone before
+  int message = 0;      // index among those to the device, from 0
+  bool middle = false;  // half of it was sent before the fault
   std::vector<std::uint8_t> bytes;
 };
 
@@ -74,7 +74,7 @@ struct FaultyProxy {
   std::thread thread;
 };
 
-// On this machine, with the port that was free; -1 where there is none.
+// On this machine, with the free port chosen; -1 on failure.
 int listen_locally(int* port);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// Which sets of features the suites that go through combinations look at.
+// The feature sets for suites that test combinations.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace pocketray {
 
-// All combinations of the features that the radiance kernel is instantiated for and of cut-out holes, under a light of
-// a kind that goes round; all pairs and triples of all features; 200 random sets.
+// All combinations of the features that the radiance kernel is instantiated for and of cut-out holes, with each kind of
+// light in turn; all pairs and triples of all features; 200 random sets.
 inline std::vector<std::uint32_t> feature_sets() {
   std::vector<std::uint32_t> sets = {0, kAllFeatures};
   const Feature kernel[] = {Feature::specular,   Feature::mirror,     Feature::refraction,

@@ -67,7 +67,7 @@ void add_panes(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   add_quad(s, {0.8f, 0.2f, 1}, {2, 0.2f, 0.8f}, {2, 1.4f, 0.8f}, {0.8f, 1.4f, 1}, add_material(s, blended));
   add_quad(s, {-0.7f, 2.9f, -0.7f}, {0.7f, 2.9f, -0.7f}, {0.7f, 2.9f, 0.7f}, {-0.7f, 2.9f, 0.7f},
            add_material(s, lamp));
-  if (has(features, Feature::one_sided)) {  // seen from behind: not at all, but for its shadow
+  if (has(features, Feature::one_sided)) {  // seen from behind: visible only by its shadow
     Material back = matte(random_color(rng));
     back.double_sided = 0;
     add_quad(s, {0.7f, 1.2f, 1.7f}, {-0.3f, 1.2f, 1.7f}, {-0.3f, 1.9f, 1.7f}, {0.7f, 1.9f, 1.7f},

@@ -1,4 +1,5 @@
-// Small scenes made from a seed and a set of features, and a renderer for them, for the suites that prove the renderer.
+// Small scenes made from a seed and a set of features, and a renderer for them, for the suites that verify the
+// renderer.
 #pragma once
 #include <array>
 #include <memory>
@@ -10,7 +11,7 @@
 
 namespace pocketray {
 
-// What a generated scene can have. Each is one bit; what it needs (a light for shadows, …) is always there.
+// Features of a generated scene, one bit each; what a feature requires (a light for shadows, …) is always included.
 enum class Feature : int {
   specular,
   mirror,
@@ -36,7 +37,7 @@ constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(fea
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
 
-// A scene in memory of its own. Shapes are added with the current material; bind() makes `scene` show the vectors.
+// A scene in its own memory. Shapes are added with the current material; bind() points `scene` at the vectors.
 struct GeneratedScene {
   Scene scene;
   std::vector<Vec3> positions, normals, rest_positions, rest_normals;
@@ -65,7 +66,7 @@ std::uint32_t add_vertex(GeneratedScene* s, const Vec3& position, const Vec3& no
 void add_triangle(GeneratedScene* s, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
 // a, b, c, d counter-clockwise seen from the front; uv (0,0), (1,0), (1,1), (0,1).
 void add_quad(GeneratedScene* s, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::uint32_t material);
-// Closed; fronts outside, or inside where `room`.
+// Closed; fronts outside, or inside for a room.
 void add_box(GeneratedScene* s, const Vec3& low, const Vec3& high, std::uint32_t material, bool room = false);
 // Closed sphere of columns × rows patches with its normals as vertex normals.
 void add_sphere(GeneratedScene* s, const Vec3& center, float radius, int columns, int rows, std::uint32_t material);
@@ -74,13 +75,12 @@ std::uint32_t add_texture(GeneratedScene* s, int width, int height, const std::v
                           Wrap wrap_u = Wrap::repeat, Wrap wrap_v = Wrap::repeat, bool nearest = false);
 void aim(GeneratedScene* s, const Vec3& eye, const Vec3& target, double vertical_fov_degrees);
 
-// At most 300 triangles: a floor, a wall, boxes, spheres and panes, each of which shows one feature where it is asked
-// for.
+// At most 300 triangles: a floor, a wall, boxes, spheres and panes, each of which shows one feature if the set has it.
 std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint64_t seed);
-// Settings that go with it: 2 samples per pixel where supersampling is asked for.
+// Matching settings: 2 samples per pixel with supersampling.
 Settings settings_for(std::uint32_t features, std::uint32_t width, std::uint32_t height);
 
-// A renderer in a block of its own, built and ready for render_frame(). Null and *status set where a step fails.
+// A renderer in its own block, built and ready for render_frame(). Null, with *status set, if a step fails.
 struct TestRenderer {
   std::unique_ptr<std::uint8_t[]> block;
   Renderer renderer;
@@ -98,7 +98,7 @@ Picture render_picture(const Scene& scene, const Settings& settings, double seco
 bool same_picture(const Picture& a, const Picture& b);  // bit for bit
 std::uint32_t picture_hash(const Vec3* image, std::size_t pixel_count);
 
-// The radiance along one ray, by the frame's kernels, without budget for leaving anything out.
+// The radiance along one ray, by the frame's kernels, without skipping anything.
 Vec3 trace_ray(const Renderer& renderer, const Vec3& origin, const Vec3& direction, Tracer* tracer = nullptr);
 
 }  // namespace pocketray

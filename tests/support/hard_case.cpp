@@ -20,7 +20,7 @@ std::atomic<std::int64_t> progress_due{0};  // milliseconds of the steady clock
 
 const char* line_file() { return std::getenv("POCKETRAY_HARDCASES"); }
 
-// Writes the line of each hard case when it ends.
+// Writes the line of each hard case at its end.
 struct GateListener : doctest::IReporter {
   explicit GateListener(const doctest::ContextOptions&) {}
   void test_case_start(const doctest::TestCaseData& test) override {

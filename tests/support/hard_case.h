@@ -1,6 +1,6 @@
-// The hard cases (rows of HARDCASES.md) as one gate. A test named hard_NN_… or differential_… counts what it tries and
-// what comes out wrong. The suite runs a share of the gate; with POCKETRAY_HARDCASES=FILE in the environment, which
-// `make hardcases` sets, all of it runs, with progress on stderr, and each such test appends a line to FILE:
+// The hard cases (rows of HARDCASES.md) as one gate. A test named hard_NN_… or differential_… counts its inputs and the
+// wrong results. The suite runs a share of the gate. With POCKETRAY_HARDCASES=FILE in the environment, which `make
+// hardcases` sets, all of it runs, with progress on stderr, and each such test appends a line to FILE:
 //   case TAB inputs TAB wrong TAB bound TAB seconds
 #pragma once
 #include <algorithm>
@@ -14,23 +14,23 @@
 
 namespace pocketray {
 
-// Whether all of the gate is asked for.
+// Whether the full gate is requested.
 bool whole_gate();
 
 // How many inputs a test tries: `usual` in the suite, `whole` in the gate, fewer of either under emulation.
 inline int gate_share(int usual, int whole) { return effort(whole_gate() ? whole : usual); }
 
-// Counts inputs of the running test and how many of them got a wrong answer; calls add up. `bound` says what a right
-// answer is; the last one is kept.
+// Counts inputs of the running test and wrong answers among them; calls accumulate. `bound` describes a correct answer;
+// the last one is kept.
 void count_hard(std::uint64_t inputs, std::uint64_t wrong, const char* bound);
 // For a test that asserts each of its inputs: its assertions are counted.
 void count_assertions(const char* bound);
 
-// Says on stderr how far a test of the whole gate is, at most twice a second. Any thread may call it.
+// Reports the progress of a test of the full gate on stderr, at most twice a second. Thread-safe.
 void show_gate_progress(std::uint64_t done, std::uint64_t count);
 
-// Adds up check(rng, count) → wrong answers over blocks that make `count` in all, on every thread of the machine. Each
-// block has a stream of random numbers of its own, so the sum does not depend on the threads.
+// Adds up check(rng, count) → wrong answers over blocks of `count` in total, on all threads of the machine. Each block
+// has its own stream of random numbers, so the sum does not depend on the threads.
 template <class Check>
 std::uint64_t count_wrong(std::uint64_t count, std::uint64_t seed, Check check) {
   constexpr std::uint64_t kBlock = 1 << 14;

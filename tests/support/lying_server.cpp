@@ -9,7 +9,7 @@ struct Liar {
   VirtualWorld* world;
   std::uint32_t server;
   Lie lie;
-  std::uint64_t end_ns = 0;  // of the work that was looked at last
+  std::uint64_t end_ns = 0;  // of the work last seen
 };
 std::vector<Liar> liars;
 std::uint64_t told = 0;
@@ -35,7 +35,7 @@ void lie_about(Liar* liar, Session* s, const Slice& slice) {
     }
 }
 
-// A server asks for the time when it has traced a slice and noted when that is done, and has yet to pack it.
+// A server asks for the time after tracing a slice and recording its end, but before packing it.
 std::uint64_t now_and_lie(platform::Link* link) {
   for (Liar& liar : liars) {
     Server* server = liar.world->servers[liar.server];

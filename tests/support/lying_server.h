@@ -1,5 +1,5 @@
-// A render server that sends wrong pixels in messages that are right: its own kernels trace, and what they traced is
-// changed before it is packed, encoded and sent.
+// A render server that sends wrong pixels in valid messages: its own kernels trace, and the result is changed before it
+// is packed, encoded and sent.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -11,11 +11,11 @@ namespace pocketray {
 // Whether it lies about a pixel.
 using Lie = std::function<bool(std::uint32_t frame, std::uint32_t row, std::uint32_t column)>;
 
-// Makes a liar of a server of the world, before or after it is started, until forget_lies().
+// Makes a server of the world lie, before or after it is started, until forget_lies().
 void make_liar(VirtualWorld* world, std::uint32_t server, const Lie& lie);
-// Called before the world ends.
+// Must be called before the world ends.
 void forget_lies();
-// So many wrong pixels have been made.
+// Number of wrong pixels made.
 std::uint64_t lies_told();
 
 }  // namespace pocketray

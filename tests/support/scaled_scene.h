@@ -1,4 +1,4 @@
-// A scene copied with every length in it multiplied.
+// A copy of a scene with every length scaled.
 #pragma once
 #include <memory>
 #include <vector>
@@ -8,7 +8,7 @@
 namespace pocketray {
 
 struct ScaledScene {
-  Scene scene;  // shows the vectors, and the source for all that has no length in it
+  Scene scene;  // points at the vectors, and at the source for everything without lengths
   std::vector<Vec3> positions, rest_positions, morph_positions;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
@@ -21,11 +21,11 @@ struct ScaledScene {
 
   ScaledScene() = default;
   ScaledScene(const ScaledScene&) = delete;
-  void bind();  // after the vectors have changed
+  void bind();  // after changing the vectors
 };
 
-// Lengths times k; radiance stays what it is, so intensities grow by k². `source` has to outlive the copy, which has no
-// baked accelerator.
+// Lengths times k; radiance is unchanged, so intensities grow by k². `source` must outlive the copy, which has no baked
+// accelerator.
 std::unique_ptr<ScaledScene> scale_scene(const Scene& source, float k);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// A render server over a simulated link or sockets, and clients that do what a test tells them, message by message.
+// A render server over a simulated link or sockets, and clients controlled by a test, message by message.
 #pragma once
 #include <doctest/doctest.h>
 
@@ -41,12 +41,12 @@ struct ServerRig {
   std::uint64_t now() { return net->now_ns(link); }
   void step(std::uint64_t timeout_ns = kMs);  // under the seal
   void close();                               // the server
-  // Steps server and whatever `more` does until `done`; fails the test after `timeout_ns`.
+  // Steps the server and calls `more` until `done`; fails the test after `timeout_ns`.
   void run_until(const std::function<bool()>& done, std::uint64_t timeout_ns = 20'000 * kMs);
   bool logged(const std::string& text) const;
 };
 
-// A message as it came, with its bytes.
+// A message as received, with its bytes.
 struct Received {
   Message message;
   std::vector<std::uint8_t> bytes;
@@ -58,17 +58,17 @@ struct ScriptedClient {
   bool reads = true;
   bool closed = false;  // by the server
   std::vector<std::uint8_t> input;
-  std::vector<std::unique_ptr<Received>> received;  // but rows
+  std::vector<std::unique_ptr<Received>> received;  // except rows
   std::uint64_t received_bytes = 0;
 
-  // The picture of the frame wanted.
+  // The picture of the requested frame.
   std::vector<std::uint8_t> block;
   Arena arena;
   RowDecoder* decoder = nullptr;
   std::vector<RowChunk> chunks;  // of that frame, without their bytes
   std::uint32_t frame = 0, rows_come = 0, chunk_count = 0;
 
-  // Connects; says hello where that is wanted.
+  // Connects, and says hello on request.
   explicit ScriptedClient(ServerRig* rig, bool says_hello = true);
   ~ScriptedClient();
   ScriptedClient(const ScriptedClient&) = delete;
@@ -78,22 +78,22 @@ struct ScriptedClient {
   void send(const Message& message);
   void send_hello();
   void request(const FrameRequest& request, MessageType type = MessageType::frame_request);
-  // Takes what has come.
+  // Processes received bytes.
   void poll();
-  // Lets the server run until a message of the type has come, and takes it out.
+  // Runs the server until a message of the type has arrived, and removes it.
   std::unique_ptr<Received> wait_for(MessageType type, std::uint64_t timeout_ns = 20'000 * kMs);
   bool has(MessageType type) const;
   bool has_error(WireError code) const;
-  // Lets the server run until all rows of the frame are here.
+  // Runs the server until all rows of the frame have arrived.
   void wait_for_rows(std::uint32_t row_count);
   std::vector<std::uint8_t> picture() const;
 };
 
 Message hello_message();
-// Of a whole frame of a built-in scene.
+// For a whole frame of a built-in scene.
 FrameRequest frame_request(const std::string& scene, std::uint32_t frame, std::uint32_t width = 64,
                            std::uint32_t height = 48);
-// The same frame by render_frame() and pack_rows().
+// The same frame from render_frame() and pack_rows().
 std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const SceneStore& store = builtin_store());
 std::vector<std::uint8_t> bytes_of(const Message& message);
 

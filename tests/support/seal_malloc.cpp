@@ -1,7 +1,6 @@
-// The heap of the test build: aborts on any allocation while the seal is on. Linked into pocketray_sealed, which is the
-// program otherwise unchanged. A dynamic program finds these functions before the C library's; a static one is linked
-// with
-// --wrap, which sends every call here first.
+// The heap of the test build: aborts on any allocation under the seal. Linked into pocketray_sealed, which is otherwise
+// the unchanged program. A dynamic program finds these functions before the C library's; a static one is linked with
+// --wrap, which redirects every call here.
 #include <unistd.h>
 #include <cstddef>
 

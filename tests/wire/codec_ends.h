@@ -1,4 +1,4 @@
-// Both ends of a codec in memory of their own.
+// Both ends of a codec in their own memory.
 #pragma once
 #include <doctest/doctest.h>
 
@@ -38,7 +38,7 @@ struct CodecEnds {
     return chunk;
   }
 
-  // Sends a whole picture in chunks from the bottom upward; returns the bytes it took.
+  // Sends a whole picture in chunks from the bottom upward; returns the bytes sent.
   std::size_t send(const std::vector<std::uint8_t>& picture, int level) {
     std::size_t bytes = 0;
     for (std::uint32_t end = shape.height; end > 0;) {

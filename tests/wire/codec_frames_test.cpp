@@ -1,4 +1,4 @@
-// What the codec makes of real frames: bytes, and that they come out whole.
+// The codec on real frames: sizes, and lossless transfer.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -20,7 +20,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t kWidth = effort_side(320), kHeight = effort_side(240);
 
-// Frames of a built-in scene, packed; the camera moves aside by `step` of its distance a frame.
+// Packed frames of a built-in scene; the camera moves sideways by `step` of its distance per frame.
 std::vector<Bytes> frames_of(const char* name, WireFormat format, int count, float step) {
   auto built = build_builtin(name);
   Settings settings;
@@ -45,14 +45,15 @@ std::vector<Bytes> frames_of(const char* name, WireFormat format, int count, flo
 
 struct Sent {
   std::size_t persistent = 0, independent = 0, whole = 0;  // bytes of all frames
-  double encode_ns = 0, decode_ns = 0;                     // of a pixel sent as the codec does
+  double encode_ns = 0, decode_ns = 0;                     // per pixel, sent as by the codec
 };
 
 double clock_ns() {
   return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Sends the frames three ways: as the codec does; with a stream of its own for every chunk; and persistent, but whole.
+// Sends the frames in three ways: as by the codec; with a separate stream for every chunk; and with one stream, but
+// whole.
 Sent send_frames(const std::vector<Bytes>& frames, WireFormat format, int level, std::uint32_t chunk_rows) {
   CodecShape shape = {kWidth, kHeight, chunk_rows, format};
   CodecEnds ends(shape), apart(shape), whole(shape);
@@ -69,7 +70,7 @@ Sent send_frames(const std::vector<Bytes>& frames, WireFormat format, int level,
       sent.independent += apart.encode(frame.data(), end - chunk_rows, chunk_rows, level).bytes.count;
     }
     REQUIRE(ends.holds(frame));
-    // As if nothing had been there before: every pixel has changed.
+    // As for a first frame: every pixel has changed.
     for (std::size_t i = 0; i < frame.size(); ++i)
       whole.encoder->state.picture[i] = static_cast<std::uint8_t>(~frame[i]);
     sent.whole += whole.send(frame, level);
@@ -93,8 +94,8 @@ void print(const char* what, WireFormat format, int level, std::uint32_t chunk_r
 
 }  // namespace
 
-// Goal: frames of the renderer come out as they went in; RGB565 takes less than the quarter of the raw bytes that the
-// paper has. One stream takes less than one per chunk, the more so the smaller the chunks.
+// Goal: frames of the renderer arrive unchanged; RGB565 takes less than the paper's quarter of the raw bytes. One
+// stream takes less than one per chunk, and the advantage grows as chunks shrink.
 TEST_CASE("codec_real_frames_round_trip_and_take_less") {
   for (const char* name : {"cornell", "statue"})
     for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888}) {
@@ -108,14 +109,14 @@ TEST_CASE("codec_real_frames_round_trip_and_take_less") {
             continue;
           }
           CHECK(100 * sent.persistent < 105 * sent.independent);
-          // A small picture has little to repeat.
+          // A small picture has few repetitions.
           std::size_t ratio = format == WireFormat::rgb565 && kWidth >= 320 ? 4 : 2;
           CHECK(ratio * sent.persistent < frames[0].size());
         }
     }
 }
 
-// Goal: of a moving object only what changed travels: at most a sixth of the whole frames of the same format.
+// Goal: with a moving object only changes are sent: at most a sixth of the whole frames in the same format.
 TEST_CASE("codec_moving_object_sends_what_changed") {
   for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888}) {
     std::vector<Bytes> frames = frames_of("seesaw", format, kEffortDivisor > 1 ? 4 : 8, 0);
@@ -127,7 +128,7 @@ TEST_CASE("codec_moving_object_sends_what_changed") {
   }
 }
 
-// Goal: a moving camera changes nearly all; it still takes less than a quarter of raw.
+// Goal: a moving camera changes nearly everything and still takes less than a quarter of the raw bytes.
 TEST_CASE("codec_moving_camera_still_takes_less") {
   std::vector<Bytes> frames = frames_of("cornell", WireFormat::rgb565, kEffortDivisor > 1 ? 3 : 6, 0.02f);
   Sent sent = send_frames(frames, WireFormat::rgb565, 1, 8);

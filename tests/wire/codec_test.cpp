@@ -1,4 +1,4 @@
-// The codec over pictures that are random, changed here and there, or hostile.
+// The codec on random, partly changed and hostile pictures.
 #include "wire/codec.h"
 
 #include <doctest/doctest.h>
@@ -40,7 +40,7 @@ void change(const CodecShape& shape, Rng* rng, Bytes* picture) {
     }
 }
 
-// A chunk of that body, deflated by an encoder of zlib's as a hostile peer would.
+// A chunk with that body, deflated by zlib as a hostile peer would.
 Bytes deflated(const Bytes& body, bool finish) {
   z_stream z = {};
   REQUIRE(deflateInit2(&z, 9, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) == Z_OK);
@@ -59,7 +59,7 @@ RowChunk chunk_of(const Bytes& bytes, std::uint8_t encoding, std::uint16_t row_b
 
 }  // namespace
 
-// Goal: what is decoded is what was encoded, whatever changes, in both formats, at any level and chunk size.
+// Goal: decoding returns what was encoded, for all changes, both formats, and any level and chunk size.
 TEST_CASE("codec_round_trip_over_changing_pictures") {
   Rng rng = make_rng(1);
   for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888})
@@ -76,7 +76,7 @@ TEST_CASE("codec_round_trip_over_changing_pictures") {
     }
 }
 
-// Goal: chunks of any rows in any order, some rows left out, keep both ends alike.
+// Goal: chunks of any rows in any order, with some rows left out, keep both ends equal.
 TEST_CASE("codec_round_trip_of_rows_in_any_order") {
   Rng rng = make_rng(2);
   CodecShape shape = {33, 21, 8, WireFormat::rgb565};
@@ -91,7 +91,7 @@ TEST_CASE("codec_round_trip_of_rows_in_any_order") {
   }
 }
 
-// Goal: a picture that did not change takes a byte per chunk, noise no more than its own bytes and a few.
+// Goal: an unchanged picture takes a byte per chunk, and noise no more than its own bytes and a few.
 TEST_CASE("codec_unchanged_rows_take_a_byte_noise_its_own") {
   Rng rng = make_rng(3);
   CodecShape shape = {320, 240, 16, WireFormat::rgb565};
@@ -103,7 +103,7 @@ TEST_CASE("codec_unchanged_rows_take_a_byte_noise_its_own") {
   CHECK(ends.holds(picture));
 }
 
-// Goal: restarted ends are as new: the same bytes again, and a broken decoder works again.
+// Goal: restarted ends behave like new ones: the same bytes again, and a broken decoder works again.
 TEST_CASE("codec_restarted_is_as_new") {
   Rng rng = make_rng(4);
   CodecShape shape = {64, 48, 16, WireFormat::rgb888};
@@ -121,7 +121,8 @@ TEST_CASE("codec_restarted_is_as_new") {
   CHECK(ends.holds(picture));
 }
 
-// Goal: the memory is what need() says, zlib's part of it nearly used and no more: its lazily made window, too.
+// Goal: the memory is as need() says, with zlib's part nearly used up but not exceeded, including its lazily made
+// window.
 TEST_CASE("codec_need_is_what_it_takes") {
   for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888}) {
     CodecShape shape = {320, 240, 16, format};
@@ -140,8 +141,8 @@ TEST_CASE("codec_need_is_what_it_takes") {
   }
 }
 
-// Goal: a bomb does not explode. Method: bodies that inflate to ten million bytes; the decoder writes no more than its
-// scratch memory, which a sanitizer and the bytes behind it would show, and says no.
+// Goal: decompression bombs are capped. Method: bodies that inflate to ten million bytes; the decoder writes no more
+// than its scratch memory, as a sanitizer and the bytes after it would show, and refuses.
 TEST_CASE("codec_decompression_bomb_is_capped") {
   CodecShape shape = {320, 240, 16, WireFormat::rgb565};
   CodecEnds ends(shape);
@@ -156,7 +157,7 @@ TEST_CASE("codec_decompression_bomb_is_capped") {
     }
 }
 
-// Goal: whatever does not fit is refused. Method: bodies by hand for a picture of 8 × 4, one fault each.
+// Goal: invalid bodies are refused. Method: handmade bodies for a picture of 8 × 4, one fault each.
 TEST_CASE("codec_bodies_that_do_not_fit_are_refused") {
   CodecShape shape = {8, 4, 2, WireFormat::rgb565};
   const Bytes good = {2, 3, 1, 0xAA, 0xBB};  // two bytes of runs: skip 3, give 1
@@ -201,8 +202,8 @@ TEST_CASE("codec_bodies_that_do_not_fit_are_refused") {
   }
 }
 
-// Goal: chunks cut short at any byte or with any byte flipped harm nothing: refused, or a picture with other pixels.
-// Method: a sanitizer and the picture's size watch; the codec alone, without the message's checksum.
+// Goal: chunks truncated at any byte or with any byte flipped do no harm: they are refused or give other pixels.
+// Method: a sanitizer, and the picture's size; the codec alone, without the message's checksum.
 TEST_CASE("codec_damaged_chunks_are_harmless") {
   Rng rng = make_rng(6);
   CodecShape shape = {40, 16, 8, WireFormat::rgb565};
@@ -226,7 +227,7 @@ TEST_CASE("codec_damaged_chunks_are_harmless") {
   CHECK(refused > tried / 2);
 }
 
-// Goal: the shapes a codec is made for keep every size within 32 bits and a chunk within a message.
+// Goal: valid shapes keep every size within 32 bits and a chunk within a message.
 TEST_CASE("codec_shapes_beyond_the_limits_are_refused") {
   CHECK(codec_shape_valid({320, 240, 240, WireFormat::rgb888}));
   CHECK(codec_shape_valid({8192, 8192, 32, WireFormat::rgb888}));
@@ -237,8 +238,8 @@ TEST_CASE("codec_shapes_beyond_the_limits_are_refused") {
     CHECK(!codec_shape_valid(shape));
 }
 
-// Goal: a difference gives the pixel back, and channels do not touch. Method: random pixels; channels by themselves,
-// modulo their levels; a difference of green alone is not taken off the others beyond what it has in common.
+// Goal: differences restore the pixel, and channels do not affect each other. Method: random pixels; channels
+// separately, modulo their levels; a difference of green is subtracted from the others only as far as they share it.
 TEST_CASE("predict_differences_give_the_pixel_back") {
   Rng rng = make_rng(8);
   for (int i = 0; i < effort(200000); ++i) {
@@ -253,13 +254,14 @@ TEST_CASE("predict_differences_give_the_pixel_back") {
     difference = subtract_channels<Pixel888>(a, b);
     for (int shift : {0, 8, 16}) REQUIRE(((difference >> shift) & 255) == (((a >> shift) - (b >> shift)) & 255));
   }
-  // A grey that grows by one level of red, two of green, one of blue: green alone differs.
+  // A grey that rises by one level of red, two of green, one of blue: only green differs.
   CHECK(difference_of<Pixel565>(0x0841 * 5, 0x0841 * 4) == 0x0040);
   CHECK(difference_of<Pixel565>(0x0841 * 4, 0x0841 * 5) == 0x07C0);
   CHECK(difference_of<Pixel888>(0x0A0A0A, 0x080808) == 0x000200);
 }
 
-// Goal: the prediction is LOCO-I's. Method: 2 × 2 pixels of red levels: corner and up above, left and the pixel below.
+// Goal: the prediction is LOCO-I's. Method: 2 × 2 pixels of red levels: corner and upper above, left and the pixel
+// below.
 TEST_CASE("predict_is_the_median_of_left_up_and_plane") {
   auto red = [](std::uint8_t corner, std::uint8_t up, std::uint8_t left) {
     const std::uint8_t pixels[] = {corner, 9, 0, up, 9, 0, left, 9, 0, 77, 9, 0};
@@ -289,7 +291,7 @@ TEST_CASE("pixel_runs_numbers_round_trip") {
   }
 }
 
-// Goal: the estimate is the entropy, to 3 %. Method: geometric and uniform frequencies against the C library.
+// Goal: the estimate is within 3 % of the entropy. Method: geometric and uniform frequencies against the C library.
 TEST_CASE("entropy_bits_near_the_entropy") {
   Rng rng = make_rng(9);
   for (std::uint32_t kind = 0; kind < 4; ++kind) {

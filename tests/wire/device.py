@@ -1,5 +1,5 @@
-"""The device's side of the wire, written from src/wire/PROTOCOL.md and in nothing but Python's standard library. What a
-server sends against it is noted by check()."""
+"""The device's side of the wire, written from src/wire/PROTOCOL.md with only the Python standard library. check() records
+whatever the server does wrong."""
 import socket, struct, zlib
 
 MASK = 2**64 - 1
@@ -63,7 +63,7 @@ def scene_hash(data):
 
 
 class Picture:
-    """The picture as it was last sent, and the deflate stream."""
+    """The picture as last sent, and the deflate stream."""
 
     def __init__(self, width, height, pixel_format):
         self.width, self.height, self.format = width, height, pixel_format
@@ -126,11 +126,11 @@ class Picture:
         return tuple((d + g) % n for d, g, n in zip((red + share, green, blue + share), guess, self.levels))
 
     def compare(self, rgb, rows=None):
-        """Whether it is what `rgb`, bytes of R, G and B, makes in this format."""
+        """Whether it equals `rgb`, bytes of R, G and B, converted to this format."""
         first, end = rows or (0, self.height)
         for i in range(first * self.width, end * self.width):
             level = rgb[3 * i:3 * i + 3]
-            # 565 has the nearest of its values to each of 256 levels.
+            # 565 holds its nearest value for each of 256 levels.
             wanted = tuple(level) if self.format == RGB888 else tuple(
                 (2 * x * (n - 1) + 255) // 510 for x, n in zip(level, self.levels))
             if self.pixels[i] != wanted:
@@ -236,7 +236,7 @@ class Device:
         return struct.unpack("<HI", fields) if kind == ERROR else (0, 0)
 
     def closed(self, waits=True):
-        """Whether the server closes; one that is told that nothing more comes need not give time to read."""
+        """Whether the server closes; if it knows that nothing more comes, it need not leave time to read."""
         if not waits:
             self.socket.shutdown(socket.SHUT_WR)
         kind, _ = self.receive()
@@ -270,7 +270,7 @@ class Device:
         return row, rows
 
     def frame(self, scene, kind=FRAME_REQUEST, **changes):
-        """Asks for rows and takes them."""
+        """Requests rows and receives them."""
         r = dict(DEFAULTS, **changes)
         p = self.picture
         if not p or (p.width, p.height, p.format) != (r["width"], r["height"], r["format"]):

@@ -1,4 +1,4 @@
-// Messages: what is written is read, and what nobody writes is refused.
+// Messages: reading returns what was written, and invalid bytes are refused.
 #include "wire/message.h"
 
 #include <doctest/doctest.h>
@@ -43,7 +43,7 @@ void for_each_sample(std::uint64_t seed, int rounds, Act act) {
     }
 }
 
-// A message of the fields given, sealed with the right length and checksum whatever they hold.
+// Sets the correct length and checksum of a message, whatever its fields hold.
 std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> message);
 
 std::uint32_t crc_of(const std::vector<std::uint8_t>& message) {
@@ -66,7 +66,7 @@ std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> message) {
 
 }  // namespace
 
-// Goal: the bytes are PROTOCOL.md's, so that others may write them. Method: three messages byte by byte; the checksum
+// Goal: the bytes follow PROTOCOL.md, so that others can write them. Method: three messages byte by byte; the checksum
 // by its definition, bit by bit.
 TEST_CASE("message_bytes_are_the_protocol_s") {
   Message m;
@@ -85,8 +85,8 @@ TEST_CASE("message_bytes_are_the_protocol_s") {
   CHECK(row_chunk_prefix_bytes() == encoded(m).size() - 2);
 }
 
-// Goal: what was written is read, field by field. Method: written again it gives the same bytes, which no field that
-// was lost or mixed up would; the reader consumes the message and no more.
+// Goal: reading returns what was written, field by field. Method: writing the result again gives the same bytes, which
+// a lost or swapped field would not; the reader consumes exactly the message.
 TEST_CASE("message_round_trip_of_every_type") {
   for_each_sample(1, effort(400), [](const Message& message, Rng*) {
     std::vector<std::uint8_t> bytes = encoded(message), stream = bytes;
@@ -100,7 +100,7 @@ TEST_CASE("message_round_trip_of_every_type") {
   });
 }
 
-// Goal: two messages that differ in one field differ as bytes: none is left out. Method: a few fields of each type.
+// Goal: every field is encoded: messages that differ in one field differ as bytes. Method: a few fields of each type.
 TEST_CASE("message_every_field_travels") {
   Rng rng = make_rng(5);
   using Change = std::function<void(Message*)>;
@@ -150,12 +150,12 @@ TEST_CASE("message_every_field_travels") {
   }
 }
 
-// Goal: a message cut short at any byte asks for more, and says for how much; never more than the message.
+// Goal: a message truncated at any byte asks for more and says how much; never more than the message.
 TEST_CASE("message_every_prefix_needs_more") {
   for_each_sample(2, effort(20), [](const Message& message, Rng*) {
     std::vector<std::uint8_t> bytes = encoded(message);
     for (std::size_t count = 0; count < bytes.size(); ++count) {
-      // A copy of its own, so that a sanitizer sees a read beyond it.
+      // A separate copy, so that a sanitizer sees a read beyond it.
       std::vector<std::uint8_t> prefix(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
       Message read;
       Decoded decoded = decode(prefix, &read);
@@ -165,7 +165,7 @@ TEST_CASE("message_every_prefix_needs_more") {
   });
 }
 
-// Goal: no flipped bit yields a message: it is refused, or more bytes are asked for than there are.
+// Goal: no flipped bit yields a message: it is refused, or more bytes are requested than there are.
 TEST_CASE("message_every_flipped_bit_is_refused_or_waits") {
   for_each_sample(3, effort(6), [](const Message& message, Rng*) {
     std::vector<std::uint8_t> bytes = encoded(message);
@@ -181,7 +181,7 @@ TEST_CASE("message_every_flipped_bit_is_refused_or_waits") {
   });
 }
 
-// Goal: flipped bits under a right checksum are refused or give values within their limits. Method: what is accepted
+// Goal: flipped bits with a correct checksum are refused or give values within their limits. Method: accepted messages
 // can be written again, which checks every limit.
 TEST_CASE("message_flipped_bits_under_a_right_checksum_stay_in_range") {
   int accepted = 0;
@@ -201,7 +201,7 @@ TEST_CASE("message_flipped_bits_under_a_right_checksum_stay_in_range") {
   CHECK(accepted > 100);
 }
 
-// Goal: values outside their limits are refused, each for itself. Method: one field at a time, under a right checksum.
+// Goal: every value outside its limits is refused. Method: one field at a time, with a correct checksum.
 TEST_CASE("message_values_out_of_range_are_refused") {
   Rng rng = make_rng(6);
   struct Edit {
@@ -275,7 +275,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
   }
 }
 
-// Goal: lengths are judged by the header alone: too long for the type, for the receiver, or too short.
+// Goal: lengths are judged by the header alone: too long for the type or for the receiver, or too short.
 TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
   auto header = [](int type, std::uint32_t payload) {
     return std::vector<std::uint8_t>{static_cast<std::uint8_t>(type),
@@ -303,8 +303,8 @@ TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
   CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 1000).state == DecodeState::need_more);
 }
 
-// Goal: a request that a change can say is known as such, and the change gives it; what a change cannot say is not.
-// Method: random requests that differ in all that a change has, then in one field more.
+// Goal: a request that a change can express is recognised, and the change reproduces it; other requests are not.
+// Method: random requests that differ in everything that a change carries, then in one field more.
 TEST_CASE("message_change_gives_the_request") {
   Rng rng = make_rng(9);
   using Field = std::function<void(FrameRequest*)>;
@@ -341,8 +341,8 @@ TEST_CASE("message_change_gives_the_request") {
   }
 }
 
-// Goal: chunks of a request cover its rows once, small at both ends and large between, and never more than the growth
-// apart; without growth they are alike. Method: bands, ends, limits and growths.
+// Goal: chunks of a request cover its rows exactly once, small at both ends and large between, with neighbours never
+// further apart than the growth; without growth they are equal. Method: bands, ends, limits and growths.
 TEST_CASE("message_chunks_grow_from_both_ends") {
   FrameRequest request;
   for (std::uint32_t band : {1u, 5u, 64u, 240u, 8192u})
@@ -368,7 +368,7 @@ TEST_CASE("message_chunks_grow_from_both_ends") {
         }
 }
 
-// Goal: a hello of another version is understood as far as its version, however long it is.
+// Goal: of a hello of another version, the version is read, however long the message.
 TEST_CASE("message_hello_of_another_version_tells_its_version") {
   for (std::size_t extra : {0, 14, 100}) {
     std::vector<std::uint8_t> bytes = {1, 0, 0, 0, 0, 0, 0, 0, 'P', 'R', 'A', 'Y', 3, 1};
@@ -381,7 +381,7 @@ TEST_CASE("message_hello_of_another_version_tells_its_version") {
   }
 }
 
-// Goal: random bytes are no messages. Method: 200,000 streams; those with a right checksum have been seen to above.
+// Goal: random bytes are no messages. Method: 200,000 streams; correct checksums are covered above.
 TEST_CASE("message_random_bytes_are_refused_or_wait") {
   Rng rng = make_rng(7);
   for (int round = 0; round < effort(200000); ++round) {
@@ -392,7 +392,7 @@ TEST_CASE("message_random_bytes_are_refused_or_wait") {
   }
 }
 
-// Goal: a chunk's bytes may lie where they go.
+// Goal: a chunk's bytes may already be in place.
 TEST_CASE("message_tail_may_lie_in_place") {
   std::vector<std::uint8_t> buffer(row_chunk_prefix_bytes() + 5);
   for (std::uint8_t i = 0; i < 5; ++i) buffer[row_chunk_prefix_bytes() + i] = i;

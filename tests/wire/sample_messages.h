@@ -1,4 +1,4 @@
-// Valid messages of every type, from random numbers.
+// Random valid messages of every type.
 #pragma once
 #include <cstdio>
 #include <cstring>
@@ -12,7 +12,7 @@ namespace pocketray {
 
 constexpr int kMessageTypeCount = static_cast<int>(MessageType::frame_change);
 
-// `tail` is what a message's array shows; it has to outlive the message.
+// The message's array points to `tail`, which must outlive it.
 inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
   auto wide = [&] { return std::uint64_t(next_u32(rng)) << 32 | next_u32(rng); };
   auto narrow = [&] { return static_cast<std::uint16_t>(next_u32(rng)); };

@@ -33,8 +33,8 @@ Slot* listener_at(NullLink* link, int port) {
   return nullptr;
 }
 
-// The other end learns of it: the end behind all that was sent or, as in TCP, a reset where bytes were left unread
-// [RFC 1122, sec. 4.2.2.13].
+// Notifies the other end: of the end after all data sent or, as in TCP, of a reset if bytes were left unread [RFC 1122,
+// sec. 4.2.2.13].
 void part(NullLink* link, Slot* slot) {
   bool unread = slot->in.used > 0 || slot->phase == Phase::waiting;
   if (slot->other >= 0) {
@@ -51,7 +51,7 @@ void part(NullLink* link, Slot* slot) {
   slot->phase = Phase::unused;
 }
 
-// Both ends come to be at once: the peer sees the connection after one latency, the outcome is known after two.
+// Both ends are created at once: the peer sees the connection after one latency, the outcome is known after two.
 Slot* begin_connection(NullLink* link, const LinkAddress& address, std::uint64_t timeout_ns, Error* error) {
   Slot* slot = take_slot(link, Phase::connecting, error);
   if (!slot) return nullptr;
@@ -93,7 +93,7 @@ int listen(Link* base, const LinkAddress& address, Error* error) {
   int port = port_of(address);
   if (port == 0) port = ++link->port_last;
   if (listener_at(link, port)) {
-    std::snprintf(error->text, sizeof error->text, "%s: another program listens there: stop it, or take another port",
+    std::snprintf(error->text, sizeof error->text, "%s: another program listens there: stop it, or use another port",
                   address.text);
     return -1;
   }

@@ -31,7 +31,7 @@ LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max,
   return ended ? LinkResult::ended : LinkResult::later;
 }
 
-// A fault that strikes the next byte `to` is to get, or null; otherwise `byte_count` is cut so that it ends before one.
+// A fault that strikes the next byte for `to`, or null; if null, `byte_count` is cut to end before the next fault.
 const NullFault* fault_at(NullLink* link, Slot* to, std::size_t* byte_count) {
   const NullLinkSettings& settings = link->settings;
   for (int i = 0; i < settings.fault_count; ++i) {
@@ -49,7 +49,7 @@ const NullFault* fault_at(NullLink* link, Slot* to, std::size_t* byte_count) {
   return nullptr;
 }
 
-// Sends one piece on its way: the line is taken for its bytes, then latency and jitter pass.
+// Sends one piece: it occupies the line for its bytes, then takes latency and jitter.
 void send_piece(NullLink* link, Slot* to, const unsigned char* bytes, std::size_t byte_count, unsigned char flip) {
   const NullLinkSettings& settings = link->settings;
   LinkPipe* pipe = &to->in;
@@ -61,7 +61,7 @@ void send_piece(NullLink* link, Slot* to, const unsigned char* bytes, std::size_
   push_piece(pipe, bytes, byte_count, flip, pipe->silent ? kNever : arrival_ns);
 }
 
-// What a fault does to the line; false: the connection is no more.
+// Applies a fault to the line; false: the connection is gone.
 bool strike(NullLink* link, Slot* from, Slot* to, LinkFault fault, unsigned char* flip, bool* twice) {
   switch (fault) {
     case LinkFault::reset:
@@ -106,7 +106,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   if (slot->in.reset_ns <= link->clock_ns) return fail(slot, kBrokenText, error);
   const unsigned char* next = static_cast<const unsigned char*>(bytes);
   while (*byte_count < byte_count_max) {
-    // 1. To a peer that is gone: its news may still be underway, until then the bytes are lost quietly.
+    // 1. To a peer that is gone: until the news arrives, bytes are silently lost.
     Slot* to = slot->other >= 0 ? &link->slots[slot->other] : nullptr;
     if (!to) {
       if (*byte_count == 0 && slot->in.end_ns <= link->clock_ns) return fail(slot, kBrokenText, error);
@@ -134,7 +134,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   return *byte_count > 0 ? LinkResult::done : LinkResult::later;
 }
 
-// What the stream of a wait can do now, and when it may do more; kNever: when another stream does something.
+// What the stream of a wait can do now, and when it may do more; kNever: when another stream acts.
 std::uint64_t look(NullLink* link, LinkWait* wait) {
   wait->can_read = wait->can_write = false;
   Slot* slot = slot_of(link, wait->stream);
@@ -148,7 +148,7 @@ std::uint64_t look(NullLink* link, LinkWait* wait) {
   if (state == LinkResult::later) return slot->news_ns < slot->deadline_ns ? slot->news_ns : slot->deadline_ns;
   bool failed = state == LinkResult::failed;
   bool told_end = !failed && (slot->in.end_ns <= link->clock_ns || slot->in.reset_ns <= link->clock_ns);
-  // To a peer that is gone there is always room: nothing stays in its pipe.
+  // There is always room for a peer that is gone: nothing stays in its pipe.
   bool room = !failed && (slot->other < 0 || pipe_room(link->slots[slot->other].in) > 0);
   wait->can_write = wait->want_write && (failed || told_end || room);
   std::uint64_t news_ns = failed ? 0 : pipe_news_ns(slot->in);
@@ -202,7 +202,7 @@ Link* null_link_open(const LinkOptions& options, const NullLinkSettings& setting
   if (count < 1 || count > kLinkStreamsMax || !options.memory || settings.fault_count > kNullFaultsMax ||
       settings.pipe_bytes == 0 || options.memory_bytes < null_link_need(count, settings)) {
     std::snprintf(error->text, sizeof error->text,
-                  "%d connections of at most %d take %zu bytes, %zu were given; faults may be %d", count,
+                  "%d connections of at most %d need %zu bytes, %zu were given; at most %d faults", count,
                   kLinkStreamsMax, null_link_need(count, settings), options.memory_bytes, kNullFaultsMax);
     return nullptr;
   }

@@ -1,5 +1,5 @@
-// What a simulated link consists of, shared by the files that make it: null_connect.cpp lets connections begin and end,
-// null_link.cpp carries their bytes.
+// State of a simulated link, shared by its sources: null_connect.cpp begins and ends connections, null_link.cpp carries
+// their bytes.
 #pragma once
 #include <cstdio>
 
@@ -16,30 +16,30 @@ enum class Phase : std::uint8_t { unused, listening, connecting, waiting, connec
 struct Slot {
   Phase phase;
   bool device;            // the connecting end
-  bool elsewhere;         // of a connection from another machine
-  int generation;         // counts the streams that lived here, so that a stale number is known
-  int other;              // the slot of the other end; -1: closed, or there never was one
-  int listener;           // of a waiting one
-  int port, connection;   // the how manieth of the Link
+  bool elsewhere;         // part of a connection from another machine
+  int generation;         // counts the streams in this slot, which exposes stale ones
+  int other;              // slot of the other end; -1: closed, or there never was one
+  int listener;           // of a waiting end
+  int port, connection;   // connection: index in the Link
   bool refused;           // the outcome, once known
-  std::uint64_t news_ns;  // when the outcome of connecting is known, or a waiting peer is seen
+  std::uint64_t news_ns;  // when the outcome of connecting is known, or when a waiting peer is seen
   std::uint64_t deadline_ns;
   LinkPipe in;
   const char* broken_text;
   char name[40];
 };
 
-struct alignas(Slot) NullLink : Link {  // slots follow it
+struct alignas(Slot) NullLink : Link {  // followed by its slots
   NullLinkSettings settings;
   NullLinkRecord record;
   std::uint64_t clock_ns, set_back_ns;
-  std::uint64_t line_free_ns[2];  // when the radio has sent what it has; by direction
+  std::uint64_t line_free_ns[2];  // until when the radio is busy, by direction
   std::uint64_t random;
   int slot_count, port_last;
   Slot* slots;
 };
 
-// The clock starts where setting it back cannot make it negative: at most kNullFaultsMax times ten seconds a
+// The clock starts where setting it back cannot make it negative: at most kNullFaultsMax times ten seconds per
 // connection.
 constexpr std::uint64_t kClockStartNs = std::uint64_t{1} << 62;
 
@@ -62,8 +62,7 @@ inline LinkResult fail(Slot* slot, const char* text, Error* error) {
 
 constexpr const char* kRefusedText = "nothing listens there: start `pocketray serve`, or name another port";
 constexpr const char* kSilentText = "no answer: is it on and in reach, and does its firewall let this port through?";
-constexpr const char* kBrokenText =
-    "the peer broke the connection off: it was stopped, or did not like what it was sent";
+constexpr const char* kBrokenText = "the peer closed the connection: it was stopped, or rejected what it received";
 
 inline bool meant_for(const NullFault& fault, const Slot& slot) {
   if (slot.elsewhere) return false;
@@ -71,12 +70,12 @@ inline bool meant_for(const NullFault& fault, const Slot& slot) {
 }
 inline bool at_start(LinkFault fault) { return fault == LinkFault::refuse || fault == LinkFault::no_answer; }
 
-// What became of a connection that is being made.
+// Progress of a connection being made.
 LinkResult progress(NullLink* link, Slot* slot, Error* error);
-// The peer that has waited longest, or null; its news_ns may be yet to come.
+// The peer that has waited longest, or null; its news_ns may lie in the future.
 Slot* waiting_at(NullLink* link, const Slot* listener);
 
-// Of kNullLink.
+// The function of kNullLink.
 bool resolve(const char* text, LinkAddress* address, Error* error);
 int listen(Link* base, const LinkAddress& address, Error* error);
 int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Error* error);

@@ -1,4 +1,4 @@
-// Scenes made by code: what people see first and what every figure is quoted on.
+// Scenes made by code: the first thing people see, and the scenes behind all published figures.
 #pragma once
 #include "base/arena.h"
 #include "base/status.h"
@@ -13,13 +13,13 @@ struct BuiltinScene {
   void (*build)(Arena* arena, Scene* scene);
 };
 
-// All built-in scenes; *count is set to how many.
+// All built-in scenes; sets *count to their number.
 const BuiltinScene* builtin_list(int* count);
-// Null if there is none of that name.
+// Null if no scene has that name.
 const BuiltinScene* find_builtin(const char* name);
 
-// `cornell` with a mirror sphere of so many columns, at least 4: what tessellation costs and gains.
-constexpr std::uint32_t kCornellSphereColumns = 64;  // of `cornell` itself
+// `cornell` with a mirror sphere of that many columns, at least 4: shows the cost and gain of tessellation.
+constexpr std::uint32_t kCornellSphereColumns = 64;  // as in `cornell` itself
 std::size_t tessellated_cornell_need(std::uint32_t sphere_columns);
 void build_tessellated_cornell(std::uint32_t sphere_columns, Arena* arena, Scene* scene);
 

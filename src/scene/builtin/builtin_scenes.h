@@ -1,4 +1,4 @@
-// One line per built-in scene; each pair lies in the file of its name.
+// One line per built-in scene; each pair is defined in the file of that name.
 #pragma once
 #include "scene/builtin/builtin.h"
 

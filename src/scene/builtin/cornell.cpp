@@ -1,7 +1,7 @@
 // The Cornell box as measured by the Program of Computer Graphics, Cornell University ("The Cornell Box", data of
-// 1998): geometry in millimetres as published, the walls not quite square. Red is left, green right, for the camera
-// looks along +z with x growing to the left. In place of the two blocks stand a statue and a mirror sphere, after
-// [Aranha07] figs. 2, 3.
+// 1998): geometry in millimetres as published, the walls not quite square. Red is on the left and green on the right,
+// because the camera looks along +z with x growing to the left. A statue and a mirror sphere replace the two blocks,
+// after [Aranha07] figs. 2, 3.
 #include "scene/builtin/builtin_scenes.h"
 #include "scene/builtin/figure.h"
 #include "scene/builtin/mesh_writer.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr MeshSize kRoomSize = {17, 19};
 constexpr FigureDetail kFigure = {113, 164, 31, 34, 23};
-// Rows for facets about as high as wide.
+// As many rows as make facets about as high as wide.
 constexpr std::uint32_t sphere_rows(std::uint32_t columns) { return (9 * columns + 8) / 16; }
 constexpr MeshSize size_of(std::uint32_t sphere_columns) {
   return kRoomSize + box_size() + sphere_size(sphere_columns, sphere_rows(sphere_columns)) + figure_size(kFigure);
@@ -31,14 +31,14 @@ void add_room(MeshWriter* mesh) {
   for (const Vec3& corner : kCeiling) add_vertex(mesh, corner, {0, 0, 0});
   std::uint32_t light = mesh->vertex_count;
   for (const Vec3& corner : kLight) add_vertex(mesh, corner, {0, 0, 0});
-  // The open front edge of the floor is halved, which makes the number of triangles the paper's.
+  // Halving the open front edge of the floor gives the number of triangles in the paper.
   std::uint32_t middle = add_vertex(mesh, {276.4f, 0, 0}, {0, 0, 0});
 
   mesh->material = kWhite;
   add_triangle(mesh, middle, floor + 1, floor + 2);
   add_triangle(mesh, middle, floor + 2, floor + 3);
   add_triangle(mesh, middle, floor + 3, floor);
-  for (std::uint32_t i = 0; i < 4; ++i) {  // the ceiling leaves a hole that the light fills
+  for (std::uint32_t i = 0; i < 4; ++i) {  // the ceiling has a hole, filled by the light
     std::uint32_t j = (i + 1) % 4;
     add_triangle(mesh, ceiling + i, light + j, ceiling + j);
     add_triangle(mesh, ceiling + i, light + i, light + j);
@@ -83,8 +83,8 @@ void build_tessellated_cornell(std::uint32_t sphere_columns, Arena* arena, Scene
   add_sphere(&mesh, {158, 88, 190}, {88, 88, 88}, sphere_columns, sphere_rows(sphere_columns));
   finish_mesh(mesh, scene);
 
-  // The measured spectra seen through linear sRGB; the light is the published one, white-balanced half-way as the
-  // photograph is.
+  // The measured spectra converted to linear sRGB; the light is the published one, white-balanced half-way like the
+  // photograph.
   Array<Material> materials = default_array<Material>(arena, kMaterialCount);
   materials[kWhite] = matte({.725f, .71f, .68f});
   materials[kRed] = matte({.63f, .065f, .05f});

@@ -11,7 +11,7 @@ namespace {
 struct RayFan {
   float at, height, elevation;
 };
-// Where the centre of the rays jumps, two entries stand at all but the same place.
+// Where the centre of the rays jumps, two entries have almost the same `at`.
 constexpr RayFan kBodyFan[] = {
     {0.f, -.02f, 0},    {.44f, 4.0f, 0},  {.48f, 4.45f, 0},    {.56f, 5.55f, 0},  {.60f, 5.85f, 8}, {.66f, 5.9f, 62},
     {.6601f, 6.36f, 0}, {.69f, 6.63f, 0}, {.6901f, 7.1f, -58}, {.71f, 7.1f, -55}, {.91f, 7.1f, 25}, {1.f, 7.1f, 87},
@@ -27,8 +27,8 @@ RayFan fan_at(const RayFan (&fan)[n], float at) {
           fan[i].elevation + t * (fan[i + 1].elevation - fan[i].elevation)};
 }
 
-// Distance along the ray where the surface is crossed, searched from `start`: first outward until outside, then inward
-// by the distance estimate.
+// Distance along the ray to the surface, searched from `start`: outward until outside, then inward by the distance
+// estimate.
 template <class Distance>
 float cross_surface(const Vec3& origin, const Vec3& direction, float start, const Distance& distance) {
   float t = start;
@@ -65,7 +65,7 @@ void add_tube(MeshWriter* mesh, const Placement& placement, const Frame& frame, 
   Vec3 bottom = frame.origin + frame.axis * (fan[0].height * frame.length);
   RayFan end = fan_at(fan, 1);
   Vec3 top = frame.origin + frame.axis * (end.height * frame.length);
-  // The poles: where the axis leaves the surface.
+  // The poles, where the axis leaves the surface.
   if (fan[0].elevation < 0)
     bottom += frame.axis * -cross_surface(bottom, -frame.axis, .1f, [&](const Vec3& p) { return distance(p, 0); });
   add_vertex(mesh, place(placement, bottom), {0, 0, 0});
@@ -81,7 +81,7 @@ void add_tube(MeshWriter* mesh, const Placement& placement, const Frame& frame, 
       float start = row > 0 ? mesh->normals[mesh->vertex_count - columns].x + .06f : first_reach;
       float angle = static_cast<float>(azimuth);
       float t = cross_surface(origin, direction, start, [&](const Vec3& p) { return distance(p, angle); });
-      // The normal's place keeps the reach until the normals are made.
+      // The normal temporarily stores the distance, until normals are computed.
       add_vertex(mesh, place(placement, origin + direction * t), {t, 0, 0});
     }
   }

@@ -1,7 +1,7 @@
-// The figure that the scenes show in place of the paper's Venus: a standing woman with bare torso and broken arms, a
-// robe wrapped around her hips, after the manner of late Hellenistic marbles. It is an implicit surface made of
-// smoothly blended ellipsoids and rounded cones [Quilez 2013, "smooth minimum"], bent into contrapposto, sampled by
-// rays from its axis. Units: one head is 1; the figure stands on y = 0, looks along +z and is about 7.7 high.
+// The figure that stands in for the paper's Venus: a standing woman with bare torso and broken arms, a robe wrapped
+// around her hips, in the manner of late Hellenistic marbles. It is an implicit surface of smoothly blended ellipsoids
+// and rounded cones [Quilez 2013, "smooth minimum"], bent into contrapposto and sampled by rays from its axis. One head
+// is 1 unit; the figure stands on y = 0, looks along +z and is about 7.7 units high.
 #pragma once
 #include "scene/builtin/mesh_writer.h"
 

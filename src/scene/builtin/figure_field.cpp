@@ -7,10 +7,10 @@ namespace {
 
 // Ellipsoid: center a, radii b. Cone: from a with radius ra to b with radius rb, rounded ends.
 struct Blob {
-  enum Kind : unsigned char { ellipsoid, cone, carve } kind;  // carve: an ellipsoid taken away
+  enum Kind : unsigned char { ellipsoid, cone, carve } kind;  // carve: subtracts an ellipsoid
   Vec3 a, b;
   float ra, rb;
-  float blend;  // width of the transition into what comes before
+  float blend;  // width of the transition to the blobs before it
 };
 
 constexpr Blob kTorso[] = {
@@ -52,15 +52,15 @@ constexpr Blob kHair[] = {
     {Blob::ellipsoid, {0, 7.10f, -.56f}, {.2f, .19f, .17f}, 0, 0, .05f},
 };
 constexpr Blob kLegs[] = {
-    {Blob::cone, {-.33f, 3.85f, -.02f}, {-.27f, .1f, -.05f}, .44f, .3f, .2f},  // carries the weight
-    {Blob::cone, {.32f, 3.8f, .06f}, {.36f, 2.15f, .46f}, .42f, .25f, .15f},   // free thigh, knee, shin
+    {Blob::cone, {-.33f, 3.85f, -.02f}, {-.27f, .1f, -.05f}, .44f, .3f, .2f},  // standing leg
+    {Blob::cone, {.32f, 3.8f, .06f}, {.36f, 2.15f, .46f}, .42f, .25f, .15f},   // free leg: thigh, knee, shin
     {Blob::cone, {.36f, 2.15f, .46f}, {.42f, .1f, .14f}, .25f, .22f, .12f},
 };
 struct ArmShape {
   Vec3 shoulder, elbow;
   float shoulder_radius, elbow_radius;
   Vec3 deltoid;
-  Vec3 break_at, break_normal;  // the arm ends in this plane
+  Vec3 break_at, break_normal;  // the plane in which the arm ends
 };
 constexpr ArmShape kArms[2] = {
     {{-.79f, 6.05f, -.05f},
@@ -78,7 +78,7 @@ constexpr ArmShape kArms[2] = {
      {.9f, 5.55f, .05f},
      {.35f, -.9f, .25f}},
 };
-constexpr float kArmTransition = .16f;  // how far the arm's surface may leave the arm to join the shoulder
+constexpr float kArmTransition = .16f;  // how far from the arm its surface may bulge to join the shoulder
 
 float clamp01(float x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 float smooth_step(float low, float high, float x) {
@@ -107,7 +107,7 @@ float cone_distance(const Vec3& p, const Vec3& a, const Vec3& b, float ra, float
   return length(ap - ab * h) - (ra + (rb - ra) * h);
 }
 
-// Whether y is further than `margin` from the interval between a and b: such blobs do not reach the surface at y.
+// Whether y is further than `margin` outside the interval [a, b]: such blobs do not affect the surface at y.
 bool beyond(float y, float a, float b, float margin) {
   return (y < a - margin && y < b - margin) || (y > a + margin && y > b + margin);
 }
@@ -139,7 +139,7 @@ float fold(float x) {
   return std::sqrt(s * s + .02f) - .62f;
 }
 
-// Upper border of the robe: low in front, high behind and over the figure's left hip.
+// Upper hem of the robe: low in front, high at the back and over the figure's left hip.
 float robe_edge(float azimuth) { return 4.03f + .22f * sine(azimuth) - .16f * sine(azimuth + 1.57f); }
 
 float robe_relief(float azimuth, float y) {
@@ -147,15 +147,15 @@ float robe_relief(float azimuth, float y) {
   float front = .5f + .5f * sine(azimuth + 1.57f);
   float knee = square(.5f + .5f * sine(azimuth - .55f + 1.57f));  // 1 over the free leg
   knee *= knee;
-  // Pleats that fall to the ground, quiet over the free leg.
+  // Pleats that fall to the ground, flatter over the free leg.
   float fall = smooth_step(3.9f, .5f, y);
   float wander = .35f * sine(2.1f * y + 3 * azimuth) + .8f * sine(2 * azimuth + .7f);
   float pleats = fold(7 * azimuth + wander) + .45f * fold(17 * azimuth + 1.7f * wander + .5f * y);
   float relief = .16f * fall * (1 - .85f * knee * smooth_step(.6f, 1.5f, y)) * pleats;
-  // Folds drawn from the raised knee to the hip of the standing leg.
+  // Folds from the raised knee to the hip of the standing leg.
   float drawn = smooth_step(1.3f, 2.2f, y) * smooth_step(edge, edge - .5f, y) * square(front);
   relief += .10f * drawn * fold(3.6f * y + 2.3f * azimuth + .5f * sine(3 * azimuth));
-  // The rolled border, twisted like a rope.
+  // The rolled hem, twisted like a rope.
   float roll = 1 - square((y - edge + .2f) / .32f);
   if (roll > 0) relief += .07f * roll * (1 + .55f * fold(8 * y + 5 * azimuth));
   return relief + .03f * smooth_step(edge + .08f, edge - .1f, y);
@@ -185,7 +185,7 @@ float body_distance(const Vec3& p, float azimuth) {
     distance = unite(kHead, p, distance);
     float hair = unite(kHair, p, 1e3f);
     if (std::fabs(hair) < .2f) hair -= hair_relief(p, p.y);
-    // The hair line: no hair over the face.
+    // The hairline: no hair over the face.
     float face = ellipsoid_distance(p, {0, 6.98f, .34f}, {.235f, .43f, .3f});
     if (-face > hair) hair = -face;
     distance = smooth_min(distance, hair, .02f);
@@ -195,7 +195,7 @@ float body_distance(const Vec3& p, float azimuth) {
     float top = p.y - (robe_edge(azimuth) + .12f);
     if (top > robe) robe = top;
     distance = smooth_min(distance, robe, .04f);
-    if (std::fabs(distance) < .3f) distance -= robe_relief(azimuth, p.y);  // folds are shallower than that
+    if (std::fabs(distance) < .3f) distance -= robe_relief(azimuth, p.y);  // folds are less deep than that
   }
   return distance;
 }
@@ -204,7 +204,7 @@ float arm_distance(int side, const Vec3& p) {
   const ArmShape& arm = kArms[side];
   float alone = cone_distance(p, arm.shoulder, arm.elbow, arm.shoulder_radius, arm.elbow_radius);
   alone = smooth_min(alone, ellipsoid_distance(p, arm.deltoid, {.2f, .28f, .22f}), .12f);
-  // It grows out of the shoulder, and hangs free below the armpit.
+  // The robe grows out of the shoulder and hangs free below the armpit.
   float grown = smooth_step(5.5f, 5.95f, p.y);
   float joined = smooth_min(alone, unite(kTorso, p, 1e3f), .2f * grown + 1e-3f);
   float limit = alone - kArmTransition * grown;
@@ -219,12 +219,12 @@ void arm_axis(int side, Vec3* from, Vec3* to) {
 }
 
 Vec3 bend_figure(const Vec3& p) {
-  // The hips lean over the standing leg (the figure's right, -x), the shoulders back, the head again to the right.
+  // The hips lean over the standing leg (the figure's right, -x), the shoulders lean back, the head again to the right.
   float hip = smooth_step(0, 4.1f, p.y), chest = smooth_step(4.1f, 6.1f, p.y), head = smooth_step(6.2f, 7.0f, p.y);
   float sway = -.26f * hip + .22f * chest - .05f * head;
   float lean = .06f * hip - .14f * chest + .1f * head;
   float tilt =
-      .16f * hip * p.x - .26f * chest * p.x + .05f * head * p.x;  // slope of the line of the hips, shoulders, eyes
+      .16f * hip * p.x - .26f * chest * p.x + .05f * head * p.x;  // tilt of the lines through hips, shoulders and eyes
   float turn = -.1f * hip + .22f * chest - .5f * head;
   float s = sine(turn), c = sine(turn + 1.57079633f);
   return {c * p.x + s * p.z + sway, p.y + -tilt, -s * p.x + c * p.z + lean};

@@ -1,6 +1,6 @@
 // The furnace: a closed room in which every surface emits Le = 0.5 and reflects ρ = 0.5 diffusely. Full interreflection
-// makes the radiance Le/(1 − ρ) = 1 everywhere, so the block that stands in the room disappears; after n reflections it
-// is Le·(1 − ρⁿ⁺¹)/(1 − ρ), and Le where no indirect nor area light is counted (HARDCASES row 49).
+// makes the radiance Le/(1 − ρ) = 1 everywhere, so the block in the room disappears; after n reflections it is
+// Le·(1 − ρⁿ⁺¹)/(1 − ρ), and Le without indirect and area light (HARDCASES row 49).
 #include "scene/builtin/builtin_scenes.h"
 #include "scene/builtin/mesh_writer.h"
 #include "scene/builtin/scene_parts.h"

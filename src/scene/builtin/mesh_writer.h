@@ -1,6 +1,6 @@
-// MeshWriter: appends triangles to arrays of planned size. Every shape has a constexpr …_size(), so that a scene knows
-// its exact number of vertices and triangles before it takes memory. Flat faces carry zero normals (the geometric
-// normal counts); curved ones unit normals. Fronts are counter-clockwise.
+// MeshWriter appends triangles to arrays of planned size. Every shape has a constexpr …_size(), so that a scene knows
+// its exact number of vertices and triangles before it takes memory. Flat faces have zero normals (meaning the
+// geometric normal), curved ones unit normals. Front faces are counter-clockwise.
 #pragma once
 #include "base/arena.h"
 #include "scene/scene.h"
@@ -17,7 +17,7 @@ struct MeshWriter {
   Array<Vec3> positions, normals;
   Array<Triangle> triangles;
   std::uint32_t vertex_count = 0, triangle_count = 0;  // so far
-  std::uint32_t material = 0;                          // of what is appended next
+  std::uint32_t material = 0;                          // of the triangles appended next
 };
 
 constexpr std::size_t mesh_need(MeshSize size) {
@@ -44,23 +44,22 @@ constexpr MeshSize sphere_size(std::uint32_t columns, std::uint32_t rows) {
 }
 void add_sphere(MeshWriter* mesh, const Vec3& center, const Vec3& radii, std::uint32_t columns, std::uint32_t rows);
 
-// Surface of revolution about the y axis through `center`: the profile's points are (radius, height), from the bottom
-// up for an outside. Each band between two points has its own straight normals, so profile corners stay sharp. Bands
-// that start or end on the axis (radius 0) have half the triangles; constexpr count by `axis_ends`, 0 to 2.
+// Surface of revolution about the y axis through `center`. The profile's points are (radius, height); from the bottom
+// up, the surface faces outward. Each band between two points has its own straight normals, so profile corners stay
+// sharp. Bands that start or end on the axis (radius 0) have half the triangles; `axis_ends`, 0 to 2, counts such ends.
 constexpr MeshSize lathe_size(std::uint32_t columns, std::uint32_t points, std::uint32_t axis_ends) {
   return {2 * columns * (points - 1), columns * (2 * (points - 1) - axis_ends)};
 }
 void add_lathe(MeshWriter* mesh, const Vec3& center, Array<const Vec2> profile, std::uint32_t columns);
 
-// Grid of columns × rows vertices that closes around (column `columns` is column 0) and ends in two poles. Vertices are
-// in this order: first pole, then row by row, then last pole. This appends the triangles; `first_vertex` is the first
-// pole.
+// Appends the triangles of a grid of columns × rows vertices that wraps around (column `columns` is column 0) and ends
+// in two poles. The vertices are in this order: first pole, row by row, last pole. `first_vertex` is the first pole.
 constexpr MeshSize tube_size(std::uint32_t columns, std::uint32_t rows) {
   return {columns * rows + 2, 2 * columns * rows};
 }
 void add_tube_triangles(MeshWriter* mesh, std::uint32_t first_vertex, std::uint32_t columns, std::uint32_t rows);
 
-// Gives the vertices from `first_vertex` on the mean of their triangles' normals, weighted by area.
+// Sets the vertices from `first_vertex` on to the area-weighted mean of their triangles' normals.
 void smooth_normals(MeshWriter* mesh, std::uint32_t first_vertex, std::uint32_t first_triangle);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// What the built-in scenes share: taking the small arrays of a scene from the arena, and materials, lights.
+// Helpers of the built-in scenes: small arrays from the arena, materials, lights.
 #pragma once
 #include <cstring>
 

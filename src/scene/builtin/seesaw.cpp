@@ -1,5 +1,5 @@
-// The animation of [Jevans92] sec. 5 in our own shapes: in a circus tent a weight drops onto a seesaw and launches a
-// worm into the air; 6,000 triangles, 4 lights, 351 frames, static camera. After about 150 frames little moves (table
+// The animation of [Jevans92] sec. 5 with shapes of our own: in a circus tent a weight drops onto a seesaw and launches
+// a worm into the air; 6,000 triangles, 4 lights, 351 frames, static camera. After about 150 frames little moves (table
 // 2). Board and weight are rigid, the worm is a skin over a chain of joints. Metres and seconds.
 #include "base/check.h"
 #include "scene/animate.h"
@@ -27,7 +27,7 @@ enum NodeIndex : std::uint32_t {
 constexpr std::uint32_t kChannelCount = 7 + kWormJoints;
 constexpr std::uint32_t kValuesPerFrame = 4 + (3 + 4) + (3 + 4 + 3) + 3 + 4 * kWormJoints;
 
-// A scene with the counts of this one and no arrays.
+// A scene with the counts of `seesaw` and no arrays.
 Scene outline() {
   Scene scene;
   scene.positions.count = scene.normals.count = kSize.vertices;
@@ -41,7 +41,7 @@ Scene outline() {
   return scene;
 }
 
-// One key a frame for every channel; the channels share the times.
+// One key per frame for every channel; all channels share the key times.
 struct ChannelWriter {
   Array<Channel> channels;
   Array<float> values;
@@ -104,7 +104,7 @@ void animate(Arena* arena, Scene* scene) {
   scene->key_values = writer.values;
 }
 
-// Nodes as they stand at time 0, and the chain of joints along the worm.
+// Nodes at time 0, and the chain of joints along the worm.
 void add_nodes(Arena* arena, Scene* scene) {
   SeesawState state = seesaw_at(0);
   Array<Node> nodes = default_array<Node>(arena, kNodeCount);
@@ -119,7 +119,7 @@ void add_nodes(Arena* arena, Scene* scene) {
   constexpr float kSegment = kWormLength / kWormJoints;
   for (std::uint32_t k = 0; k < kWormJoints; ++k) {
     Node* node = &nodes[kJointNode + k];
-    node->parent = kJointNode + k - 1;  // the first hangs on the body
+    node->parent = kJointNode + k - 1;  // the first joint is a child of the body
     node->translation = k ? Vec3{0, kSegment, 0} : state.tail_offset;
     node->rotation = about_z(state.joint_angle[k]);
     joints[k].node = kJointNode + k;
@@ -132,7 +132,7 @@ void add_nodes(Arena* arena, Scene* scene) {
   scene->skins = skins;
 }
 
-// A vertex follows the two joints around it; the head is stiff.
+// A vertex follows its two nearest joints; the head is rigid.
 SkinWeight skin_weight(float y) {
   constexpr float kSegment = kWormLength / kWormJoints;
   float head = kWormLength - 2 * kWormHead;

@@ -7,12 +7,12 @@ namespace {
 
 constexpr double kGravity = 9.81;
 constexpr double kTilt = 0.30;         // of the board at rest
-constexpr double kSeat = 2.15;         // where weight and worm meet the board, from the pivot
+constexpr double kSeat = 2.15;         // distance from the pivot to where weight and worm meet the board
 constexpr double kStandHeight = 0.86;  // of the standing worm's centre
 
-// The weight is let go at kRelease and reaches the board after its fall; the board swings over within kSwing.
+// The weight is released at kRelease and falls onto the board, which swings over within kSwing.
 constexpr double kRelease = 0.10, kWeightStart = 5.0, kSwing = 0.17;
-constexpr double kLaunchSpeed = 7.1, kLaunchX = -0.75, kLaunchZ = 1.0;  // the worm kicks off a little forward
+constexpr double kLaunchSpeed = 7.1, kLaunchX = -0.75, kLaunchZ = 1.0;  // the worm jumps slightly forward
 constexpr double kBounceSpeed[2] = {2.7, 1.2};
 
 double clamp01(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
@@ -20,7 +20,7 @@ double ease(double from, double to, double x) {
   double t = clamp01((x - from) / (to - from));
   return t * t * (3 - 2 * t);
 }
-// A blow at `since` = 0 that rings off.
+// A blow at `since` = 0 that rings down.
 double ring(double since, double decay, double frequency) {
   return since > 0 ? det_exp(-decay * since) * det_sin(frequency * since) : 0;
 }
@@ -54,7 +54,7 @@ Vec3 to_float(double x, double y, double z) {
   return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
 }
 
-// Point of the board's frame: `along` from the pivot, `above` the middle of the plank.
+// A point in the board's frame: `along` from the pivot, `above` the middle of the plank.
 void on_board(double angle, double along, double above, double* x, double* y) {
   *x = along * det_cos(angle) - above * det_sin(angle);
   *y = kPivotHeight + along * det_sin(angle) + above * det_cos(angle);
@@ -102,7 +102,7 @@ void move_body(const Events& e, double t, SeesawState* s) {
     angle = kTilt + (2 * kPi - kTilt) * ease(e.launch + 0.05, e.landing[0] - 0.15, t);
     if (t >= e.landing[0]) angle = 0;
   }
-  // Squashed by each blow, stretched in fast flight.
+  // Squashed by each impact, stretched in fast flight.
   double squash = 0.30 * ring(t - e.impact, 9, 17) * (t < e.launch ? 1 : 0);
   const double blow[3] = {0.52, 0.34, 0.24};
   for (int i = 0; i < 3; ++i) {

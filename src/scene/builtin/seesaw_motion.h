@@ -1,6 +1,5 @@
-// What moves in `seesaw`, as functions of time: a weight drops on one end of a seesaw and launches the worm from the
-// other. Free fall and impacts in closed form. Units: metres and seconds, the floor is y = 0, angles in radians about
-// +z.
+// The motion of `seesaw` as functions of time: a weight drops on one end of a seesaw and launches the worm from the
+// other. Free fall and impacts in closed form. Metres and seconds; the floor is y = 0; angles in radians about +z.
 #pragma once
 #include "base/vec3.h"
 

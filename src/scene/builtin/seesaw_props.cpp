@@ -33,7 +33,7 @@ void add_stripe(MeshWriter* mesh, std::uint32_t stripe) {
     add_quad(mesh, around(to, low.x, low.y), around(from, low.x, low.y), around(from, high.x, high.y),
              around(to, high.x, high.y));
   }
-  // A pennant under the eaves, of the other colour.
+  // A pennant under the eaves, in the other colour.
   mesh->material = stripe % 4 == 0 ? kGold : stripe % 2 ? kTentCream : kBoardBlue;
   std::uint32_t first = add_vertex(mesh, around(to, kTentRadius - .2f, kWallHeight), {0, 0, 0});
   add_vertex(mesh, around(from, kTentRadius - .2f, kWallHeight), {0, 0, 0});

@@ -1,4 +1,4 @@
-// The statue at full resolution, on a round pedestal in front of a niche between two fluted columns: as many triangles
+// The statue at full resolution, on a round pedestal in front of a niche between two fluted columns; as many triangles
 // as the Buddha of [Aranha07] sec. 4. Units: one head of the figure.
 #include "scene/builtin/builtin_scenes.h"
 #include "scene/builtin/figure.h"
@@ -17,11 +17,11 @@ constexpr Vec2 kColumnBase[] = {{1.2f, 0}, {1.2f, .3f}, {1.1f, .42f}, {1.0f, .46
 constexpr std::uint32_t kPedestalPoints = sizeof kPedestal / sizeof *kPedestal, kPedestalColumns = 72;
 constexpr std::uint32_t kBasePoints = sizeof kColumnBase / sizeof *kColumnBase, kBaseColumns = 48;
 
-// A shaft whose flutes take four strips each, without ends.
+// A shaft without ends, four strips per flute.
 constexpr std::uint32_t kFlutes = 20, kShaftColumns = 4 * kFlutes, kShaftRows = 6;
 constexpr MeshSize kShaftSize = {kShaftColumns * kShaftRows, 2 * kShaftColumns*(kShaftRows - 1)};
 
-// A niche, half a cylinder under a quarter of a sphere, and the wall that it is cut into: two sides and what is above.
+// A niche (half a cylinder under a quarter sphere) and the wall around it: two sides and the part above.
 constexpr std::uint32_t kNicheColumns = 48, kDomeRows = 12;
 constexpr MeshSize kNicheSize = {(kNicheColumns + 1) * (kDomeRows + 1) + 1, kNicheColumns*(2 * kDomeRows + 1)};
 constexpr MeshSize kWallSize = 2 * MeshSize{2 * (kDomeRows + 2), 2 * (kDomeRows + 1)} + quad_size();

@@ -1,4 +1,4 @@
-// What sockets do where the system has no descriptors left.
+// Sockets when the system has no descriptors left.
 #include "platform/net/descriptors.h"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ int highest_open() {
   return highest;
 }
 
-// The limit on open files, for as long as it lives.
+// Lowers the limit on open files during its lifetime.
 struct Limit {
   rlimit before;
   explicit Limit(int count) {
@@ -34,7 +34,7 @@ struct Limit {
   ~Limit() { setrlimit(RLIMIT_NOFILE, &before); }
 };
 
-// No descriptor can be had for as long as it lives.
+// Uses up all descriptors during its lifetime.
 struct AllTaken {
   Limit limit;
   std::vector<int> files;
@@ -58,8 +58,8 @@ std::uint64_t counting_ns() { return ++clock_reads, steady_ns(); }
 
 }  // namespace
 
-// Goal: poll() waits and sees what comes although it is handed more entries than files may be open. Method: fifty
-// places of which one is a listener, under a limit of a few; nothing comes, then somebody does.
+// Goal: poll() waits and works with more entries than files may be open. Method: fifty entries, one of them a listener,
+// under a limit of a few; nothing arrives, then a peer does.
 TEST_CASE("tcp_poll_takes_more_places_than_files_may_be_open") {
   LinkRig rig(kTcpLink, 64, NullLinkSettings(), fast_radio(), counting_ns);
   int file = socket(AF_INET, SOCK_STREAM, 0);
@@ -77,7 +77,8 @@ TEST_CASE("tcp_poll_takes_more_places_than_files_may_be_open") {
   close(file);
 }
 
-// Goal: where the system cannot tell what is ready, nothing spins. Method: more open files than the limit now allows.
+// Goal: poll() does not spin when the system cannot tell what is ready. Method: more open files than the limit now
+// allows.
 TEST_CASE("tcp_poll_rests_where_the_system_fails") {
   LinkRig rig(kTcpLink, 32, NullLinkSettings(), fast_radio(), counting_ns);
   std::vector<LinkWait> waits;
@@ -94,8 +95,8 @@ TEST_CASE("tcp_poll_rests_where_the_system_fails") {
   CHECK(clock_reads < 5);
 }
 
-// Goal: a peer that no descriptor is left for is turned away, so that it does not wait in vain, and the listener goes
-// on. Method: a limit that allows no other file; then one that does.
+// Goal: a peer without a descriptor is turned away, so that it does not wait in vain, and the listener continues.
+// Method: a limit that allows no other file; then one that does.
 TEST_CASE("tcp_turns_a_peer_away_where_files_are_short") {
   LinkRig rig(kTcpLink);
   int file = socket(AF_INET, SOCK_STREAM, 0), other = socket(AF_INET, SOCK_STREAM, 0), stream = -1;
@@ -116,7 +117,7 @@ TEST_CASE("tcp_turns_a_peer_away_where_files_are_short") {
   close(other);
 }
 
-// Goal: what is left is counted, and the limit raised where it may be. Method: a limit of seven more.
+// Goal: free descriptors are counted, and the limit is raised if allowed. Method: a limit of seven more.
 TEST_CASE("descriptors_left_counts_what_may_be_opened") {
   Limit limit(highest_open() + 8);
   CHECK(descriptors_left(3) == 3);

@@ -22,7 +22,7 @@ inline std::uint64_t steady_ns() {
   return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 }
 
-// Shaped links over the other two, as fast as the tests that ask the same of all links have time for.
+// Shaped links over the other two, fast enough for the tests that run on all links.
 inline const LinkBackend kShapedTcp = shaped_link_backend(kTcpLink);
 inline const LinkBackend kShapedNull = shaped_link_backend(kNullLink);
 inline ShapedLinkSettings fast_radio() {
@@ -91,7 +91,7 @@ struct LinkRig {
     if (net->accept(link, listener, server, &error) != LinkResult::done) return false;
     return wait(*device, false, true) && net->connected(link, *device, &error) == LinkResult::done;
   }
-  // Writes all there is, waiting for room; false when the connection fails or stalls.
+  // Writes everything, waiting for room; false if the connection fails or stalls.
   bool write_all(int stream, const std::string& bytes) {
     for (std::size_t sent = 0; sent < bytes.size();) {
       std::size_t count = 0;
@@ -101,7 +101,7 @@ struct LinkRig {
     }
     return true;
   }
-  // Reads until `byte_count` bytes are there, the end, a failure, or silence for `timeout_ns`; tells which by `result`.
+  // Reads until `byte_count` bytes, the end, a failure, or silence for `timeout_ns`; `result` tells which.
   std::string read_all(int stream, std::size_t byte_count, LinkResult* result, std::uint64_t timeout_ns = 2000 * kMs) {
     std::string bytes;
     char part[4096];
@@ -117,7 +117,7 @@ struct LinkRig {
   }
 };
 
-// Bytes that no other offset has in the same order.
+// Bytes in which every offset is recognisable.
 inline std::string counted_bytes(std::size_t byte_count) {
   std::string bytes(byte_count, 0);
   for (std::size_t i = 0; i < byte_count; ++i) bytes[i] = static_cast<char>((i * 2654435761u) >> 13);

@@ -1,4 +1,4 @@
-// What every link owes, asked of sockets on this machine, of the simulated one, and of a radio over either alike.
+// What every link must do, tested on sockets of this machine, on the simulated link, and on a radio over either.
 #include <doctest/doctest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +15,8 @@ namespace {
 const LinkBackend* const kLinks[] = {&kTcpLink, &kNullLink, &kShapedTcp, &kShapedNull};
 }
 
-// Goal: addresses are read as written, none means this machine, and what is none is said. Method: each form.
+// Goal: addresses are parsed as written, a missing host means this machine, and invalid ones are reported. Method: each
+// form.
 TEST_CASE("link_reads_addresses") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -41,12 +42,11 @@ TEST_CASE("link_reads_addresses") {
       CHECK(std::strchr(error.text, '\n') == nullptr);
     }
     CHECK_FALSE(net->resolve((std::string(300, 'h') + ":80").c_str(), &address, &error));
-    CHECK(std::strstr(error.text, "longer than") != nullptr);
+    CHECK(std::strstr(error.text, "too long") != nullptr);
   }
 }
 
-// Goal: where nobody listens the failure comes at once, in one line with the address. Method: a port that was given
-// back.
+// Goal: if nobody listens, the failure comes at once, in one line with the address. Method: a port that was released.
 TEST_CASE("link_refused_is_told_at_once") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -65,7 +65,7 @@ TEST_CASE("link_refused_is_told_at_once") {
   }
 }
 
-// Goal: a port that is taken is not taken twice, and the refusal says so. Method: listen where the rig does.
+// Goal: a port in use cannot be used again, and the error says so. Method: listen on the rig's port.
 TEST_CASE("link_listens_once_on_a_port") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -77,8 +77,8 @@ TEST_CASE("link_listens_once_on_a_port") {
   }
 }
 
-// Goal: many bytes arrive whole and in order while both ends talk. Method: 8 MB one way and back in pieces of odd
-// sizes, from one loop, as neither end can be ahead by more than its buffers.
+// Goal: many bytes arrive complete and in order while both ends send. Method: 8 MB each way in pieces of odd sizes, in
+// one loop, since neither end can be ahead by more than its buffers.
 TEST_CASE("link_carries_large_transfers_both_ways") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -118,7 +118,7 @@ TEST_CASE("link_carries_large_transfers_both_ways") {
   }
 }
 
-// Goal: a stream has no messages: bytes come one by one as well. Method: write one, read one.
+// Goal: a stream has no messages: single bytes arrive, too. Method: write one, read one.
 TEST_CASE("link_carries_one_byte_at_a_time") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -133,7 +133,7 @@ TEST_CASE("link_carries_one_byte_at_a_time") {
   }
 }
 
-// Goal: a peer that says nothing costs the timeout and no more. Method: the link's own clock around poll().
+// Goal: a silent peer costs no more than the timeout. Method: the link's own clock around poll().
 TEST_CASE("link_silence_costs_the_timeout") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -152,8 +152,8 @@ TEST_CASE("link_silence_costs_the_timeout") {
   }
 }
 
-// Goal: wherever a peer goes away, what it sent is read, then comes the end, and writing to it fails in one line
-// without a signal. Method: close after each number of bytes; SIGPIPE would end this program.
+// Goal: whenever a peer goes away, its data is read, then comes the end, and writing to it fails with one line and no
+// signal. Method: close after each number of bytes; SIGPIPE would end this program.
 TEST_CASE("link_ends_after_what_was_sent_at_every_byte") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -174,13 +174,13 @@ TEST_CASE("link_ends_after_what_was_sent_at_every_byte") {
         rig.wait(device, true, false, kMs);
       }
       CHECK(failed);
-      CHECK(std::strstr(rig.error.text, "broke the connection off") != nullptr);
+      CHECK(std::strstr(rig.error.text, "closed the connection") != nullptr);
       net->close(rig.link, device);
     }
   }
 }
 
-// Goal: a connection that is reset fails on both calls and says so. Method: close with bytes unread.
+// Goal: a connection that is reset fails in both calls and says so. Method: close with bytes unread.
 TEST_CASE("link_reset_is_told") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -193,16 +193,16 @@ TEST_CASE("link_reset_is_told") {
     LinkResult result;
     CHECK(rig.read_all(device, 1, &result) == "");
     CHECK(result == LinkResult::failed);
-    CHECK(std::strstr(rig.error.text, "broke the connection off") != nullptr);
+    CHECK(std::strstr(rig.error.text, "closed the connection") != nullptr);
     std::size_t count;
     CHECK(net->write(rig.link, device, "x", 1, &count, &rig.error) == LinkResult::failed);
-    CHECK(rig.wait(device, true, true, 0));  // a failure is news at any time
+    CHECK(rig.wait(device, true, true, 0));  // a failure always counts as ready
     net->close(rig.link, device);
   }
 }
 
-// Goal: a peer that never reads stops the writer at a bound, not the other direction, and the writer goes on when it
-// reads. Method: write until there is no room.
+// Goal: a peer that never reads stops the writer at some bound but not the other direction, and the writer continues
+// when the peer reads. Method: write until there is no room.
 TEST_CASE("link_peer_that_never_reads_stops_the_writer") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -227,7 +227,7 @@ TEST_CASE("link_peer_that_never_reads_stops_the_writer") {
   }
 }
 
-// Goal: connections come and go without end in the same few places, and a stale stream touches none of its successors.
+// Goal: connections come and go endlessly in the same few slots, and a stale stream affects none of its successors.
 // Method: 1000 reconnects in a link of three streams; the old number is tried each time.
 TEST_CASE("link_reconnects_a_thousand_times") {
   for (const LinkBackend* net : kLinks) {
@@ -252,7 +252,8 @@ TEST_CASE("link_reconnects_a_thousand_times") {
   }
 }
 
-// Goal: more peers than there is room for are turned away and cost the others nothing. Method: a link of three streams.
+// Goal: more peers than there is room for are turned away without affecting the others. Method: a link of three
+// streams.
 TEST_CASE("link_turns_away_what_it_has_no_room_for") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -273,7 +274,7 @@ TEST_CASE("link_turns_away_what_it_has_no_room_for") {
   }
 }
 
-// Goal: poll() tells the streams that can do something from those that cannot. Method: three pairs, one has bytes.
+// Goal: poll() distinguishes ready streams from others. Method: three pairs, one of which has bytes.
 TEST_CASE("link_poll_names_the_streams_that_are_ready") {
   for (const LinkBackend* net : kLinks) {
     CAPTURE(net->name);
@@ -302,8 +303,8 @@ TEST_CASE("link_poll_names_the_streams_that_are_ready") {
   }
 }
 
-// Goal: between open() and close_all() nothing allocates: connecting, accepting, carrying, failing. Method: the sealed
-// heap, which is seen to abort first.
+// Goal: nothing allocates between open() and close_all(): connecting, accepting, carrying, failing. Method: the sealed
+// heap, which is first shown to abort.
 TEST_CASE("link_allocates_nothing_in_steady_state") {
 #ifdef POCKETRAY_SEALED_HEAP
   pid_t child = fork();

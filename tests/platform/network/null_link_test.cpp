@@ -1,4 +1,4 @@
-// The simulated link alone: its line takes the time it should, its faults strike where they should, and a seed replays.
+// The simulated link alone: its line takes the right time, its faults strike in the right place, and a seed replays.
 #include "platform/null/net/null_link.h"
 
 #include <doctest/doctest.h>
@@ -25,8 +25,8 @@ std::uint64_t elapsed_ns(const LinkRig& rig) { return null_link_record(rig.link)
 
 }  // namespace
 
-// Goal: bytes take latency and their share of the bandwidth, and connecting takes a way there and back. Method: closed
-// form, to within the clock's own steps.
+// Goal: bytes take latency and their share of the bandwidth, and connecting takes a round trip. Method: closed form, to
+// within the clock's own steps.
 TEST_CASE("null_link_takes_the_time_of_its_line") {
   NullLinkSettings settings;
   settings.bytes_per_second = 1'000'000;
@@ -40,7 +40,7 @@ TEST_CASE("null_link_takes_the_time_of_its_line") {
   LinkResult result;
   std::uint64_t begin_ns = elapsed_ns(rig);
   REQUIRE(rig.write_all(server[0], counted_bytes(20000)));
-  REQUIRE(rig.write_all(server[1], counted_bytes(10000)));  // shares the device's radio, and so comes after
+  REQUIRE(rig.write_all(server[1], counted_bytes(10000)));  // shares the device's radio, so it arrives later
   REQUIRE(rig.write_all(device[0], counted_bytes(1000)));   // the other direction does not
   CHECK(rig.read_all(server[0], 1000, &result).size() == 1000);
   CHECK(elapsed_ns(rig) - begin_ns == 6 * kMs);
@@ -50,7 +50,7 @@ TEST_CASE("null_link_takes_the_time_of_its_line") {
   CHECK(elapsed_ns(rig) - begin_ns == 35 * kMs);
 }
 
-// Goal: jitter delays by at most what is said, and nothing overtakes. Method: single bytes, each timed.
+// Goal: jitter stays within its bound, and nothing overtakes. Method: single bytes, each timed.
 TEST_CASE("null_link_jitter_keeps_the_order") {
   NullLinkSettings settings;
   settings.latency_ns = 2 * kMs;
@@ -73,7 +73,7 @@ TEST_CASE("null_link_jitter_keeps_the_order") {
   CHECK(least_ns >= 2 * kMs);
   CHECK(most_ns <= 5 * kMs);
   CHECK(most_ns - least_ns > kMs);
-  // Nor does the end: whenever poll() calls, there is something to read.
+  // Neither does the end: whenever poll() reports it, there is something to read.
   for (char c : bytes) REQUIRE(rig.write_all(server, std::string(1, c)));
   rig.net->close(rig.link, server);
   LinkResult result = LinkResult::done;
@@ -88,8 +88,7 @@ TEST_CASE("null_link_jitter_keeps_the_order") {
   CHECK(got == bytes);
 }
 
-// Goal: every fault does what its line in the header says, at its byte. Method: 100 bytes are sent, the fault strikes
-// each of several in turn.
+// Goal: every fault acts as documented, at its byte. Method: send 100 bytes with a fault at each of several in turn.
 TEST_CASE("null_link_faults_strike_where_they_should") {
   const std::string bytes = counted_bytes(100);
   for (int kind = 0; kind < kLinkFaultCount; ++kind)
@@ -153,7 +152,7 @@ TEST_CASE("null_link_faults_strike_where_they_should") {
     }
 }
 
-// Goal: a fault strikes the connection and the direction it is meant for, no other. Method: the second of three.
+// Goal: a fault strikes only its own connection and direction. Method: the second of three.
 TEST_CASE("null_link_fault_strikes_one_connection") {
   NullFault fault;
   fault.fault = LinkFault::truncate;
@@ -176,7 +175,7 @@ TEST_CASE("null_link_fault_strikes_one_connection") {
 
 namespace {
 
-// A session of both ends, who write and read what they please under four faults; everything that happened, as a number.
+// A session in which both ends write and read at random under four faults; returns a hash of all events.
 std::uint64_t session(std::uint64_t seed, NullLinkRecord* record) {
   NullFault faults[4];
   draw_link_faults(seed, 2, 4000, faults, 4);
@@ -214,21 +213,21 @@ std::uint64_t session(std::uint64_t seed, NullLinkRecord* record) {
       course = course * 31 + rig.net->now_ns(rig.link);
     }
     for (int end : ends) rig.net->close(rig.link, end);
-    // A peer that was never accepted takes a place until the listener takes it.
+    // A peer never accepted occupies a slot until the listener accepts it.
     int late = -1;
     if (ends[1] < 0 && rig.wait(rig.listener, true, false, 10 * kMs) &&
         rig.net->accept(rig.link, rig.listener, &late, &rig.error) == LinkResult::done)
       rig.net->close(rig.link, late);
   }
   *record = null_link_record(rig.link);
-  CHECK(record->connection_count == 3);  // whatever struck, the next connection had its place
+  CHECK(record->connection_count == 3);  // whatever happened, the next connection had its slot
   return course;
 }
 
 }  // namespace
 
-// Goal: the same seed gives the same course, another one another, and every session comes to an end. Method: sessions
-// by seed, each twice; the simulated time bounds the real one.
+// Goal: the same seed gives the same course of events, other seeds others, and every session ends. Method: sessions by
+// seed, each twice; simulated time bounds real time.
 TEST_CASE("null_link_sessions_replay_by_seed") {
   std::uint64_t last = 0;
   int struck = 0;
@@ -247,8 +246,8 @@ TEST_CASE("null_link_sessions_replay_by_seed") {
   CHECK(struck > pocketray::effort(2000));
 }
 
-// Goal: whoever is at the server beside the device neither takes the device's radio nor its faults, and has an address
-// of its own. Method: a slow line; what the other one is sent takes no time of it.
+// Goal: other clients of the server share neither the device's radio nor its faults, and have their own addresses.
+// Method: a slow line; data sent to the other client takes none of its time.
 TEST_CASE("null_link_connects_from_elsewhere") {
   NullFault fault;
   fault.fault = LinkFault::reset, fault.at_byte = 10;
@@ -274,7 +273,7 @@ TEST_CASE("null_link_connects_from_elsewhere") {
   CHECK(null_link_record(rig.link).connection_count == 0);
 }
 
-// Goal: who waits for a stream that is closed is told at once, whatever it waits for.
+// Goal: waiting for a closed stream returns at once, whatever it waits for.
 TEST_CASE("null_link_poll_tells_of_stale_streams") {
   LinkRig rig(kNullLink, 6);
   int device = -1, server = -1;

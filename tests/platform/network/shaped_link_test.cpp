@@ -1,4 +1,4 @@
-// The radio of an emulated device: its line takes the time it should, over the simulated link by the clock alone.
+// The radio of an emulated device: its line takes the right time, over the simulated link and by its clock alone.
 #include "platform/net/shaped_link.h"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ ShapedLinkSettings radio(std::uint64_t bytes_per_second, std::uint64_t latency_n
   return settings;
 }
 
-// Below, a line without limits and a clock that only waiting moves.
+// The inner link: a line without limits, and a clock that only runs while waiting.
 NullLinkSettings ideal() {
   NullLinkSettings settings;
   settings.clock_step_ns = 0;
@@ -27,7 +27,7 @@ NullLinkSettings ideal() {
 
 std::uint64_t elapsed_ns(const LinkRig& rig) { return null_link_record(rig.inner).elapsed_ns; }
 
-// Carries `byte_count` bytes from one end to the other from one loop; what came, and when the last did.
+// Carries `byte_count` bytes from one end to the other in one loop; returns what arrived, and when the last byte did.
 std::string carry(LinkRig* rig, int from, int to, std::size_t byte_count, std::uint64_t* passed_ns) {
   const std::string bytes = counted_bytes(byte_count);
   std::string got;
@@ -56,7 +56,7 @@ std::string carry(LinkRig* rig, int from, int to, std::size_t byte_count, std::u
 }  // namespace
 
 // Goal: bytes take latency and their share of the bandwidth, to and from the device, in one piece or many, and
-// connecting takes a way there and back. Method: closed form, to the nanosecond but for the rounding of each piece.
+// connecting takes a round trip. Method: closed form, to the nanosecond apart from the rounding of each piece.
 TEST_CASE("shaped_link_takes_the_time_of_its_line") {
   LinkRig rig(kShapedNull, 6, ideal(), radio(1'000'000, 5 * kMs));
   int device = -1, server = -1;
@@ -72,7 +72,7 @@ TEST_CASE("shaped_link_takes_the_time_of_its_line") {
     }
 }
 
-// Goal: all connections of the device share its radio, its two directions do not. Method: as before, with two of them.
+// Goal: all connections of the device share its radio, its two directions do not. Method: as above, with two of them.
 TEST_CASE("shaped_link_connections_share_one_radio") {
   LinkRig rig(kShapedNull, 6, ideal(), radio(1'000'000, 5 * kMs));
   int device[2] = {-1, -1}, server[2] = {-1, -1};
@@ -89,8 +89,8 @@ TEST_CASE("shaped_link_connections_share_one_radio") {
   CHECK(elapsed_ns(rig) - begin_ns == 35 * kMs);
 }
 
-// Goal: jitter delays by at most what is said, the order stays, and a seed gives the same course. Method: single bytes,
-// each timed; twice with the same seed, once with another.
+// Goal: jitter stays within its bound, the order is kept, and a seed replays. Method: single bytes, each timed; twice
+// with the same seed, once with another.
 TEST_CASE("shaped_link_jitter_keeps_the_order_and_replays") {
   std::vector<std::uint64_t> courses[3];
   for (int run = 0; run < 3; ++run) {
@@ -121,8 +121,8 @@ TEST_CASE("shaped_link_jitter_keeps_the_order_and_replays") {
   CHECK(courses[0] != courses[2]);
 }
 
-// Goal: what is underway stays within the pipe, at either end, and the rest waits where it comes from. Method: neither
-// end reads; the inner link holds 64 KiB of its own.
+// Goal: data in transit stays within the pipe, at either end, and the rest waits at its source. Method: neither end
+// reads; the inner link holds 64 KiB of its own.
 TEST_CASE("shaped_link_holds_no_more_than_its_pipe") {
   CHECK(shaped_pipe_bytes({1'000'000, 5 * kMs, 0}) == 65536);
   CHECK(shaped_pipe_bytes({4'000'000, 20 * kMs, 5 * kMs}) == 200'000);
@@ -151,8 +151,8 @@ TEST_CASE("shaped_link_holds_no_more_than_its_pipe") {
   }
 }
 
-// Goal: what was written before close() still crosses, in its time, and then the peer sees the end; so do several
-// streams that close in a link that has no place left. Method: write, close, read at the other end.
+// Goal: data written before close() still crosses, in its time, and then the peer sees the end; so it is with several
+// streams that close in a full link. Method: write, close, read at the other end.
 TEST_CASE("shaped_link_close_lets_travel_what_was_written") {
   for (int stream_count : {3, 6}) {
     LinkRig rig(kShapedNull, stream_count, ideal(), radio(1'000'000, 5 * kMs));
@@ -173,8 +173,8 @@ TEST_CASE("shaped_link_close_lets_travel_what_was_written") {
   }
 }
 
-// Goal: a stream that is closing gives its place to a new one, and loses nothing. Method: a link of three places, over
-// sockets, whose line would take ten seconds.
+// Goal: a closing stream gives its slot to a new one and loses nothing. Method: a link of three slots, over sockets,
+// whose line would take ten seconds.
 TEST_CASE("shaped_link_closing_gives_way_to_a_new_connection") {
   LinkRig rig(kShapedTcp, 3, NullLinkSettings(), radio(1000, kMs));
   int device = -1, server = -1;
@@ -188,8 +188,8 @@ TEST_CASE("shaped_link_closing_gives_way_to_a_new_connection") {
   CHECK(result == LinkResult::ended);
 }
 
-// Goal: a radio too slow for the time that connecting is given says so then; a refusal takes a way there and back.
-// Method: a latency of 50 ms.
+// Goal: a radio too slow for the timeout of a connection reports that; a refusal takes a round trip. Method: a latency
+// of 50 ms.
 TEST_CASE("shaped_link_connecting_takes_a_round_trip_at_least") {
   LinkRig rig(kShapedNull, 4, ideal(), radio(1'000'000, 50 * kMs));
   int device = rig.net->connect(rig.link, rig.address, 70 * kMs, &rig.error);
@@ -206,7 +206,7 @@ TEST_CASE("shaped_link_connecting_takes_a_round_trip_at_least") {
   CHECK(std::strstr(rig.error.text, "nothing listens") != nullptr);
 }
 
-// Goal: a clock that is set back costs no more than what was underway takes anew. Method: the fault of the link below.
+// Goal: a clock set back costs no more than sending the data in transit again. Method: the fault of the inner link.
 TEST_CASE("shaped_link_survives_a_clock_set_back") {
   NullFault fault;
   fault.fault = LinkFault::clock_back;
@@ -223,8 +223,8 @@ TEST_CASE("shaped_link_survives_a_clock_set_back") {
   CHECK(elapsed_ns(rig) - begin_ns <= 45 * kMs);
 }
 
-// Goal: a radio takes just the memory it says, and says why it does not open. Method: one byte less, no memory, too
-// many streams, and open() without a link below.
+// Goal: a radio takes exactly the memory it asks for, and says why it does not open. Method: one byte less, no memory,
+// too many streams, and open() without an inner link.
 TEST_CASE("shaped_link_refuses_what_it_has_no_memory_for") {
   LinkRig rig(kNullLink, 4);
   ShapedLinkSettings settings = fast_radio();
@@ -236,7 +236,7 @@ TEST_CASE("shaped_link_refuses_what_it_has_no_memory_for") {
   CHECK(shaped_link_open(rig.link, options, settings, &rig.error) != nullptr);
   --options.memory_bytes;
   CHECK(shaped_link_open(rig.link, options, settings, &rig.error) == nullptr);
-  CHECK(std::strstr(rig.error.text, "by radio take") != nullptr);
+  CHECK(std::strstr(rig.error.text, "by radio need") != nullptr);
   options.stream_count_max = kLinkStreamsMax + 1;
   CHECK(shaped_link_open(rig.link, options, settings, &rig.error) == nullptr);
   options = LinkOptions();
@@ -246,8 +246,8 @@ TEST_CASE("shaped_link_refuses_what_it_has_no_memory_for") {
   CHECK(std::strstr(rig.error.text, "shaped_link_open") != nullptr);
 }
 
-// Goal: what is underway arrives even where the clock stands still, as time that was waited for has passed. Method:
-// sockets with such a clock.
+// Goal: data in transit arrives even if the clock stands still, because waited time counts. Method: sockets with such a
+// clock.
 TEST_CASE("shaped_link_delivers_by_a_clock_that_stands_still") {
   LinkRig rig(kShapedTcp, 4, NullLinkSettings(), radio(1'000'000, 5 * kMs), [] { return std::uint64_t{1}; });
   int device = -1, server = -1;
@@ -257,8 +257,8 @@ TEST_CASE("shaped_link_delivers_by_a_clock_that_stands_still") {
   CHECK(rig.read_all(device, 5000, &result) == counted_bytes(5000));
 }
 
-// Goal: over sockets the line takes its time, too. Method: the wall clock, whose bound above is generous as this
-// machine has more to do.
+// Goal: the line takes its time over sockets, too. Method: the wall clock, with a generous upper bound since this
+// machine is shared.
 TEST_CASE("shaped_link_takes_its_time_over_sockets") {
   LinkRig rig(kShapedTcp, 4, NullLinkSettings(), radio(4'000'000, 5 * kMs, 2 * kMs));
   int device = -1, server = -1;
@@ -274,8 +274,8 @@ TEST_CASE("shaped_link_takes_its_time_over_sockets") {
   }
 }
 
-// Goal: every device that can be emulated has a link that carries. Method: the profiles, by the simulated clock: a
-// large transfer takes what its bandwidth and latency say within two percent.
+// Goal: every device that can be emulated has a working link. Method: the profiles, by the simulated clock: a large
+// transfer takes the time given by bandwidth and latency, within two percent.
 TEST_CASE("shaped_link_carries_for_every_device") {
   for (const Device& device : kDevices) {
     CAPTURE(std::string(device.name));

@@ -1,4 +1,4 @@
-// What only sockets do: peers that are processes or speak TCP by hand, names, signals.
+// Properties of sockets only: peers that are processes or speak TCP by hand, names, signals.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>
@@ -23,7 +23,7 @@ sockaddr_in place_of(const LinkAddress& address) {
   return at;
 }
 
-// A socket of the system's own, connected to the rig's listener.
+// A raw socket connected to the rig's listener.
 int raw_connect(const LinkRig& rig) {
   int file = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in at = place_of(rig.address);
@@ -43,24 +43,25 @@ std::uint64_t backward_ns() { return clock_ns -= 3'000'000; }
 
 }  // namespace
 
-// Goal: what the system says of an address comes as one line that says what to do. Method: a name that no resolver asks
-// for, a group of hosts, another machine's address to listen at.
+// Goal: the system's errors about an address become one line that says what to do. Method: a name that needs no
+// resolver, a multicast address, another machine's address to listen on.
 TEST_CASE("tcp_says_what_is_wrong_with_an_address") {
   LinkRig rig(kTcpLink);
   LinkAddress address;
   CHECK_FALSE(kTcpLink.resolve("no..host:7474", &address, &rig.error));
   CHECK(std::strstr(rig.error.text, "'no..host'") != nullptr);
-  CHECK(std::strstr(rig.error.text, "number") != nullptr);
+  CHECK(std::strstr(rig.error.text, "numeric") != nullptr);
   REQUIRE(kTcpLink.resolve("224.0.0.1:7474", &address, &rig.error));
   CHECK(kTcpLink.connect(rig.link, address, kMs, &rig.error) == -1);
-  CHECK(std::string(rig.error.text) == "224.0.0.1:7474: no way leads there: is the network up, and the address right?");
+  CHECK(std::string(rig.error.text) ==
+        "224.0.0.1:7474: no route leads there: is the network up, and the address right?");
   REQUIRE(kTcpLink.resolve("192.0.2.1:7474", &address, &rig.error));
   CHECK(kTcpLink.listen(rig.link, address, &rig.error) == -1);
-  CHECK(std::strstr(rig.error.text, "no way leads there") != nullptr);
+  CHECK(std::strstr(rig.error.text, "no route leads there") != nullptr);
 }
 
-// Goal: a connection without an outcome fails at its deadline. Method: a listener whose queue is full drops what
-// knocks.
+// Goal: a connection without an outcome fails at its deadline. Method: a listener whose queue is full drops new
+// connections.
 TEST_CASE("tcp_connect_fails_at_its_deadline") {
   LinkRig rig(kTcpLink);
   int file = socket(AF_INET, SOCK_STREAM, 0), waiting[8];
@@ -87,7 +88,7 @@ TEST_CASE("tcp_connect_fails_at_its_deadline") {
   close(file);
 }
 
-// Goal: a clock that stands still or is set back keeps poll() from nothing. Method: one that only goes back.
+// Goal: poll() works with a clock that stands still or is set back. Method: one that only runs backwards.
 TEST_CASE("tcp_poll_ends_though_the_clock_runs_backwards") {
   std::vector<std::max_align_t> memory(kTcpLink.need(2) / sizeof(std::max_align_t) + 1);
   LinkOptions options;
@@ -110,7 +111,7 @@ TEST_CASE("tcp_poll_ends_though_the_clock_runs_backwards") {
   kTcpLink.close_all(link);
 }
 
-// Goal: of an address with several places the first that answers counts. Method: "localhost", and a listener on IPv6.
+// Goal: of an address with several places the first that answers is used. Method: "localhost", and a listener on IPv6.
 TEST_CASE("tcp_tries_every_place_of_an_address") {
   LinkRig rig(kTcpLink);
   LinkAddress address;
@@ -138,7 +139,7 @@ TEST_CASE("tcp_tries_every_place_of_an_address") {
   CHECK(std::strstr(rig.error.text, "nothing listens there") != nullptr);
 }
 
-// Goal: a peer that has finished speaking still listens. Method: one half of a socket is shut.
+// Goal: a peer that has finished sending still receives. Method: one half of a socket is shut down.
 TEST_CASE("tcp_half_closed_peer_still_gets_bytes") {
   LinkRig rig(kTcpLink);
   int file = raw_connect(rig), stream = accepted(&rig);
@@ -154,7 +155,7 @@ TEST_CASE("tcp_half_closed_peer_still_gets_bytes") {
   close(file);
 }
 
-// Goal: a reset in the middle loses the rest and says so. Method: a socket that lingers for no time.
+// Goal: a reset in the middle loses the rest and is reported. Method: a socket with zero linger time.
 TEST_CASE("tcp_reset_by_hand_is_told") {
   LinkRig rig(kTcpLink);
   int file = raw_connect(rig), stream = accepted(&rig);
@@ -164,11 +165,11 @@ TEST_CASE("tcp_reset_by_hand_is_told") {
   LinkResult result;
   CHECK(rig.read_all(stream, 10, &result) == "");
   CHECK(result == LinkResult::failed);
-  CHECK(std::strstr(rig.error.text, "the peer broke the connection off") != nullptr);
+  CHECK(std::strstr(rig.error.text, "the peer closed the connection") != nullptr);
 }
 
-// Goal: a process that is killed in the middle of what it says is a peer that is gone, and the next one is served.
-// Method: SIGKILL after each of several numbers of bytes; the child writes one more only when told to.
+// Goal: a process killed in the middle of sending is a lost peer, and the next one is served. Method: SIGKILL after
+// each of several numbers of bytes; the child writes one more only on command.
 TEST_CASE("tcp_peer_killed_at_each_step") {
   LinkRig rig(kTcpLink);
   sockaddr_in at = place_of(rig.address);
@@ -220,8 +221,7 @@ TEST_CASE("tcp_signals_change_nothing") {
   CHECK(same);
 }
 
-// Goal: a peer for whom there is no room is sent away, and the listener goes on. Method: a link of two streams, one
-// taken.
+// Goal: a peer without room is turned away, and the listener continues. Method: a link of two streams, one in use.
 TEST_CASE("tcp_sends_away_whom_it_has_no_room_for") {
   LinkRig rig(kTcpLink, 2);
   int first = raw_connect(rig), stream = accepted(&rig), second = raw_connect(rig), none = -1;
@@ -240,12 +240,12 @@ TEST_CASE("tcp_sends_away_whom_it_has_no_room_for") {
   for (int file : {first, second, third}) close(file);
 }
 
-// Goal: knocking again and again where nobody listens never ends in a connection to oneself. Method: more tries than
-// there are ports to be given, at one of them.
+// Goal: connecting again and again to a port where nobody listens never ends in a connection to oneself. Method: more
+// attempts than ports to be assigned, at one of them.
 TEST_CASE("tcp_never_connects_to_itself") {
   LinkRig rig(kTcpLink);
   LinkAddress address;
-  int free = -1;  // an even port: Linux gives those to who connects
+  int free = -1;  // an even port: Linux assigns those to connecting sockets
   for (int port = 40000 + getpid() % 1000 * 2; free < 0; port += 2) {
     REQUIRE(kTcpLink.resolve(std::to_string(port).c_str(), &address, &rig.error));
     free = kTcpLink.listen(rig.link, address, &rig.error);
