@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Sweeps of what accuracy costs. Usage: cli_accuracy_test.sh PROGRAM [EMULATOR...]
+# The accuracy sweep. Usage: cli_accuracy_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
-# Goal: a sweep leaves its table and its page, goes on where it was interrupted, and refuses another's folder.
+# Goal: a sweep writes its table and page, resumes after an interrupt, and refuses another sweep's folder.
 if "${run[@]}" --help | grep -q '^ *accuracy '; then
   tiny=(--size 16x12 --threads 2 --reference-samples 2)
   expect accuracy_without_folder 2 'output-folder' accuracy cube
@@ -15,14 +15,14 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   kill -INT $sweeping
   wait $sweeping
   check accuracy_is_interrupted test $? -eq 3
-  check accuracy_says_that_it_is_kept grep -q 'kept in sweep.*same command' interrupted.err
-  expect accuracy 0 'index.html shows it' accuracy cube "${tiny[@]}" -o sweep --rounds 1 --json sweep.json
+  check accuracy_says_that_it_is_kept grep -q 'so far are in sweep.*same command' interrupted.err
+  expect accuracy 0 'index.html for the results' accuracy cube "${tiny[@]}" -o sweep --rounds 1 --json sweep.json
   check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
   check accuracy_json grep -q '"reference_flip": 0' sweep.json
   check accuracy_page grep -q '</html>' sweep/index.html
-  # Goal: instructions are counted where something can, and without it nothing else is lost. Method: the baseline's row;
-  # where the CPU does not count them, a valgrind that fails, one that an interrupt finds at work, and a program without
-  # symbols. Skipped where valgrind is not there or cannot run this program (an emulated CPU, a sanitizer).
+  # Goal: instructions are counted if possible, and nothing else is lost otherwise. Method: the baseline's row; if the
+  # CPU does not count, a failing valgrind, an interrupted one, and a program without symbols. Skipped if valgrind is
+  # missing or cannot run this program (emulated CPU, sanitizer).
   counts() { awk -F, '$1 == "baseline" && $18 > 100 { found = 1 } END { exit !found }' "$1/accuracy.csv"; }
   if [ $# -eq 0 ] && valgrind -q "$program" --version >/dev/null 2>&1; then
     check accuracy_counts counts sweep
@@ -30,7 +30,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
     printf '#!/bin/sh\nexit 1\n' >fake/valgrind
     chmod +x fake/valgrind
     real_path=$PATH PATH=$PWD/fake:$PATH
-    expect accuracy_failing_valgrind 0 'index.html shows it' accuracy cube "${tiny[@]}" -o other --rounds 1 --json other.json
+    expect accuracy_failing_valgrind 0 'index.html for the results' accuracy cube "${tiny[@]}" -o other --rounds 1 --json other.json
     if ! counts other; then
       check accuracy_tells_that_valgrind_failed grep -q 'not counted: .* valgrind failed' other.json
       cp sweep/accuracy.state counted.state

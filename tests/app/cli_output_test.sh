@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What commands write, and what they do not overwrite. Usage: cli_output_test.sh PROGRAM [EMULATOR...]
+# Output files of commands, and files they must not overwrite. Usage: cli_output_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
 tiny=(--size 8x6 --threads 1)
@@ -7,8 +7,7 @@ has() { "${run[@]}" --help | grep -q "^ *$1 "; }
 quality="samples=1 depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat"
 mode_of() { stat -c %a "$1"; }
 
-# Goal: a file that is replaced stays what it was: its permissions, the link that names it, a pipe. Method: each of them,
-# by each kind of output.
+# Goal: replacing a file keeps its permissions, links to it, and pipes. Method: each of them with each kind of output.
 "${run[@]}" bake cube -o seen.pray >/dev/null
 commands=("render cube --size 8x6 -o" "render cube --size 8x6 -o probe.ppm --json" "bake cube -o" "plan cube --json"
   "bench cube --size 8x6 --frames 1 --no-prices --json" "bench cube --size 8x6 --frames 1 --front")
@@ -35,7 +34,8 @@ for pair in "pipe.ppm render cube --size 8x6 -o" "pipe.json plan cube --json" "p
 done
 check nothing_is_left test -z "$(find . -name '*.part')"
 
-# Goal: standard output may be named, and takes text and figures in their order. Method: a file behind it, by its names.
+# Goal: standard output may be named, and receives text and figures in order. Method: redirected to a file, by each
+# name.
 for name in - /dev/stdout /dev/fd/1; do
   "${run[@]}" plan cube --json "$name" >both.txt
   check "figures_to_$name" grep -q '"total_bytes"' both.txt
@@ -45,8 +45,8 @@ done
 check baked_to_stdout cmp -s piped.pray seen.pray
 expect nowhere 0 'effects' plan cube --json /dev/null
 
-# Goal: what did not arrive is told, whatever was printed, and nothing else fails of it. Method: a device that is full, a
-# closed output; by all commands that print.
+# Goal: lost output is reported, and nothing else fails. Method: a full device and a closed output, with all commands
+# that print.
 printing=("--help" "--version" "plan cube" "plan cube --json -" "render cube --size 8x6 -o full.ppm" "bake cube -o full.pray"
   "render cube --size 8x6 -o full.ppm --json -" "bench cube --size 8x6 --frames 1 --no-prices"
   "bench cube --size 8x6 --frames 1 --no-prices --json -" "bake cube -o -")
@@ -56,24 +56,24 @@ for line in "${printing[@]}"; do
   read -ra command <<<"$line"
   told=$("${run[@]}" "${command[@]}" 2>&1 >/dev/full)
   check "full_$line" test $? -eq 1
-  check "full_is_told_once_$line" test "$(grep -c 'did not take all' <<<"$told")" = 1
+  check "full_is_told_once_$line" test "$(grep -cE 'could not write all|did not take all' <<<"$told")" = 1
   told=$("${run[@]}" "${command[@]}" 2>&1 >&-)
   check "closed_$line" test $? -eq 1
 done
 cmp -s full.ppm a.ppm || check picture_is_whole false
 check scene_is_whole cmp -s full.pray seen.pray
 
-# Goal: an empty text is no value, in any place. Method: every option of every command that takes a text or a number.
+# Goal: an empty value is refused everywhere. Method: every option that takes a text or a number, of every command.
 for command in $("${run[@]}" --help | sed -n '/^Subcommands/,$s/^  \([a-z][a-z-]*\) .*/\1/p'); do
   for option in $("${run[@]}" "$command" --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -v -- '--help'); do
-    expect "empty_${command}_$option" 2 "$option is followed by an empty text" "$command" cube "$option" ''
+    expect "empty_${command}_$option" 2 "$option has an empty value" "$command" cube "$option" ''
   done
-  expect "empty_${command}_scene" 2 'argument 2 is an empty text' "$command" ''
+  expect "empty_${command}_scene" 2 'argument 2 is empty' "$command" ''
 done
-expect empty_command 2 'argument 1 is an empty text' ''
-expect empty_short 2 '-o is followed by an empty' bake cube -o ''
+expect empty_command 2 'argument 1 is empty' ''
+expect empty_short 2 '-o has an empty value' bake cube -o ''
 
-# Goal: sizes and sequences are plain numbers. Method: signs, which wrap around; what is too large; what follows.
+# Goal: sizes and sequences are plain numbers. Method: signs, which would wrap around; numbers too large; trailing text.
 for size in -1x3 3x-1 +3x3 ' 3x3' 3x3x 3x 0x3 3x0 99999x1 3x3.5 1e1x3; do
   expect "size_$size" 1 '320x240|width|height' render cube --size "$size" -o refused.ppm
 done
@@ -81,8 +81,8 @@ for frames in 0:-1 -1:3 +0:1 1: :1 2 ' 0:1' 0:1:2 0x1; do
   expect "frames_$frames" 1 'first:last' render seesaw "${tiny[@]}" --frames "$frames" -o refused.ppm
 done
 
-# Goal: no command replaces what it reads. Method: the scene and the front as every output, by their names and through
-# links of both kinds; the files stay as they are, and no output is another.
+# Goal: no command overwrites its input. Method: the scene and the front as every output, by name and through both kinds
+# of links; the files stay unchanged, and outputs must differ.
 cp seen.pray kept.pray
 ln seen.pray hard.pray
 ln -s seen.pray soft.pray
@@ -90,22 +90,22 @@ ln seen.pray hard.ppm
 mkdir within && ln -s ../seen.pray within/soft.json
 quick=(--size 8x6 --threads 1)
 for name in seen.pray ./seen.pray "$PWD/seen.pray" hard.pray soft.pray; do
-  expect "bake_over_$name" 1 "would replace seen.pray|must end|cannot be read|no reader" bake seen.pray -o "$name"
-  expect "plan_over_$name" 1 'would replace seen.pray, which is read as SCENE' plan seen.pray --json "$name"
-  expect "bench_over_$name" 1 'would replace' bench seen.pray "${quick[@]}" --frames 1 --json "$name"
-  expect "bench_front_over_$name" 1 'would replace' bench seen.pray "${quick[@]}" --frames 1 --front "$name"
-  expect "render_json_over_$name" 1 'would replace' render seen.pray "${quick[@]}" -o refused.ppm --json "$name"
+  expect "bake_over_$name" 1 "would overwrite the input seen.pray|must end|cannot be read|no reader" bake seen.pray -o "$name"
+  expect "plan_over_$name" 1 'would overwrite the input seen.pray of SCENE' plan seen.pray --json "$name"
+  expect "bench_over_$name" 1 'would overwrite' bench seen.pray "${quick[@]}" --frames 1 --json "$name"
+  expect "bench_front_over_$name" 1 'would overwrite' bench seen.pray "${quick[@]}" --frames 1 --front "$name"
+  expect "render_json_over_$name" 1 'would overwrite' render seen.pray "${quick[@]}" -o refused.ppm --json "$name"
 done
-expect render_over_the_scene 1 '-o hard.ppm would replace seen.pray' render seen.pray "${quick[@]}" -o hard.ppm
+expect render_over_the_scene 1 '-o hard.ppm would overwrite the input seen.pray' render seen.pray "${quick[@]}" -o hard.ppm
 cp real/a.front front.ppm && ln -f front.ppm the.front
-expect render_over_the_front 1 'which is read as --front' \
+expect render_over_the_front 1 'of --front' \
   render cube "${quick[@]}" --budget-ms 1000000 --front the.front -o front.ppm
 ln -s front.ppm flight-0001.ppm
-expect sequence_over_the_front 1 'flight-0001.ppm would replace the.front' \
+expect sequence_over_the_front 1 'flight-0001.ppm would overwrite the input the.front' \
   render seesaw "${quick[@]}" --frames 0:2 --budget-ms 1000000 --front the.front -o flight.ppm
 check sequence_has_not_begun test ! -e flight-0000.ppm
-! has split-report || expect split_report_over 1 'would replace' split-report seen.pray "${quick[@]}" --json within/soft.json
-! has accuracy || expect accuracy_over 1 'would replace' accuracy seen.pray "${quick[@]}" -o swept_other --json within/soft.json
+! has split-report || expect split_report_over 1 'would overwrite' split-report seen.pray "${quick[@]}" --json within/soft.json
+! has accuracy || expect accuracy_over 1 'would overwrite' accuracy seen.pray "${quick[@]}" -o swept_other --json within/soft.json
 expect one_file_of_two 1 '-o and --json name the same file' render cube "${quick[@]}" -o one.ppm --json ./one.ppm
 expect one_output_of_two 1 '-o and --json name the same file' bake cube -o - --json -
 expect bake_ending 1 'must end in .pray' bake cube -o cube.glb
@@ -117,13 +117,13 @@ if "${run[@]}" render --help | grep -q glTF; then
   cp house.obj kept.obj && cp house.mtl kept.mtl
   cp house.obj again.pray && ln again.pray other.obj
   expect bake_over_a_model 1 'must end in .pray' bake house.obj -o house.obj
-  expect bake_over_a_linked_model 1 'would replace other.obj, which is read as IN' bake other.obj -o again.pray
+  expect bake_over_a_linked_model 1 'would overwrite the input other.obj of IN' bake other.obj -o again.pray
   check model_is_as_it_was cmp -s house.obj kept.obj
   check linked_model_is_as_it_was cmp -s other.obj kept.obj
 fi
 
-# Goal: what cannot be written is told before the work, and a folder for results is made. Method: work that takes
-# longer than anybody waits.
+# Goal: an unwritable output is reported before the work, and a folder for results is created. Method: work that would
+# take far too long.
 ages=(--size 2048x2048 --samples 16 --threads 1 --memory 512M)
 slow=(--size 2048x2048 --threads 1 --memory 512M)
 mkdir folder.ppm folder.json
