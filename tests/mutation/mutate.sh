@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
 # mutate.sh [--check | --list] [--only FAULT]... [--jobs N] [--build DIR]
-# Whether the tests notice: applies the faults of faults/*.txt one at a time to a copy of the sources, builds and runs test
-# programs until one fails, and prints a table and the kill rate. Exit status 1 where a fault survives, is not found in
-# the sources or does not compile; 2 for wrong usage.
-#   --check      only sees that every fault's old text is in its file exactly once
-#   --list       prints the faults
-#   --only FAULT those faults alone; may be repeated
-#   --jobs N     copies at work side by side (default: as many as there are cores)
-#   --build DIR  where the copies lie (default: build-mutants); removed at the start and at the end
-# JSON=FILE in the environment takes the table, too (- is stdout). Needs cmake; ninja and ccache are used where they are.
+# Do the tests notice? Applies the faults of faults/*.txt one at a time to a copy of the sources, builds and runs test
+# programs until one fails, and prints a table and the kill rate. Exit status 1 if a fault survives, is not found in the
+# sources or does not compile; 2 for wrong usage.
+#   --check      only check that every fault's old text is in its file exactly once
+#   --list       print the faults
+#   --only FAULT only those faults; may be repeated
+#   --jobs N     number of copies to test in parallel (default: one per core)
+#   --build DIR  folder for the copies (default: build-mutants), removed at start and end
+# JSON=FILE in the environment also receives the table (- is stdout). Needs cmake; uses ninja and ccache if available.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 all_suites="base effect brdf indirect accel hard shade reference present plan golden pipeline split remote split_report
   accuracy session app budget sweep viewer platform api"
-import_suites="import fuzz"  # with the importers built in, which takes longer: where a fault names one of them
-seconds_max=240  # what takes longer hangs
+import_suites="import fuzz"  # need the importers, which take longer to build: only for faults that name one
+seconds_max=240  # anything longer counts as a hang
 jobs=$(nproc 2>/dev/null || echo 2) build=$root/build-mutants mode=run
 only=() name=() file=() suites=() why=() old=() new=()
 
@@ -29,15 +29,15 @@ fail() {
   exit 1
 }
 
-# Faults: one a block, a key and a value a line, blank lines between blocks, lines of # between them.
+# Fault files: one block per fault, separated by blank lines; one key and value per line; # begins a comment line.
 #   name    of the fault
-#   file    it is applied to
-#   suites  the test programs to ask first; the others follow
+#   file    the file it is applied to
+#   suites  the test programs to run first; the others follow
 #   why     what the fault is
-#   old     text that the file has exactly once; white space stands for any white space
-#   new     what comes in its place, or nothing
-# Keep the old texts short, so that they outlive changes around them. A fault that nothing can notice (one that only
-# costs time, say) has no place there.
+#   old     text that occurs exactly once in the file; white space matches any white space
+#   new     its replacement, may be empty
+# Keep old texts short, so that they survive changes around them. Omit faults that no test can notice, such as ones that
+# only cost time.
 read_faults() {
   local line key value n=-1 first=1
   local keys=" name file suites why old new "
@@ -52,15 +52,17 @@ read_faults() {
   done < <(cat "$here"/faults/*.txt)
 }
 
-# A text as a regular expression that takes any white space for white space: clang-format may break its lines anew.
+# Converts a text to a regular expression in which white space matches any white space, since clang-format may break
+# lines differently.
 pattern_of() {
   sed 's/[][\\.*^$(){}?+|]/\\&/g; s/[[:space:]]\{1,\}/[[:space:]]+/g' <<<"$1"
 }
 
-# Sets `matched` to what a fault's old text is in the sources under $1; fails, and says so, unless it is there once.
+# Sets `matched` to the source text under $1 that matches a fault's old text; fails with a message unless it occurs
+# once.
 find_fault() {
   local tree=$1 i=$2 content pattern
-  [ -f "$tree/${file[i]}" ] || { echo "${name[i]}: there is no file ${file[i]}" && return 1; }
+  [ -f "$tree/${file[i]}" ] || { echo "${name[i]}: no such file ${file[i]}" && return 1; }
   content=$(<"$tree/${file[i]}")
   pattern=$(pattern_of "${old[i]}")
   [[ $content =~ $pattern ]] || { echo "${name[i]}: ${file[i]} has no text: ${old[i]}" && return 1; }
@@ -100,17 +102,17 @@ make_copy() {
     -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 -DPOCKETRAY_WERROR=OFF -DPOCKETRAY_IMPORT=$import \
     -DPOCKETRAY_SHARED="$root/../shared" >"$copy/log" 2>&1 || { cat "$copy/log" >&2; return 1; }
 }
-build_suites() {  # COPY JOBS SUITE... ; in a folder of its own name a copy's objects are found in the compiler's cache
+build_suites() {  # COPY JOBS SUITE... ; a fixed folder name lets the compiler cache find a copy's objects
   local copy=$1 count=$2
   shift 2
   CCACHE_BASEDIR=$copy CCACHE_NOHASHDIR=1 \
     cmake --build "$copy/build" "-j$count" --target "${@/#/test_}" >"$copy/log" 2>&1
 }
-run_suite() {  # COPY SUITE : its first failing test is in $copy/log
+run_suite() {  # COPY SUITE : leaves its first failing test in $copy/log
   (cd "$1/build" && timeout $seconds_max "./test_$2" --abort-after=1 --no-colors >"$1/log" 2>&1) 2>/dev/null
 }
 
-# Applies a fault to a copy, asks the test programs, takes it back. Prints verdict, suite and test.
+# Applies a fault to a copy, runs the test programs and reverts it. Prints verdict, suite and test.
 try_fault() {
   local copy=$1 i=$2 suite test verdict=survived content matched path=$1/tree/${file[$2]}
   find_fault "$copy/tree" "$i" >/dev/null || { printf 'error\t\tnot found' && return; }
@@ -131,7 +133,7 @@ try_fault() {
   printf '%s\t%s\t%s' "$verdict" "$suite" "$test"
 }
 
-# Takes the faults that nobody else has taken yet.
+# Processes faults that no other worker has taken.
 work() {
   local copy=$1 i start result finished
   for i in "${chosen[@]}"; do

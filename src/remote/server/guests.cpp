@@ -1,5 +1,5 @@
-// Who is let in: connections become guests, guests that say hello get a place. Where all places are taken, an address
-// that has more of them than the newcomer's gives one up.
+// Admission: connections become guests, and guests that say hello get a place. If all places are taken, an address with
+// more places than the newcomer's gives one up.
 #include <algorithm>
 #include <cstring>
 
@@ -11,9 +11,10 @@ namespace {
 
 using platform::LinkResult;
 
-constexpr std::uint64_t kLingerNs = 2'000'000'000;      // for who leaves to read why
-constexpr std::uint64_t kMakeWayNs = 10'000'000'000;    // of silence, after which a client makes way for another
-constexpr std::uint64_t kAcceptRestNs = 1'000'000'000;  // after a failure: what is missing will still be, at once
+constexpr std::uint64_t kLingerNs = 2'000'000'000;    // for a leaving peer to read the reason
+constexpr std::uint64_t kMakeWayNs = 10'000'000'000;  // of silence after which a client makes way for another
+constexpr std::uint64_t kAcceptRestNs =
+    1'000'000'000;  // pause after a failed accept, since what was short will not be free at once
 constexpr int kAcceptsAtOnce = 16;
 
 void queue(Guest* guest, const Message& message) {
@@ -23,7 +24,7 @@ void queue(Guest* guest, const Message& message) {
   guest->output_end += byte_count;
 }
 
-// Sends what there is room for; false: the connection is lost.
+// Sends as much as there is room for; false if the connection is lost.
 bool flush(Server* server, Guest* guest) {
   while (guest->output_begin < guest->output_end) {
     std::size_t sent = 0;
@@ -51,7 +52,8 @@ int guests_of(const Server& server, std::uint64_t key) {
                                         [&](const Guest& g) { return g.stream >= 0 && g.key == key; }));
 }
 
-// A free slot, or that of the one that has waited longest of those that leave or, else, of the address with most.
+// A free slot, else that of the longest-waiting guest among those leaving or, failing that, of the address with most
+// guests.
 Guest* free_guest(Server* server) {
   Guest* chosen = nullptr;
   int most = 0;
@@ -77,7 +79,7 @@ void receive_guest(Server* server, int stream) {
   if (!flush(server, guest)) close_guest(server, guest);
 }
 
-// Of the addresses that nobody is at the one that was seen longest ago.
+// The least recently seen address without sessions.
 int forgotten_address(const Server& server) {
   const std::vector<Address>& all = server.addresses;
   int oldest = -1;
@@ -88,11 +90,11 @@ int forgotten_address(const Server& server) {
     if (!taken && (oldest < 0 || all[i].last_ns < all[static_cast<std::size_t>(oldest)].last_ns))
       oldest = static_cast<int>(i);
   }
-  CHECK_GE(oldest, 0);  // there are more of them than sessions
+  CHECK_GE(oldest, 0);  // there are more addresses than sessions
   return oldest;
 }
 
-// The account of an address: its own, or else a new one, if need be that of another.
+// Finds or creates the account of an address, reusing another if necessary.
 int find_address(Server* server, std::uint64_t key) {
   std::vector<Address>& all = server->addresses;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -121,8 +123,9 @@ std::uint64_t silent_ns(Server* server, Session* session) {
   return server->options.idle_timeout_ns - std::min(left, server->options.idle_timeout_ns);
 }
 
-// Who has to go for one of `address` to come: of the address with most places the one that has been silent longest, if
-// that address has two more, or if it is idle and has more, or is the newcomer's own. Null: nobody.
+// The session that must leave for one of `address`: the longest silent one, of the address with most places, among
+// those whose address has at least two more places, and idle ones whose address has more places or is `address` itself.
+// Null if none.
 Session* find_leaver(Server* server, int address) {
   int own = places_of(*server, address), most = 0;
   std::uint64_t longest = 0;
@@ -156,12 +159,12 @@ Session* find_place(Server* server, int address) {
   return leaver;
 }
 
-// Gives the guest's connection a place.
+// Gives the guest a place.
 void seat(Server* server, Guest* guest, const Hello& hello) {
   int address = find_address(server, guest->key);
   Session* session = find_place(server, address);
   if (!session) {
-    log_line(&server->log, now_ns(server), "%s was sent away: all %zu places are taken",
+    log_line(&server->log, now_ns(server), "%s was turned away: all %zu places are taken",
              server->net->stream_name(server->link, guest->stream), server->sessions.size());
     return send_away(server, guest, WireError::busy);
   }
@@ -181,21 +184,22 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   session->output.end += unsent;
   guest->stream = -1;
   ++server->totals.client_count;
-  log_line(&server->log, now, "%s came", session->name);
+  log_line(&server->log, now, "%s connected", session->name);
 }
 
 void log_guest(Server* server, const Guest& guest, const char* reason) {
-  log_line(&server->log, now_ns(server), "%s went: %s", server->net->stream_name(server->link, guest.stream), reason);
+  log_line(&server->log, now_ns(server), "%s disconnected: %s", server->net->stream_name(server->link, guest.stream),
+           reason);
 }
 
-// Reads the first message and not a byte of what follows it, which the session is to take.
+// Reads the first message and no byte beyond, since the rest belongs to the session.
 void read_hello(Server* server, Guest* guest) {
   for (;;) {
     Message message;
     Decoded decoded = decode_message(guest->input, guest->input_count, kGuestInputBytes, &message);
     if (decoded.state == DecodeState::message && message.type == MessageType::hello) {
       if (message.hello.version == kWireVersion) return seat(server, guest, message.hello);
-      log_guest(server, *guest, "it speaks another version of the protocol");
+      log_guest(server, *guest, "it speaks another protocol version");
       return send_away(server, guest, WireError::wrong_version);
     }
     bool too_long = decoded.byte_count > kGuestInputBytes;
@@ -238,7 +242,7 @@ void tend_guest(Server* server, Guest* guest) {
     read_hello(server, guest);
   }
   if (guest->stream < 0 || platform::link_timer_left(&guest->timer, now_ns(server)) > 0) return;
-  if (!guest->leaves) log_guest(server, *guest, "it stopped in a message");
+  if (!guest->leaves) log_guest(server, *guest, "it stopped in the middle of a message");
   close_guest(server, guest);
 }
 
@@ -253,7 +257,7 @@ void accept_clients(Server* server) {
       receive_guest(server, stream);
       continue;
     }
-    log_line(&server->log, now_ns(server), "a client could not be let in: %s", error.text);
+    log_line(&server->log, now_ns(server), "could not accept a client: %s", error.text);
     server->accept_rests = true;
     server->accept_timer = platform::link_timer(now_ns(server), kAcceptRestNs);
     return;
