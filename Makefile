@@ -1,15 +1,15 @@
-# A thin front over CMake: sets up what is missing, configures, builds, runs. `make help` lists the targets.
+# A thin front end for CMake: installs what is missing, configures, builds, runs. `make help` lists the targets.
 #   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
-#   PREFIX=   where `make install` goes
-#   TESTS=    only the test programs that match this regular expression
-#   JSON=     a file that takes the table of `make hardcases` or `make mutants`, too
+#   PREFIX=   destination of `make install`
+#   TESTS=    run only test programs that match this regular expression
+#   JSON=     also write the table of `make hardcases` or `make mutants` to this file
 DEVICE ?=
 PREFIX ?= /usr/local
 TESTS ?= .
 SCENE ?= cornell
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-# A compiler cache serves clones in other folders, too.
+# Lets a compiler cache serve clones in other folders.
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := true
 
@@ -34,7 +34,7 @@ endif
 setup:
 	@toolchains/setup.sh $(or $(CLASS),desktop)
 
-# Options that are no part of a target: the generator and the compiler cache where there is one, the toolchain of the device.
+# Options independent of the target: the generator and compiler cache if available, the device's toolchain.
 configure: setup
 	@mkdir -p $(BUILD) && sysroot=$(if $(CLASS),$$(toolchains/sysroot.sh $(CLASS))) && \
 	cmake -S . -B $(BUILD) -DCMAKE_INSTALL_PREFIX=$(PREFIX) \
@@ -68,8 +68,8 @@ hardcases: setup-tests configure
 mutants: setup-tests
 	@JSON=$(JSON) tests/mutation/mutate.sh --jobs $(JOBS) $(MUTANTS)
 
-# Sessions of a device and its servers in which something goes wrong, in JOBS shares. SEED= begins with that one; a failing
-# session is printed with its own: make faults SESSIONS=1 SEED=n. Without SEED= those over sockets follow, all of them.
+# Sessions of a device and its servers with faults, in JOBS parallel parts. SEED= sets the first seed; a failing session
+# prints its own, to repeat with make faults SESSIONS=1 SEED=n. Without SEED=, all sessions over sockets follow.
 SESSIONS ?= 100000
 SEED ?= 1
 faults: setup-tests configure
@@ -80,8 +80,8 @@ faults: setup-tests configure
 	  $(BUILD)/test_remote --no-intro --test-case="faults_simulated*"'
 	@[ $(SEED) != 1 ] || POCKETRAY_FAULT_SESSIONS=$(SESSIONS) $(BUILD)/test_remote --no-intro --test-case="faults_over_sockets*"
 
-# A render server and an emulated handheld that shares its frames with it. In a window where there is a display; else some
-# frames are rendered and the last one's split is printed, as the display over the picture shows it.
+# A render server and an emulated handheld that uses it: in a window if there is a display, otherwise renders some frames and
+# prints the last one's split as the overlay shows it.
 EMULATE ?= tablet
 DEMO_SCENE := $(if $(filter command line environment,$(origin SCENE)),$(SCENE),seesaw)
 demo-split: configure
@@ -97,8 +97,8 @@ demo-split: configure
 	    -o $(BUILD)/demo/$(DEMO_SCENE).png; \
 	fi
 
-# What a hostile peer or file can do: libFuzzer from the committed corpus on, each target for FUZZ_SECONDS. What it finds to
-# be worth keeping goes to build-fuzz/corpus; an input that breaks something is left in build-fuzz.
+# Fuzzes input from hostile peers and files: libFuzzer on the committed corpus, FUZZ_SECONDS per target. New inputs worth
+# keeping go to build-fuzz/corpus, failing ones to build-fuzz.
 FUZZ_SECONDS ?= 600
 FUZZ_TARGETS ?= message pray import front text client server
 fuzz:
@@ -114,8 +114,8 @@ fuzz:
 	  grep -E '^#[0-9]+.*(DONE)|stat::number_of_executed' build-fuzz/$$target.log | sed "s/^/$$target: /"; \
 	done
 
-# Bits of every model in ../shared/scenes turned, FLIPS times, in JOBS shares: imported, baked, rendered; nothing may crash,
-# run for ever or take memory without bounds. A flip that does is printed with its number: make flips FLIP=n.
+# Flips bits of every model in ../shared/scenes, FLIPS times, in JOBS parallel parts, and imports, bakes and renders the
+# result: nothing may crash, hang or use unbounded memory. A failing flip prints its number, to repeat with make flips FLIP=n.
 FLIPS ?= 100000
 FLIP ?=
 flips: setup-tests configure
@@ -134,8 +134,7 @@ bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) bench $(SCENE) --json -
 
-# Against other ray tracers. Without SCENE= all scenes of the list; what make itself has to say goes to stderr, so that
-# JSON=- can be piped.
+# Against other ray tracers; all listed scenes without SCENE=. make's own output goes to stderr, so that JSON=- can be piped.
 setup-bench-%:
 	@toolchains/setup.sh bench-$* >&2
 

@@ -1,5 +1,5 @@
-# What all device builds share: Debian's cross compiler, libraries from POCKETRAY_SYSROOT alone (sysroot.sh makes it), one
-# static binary without what nothing calls.
+# Shared by all device builds: Debian's cross compiler, libraries only from POCKETRAY_SYSROOT (made by sysroot.sh), one static
+# binary without unused functions.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_C_COMPILER ${POCKETRAY_TRIPLE}-gcc)
 set(CMAKE_CXX_COMPILER ${POCKETRAY_TRIPLE}-g++)
@@ -9,7 +9,7 @@ set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--gc-sections")
 
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES POCKETRAY_SYSROOT)
 if(NOT POCKETRAY_SYSROOT)
-  message(FATAL_ERROR "Set POCKETRAY_SYSROOT to what toolchains/sysroot.sh prints, or use make DEVICE=")
+  message(FATAL_ERROR "Set POCKETRAY_SYSROOT to the output of toolchains/sysroot.sh, or use make DEVICE=")
 endif()
 set(CMAKE_FIND_ROOT_PATH ${POCKETRAY_SYSROOT})
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

@@ -7,7 +7,7 @@ install(TARGETS pocketray RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS pocketray_core EXPORT pocketray ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES src/engine/pocketray.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pocketray)
 
-# The library asks for libpng where it was built with it.
+# The library requires libpng if built with it.
 if(PNG_FOUND)
   set(POCKETRAY_FIND_PNG "find_dependency(PNG)")
   set(POCKETRAY_PC_PNG libpng)
@@ -20,7 +20,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/package/pocketrayConfig.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/package/pocketrayConfigVersion.cmake DESTINATION ${package_folder})
 install(EXPORT pocketray NAMESPACE pocketray:: DESTINATION ${package_folder} FILE pocketrayTargets.cmake)
 
-# What a program in C must link beside it: the C++ library, as a C++ compiler would.
+# C programs must also link the C++ library, as a C++ compiler would.
 foreach(name stdc++ c++)
   if(name IN_LIST CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
     set(POCKETRAY_PC_CXX "-l${name} -lm")

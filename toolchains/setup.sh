@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# setup.sh GROUP... : installs what a build needs and this machine lacks. Silent when nothing is missing.
-# Groups: desktop tests bench-embree bench-povray clang format tidy armhf armel aarch64 x86-32. Run by the Makefile and by .ci/run.
+# setup.sh GROUP... : installs missing build dependencies. Silent if nothing is missing. Groups: desktop tests bench-embree
+# bench-povray clang format tidy armhf armel aarch64 x86-32. Run by the Makefile and by .ci/run.
 set -eu
 
-# What each group needs. "command=package" counts as there when the command is; a plain name is a Debian package.
+# What each group needs. "command=package" counts as present if the command exists; a plain name is a Debian package.
 required() {
   local common="cmake=cmake make=make doctest-dev libcli11-dev nlohmann-json3-dev"
   case $1 in
@@ -22,16 +22,16 @@ required() {
     *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
 }
-# What makes the desktop build better and may be absent: PNG, the emulator window, model formats, a faster build.
+# Optional improvements of the desktop build: PNG, the emulator window, model formats, a faster build.
 optional() {
   case $1 in
     armhf | armel | aarch64) echo ninja=ninja-build ;;
-    tests) echo libembree-dev valgrind=valgrind ;; # the ray caster that depth is compared with; it counts instructions
+    tests) echo libembree-dev valgrind=valgrind ;; # Embree for comparing depth; valgrind for counting instructions
     desktop) echo ninja=ninja-build libpng-dev libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }
 
-# Names of the packages that are missing among "command=package" and "package" entries.
+# Missing packages among "command=package" and "package" entries.
 missing_packages() {
   local entry packages=()
   for entry in "$@"; do
@@ -56,14 +56,14 @@ for group in "$@"; do
 done
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-  # Another package manager: the commands can be checked, the libraries are for CMake to find and name.
+  # Other package managers: checks only commands; CMake finds and reports libraries.
   absent=()
   for entry in "${needs[@]}"; do
     case $entry in *=*) command -v "${entry%%=*}" >/dev/null || absent+=("${entry%%=*}") ;; esac
   done
   [ ${#absent[@]} -gt 0 ] || exit 0
   echo "pocketray: these commands are missing: ${absent[*]}" >&2
-  echo "Automatic set-up knows apt-get alone. Install them, and what else these Debian packages hold, with your package manager:" >&2
+  echo "Automatic set-up supports only apt-get. Install the equivalents of these Debian packages with your package manager:" >&2
   echo "  needed:    ${needs[*]#*=}" >&2
   echo "  optional:  ${extras[*]#*=}" >&2
   exit 1
@@ -71,7 +71,7 @@ fi
 
 mapfile -t needed < <(missing_packages "${needs[@]}")
 mapfile -t wanted < <([ ${#extras[@]} -eq 0 ] || missing_packages "${extras[@]}")
-# Optional packages that this system does not have are looked for once, not at every build.
+# Remembers unavailable optional packages, so as not to look for them at every build.
 stamp=build/.not-available
 if [ ${#wanted[@]} -gt 0 ] && [ -f $stamp ]; then
   mapfile -t wanted < <(printf '%s\n' "${wanted[@]}" | grep -vxFf $stamp)
@@ -85,13 +85,13 @@ if [ "$(id -u)" != 0 ]; then
   elif [ ${#needed[@]} -eq 0 ]; then
     exit 0
   else
-    echo "pocketray: as root, please: apt-get install ${needed[*]} ${wanted[*]}" >&2
+    echo "pocketray: run as root: apt-get install ${needed[*]} ${wanted[*]}" >&2
     exit 1
   fi
 fi
 export DEBIAN_FRONTEND=noninteractive
 echo "pocketray: installing what is missing: ${needed[*]} ${wanted[*]}"
-${as_root[@]+"${as_root[@]}"} apt-get -q update >/dev/null || echo "pocketray: apt-get update failed; trying with the lists there are" >&2
+${as_root[@]+"${as_root[@]}"} apt-get -q update >/dev/null || echo "pocketray: apt-get update failed; trying with the existing package lists" >&2
 
 available=()
 for package in ${wanted[@]+"${wanted[@]}"}; do
@@ -108,6 +108,6 @@ trap 'rm -f "$log"' EXIT
 if ! ${as_root[@]+"${as_root[@]}"} apt-get -q install -y --no-install-recommends \
   ${needed[@]+"${needed[@]}"} ${available[@]+"${available[@]}"} >"$log" 2>&1 </dev/null; then
   tail -n 15 "$log" >&2
-  echo "pocketray: apt-get could not install them; the lines above say why" >&2
+  echo "pocketray: apt-get failed; see the lines above" >&2
   exit 1
 fi

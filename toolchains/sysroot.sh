@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# sysroot.sh CLASS : prints a folder with zlib for the foreign CPU (include/, lib/libz.a) and links to the header-only
-# libraries of this machine; makes it where it is not there yet. Nothing is installed: the package is fetched into a private
-# apt root, from the mirror that this machine already uses, and unpacked, since adding a foreign architecture to the machine's
-# own package manager does not work everywhere.
+# sysroot.sh CLASS : prints a folder with zlib for the foreign CPU (include/, lib/libz.a) and links to this machine's
+# header-only libraries, and creates it if necessary. Installs nothing: fetches the package from this machine's mirror into a
+# private apt root and unpacks it, since adding a foreign architecture to the system's package manager does not work
+# everywhere.
 set -eu
 case $1 in
   armhf) arch=armhf ;;
@@ -14,7 +14,7 @@ esac
 cache=${XDG_CACHE_HOME:-${HOME:-$PWD/build}/.cache}/pocketray
 sysroot=$cache/sysroot-${ID:-linux}-${VERSION_CODENAME:-any}-$1
 work=$cache/apt-$arch.$$
-fail() { echo "pocketray: $*" >&2; echo "Alternatively put zlib.h, zconf.h and a static libz.a for $1 into $sysroot/include and /lib." >&2; exit 1; }
+fail() { echo "pocketray: $*" >&2; echo "Alternatively, put zlib.h, zconf.h and a static libz.a for $1 into $sysroot/include and /lib." >&2; exit 1; }
 
 # Mirror and signature key of the distribution, as /etc/apt has them (one-line and deb822 files alike).
 find_mirror() {
@@ -32,7 +32,7 @@ fetch_zlib() {
   [ -n "$mirror" ] || fail "found no $ID mirror under /etc/apt to fetch zlib1g-dev:$arch from"
   if [ "$ID" = ubuntu ]; then
     [ "$arch" != armel ] || fail "Ubuntu has no packages for armel"
-    # ARM packages lie on the ports mirror, which is named after the main one.
+    # ARM packages are on the ports mirror, whose name derives from the main one.
     mirror=$(sed -E 's#//([a-z.]*\.)?(archive|security)\.#//ports.#; s#/ubuntu/?$#/ubuntu-ports#' <<<"$mirror")
   fi
   mkdir -p "$work"/etc/{apt.conf.d,preferences.d,sources.list.d} "$work"/state/lists/partial "$work"/cache/archives/partial
@@ -43,7 +43,7 @@ Dir::Etc "$work/etc"; Dir::Etc::sourcelist "sources.list"; Dir::Etc::sourceparts
 Dir::State "$work/state"; Dir::State::status "$work/state/status"; Dir::Cache "$work/cache";
 APT::Architecture "$arch"; APT::Architectures { "$arch"; }; APT::Sandbox::User "$(id -un)"; Acquire::Languages "none";
 C
-  # A proxy set for this machine holds here too.
+  # Uses the machine's proxy settings.
   apt-config dump 2>/dev/null | grep -i '^Acquire::https\?::' >>"$work/apt.conf" || true
   export APT_CONFIG=$work/apt.conf
   apt-get -q update >"$work/log" 2>&1 || { cat "$work/log" >&2; fail "cannot read the package list for $arch"; }
@@ -52,7 +52,7 @@ C
   mkdir -p "$work/sysroot/include" "$work/sysroot/lib"
   find "$work/unpacked" -name 'z*.h' -path '*/include/*' -exec cp {} "$work/sysroot/include/" \;
   find "$work/unpacked" -name libz.a -exec cp {} "$work/sysroot/lib/" \;
-  [ -f "$work/sysroot/lib/libz.a" ] && [ -f "$work/sysroot/include/zconf.h" ] || fail "zlib1g-dev:$arch holds no static library"
+  [ -f "$work/sysroot/lib/libz.a" ] && [ -f "$work/sysroot/include/zconf.h" ] || fail "zlib1g-dev:$arch has no static library"
   mkdir -p "$cache"
   rm -rf "$sysroot"
   mv "$work/sysroot" "$sysroot"

@@ -1,5 +1,5 @@
-# 32-bit x86: addresses as narrow as a handheld's, at the speed of this machine and under its sanitizers. For tests alone,
-# see .ci/run; toolchains/setup.sh x86-32 installs what it takes. SSE2 computes floats as written, where the x87 would not.
+# 32-bit x86: a handheld's address width at this machine's speed, with sanitizers. For tests only, see .ci/run;
+# toolchains/setup.sh x86-32 installs the dependencies. SSE2 computes floats as written; the x87 would not.
 set(POCKETRAY_M32 "-m32 -march=i686 -msse2 -mfpmath=sse")
 set(CMAKE_C_FLAGS_INIT "${POCKETRAY_M32}")
 set(CMAKE_CXX_FLAGS_INIT "${POCKETRAY_M32} -isystem /usr/include/x86_64-linux-gnu")  # <asm/…> of the kernel

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # install_test.sh SOURCE BUILD CXX CC OBJDUMP : an installed copy is enough to embed the renderer, in C and in C++.
-# Method: install BUILD into a fresh prefix, cut the block of C out of README.md, build it by the CMake package and by
-# pkg-config, run both, and compare the pixel they print with the installed program's own picture. Then tests/api/, which
-# calls each function, against the installed header and library, as C and as C++, and the pictures of both against the
-# program's. Last, the library's symbols: what is not called pocketray_… stays out of its callers' way.
+# Method: install BUILD into a fresh prefix, extract the C example from README.md, build it with the CMake package and
+# with pkg-config, run both, and compare the pixel they print with the installed program's picture. Then build
+# tests/api/, which calls every function, against the installed header and library, as C and as C++, and compare their
+# pictures with the program's. Last, check that the library exports only pocketray_… symbols.
 set -eu
 source=$1 build=$2 cxx=$3 cc=$4 objdump=$5
 work=$(mktemp -d)
@@ -60,7 +60,7 @@ done
 header=$(sed -n 's/^#define POCKETRAY_VERSION_[MP][A-Z]* //p' "$prefix/include/pocketray/pocketray.h" | paste -sd.)
 [ "$header" = "$(pkg-config --modversion pocketray)" ] || fail "the header is of $header, the package of another version"
 
-# Symbols that others can see or clash with: defined, global or weak. The C++ library's own templates are its namespace's.
+# Symbols that can be seen or clash: defined, global or weak, except the C++ library's own templates.
 exported=$("$objdump" -t "$(find "$prefix" -name libpocketray.a)" |
   awk '/^[0-9a-f]+ ([gw!u]| [gw])/ && !/\*UND\*/ { print ($0 ~ /\.hidden/ ? "hidden " : "visible ") $NF }')
 grep -q '^hidden _ZN.*9pocketray' <<<"$exported" || fail "no hidden symbol was found: has objdump another format?"
