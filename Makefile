@@ -1,4 +1,4 @@
-# A thin front over CMake: sets up what is missing, configures, builds, runs. `make help` lists the targets.
+# A thin front end for CMake: installs what is missing, configures, builds, runs. `make help` lists the targets.
 #   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
 #   PREFIX=   where `make install` goes
 #   TESTS=    run only the tests that match this regular expression

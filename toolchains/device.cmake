@@ -9,7 +9,7 @@ set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--gc-sections")
 
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES POCKETRAY_SYSROOT)
 if(NOT POCKETRAY_SYSROOT)
-  message(FATAL_ERROR "Set POCKETRAY_SYSROOT to what toolchains/sysroot.sh prints, or use make DEVICE=")
+  message(FATAL_ERROR "Set POCKETRAY_SYSROOT to the output of toolchains/sysroot.sh, or use make DEVICE=")
 endif()
 set(CMAKE_FIND_ROOT_PATH ${POCKETRAY_SYSROOT})
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

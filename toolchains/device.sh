@@ -15,5 +15,5 @@ if [ -f "$file" ]; then
   exit 0
 fi
 devices=$(grep -l 'Device k' platform/devices/*.h 2>/dev/null | grep -v '/device_list\.h' | sed 's|.*/||; s|\.h$||; s|_|-|g' | tr '\n' ' ')
-echo "no device or CPU class '$1'; there are: armhf armel aarch64 $devices" >&2
+echo "unknown device or CPU class '$1'; choose from: armhf armel aarch64 $devices" >&2
 exit 1

@@ -26,7 +26,7 @@ required() {
 optional() {
   case $1 in
     armhf | armel | aarch64) echo ninja=ninja-build ;;
-    tests) echo libembree-dev valgrind=valgrind ;; # the ray caster that depth is compared with; it counts instructions
+    tests) echo libembree-dev valgrind=valgrind ;; # Embree for comparing depth; valgrind for counting instructions
     desktop) echo ninja=ninja-build libpng-dev libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }
@@ -63,7 +63,7 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   done
   [ ${#absent[@]} -gt 0 ] || exit 0
   echo "pocketray: these commands are missing: ${absent[*]}" >&2
-  echo "Automatic set-up knows apt-get alone. Install them, and what else these Debian packages hold, with your package manager:" >&2
+  echo "Automatic set-up supports only apt-get. Install the equivalents of these Debian packages with your package manager:" >&2
   echo "  needed:    ${needs[*]#*=}" >&2
   echo "  optional:  ${extras[*]#*=}" >&2
   exit 1
@@ -85,13 +85,13 @@ if [ "$(id -u)" != 0 ]; then
   elif [ ${#needed[@]} -eq 0 ]; then
     exit 0
   else
-    echo "pocketray: as root, please: apt-get install ${needed[*]} ${wanted[*]}" >&2
+    echo "pocketray: run as root: apt-get install ${needed[*]} ${wanted[*]}" >&2
     exit 1
   fi
 fi
 export DEBIAN_FRONTEND=noninteractive
 echo "pocketray: installing what is missing: ${needed[*]} ${wanted[*]}"
-${as_root[@]+"${as_root[@]}"} apt-get -q update >/dev/null || echo "pocketray: apt-get update failed; trying with the lists there are" >&2
+${as_root[@]+"${as_root[@]}"} apt-get -q update >/dev/null || echo "pocketray: apt-get update failed; trying with the existing package lists" >&2
 
 available=()
 for package in ${wanted[@]+"${wanted[@]}"}; do
@@ -108,6 +108,6 @@ trap 'rm -f "$log"' EXIT
 if ! ${as_root[@]+"${as_root[@]}"} apt-get -q install -y --no-install-recommends \
   ${needed[@]+"${needed[@]}"} ${available[@]+"${available[@]}"} >"$log" 2>&1 </dev/null; then
   tail -n 15 "$log" >&2
-  echo "pocketray: apt-get could not install them; the lines above say why" >&2
+  echo "pocketray: apt-get failed; see the lines above" >&2
   exit 1
 fi

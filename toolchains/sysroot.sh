@@ -14,7 +14,7 @@ esac
 cache=${XDG_CACHE_HOME:-${HOME:-$PWD/build}/.cache}/pocketray
 sysroot=$cache/sysroot-${ID:-linux}-${VERSION_CODENAME:-any}-$1
 work=$cache/apt-$arch.$$
-fail() { echo "pocketray: $*" >&2; echo "Alternatively put zlib.h, zconf.h and a static libz.a for $1 into $sysroot/include and /lib." >&2; exit 1; }
+fail() { echo "pocketray: $*" >&2; echo "Alternatively, put zlib.h, zconf.h and a static libz.a for $1 into $sysroot/include and /lib." >&2; exit 1; }
 
 # Mirror and signature key of the distribution, as /etc/apt has them (one-line and deb822 files alike).
 find_mirror() {
@@ -52,7 +52,7 @@ C
   mkdir -p "$work/sysroot/include" "$work/sysroot/lib"
   find "$work/unpacked" -name 'z*.h' -path '*/include/*' -exec cp {} "$work/sysroot/include/" \;
   find "$work/unpacked" -name libz.a -exec cp {} "$work/sysroot/lib/" \;
-  [ -f "$work/sysroot/lib/libz.a" ] && [ -f "$work/sysroot/include/zconf.h" ] || fail "zlib1g-dev:$arch holds no static library"
+  [ -f "$work/sysroot/lib/libz.a" ] && [ -f "$work/sysroot/include/zconf.h" ] || fail "zlib1g-dev:$arch has no static library"
   mkdir -p "$cache"
   rm -rf "$sysroot"
   mv "$work/sysroot" "$sysroot"

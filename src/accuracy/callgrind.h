@@ -1,12 +1,12 @@
-// What callgrind, valgrind's counter of instructions, writes.
+// Reads the output of callgrind, valgrind's instruction counter.
 #pragma once
 #include <cstdint>
 #include <string>
 
 namespace pocketray {
 
-// The instructions of a dump that callgrind made before it entered a function (--dump-before): those since the dump
-// before it. False: the text is no such dump, or not yet whole.
+// Instructions in a dump that callgrind made before entering a function (--dump-before), counted since the previous
+// dump. False if the text is not such a dump or is incomplete.
 bool read_callgrind_dump(const std::string& text, std::uint64_t* instructions);
 
 }  // namespace pocketray

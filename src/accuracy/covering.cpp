@@ -19,7 +19,7 @@ struct Search {
   double limit;
   std::vector<Pair> open;  // still to be covered
 
-  // Of the cheapest row that agrees with this one.
+  // Price of the cheapest row that agrees with this one.
   double price(const std::vector<int>& row) const {
     double product = 1;
     for (std::size_t k = 0; k < row.size(); ++k)
@@ -39,14 +39,14 @@ struct Search {
     row[p.knob[0]] = p.level[0], row[p.knob[1]] = p.level[1];
     return row;
   }
-  // Pairs still open that a level takes part in.
+  // Number of open pairs that contain the level.
   std::size_t demand(std::size_t knob, int level) const {
     return static_cast<std::size_t>(std::count_if(open.begin(), open.end(), [&](const Pair& p) {
       return (p.knob[0] == knob && p.level[0] == level) || (p.knob[1] == knob && p.level[1] == level);
     }));
   }
-  // The level that covers most with what is set already; of equal ones that with most to cover elsewhere, then the
-  // cheapest.
+  // The level that covers most pairs with the levels already set; on ties the one with most open pairs elsewhere, then
+  // the cheapest.
   int best_level(std::vector<int> row, std::size_t knob) const {
     int best = kOpen;
     std::size_t most = 0, most_demand = 0;
@@ -62,7 +62,7 @@ struct Search {
     CHECK_GE(best, 0);
     return best;
   }
-  // Fills the row knob by knob, from `first` on and round.
+  // Fills the row knob by knob, from `first` on, wrapping around.
   void complete(std::size_t first, std::vector<int>* row) const {
     for (std::size_t i = 0; i < row->size(); ++i) {
       std::size_t knob = (first + i) % row->size();

@@ -1,5 +1,5 @@
-// Two-way covering: a few configurations in which every pair of values of every two knobs occurs together, for what
-// knobs do to each other that one at a time does not show.
+// Pairwise covering: a few configurations that together contain every pair of values of any two knobs, to show
+// interactions that varying one knob at a time does not.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -9,12 +9,12 @@ namespace pocketray {
 struct Covering {
   std::vector<std::vector<int>> rows;  // the level of each knob
   std::size_t pair_count = 0;          // pairs of levels of two knobs
-  std::size_t too_dear_count = 0;      // of them in no row, since no row with them keeps to the limit
+  std::size_t too_dear_count = 0;      // of these, not covered because every row with them exceeds the limit
 };
 
-// `prices` has for each knob the price of each of its levels, at least one, all above 0; a row's price is the product
-// of its levels'. No row is dearer than `limit`. Greedy: each row is the best found for the pairs that are still to be
-// covered [Cohen et al. 1997, "The AETG System", sec. 4.1], the same on every call.
+// `prices`: per knob the price of each level, at least one, all above 0. A row's price is the product of its levels'
+// prices and at most `limit`. Greedy: each row is the best found for the pairs not yet covered [Cohen et al. 1997, "The
+// AETG System", sec. 4.1], the same on every call.
 Covering cover_pairs(const std::vector<std::vector<double>>& prices, double limit);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// A sweep as a table of commas.
+// A sweep as CSV.
 #pragma once
 #include <string>
 
@@ -6,8 +6,8 @@
 
 namespace pocketray {
 
-// A line of names, then one for each configuration, the baseline first. What was not measured stays empty. RFC 4180,
-// with line feeds.
+// A header line, then one line per configuration, the baseline first. Missing measurements stay empty. RFC 4180, with
+// line feeds.
 std::string sweep_csv(const Sweep& sweep);
 
 }  // namespace pocketray

@@ -1,17 +1,17 @@
-// What a screen shows of radiance, for comparing pictures as the eye meets them.
+// Converts radiance to displayed values, for comparing pictures as the eye sees them.
 #pragma once
 #include "accuracy/knob_list.h"
 #include "accuracy/result.h"
 
 namespace pocketray {
 
-// R, G, B of each pixel in exposed linear light, cut to what a display shows, [0, 1]; what is no number is 0.
+// R, G, B of each pixel in exposed linear light, clamped to the display range [0, 1]; NaN becomes 0.
 std::vector<double> exposed_light(const Vec3* radiance, std::size_t pixel_count, float exposure);
 
-// The same in sRGB, as FLIP takes it: before any quantisation.
+// The same in sRGB, as input for FLIP, before any quantisation.
 std::vector<float> encoded_light(const std::vector<double>& light);
 
-// Radiance as the screen shows it, through the pixels of the format. Not turned.
+// Radiance as the screen shows it, quantised to the pixel format. Not rotated.
 Levels displayed_levels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
                         const OutputFormat& output);
 // Levels in [0, 1], sRGB.

@@ -1,4 +1,4 @@
-// What can be said of a sweep, for whoever shows it.
+// Conclusions from a sweep, for reports.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,27 +10,27 @@ namespace pocketray {
 double ms_of(const Sweep& sweep, double ns_per_pixel);
 bool has_figures(const Measured& m);  // time and ꟻLIP
 
-// The front's configurations, the fastest first. The baseline is among them once, not by the name of each knob.
+// The front's configurations, fastest first. Lists the baseline once, not under each knob's name.
 std::vector<const Measured*> front_of(const Sweep& sweep);
 
 // A knob's configurations with or without figures, in the order of its values.
 std::vector<const Measured*> values_of(const Sweep& sweep, const std::string& knob);
 
-// A knob's first and last value with figures, which should be its least and its most accurate, and the baseline's
-// value; null where there is none.
+// A knob's first and last value with figures, normally the least and the most accurate, and the baseline's value; null
+// if missing.
 struct KnobEnds {
   const Measured *worst = nullptr, *standard = nullptr, *best = nullptr;
 };
 KnobEnds ends_of(const Sweep& sweep, const std::string& knob);
 
-// Whether the best end is better by more than the reference can tell.
+// True if the best end is better by more than the reference's own error allows to claim.
 bool gain_claimed(const Sweep& sweep, const KnobEnds& ends);
 
-// "slope of its own RMSE over time −0.5 [−0.6, −0.4]; RMSE is off that law by 1 %; theory: …", as far as known.
+// "slope of its own RMSE over time −0.5 [−0.6, −0.4]; RMSE is off that law by 1 %; theory: …"; unknown parts are
+// omitted.
 std::string slope_text(const KnobFigures& knob);
 
-// The knobs, those that buy accuracy for less first; then those whose gain cannot be claimed, then those without a
-// price.
+// The knobs by rising price of accuracy, then those whose gain cannot be claimed, then those without a price.
 std::vector<const KnobFigures*> knobs_by_price(const Sweep& sweep);
 
 }  // namespace pocketray

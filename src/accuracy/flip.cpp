@@ -48,7 +48,7 @@ Color linear_of_ycxcz(const Color& c) {
   double y = (c.x + 16) / 116, x = y + c.y / 500, z = y - c.z / 200;
   return linear_of_xyz({x * white().x, y * white().y, z * white().z});
 }
-// L*a*b* with the chroma of dark colours reduced as the Hunt effect has it (sec. 4.1, eq. 5).
+// L*a*b* with the chroma of dark colours reduced for the Hunt effect (sec. 4.1, eq. 5).
 Color hunt_lab_of_linear(const Color& linear) {
   auto f = [](double t) {
     constexpr double delta = 6.0 / 29;
@@ -60,9 +60,9 @@ Color hunt_lab_of_linear(const Color& linear) {
 }
 double hyab(const Color& a, const Color& b) { return std::fabs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-// ---- Filters. All are sums of separable ones; beyond the border the outermost pixels go on.
+// ---- Filters. All are sums of separable filters; border pixels are repeated outwards.
 
-// Along one axis: `count` pixels that lie `step` apart in each of `line_count` lines that lie `line_step` apart.
+// Along one axis: `line_count` lines, `line_step` apart, of `count` pixels, `step` apart.
 void convolve_lines(const std::vector<double>& in, const std::vector<double>& filter, std::size_t count,
                     std::size_t step, std::size_t line_count, std::size_t line_step, std::vector<double>* out) {
   std::ptrdiff_t radius = static_cast<std::ptrdiff_t>(filter.size() / 2);
@@ -110,7 +110,7 @@ constexpr Sensitivity kAchromatic = {1, 0.0047, 0, 1e-5}, kRedGreen = {1, 0.0053
 
 // One channel seen from a distance (sec. 4.1, eq. 3).
 Plane see(const Plane& channel, const Sensitivity& s, double pixels_per_degree) {
-  // Of all channels the widest Gaussian's three standard deviations.
+  // Three standard deviations of the widest Gaussian of all channels.
   int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * pixels_per_degree));
   auto gaussian = [&](double b) {
     return taps(radius, [&](double x) {

@@ -6,7 +6,7 @@
 
 namespace pocketray {
 
-// Pixels per degree of a 3.5" screen of 320 × 240 pixels seen from 30 cm: 71.1 mm wide, 4.5 pixels a millimetre.
+// Pixels per degree of a 3.5" screen of 320 × 240 pixels seen from 30 cm: 71.1 mm wide, 4.5 pixels per millimetre.
 constexpr double kHandheldPixelsPerDegree = 23.6;
 
 // The error of each pixel, in [0, 1], of width × height pixels. `reference` and `test` hold R, G, B of each pixel in

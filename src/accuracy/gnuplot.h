@@ -1,11 +1,10 @@
-// Text for gnuplot and for those who run it by hand. All of it here, so that a program without the accuracy library may
-// use it, too.
+// Quoting for gnuplot and the shell. Header only, so that programs without the accuracy library can use it.
 #pragma once
 #include <string>
 
 namespace pocketray {
 
-// As a word of the shell, and as a string of gnuplot: of one line, whatever bytes it holds.
+// Quotes text as a shell word or a gnuplot string, on one line whatever bytes it holds.
 inline std::string quoted(const std::string& text, const char* quote_within) {
   std::string result = "'";
   for (char c : text)

@@ -18,7 +18,7 @@ std::string names_of(EffectMask effects) {
   return names;
 }
 
-// A choice's values are places in the row's list, which goes by accuracy, and not the enumerators.
+// A choice's values are indices into the row's list, which is ordered by accuracy, not enumerators.
 Knob knob_of(const SettingRow& row) {
   Knob knob;
   knob.name = row.name, knob.what = row.what, knob.theory = row.theory;
@@ -49,7 +49,8 @@ std::vector<Knob> make_knobs() {
        "geometry",
        0,
        "cornell",
-       "facets err by the square of their width, rays take its logarithm: faster than any power of time",
+       "facet error falls with the square of their width, ray time grows with its logarithm: faster than any power of "
+       "time",
        {8, 16, 32, 64, 128},
        {},
        [](const Configuration& c) { return static_cast<double>(c.sphere_columns); },
@@ -58,7 +59,7 @@ std::vector<Knob> make_knobs() {
        false,
        false},
       {"arithmetic",
-       "numbers the picture is computed in; double by the reference's own tracer",
+       "arithmetic precision; double uses the reference's own tracer",
        "all",
        0,
        nullptr,
@@ -71,7 +72,7 @@ std::vector<Knob> make_knobs() {
        true,
        false},
       {"output",
-       "what the screen shows of a pixel",
+       "pixel format of the screen",
        "display",
        0,
        nullptr,
@@ -121,7 +122,7 @@ std::vector<double> knob_values(const Knob& knob, const Configuration& baseline)
 
 bool knob_applies(const Knob& knob, const std::string& scene, const EffectPlan& plan, std::string* why) {
   if (knob.scene && scene != knob.scene) {
-    *why = std::string("of the built-in scene ") + knob.scene + " alone";
+    *why = std::string("only in the built-in scene ") + knob.scene;
     return false;
   }
   if (knob.needs == 0 || (knob.needs & plan.mask) != 0) return true;

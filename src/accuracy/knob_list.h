@@ -1,5 +1,5 @@
-// The knobs: each row of effect/setting_list.h and what else trades accuracy for time. A sweep turns every one of them
-// that the scene has a use for; a new row is swept, priced and drawn without further code.
+// The knobs: every row of effect/setting_list.h and whatever else trades accuracy for time. A sweep varies each knob
+// that matters to the scene; a new row is swept, priced and plotted without further code.
 #pragma once
 #include <functional>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace pocketray {
 
-// What a screen shows: pixels of a format, dithered or not.
+// Output to a screen: a pixel format, dithered or not.
 struct OutputFormat {
   const char* name;
   PixelFormat format;
@@ -21,13 +21,13 @@ struct OutputFormat {
 constexpr OutputFormat kOutputFormats[] = {
     {"rgb565", kRgb565, false}, {"rgb565-dithered", kRgb565, true}, {"rgb888", kRgb888, false}};
 constexpr int kOutputFormatCount = 3;
-// The index of a format of that name, or -1.
+// Index of the format with that name, or -1.
 int find_output_format(const std::string& name);
 
-// Everything a knob can turn.
+// Everything a knob can change.
 struct Configuration {
   Settings settings;
-  bool double_precision = false;                         // every number of the tracing
+  bool double_precision = false;                         // for all tracing
   int output = 1;                                        // of kOutputFormats: the handheld's
   std::uint32_t sphere_columns = kCornellSphereColumns;  // of cornell
 };
@@ -35,29 +35,28 @@ struct Configuration {
 struct Knob {
   const char* name = nullptr;       // "samples"
   const char* what = nullptr;       // "rays through each pixel"
-  std::string effect;               // it belongs to, as people read it
-  EffectMask needs = 0;             // it turns something where any of these effects is on; 0: always
-  const char* scene = nullptr;      // the only built-in scene that has it; null: every one
-  const char* theory = nullptr;     // of the slope of RMSE over time; empty: theory gives no number
+  std::string effect;               // the effect it belongs to, as displayed
+  EffectMask needs = 0;             // it has an effect if any of these is on; 0: always
+  const char* scene = nullptr;      // the only built-in scene with this knob; null: all
+  const char* theory = nullptr;     // for the slope of RMSE over time; empty: theory gives no number
   std::vector<double> values;       // the least accurate first
   std::vector<const char*> labels;  // one for each value; empty: the numbers themselves
   std::function<double(const Configuration& configuration)> get;
   std::function<void(Configuration* configuration, double value)> set;
-  double (*price)(double value) =
-      nullptr;             // what a frame takes, roughly, up to a factor; null: the value matters little
-  bool alone = false;      // it is not turned together with others
-  bool is_setting = true;  // one can choose it from frame to frame
+  double (*price)(double value) = nullptr;  // rough relative frame time; null: the value matters little
+  bool alone = false;                       // never varied together with others
+  bool is_setting = true;                   // can change from frame to frame
 };
 
 const std::vector<Knob>& knob_list();
 
 // "4", or the value's label.
 std::string value_label(const Knob& knob, double value);
-// The knob's values and, where it is none of them, the baseline's, in order.
+// The knob's values in order, including the baseline's.
 std::vector<double> knob_values(const Knob& knob, const Configuration& baseline);
-// Whether the knob turns anything in a scene of that name and plan. If not, *why says so.
+// True if the knob has an effect in the scene with that name and plan; otherwise *why says why not.
 bool knob_applies(const Knob& knob, const std::string& scene, const EffectPlan& plan, std::string* why);
-// What a frame with `value` takes, in frames of the baseline, roughly: for leaving out what would take too long.
+// Rough frame time with `value`, relative to the baseline, for skipping values that would take too long.
 double relative_price(const Knob& knob, const Configuration& baseline, double value);
 
 }  // namespace pocketray

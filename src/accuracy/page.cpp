@@ -16,7 +16,7 @@ void replace_all(std::string* text, const std::string& from, const std::string& 
     text->replace(at, from.size(), to);
 }
 
-// gnuplot's SVG as an element of the page: without what only a file of its own has, and with names of its own.
+// Makes gnuplot's SVG an element of the page: drops the file header and makes ids unique.
 std::string inline_svg(const std::string& name, const std::string& file) {
   std::size_t begin = file.find("<svg");
   if (begin == std::string::npos) return "";
@@ -35,7 +35,7 @@ std::string plot_figure(const PagePictures& pictures, const std::string& name) {
   return "<figure class=\"plot\">" + inline_svg(name, found->second) + "</figure>\n";
 }
 
-// Side by side where there is room.
+// Side by side if there is room.
 std::string pair(const std::string& one, const std::string& other) {
   return "<div class=\"pair\">\n" + one + other + "</div>\n";
 }
@@ -75,27 +75,27 @@ std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
       title + "</title>\n<style>" + kPageStyle + "</style>\n</head>\n<body>\n<header>\n<div>\n<h1>" + title +
       "</h1>\n<p class=\"soft\">" + (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
       format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
-      std::to_string(sweep.rounds) + " rounds; the baseline is shown as " + escaped(sweep.output) + ".</p>\n";
-  text += "<p>Errors are against <b>" + escaped(sweep.reference) + "</b>, ";
-  text += sweep.reference == "physical" ? "all light transport, path traced in double precision"
-                                        : "the lighting model taken to its limit, in double precision";
-  text += format(" with %u samples a pixel. ", sweep.reference_samples) + "The reference itself may err by FLIP " +
-          figure(sweep.reference_flip, 2) + " and RMSE " + figure(sweep.reference_rmse, 2) + "; nothing finer than " +
+      std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) + ".</p>\n";
+  text += "<p>Errors are relative to <b>" + escaped(sweep.reference) + "</b>, ";
+  text += sweep.reference == "physical" ? "full light transport, path traced in double precision"
+                                        : "the converged lighting model, in double precision";
+  text += format(" with %u samples per pixel. ", sweep.reference_samples) + "The reference’s own error is FLIP " +
+          figure(sweep.reference_flip, 2) + " and RMSE " + figure(sweep.reference_rmse, 2) + "; differences below " +
           figure(kClaimFactor, 2) + " times that, <b>FLIP " + figure(kClaimFactor * sweep.reference_flip, 2) +
           " and RMSE " + figure(kClaimFactor * sweep.reference_rmse, 2) +
-          "</b>, is claimed: such figures are <span class=\"weak\"><i>grey</i></span>.";
+          "</b>, are not claimed: such figures are <span class=\"weak\"><i>grey</i></span>.";
   if (std::isfinite(sweep.model_flip))
-    text +=
-        " The model's limit is itself FLIP " + figure(sweep.model_flip) +
-        (std::isfinite(sweep.model_rmse) ? " and RMSE " + figure(sweep.model_rmse) : "") + " from all light transport" +
-        (sweep.model_flip < kClaimFactor * sweep.model_flip_error ? ", or less: that reference is too noisy to tell."
-                                                                  : ".");
+    text += " The converged model itself is FLIP " + figure(sweep.model_flip) +
+            (std::isfinite(sweep.model_rmse) ? " and RMSE " + figure(sweep.model_rmse) : "") +
+            " from full light transport" +
+            (sweep.model_flip < kClaimFactor * sweep.model_flip_error ? " at most: that reference is too noisy to tell."
+                                                                      : ".");
   text += "</p>\n</div>\n";
   if (!pictures.reference_png.empty()) text += image(pictures.reference_png, "The reference") + "\n";
   return text + "</header>\n";
 }
 
-// What buys the most, in one sentence or two.
+// Which knobs buy the most, in a sentence or two.
 std::string answer_of(const Sweep& sweep) {
   const KnobFigures *first = nullptr, *last = nullptr;
   std::string free, idle;
@@ -114,12 +114,12 @@ std::string answer_of(const Sweep& sweep) {
   std::string text;
   if (first)
     text += "<b>" + escaped(first->name) + "</b> buys the most accuracy per millisecond: .01 of FLIP for <b>" +
-            figure(first->ms_per_flip) + " ms</b> a frame. ";
+            figure(first->ms_per_flip) + " ms</b> per frame. ";
   if (last != first)
     text += "<b>" + escaped(last->name) + "</b> buys the least: " + figure(last->ms_per_flip) + " ms. ";
   if (!free.empty()) text += "Better and no slower: " + free + ". ";
   if (!idle.empty()) text += "No gain that can be claimed: " + idle + ".";
-  if (!first && free.empty() && !idle.empty()) text += " A reference of more samples may tell more.";
+  if (!first && free.empty() && !idle.empty()) text += " A reference with more samples may show one.";
   if (text.empty()) text = "No knob was measured.";
   return "<p class=\"answer\">" + text + "</p>\n";
 }
@@ -138,30 +138,29 @@ std::string method_of(const Sweep& sweep) {
   std::string notes;
   for (const std::string& note : sweep.notes) notes += "<li>" + escaped(note) + "</li>\n";
   if (!notes.empty()) notes = "<ul class=\"soft\">\n" + notes + "</ul>\n";
-  return "<h2>How it is measured</h2>\n<p class=\"soft\">FLIP (ꟻLIP): Andersson, Nilsson, Akenine-Möller, Oskarsson, "
+  return "<h2>Method</h2>\n<p class=\"soft\">FLIP (ꟻLIP): Andersson, Nilsson, Akenine-Möller, Oskarsson, "
          "Åström and Fairchild 2020, “ꟻLIP: A Difference Evaluator for Alternating Images”, at " +
          figure(sweep.pixels_per_degree) +
-         " pixels per degree; the mean over the picture, after the real output (quantised, dithered) and before it. "
-         "RMSE, relative MSE (Rousselle et al. 2011), 99th percentile, maximum, bias and PSNR are of linear light from "
-         "0 to 1 before output.</p>\n<p class=\"soft\">A frame’s time is that of posing, refitting, placing lights, "
-         "tracing and packing, after a frame with the same settings: what only a change of settings costs is not in "
-         "it. "
-         "Instructions are of tracing and packing alone. The configurations run interleaved in random order. Ratios to "
-         "the baseline are of the same round, as a round’s runs have the machine’s moods in common: their median, and "
-         "the 95 % interval of interpolated order statistics (Hettmansperger and Sheather 1986). Times are the ratio "
-         "times the baseline’s median; their interval is that of the configuration’s own times and so holds the moods, "
-         "too." +
-         (sweep.rounds < 6 ? std::string(" With fewer than six rounds all intervals are ranges of the rounds, which "
-                                         "hold the truth less often than 95 %.")
-                           : std::string()) +
-         " Double precision is not this renderer in other numbers: the reference’s own tracer computes it, without "
-         "packets of rays and with a hierarchy of its own, and its time is that tracer’s.</p>\n<p class=\"soft\">A "
-         "slope is that of a law, RMSE² = floor² + (c timeˢ)², fitted to all values of a knob by least squares of "
-         "relative differences, round by round, where the reference can tell the errors apart: the median of the "
-         "rounds, "
-         "with its 95 % interval in brackets. That interval is of the times alone. How far RMSE is from such a law "
-         "stands beside it; no interval covers that. “ms per .01 FLIP” is the time from a knob’s worst end to its best "
-         "over what that gains. * marks the baseline’s value.</p>\n" +
+         " pixels per degree; the mean over the picture, after output (quantised, dithered) and before it. RMSE, "
+         "relative MSE (Rousselle et al. 2011), 99th percentile, maximum, bias and PSNR are of linear light from 0 to "
+         "1 before output.</p>\n<p class=\"soft\">A frame’s time covers posing, refitting, placing lights, tracing and "
+         "packing, after a frame with the same settings; the cost of changing settings is excluded. Instructions cover "
+         "only tracing and packing. The configurations run interleaved in random order. Ratios to the baseline are "
+         "taken within a round, whose runs share the state of the machine; shown are their median and the 95 % "
+         "interval of interpolated order statistics (Hettmansperger and Sheather 1986). Times are the ratio times the "
+         "baseline’s median; their interval is that of the configuration’s own times and so includes the machine’s "
+         "variation." +
+         (sweep.rounds < 6
+              ? std::string(
+                    " With fewer than six rounds all intervals are ranges of the rounds, which cover less than 95 %.")
+              : std::string()) +
+         " Double precision is not this renderer in other arithmetic: it is the reference’s own tracer, without ray "
+         "packets and with its own hierarchy, and its time is that tracer’s.</p>\n<p class=\"soft\">A slope is the "
+         "exponent s of RMSE² = floor² + (c timeˢ)², fitted in each round to all values of a knob by least squares of "
+         "relative differences, where the reference can tell the errors apart: the median of the rounds, with its 95 % "
+         "interval in brackets. The interval covers only the times; the deviation of RMSE from the law is given "
+         "separately. “ms per .01 FLIP” is the time from a knob’s worst end to its best divided by the gain. * marks "
+         "the baseline’s value.</p>\n" +
          notes;
 }
 
@@ -171,9 +170,9 @@ std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string text = head_of(sweep, pictures) + "<h2>What buys the most accuracy per millisecond</h2>\n" +
                      answer_of(sweep) + pair(price_table(sweep), plot_figure(pictures, "price"));
   text +=
-      "<h2>The front: the least error for the time</h2>\n<p>Nothing that was measured takes less time with less error, "
-      "as "
-      "far as the reference can tell: going up in time, a setting joins the front if it is better by FLIP " +
+      "<h2>The front: the least error for the time</h2>\n<p>No measured configuration is both faster and more "
+      "accurate, as far as the reference can tell: in order of time, a setting joins the front if it is better by "
+      "FLIP " +
       figure(kClaimFactor * sweep.reference_flip, 2) + ".</p>\n" +
       pair(plot_figure(pictures, "front"), front_table(sweep));
   std::string links;
@@ -182,8 +181,10 @@ std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
   if (!links.empty()) text += "<h2>Knob by knob</h2>\n<nav>" + links + "</nav>\n";
   for (const KnobFigures& knob : sweep.knobs) text += knob_section(sweep, pictures, knob);
   if (!values_of(sweep, "several").empty())
-    text += "<h2>Several at once</h2>\n<details><summary>What covers pairs of values of two knobs</summary>\n" +
-            value_table(sweep, "several") + "</details>\n";
+    text +=
+        "<h2>Several at once</h2>\n<details><summary>Configurations that cover pairs of values of two "
+        "knobs</summary>\n" +
+        value_table(sweep, "several") + "</details>\n";
   return text + method_of(sweep) + "</body>\n</html>\n";
 }
 

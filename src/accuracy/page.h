@@ -1,4 +1,4 @@
-// A sweep as one page of HTML that needs nothing else.
+// A sweep as one self-contained HTML page.
 #pragma once
 #include <map>
 #include <string>
@@ -7,14 +7,14 @@
 
 namespace pocketray {
 
-// What is shown on the page, each by a name: a strip by its knob's, a plot by its own. What is absent is not shown.
+// Pictures of the page by name: strips by knob, plots by their own name. Missing ones are omitted.
 struct PagePictures {
   std::string reference_png;                  // bytes
   std::map<std::string, std::string> strips;  // bytes of PNG
   std::map<std::string, std::string> plots;   // text of SVG, as gnuplot writes it
 };
 
-// Well formed as XML, too. The same for the same sweep and pictures.
+// Also well-formed XML. Deterministic for a given sweep and pictures.
 std::string page_of(const Sweep& sweep, const PagePictures& pictures);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// How the page looks: on a phone and on a desk, by day and by night.
+// Style of the page, for phone and desktop, light and dark.
 #pragma once
 
 namespace pocketray {

@@ -20,7 +20,7 @@ std::string boxed(const std::string& head, const std::string& rows) {
   return "<div class=\"box\"><table>\n" + head + "<tbody>\n" + rows + "</tbody></table></div>\n";
 }
 
-// A number that the reference cannot vouch for is marked.
+// Marks numbers too small to claim.
 std::string claimed_cell(const std::string& text, bool claimed) {
   return claimed ? cell(text) : cell("<i>" + text + "</i>", "weak");
 }
@@ -103,7 +103,7 @@ std::string value_table(const Sweep& sweep, const std::string& knob) {
     rows += cell(ms_text(sweep, m->ns_per_pixel)) + cell(ratio_text(m->time_ratio)) +
             error_cell(m->flip, sweep.reference_flip) + error_cell(m->flip_before, sweep.reference_flip) +
             error_cell(e.rmse, sweep.reference_rmse);
-    bool claimed = !(e.rmse < kClaimFactor * sweep.reference_rmse);  // else all are mostly the reference's own
+    bool claimed = !(e.rmse < kClaimFactor * sweep.reference_rmse);  // otherwise mostly the reference's own error
     for (const std::string& text : {figure(e.rel_mse), figure(e.p99), figure(e.max), figure(e.bias),
                                     std::isfinite(e.psnr) ? format("%.1f", e.psnr) : figure(e.psnr)})
       rows += claimed_cell(text, claimed);

@@ -6,11 +6,11 @@
 
 namespace pocketray {
 
-// "ms per .01 FLIP" by knob, what buys the most accuracy first.
+// "ms per .01 FLIP" by knob, cheapest first.
 std::string price_table(const Sweep& sweep);
 // The Pareto front's settings, numbered as in its plot.
 std::string front_table(const Sweep& sweep);
-// All figures of one knob's values; of "several" those of settings turned at once.
+// All figures of one knob's values; for "several", of the combined settings.
 std::string value_table(const Sweep& sweep, const std::string& knob);
 
 }  // namespace pocketray

@@ -11,22 +11,22 @@
 namespace pocketray {
 namespace {
 
-// Distinct to the colour-blind, too [Okabe & Ito 2008, "Color Universal Design"], legible on black and on white.
+// Also distinct to the colour-blind [Okabe & Ito 2008, "Color Universal Design"], legible on black and on white.
 constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                    "#56b4e9", "#e69f00", "#8c6bb1", "#b0a000"};
 constexpr int kColorCount = 8, kSymbols[] = {7, 5, 9, 11, 13};
 constexpr const char* kInk = "#777777";
 
-// Plots are drawn in SVG at this size, in PNG at twice it, so that they read well at the width of a phone.
+// Plots are drawn in SVG at this size, in PNG at twice it, so that they are legible at a phone's width.
 constexpr int kWidth = 620, kFont = 17;
 constexpr double kCharacter = 0.56 * kFont, kLine = 1.25 * kFont;  // pixels, of a label's text
 
 struct Frame {
-  double left, right, bottom, top;  // of the plot's area, of the whole
+  double left, right, bottom, top;  // edges of the plot area, as fractions of the whole
   int height;
 };
 
-// Runs `body` for both kinds of file.
+// A script that runs `body` for both kinds of file.
 std::string script_of(const std::string& name, int height, const std::string& data, const std::string& body) {
   return "# gnuplot " + name + ".gnuplot draws " + name + ".png and " + name + ".svg.\nreset\nset encoding utf8\n" +
          data + "do for [kind in 'png svg'] {\nif (kind eq 'png') {\n" +
@@ -59,8 +59,8 @@ std::string label_commands(const Frame& frame, const std::vector<PlotPoint>& poi
   return commands;
 }
 
-// What is below the limit on the y axis is shaded, if that is a part of the plot. Its label is at the bottom left,
-// where little time would buy little error and points are rare.
+// Shades the area below the limit on the y axis if it is in the plot. The label goes to the bottom left, where points
+// are rare: low error in little time.
 std::string unclaimed_commands(const Axis& y, double limit, const std::string& text) {
   if (!(limit > y.low)) return "";
   double top = std::min(1.0, place_on(y, limit));
@@ -72,7 +72,7 @@ std::string unclaimed_commands(const Axis& y, double limit, const std::string& t
          format(" at graph 0.01, graph 0 left offset 0,0.6 front tc rgb '%s'\n", kInk);
 }
 
-// Each text in lines of its own.
+// Each text starts a new line.
 std::vector<std::string> title_lines(const std::vector<std::string>& texts) {
   constexpr std::size_t kColumns = 60;
   std::vector<std::string> lines;
@@ -105,7 +105,7 @@ std::string series_of(const std::vector<const Measured*>& points, const Sweep& s
   return lines;
 }
 
-// Those with figures, of one name.
+// Configurations of one knob that have figures.
 std::vector<const Measured*> shown_of(const Sweep& sweep, const std::string& name) {
   std::vector<const Measured*> shown;
   for (const Measured* m : values_of(sweep, name))
@@ -163,7 +163,7 @@ Plot front_plot(const Sweep& sweep) {
   if (plots.empty()) plots = "1/0 title 'nothing was measured'";
   std::string body =
       frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') +
-      "set title 'Error over time: less is better in both'\nset xlabel 'milliseconds per frame'\n" +
+      "set title 'Error over time: lower left is better'\nset xlabel 'milliseconds per frame'\n" +
       "set ylabel 'FLIP' offset 1.2,0\nset key at screen 0.5, screen 0.01 center bottom horizontal samplen 1 "
       "maxcols 2\n" +
       unclaimed_commands(y, limit, "not claimed: under 10 x the reference's own error") +
@@ -246,7 +246,7 @@ Plot price_plot(const Sweep& sweep) {
                                      "fs solid 0.9 noborder lc rgb '#0072b2'";
   std::string body = frame_commands(frame) + axis_commands(x, 'x') +
                      format("set yrange [%zu.5:-0.5]\n", knobs.empty() ? 0 : knobs.size() - 1) + "set ytics (" + names +
-                     ") scale 0\nset grid noytics\nset title 'What .01 of FLIP costs'\n"
+                     ") scale 0\nset grid noytics\nset title 'Price of .01 FLIP'\n"
                      "set xlabel 'milliseconds per frame" +
                      (x.logarithmic ? ", logarithmic" : "") + "'\n" +
                      (bars.empty() ? "unset xtics\nunset xlabel\n" : "") + labels + "plot " + plots + "\n";

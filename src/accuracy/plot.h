@@ -1,4 +1,4 @@
-// Plots of a sweep, as scripts of gnuplot that hold their data: each draws NAME.png and NAME.svg where it is run.
+// Plots of a sweep as gnuplot scripts with inline data: each draws NAME.png and NAME.svg in the current folder.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@ struct Plot {
   std::string name, script;  // "front"; the script's file is NAME.gnuplot
 };
 
-// ꟻLIP over time of all that was measured, the Pareto front as a line with labels numbered from 1, and what is
-// not claimed.
+// ꟻLIP over time of all configurations, the Pareto front as a line with labels numbered from 1, and the area too small
+// to claim.
 Plot front_plot(const Sweep& sweep);
-// RMSE and ꟻLIP over time along a knob's values.
+// RMSE and ꟻLIP over time for a knob's values.
 Plot knob_plot(const Sweep& sweep, const KnobFigures& knob);
-// What .01 of ꟻLIP costs by each knob.
+// Price of .01 ꟻLIP for each knob.
 Plot price_plot(const Sweep& sweep);
 
 }  // namespace pocketray

@@ -9,9 +9,9 @@
 namespace pocketray {
 namespace {
 
-constexpr double kSpanMax = 1e12;  // of an axis; what is less lies at its end
+constexpr double kSpanMax = 1e12;  // of an axis; smaller values are drawn at its end
 
-// Tics at 1, 2, 5 of each decade; of many decades at 1 alone.
+// Tics at 1, 2 and 5 of each decade; with many decades only at 1.
 std::string logarithmic_tics(const Axis& axis) {
   bool many = axis.high / axis.low > 1e3;
   std::vector<std::string> tics;
@@ -86,7 +86,7 @@ std::string axis_commands(const Axis& axis, char name) {
 std::vector<Label> place_labels(const PlotArea& area, const std::vector<PlotPoint>& points,
                                 const std::vector<std::string>& labels) {
   CHECK_LE(labels.size(), points.size());
-  // Offsets in characters and lines from the point, in the order of liking.
+  // Offsets in characters and lines from the point, in order of preference.
   constexpr struct {
     double x, y;
     int align;

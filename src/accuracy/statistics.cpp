@@ -12,7 +12,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kConfidence = 0.95;
 
-// The chance that `count` or fewer of n fair coins show heads.
+// Probability of at most `count` heads among n fair coins.
 double coins(std::size_t n, std::size_t count) {
   double term = std::pow(0.5, static_cast<double>(n)), sum = term;
   for (std::size_t i = 0; i < count; ++i) {
@@ -22,13 +22,13 @@ double coins(std::size_t n, std::size_t count) {
   return sum;
 }
 
-// From a towards b, either of which may be infinite.
+// Interpolates from a to b, either of which may be infinite.
 double between(double a, double b, double share) {
   if (!std::isfinite(a) || share == 0 || a == b) return a;
   return std::isfinite(b) ? a + (b - a) * share : b;
 }
 
-// The law of an exponent that fits best, and how badly it fits: Σ of the squared relative differences of e².
+// The best-fitting law with a given exponent and its misfit: Σ of the squared relative differences of e².
 struct LawAt {
   const std::vector<double>&time, &error;
   double resolution;
@@ -68,7 +68,7 @@ Interval median_interval(const std::vector<double>& values) {
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   std::size_t n = sorted.size(), k = 0;
-  double middle = median(values), wide = 1, narrow = 1;  // how often the k-th and the next from both ends hold it
+  double middle = median(values), wide = 1, narrow = 1;  // coverage of the k-th and the next values from both ends
   while (k + 1 <= n / 2 && (narrow = 1 - 2 * coins(n, k)) >= kConfidence) wide = narrow, ++k;
   if (k == 0) return {middle, sorted.front(), sorted.back()};
   double part = k + 1 <= n / 2 ? (wide - kConfidence) / (wide - narrow) : 0;

@@ -12,11 +12,11 @@
 namespace pocketray {
 namespace {
 
-constexpr int kPanelWidth = 320;       // at least: smaller pictures are magnified,
-constexpr int kPanelHeightMax = 2560;  // as long as they do not become taller
+constexpr int kPanelWidth = 320;       // minimum: smaller pictures are magnified,
+constexpr int kPanelHeightMax = 2560;  // up to this height
 constexpr int kGap = 6, kTextScale = 3, kTextColumns = 12;
 
-// Words of a text in lines of at most so many characters; a longer word has a line of its own.
+// Wraps text at `columns` characters; a longer word gets its own line.
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   std::vector<std::string> lines(1);
   for (std::size_t at = 0; at < text.size();) {
@@ -49,7 +49,7 @@ void draw_text(Levels* strip, int column, int row, const std::vector<std::string
   draw_text_box(canvas, column, row, kTextScale, lines.data(), static_cast<int>(lines.size()));
 }
 
-// `color(pixel, levels)` for each pixel of a picture, magnified.
+// Draws `color(pixel, levels)` for each pixel of a picture, magnified.
 template <class Color>
 void draw_panel(Levels* strip, int column, int row, int zoom, int width, int height, Color color) {
   for (int y = 0; y < height * zoom; ++y)
@@ -82,7 +82,7 @@ void draw_row(Levels* strip, const StripLayout& at, int top, const Levels& refer
 }  // namespace
 
 std::array<std::uint8_t, 3> flip_color(float error) {
-  // Every tenth of the map as matplotlib has it; between them a line.
+  // matplotlib's map at every tenth; interpolated linearly.
   constexpr std::uint8_t kMagma[11][3] = {{0, 0, 4},       {20, 14, 54},    {59, 15, 112},  {100, 26, 128},
                                           {140, 41, 129},  {183, 55, 121},  {222, 73, 104}, {247, 112, 92},
                                           {254, 159, 109}, {254, 207, 146}, {252, 253, 191}};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kOtherTracerNote = "time of the reference's own tracer, not of the renderer in double precision";
 
-// The least, the baseline's and the best value of those that can be had, each once.
+// The least accurate, the baseline's and the best of the available values, each once.
 std::vector<const SweepPoint*> levels_of(const SweepPlan& plan, const SweptKnob& swept) {
   std::vector<const SweepPoint*> there, levels;
   for (std::size_t i = 0; i < swept.count; ++i)
@@ -61,7 +61,7 @@ void add_covering_set(const Configuration& baseline, double price_limit, SweepPl
       point.is_choice = point.is_choice && knob.is_setting;
       point.value += (turned++ ? ", " : "") + level.knob + " " + level.value;
     }
-    if (turned > 1) points.push_back(point);  // others are measured already
+    if (turned > 1) points.push_back(point);  // others are already measured
   }
   plan->points.insert(plan->points.end(), points.begin(), points.end());
   char text[160];
@@ -100,7 +100,7 @@ void add_settings(const Settings& settings, const std::function<Status(const Set
   if (wanted_too && !is_planned(*plan, point.configuration)) plan->points.push_back(point);
 }
 
-// Times of whole rounds in the baseline's of the same round: rounds have the machine's moods in common.
+// Times of finished rounds relative to the baseline's in the same round, whose runs share the state of the machine.
 std::vector<double> ratios_of(const PointFigures& f, const PointFigures& baseline) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(f.ns_per_pixel.size(), baseline.ns_per_pixel.size()); ++i)
@@ -127,7 +127,7 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
   return m;
 }
 
-// Of what one can choose.
+// Marks the front among the configurations a user can choose.
 void mark_front(const SweepPlan& plan, double resolution, std::vector<Measured>* measured) {
   std::vector<std::size_t> there;
   std::vector<double> cost, error;
@@ -142,13 +142,13 @@ void mark_front(const SweepPlan& plan, double resolution, std::vector<Measured>*
     if (m.is_default) m.pareto = measured->front().pareto;
 }
 
-// The slope of each round, and how far the medians are from such a law. `points`: which of the plan's, the best last.
+// Finds the slope in each round and how far the medians are from the law. `points`: indices in the plan, the best last.
 void find_slope(const std::vector<PointFigures>& figures, const std::vector<std::size_t>& points, const Sweep& sweep,
                 KnobFigures* k) {
   std::vector<double> errors, medians, slopes;
   for (std::size_t i : points) {
     errors.push_back(sweep.measured[i].errors.rmse), medians.push_back(sweep.measured[i].time_ratio.value);
-    if (!(errors.back() * errors.back() + sweep.reference_rmse > 0)) return;  // no relative difference
+    if (!(errors.back() * errors.back() + sweep.reference_rmse > 0)) return;  // no relative difference is defined
   }
   double resolution = kClaimFactor * sweep.reference_rmse;
   std::size_t rounds = figures[0].ns_per_pixel.size();
@@ -208,7 +208,7 @@ SweepPlan plan_sweep(const std::string& scene, const EffectPlan& effects, const 
     if (knob_applies(knob, scene, effects, &why))
       add_knob(knob, baseline, can_be_had, &plan);
     else
-      plan.notes.push_back(std::string(knob.name) + " is left out: " + why);
+      plan.notes.push_back(std::string(knob.name) + " is skipped: " + why);
   }
   add_covering_set(baseline, price_limit, &plan);
   for (const Settings& settings : ladder) add_settings(settings, can_be_had, price_limit, &plan);

@@ -1,4 +1,4 @@
-// pocketray bake: any format → one .pray file that a device maps as it is, accelerator included.
+// pocketray bake: converts a model into one .pray file, accelerator included, which a device maps as it is.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -30,10 +30,10 @@ Status write_scene(const std::string& path, const Scene& scene, std::size_t* byt
   });
 }
 
-// Before the work. A device or a pipe, and standard output, may have any name.
+// Refuses bad paths before any work. A device, a pipe and standard output may have any name.
 Status check(const BakeOptions& o) {
   if (!platform::is_device_or_pipe(o.output.c_str()) && !has_suffix(o.output.c_str(), ".pray"))
-    return failure("-o is '%.300s': a baked scene's name must end in .pray", o.output.c_str());
+    return failure("-o is '%.300s': the name must end in .pray", o.output.c_str());
   return check_outputs({{"IN", o.input}}, {{"-o", o.output}, {"--json", o.json}});
 }
 
@@ -46,7 +46,7 @@ Status bake(const BakeOptions& o) {
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
   void* accel_block = build_heap_accel(*find_accel(o.accel), scene, &scene.accel);
-  if (!accel_block) return failure("the accelerator needs more memory than can be had: bake a smaller model");
+  if (!accel_block) return failure("not enough memory to build the accelerator: bake a smaller model");
   double build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   std::size_t byte_count = 0;
   Status status = write_scene(o.output, scene, &byte_count);
@@ -77,17 +77,17 @@ Status bake(const BakeOptions& o) {
 
 void add_bake_command(CLI::App* program, int* exit_status) {
   auto options = std::make_shared<BakeOptions>();
-  CLI::App* command = program->add_subcommand("bake", "turn a model into one .pray file that a device maps as it is");
+  CLI::App* command = program->add_subcommand("bake", "convert a model into one .pray file, ready for a device to map");
   command->add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene")->required();
   command->add_option("-o,--output", options->output, "the .pray file to write")->required();
   command
       ->add_option("--texture-max", options->model.texture_side_max,
-                   "halve textures until no side is longer, in texels")
+                   "longest texture side in texels; larger textures are halved until they fit")
       ->capture_default_str()
       ->check(CLI::Range(1u, kTextureSideMax));
   command
       ->add_option("--crease-angle", options->model.crease_angle,
-                   "degrees: models that come without normals are smooth below it (glTF: flat)")
+                   "for models without normals: shade edges below this angle smooth, in degrees (glTF: always flat)")
       ->capture_default_str()
       ->check(CLI::Range(0.0f, 180.0f));
   std::vector<std::string> names;
@@ -98,10 +98,10 @@ void add_bake_command(CLI::App* program, int* exit_status) {
     help += std::string(help.empty() ? "" : ", or ") + info->name +
             (*info->help ? std::string(" (") + info->help + ")" : "");
   }
-  command->add_option("--accel", options->accel, "accelerator to put into it: " + help)
+  command->add_option("--accel", options->accel, "accelerator to store in the file: " + help)
       ->check(CLI::IsMember(names))
       ->capture_default_str();
-  command->add_option("--json", options->json, "also write figures as JSON to FILE, or - for standard output");
+  add_json_option(command, &options->json);
   command->callback([=] { *exit_status = report(bake(*options)); });
 }
 

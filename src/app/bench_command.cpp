@@ -1,4 +1,4 @@
-// pocketray bench: what a pixel, a scanline, a ray and an effect cost.
+// pocketray bench: measures the cost per pixel, scanline, ray and effect.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -66,7 +66,7 @@ void print_table(const CommonOptions& options, const Renderer& renderer, Measure
     if (m->counts.rays[kind])
       std::printf("  %-22s %10s per frame\n", (std::string(kRayKindNames[kind]) + " rays").c_str(),
                   grouped(m->counts.rays[kind]).c_str());
-  std::printf("  %-22s %10s per frame, at most %.2g of radiance a sample\n", "rays left out",
+  std::printf("  %-22s %10s per frame, at most %.2g of radiance per sample\n", "rays skipped",
               grouped(m->counts.rays_left_out).c_str(), static_cast<double>(m->counts.left_out_max));
   std::printf("  %-22s %10.1f ms\n", "build", renderer.timings.build_ms);
   if (has(renderer.effects.mask, Effect::animation))
@@ -91,9 +91,9 @@ Json sparse_json(const SparseCost* costs) {
 }
 
 void print_sparse(const SparseCost* costs) {
-  std::printf("where some pixels are traced, ns for each\n  %-22s %10s %10s\n", "", "scattered", "patches");
+  std::printf("cost per traced pixel when only some are traced, ns\n  %-22s %10s %10s\n", "", "scattered", "patches");
   for (int i = 0; i < kSparseFractionCount; ++i)
-    std::printf("  %3.0f %% of them %20.0f %10.0f\n", 100 * costs[i].fraction, costs[i].scattered_ns_per_pixel.median,
+    std::printf("  %3.0f %% of pixels %18.0f %10.0f\n", 100 * costs[i].fraction, costs[i].scattered_ns_per_pixel.median,
                 costs[i].patch_ns_per_pixel.median);
 }
 
@@ -148,7 +148,7 @@ Json front_json(const CommonOptions& options, const Renderer& renderer, const Op
 
 void print_front(const CommonOptions& options, const Renderer& renderer, const OpenFront& front, const Front& measured,
                  std::uint32_t rounds) {
-  std::printf("%s: %u×%u, %u thread%s, %u round%s%s; prices kept in %s\n", options.scene.c_str(),
+  std::printf("%s: %u×%u, %u thread%s, %u round%s%s; prices saved in %s\n", options.scene.c_str(),
               renderer.settings.width, renderer.settings.height, renderer.settings.threads,
               renderer.settings.threads == 1 ? "" : "s", rounds, rounds == 1 ? "" : "s",
               emulation_text(renderer.pace).c_str(), front.path.empty() ? "no file" : front.path.c_str());
@@ -156,12 +156,12 @@ void print_front(const CommonOptions& options, const Renderer& renderer, const O
     const Candidate& c = measured.candidates[i];
     char quality[kFrontLineMax];
     format_quality(c, quality, sizeof quality);
-    std::printf("  %10.0f ns a pixel %10.1f ms   ꟻLIP %-8s %s\n", static_cast<double>(c.ns_per_pixel),
+    std::printf("  %10.0f ns per pixel %10.1f ms   ꟻLIP %-8s %s\n", static_cast<double>(c.ns_per_pixel),
                 static_cast<double>(c.ns_per_pixel) * pixel_count(renderer) * 1e-6, error_text(c).c_str(), quality);
   }
 }
 
-// Measures and keeps the prices of the front that --budget-ms chooses from.
+// Measures and saves the prices of the front that --budget-ms chooses from.
 int run_front(const CommonOptions& options, const std::string& file, std::uint32_t rounds) {
   OpenScene opened;
   OpenFront front;
@@ -195,17 +195,17 @@ void add_bench_command(CLI::App* program, int* exit_status) {
   auto no_prices = std::make_shared<bool>(false);
   auto sparse = std::make_shared<bool>(false);
   auto front = std::make_shared<std::string>();
-  CLI::App* command = program->add_subcommand("bench", "measure what a pixel, a scanline, a ray and an effect cost");
+  CLI::App* command = program->add_subcommand("bench", "measure the cost per pixel, scanline, ray and effect");
   add_scene_options(command, options.get());
-  command->add_option("--frames", *frames, "frames to measure, after one to warm up")->capture_default_str();
-  command->add_flag("--no-prices", *no_prices, "leave out the price of each effect");
-  command->add_flag("--sparse", *sparse,
-                    "also what a pixel costs where some of them are traced, lone ones or patches: 2, 10, 50, 100 %");
-  command->add_option("--json", options->json, "also write it as JSON to FILE, or - for standard output");
+  command->add_option("--frames", *frames, "frames to measure, after one warm-up frame")->capture_default_str();
+  command->add_flag("--no-prices", *no_prices, "skip pricing each effect");
+  command->add_flag(
+      "--sparse", *sparse,
+      "also measure the cost per pixel when only 2, 10, 50 or 100 % of pixels are traced, scattered or in patches");
+  add_json_option(command, &options->json);
   CLI::Option* priced = command->add_option(
       "--front", *front,
-      "instead: what each of the settings takes that --budget-ms chooses from, kept in FILE, or in the cache, for "
-      "render and view");
+      "instead measure the settings that --budget-ms chooses from, and save their prices in FILE or the cache");
   priced->expected(0, 1);
   for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
     priced->excludes(command->get_option(chosen));

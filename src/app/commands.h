@@ -1,4 +1,4 @@
-// One command each: adds itself to the program and, when chosen, leaves its exit status.
+// Each adds its command to the program; when that command runs, it stores its exit status.
 #pragma once
 #include "session/servers.h"
 #include "viewer/side_by_side.h"
@@ -9,12 +9,12 @@ class App;
 
 namespace pocketray {
 
-// Parts that a build may lack.
+// Parts that a build may lack; null if absent.
 struct OptionalParts {
   const ServersBackend* servers = nullptr;
   const SideBySideBackend* side_by_side = nullptr;
 };
-// Null where no server is asked for.
+// Leaves *servers as it is in builds without a network, and null if options name no server.
 inline Status open_servers(const OptionalParts& parts, const ServersOptions& options, const platform::Device* emulated,
                            Servers** servers) {
   return parts.servers ? parts.servers->open(options, emulated, servers) : success();

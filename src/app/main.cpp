@@ -20,8 +20,8 @@
 namespace pocketray {
 namespace {
 
-// An empty value is none, and a NaN or infinity is no number that any option could use. CLI11's own ranges let a NaN
-// pass, since it is neither below nor above.
+// No option accepts an empty value, NaN or infinity. CLI11's range checks accept a NaN, which is neither below nor
+// above.
 std::string refuse_meaningless(const std::string& text, bool is_real) {
   if (text.empty()) return "must not be empty";
   return is_real && !std::isfinite(std::strtod(text.c_str(), nullptr)) ? "must be a finite number" : "";
@@ -30,7 +30,7 @@ std::string refuse_meaningless(const std::string& text, bool is_real) {
 void check_values(CLI::App* program) {
   for (CLI::App* command : program->get_subcommands({}))
     for (CLI::Option* option : command->get_options()) {
-      if (option->get_items_expected_min() == 0) continue;  // a flag, or a value that may be left out
+      if (option->get_items_expected_min() == 0) continue;  // a flag, or an optional value
       bool is_real = option->get_type_name().compare(0, 5, "FLOAT") == 0;
       option->check([is_real](const std::string& text) { return refuse_meaningless(text, is_real); });
     }
@@ -43,13 +43,13 @@ std::string one_line(const CLI::App*, const CLI::Error& error) {
 int run(int argument_count, char** arguments) {
   int exit_status = kExitDone;
   CLI::App program{
-      "pocketray ray-traces scenes for handheld screens in a block of memory fixed at start.\n"
+      "pocketray ray-traces scenes for handheld screens in a block of memory sized once at start.\n"
       "Try:  pocketray render cornell -o cornell.png\n"
       "      pocketray view statue\n"};
   program.name("pocketray");
   program.set_version_flag("--version", POCKETRAY_VERSION);
   program.require_subcommand(1);
-  program.footer("Exit status: 0 done, 1 the input or the environment is at fault, 2 wrong usage, 3 interrupted.");
+  program.footer("Exit status: 0 done, 1 bad input or environment, 2 wrong usage, 3 interrupted.");
   OptionalParts parts;
 #ifdef POCKETRAY_HAVE_NETWORK
   parts.servers = &kRenderServers;

@@ -1,4 +1,4 @@
-// Options that several commands have: their names, their help.
+// Options shared by several commands, with their help.
 #pragma once
 #include "budget/budget.h"
 #include "session/open_scene.h"
@@ -7,17 +7,22 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace pocketray {
 
-// Adds them to a command, each with its help.
+// SCENE and the options for opening and rendering it, every setting included.
 void add_scene_options(CLI::App* command, CommonOptions* options);
-// --budget-ms and --front, which take the place of the options that they choose: call it after add_scene_options().
+// --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().
 void add_budget_options(CLI::App* command, BudgetOptions* options);
-// --server and what goes with it, of builds with a network.
+// --json, --isa and --server, each a single option. The variable must outlive the parsing of the command line.
+CLI::Option* add_json_option(CLI::App* command, std::string* path);
+CLI::Option* add_isa_option(CLI::App* command, std::string* isa);
+CLI::Option* add_server_option(CLI::App* command, std::vector<std::string>* addresses);
+// --server and the options that go with it, for builds with a network.
 void add_servers_options(CLI::App* command, ServersOptions* options);
-// --side-by-side, of builds with the reference.
+// --side-by-side, for builds with the reference.
 void add_side_by_side_option(CLI::App* command, SideBySideOptions* options);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// pocketray plan: the effects a scene calls for, the memory map, and why.
+// pocketray plan: shows the effects a scene needs, why, and its memory map.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -61,10 +61,10 @@ int run(const CommonOptions& options, bool prices) {
 void add_plan_command(CLI::App* program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto prices = std::make_shared<bool>(false);
-  CLI::App* command = program->add_subcommand("plan", "show which effects a scene calls for, the memory map, and why");
+  CLI::App* command = program->add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
   add_scene_options(command, options.get());
-  command->add_option("--json", options->json, "also write it as JSON to FILE, or - for standard output");
-  command->add_flag("--prices", *prices, "also render it, and print what each effect costs on this machine");
+  add_json_option(command, &options->json);
+  command->add_flag("--prices", *prices, "also render it and print the cost of each effect on this machine");
   command->callback([=] { *exit_status = run(*options, *prices); });
 }
 

@@ -1,4 +1,4 @@
-// pocketray render: one frame or a sequence, into files.
+// pocketray render: renders a frame or a sequence into files.
 #include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cmath>
@@ -82,7 +82,7 @@ std::string numbered_path(const std::string& path, std::uint32_t number) {
   return path.substr(0, dot) + digits + path.substr(dot);
 }
 
-// Scales an AOV so that a picture of levels shows it: radiance formats keep the values.
+// Scales an AOV to display levels; formats of radiance keep the values.
 void fit_for_levels(Aov aov, const std::string& path, Renderer* renderer) {
   if (aov == Aov::none || has_suffix(path.c_str(), ".pfm")) return;
   renderer->exposure = 1;
@@ -100,12 +100,12 @@ void fit_for_levels(Aov aov, const std::string& path, Renderer* renderer) {
 struct Job {
   RenderOptions options;
   Sequence sequence;
-  std::vector<std::string> paths;  // a picture each
+  std::vector<std::string> paths;  // one per picture
   Aov aov;
   PictureOptions picture;
   Servers* servers = nullptr;
   Budget* budget = nullptr;
-  std::uint8_t* page = nullptr;  // the frame packed, where there is a budget: that is part of its time
+  std::uint8_t* page = nullptr;  // the packed frame, for --budget-ms: packing is part of the frame time
   CameraControl camera;          // for --orbit
 };
 
@@ -118,18 +118,18 @@ Status render_with_servers(Renderer* renderer, const Job& job, double seconds, s
   RETURN_IF_ERROR(servers.begin_frame(job.servers, renderer, seconds));
   do {
     if (servers.state(*job.servers).cut_off)
-      return failure("no server sends rows, and this device has no room for the scene: start one, or raise --memory");
+      return failure("no server answers, and the scene does not fit in --memory: start a server, or raise --memory");
     *complete = servers.advance_frame(job.servers, renderer, clock_ns() + kProgressNs, &interrupted);
     ServersState state = servers.state(*job.servers);
     if (state.disputed)
-      return failure("the frame is not kept: two of the servers disagree about its pixels (--verify 0 does not ask)");
+      return failure("frame discarded: two servers disagree about its pixels (--verify 0 skips the check)");
     show_progress(progress, rows_before + state.rows_done);
   } while (!*complete && !interrupted);
   renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();
 }
 
-// Renders row by row bands, so that progress can be shown and an interrupt loses no more than a frame.
+// Renders in bands of rows, to show progress and to lose at most a frame when interrupted.
 Status render_with_progress(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress,
                             bool* complete) {
   double seconds =
@@ -161,7 +161,7 @@ void pack_page(Renderer* renderer, const Job& job) {
   wait_for_pace(&renderer->pace, 0, start);
 }
 
-// A lone frame is rendered until its settings are settled; one of a sequence once.
+// Renders a single frame until its settings settle, a frame of a sequence once.
 Status render_budgeted(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
   constexpr int kSettleFrames = 12;
   RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
@@ -220,12 +220,12 @@ void print_summary(const Job& job, const Renderer& renderer, std::size_t file_co
   }
   std::printf("%s: %u×%u, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s%s\n", last.c_str(),
               renderer.settings.width, renderer.settings.height, grouped(triangle_count(job.servers, renderer)).c_str(),
-              trace_ms / static_cast<double>(file_count), file_count > 1 ? " a frame" : "", trace_ms * 1e6 / pixels,
+              trace_ms / static_cast<double>(file_count), file_count > 1 ? " per frame" : "", trace_ms * 1e6 / pixels,
               renderer.settings.threads, renderer.settings.threads == 1 ? "" : "s",
               emulation_text(renderer.pace).c_str());
   Tracer counts = total_counts(renderer);
   if (counts.rays_left_out)
-    std::printf("  %s rays left out; what they could have added stays below %.2g of a displayed level\n",
+    std::printf("  %s rays skipped, which could change a sample by at most %.2g of a display level in total\n",
                 grouped(counts.rays_left_out).c_str(),
                 static_cast<double>(counts.left_out_max * renderer.exposure) * 255 * 12.92);
 }
@@ -234,24 +234,25 @@ void print_share(const Servers& servers) {
   ServersTotals t = servers.backend->totals(servers);
   if (t.frames == 0) return;
   double rows = static_cast<double>(t.device_rows + t.server_rows), frames = static_cast<double>(t.frames);
-  std::printf("  shared: the device rendered %.0f %% of the rows, servers sent %.1f kB a frame",
+  std::printf("  render servers: the device rendered %.0f %% of the rows, servers sent %.1f kB per frame",
               100 * static_cast<double>(t.device_rows) / rows, static_cast<double>(t.bytes_in) * 1e-3 / frames);
-  if (t.local_ns > 0) std::printf("; %.2f times as fast as alone, as predicted", t.local_ns / t.known_ns);
+  if (t.local_ns > 0) std::printf("; predicted %.2f times as fast as the device alone", t.local_ns / t.known_ns);
   if (t.checked > 0)
-    std::printf("; %.1f of their %s a frame checked: one wrong row in each would have been found with %.4g %%",
-                static_cast<double>(t.checked) / frames, t.checks_rows ? "rows" : "pixels", 100 * t.caught_row);
-  std::printf("; the last frame:\n");
+    std::printf(
+        "; %.1f of their %s per frame checked, which catches one wrong row per frame with a probability of %.4g %%",
+        static_cast<double>(t.checked) / frames, t.checks_rows ? "rows" : "pixels", 100 * t.caught_row);
+  std::printf("; last frame:\n");
   HudText lines;
   servers.backend->write_lines(servers, false, &lines);
   for (int i = 0; i < lines.line_count; ++i) std::printf("    %s\n", lines.lines[i]);
 }
 
-// Pictures that servers cannot send are for the device alone.
+// Refuses pictures that servers cannot send.
 Status check_shareable(const RenderOptions& o, Aov aov) {
   if (o.servers.addresses.empty()) return success();
-  if (aov != Aov::none) return failure("--server sends colours alone: leave it out, or --aov");
+  if (aov != Aov::none) return failure("--server sends only colours: drop --server or --aov");
   if (has_suffix(o.output.c_str(), ".pfm"))
-    return failure("--server sends displayed levels and .pfm takes radiance: leave it out, or write .png or .ppm");
+    return failure("--server sends display levels but .pfm stores radiance: drop --server, or write .png or .ppm");
   return success();
 }
 
@@ -268,21 +269,22 @@ Status start_servers_for(const RenderOptions& o, Renderer* renderer, Job* job) {
   return success();
 }
 
-// Pictures of a budget are packed as a screen takes them, as part of the frame.
+// With a budget, packing for the screen is part of the frame.
 std::size_t budget_bytes(const Settings& settings) {
   return picture_bytes(settings) + arena_need(std::size_t(settings.width) * settings.height * 4);
 }
 
 Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
-  if (o.orbit_degrees != 0 && o.frames.empty()) return failure("--orbit turns from frame to frame: add --frames 0:359");
+  if (o.orbit_degrees != 0 && o.frames.empty())
+    return failure("--orbit turns the camera from frame to frame: add --frames 0:359");
   if (o.budget.ms == 0) return success();
   if (!o.servers.addresses.empty())
-    return failure("--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
-  if (aov != Aov::none) return failure("--budget-ms is for colours: leave it out, or --aov");
+    return failure("--budget-ms changes settings per frame and servers cannot: drop --budget-ms or --server");
+  if (aov != Aov::none) return failure("--budget-ms renders only colours: drop --budget-ms or --aov");
   return success();
 }
 
-// Opens the scene for the device alone, with a budget.
+// Opens the scene with a budget, without servers.
 Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget* budget) {
   OpenFront front;
   RETURN_IF_ERROR(open_scene_with_front(o.common, {o.budget.front}, budget_bytes, opened, &front));
@@ -302,7 +304,7 @@ Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget
   return success();
 }
 
-// That each picture can be written, before the first is rendered.
+// Checks that each picture can be written, before rendering the first.
 Status check_paths(const RenderOptions& o, Job* job) {
   RETURN_IF_ERROR(check_picture_path(o.output));
   const Sequence& s = job->sequence;
@@ -396,7 +398,7 @@ int run(const RenderOptions& options) {
 void add_render_command(CLI::App* program, const OptionalParts& parts, int* exit_status) {
   auto o = std::make_shared<RenderOptions>();
   o->parts = parts;
-  CLI::App* command = program->add_subcommand("render", "render a frame or a sequence into files");
+  CLI::App* command = program->add_subcommand("render", "render a frame or a sequence to files");
   add_scene_options(command, &o->common);
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
@@ -404,20 +406,22 @@ void add_render_command(CLI::App* program, const OptionalParts& parts, int* exit
       ->add_option("-o,--output", o->output,
                    "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")
       ->capture_default_str();
-  command->add_option("--frames", o->frames, "a sequence, first:last; files are numbered: out-0000.png …");
-  command->add_option("--time", o->seconds, "seconds into the animation, for a single frame")->capture_default_str();
-  command->add_option("--orbit", o->orbit_degrees, "degrees that the camera goes on around its target in a frame")
+  command->add_option("--frames", o->frames, "render a sequence, FIRST:LAST, into numbered files: out-0000.png …");
+  command->add_option("--time", o->seconds, "animation time in seconds, for a single frame")->capture_default_str();
+  command->add_option("--orbit", o->orbit_degrees, "degrees that the camera orbits its target per frame")
       ->capture_default_str();
-  command->add_option("--aov", o->aov, "instead of colour: depth, normal, triangle or cost (.pfm keeps the values)")
-      ->capture_default_str();
-  command->add_option("--rotate", o->rotation, "turn .raw pictures clockwise: 0, 90, 180 or 270")
-      ->capture_default_str();
-  command->add_flag("--dither", o->dither, "ordered dither in .raw pictures");
   command
-      ->add_option("--raw-format", o->raw_format, "pixels of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")
+      ->add_option("--aov", o->aov, "write depth, normal, triangle or cost instead of colour (.pfm keeps the values)")
+      ->capture_default_str();
+  command->add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")
+      ->capture_default_str();
+  command->add_flag("--dither", o->dither, "apply ordered dithering to .raw pictures");
+  command
+      ->add_option("--raw-format", o->raw_format,
+                   "pixel format of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")
       ->capture_default_str();
   command->add_flag("--plan", o->plan, "also print the effect plan and the memory map");
-  command->add_option("--json", o->common.json, "also write figures as JSON to FILE, or - for standard output");
+  add_json_option(command, &o->common.json);
   command->callback([=] { *exit_status = run(*o); });
 }
 

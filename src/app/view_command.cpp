@@ -1,4 +1,4 @@
-// pocketray view: the scene on a screen, moved by buttons. Coarse first, then refined; input never waits.
+// pocketray view: shows a scene on a screen, moved by buttons: coarse first, then refined. Input never waits.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <thread>
@@ -16,7 +16,7 @@
 namespace pocketray {
 namespace {
 
-// Loads and builds on another thread while the screen says so.
+// Loads and builds on another thread while the screen shows a message.
 struct Loading {
   std::unique_ptr<OpenScene> opened = std::make_unique<OpenScene>();
   Status status;
@@ -37,7 +37,7 @@ struct Loading {
   ~Loading() { thread.join(); }
 };
 
-// Shows the viewer's waiting screen until the scene is there. False: the user left before.
+// Shows the waiting screen until the scene is loaded. False if the user quit first.
 bool wait_for(Viewer* viewer, Loading* loading) {
   while (!loading->done) {
     if (!show_waiting(viewer, "loading") || interrupted) return false;
@@ -54,7 +54,7 @@ struct ViewCommand {
   OptionalParts parts;
 };
 
-// Shows what was loaded until the user leaves, or it is to be loaded anew.
+// Shows the loaded scene until the user quits or a reload is due.
 Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* again) {
   Renderer* renderer = &loading.opened->renderer;
   print_notes(*loading.opened);
@@ -79,7 +79,7 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   return status;
 }
 
-// Loads the scene, tells the news about it, shows it. False: the user left while it was loading.
+// Loads and shows the scene, with news as a message. False if the user quit while it was loading.
 bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer, Status* status, bool* again) {
   watch_scene(viewer);
   Loading loading(o.common, o.budget, viewer);
@@ -93,13 +93,13 @@ bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer
   return true;
 }
 
-// A scene that took another's place by being dropped on the window, and cannot be loaded, leaves it to that one. Any
-// other keeps the last picture and waits. False: there is nothing to keep, or the user left.
+// Recovers from a scene that failed to load: goes back to the previous one if it was dropped on the window, otherwise
+// keeps the last picture and waits for another. False if there is no picture to keep or the user quit.
 bool goes_on_without(const Status& status, std::string* previous, std::string* news, ViewCommand* o, Viewer* viewer) {
   if (!viewer->has_picture) return false;
   std::string why = status.message;
   if (previous->empty()) {
-    why += "; the last picture stays, and the file is tried again when it changes";
+    why += "; keeping the last picture until the file changes";
     tell(viewer, why.c_str());
     return wait_for_another(viewer, why.c_str());
   }
@@ -109,8 +109,8 @@ bool goes_on_without(const Status& status, std::string* previous, std::string* n
   return true;
 }
 
-// One scene after the other. A scene's block is given back before the next one is loaded: a device has no room for two.
-// So the scene is gone where the next one turns out to be broken; its picture stays until there is another.
+// Shows one scene after another. A scene's memory is freed before the next one loads, since a device has no room for
+// two; if the next one is broken, only the last picture remains until another loads.
 Status view_scenes(ViewCommand* o, Viewer* viewer) {
   std::string previous, news;
   Status status;
@@ -118,7 +118,7 @@ Status view_scenes(ViewCommand* o, Viewer* viewer) {
     again = false;
     status = success();
     if (!load_and_show(*o, news, viewer, &status, &again)) break;
-    news = o->common.scene + " is loaded again";
+    news = o->common.scene + " reloaded";
     if (status.ok)
       previous.clear();
     else
@@ -133,14 +133,13 @@ Status view_scenes(ViewCommand* o, Viewer* viewer) {
   return status;
 }
 
-// Whether the options go together.
+// Refuses options that exclude each other, and creates the folder for screenshots.
 Status check_options(const ViewCommand& o) {
   if (!o.servers.addresses.empty()) {
     if (o.budget.ms > 0)
-      return failure(
-          "--budget-ms changes settings from frame to frame and servers keep them: leave it out, or --server");
+      return failure("--budget-ms changes settings per frame and servers cannot: drop --budget-ms or --server");
     if (!o.side_by_side.reference.empty())
-      return failure("--side-by-side shows the reference of what is rendered here alone: leave it out, or --server");
+      return failure("--side-by-side works only without render servers: drop --side-by-side or --server");
   }
   bool asked = o.view.screenshot_folder != ViewOptions().screenshot_folder;
   return asked ? make_output_folder(o.view.screenshot_folder) : success();
@@ -175,32 +174,31 @@ void add_view_command(CLI::App* program, const OptionalParts& parts, int* exit_s
   o->parts = parts;
   o->view.has_reference = parts.side_by_side != nullptr;
   CLI::App* command =
-      program->add_subcommand("view", "show a scene in the emulator's window, or on the framebuffer of a device");
+      program->add_subcommand("view", "show a scene in the emulator's window or on a device's framebuffer");
   add_scene_options(command, &o->common);
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
   if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);
   command
       ->add_option("--screen", o->view.backend,
-                   "sdl2 (window), linux (framebuffer), null (none, for tests); auto picks a window or the "
-                   "framebuffer, whichever is there")
+                   "sdl2 (window), linux (framebuffer), null (none, for tests) or auto (a window or the framebuffer, "
+                   "whichever is available)")
       ->capture_default_str();
-  command->add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the usual one");
-  command->add_option("--rotate", o->view.rotation, "turn the picture clockwise: 0, 90, 180 or 270")
+  command->add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the default");
+  command->add_option("--rotate", o->view.rotation, "rotate the picture clockwise: 0, 90, 180 or 270")
       ->default_str("0, or the device's");
-  command->add_option("--scale", o->view.scale, "window pixels per pixel; 0: as many as fit")->capture_default_str();
-  command->add_flag("--dither", o->view.dither, "ordered dither, for screens of 16 bits");
-  command->add_option("--frames", o->view.frame_count, "show so many finished frames, then leave; 0: until quit")
+  command->add_option("--scale", o->view.scale, "window pixels per picture pixel; 0: the most that fit")
       ->capture_default_str();
-  command->add_option("--screenshots", o->view.screenshot_folder, "folder where screenshots go, made if missing")
+  command->add_flag("--dither", o->view.dither, "apply ordered dithering on 16-bit screens");
+  command->add_option("--frames", o->view.frame_count, "exit after N frames; 0: run until quit")->capture_default_str();
+  command->add_option("--screenshots", o->view.screenshot_folder, "folder for screenshots; created if missing")
       ->capture_default_str();
-  command->footer(
-      std::string(
-          "Keys: arrows turn, A/B (X, Z) nearer and farther, L/R (Q, W) sideways, select changes between orbit and "
-          "fly,\nstart goes back to the scene's camera, page up and down along the front of --budget-ms (start: as the "
-          "budget has it),\n") +
-      (parts.side_by_side ? "V shows the reference of --side-by-side or not, " : "") +
-      "X pauses, Y or F1 shows the display,\nF12 saves a screenshot, F5 reloads, Esc leaves.");
+  command->footer(std::string("Keys: arrows turn, A/B (X, Z) move closer and away, L/R (Q, W) sideways, select "
+                              "switches between orbit and fly,\n"
+                              "start restores the scene's camera, page up/down step through the settings of "
+                              "--budget-ms (start: automatic),\n") +
+                  (parts.side_by_side ? "V toggles the reference of --side-by-side, " : "") +
+                  "X pauses, Y or F1 toggles the overlay,\nF12 saves a screenshot, F5 reloads, Esc quits.");
   command->callback([=] { *exit_status = run(*o); });
 }
 

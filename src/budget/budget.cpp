@@ -19,7 +19,7 @@ namespace {
 constexpr double kGuessDoubt = 4, kElsewhereDoubt = 1.5, kMeasuredDoubt = 1.25;
 constexpr double kPriceTolerance = 1.2;
 
-// What is known of the scene: the file named, else what the cache has of it, else the ladder.
+// The scene's front: from the named file, else from the cache, else the ladder.
 Status load_front(const Renderer& renderer, const FrontSource& source, const ContentHash* identity, OpenFront* f) {
   bool there;
   if (!source.file.empty()) {
@@ -27,19 +27,19 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
     f->is_whole = true;
     RETURN_IF_ERROR(read_front(f->path, &f->front, &there));
     if (!there && !source.may_be_new)
-      return failure("--front is %.300s: there is no such file; `pocketray bench SCENE --front FILE` makes one",
+      return failure("--front is %.300s: no such file; create one with `pocketray bench SCENE --front FILE`",
                      f->path.c_str());
     std::string folder = f->path.substr(0, f->path.rfind('/') + 1);
     if (!there && !folder.empty() && platform::file_stamp(folder.c_str()) == 0)
-      return failure("--front is %.300s: there is no such folder; make it, or name another", f->path.c_str());
+      return failure("--front is %.300s: no such folder; create it, or name another", f->path.c_str());
     f->file = there ? f->front : builtin_front();
   } else if (identity) {
     f->path = front_path(f->scene, *identity, machine_name(renderer.pace.device, renderer.settings.threads));
-    if (f->path.empty()) f->notes.push_back("neither XDG_CACHE_HOME nor HOME names a folder: prices are not kept");
+    if (f->path.empty()) f->notes.push_back("prices are not saved: set XDG_CACHE_HOME or HOME to a folder");
     Status status = read_front(front_path(f->scene, *identity), &f->front, &there);
-    if (!status.ok) f->notes.push_back(std::string(status.message) + "; it is not used");
+    if (!status.ok) f->notes.push_back(std::string(status.message) + "; ignoring it");
     status = read_front(f->path, &f->measured, &there);
-    if (!status.ok) f->notes.push_back(std::string(status.message) + "; prices are measured anew");
+    if (!status.ok) f->notes.push_back(std::string(status.message) + "; measuring prices again");
   }
   f->is_guess = f->front.count == 0;
   if (f->is_guess) f->front = builtin_front();
@@ -51,7 +51,7 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
   return success();
 }
 
-// Plans with the most points per area light that fit; what asks for more is left out.
+// Plans with the most points per area light that fit; drops candidates that need more.
 Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
   renderer->settings.points_per_area_light = 1;
@@ -77,11 +77,11 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t o
   }
   if (left_out > 0)
     f->notes.push_back(std::to_string(left_out) + " of " + std::to_string(all.count) +
-                       " candidates of the front do not fit the memory: a larger --memory holds them");
+                       " candidates of the front do not fit in memory: raise --memory to use them");
   return success();
 }
 
-// Without errors, which the scene's front has: no price is left out for another's sake.
+// Drops the errors, which the scene's front holds, so that no candidate is dominated and every price is saved.
 Front prices_alone(Front front) {
   for (std::uint32_t i = 0; i < front.count; ++i) front.candidates[i].flip = kErrorUnknown;
   return front;
@@ -101,7 +101,7 @@ Status open_scene_with_front(const CommonOptions& common, const FrontSource& fro
   hooks.loaded = [&](const SceneSource& source, Renderer* renderer) {
     if (!from.file.empty()) return success();
     identified = identify_scene(source, renderer, &identity).ok;
-    if (!identified) f->notes.push_back("there is no room to name the scene by its content: its prices are not kept");
+    if (!identified) f->notes.push_back("prices are not saved: too little memory to identify the scene by its content");
     return success();
   };
   hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, std::size_t bytes) {
@@ -196,7 +196,7 @@ Status finish_budget(const Budget& budget) {
   }
   sort_by_price(&learnt);
   Status status = cache_front(budget.front.path, prices_alone(learnt));
-  if (!status.ok) std::fprintf(stderr, "pocketray: %s; prices are not kept\n", status.message);
+  if (!status.ok) std::fprintf(stderr, "pocketray: %s; prices are not saved\n", status.message);
   return success();
 }
 
@@ -235,7 +235,7 @@ Json budget_json(const Budget& budget) {
     char quality[kFrontLineMax];
     format_quality(c, quality, sizeof quality);
     candidates.push_back({{"settings", quality},
-                          {"flip", c.flip},  // null where it was not measured
+                          {"flip", c.flip},  // null if not measured
                           {"ns_per_pixel", learnt_price(budget.governor, i)},
                           {"frames", budget.uses[i]}});
   }
@@ -259,7 +259,8 @@ void print_budget(const Budget& budget, bool last_alone) {
   char quality[kFrontLineMax], change[kFrontLineMax];
   format_quality(chosen, quality, sizeof quality);
   describe_change(best, chosen, change, sizeof change);
-  std::printf("  %.7g ms: %s: expected ꟻLIP %s; gave up: %s\n", budget.ms, quality, error_text(chosen).c_str(), change);
+  std::printf("  %.7g ms: %s: expected ꟻLIP %s; traded away: %s\n", budget.ms, quality, error_text(chosen).c_str(),
+              change);
   Range range;
   if (!budget.frame_ms.empty()) {
     std::vector<double> sorted = budget.frame_ms;
@@ -268,7 +269,7 @@ void print_budget(const Budget& budget, bool last_alone) {
   std::printf("  %.1f %% of %u frame%s within 110 %%, median %.1f ms, longest %.1f ms; %u change%s of settings\n",
               100.0 * (budget.frames - budget.late) / budget.frames, budget.frames, budget.frames == 1 ? "" : "s",
               range.median, range.max, g.switch_count, g.switch_count == 1 ? "" : "s");
-  if (budget_too_small(g)) std::printf("  even the fastest settings of the front take longer than the budget\n");
+  if (budget_too_small(g)) std::printf("  even the fastest settings of the front exceed the budget\n");
 }
 
 }  // namespace pocketray

@@ -1,5 +1,5 @@
-// A time budget for frames: opens a scene with all that its front may ask for, picks settings frame by frame, and keeps
-// what was learnt of prices.
+// A time budget for frames: opens a scene with memory for its front, picks settings frame by frame and saves the prices
+// it measured.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,69 +15,69 @@ namespace pocketray {
 constexpr double kBudgetMsMin = 0.001, kBudgetMsMax = 1e7;
 
 struct BudgetOptions {
-  double ms = 0;      // a frame; 0: no budget
+  double ms = 0;      // per frame; 0: no budget
   std::string front;  // a file; empty: the scene's in the cache
 };
 
-// What there is to choose from for a scene that is open.
+// The settings to choose from for an open scene.
 struct OpenFront {
   Front front;
-  Front measured;           // of these the prices that were measured on this machine
-  Front file;               // where is_whole: what is to stand in the file, all of it
-  EffectMask effects = 0;   // that are on: two candidates of the file may be one to the scene
-  std::string scene, path;  // where prices are kept; empty: nowhere
-  bool is_whole = false;    // the file is the front itself, not prices alone
-  bool is_guess = false;    // nothing was ever measured: prices are those of the ladder
-  bool is_priced = false;   // by `measured`, at least in part
+  Front measured;           // the prices measured on this machine
+  Front file;               // if is_whole: all contents of the file
+  EffectMask effects = 0;   // effects that are on; candidates that differ only in others are equal here
+  std::string scene, path;  // where prices are saved; empty: nowhere
+  bool is_whole = false;    // the file holds the whole front, not only prices
+  bool is_guess = false;    // nothing measured yet: prices are those of the ladder
+  bool is_priced = false;   // some prices come from `measured`
   std::vector<std::string> notes;
 };
 void print_notes(const OpenFront& front);  // one line each, on stderr
 
 struct FrontSource {
   std::string file;         // empty: the cache
-  bool may_be_new = false;  // the file need not be there yet
+  bool may_be_new = false;  // the file need not exist yet
 };
-// Opens the scene, ready for rendering, with memory for the dearest candidate; those that do not fit are left out, with
-// a note.
+// Opens the scene, ready for rendering, with memory for the most expensive candidate. Drops candidates that do not fit,
+// with a note.
 Status open_scene_with_front(const CommonOptions& common, const FrontSource& source,
                              const std::function<std::size_t(const Settings&)>& output_bytes, OpenScene* opened,
                              OpenFront* front);
-// The file of a front that is whole with other prices; it keeps all its candidates, whatever this scene ignores and
-// this memory holds. What `priced` lacks follows the others.
+// The whole front with the prices of `priced`. Keeps every candidate, even those this scene ignores or this memory
+// cannot hold; prices missing in `priced` are scaled along with the others.
 Front with_prices(const OpenFront& front, const Front& priced);
-// Keeps what was measured: in the front's file with what was not, or as the prices of this machine.
+// Saves the measured prices: in the front's file if that is whole, otherwise as this machine's prices.
 Status keep_measured(const OpenFront& front, const Front& measured);
 
 struct Budget {
   OpenFront front;
   Governor governor;
   double ms = 0;
-  bool pinned = false;                 // the candidate was chosen by hand
-  std::uint32_t previous = 0;          // candidate, to say what a change gave up
+  bool pinned = false;                 // the user chose the candidate
+  std::uint32_t previous = 0;          // previous candidate, for reporting what a change trades
   std::uint32_t frames = 0, late = 0;  // late: beyond 110 %
   std::uint32_t last = 0;              // candidate of the last frame
   std::uint32_t uses[kFrontCandidateMax] = {};
-  std::vector<double> frame_ms;  // of the first ones, as many as there was room for
+  std::vector<double> frame_ms;  // of the first frames, up to the reserved count
 };
 
-// With the scene open. `frame_count`: frames whose times are to be kept.
+// Call with the scene open. Records the times of the first `frame_count` frames.
 void start_budget(const BudgetOptions& options, const OpenFront& front, const Renderer& renderer,
                   std::size_t frame_count, Budget* budget);
-// Before a frame: chooses, and changes the renderer's settings. Allocates nothing.
+// Call before a frame: chooses settings and applies them to the renderer. Allocates nothing.
 Status begin_budget_frame(Budget* budget, Renderer* renderer);
-// Goes so many candidates along the front, up being more accurate, and stays there, whatever frames take; 0 leaves the
-// choice to the budget again.
+// Moves `steps` candidates along the front, positive being more accurate, and pins that candidate whatever frames take;
+// 0 hands the choice back to the budget.
 void move_along_front(Budget* budget, int steps);
-// After it: `ns` from the frame's preparation until its pixels are packed.
+// Call after a frame. `ns`: time from the frame's preparation until its pixels are packed.
 void end_budget_frame(Budget* budget, std::uint64_t ns);
-// Afterwards: keeps prices that were wrong by more than a fifth, or of which there were none. Fails where a file was
-// named for them; a cache that cannot be written to is worth a line on standard error.
+// Saves prices that were missing or wrong by more than a fifth. Fails if a named file cannot be written; if only the
+// cache cannot, prints a note on stderr.
 Status finish_budget(const Budget& budget);
 
-// What the present settings are, what they gave up and gained, for a display over the picture. Allocates nothing.
+// The current settings and what they trade, for the overlay. Allocates nothing.
 void write_budget_lines(const Budget& budget, HudText* text);
-// Lines for people: what was chosen, for most frames or for the last one alone, what it gave up against the most
-// accurate, the error to expect.
+// Prints the settings chosen for most frames, or for the last one, what they trade against the most accurate, and the
+// expected error.
 void print_budget(const Budget& budget, bool last_alone);
 Json budget_json(const Budget& budget);
 std::string error_text(const Candidate& candidate);  // "0.0123", or "unknown"

@@ -20,7 +20,8 @@ std::string folder_of(const std::string& path) {
 
 std::string cache_folder(const std::string& scene) {
   const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache && *cache == '/') return std::string(cache) + "/pocketray";  // a relative one is to be ignored
+  if (cache && *cache == '/')
+    return std::string(cache) + "/pocketray";  // the XDG specification says to ignore relative paths
   const char* home = std::getenv("HOME");
   if (home && *home == '/') return std::string(home) + "/.cache/pocketray";
   return find_builtin(scene.c_str()) ? "" : folder_of(scene);
@@ -48,7 +49,7 @@ Status read_front(const std::string& path, Front* front, bool* there) {
   platform::FileError error;
   if (!platform::load_file(path.c_str(), &file, &error)) return failure("%.300s %s", path.c_str(), error.text);
   Status status = file.byte_count <= kFileBytesMax ? parse_front(file.bytes, file.byte_count, front)
-                                                   : failure("longer than %zu bytes: that is no front", kFileBytesMax);
+                                                   : failure("longer than %zu bytes: not a front file", kFileBytesMax);
   platform::unload_file(&file);
   return status.ok ? status : failure("%.200s: %.280s", path.c_str(), status.message);
 }

@@ -10,9 +10,9 @@ namespace pocketray {
 namespace {
 
 constexpr double kFrameNsMax = 2e9;
-constexpr std::uint32_t kFramesBetweenRounds = 5;  // what moves is seen at several times
+constexpr std::uint32_t kFramesBetweenRounds = 5;  // samples several times of an animation
 
-// A frame as render and view count it.
+// Times a frame as render and view do.
 Status time_frame(Renderer* renderer, double seconds, void* page, double* ns) {
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
@@ -25,7 +25,7 @@ Status time_frame(Renderer* renderer, double seconds, void* page, double* ns) {
 
 Status measure_round(Renderer* renderer, const Front& front, std::uint32_t round, void* page, FrontPrices* p) {
   double seconds = round * kFramesBetweenRounds / static_cast<double>(renderer->scene.info.frames_per_second);
-  double ns = 0, price = 0;  // of the one before
+  double ns = 0, price = 0;  // of the previous candidate
   for (std::uint32_t i = 0; i < front.count; ++i) {
     const Candidate& c = front.candidates[i];
     bool known_long = round > 0 && p->ns_per_pixel[i].empty();
@@ -84,7 +84,7 @@ Front measured_front(const Front& front, FrontPrices* p) {
     c.ns_per_pixel = clamped_price(median);
     measured.candidates[measured.count++] = c;
   }
-  sort_by_price(&measured);  // what is dominated stays: its price is known all the same
+  sort_by_price(&measured);  // keeps dominated candidates: their prices are known all the same
   return measured;
 }
 

@@ -1,4 +1,4 @@
-// What the candidates of a front cost on this machine.
+// Measures the prices of a front on this machine.
 #pragma once
 #include <vector>
 
@@ -9,20 +9,20 @@ namespace pocketray {
 
 struct FrontPrices {
   std::uint32_t round_count = 0;
-  std::vector<double> ns_per_pixel[kFrontCandidateMax];  // one for each round; none: it takes too long to be measured
+  std::vector<double> ns_per_pixel[kFrontCandidateMax];  // one per round; empty: too slow to measure
 };
 
-// Room for so many rounds; nothing allocates afterwards.
+// Reserves room for `round_count` rounds; measuring allocates nothing.
 FrontPrices make_front_prices(const Front& front, std::uint32_t round_count);
-// Renders whole frames, packed for a screen of 16 bits, all candidates in turn in each round, so that what befalls the
-// machine befalls all of them. What would take longer than a few seconds a frame is left to follow by its stated price.
-// An emulated device's times are computed, not waited for. Ends early at an interrupt; a round that it
-// cuts short has times of its first candidates alone, which count, and is not counted itself.
+// Renders whole frames, packed for a 16-bit screen, with all candidates in turn in each round, so that disturbances hit
+// all alike. Candidates that would take more than a few seconds per frame are not measured; their stated prices scale
+// with the others. An emulated device's times are computed, not waited for. Ends early at an interrupt; times from an
+// unfinished round are used but the round is not counted.
 Status measure_front(Renderer* renderer, const Front& front, FrontPrices* prices);
-// What the frame arena must hold for it.
+// Bytes that measure_front() needs in the frame arena.
 std::size_t front_prices_bytes(const Settings& settings);
 
-// The candidates that were measured, with their medians. Sorts the prices.
+// The measured candidates with their median prices. Sorts the prices in place.
 Front measured_front(const Front& front, FrontPrices* prices);
 
 }  // namespace pocketray

@@ -18,11 +18,11 @@
 namespace pocketray {
 namespace {
 
-// Formats that assimp reads well; glTF and OBJ have readers of their own here.
+// Formats that assimp reads well; glTF and OBJ have their own readers here.
 const char* const kEndings[] = {"ply", "stl", "fbx", "dae", "3ds",  "off", "x",   "3mf", "blend",
                                 "lwo", "ac",  "ase", "b3d", "ms3d", "md2", "md3", "smd", "x3d"};
 
-// A file in memory. Some of assimp's readers never tire of reading at the end of a file that was cut: here they do.
+// A file in memory. Some of assimp's readers loop forever at the end of a truncated file; this stops them.
 class MemoryStream : public Assimp::IOStream {
  public:
   explicit MemoryStream(Bytes bytes) : bytes_(std::move(bytes)) {}
@@ -51,7 +51,7 @@ class MemoryStream : public Assimp::IOStream {
   int empty_reads_ = 0;
 };
 
-// Files beside the scene file, and no others.
+// Opens only files beside the scene file.
 class FilesBeside : public Assimp::DefaultIOSystem {
  public:
   FilesBeside(const std::string& scene_path, std::uint64_t byte_count_max)
@@ -84,7 +84,7 @@ struct AssimpReader {
   const aiScene* scene;
   SceneBuilder* builder;
   std::vector<std::uint32_t> materials;  // assimp index → scene index
-  bool own_normals;                      // take the file's
+  bool own_normals;                      // use the file's
 };
 
 MeshData convert(const AssimpReader& reader, const aiMesh& source) {
@@ -110,7 +110,7 @@ MeshData convert(const AssimpReader& reader, const aiMesh& source) {
     }
     if (source.HasVertexColors(0)) mesh.colors.push_back(assimp_color(source.mColors[0][i]));
   }
-  // A fan: assimp's own triangulation aborts on faces without corners.
+  // Triangulates as a fan: assimp's own triangulation aborts on faces without corners.
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
     const aiFace& face = source.mFaces[f];
     require_bytes(*reader.builder, mesh.indices.size() + 3 * static_cast<std::uint64_t>(face.mNumIndices), 4,
@@ -172,7 +172,7 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
   bool own_normals = ending != "stl";
   const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
   if (scene && scene->mRootNode) {
-    check_assimp_numbers(*scene, own_normals);  // vertices still bear the file's numbers
+    check_assimp_numbers(*scene, own_normals);  // vertices still hold the file's numbers
     scene = importer.ApplyPostProcessing(aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
   }
   if (!scene || !scene->mRootNode)
@@ -180,7 +180,7 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
   if (scene->HasAnimations()) note_unused(builder, "animation (use glTF)");
 
   AssimpReader reader = {scene, builder, {}, own_normals};
-  bool bare = ending == "ply" || ending == "stl" || ending == "off";  // no materials; assimp makes up one that shines
+  bool bare = ending == "ply" || ending == "stl" || ending == "off";  // no materials; assimp invents a shiny one
   for (unsigned i = 0; i < scene->mNumMaterials; ++i)
     reader.materials.push_back(bare ? add_default_material(builder)
                                     : add_assimp_material(builder, path, *scene, *scene->mMaterials[i]));

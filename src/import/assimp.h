@@ -1,4 +1,4 @@
-// What assimp reads: PLY, STL, FBX, COLLADA, … Built in where assimp is installed.
+// Formats read by assimp: PLY, STL, FBX, COLLADA, … Built in if assimp is installed.
 #pragma once
 #include "import/files.h"
 #include "import/scene_builder.h"

@@ -1,5 +1,5 @@
-// What assimp read is looked through before anything is made of it: a number that is not finite is refused by name, and
-// so is a face without corners, of which assimp's own later steps make an index below their tables.
+// Checks assimp's data before use: refuses non-finite numbers by name, and faces without corners, for which assimp's
+// later steps compute a negative index.
 #ifdef POCKETRAY_HAVE_ASSIMP
 
 #include <cmath>
@@ -18,8 +18,8 @@ constexpr float kFloatMax = std::numeric_limits<float>::max();
 void require(const float* values, unsigned count, float limit, const char* kind, const char* name, const char* what) {
   for (unsigned i = 0; i < count; ++i)
     if (!(std::fabs(values[i]) <= limit))
-      fail_import("%s '%.60s': %.60s is %g, no finite number of at most %g; mend it or export the file again", kind,
-                  name, what, static_cast<double>(values[i]), static_cast<double>(limit));
+      fail_import("%s '%.60s': %.60s is %g, not finite or beyond %g; fix it or export the file again", kind, name, what,
+                  static_cast<double>(values[i]), static_cast<double>(limit));
 }
 void require(const aiVector3D& v, float limit, const char* kind, const char* name, const char* what) {
   require(&v.x, 3, limit, kind, name, what);
@@ -29,7 +29,7 @@ void check_mesh(const aiMesh& mesh, bool own_normals) {
   auto check = [&](const float* values, unsigned count, unsigned vertex, float limit, const char* what) {
     for (unsigned i = 0; i < count; ++i)
       if (!(std::fabs(values[i]) <= limit))
-        fail_import("mesh '%.60s': the %s of vertex %u is not finite or beyond %g; mend it or export the file again",
+        fail_import("mesh '%.60s': the %s of vertex %u is not finite or beyond %g; fix it or export the file again",
                     mesh.mName.C_Str(), what, vertex, static_cast<double>(limit));
   };
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {

@@ -102,7 +102,7 @@ void add_camera(SceneBuilder* builder, const aiCamera& source, const Transform& 
   Vec3 forward = normalize(transform_vector(world, {l.x, l.y, l.z}));
   camera.target = camera.eye + forward;
   camera.up = normalize(transform_vector(world, {u.x, u.y, u.z}));
-  // Called half the horizontal angle in the header, the whole angle by the readers of COLLADA, FBX and 3DS.
+  // The header calls it half the horizontal angle, but the COLLADA, FBX and 3DS readers store the whole angle.
   double aspect = source.mAspect > 0 ? static_cast<double>(source.mAspect) : 4.0 / 3.0;
   double half = std::atan(std::tan(static_cast<double>(source.mHorizontalFOV) / 2) / aspect);
   camera.vertical_fov = static_cast<float>(2 * half);
@@ -112,7 +112,7 @@ void add_camera(SceneBuilder* builder, const aiCamera& source, const Transform& 
   builder->out->cameras.push_back(camera);
 }
 
-// World transform of the node that bears the light's or camera's name.
+// World transform of the node with the light's or camera's name.
 Transform world_of(const aiScene& scene, const aiString& name) {
   aiMatrix4x4 m;
   for (const aiNode* node = scene.mRootNode->FindNode(name); node; node = node->mParent) m = node->mTransformation * m;

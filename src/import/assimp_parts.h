@@ -15,8 +15,8 @@ std::uint32_t add_assimp_material(SceneBuilder* builder, const std::string& scen
                                   const aiMaterial& source);
 void add_assimp_lights_and_cameras(SceneBuilder* builder, const aiScene& scene);
 
-// Throws for a vertex, material, light, camera or node with a number that is not finite or too large, naming it. STL
-// files are full of normals that are no numbers, which nothing here reads: without `own_normals` they may be so.
+// Throws for a vertex, material, light, camera or node with a number that is not finite or too large, naming it.
+// Accepts such normals unless `own_normals`: STL files are full of NaN normals, which are not read.
 void check_assimp_numbers(const aiScene& scene, bool own_normals);
 
 }  // namespace pocketray

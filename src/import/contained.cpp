@@ -16,7 +16,7 @@
 #include "import/import_error.h"
 #include "scene/baked.h"
 
-// Sanitizers take address space by the terabyte; their runs go without a limit of memory.
+// Sanitizers reserve terabytes of address space, so their builds set no memory limit.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define POCKETRAY_ADDRESS_SPACE_IS_SHADOWED 1
 #elif defined(__has_feature)
@@ -28,9 +28,9 @@
 namespace pocketray {
 namespace {
 
-// What the child writes first; then the text (a warning, or what is wrong) and the baked scene.
+// Header of the child's result; the text (a warning or error) and the baked scene follow.
 struct ResultHeader {
-  std::uint32_t read;  // whether there is a scene
+  std::uint32_t read;  // 1 if a scene follows
   std::uint32_t text_bytes;
   std::uint64_t scene_bytes;
 };
@@ -78,8 +78,7 @@ void limit(int what, std::uint64_t value) {
   setrlimit(what, &now);
 }
 
-// The process may take so much more than it has; where nobody says what that is, or sanitizers take most of it, nothing
-// limits it.
+// Limits the process to `more_bytes` beyond its current memory; no limit if that is unknown or with sanitizers.
 void limit_memory([[maybe_unused]] std::uint64_t more_bytes) {
 #if !defined(POCKETRAY_ADDRESS_SPACE_IS_SHADOWED)
   unsigned long long pages = 0;
@@ -89,7 +88,7 @@ void limit_memory([[maybe_unused]] std::uint64_t more_bytes) {
 #endif
 }
 
-// The child has no say in the parent's affairs: its signals end it, nothing that it prints is seen, it leaves no core.
+// Isolates the child: default signal handlers, no output, no core file.
 void become_contained(const ContainerLimits& limits) {
   for (int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGXCPU})
     signal(signal_number, SIG_DFL);
@@ -127,13 +126,13 @@ bool read_and_send(int pipe, const std::function<void(ImportedScene*)>& read) {
   }
 }
 
-// False where the child did not come to its end.
+// False if the child did not finish.
 bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* header, std::string* text, Block* block) {
   if (!read_all(pipe, header, sizeof *header) || header->text_bytes > kTextBytesMax) return false;
   text->resize(header->text_bytes);
   if (!read_all(pipe, &(*text)[0], text->size())) return false;
   if (header->scene_bytes > limits.result_bytes_max)
-    fail_import("the scene would have %llu MiB; use a smaller model",
+    fail_import("the scene would take %llu MiB; use a smaller model",
                 static_cast<unsigned long long>(header->scene_bytes >> 20));
   *block = take_aligned(static_cast<std::size_t>(header->scene_bytes));
   return read_all(pipe, block->get(), static_cast<std::size_t>(header->scene_bytes));
@@ -145,12 +144,12 @@ bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* heade
     fail_import("reading it took more than %u seconds or too much memory; export the file again, or a smaller one",
                 limits.cpu_seconds);
   if (signal_number == SIGINT || signal_number == SIGTERM || signal_number == SIGHUP)
-    fail_import("reading it was interrupted; start again");
-  fail_import("it makes its reader crash (signal %d), so it is damaged or of an unknown kind; export the file again",
+    fail_import("reading was interrupted; start again");
+  fail_import("its reader crashed (signal %d), so it is damaged or of an unknown kind; export the file again",
               signal_number);
 }
 
-// A running child and the pipe from it; neither outlives this.
+// A running child and its pipe; the destructor ends both.
 struct Child {
   pid_t id = -1;
   int pipe = -1;
@@ -176,7 +175,7 @@ struct Child {
 void import_contained(const ContainerLimits& limits, const std::function<void(ImportedScene*)>& read,
                       ImportedScene* result) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail_import("no pipe to read it through: %s", std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0) fail_import("cannot create a pipe to read it: %s", std::strerror(errno));
   Child child;
   child.pipe = ends[0];
   child.id = fork();
@@ -187,7 +186,7 @@ void import_contained(const ContainerLimits& limits, const std::function<void(Im
   }
   int fork_error = errno;
   close(ends[1]);
-  if (child.id < 0) fail_import("no process to read it in: %s; try again", std::strerror(fork_error));
+  if (child.id < 0) fail_import("cannot create a process to read it: %s; try again", std::strerror(fork_error));
 
   ResultHeader header = {};
   std::string text;

@@ -16,16 +16,17 @@
 namespace pocketray {
 
 Bytes read_file(const std::string& path, std::uint64_t byte_count_max) {
-  // A pipe that takes the file's place would have open() wait for a writer; and what is examined is what is read.
+  // Non-blocking, since open() on a pipe would wait for a writer. Checks the open descriptor, so that the checked file
+  // is the one read.
   int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) fail_import("cannot read %s: %s; check its name and place", path.c_str(), std::strerror(errno));
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(fdopen(descriptor, "rb"), std::fclose);
   if (!file) close(descriptor);
   struct stat info;
   if (!file || fstat(descriptor, &info) != 0) fail_import("cannot read %s: %s", path.c_str(), std::strerror(errno));
-  if (!S_ISREG(info.st_mode)) fail_import("%s is no regular file; name a scene file", path.c_str());
+  if (!S_ISREG(info.st_mode)) fail_import("%s is not a regular file; name a scene file", path.c_str());
   if (static_cast<std::uint64_t>(info.st_size) > byte_count_max)
-    fail_import("%s has %lld bytes, more than the %llu a scene may take; use a smaller model", path.c_str(),
+    fail_import("%s has %lld bytes, more than the limit of %llu; use a smaller model", path.c_str(),
                 static_cast<long long>(info.st_size), static_cast<unsigned long long>(byte_count_max));
   Bytes bytes(static_cast<std::size_t>(info.st_size));
   std::size_t got = bytes.empty() ? 0 : std::fread(bytes.data(), 1, bytes.size(), file.get());

@@ -1,4 +1,4 @@
-// Bytes from files beside the scene file. Whatever a scene file names stays under its own folder.
+// Reads files beside the scene file. Names in a scene file cannot leave its folder.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,12 +8,11 @@ namespace pocketray {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// The whole file; its size is asked before memory is taken. Throws ImportError when it cannot be read or is larger than
-// `byte_count_max`.
+// Reads the whole file. Throws ImportError if it cannot be read or is larger than `byte_count_max`, before allocating.
 Bytes read_file(const std::string& path, std::uint64_t byte_count_max);
 
-// Path of the file that the scene file at `scene_path` calls `name`: relative, without "..", '\' taken as '/'.
-// Throws ImportError for anything else.
+// Path of the file `name` in the scene file at `scene_path`: relative, without "..", with '\' read as '/'. Throws
+// ImportError for any other name.
 std::string path_beside(const std::string& scene_path, const std::string& name);
 
 // A glTF URI's bytes: "data:…;base64,…" or a percent-encoded relative path.

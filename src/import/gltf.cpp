@@ -8,7 +8,7 @@ namespace {
 
 using MeshCache = std::map<int, std::vector<MeshData>>;
 
-// Meshes whose skin decides where they are; node transforms then do not count (sec. 3.7.3.3).
+// True if the skin places the mesh; node transforms are then ignored (sec. 3.7.3.3).
 bool is_skinned(const tinygltf::Node& node, const MeshData& mesh) {
   return node.skin >= 0 && !mesh.skin_weights.empty();
 }
@@ -30,7 +30,7 @@ void append_moving(GltfFile* file, int index, const MeshData& mesh, const Transf
   }
 }
 
-// What does not move is posed here, once and for all.
+// Static meshes are posed here, once.
 void append_placed(GltfFile* file, int index, MeshData mesh, const Transform& instance) {
   const tinygltf::Node& source = file->model.nodes[static_cast<std::size_t>(index)];
   const GltfNode& node = file->nodes[static_cast<std::size_t>(index)];

@@ -15,14 +15,14 @@
 
 namespace pocketray {
 
-// What is found out about a node of the default scene, or above a joint.
+// A node of the default scene or above a joint.
 struct GltfNode {
   bool visited = false;
   int parent = -1;
   Transform local, world;     // at rest
   bool moves = false;         // an animation moves it or a node above it
   bool weights_move = false;  // an animation sets its morph weights
-  int mover = -1;             // the nearest node at or above it that an animation has a channel for
+  int mover = -1;             // the nearest node at or above it with an animation channel
   bool exported = false;      // becomes a Node of the scene
   std::uint32_t out_node = kNone;
 };
@@ -48,12 +48,12 @@ struct GltfFile {
 // gltf.cpp: reads a .gltf or .glb into the builder.
 void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder);
 
-// gltf_parse.cpp: container, JSON, buffers; refuses required extensions that are not known.
+// gltf_parse.cpp: container, JSON, buffers; refuses unknown required extensions.
 void gltf_parse(GltfFile* file, Bytes bytes);
 // Bytes of a buffer view, checked. Throws for a view that leaves its buffer.
 const std::uint8_t* gltf_view(const GltfFile& file, int view_index, std::size_t* byte_count);
 
-// gltf_json.cpp: refuses, saying where, text that is no JSON, that nests too deeply, or with a number no float holds.
+// gltf_json.cpp: refuses invalid JSON, too deep nesting, or a number beyond float, saying where.
 void gltf_check_json(const std::string& text);
 
 // gltf_accessor.cpp: elements as floats (normalised integers expanded, sparse values applied), `components` each; fewer
@@ -80,7 +80,7 @@ std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 
 // gltf_node.cpp: visits the default scene; fills file->nodes and file->order.
 void gltf_visit_nodes(GltfFile* file);
-// Transforms EXT_mesh_gpu_instancing asks for; one identity without it.
+// Transforms of EXT_mesh_gpu_instancing; one identity without it.
 std::vector<Transform> gltf_instances(GltfFile* file, int node);
 // Translation, rotation and scale of a node without a matrix.
 Node gltf_node_trs(const GltfFile& file, int node);
@@ -89,7 +89,7 @@ std::string gltf_node_name(const GltfFile& file, int node);
 // Node → the node that moves it (its index in the scene to *out_node), or → the world (kNone).
 Transform gltf_fixed_part(const GltfFile& file, int node, std::uint32_t* out_node);
 
-// gltf_animation.cpp: finds out which nodes move; makes them, with all above them, nodes of the scene; adds the
+// gltf_animation.cpp: finds the nodes that move; makes them and their ancestors nodes of the scene; adds the
 // animations.
 void gltf_mark_movers(GltfFile* file);
 void gltf_export_nodes(GltfFile* file);

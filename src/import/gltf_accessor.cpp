@@ -45,7 +45,7 @@ int component_count(int type) {
     case TINYGLTF_TYPE_MAT4:
       return 16;
     default:
-      return 0;  // MAT2, MAT3: nothing here uses them
+      return 0;  // MAT2, MAT3: unused here
   }
 }
 
@@ -170,7 +170,7 @@ std::vector<float> gltf_floats(GltfFile* file, int index, int components, const 
     if (c >= components) return;
     float value = float_component(p, accessor.componentType, accessor.normalized);
     if (!(std::fabs(value) <= limit))
-      fail_import("%s: element %zu of accessor %d%s is %g, no finite number of at most %g; export the file again", what,
+      fail_import("%s: element %zu of accessor %d%s is %g, not finite or beyond %g; export the file again", what,
                   element, index, quoted(accessor.name).c_str(), static_cast<double>(value),
                   static_cast<double>(limit));
     values[element * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] = value;

@@ -62,14 +62,14 @@ void export_channel(GltfFile* file, const tinygltf::Animation& animation, const 
   SceneArrays& out = *file->builder->out;
   Channel channel = {};
   if (!target_path(*file, source, &channel.path))
-    return note_unused(file->builder, "animation of what is no node of the scene");
+    return note_unused(file->builder, "animation of nodes outside the scene");
   channel.node = file->nodes[static_cast<std::size_t>(source.target_node)].out_node;
   if (channel.node == kNone) return note_unused(file->builder, "animation of morph weights without targets");
   std::size_t width = channel.path == ChannelPath::rotation ? 4 : 3;
   if (channel.path == ChannelPath::weights) width = out.nodes[channel.node].weight_count;
   Keys keys = read_keys(file, animation, source.sampler, channel.path);
   if (!are_sound(keys, width))
-    return note_remark(file->builder, "an animation channel is left out: its keys are not in order or too few");
+    return note_remark(file->builder, "an animation channel is skipped: its keys are unordered or too few");
   charge_bytes(file->builder, (keys.times.size() + keys.values.size()) * sizeof(float), "the animation");
   channel.interpolation = keys.interpolation;
   channel.key_count = static_cast<std::uint32_t>(keys.times.size());
@@ -108,7 +108,7 @@ Quaternion quaternion_of(const Vec3& x, const Vec3& y, const Vec3& z) {
           static_cast<float>(q[3] / n)};
 }
 
-// A matrix as translation, rotation and scale; what shear it has is lost, with a remark.
+// Decomposes a matrix into translation, rotation and scale; shear is lost, with a remark.
 Node decomposed(GltfFile* file, const Transform& t) {
   Node node;
   node.translation = column(t, 3);
@@ -119,7 +119,7 @@ Node decomposed(GltfFile* file, const Transform& t) {
   node.rotation = quaternion_of(axis[0], axis[1], axis[2]);
   float shear = std::fmax(std::fabs(dot(axis[0], axis[1])),
                           std::fmax(std::fabs(dot(axis[1], axis[2])), std::fabs(dot(axis[2], axis[0]))));
-  if (shear > 1e-3f) note_remark(file->builder, "shear above an animated node is left out");
+  if (shear > 1e-3f) note_remark(file->builder, "shear above an animated node is ignored");
   return node;
 }
 
@@ -174,7 +174,7 @@ void gltf_mark_movers(GltfFile* file) {
 }
 
 void gltf_export_nodes(GltfFile* file) {
-  // What has a channel, and joints, with all that is above them.
+  // Nodes with a channel, and joints, with all their ancestors.
   for (auto index = file->order.rbegin(); index != file->order.rend(); ++index) {
     GltfNode& node = file->nodes[static_cast<std::size_t>(*index)];
     node.exported |= node.mover == *index;

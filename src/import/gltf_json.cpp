@@ -1,4 +1,4 @@
-// The JSON text of a glTF file, before anything is made of it: an error has a place in the document.
+// Checks the JSON text of a glTF file before use, so that errors name a place in the document.
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kJsonDepthMax = 64;  // tinygltf walks extras and extensions by recursion
 
-// Walks the document value by value and refuses the first that is none, or that no float holds.
+// Walks the document and refuses the first invalid value or number beyond float.
 class Checker {
  public:
   bool null() { return begin_value(); }
@@ -21,7 +21,7 @@ class Checker {
   bool number_float(double value, const std::string& text) {
     begin_value();
     if (!std::isfinite(static_cast<float>(value)) && !in_extras())
-      fail_import("%.200s is %.40s, larger than a float holds; mend that number or export the file again",
+      fail_import("%.200s is %.40s, larger than a float holds; fix that number or export the file again",
                   place().c_str(), text.c_str());
     return true;
   }
@@ -41,15 +41,15 @@ class Checker {
   bool end_array() { return end_level(); }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) {
     const char* end_of_id = std::strstr(error.what(), "] ");
-    fail_import("this is no valid JSON object, so no glTF, at %.200s: %.180s; export the file again",
-                place(true).c_str(), end_of_id ? end_of_id + 2 : error.what());
+    fail_import("not a valid JSON object, so not glTF, at %.200s: %.180s; export the file again", place(true).c_str(),
+                end_of_id ? end_of_id + 2 : error.what());
   }
 
  private:
   struct Level {
     bool is_array;
     std::size_t count;      // elements begun
-    std::string key, name;  // of an object: the member begun last, and what it is called
+    std::string key, name;  // of an object: its latest member, and its name
   };
   bool begin_value() {
     if (!levels_.empty() && levels_.back().is_array) ++levels_.back().count;
@@ -66,14 +66,14 @@ class Checker {
     levels_.pop_back();
     return true;
   }
-  // Programs keep what they like there; it is not read.
+  // Extras may hold anything and are not read.
   bool in_extras() const {
     for (const Level& level : levels_)
       if (level.key == "extras") return true;
     return false;
   }
-  // As /nodes/3/scale/0, of the value begun last or, where it could not even begin, of the `next`; and the innermost
-  // name known.
+  // A path like /nodes/3/scale/0 of the latest value, or of the `next` if that could not begin, and the innermost known
+  // name.
   std::string place(bool next = false) const {
     std::string path, name;
     for (const Level& level : levels_) {

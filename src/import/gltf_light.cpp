@@ -43,7 +43,7 @@ void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
     light.cos_inner = static_cast<float>(det_cos(inner));
   }
   out.lights.push_back(light);
-  out.info.auto_exposure = 1;  // candela and lux: no display is bright enough for the numbers as they are
+  out.info.auto_exposure = 1;  // candela and lux: the raw numbers are too bright for any display
 }
 
 void add_camera(GltfFile* file, int camera_index, int node_index) {

@@ -29,7 +29,7 @@ Vec3 color3(const std::vector<double>& values, const Vec3& fallback) {
 // The mean of a data texture's channel; 1 without the texture.
 float texture_mean(GltfFile* file, int texture, int channel, const char* name) {
   if (texture < 0) return 1;
-  note_remark(file->builder, std::string(name) + " textures count by their mean");
+  note_remark(file->builder, std::string(name) + " textures count only by their mean");
   return channel_mean(gltf_image(file, texture), channel);
 }
 
@@ -80,7 +80,7 @@ void read_emission(GltfFile* file, const tinygltf::Material& source, Material* m
   if (!is_zero(material->emission)) material->emission_texture = gltf_texture_use(file, source.emissiveTexture);
 }
 
-// The scene keeps one set of texture coordinates a vertex: the base colour's, else the emission's.
+// The scene keeps one set of texture coordinates per vertex: the base colour's, else the emission's.
 int choose_uv_set(GltfFile* file, const tinygltf::Material& source, Material* material) {
   int base = gltf_uv_set(source.pbrMetallicRoughness.baseColorTexture), emission = gltf_uv_set(source.emissiveTexture);
   bool has_base = material->diffuse_texture.texture != kNone,

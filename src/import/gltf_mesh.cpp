@@ -18,7 +18,7 @@ std::uint16_t to_u16(float value) {
   return value >= 1 ? 65535 : static_cast<std::uint16_t>(value * 65535.0f + 0.5f);
 }
 
-// Corner numbers of the triangles that `mode` makes of `count` corners (sec. 3.7.2.1).
+// Corner indices of the triangles that `mode` makes of `count` corners (sec. 3.7.2.1).
 std::vector<std::uint32_t> triangle_corners(int mode, std::size_t count) {
   std::vector<std::uint32_t> corners;
   std::uint32_t n = static_cast<std::uint32_t>(count);
@@ -86,7 +86,7 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* me
 void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
   int joints = attribute(primitive, "JOINTS_0"), weights = attribute(primitive, "WEIGHTS_0");
   if (joints < 0 || weights < 0) return;
-  if (attribute(primitive, "JOINTS_1") >= 0) note_unused(file->builder, "joints beyond four a vertex");
+  if (attribute(primitive, "JOINTS_1") >= 0) note_unused(file->builder, "more than four joints per vertex");
   std::vector<std::uint32_t> joint = gltf_uints(file, joints, 4, "JOINTS_0");
   std::vector<float> weight = gltf_floats(file, weights, 4, "WEIGHTS_0");
   require_count(joint.size() / 4, mesh->positions.size(), "JOINTS_0");
@@ -103,7 +103,7 @@ void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, Mes
       s.joint[k] = s.weight[k] > 0 ? static_cast<std::uint16_t>(joint[4 * i + k]) : std::uint16_t(0);
       sum += s.weight[k];
     }
-    // Weights that do not sum to one are scaled so that they do; a vertex without any follows its first joint.
+    // Weights are normalised to sum to one; a vertex without weights follows its first joint.
     if (!(sum > 0)) s.weight[0] = sum = 1;
     for (float& w : s.weight) w = w / sum;
   }

@@ -18,7 +18,7 @@ Quaternion unit_quaternion(const Quaternion& q, bool* valid) {
   double n = std::sqrt(static_cast<double>(q.x) * q.x + static_cast<double>(q.y) * q.y +
                        static_cast<double>(q.z) * q.z + static_cast<double>(q.w) * q.w);
   *valid = n > 0 && std::isfinite(n);
-  // A quaternion that is a unit one but for float rounding stays as it is, bit for bit.
+  // Keeps a quaternion that is of unit length up to float rounding bit for bit.
   if (!*valid || std::fabs(n - 1) < 1e-6) return q;
   return {static_cast<float>(q.x / n), static_cast<float>(q.y / n), static_cast<float>(q.z / n),
           static_cast<float>(q.w / n)};
@@ -97,7 +97,7 @@ Node gltf_node_trs(const GltfFile& file, int index) {
   bool valid;
   node.rotation = unit_quaternion(q, &valid);
   if (!valid)
-    fail_import("%s: its rotation is no quaternion; export the file again", gltf_node_name(file, index).c_str());
+    fail_import("%s: its rotation is not a quaternion; export the file again", gltf_node_name(file, index).c_str());
   return node;
 }
 
@@ -112,7 +112,7 @@ void gltf_visit_nodes(GltfFile* file) {
   file->nodes.assign(model.nodes.size(), GltfNode());
   std::vector<int> parents = parents_of(model);
   if (model.scenes.empty()) {
-    // Without a scene, every node that is nobody's child is a root.
+    // Without a scene, every node without a parent is a root.
     for (std::size_t i = 0; i < parents.size(); ++i)
       if (parents[i] < 0) visit_tree(file, static_cast<int>(i));
   } else {

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Implemented here or by their nature harmless to leave out.
+// Implemented here, or harmless to ignore.
 const char* const kKnownExtensions[] = {
     "KHR_texture_transform", "KHR_materials_transmission", "KHR_materials_ior",
     "KHR_materials_volume",  "KHR_materials_unlit",        "KHR_materials_emissive_strength",
@@ -34,7 +34,7 @@ std::string read_glb_chunks(GltfFile* file, const Bytes& bytes) {
   std::uint32_t version = little_endian_32(&bytes[4]), total = little_endian_32(&bytes[8]);
   if (version != 2) fail_import("the .glb has version %u, not 2; convert it to glTF 2.0", version);
   if (total > bytes.size() || total < 20)
-    fail_import("the .glb says it has %u bytes, but has %zu; copy the file again", total, bytes.size());
+    fail_import("the .glb states %u bytes but has %zu; copy the file again", total, bytes.size());
   std::string text;
   for (std::size_t at = 12, index = 0; at < total; ++index) {
     if (total - at < 8) fail_import("the .glb ends within a chunk header; copy the file again");
@@ -82,11 +82,11 @@ void check_version_and_extensions(GltfFile* file, const Json& root) {
         note_unused(file->builder, name.get<std::string>().substr(0, 100));
 }
 
-// Fetches the buffers; afterwards every buffer has at least the bytes it promises (sec. 3.6.1.1).
+// Fetches the buffers; afterwards every buffer has at least its stated bytes (sec. 3.6.1.1).
 void fetch_buffers(GltfFile* file, const Json& root) {
   const Json* buffers = member(root, "buffers");
   if (!buffers) return;
-  if (!buffers->is_array()) fail_import("\"buffers\" is no array; export the file again");
+  if (!buffers->is_array()) fail_import("\"buffers\" is not an array; export the file again");
   for (std::size_t i = 0; i < buffers->size(); ++i) {
     const Json& entry = (*buffers)[i];
     const Json* length = member(entry, "byteLength");
@@ -110,7 +110,7 @@ void fetch_buffers(GltfFile* file, const Json& root) {
   }
 }
 
-// Image references without their bytes, which are fetched when a material needs them.
+// Lists images without their bytes, which are fetched when a material needs them.
 void list_images(GltfFile* file, const Json& root) {
   const Json* images = member(root, "images");
   if (!images || !images->is_array()) return;
@@ -150,7 +150,7 @@ void gltf_parse(GltfFile* file, Bytes bytes) {
   require_bytes(*file->builder, text.size(), 16, "the JSON");
   gltf_check_json(text);
   Json root = Json::parse(text, nullptr, false);
-  if (!root.is_object()) fail_import("this is no valid JSON object, so no glTF; export the file again");
+  if (!root.is_object()) fail_import("not a valid JSON object, so not glTF; export the file again");
   check_version_and_extensions(file, root);
   fetch_buffers(file, root);
   list_images(file, root);

@@ -23,9 +23,9 @@ static_assert(STBI_MAX_DIMENSIONS == kTextureSideMax, "one limit");
 Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name) {
   int width = 0, height = 0, channels = 0, size = static_cast<int>(bytes.size());
   if (bytes.size() > 1u << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
-    fail_import("%s is no PNG, JPEG, TGA or BMP image; convert it", name.c_str());
+    fail_import("%s is not a PNG, JPEG, TGA or BMP image; convert it", name.c_str());
   if (width < 1 || height < 1 || width > STBI_MAX_DIMENSIONS || height > STBI_MAX_DIMENSIONS)
-    fail_import("%s has %d × %d pixels, more than %d a side; scale it down", name.c_str(), width, height,
+    fail_import("%s has %d × %d pixels, more than %d per side; scale it down", name.c_str(), width, height,
                 STBI_MAX_DIMENSIONS);
   std::uint64_t texel_count = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   // Decoding holds the filtered and the final image at once.
@@ -45,7 +45,7 @@ Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string&
   return image;
 }
 
-// Mean of up to 2 × 2 texels: colour in linear light weighted by alpha, so that what cannot be seen does not bleed in.
+// Mean of up to 2 × 2 texels: colour in linear light, weighted by alpha so that invisible texels do not bleed in.
 static std::uint32_t mean_texel(const std::uint32_t* texels, int count) {
   float sum[3] = {0, 0, 0}, plain[3] = {0, 0, 0}, alpha = 0;
   for (int i = 0; i < count; ++i) {

@@ -14,7 +14,7 @@ struct Image {
   std::vector<std::uint32_t> texels;    // bytes R, G, B, A in memory; rows from the top
 };
 
-// Decodes; refuses by its header what would be too large. `name` is for the error line.
+// Decodes an image; refuses one too large by its header. `name` is for the error line.
 Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name);
 
 // Box-halves width and height, in linear light, weighted by alpha, until neither exceeds `side_max`. Odd sides round
@@ -27,10 +27,10 @@ struct TexelRun {
 };
 // Appends the image, shrunk to options.texture_side_max.
 TexelRun add_texels(SceneBuilder* builder, Image image);
-// Appends a texture of these texels; its index.
+// Appends a texture of these texels; returns its index.
 std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wrap_u, Wrap wrap_v, bool nearest);
 
-// Mean of a channel (0 = R … 3 = A) as it is stored, 0–1.
+// Mean of a channel (0 = R … 3 = A) as stored, 0–1.
 float channel_mean(const Image& image, int channel);
 
 }  // namespace pocketray

@@ -21,13 +21,12 @@ bool is_gltf(const std::string& ending, const Bytes& bytes) {
   return ending == "gltf" || ending == "glb" || (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0);
 }
 
-// Of what assimp reads nobody can say that it does not crash assimp: its readers are many, and trust their files. So
-// they run contained. What reads glTF and OBJ is checked before and after by code that the fuzzer goes through, in
-// place.
+// Assimp's many readers trust their files and may crash, so they run in a child process. The glTF and OBJ readers run
+// in place, with checks before and after that are fuzzed.
 void import_by_assimp(const std::string& path, const std::string& ending, const Bytes& bytes,
                       const ImportOptions& options, ImportedScene* result) {
   if (ending == "ply") check_ply(bytes);
-  // Assimp holds up to about 30 times the bytes of a file of points or text; a compressed one may grow tenfold first.
+  // Assimp needs up to about 30 times the size of a point or text file; a compressed one may first grow tenfold.
   std::uint64_t memory_bytes = (std::uint64_t(512) << 20) + 256 * static_cast<std::uint64_t>(bytes.size());
   memory_bytes = std::min(memory_bytes, 8 * options.byte_count_max + (std::uint64_t(256) << 20));
   ContainerLimits limits = {memory_bytes, options.cpu_seconds_max, 2 * options.byte_count_max};
@@ -60,7 +59,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   finish_scene(&builder, path_stem(path), result);
 }
 
-// Libraries put line feeds and worse into their messages; a Status is one line.
+// A Status is one line, but library messages may contain line feeds and other control characters.
 Status one_line_failure(const std::string& path, const char* message) {
   Status status = failure("%.180s: %s", path.c_str(), message);
   char* end = status.message;

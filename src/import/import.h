@@ -1,5 +1,5 @@
-// Reads glTF 2.0, OBJ/MTL and, where assimp is built in, what assimp reads, into a Scene. Desktop only: exceptions and
-// the heap live here, and no exception leaves.
+// Reads glTF 2.0, OBJ/MTL and, if assimp is built in, its formats into a Scene. Desktop only: uses exceptions and the
+// heap, but no exception escapes.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -12,18 +12,18 @@ namespace pocketray {
 
 struct ImportOptions {
   std::uint32_t texture_side_max = 512;  // larger textures are halved until they fit
-  float crease_angle = 40;               // degrees; meshes that come without normals are smoothed below it (glTF: flat)
-  std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses what would become larger than this
-  std::uint32_t cpu_seconds_max = 120;                    // for formats read by assimp, which is ended then
+  float crease_angle = 40;               // degrees; meshes without normals are smoothed below it (glTF: flat)
+  std::uint64_t byte_count_max = std::uint64_t(1) << 30;  // refuses larger scenes
+  std::uint32_t cpu_seconds_max = 120;                    // for formats read by assimp, which is stopped then
 };
 
 struct ImportedScene {
   Scene scene;
   std::shared_ptr<void> storage;  // owns what `scene` points at
-  std::string warning;            // one line naming what was read and not used; empty if nothing
+  std::string warning;            // one line listing ignored contents; empty if none
 };
 
-// Reads the file at `path`; its format is told by its ending and, for glTF, its first bytes.
+// Reads the file at `path`; detects its format by the ending and, for glTF, its first bytes.
 Status import_scene(const std::string& path, const ImportOptions& options, ImportedScene* result);
 
 // File endings this build reads, for help: "gltf glb obj ply …".

@@ -1,4 +1,4 @@
-// Inside import/ an error is an exception that carries one line; import_scene() turns it into a Status.
+// Errors inside import/ are exceptions with a one-line message; import_scene() turns them into a Status.
 #pragma once
 #include <cstdarg>
 #include <cstdio>

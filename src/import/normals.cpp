@@ -10,9 +10,9 @@
 namespace pocketray {
 namespace {
 
-// Beyond this many triangles around one position all of them are averaged: the pairwise test would be quadratic.
+// Above this many triangles around a position, averages all of them, as the pairwise test is quadratic.
 constexpr std::size_t kValenceMax = 2048;
-// Directions closer than this are the same plane; a few roundings of unit vectors.
+// Directions closer than this count as the same plane: a few roundings of unit vectors.
 constexpr double kSameNormal = 4e-7;
 
 struct Corner {
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3>& positions) {
     if (p.z != q.z) return p.z < q.z;
     return a < b;
   };
-  // NaN has no order; such vertices stay alone at the end.
+  // NaN has no order; such vertices stay separate at the end.
   auto finite =
       std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) { return is_finite(positions[i]); });
   std::sort(order.begin(), finite, less);

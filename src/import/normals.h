@@ -1,11 +1,11 @@
-// Normals for meshes that come without any.
+// Normals for meshes without any.
 #pragma once
 #include "import/scene_builder.h"
 
 namespace pocketray {
 
-// Gives every corner the mean normal of the triangles around its position whose planes meet the corner's own at less
-// than `crease_degrees`, each weighted by its angle there [Thürmer & Wüthrich 1998]. Corners at equal positions count
+// Gives every corner the mean normal of the triangles around its position whose planes differ by less than
+// `crease_degrees` from the corner's own, weighted by angle [Thürmer & Wüthrich 1998]. Corners at equal positions count
 // as one, however they are indexed; vertices whose corners differ are duplicated. A mesh that is flat everywhere keeps
 // no normals.
 void smooth_normals(MeshData* mesh, float crease_degrees);

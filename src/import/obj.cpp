@@ -52,7 +52,7 @@ std::uint16_t linear_16(float srgb) {
   return static_cast<std::uint16_t>(srgb_decode(c) * 65535.0 + 0.5);
 }
 
-// Finds or makes the vertex of a corner: OBJ numbers positions, normals and texture coordinates each by themselves.
+// Finds or makes the vertex of a corner: OBJ indexes positions, normals and texture coordinates separately.
 class CornerIndex {
  public:
   explicit CornerIndex(const tinyobj::attrib_t& attributes)
@@ -99,7 +99,7 @@ class CornerIndex {
   std::vector<tinyobj::index_t> corners_;
 };
 
-// A face may name normals or texture coordinates that are not there; a position it must have.
+// A face may refer to missing normals or texture coordinates, but not to a missing position.
 tinyobj::index_t checked_corner(tinyobj::index_t corner, const tinyobj::attrib_t& attributes, SceneBuilder* builder) {
   auto beyond = [](int index, std::size_t count) { return index >= 0 && static_cast<std::size_t>(index) >= count; };
   if (corner.vertex_index < 0 || beyond(corner.vertex_index, attributes.vertices.size() / 3))
@@ -107,7 +107,7 @@ tinyobj::index_t checked_corner(tinyobj::index_t corner, const tinyobj::attrib_t
                 attributes.vertices.size() / 3);
   bool no_normal = beyond(corner.normal_index, attributes.normals.size() / 3);
   bool no_uv = beyond(corner.texcoord_index, attributes.texcoords.size() / 2);
-  if (no_normal || no_uv) note_remark(builder, "faces name normals or texture coordinates that are missing");
+  if (no_normal || no_uv) note_remark(builder, "faces refer to missing normals or texture coordinates");
   if (no_normal || corner.normal_index < 0) corner.normal_index = -1;
   if (no_uv || corner.texcoord_index < 0) corner.texcoord_index = -1;
   return corner;
@@ -125,7 +125,7 @@ MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attr
   std::size_t triangle_count = shape.mesh.indices.size() / 3;
   for (std::size_t t = 0; t < triangle_count; ++t) {
     if (t < shape.mesh.num_face_vertices.size() && shape.mesh.num_face_vertices[t] != 3)
-      fail_import("a face of '%.60s' cannot be made into triangles; triangulate the model", shape.name.c_str());
+      fail_import("a face of '%.60s' cannot be triangulated; triangulate the model", shape.name.c_str());
     int id = t < shape.mesh.material_ids.size() ? shape.mesh.material_ids[t] : -1;
     bool known = id >= 0 && static_cast<std::uint32_t>(id) < default_material;
     mesh.triangle_materials.push_back(known ? static_cast<std::uint32_t>(id) : default_material);

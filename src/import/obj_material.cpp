@@ -22,7 +22,7 @@ Vec3 bounded3(const float* c, float high) {
   return {bounded(c[0], 0, high), bounded(c[1], 0, high), bounded(c[2], 0, high)};
 }
 
-// False, with a remark, when the image cannot be had: a scene is worth showing without it.
+// False, with a remark, if the image cannot be loaded; the scene is still worth showing.
 bool load(SceneBuilder* builder, const std::string& scene_path, const std::string& name, Image* image) {
   if (name.empty()) return false;
   try {
@@ -78,7 +78,7 @@ void read_textures(SceneBuilder* builder, const std::string& scene_path, const t
     color.texels.assign(mask.texels.size(), 0xFFFFFFFFu);
   }
   if (!has_mask)
-    for (std::uint32_t& texel : color.texels) put_byte(&texel, 3, 255);  // MTL knows no alpha in map_Kd
+    for (std::uint32_t& texel : color.texels) put_byte(&texel, 3, 255);  // MTL has no alpha in map_Kd
   if (has_mask)
     material->alpha_mode = put_alpha(&color, mask) && material->opacity == 1 ? AlphaMode::mask : AlphaMode::blend;
   auto add = [&](Image* image, const tinyobj::texture_option_t& option) {

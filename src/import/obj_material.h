@@ -8,7 +8,7 @@
 
 namespace pocketray {
 
-// Appends the material; images it names lie beside the scene file, and a missing one is a remark. Its index.
+// Appends the material and returns its index. Its images lie beside the scene file; a missing one gives a remark.
 std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_path, const tinyobj::material_t& source);
 
 }  // namespace pocketray

@@ -37,7 +37,7 @@ bool is_number(const Token& token, float limit) {
     digit_count += at - fraction;
   }
   if (digit_count == 0) return false;
-  if (at == token.end && whole_count <= 18) return true;  // below 1e18: nearly all numbers end here
+  if (at == token.end && whole_count <= 18) return true;  // below 1e18: decides nearly all numbers
   if (at < token.end) {
     if (*at != 'e' && *at != 'E') return false;
     const char* exponent = after_sign(at + 1, token.end);
@@ -47,7 +47,7 @@ bool is_number(const Token& token, float limit) {
   return std::fabs(value) <= limit;
 }
 
-// Whether the C library reads all of the token as NaN, an infinity or something too large.
+// True if the C library reads the whole token as NaN, infinity or a number too large.
 bool is_not_finite(const Token& token) {
   std::string text = token.text_of();
   char* end;
@@ -55,7 +55,7 @@ bool is_not_finite(const Token& token) {
   return end == text.c_str() + text.size() && !std::isfinite(static_cast<float>(value));
 }
 
-// A line, its tokens one by one. A comment ends it.
+// The tokens of a line, up to a comment.
 struct Line {
   const char *at, *end;
   std::size_t number;
@@ -72,18 +72,18 @@ struct Line {
 };
 
 [[noreturn]] void refuse(const Line& line, const Token& token, float limit) {
-  fail_import("%.150s%sline %zu: '%.40s' is no finite number of at most %g; mend that line or export the file again",
+  fail_import("%.150s%sline %zu: '%.40s' is not a finite number up to %g; fix that line or export the file again",
               line.file, *line.file ? ", " : "", line.number, token.text_of().c_str(), static_cast<double>(limit));
 }
 
-// The first `count` tokens left must be numbers; what else stands in the line must not read as one that is not finite.
+// The next `count` tokens must be numbers; the rest of the line must not contain non-finite ones.
 void require_numbers(Line* line, int count, float limit) {
   Token token;
   for (int i = 0; line->next(&token); ++i)
     if (i < count ? !is_number(token, limit) : is_not_finite(token)) refuse(*line, token, limit);
 }
 
-// Lines end as the library has it: with LF, CR LF or CR.
+// Line ends as in the library: LF, CR LF or CR.
 template <class Check>
 void for_each_line(const Bytes& bytes, const char* file, Check check) {
   const char* at = reinterpret_cast<const char*>(bytes.data());
@@ -97,7 +97,7 @@ void for_each_line(const Bytes& bytes, const char* file, Check check) {
   }
 }
 
-// The numbers an option of a texture takes; the later of three may be absent.
+// How many numbers a texture option takes; the last two of three are optional.
 int option_number_count(const Token& token) {
   if (token.is("-o") || token.is("-s") || token.is("-t")) return 3;
   if (token.is("-mm")) return 2;

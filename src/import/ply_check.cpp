@@ -24,7 +24,7 @@ const PlyType kTypes[] = {{"char", "int8", 1, false, true},    {"uchar", "uint8"
                           {"float", "float32", 4, true, true}, {"double", "float64", 8, true, true}};
 
 struct PlyProperty {
-  const PlyType *count, *value;  // `count` is null but of a list
+  const PlyType *count, *value;  // `count` is null except for lists
   bool is_corners;
 };
 struct PlyElement {
@@ -42,7 +42,7 @@ struct PlyHeader {
 const PlyType* find_type(const char* name) {
   for (const PlyType& type : kTypes)
     if (std::strcmp(name, type.name) == 0 || std::strcmp(name, type.other_name) == 0) return &type;
-  fail_import("the PLY header has a property of type '%.40s', which there is not; export the file again", name);
+  fail_import("the PLY header has a property of unknown type '%.40s'; export the file again", name);
 }
 
 void add_property(const std::string& line, PlyHeader* header) {
@@ -75,7 +75,7 @@ PlyHeader read_header(const Bytes& bytes) {
   constexpr std::size_t kHeaderBytesMax = 65536;
   std::string text(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), kHeaderBytesMax)));
   std::size_t end = text.find("end_header");
-  if (text.compare(0, 3, "ply") != 0 || end == std::string::npos) fail_import("this is no PLY file; export it again");
+  if (text.compare(0, 3, "ply") != 0 || end == std::string::npos) fail_import("not a PLY file; export it again");
   PlyHeader header;
   for (std::size_t at = 0; at < end;) {
     std::size_t next = std::min(text.find('\n', at), end) + 1;
@@ -88,18 +88,18 @@ PlyHeader read_header(const Bytes& bytes) {
   return header;
 }
 
-// Every element needs at least a byte of the file for each of its properties.
+// Every element needs at least a byte per property.
 void check_counts(const PlyHeader& header, std::uint64_t left) {
   for (const PlyElement& element : header.elements)
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       if (element.count > left)
-        fail_import("the PLY header promises %llu elements, more than the file holds; copy the file again",
+        fail_import("the PLY header states %llu elements, more than the file holds; copy the file again",
                     static_cast<unsigned long long>(element.count));
       left -= element.count;
     }
 }
 
-// The numbers of the body, one after the other.
+// Reads the numbers of the body in order.
 class PlyNumbers {
  public:
   PlyNumbers(const Bytes& bytes, const PlyHeader& header)
@@ -113,7 +113,7 @@ class PlyNumbers {
     std::reverse_copy(at_, at_ + type.bytes, bytes);
     if (format_ == PlyFormat::little_endian) std::reverse(bytes, bytes + type.bytes);
     at_ += type.bytes;
-    *value = number(type, bytes);  // this program's machines are little-endian
+    *value = number(type, bytes);  // assumes a little-endian machine
     return true;
   }
   bool skip(const PlyType& type, std::uint64_t count) {
@@ -157,7 +157,7 @@ class PlyNumbers {
   PlyFormat format_;
 };
 
-// False where the file ends first: whether that is all right is for the reader to say.
+// False if the file ends early; the reader decides whether that is an error.
 bool check_list(const PlyProperty& property, std::uint64_t element, std::uint64_t vertex_count, PlyNumbers* numbers) {
   double count;
   if (!numbers->next(*property.count, &count)) return false;
@@ -170,7 +170,7 @@ bool check_list(const PlyProperty& property, std::uint64_t element, std::uint64_
     double vertex;
     if (!numbers->next(*property.value, &vertex)) return false;
     if (!(vertex >= 0 && vertex < static_cast<double>(vertex_count)))
-      fail_import("face %llu of the PLY file uses vertex %g, and there are %llu; export the file again", shown, vertex,
+      fail_import("face %llu of the PLY file uses vertex %g of %llu; export the file again", shown, vertex,
                   static_cast<unsigned long long>(vertex_count));
   }
   return true;

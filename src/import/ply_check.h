@@ -1,11 +1,11 @@
-// What assimp's PLY reader takes at its word is looked at first: counts of elements, and the lists of faces.
+// Checks what assimp's PLY reader trusts: element counts and face lists.
 #pragma once
 #include "import/files.h"
 
 namespace pocketray {
 
-// Throws an ImportError where a PLY file promises more elements than it can hold, or where a face has no corners, a
-// negative number of them, more than the file holds, or a vertex that does not exist. All else is left to the reader.
+// Throws an ImportError if a PLY file states more elements than it can hold, or if a face has no corners, a negative
+// number, more than the file holds, or a missing vertex. The reader checks everything else.
 void check_ply(const Bytes& bytes);
 
 }  // namespace pocketray

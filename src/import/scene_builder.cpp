@@ -86,7 +86,7 @@ void tidy_mesh(MeshData* mesh) {
   gather(&mesh->skin_weights, kept, count);
 }
 
-// Brings an array that not every mesh has up to `count` elements, unless nobody had it so far.
+// Extends an array that not every mesh has to `count` elements, unless no mesh had it so far.
 template <class T>
 static void append_optional(std::vector<T>* all, const std::vector<T>& more, std::size_t begin, std::size_t count,
                             T filler) {
@@ -103,8 +103,8 @@ static std::uint64_t vertex_bytes(const MeshData& mesh) {
 
 static void require_coordinate(const Vec3& p, const MeshData& mesh) {
   if (!is_coordinate(p))
-    fail_import("%.100s: a vertex is placed at (%g, %g, %g), not finite or beyond %g; scale the model down",
-                mesh.name.c_str(), static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z),
+    fail_import("%.100s: a vertex is at (%g, %g, %g), not finite or beyond %g; scale the model down", mesh.name.c_str(),
+                static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z),
                 static_cast<double>(kCoordinateMax));
 }
 
@@ -176,7 +176,7 @@ static Array<const T> view(const std::vector<T>& v) {
   return {v.empty() ? nullptr : v.data(), static_cast<std::uint32_t>(v.size())};
 }
 
-// Puts moving vertices where animation 0 has them at time 0.
+// Poses moving vertices by animation 0 at time 0.
 static void pose_at_start(const Scene& scene, SceneArrays* out) {
   if (scene.moving_meshes.empty()) return;
   std::size_t bytes = pose_need(scene) + kArenaAlignment;

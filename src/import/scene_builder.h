@@ -1,4 +1,4 @@
-// Collects a scene on the heap while a file is read; what every format shares. Errors are thrown as ImportError.
+// Collects a scene on the heap while reading a file; shared by all formats. Throws ImportError.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -25,7 +25,7 @@ struct MeshData {
   std::vector<Vec3> morph_positions, morph_normals;  // morph_count × vertices; normals may be empty
 };
 
-// The arrays of Scene, owned.
+// The arrays of a Scene, owned.
 struct SceneArrays {
   SceneInfo info;
   std::vector<Vec3> positions, normals;
@@ -53,27 +53,27 @@ struct SceneBuilder {
   ImportOptions options;
   std::shared_ptr<SceneArrays> out = std::make_shared<SceneArrays>();
   std::uint64_t bytes_charged = 0;
-  std::vector<std::string> unused;   // what the file has and this program does not use
-  std::vector<std::string> remarks;  // what was simplified or repaired
+  std::vector<std::string> unused;   // contents of the file that are not used
+  std::vector<std::string> remarks;  // simplifications and repairs
 };
 
-// Counts bytes about to be allocated for `what`; refuses what goes beyond options.byte_count_max.
+// Counts bytes about to be allocated for `what`; throws beyond options.byte_count_max.
 void charge_bytes(SceneBuilder* builder, std::uint64_t bytes, const char* what);
-// The same check for `count` elements held for a moment; counts nothing.
+// The same check for `count` temporary elements, without counting them.
 void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64_t element_bytes, const char* what);
 // Adds to the warning line, once each.
 void note_unused(SceneBuilder* builder, const std::string& what);
 void note_remark(SceneBuilder* builder, const std::string& what);
 
-// Checks indices and array lengths, removes vertices that no triangle uses.
+// Checks indices and array lengths; removes unused vertices.
 void tidy_mesh(MeshData* mesh);
 
 // Appends the tidied mesh in world space. A mirroring transform flips the winding. A vertex that is not finite or
 // beyond kCoordinateMax is refused.
 void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world);
 
-// Appends the tidied mesh as one that moves: world-space vertices by `to_world` (its transform at time 0), and the rest
-// pose. Fills what of `moving` belongs to the arrays; node, skin and instance are the caller's.
+// Appends the tidied mesh as a moving one: world-space vertices by `to_world` (its transform at time 0), and the rest
+// pose. Fills the array ranges of `moving`; the caller sets node, skin and instance.
 void append_moving_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& to_world, MovingMesh moving);
 
 // Sets the views of `result` and its warning line. Refuses a scene without triangles.
@@ -83,7 +83,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
 // (HARDCASES row 27).
 void require_invertible(const Transform& t, const std::string& name);
 
-// Whether a vertex may be part of a triangle (HARDCASES row 8).
+// True if a vertex may be part of a triangle (HARDCASES row 8).
 bool is_coordinate(const Vec3& p);
 
 }  // namespace pocketray

@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// Moves what is left to the front.
+// Moves the remaining bytes to the front.
 void compact(Array<std::uint8_t> bytes, std::size_t* begin, std::size_t* end) {
   if (*begin == 0) return;
   std::memmove(bytes.data, bytes.data + *begin, *end - *begin);
@@ -79,7 +79,7 @@ DecodeState take_message(MessageStream* s, Message* message) {
   std::uint32_t bytes_max = s->message_bytes_max ? s->message_bytes_max : static_cast<std::uint32_t>(s->in.count);
   Decoded decoded = decode_message(s->in.data + s->in_begin, input_bytes(*s), bytes_max, message);
   if (decoded.state == DecodeState::message) s->in_begin += decoded.byte_count;
-  // Half a message that no rest can follow.
+  // A partial message that will never be completed.
   if (decoded.state == DecodeState::need_more && s->ended) s->in_begin = s->in_end;
   return decoded.state;
 }
@@ -101,8 +101,7 @@ bool send_message(MessageStream* s, const Message& message) {
 
 Status check_version(const Hello& hello) {
   if (hello.version == kWireVersion) return success();
-  return failure("it speaks version %u of the protocol and this program version %u: update one", hello.version,
-                 kWireVersion);
+  return failure("it speaks protocol version %u and this program version %u: update one", hello.version, kWireVersion);
 }
 
 }  // namespace pocketray

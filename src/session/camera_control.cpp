@@ -5,13 +5,13 @@
 namespace pocketray {
 namespace {
 
-// v turned about a unit axis by an angle [Rodrigues' formula].
+// Rotates v about a unit axis by an angle in radians (Rodrigues' formula).
 Vec3 rotate(const Vec3& v, const Vec3& axis, double angle) {
   float c = static_cast<float>(det_cos(angle)), s = static_cast<float>(det_sin(angle));
   return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
 }
 
-// Turns a view vector about up and about the horizontal, staying off the poles.
+// Turns a view vector about up and the horizontal axis, keeping off the poles.
 Vec3 turn(const Vec3& view, const Vec3& up, double yaw, double pitch) {
   Vec3 turned = rotate(view, up, yaw);
   Vec3 right = normalize(cross(turned, up));
@@ -21,7 +21,7 @@ Vec3 turn(const Vec3& view, const Vec3& up, double yaw, double pitch) {
   return sine > 0.99f || sine < -0.99f ? turned : tilted;
 }
 
-// Whether a frame can be rendered, here and by servers, as far as limits go.
+// True if the camera is within the limits of local rendering and of servers.
 bool is_within_limits(const Camera& c) {
   for (const Vec3& v : {c.eye, c.target, c.up})
     for (float x : {v.x, v.y, v.z})
@@ -36,8 +36,7 @@ CameraControl make_camera_control(const Camera& camera, const Box& bounds) {
   control.home = control.camera = camera;
   float size = is_empty(bounds) ? 0 : length(extent(bounds));
   control.size = size > 0 ? size : length(camera.target - camera.eye);
-  // A camera of a file looks along a direction; orbiting wants the point it looks at: as far away as the scene's
-  // centre.
+  // A file's camera has only a direction, but orbiting needs a target: the point as far away as the scene's centre.
   Vec3 forward = normalize(camera.target - camera.eye);
   if (!is_empty(bounds)) {
     float distance = dot(center(bounds) - camera.eye, forward);

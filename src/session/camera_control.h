@@ -5,29 +5,29 @@
 
 namespace pocketray {
 
-// What is held down.
+// Buttons held down.
 struct CameraInput {
   float right = 0, up = 0;       // −1 … 1: turn
   float forward = 0;             // −1 … 1: closer or farther (orbit), ahead or back (fly)
-  float sideways = 0, rise = 0;  // −1 … 1: fly alone
+  float sideways = 0, rise = 0;  // −1 … 1: fly only
 };
 
 enum class CameraMode { orbit, fly };
 
 struct CameraControl {
   CameraMode mode = CameraMode::orbit;
-  Camera home;     // as the scene has it
+  Camera home;     // the scene's own
   Camera camera;   // now
-  float size = 1;  // of the scene: what speeds are measured by
+  float size = 1;  // of the scene; speeds scale with it
 };
 
 CameraControl make_camera_control(const Camera& camera, const Box& bounds);
 // Moves for `seconds`; true if anything changed. Orbit: around the target, 90° a second, the pole kept on top. Fly:
 // turns on the spot, moves half the scene's size a second.
 bool move_camera(CameraControl* control, const CameraInput& input, float seconds);
-// The scene's own view, turned around its target by so many degrees; stays where it is whatever moves in the scene.
+// The scene's own view, orbited around its target by `degrees`; not attached to any moving node.
 Camera orbited_camera(const CameraControl& control, float degrees);
-// Back to the scene's own view.
+// Restores the scene's own view.
 void reset_camera(CameraControl* control);
 
 }  // namespace pocketray

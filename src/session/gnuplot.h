@@ -1,11 +1,11 @@
-// Drawing by gnuplot.
+// Draws plots with gnuplot.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace pocketray {
 
-// Runs scripts, one after the other, in the folder that they are in. False: there is no gnuplot that did.
+// Runs the scripts one after another in their folder. False if gnuplot is missing or failed.
 bool run_gnuplot(const std::string& folder, const std::vector<std::string>& scripts);
 
 }  // namespace pocketray

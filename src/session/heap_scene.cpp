@@ -23,7 +23,7 @@ Status read_heap_scene(const std::string& name, const ModelOptions& options, Hea
   return success();
 #else
   (void)options;
-  return failure("%s cannot be read: this program was built without the importers; bake on a desktop", name.c_str());
+  return failure("%s cannot be read: this build has no importers; bake it on a desktop", name.c_str());
 #endif
 }
 

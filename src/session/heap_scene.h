@@ -1,4 +1,4 @@
-// Scenes on the heap, for work that desktops do before anything is sealed: baking and serving.
+// Scenes on the heap, for baking and serving, which desktops do before memory is sealed.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,14 +10,14 @@ namespace pocketray {
 
 struct HeapScene {
   Scene scene;
-  std::string warning;               // of the importer, one line; empty if there is nothing to say
+  std::string warning;               // the importer's, one line; empty: none
   std::vector<std::uint8_t> memory;  // of a built-in scene
 #ifdef POCKETRAY_HAVE_IMPORT
   ImportedScene imported;
 #endif
 };
 
-// What models are imported with; see import/import.h.
+// Options for importing models; see import/import.h.
 struct ModelOptions {
   std::uint32_t texture_side_max = 512;
   float crease_angle = 40;
@@ -26,8 +26,8 @@ struct ModelOptions {
 // Makes a built-in scene or imports a model.
 Status read_heap_scene(const std::string& name, const ModelOptions& options, HeapScene* result);
 
-// Builds an accelerator for the scene. Returns the block it lies in, to be given back by give_block_back(), or null
-// where there is too little memory; *accel shows its bytes.
+// Builds an accelerator for the scene. Returns its memory block, which the caller frees with give_block_back(), or null
+// if memory is short; *accel views the accelerator in it.
 void* build_heap_accel(const AccelInfo& info, const Scene& scene, Array<const std::uint8_t>* accel);
 
 }  // namespace pocketray

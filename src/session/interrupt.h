@@ -1,4 +1,4 @@
-// Ctrl-C: sets a flag; what was finished is kept.
+// Ctrl-C sets a flag, so that commands stop and keep finished work.
 #pragma once
 #include <atomic>
 

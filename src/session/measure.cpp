@@ -37,7 +37,7 @@ Status measure_price(Renderer* renderer, Effect effect, double* price) {
   return success();
 }
 
-// Time per pixel of the list, traced so often that it takes about as long as a frame.
+// Time per pixel of the spans, traced repeatedly until it takes about as long as a frame.
 double trace_list(Renderer* renderer, const std::vector<Span>& spans, double fraction) {
   std::uint32_t span_count = static_cast<std::uint32_t>(spans.size());
   std::uint64_t pixels = 0, begin_ns = clock_ns();
@@ -96,7 +96,7 @@ Status measure_prices(Renderer* renderer, Measurement* m) {
   for (int i = 0; i < kEffectCount; ++i) {
     Effect effect = static_cast<Effect>(i);
     if (!has(renderer->effects.mask, effect) || interrupted) continue;
-    if (effect == Effect::animation) {  // posing and refitting, which come before the tracing
+    if (effect == Effect::animation) {  // posing and refitting happen before tracing
       double seconds = 1 / static_cast<double>(renderer->scene.info.frames_per_second);
       RETURN_IF_ERROR(prepare_frame(renderer, seconds));
       m->effect_price[i] = (renderer->timings.pose_ms + renderer->timings.refit_ms) * 1e6 / pixel_count(*renderer);

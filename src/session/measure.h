@@ -1,4 +1,4 @@
-// What frames, scanlines, rays and effects cost on this machine.
+// Measures the cost of frames, scanlines, rays and effects on this machine.
 #pragma once
 #include <vector>
 
@@ -16,30 +16,30 @@ constexpr std::uint32_t kFrameCountMax = 1000;
 
 struct Measurement {
   std::uint32_t frame_count = 0;                                // measured so far
-  std::uint32_t frame_count_max;                                // row_ns has room for
+  std::uint32_t frame_count_max;                                // capacity of row_ns
   std::vector<double> ns_per_pixel, pose_ms, refit_ms, row_ns;  // row_ns: frames of row 0, of row 1, …
   Tracer counts;                                                // of the last frame
   double trace_ns = 0;                                          // of all frames
   double effect_price[kEffectCount];                            // ns per pixel; NaN: not measured
 };
 
-// Room for so many frames; nothing allocates afterwards.
+// Reserves room for `frame_count_max` frames; measuring allocates nothing.
 Measurement make_measurement(const Renderer& renderer, std::uint32_t frame_count_max);
-// Renders frames from time 0 on, after one to warm up. An interrupt keeps what was measured.
+// Renders frames from time 0 on, after one warm-up frame. After an interrupt, finished frames remain.
 Status measure_frames(Renderer* renderer, Measurement* measurement);
-// The price of every effect that is on: the median of frames with it minus the median of frames without it, in turn.
+// Prices every effect that is on: the median of frames with it minus the median of frames without it, interleaved.
 Status measure_prices(Renderer* renderer, Measurement* measurement);
 
-// What a pixel costs where only some are traced, as after a small change of the picture.
+// Cost per pixel when only some pixels are traced, as after a small change of the picture.
 struct SparseCost {
-  double fraction = 0;                               // of the pixels, about
-  Range scattered_ns_per_pixel, patch_ns_per_pixel;  // each by itself at random; in squares of kPatchSide pixels
+  double fraction = 0;                               // approximate fraction of the pixels
+  Range scattered_ns_per_pixel, patch_ns_per_pixel;  // single random pixels; squares of kPatchSide pixels
 };
 constexpr double kSparseFractions[] = {0.02, 0.1, 0.5, 1};
 constexpr int kSparseFractionCount = 4;
-constexpr std::uint32_t kPatchSide = 20;  // no multiple of a tile's, nor are they aligned to tiles
+constexpr std::uint32_t kPatchSide = 20;  // neither a multiple of the tile side nor aligned to tiles
 
-// The spans of such pixels, from the top, left to right; `patches` or scattered. The same ones for the same size.
+// Spans of such pixels in scan order, in patches or scattered. Deterministic for a given size.
 std::vector<Span> sparse_spans(const Settings& settings, double fraction, bool patches);
 // Traces them `round_count` times each at time 0, kSparseFractions in turn. An interrupt leaves zeros.
 Status measure_sparse(Renderer* renderer, int round_count, SparseCost* costs);

@@ -1,10 +1,10 @@
-// One line on stderr for what a person should know.
+// Notes for the user, one line each on stderr.
 #pragma once
 #include <string>
 
 namespace pocketray {
 
-// Prints "pocketray: text", fit for a terminal whatever names of files and peers are in it.
+// Prints "pocketray: text", with control characters in names of files and peers made harmless.
 void print_note(std::string text);
 
 }  // namespace pocketray

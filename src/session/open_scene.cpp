@@ -38,7 +38,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   RETURN_IF_ERROR(parse_isa(o.isa, &isa));
   select_isa(isa);
   opened->block = take_block(settings.memory_bytes);
-  if (!opened->block) return failure("%zu bytes of memory cannot be had: lower --memory", settings.memory_bytes);
+  if (!opened->block) return failure("cannot get %zu bytes of memory: lower --memory", settings.memory_bytes);
   Renderer* renderer = &opened->renderer;
   start_renderer(opened->block, settings.memory_bytes, settings, renderer);
   RETURN_IF_ERROR(set_pace(o, renderer));
@@ -76,22 +76,20 @@ void print_notes(const OpenScene& opened) {
   if (!opened.source.warning.empty()) print_note(opened.source.warning);
   std::uint32_t threads = worker_thread_count(opened.renderer.workers), asked = opened.renderer.settings.threads;
   if (!opened.renderer.image.empty() && threads < asked)
-    std::fprintf(stderr, "pocketray: the system gives %u of %u threads; rendering goes on with fewer\n", threads,
-                 asked);
+    std::fprintf(stderr, "pocketray: the system allows only %u of %u threads; continuing with those\n", threads, asked);
   if (opened.renderer.accel_is_fallback)
-    std::fprintf(stderr,
-                 "pocketray: the accelerator %s does not fit --memory: %s takes its place, somewhat slower; a larger "
-                 "--memory holds %s\n",
-                 kAccelList[0]->name, opened.renderer.accel_info->name, kAccelList[0]->name);
+    std::fprintf(
+        stderr,
+        "pocketray: the accelerator %s does not fit in --memory; using the slower %s. Raise --memory to use %s\n",
+        kAccelList[0]->name, opened.renderer.accel_info->name, kAccelList[0]->name);
   const SceneInfo& info = opened.renderer.scene.info;
   if (info.default_camera != 0 && info.default_lights != 0)
     std::fprintf(
-        stderr,
-        "pocketray: the scene has no camera and no light: framed by its bounds, lit by a key and a fill light\n");
+        stderr, "pocketray: the scene has no camera and no light: framing its bounds, adding a key and a fill light\n");
   else if (info.default_camera != 0)
-    std::fprintf(stderr, "pocketray: the scene has no camera: framed by its bounds\n");
+    std::fprintf(stderr, "pocketray: the scene has no camera: framing its bounds\n");
   else if (info.default_lights != 0)
-    std::fprintf(stderr, "pocketray: the scene has no light: lit by a key and a fill light\n");
+    std::fprintf(stderr, "pocketray: the scene has no light: adding a key and a fill light\n");
 }
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// From a scene's name to a renderer that is ready for frames.
+// Opens a scene by name and makes a renderer ready for it.
 #pragma once
 #include <functional>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace pocketray {
 
-// A scene opened for rendering; keeps what must stay alive.
+// A scene opened for rendering; owns everything the renderer refers to.
 struct OpenScene {
   Renderer renderer;
   SceneSource source;
@@ -19,7 +19,7 @@ struct OpenScene {
   ~OpenScene();
 };
 
-// What a command adds to opening a scene.
+// A command's additions to opening a scene.
 struct OpenHooks {
   std::function<std::size_t(const Settings&)> output_bytes;  // as plan_memory() takes it
   std::function<Status(const std::string& name, Renderer*, SceneSource*, SceneStorage*)> load = load_scene;
@@ -27,16 +27,15 @@ struct OpenHooks {
   std::function<Status(Renderer*, const SceneStorage&, std::size_t output_bytes)> plan = plan_renderer;
 };
 
-// Reads the options, loads the scene and plans it. Where it fails for want of memory, opened->source.bytes_wanted says
-// so.
+// Reads the options, loads the scene and plans it. If memory is short, fails with opened->source.bytes_wanted set.
 Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScene* opened);
-// Builds it and starts the threads: ready for render_frame().
+// Builds the accelerator and starts the threads, ready for render_frame().
 Status start_scene(OpenScene* opened, const CommonOptions& options);
 
-// Multiplies; fails where the product is beyond what exposures may be.
+// Multiplies *exposure; fails if the product is out of range.
 Status change_exposure(float factor, float* exposure);
 
-// Prints the warning of a scene and what it was given, one line each, on stderr.
+// Prints the scene's warning and the defaults it was given, one line each, on stderr.
 void print_notes(const OpenScene& opened);
 
 }  // namespace pocketray

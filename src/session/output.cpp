@@ -12,13 +12,13 @@ namespace {
 
 bool is_given(const NamedFile& file) { return !file.path.empty(); }
 
-// Where both go to standard output they mix; else one replaces the other.
+// True if both name standard output, where they would mix, or one file, where one would replace the other.
 bool is_same(const NamedFile& one, const NamedFile& other) {
   if (one.path == "-" || other.path == "-") return one.path == other.path;
   return platform::is_same_file(one.path.c_str(), other.path.c_str());
 }
 
-// Names of built-in scenes and of what servers offer are no files.
+// False for names of built-in scenes and of servers' scenes.
 bool is_file(const NamedFile& input) {
   return is_given(input) && !find_builtin(input.path.c_str()) && platform::file_stamp(input.path.c_str()) != 0;
 }
@@ -38,11 +38,11 @@ Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<Nam
     if (!is_given(output)) continue;
     for (const NamedFile& input : inputs)
       if (is_file(input) && is_same(input, output))
-        return failure("%s %.200s would replace %.200s, which is read as %s: name another file", output.option,
+        return failure("%s %.200s would overwrite the input %.200s of %s: name another file", output.option,
                        output.path.c_str(), input.path.c_str(), input.option);
     for (std::size_t k = 0; k < i; ++k)
       if (is_given(outputs[k]) && is_same(outputs[k], output))
-        return failure("%s and %s name the same file, %.300s: name two", outputs[k].option, output.option,
+        return failure("%s and %s name the same file, %.300s: name two files", outputs[k].option, output.option,
                        output.path.c_str());
     platform::FileError error;
     if (!platform::can_write(output.path.c_str(), &error)) return failure("%.300s %s", output.path.c_str(), error.text);
@@ -54,7 +54,7 @@ Status make_output_folder(const std::string& folder) {
   platform::FileError error;
   if (!platform::make_folder(folder.c_str(), &error)) return failure("%.300s %s", folder.c_str(), error.text);
   if (!platform::can_write((folder + "/pocketray.test").c_str(), &error))
-    return failure("in %.300s no file can be made: %s", folder.c_str(), error.text);
+    return failure("cannot create files in %.300s: %s", folder.c_str(), error.text);
   return success();
 }
 
@@ -85,16 +85,16 @@ Status write_file(const std::string& path, const std::string& bytes) {
 
 int finish_printing(int exit_status) {
   bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (arrived || exit_status != kExitDone) return exit_status;  // of what failed before, the reason is told
-  return report(failure("standard output did not take all that was printed: is it full, or closed?"));
+  if (arrived || exit_status != kExitDone) return exit_status;  // an earlier failure has been reported
+  return report(failure("could not write all output to standard output: is it full or closed?"));
 }
 
 Status check_arguments(int argument_count, const char* const* arguments) {
   for (int i = 1; i < argument_count; ++i) {
     if (arguments[i][0] != 0) continue;
     if (arguments[i - 1][0] == '-')
-      return failure("%.100s is followed by an empty text: give it a value, or leave it out", arguments[i - 1]);
-    return failure("argument %d is an empty text: leave it out", i);
+      return failure("%.100s has an empty value: give it one, or drop the option", arguments[i - 1]);
+    return failure("argument %d is empty: drop it", i);
   }
   return success();
 }

@@ -1,4 +1,4 @@
-// What commands write: one way to write a file, and what is asked before the work whose result goes there.
+// Output files of commands: checked before the work, written atomically.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace pocketray {
 
-// A file as the command line names it; an empty path: it does not.
+// A file named on the command line; empty path: not given.
 struct NamedFile {
   const char* option;
   std::string path;
@@ -17,27 +17,26 @@ struct NamedFile {
 // Whether a path ends in the suffix, ".pray", and its last component has something before it. Allocates nothing.
 bool has_suffix(const char* path, const char* suffix);
 
-// Fails where an output cannot be written, is an input, through whatever links, or another output. To be called before
-// the work. Inputs may be names of other things than files. Leaves no trace.
+// Fails if an output cannot be written, or is also an input or another output, through links too. Call it before the
+// work. Inputs need not be files. Leaves no trace.
 Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
-// Makes a folder for results within one that is there, unless it is there, and fails where no file can be made in it.
+// Creates a folder for results unless it exists; its parent must exist. Fails if no file can be created in it.
 Status make_output_folder(const std::string& folder);
 
-// Replaces a file as a whole or not at all (platform/file.h); "-" is standard output. The encoder writes to the sink it
-// is given; what it says is passed on, and then an older file stays.
+// Replaces a file atomically (platform/file.h); "-" is standard output. The encoder writes to the given sink; if it
+// fails, its error is returned and an older file stays.
 template <class Encode>
 Status write_encoded(const char* path, Encode&& encode);
 Status write_file(const std::string& path, const std::string& bytes);
 
-// Brings what was printed to where it goes. When standard output did not take it, says so on standard error and makes
-// an exit status that claims success one that does not.
+// Flushes standard output. If that fails, reports it on stderr and turns a successful exit status into a failure.
 int finish_printing(int exit_status);
 
-// Fails where an argument is empty: no option takes an empty text, though many a shell variable does.
+// Fails on an empty argument: no option takes one, but an unset shell variable makes one.
 Status check_arguments(int argument_count, const char* const* arguments);
 
-// What write_encoded() consists of.
+// Implements write_encoded().
 Status write_with(const char* path, Status (*encode)(void* context, const ByteSink& sink), void* context);
 
 template <class Encode>

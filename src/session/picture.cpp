@@ -59,7 +59,7 @@ Status check_picture_path(const std::string& path) {
   Kind kind = kind_of(path.c_str());
   if (kind == Kind::unknown) return failure("-o is '%s': the name must end in .png, .ppm, .pfm or .raw", path.c_str());
   if (kind == Kind::png && encode_png_need(1) == 0)
-    return failure("this program was built without libpng: write .ppm or .pfm instead of %s", path.c_str());
+    return failure("this build has no libpng: write .ppm or .pfm instead of %s", path.c_str());
   return success();
 }
 

@@ -12,19 +12,19 @@ struct PictureOptions {
   Rotation rotation = Rotation::none;
   bool dither = false;
   const Vec3* radiance = nullptr;  // null: renderer->image
-  // Packed already, for all kinds but .pfm: rows of so many bytes. Null: packed from renderer->image.
+  // Rows already packed, packed_line_bytes apart, for all kinds but .pfm. Null: packs renderer->image.
   const std::uint8_t* packed = nullptr;
   int packed_line_bytes = 0;
   PixelFormat packed_format;
 };
 
-// What the frame arena must hold to write any of them.
+// Bytes needed in the frame arena to write any format.
 std::size_t picture_bytes(const Settings& settings);
 
 // Fails unless the path ends in .png, .ppm, .pfm or .raw.
 Status check_picture_path(const std::string& path);
 
-// Writes what the options name, else renderer->image. The file is replaced as a whole or not at all.
+// Writes the picture in the options, else renderer->image. Replaces the file atomically.
 Status write_picture(const char* path, const PictureOptions& options, Renderer* renderer);
 
 }  // namespace pocketray

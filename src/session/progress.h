@@ -1,5 +1,5 @@
-// Progress on stderr for work longer than a second: a bar with an estimate on a terminal, a plain line now and then
-// otherwise. Allocates nothing.
+// Progress on stderr for work longer than a second: a bar with an estimate on a terminal, otherwise an occasional line.
+// Allocates nothing.
 #pragma once
 #include <atomic>
 #include <cstdint>

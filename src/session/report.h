@@ -1,4 +1,4 @@
-// How commands speak: one line for an error, tables for people, JSON for programs.
+// Output of commands: one line for an error, tables for people, JSON for programs.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -26,7 +26,7 @@ Json memory_json(const MemoryPlan& plan);
 // ", emulating pi-zero: 550 times slower", or nothing.
 std::string emulation_text(const Pace& pace);
 
-// "12 345 678" grouping for people.
+// Groups digits: "12 345 678".
 std::string grouped(std::uint64_t value);
 
 }  // namespace pocketray

@@ -13,7 +13,7 @@ Status identify_scene(const SceneSource& source, Renderer* renderer, ContentHash
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, byte_count));
   if (!bytes)
     return failure(
-        "naming the scene to a server takes %.1f MiB and --memory leaves %.1f MiB: --memory %zuM would do",
+        "identifying the scene to a server takes %.1f MiB but --memory leaves %.1f MiB: use --memory %zuM",
         static_cast<double>(byte_count) / (1 << 20), static_cast<double>(arena_free(renderer->scene_arena)) / (1 << 20),
         (renderer->settings.memory_bytes - arena_free(renderer->scene_arena) + byte_count + (1 << 20) - 1) >> 20);
   baked_write(renderer->scene, bytes);

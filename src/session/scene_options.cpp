@@ -12,7 +12,7 @@
 namespace pocketray {
 namespace {
 
-// By the name that was typed; validate_settings() tests the same limits, by the names that a library's user knows.
+// Names the option in errors; validate_settings() tests the same limits with the library's names.
 Status read_setting(const SettingRow& row, const SettingOption& option, Quality* quality) {
   const std::string name = std::string("--") + row.name;
   double value = row.field.kind == SettingKind::count ? double(option.count) : double(option.real);
@@ -26,7 +26,7 @@ Status read_setting(const SettingRow& row, const SettingOption& option, Quality*
   return success();
 }
 
-// Reads numbers separated by spaces or commas; false when there are not exactly `count` finite ones.
+// Reads numbers separated by spaces or commas; false unless there are exactly `count` finite ones.
 bool read_numbers(const std::string& text, float* values, int count) {
   const char* at = text.c_str();
   for (int i = 0; i < count; ++i) {
@@ -73,7 +73,7 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
     RETURN_IF_ERROR(read_setting(kSettingList[i], o.settings.options[i], settings));
   bool measured;
   float factor;
-  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // also of commands that show nothing
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // checked even by commands that show nothing
   if (o.threads > kThreadCountMax) return failure("--threads is %u: it must lie in 0 … %u", o.threads, kThreadCountMax);
   unsigned cores = std::thread::hardware_concurrency();
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
@@ -84,7 +84,8 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
 Status find_device(const CommonOptions& o, const platform::Device** device) {
   *device = nullptr;
   if (!o.emulate.empty() && !o.device.empty() && o.emulate != o.device)
-    return failure("--emulate is '%s' and --device '%s': name one of them", o.emulate.c_str(), o.device.c_str());
+    return failure("--emulate is '%s' and --device is '%s': give only one of them", o.emulate.c_str(),
+                   o.device.c_str());
   const std::string& name = o.emulate.empty() ? o.device : o.emulate;
   if (name.empty()) return success();
   *device = platform::find_device(name.c_str());

@@ -1,5 +1,5 @@
-// Render servers, as the commands and the viewer use them. A program that shares its frames holds a Servers, any other
-// a null pointer. remote/client has the backend; a build without a network has none.
+// Render servers, as the commands and the viewer use them. Programs that use none hold a null pointer. remote/client
+// has the backend; builds without a network have none.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -21,7 +21,7 @@ constexpr int kVerifyAuto = -1;
 struct ServersOptions {
   std::vector<std::string> addresses;
   double device_share = kBestShare;
-  int verify = kVerifyAuto;  // pixels of servers that are checked in a frame
+  int verify = kVerifyAuto;  // servers' pixels to check per frame
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };
 
@@ -32,10 +32,10 @@ struct OfferedScene {
 };
 
 struct ServersState {
-  bool in_use = false;    // servers take part in frames, or could from the next on, or the device has no scene
-  bool cut_off = false;   // a device without the scene has received no rows for a while
-  bool disputed = false;  // two servers sent different pixels, and this device, without the scene, cannot judge them
-  std::uint32_t rows_done = 0;  // of the frame under way
+  bool in_use = false;    // servers render parts of frames, or can from the next frame on, or the device has no scene
+  bool cut_off = false;   // no rows for a while, on a device without the scene
+  bool disputed = false;  // two servers sent different pixels, and this device has no scene to judge by
+  std::uint32_t rows_done = 0;  // of the current frame
 };
 
 // The merged picture: rows without padding.
@@ -47,11 +47,11 @@ struct MergedPicture {
 
 struct ServersTotals {
   std::uint64_t frames = 0, device_rows = 0, server_rows = 0, bytes_in = 0, bytes_out = 0;
-  std::uint64_t checked = 0;  // of servers' pixels, or of their rows where the device has no scene
-  std::uint32_t lies = 0;     // servers that sent wrong ones
+  std::uint64_t checked = 0;  // servers' pixels checked, or rows if the device has no scene
+  std::uint32_t lies = 0;     // servers caught with wrong pixels
   bool checks_rows = false;
-  double caught_row = 0;              // least probability of noticing one wrong row per frame, over all servers
-  double local_ns = 0, known_ns = 0;  // predicted for the device alone, and measured, of frames that had a prediction
+  double caught_row = 0;              // lowest probability of catching one wrong row per frame, over all servers
+  double local_ns = 0, known_ns = 0;  // predicted for the device alone, and measured; only frames with a prediction
 };
 
 using OutputBytes = std::function<std::size_t(const Settings&)>;
@@ -62,42 +62,42 @@ struct Servers {
 };
 
 struct ServersBackend {
-  // Resolves the addresses, which may take the system a while; *servers is null where there are none. `emulated`: the
-  // device whose radio is emulated, or null.
+  // Resolves the addresses, which may take a while; *servers is null if there are none. `emulated`: the device whose
+  // radio to emulate, or null.
   Status (*open)(const ServersOptions& options, const platform::Device* emulated, Servers** servers);
   void (*close)(Servers* servers);
 
   // Bytes of the frame arena.
   std::size_t (*need)(const Servers& servers, const Settings& settings);
-  // Opens the scene, ready for rendering. One that is neither built in nor a file is fetched from the first server that
-  // has it. One that does not fit the memory is left to the servers: the renderer then has room for pictures alone, and
-  // opened->source.warning says how much memory would hold it.
+  // Opens the scene, ready for rendering. If it is neither built in nor a file, fetches it from the first server that
+  // has it. If it does not fit in memory, leaves it to the servers: the renderer then has room only for pictures, and
+  // opened->source.warning says how much memory the scene needs.
   Status (*open_scene)(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
                        OpenScene* opened);
-  // From another thread: open_scene() may give up.
+  // Call from another thread to make open_scene() give up.
   void (*stop_opening)(Servers* servers);
-  // Triangles of the scene that is open, wherever it is.
+  // Triangles of the open scene, here or on servers.
   std::uint32_t (*triangle_count)(const Servers& servers, const Renderer& renderer);
   // Scenes that a server offers; `server` is an index of ServersOptions::addresses.
   Status (*list_scenes)(Servers* servers, std::size_t server, std::vector<OfferedScene>* scenes);
 
-  // With the scene open: ready for frames, which arrive as pixels of 24 bits, or of 16 where `small_pixels`.
+  // With the scene open, gets ready for frames; pixels arrive with 24 bits, or 16 if `small_pixels`.
   Status (*start)(Servers* servers, Renderer* renderer, bool small_pixels, bool dither);
-  // A frame: begin, then advance until about `deadline_ns` by clock_ns(), until it is complete. begin_frame() gives up
-  // a frame under way.
+  // Begin a frame, then advance it, each time until about `deadline_ns` of clock_ns(), until it is complete.
+  // begin_frame() abandons an unfinished frame.
   Status (*begin_frame)(Servers* servers, Renderer* renderer, double seconds);
   bool (*advance_frame)(Servers* servers, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop);
-  // Between frames: keeps connections and overtures going. Does not wait.
+  // Between frames: keeps connections and overtures going. Never blocks.
   void (*tend)(Servers* servers);
   ServersState (*state)(const Servers& servers);
 
   MergedPicture (*picture)(const Servers& servers);
-  // Rows of the picture that have changed since the last call; false: none.
+  // Rows of the picture changed since the last call; false if none.
   bool (*take_rows)(Servers* servers, std::uint32_t* row_begin, std::uint32_t* row_end);
-  // Copies the device's own picture, as far as it is rendered, into the merged one.
+  // Copies the finished part of the device's own picture into the merged one.
   void (*show_own_picture)(Servers* servers, const Renderer& renderer);
 
-  // Who rendered what in the last complete frame, for people: rows, times, bytes, gain; or one line per server alone.
+  // Describes the last complete frame: rows, times, bytes and gain per server; or only one line per server.
   void (*write_lines)(const Servers& servers, bool servers_only, HudText* text);
   ServersTotals (*totals)(const Servers& servers);
 };
@@ -107,7 +107,7 @@ struct ServersCloser {
 };
 using ServersHandle = std::unique_ptr<Servers, ServersCloser>;
 
-// The following take null, too: a device that renders alone.
+// These also accept null: no render servers.
 Status open_scene_with(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
                        OpenScene* opened);
 std::uint32_t triangle_count(const Servers* servers, const Renderer& renderer);

@@ -41,7 +41,7 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
   ImportedScene imported;
   RETURN_IF_ERROR(import_model(name, ImportOptions(), &imported));
   source->warning = imported.warning;
-  // From the heap into the block, in the form a device would map.
+  // Copies from the heap into the block, in the form a device would map.
   std::size_t size = baked_size(imported.scene);
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, size));
   if (!bytes) return scene_too_large(name, size, renderer->settings.memory_bytes, source);
@@ -113,14 +113,14 @@ Status hash_file(const std::string& path, ContentHash* hash) {
 }
 
 Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t limit, SceneSource* source) {
-  std::uint64_t megabytes = (need >> 20) + (need >> 22) + 4;  // and a quarter for what is made of it
+  std::uint64_t megabytes = (need >> 20) + (need >> 22) + 4;  // plus a quarter for data derived from it
   bool hopeless = megabytes > kMemoryBytesMax >> 20;
   source->bytes_wanted = hopeless ? SIZE_MAX : static_cast<std::size_t>(megabytes << 20);
   double needed = static_cast<double>(need) / (1 << 20), allowed = static_cast<double>(limit) / (1 << 20);
-  if (hopeless) return failure("%.200s needs %.1f MiB for the scene alone: no --memory holds it", name.c_str(), needed);
-  return failure(
-      "%.200s needs %.1f MiB for the scene alone and --memory allows %.1f MiB: --memory %lluM would be a start",
-      name.c_str(), needed, allowed, static_cast<unsigned long long>(megabytes));
+  if (hopeless)
+    return failure("%.200s needs %.1f MiB for the scene alone, more than --memory can be", name.c_str(), needed);
+  return failure("%.200s needs %.1f MiB for the scene alone but --memory allows %.1f MiB: try --memory %lluM",
+                 name.c_str(), needed, allowed, static_cast<unsigned long long>(megabytes));
 }
 
 bool is_local_scene(const std::string& name) {
@@ -136,7 +136,7 @@ Status load_scene(const std::string& name, Renderer* renderer, SceneSource* sour
     int count;
     const BuiltinScene* list = builtin_list(&count);
     for (int i = 0; i < count; ++i) names += std::string(i ? ", " : "") + list[i].name;
-    return failure("%.300s is no file, nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
+    return failure("%.300s is neither a file nor a built-in scene (%s): check the name", name.c_str(), names.c_str());
   }
   if (is_baked_name(name)) return load_baked(name, renderer, source, storage);
 #ifdef POCKETRAY_HAVE_IMPORT

@@ -1,4 +1,4 @@
-// The figures of a split report as files: split.csv, and split.png where gnuplot is installed.
+// Writes the figures of a split report: split.csv and, if gnuplot is installed, split.png.
 #pragma once
 #include <string>
 
@@ -7,12 +7,12 @@
 namespace pocketray {
 
 struct SplitPlot {
-  std::string title;  // what was measured, one line
+  std::string title;  // one line
   std::uint32_t pixel_count = 0;
 };
 
 Status write_split_csv(const std::string& folder, const SplitFigures& figures, std::uint32_t pixel_count);
-// Writes split.gnuplot, too, which draws it again. *drawn: whether there is a gnuplot that did.
+// Also writes split.gnuplot, which draws it again. *drawn: whether gnuplot succeeded.
 Status draw_split(const std::string& folder, const SplitPlot& plot, const SplitFigures& figures, bool* drawn);
 
 }  // namespace pocketray

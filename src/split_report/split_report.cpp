@@ -12,8 +12,8 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kSettleFrames = 40;  // in which all servers have to come into use
-constexpr std::uint32_t kSkippedFrames = 2;  // of a lap
+constexpr std::uint32_t kSettleFrames = 40;  // within which all servers must come into use
+constexpr std::uint32_t kSkippedFrames = 2;  // at the start of a lap
 constexpr std::uint32_t kChosenLaps = 2;
 constexpr double kPaperTransferNs = 400;  // T_t of [Aranha07] sec. 4
 constexpr int kRefinements = 2, kPaperRuns = 2, kPaperRows = 6;
@@ -32,7 +32,7 @@ struct Experiment {
   Progress* progress = nullptr;
   ~Experiment() {
     close_client(&client);
-    if (setup.device) setup.device->camera = camera.home;  // for the next one's path
+    if (setup.device) setup.device->camera = camera.home;  // for the next experiment's path
   }
 };
 
@@ -60,7 +60,7 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   ClientOptions options;
   options.format = setup.format;
   options.pace.ns_per_pixel = setup.device_ns;
-  options.check_count = 0;  // the split alone: checks take another 1 %
+  options.check_count = 0;  // measures the split alone: spot checks would add 1 %
   e->memory.resize(client_need(renderer->settings, setup.format, setup.server_count) + kArenaAlignment);
   Arena arena = make_arena("client", e->memory.data(), e->memory.size());
   RETURN_IF_ERROR(make_client(options, renderer->settings, setup.scene, e->world.link, e->world.addresses.data(),
@@ -82,7 +82,7 @@ Status next_frame(Experiment* e, bool* complete) {
   return success();
 }
 
-// What the picture takes where nothing of it has been sent before.
+// Bytes of the picture if no part of it was sent before.
 double whole_bytes(Experiment* e) {
   restart_row_encoder(e->whole);
   int level = deflate_level(e->client.servers[0].ns_per_byte);
@@ -96,7 +96,7 @@ double whole_bytes(Experiment* e) {
   return sum;
 }
 
-// Frames until all servers are in use and what they and the link can do is known.
+// Renders frames until all servers are in use and their speed and the link's are known.
 Status settle(Experiment* e, bool* complete) {
   *complete = true;
   for (std::uint32_t i = 0; *complete && !is_settled(e->client); ++i) {
@@ -107,8 +107,9 @@ Status settle(Experiment* e, bool* complete) {
   return success();
 }
 
-// The path from its start, `lap_count` times; the first frames, behind a jump and perhaps another share, do not count.
-// Nor does a lap before: a stream that has seen a small picture's path already compresses it better.
+// Runs the path from its start `lap_count` times, skipping the first frames of each lap, which follow a jump and
+// perhaps a change of share. A lap before them does not count either: a stream that has already seen a small picture's
+// path compresses it better.
 Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, double* whole) {
   const Settings& settings = e->client.settings;
   const std::uint32_t frame_count = lap_count * e->setup.frame_count;
@@ -134,7 +135,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
   return success();
 }
 
-// A point of the sweep; those that are there already are measured no second time.
+// Measures a point of the sweep unless it is already there.
 Status measure_share(Experiment* e, double m, std::vector<SplitPoint>* sweep, bool* complete) {
   double height = e->client.settings.height, row = std::floor(m * height + 0.5);
   for (const SplitPoint& point : *sweep)
@@ -161,7 +162,7 @@ Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::
   setup.device_ns = row->device_ns, setup.server_ns = row->server_ns;
   setup.line.latency_ns = setup.line.jitter_ns = 0;
   SplitPoint point;
-  // What the rows take compressed is known after a first run.
+  // A first run finds the compressed size of the rows.
   for (int run = 0; run < kPaperRuns && *complete; ++run) {
     setup.line.bytes_per_second = static_cast<std::uint64_t>(*bytes_per_pixel * 1e9 / kPaperTransferNs);
     Experiment e;
@@ -194,13 +195,13 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
   RETURN_IF_ERROR(open_experiment(setup, progress, &frames_done, &e));
   RETURN_IF_ERROR(settle(&e, &complete));
   if (complete) RETURN_IF_ERROR(measure_point(&e, kChosenLaps, &figures->chosen, &complete, &figures->whole_bytes));
-  // 1. The ends first, so that an interrupt leaves what the others are compared with.
+  // 1. The ends first, so that they exist for comparison after an interrupt.
   std::vector<SplitPoint>* sweep = &figures->sweep;
   if (complete) RETURN_IF_ERROR(measure_share(&e, 1, sweep, &complete));
   if (complete) figures->local = sweep->back();
   for (std::uint32_t i = 0; complete && i < step_count; ++i)
     RETURN_IF_ERROR(measure_share(&e, double(i) / (step_count - 1), sweep, &complete));
-  // 2. Halfway to the neighbours of the least, and again.
+  // 2. Halve the distance to the neighbours of the minimum, repeatedly.
   for (int i = 0; complete && i < kRefinements; ++i) {
     std::size_t least = least_of(*sweep);
     double m = (*sweep)[least].m, before = least > 0 ? (*sweep)[least - 1].m : m,
@@ -213,7 +214,8 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
 }
 
 Status measure_paper(const SplitSetup& setup, Progress* progress, SplitFigures* figures) {
-  // Table 1: per pixel, the client's share m and the time with it; T_m of the tablet, T_s of a server of so many cores.
+  // Table 1: times per pixel in ns (T_s for the given number of server cores, T_m of the tablet), the client's share m
+  // and the resulting time.
   const PaperRow rows[kPaperRows] = {
       {"Cornell box", 2, 989, 8841, 0.1358, 1200}, {"Cornell box", 4, 585, 8841, 0.1002, 886},
       {"Cornell box", 8, 325, 8841, 0.0758, 669},  {"Buddha", 2, 520, 6688, 0.1209, 809},

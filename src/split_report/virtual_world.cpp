@@ -8,9 +8,9 @@ namespace pocketray {
 namespace {
 
 constexpr int kStreams = 64;
-constexpr std::uint64_t kWaitingStepNs = 5'000;  // that time passes at once while somebody waits,
-constexpr std::uint64_t kWaitedDivisor = 64;     // or this part of what has been waited for where that is more,
-constexpr std::uint64_t kWorkingStepNs = 200;    // but a server's work ends when it does
+constexpr std::uint64_t kWaitingStepNs = 5'000;  // clock step while a party waits,
+constexpr std::uint64_t kWaitedDivisor = 64;     // or this fraction of the time waited so far, if larger;
+constexpr std::uint64_t kWorkingStepNs = 200;    // smaller while a server works, to end with its work
 
 int poll_stepping(platform::Link* link, platform::LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
   const platform::LinkBackend& net = platform::kNullLink;
@@ -71,7 +71,7 @@ Status start_server(VirtualWorld* world, std::uint32_t i, const ServerOptions& o
 }
 
 void stop_server(VirtualWorld* world, std::uint32_t i) {
-  world->stepping = true;  // it polls to say goodbye, and the others have to wait for it
+  world->stepping = true;  // it polls to say goodbye, and the others must wait for it
   close_server(world->servers[i]);
   world->servers[i] = nullptr;
   world->stepping = false;

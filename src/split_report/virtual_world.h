@@ -1,6 +1,5 @@
-// Render servers and whoever connects to them in one simulated world: one link, one clock, emulated CPUs. While the
-// device waits for something, the servers work, so that everything takes the same course every time, however busy the
-// machine is that it runs on.
+// Render servers and their clients in one simulated world: one link, one clock, emulated CPUs. The servers work while
+// the device waits, so every run takes the same course, however busy this machine is.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -31,10 +30,10 @@ struct VirtualWorld {
   ~VirtualWorld();
 };
 
-// So many servers that have yet to be started. The store stays the caller's and has to outlive the world.
+// Makes `server_count` servers, not yet started. The store remains the caller's and must outlive the world.
 Status open_world(const platform::NullLinkSettings& line, const SceneStore& store, std::uint32_t server_count,
                   VirtualWorld* world);
-// A server started anew listens where it did before.
+// A restarted server listens at the same address.
 Status start_server(VirtualWorld* world, std::uint32_t index, const ServerOptions& options);
 void stop_server(VirtualWorld* world, std::uint32_t index);
 

@@ -10,11 +10,11 @@ namespace pocketray {
 
 struct SweptFront {
   Front front;
-  std::string path;  // in the cache; empty: the scene could not be named
+  std::string path;  // in the cache; empty: the scene could not be identified
 };
 
-// Of all points that a screen of the baseline's format can be given between frames: those that nothing faster is more
-// accurate than by more than the reference may err. `sweep`: summed up from the plan's points.
+// The Pareto front of the points that can be chosen between frames on a screen of the baseline's format. Points closer
+// in error than the reference's own error count as equal. `sweep`: summed up from the plan's points.
 Front front_of_sweep(const SweepPlan& plan, const Sweep& sweep);
 
 }  // namespace pocketray

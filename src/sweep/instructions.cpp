@@ -13,14 +13,13 @@
 
 namespace pocketray {
 
-// Callgrind dumps what it has counted before it enters this.
+// Callgrind dumps its counts before it enters this function.
 __attribute__((noinline)) void begin_counted_frame() { asm volatile("" ::: "memory"); }
 
 namespace {
 
 constexpr const char *kJobName = "job", *kAnswerName = "answer", *kDumpName = "callgrind";
-constexpr const char* kNotCounted =
-    "instructions are not counted: neither this CPU nor the system does it for programs";
+constexpr const char* kNotCounted = "instructions are not counted: this CPU or system does not count them for programs";
 constexpr std::size_t kWordsBytesMax = 1 << 17;
 
 struct TemporaryFolder {
@@ -45,7 +44,7 @@ struct Counting {
   platform::Process process;
   bool ended_well = false;
 
-  // Callgrind counts its dumps from 1, and the first is of what was done before the first frame.
+  // Callgrind numbers its dumps from 1; the first covers everything before the first frame.
   std::string dump_path(std::size_t dump) const {
     return std::string(folder.path) + "/" + kDumpName + "." + std::to_string(dump + 1);
   }
@@ -63,13 +62,13 @@ Status write_job(const Rig& rig, const Counting& counting) {
   return save_text(counting.folder.path, kJobName, job.dump(1, ' ', false, Json::error_handler_t::replace));
 }
 
-// Valgrind's words, then this program's own with the folder after its command.
+// Valgrind's arguments, then this program's own with the folder after its command.
 bool command_line(const std::string& valgrind, const std::string& folder, std::vector<std::string>* words) {
   char own[1024];
   std::vector<char> own_words(kWordsBytesMax);
   std::size_t bytes = platform::own_words(own_words.data(), own_words.size());
   if (bytes == 0 || !platform::own_program(own, sizeof own)) return false;
-  std::string out_file;  // % stands for something
+  std::string out_file;  // valgrind expands %
   for (char c : folder + "/" + kDumpName) out_file += c == '%' ? "%%" : std::string(1, c);
   *words = {valgrind,
             "--command-line-only=yes",
@@ -99,9 +98,9 @@ Status start(const Rig& rig, const char* valgrind, Counting* counting) {
   std::vector<std::string> words;
   std::vector<const char*> pointers;
   if (!platform::make_temporary_folder(counting->folder.path, sizeof counting->folder.path, &error))
-    return failure("the folder for what valgrind counts %s", error.text);
+    return failure("the folder for valgrind's counts %s", error.text);
   RETURN_IF_ERROR(write_job(rig, *counting));
-  if (!command_line(valgrind, counting->folder.path, &words)) return failure("this program's own path cannot be read");
+  if (!command_line(valgrind, counting->folder.path, &words)) return failure("cannot read this program's own path");
   for (const std::string& word : words) pointers.push_back(word.c_str());
   pointers.push_back(nullptr);
   if (!platform::start_program(valgrind, pointers.data(), nullptr, &counting->process, &error))
@@ -128,7 +127,7 @@ void watch(Counting* counting) {
   counting->ended_well = state == platform::ProcessState::succeeded;
 }
 
-// What the other program says of its frames; null: nothing yet.
+// The other program's report on its frames; null: nothing yet.
 Json read_answer(const Counting& counting) {
   std::string text;
   if (!read_text(std::string(counting.folder.path) + "/" + kAnswerName, &text)) return nullptr;
@@ -136,7 +135,7 @@ Json read_answer(const Counting& counting) {
   return answer.is_discarded() ? nullptr : answer;
 }
 
-// Puts what was dumped into the state; how many points got a count.
+// Stores the dumped counts in the state. Returns the number of points counted.
 std::size_t take_counts(const Counting& counting, AccuracyState* state) {
   std::size_t count = 0;
   Json answer = read_answer(counting);
@@ -194,7 +193,7 @@ void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const Swe
   }
   char path[1024];
   if (!platform::find_program("valgrind", path, sizeof path)) {
-    *note = std::string(kNotCounted) + ", and valgrind, which can, is not installed";
+    *note = std::string(kNotCounted) + "; install valgrind to count them";
     return;
   }
   Status started = start(rig, path, &counting);
@@ -207,7 +206,7 @@ void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const Swe
   std::string why = !started.ok           ? started.message
                     : counting.ended_well ? "valgrind finds no symbols in this program"
                                           : "valgrind failed";
-  *note = note->empty() ? std::string(kNotCounted) + ", and " + why : *note + "; not all of them: " + why;
+  *note = note->empty() ? std::string(kNotCounted) + ", and " + why : *note + "; some are missing: " + why;
 }
 
 Status render_for_valgrind(const AccuracyOptions& options) {
@@ -215,11 +214,11 @@ Status render_for_valgrind(const AccuracyOptions& options) {
   float exposure = 1;
   std::vector<std::string> ids;
   RETURN_IF_ERROR(read_job(o.counting_folder, &o, &exposure, &ids));
-  // Of the device, the job has what matters; its memory is not what is measured, and its time is not waited for.
+  // The job holds what matters of the device; neither its memory nor its speed is measured here.
   o.common.emulate = o.common.device = o.common.memory = "";
-  o.common.threads = 1;  // several share the tiles of the last rows
+  o.common.threads = 1;  // several threads would divide the tiles of the last rows
   Isa isa;
-  if (!parse_isa(o.common.isa, &isa).ok) o.common.isa = "";  // valgrind knows fewer
+  if (!parse_isa(o.common.isa, &isa).ok) o.common.isa = "";  // valgrind supports fewer
   Rigs rigs = {o, {}};
   SweepPlan plan;
   RETURN_IF_ERROR(plan_rigs(&rigs, &plan));
@@ -227,7 +226,7 @@ Status render_for_valgrind(const AccuracyOptions& options) {
   std::map<std::string, const SweepPoint*> points;
   for (const SweepPoint& point : plan.points) points[id_of(point)] = &point;
   Rig* rig;
-  for (const std::string& id : ids) {  // all opened first, which traces, too
+  for (const std::string& id : ids) {  // opens all first, as that traces too
     if (!points.count(id)) return failure("this sweep has no configuration %.100s", id.c_str());
     RETURN_IF_ERROR(rig_for(&rigs, points[id]->configuration, &rig));
   }

@@ -50,10 +50,10 @@ std::uint32_t reference_samples(const AccuracyOptions& options, Transport transp
 
 namespace {
 
-// The rows of a picture that is begun, in its file; a file may hold rows that the state does not know of yet.
+// Saves the finished rows of an unfinished picture to its file. The file may hold rows the state does not list yet.
 Status save_begun(const AccuracyOptions& options, const Settings& settings, const std::vector<Vec3>& picture,
                   const AccuracyState& state) {
-  std::vector<Vec3> there(picture.size(), Vec3{0, 0, 0});  // without what other threads write now
+  std::vector<Vec3> there(picture.size(), Vec3{0, 0, 0});  // without rows that other threads are writing
   std::ptrdiff_t width = settings.width;
   for (std::ptrdiff_t row = 0; row < static_cast<std::ptrdiff_t>(settings.height); ++row)
     if (state.begun_rows[static_cast<std::size_t>(row)] == '1')
@@ -62,7 +62,7 @@ Status save_begun(const AccuracyOptions& options, const Settings& settings, cons
   return save_state(options.folder, state);
 }
 
-// The rows of a picture that are still to be traced; the others are read.
+// Lists the rows of a picture still to be traced and reads the others.
 Status resume(const AccuracyOptions& options, const Settings& settings, const std::string& name, AccuracyState* state,
               std::vector<Vec3>* picture, std::vector<std::uint32_t>* rows) {
   picture->assign(std::size_t(settings.width) * settings.height, Vec3{0, 0, 0});
@@ -75,8 +75,8 @@ Status resume(const AccuracyOptions& options, const Settings& settings, const st
   return success();
 }
 
-// Renders a picture, or what is left of it, and saves it now and then. What each path finds follows from seed, pixel
-// and index, so the rows are the same whenever they are traced.
+// Renders a picture, or the rest of it, saving it now and then. Each path depends only on seed, pixel and index, so
+// rows come out the same whenever they are traced.
 Status render_seed(const AccuracyOptions& options, const ReferenceOptions& o, const std::string& stage,
                    const std::string& name, const Rig& rig, AccuracyState* state, std::vector<Vec3>* picture,
                    bool* whole) {
@@ -90,7 +90,7 @@ Status render_seed(const AccuracyOptions& options, const ReferenceOptions& o, co
     show_progress(&progress, ++done);
     if (options.row_done) options.row_done(row);
     if (static_cast<double>(clock_ns() - saved_ns) < options.save_seconds * 1e9) return;
-    // What fails now is tried again, at the latest in the end.
+    // If saving fails, the next save tries again, at the latest the final one.
     if (save_begun(options, settings, *picture, *state).ok) saved_ns = clock_ns();
   };
   auto trace_row = [&](std::uint32_t row, Vec3d* means) { trace_reference(rig.reference, o, row, row + 1, means); };

@@ -34,7 +34,7 @@ Json measured_json(const Measured& m) {
 void print_value(const Sweep& sweep, const Measured& m) {
   std::printf("    %-16s %9.2f ms  ×%-7.3g ꟻLIP %.4f  RMSE %.5f%s%s\n", m.value.c_str(),
               ms_of(sweep, m.ns_per_pixel.value), m.time_ratio.value, m.flip, m.errors.rmse,
-              m.is_default ? "  the baseline's" : "", m.pareto ? "  *" : "");
+              m.is_default ? "  baseline" : "", m.pareto ? "  *" : "");
 }
 
 // The least, the baseline's and the best value.
@@ -47,15 +47,15 @@ void print_knob(const Sweep& sweep, const KnobFigures& k) {
       if (!m->note.empty()) std::printf("      (%s)\n", m->note.c_str());
     }
   if (k.ms_per_flip > 0) std::printf("    %.3g ms per .01 ꟻLIP\n", k.ms_per_flip);
-  if (k.ms_per_flip <= 0) std::printf("    the best costs no time\n");
+  if (k.ms_per_flip <= 0) std::printf("    the best value costs no extra time\n");
   if (k.has_slope)
-    std::printf("    its own RMSE goes as time to the power of %.2f (%.2f … %.2f), within %.1f %%%s%s\n", k.slope.value,
-                k.slope.low, k.slope.high, 100 * k.slope_misfit,
+    std::printf("    its own RMSE scales as time to the power of %.2f (%.2f … %.2f), within %.1f %%%s%s\n",
+                k.slope.value, k.slope.low, k.slope.high, 100 * k.slope_misfit,
                 k.theory.empty() ? "" : "; theory: ", k.theory.c_str());
 }
 
 void print_front(const Sweep& sweep) {
-  std::printf("the front: nothing measured takes less time with no more ꟻLIP\n");
+  std::printf("Pareto front: nothing measured is both faster and at most as far off in ꟻLIP\n");
   for (const Measured* m : front_of(sweep))
     std::printf("  %9.2f ms  ꟻLIP %.4f  %s %s\n", ms_of(sweep, m->ns_per_pixel.value), m->flip, m->knob.c_str(),
                 m->value.c_str());
@@ -93,15 +93,17 @@ Json sweep_json(const Sweep& sweep) {
 }
 
 void print_sweep(const Sweep& sweep) {
-  std::printf("%s: %u×%u, %s, %u rounds, %s; reference: %s, %u samples a pixel\n", sweep.scene.c_str(), sweep.width,
+  std::printf("%s: %u×%u, %s, %u rounds, %s; reference: %s, %u samples per pixel\n", sweep.scene.c_str(), sweep.width,
               sweep.height, sweep.machine.c_str(), sweep.rounds, sweep.output.c_str(), sweep.reference.c_str(),
               sweep.reference_samples);
-  std::printf("  the reference may err by RMSE %.2g and ꟻLIP %.2g: no difference below %.2g and %.2g is claimed\n",
-              sweep.reference_rmse, sweep.reference_flip, kClaimFactor * sweep.reference_rmse,
-              kClaimFactor * sweep.reference_flip);
   std::printf(
-      "  the model's limit is off all light transport by RMSE %.3g, ꟻLIP %.3g%s\n", sweep.model_rmse, sweep.model_flip,
-      sweep.model_flip < kClaimFactor * sweep.model_flip_error ? ", or less: that reference is too noisy to tell" : "");
+      "  the reference's own error is RMSE %.2g and ꟻLIP %.2g: differences below %.2g and %.2g are not claimed\n",
+      sweep.reference_rmse, sweep.reference_flip, kClaimFactor * sweep.reference_rmse,
+      kClaimFactor * sweep.reference_flip);
+  std::printf(
+      "  the converged model differs from full light transport by RMSE %.3g, ꟻLIP %.3g%s\n", sweep.model_rmse,
+      sweep.model_flip,
+      sweep.model_flip < kClaimFactor * sweep.model_flip_error ? " at most: that reference is too noisy to tell" : "");
   for (const KnobFigures& k : sweep.knobs) print_knob(sweep, k);
   print_front(sweep);
   for (const std::string& note : sweep.notes) std::printf("  %s\n", note.c_str());

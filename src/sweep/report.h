@@ -1,4 +1,4 @@
-// A sweep as people and programs read it.
+// Prints a sweep for people and writes it as JSON.
 #pragma once
 #include "accuracy/result.h"
 #include "session/report.h"

@@ -18,7 +18,7 @@
 namespace pocketray {
 namespace {
 
-// Where no --memory is given, a sweep starts with this: address space, of which it touches what it needs.
+// Address space to start with if no --memory is given; a sweep touches only what it needs of it.
 constexpr std::size_t kMemoryFirst = std::size_t(1) << 30;
 
 std::string hash_of(const SceneSource& source, const Scene& scene) {
@@ -35,13 +35,13 @@ std::string hash_of(const SceneSource& source, const Scene& scene) {
   return text;
 }
 
-// The settings that need the most memory of all a sweep tries.
+// The settings with the largest memory need of all that a sweep tries.
 Settings dearest(const Scene& scene, Settings settings) {
   std::uint32_t own = settings.points_per_area_light;
   for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
     settings.points_per_area_light = points;
     std::uint32_t count;
-    // Default lights may come in when the scene is planned.
+    // Planning may add default lights.
     if (light_point_count(scene, settings, kAllEffects, &count).ok && count + kDefaultLightCount <= kPointLightCountMax)
       return settings;
   }
@@ -51,7 +51,7 @@ Settings dearest(const Scene& scene, Settings settings) {
 
 Status load_cornell(std::uint32_t sphere_columns, Renderer* renderer, SceneStorage* storage) {
   if (tessellated_cornell_need(sphere_columns) > arena_free(renderer->scene_arena))
-    return failure("cornell with a sphere of %u columns does not fit --memory: raise it", sphere_columns);
+    return failure("cornell with a sphere of %u columns does not fit in --memory: raise it", sphere_columns);
   build_tessellated_cornell(sphere_columns, &renderer->scene_arena, &renderer->scene);
   *storage = SceneStorage();
   storage->arena_bytes = renderer->scene_arena.used;
@@ -86,13 +86,13 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   return change_exposure(factor, &renderer->exposure);
 }
 
-// Rows of the whole picture that are as many pixels as a frame.
+// Number of whole-picture rows with as many pixels as a frame.
 std::uint32_t row_count(const Rig& rig) {
   const Settings& settings = rig.opened.renderer.settings;
   return rig.part_pixels ? rig.part_pixels / settings.width : settings.height;
 }
 
-// As render_frame() does.
+// Like render_frame(), in double precision.
 Status render_in_double(Rig* rig, double seconds) {
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
@@ -181,7 +181,7 @@ std::uint32_t take_part(Rig* rig) {
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel) {
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, configuration.settings));
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // what a change of settings costs is not a frame's
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // a change of settings does not count towards the frame
   if (configuration.double_precision) make_rig_reference(rig);
   std::uint64_t start = clock_ns();
   if (configuration.double_precision)
@@ -210,7 +210,7 @@ Status count_instructions(Rig* rig, const Configuration& configuration, double s
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   if (configuration.double_precision) make_rig_reference(rig);
   start = platform::instruction_count();
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // the frame does so twice, and it is not counted
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));  // prepares a second time, so that it is not counted
   std::uint64_t prepared = platform::instruction_count();
   double ns_per_pixel;
   RETURN_IF_ERROR(time_frame(rig, configuration, seconds, &ns_per_pixel));

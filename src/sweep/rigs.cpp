@@ -5,7 +5,7 @@
 namespace pocketray {
 namespace {
 
-// What --budget-ms chooses from where no front was measured is measured, too.
+// The ladder, which --budget-ms uses without a measured front, is measured too.
 std::vector<Settings> ladder_of(const Renderer& renderer) {
   Front front = builtin_front();
   drop_what_scene_ignores(&front, renderer.effects.mask);
@@ -22,7 +22,7 @@ Status plan_rigs(Rigs* rigs, SweepPlan* plan) {
   std::unique_ptr<Rig>& first = rigs->by_columns[kCornellSphereColumns];
   RETURN_IF_ERROR(open_rig(options, kCornellSphereColumns, &first));
   Renderer* renderer = &first->opened.renderer;
-  // The plan of the scene's own normals, whatever the baseline makes of them.
+  // Plans with the scene's own normals, whatever the baseline uses.
   Settings settings = first->baseline.settings;
   settings.normals = NormalMode::as_scene;
   RETURN_IF_ERROR(change_settings(renderer, settings));

@@ -1,4 +1,4 @@
-// What a sweep measures and with which rigs: both follow from the options and the scene alone.
+// The plan of a sweep and its rigs; both depend only on the options and the scene.
 #pragma once
 #include <map>
 
@@ -8,19 +8,20 @@ namespace pocketray {
 
 struct Rigs {
   const AccuracyOptions& options;
-  std::map<std::uint32_t, std::unique_ptr<Rig>> by_columns;  // of the sphere; with kCornellSphereColumns the first
+  std::map<std::uint32_t, std::unique_ptr<Rig>>
+      by_columns;  // by columns of the sphere; kCornellSphereColumns is the first rig
 };
 
 // Opens the first rig and plans the sweep of its scene.
 Status plan_rigs(Rigs* rigs, SweepPlan* plan);
 
-// The rig of a configuration, opened where it is not yet; it exposes as the first does. Belongs to `rigs`.
+// Finds or opens the rig of a configuration, with the first rig's exposure. Owned by `rigs`.
 Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig);
 
-// The name of a point, no other's of the plan.
+// A unique name for a point of the plan.
 std::string id_of(const SweepPoint& point);
 
-// Whether a point is measured itself: it can be had and is not the baseline under another name.
+// True if a point is measured itself: it is available and not the baseline under another name.
 bool is_measured(const SweepPlan& plan, std::size_t point_index);
 
 }  // namespace pocketray

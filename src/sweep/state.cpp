@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kStateName = "accuracy.state";
 
-// JSON has no infinity, which the PSNR of equal pictures is, nor NaN.
+// JSON has neither NaN nor infinity, the PSNR of equal pictures.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(value > 0 ? "inf" : "none"); }
 double number_of(const Json& json) {
   if (json == "inf") return std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ PointFigures figures_from(const Json& json) {
 
 bool is_within(double value, double low, double high) { return value >= low && value <= high; }
 
-// Whether a sweep could have written it: what is beyond would have no place on a plot.
+// True if a sweep could have written it; other values could not be plotted.
 bool is_sane(const PointFigures& f) {
   constexpr double kNsPerPixelMax = 1e15, kInstructionsPerPixelMax = 1e16;
   for (double ns : f.ns_per_pixel)
@@ -68,43 +68,43 @@ Status read_state(const std::string& text, const std::string& path, AccuracyStat
     for (const auto& item : json.at("points").items()) {
       PointFigures f = figures_from(item.value());
       if (f.ns_per_pixel.size() != state->rounds)
-        return failure("%s has other times than rounds: --restart starts anew", path.c_str());
-      if (!is_sane(f)) return failure("%s has figures that no sweep gives: --restart starts anew", path.c_str());
+        return failure("%s does not have one time per round: use --restart to start over", path.c_str());
+      if (!is_sane(f)) return failure("%s has impossible figures: use --restart to start over", path.c_str());
       state->points[item.key()] = f;
     }
   } catch (const Json::exception&) {
-    return failure("%s is damaged: --restart starts anew", path.c_str());
+    return failure("%s is damaged: use --restart to start over", path.c_str());
   }
   return success();
 }
 
-// What differs, for people.
+// Fails with a message on the first difference.
 Status compare_keys(const std::string& folder, const Json& there, const Json& wanted) {
   for (const auto& item : wanted.items())
     if (!there.is_object() || !there.contains(item.key()) || there.at(item.key()) != item.value()) {
       std::string other = there.is_object() && there.contains(item.key()) ? there.at(item.key()).dump() : "another";
       return failure(
-          "%.200s holds a sweep with %s %.60s, not %.60s: name another folder by -o, or start anew by --restart",
+          "%.200s holds a sweep with %s %.60s, not %.60s: name another folder with -o, or use --restart to start over",
           folder.c_str(), item.key().c_str(), other.c_str(), item.value().dump().c_str());
     }
   return success();
 }
 
-// Bytes that are no UTF-8, as names of files may have, become others.
+// Replaces bytes that are not UTF-8, which file names may contain.
 std::string written(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 }  // namespace
 
 Status open_state(const std::string& folder, const Json& wanted, bool restart, AccuracyState* state) {
   *state = AccuracyState();
-  Json key = Json::parse(written(wanted));  // as it is read again
+  Json key = Json::parse(written(wanted));  // as it will be read back
   platform::FileError error;
   if (!platform::make_folder(folder.c_str(), &error)) return failure("%s %s", folder.c_str(), error.text);
   std::string path = folder + "/" + kStateName;
   if (!restart && platform::file_stamp(path.c_str()) != 0) {
     platform::LoadedFile file;
     if (!platform::load_file(path.c_str(), &file, &error))
-      return failure("%s %s, or --restart starts anew", path.c_str(), error.text);
+      return failure("%s %s, or use --restart to start over", path.c_str(), error.text);
     std::string text(reinterpret_cast<const char*>(file.bytes), file.byte_count);
     platform::unload_file(&file);
     RETURN_IF_ERROR(read_state(text, path, state));
@@ -143,7 +143,7 @@ Status load_radiance(const std::string& folder, const std::string& name, std::ui
   platform::LoadedFile file;
   platform::FileError error;
   if (!platform::load_file(path.c_str(), &file, &error))
-    return failure("%s %s, or --restart starts anew", path.c_str(), error.text);
+    return failure("%s %s, or use --restart to start over", path.c_str(), error.text);
   char header[48];
   int header_bytes = std::snprintf(header, sizeof header, "PF\n%u %u\n-1.0\n", width, height);
   std::size_t start = static_cast<std::size_t>(header_bytes), row_bytes = std::size_t(width) * sizeof(Vec3);
@@ -152,7 +152,7 @@ Status load_radiance(const std::string& folder, const std::string& name, std::ui
   for (std::uint32_t row = 0; ours && row < height; ++row)  // the bottom row is first
     std::memcpy(&(*radiance)[std::size_t(height - 1 - row) * width].x, file.bytes + start + row * row_bytes, row_bytes);
   platform::unload_file(&file);
-  return ours ? success() : failure("%s is damaged: --restart starts anew", path.c_str());
+  return ours ? success() : failure("%s is damaged: use --restart to start over", path.c_str());
 }
 
 }  // namespace pocketray

@@ -20,9 +20,9 @@
 namespace pocketray {
 namespace {
 
-// Cornell's sphere in the reference: finer than any that is swept.
+// Cornell's sphere in the reference, finer than any in the sweep.
 constexpr std::uint32_t kReferenceColumns = 256;
-// Times that a round measures the baseline, which all others are divided by.
+// Measurements of the baseline per round; all others are divided by them.
 constexpr int kBaselineRuns = 3;
 constexpr std::uint32_t kRoundsMax = 1000;
 
@@ -93,7 +93,7 @@ void find_errors(const Run& run, const Rig& rig, const Configuration& configurat
   f->has_errors = true;
 }
 
-// The points of a round in the order of it: at random, the baseline several times.
+// The order of a round: points at random, the baseline several times.
 std::vector<std::size_t> round_order(const SweepPlan& plan, std::uint32_t round) {
   std::vector<std::size_t> order(kBaselineRuns, 0);
   for (std::size_t i = 1; i < plan.points.size(); ++i)
@@ -109,7 +109,7 @@ struct RoundProgress {
   double done = 0;
 };
 
-// Measures each point once; *whole is false after an interrupt, and then the times of the round are lost.
+// Measures each point once. After an interrupt *whole is false and the times of the round are discarded.
 Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
   std::map<std::size_t, std::vector<double>> times;
   for (std::size_t i : round_order(run->plan, run->state.rounds)) {
@@ -134,7 +134,7 @@ Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
   return success();
 }
 
-// A state that was read may lack points.
+// A state from a file may lack points.
 Status check_state(const Run& run) {
   bool all = run.state.rounds <= kRoundsMax;
   for (std::size_t i : round_order(run.plan, 0)) {
@@ -143,7 +143,7 @@ Status check_state(const Run& run) {
     all = all && rounds == run.state.rounds;
   }
   return all ? success()
-             : failure("%.200s holds the state of a sweep that lacks configurations: --restart starts anew",
+             : failure("%.200s holds a sweep with configurations missing: use --restart to start over",
                        run.options.folder.c_str());
 }
 
@@ -194,7 +194,8 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
   return success();
 }
 
-// Both kinds: the one that knobs are compared with, and what the model's limit errs against all transport.
+// Renders both references: the one knobs are compared with, and the one that gives the converged model's error against
+// full transport.
 Status render_references(Run* run, Sweep* sweep, bool* whole) {
   bool is_cornell = run->options.common.scene == "cornell";
   Configuration configuration = run->rigs.by_columns[kCornellSphereColumns]->baseline;
@@ -250,7 +251,7 @@ void describe(const Run& run, const Rig& rig, Sweep* sweep) {
   sweep->notes = run.plan.notes;
 }
 
-// Where the CPU counts none, and has counted none of this sweep before.
+// Counts instructions if the CPU does not and has counted none of this sweep.
 Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool* whole) {
   for (const auto& point : run->state.points) by_cpu = by_cpu || std::isfinite(point.second.instructions_per_pixel);
   if (by_cpu && run->state.counted.empty()) return success();
@@ -266,7 +267,7 @@ Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, 
   Run run = {options, {options, {}}, {}, {}, {}};
   *whole = true;
   RETURN_IF_ERROR(check_options(options));
-  bool counts = platform::start_instruction_count();  // of the threads to come, too
+  bool counts = platform::start_instruction_count();  // including later threads
   RETURN_IF_ERROR(plan_rigs(&run.rigs, &run.plan));
   const Rig& rig = *run.rigs.by_columns[kCornellSphereColumns];
   print_notes(rig.opened);

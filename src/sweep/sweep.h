@@ -1,6 +1,6 @@
-// Measures a sweep: opens the scene with memory for its dearest configuration, renders references, times all
-// configurations in turn and compares their pictures with the reference. See accuracy/sweep_plan.h for what it
-// measures.
+// Measures a sweep: opens the scene with memory for its most expensive configuration, renders references, times all
+// configurations in turn and compares their pictures with the reference. accuracy/sweep_plan.h plans the
+// configurations.
 #pragma once
 #include "accuracy/flip.h"
 #include "accuracy/sweep_plan.h"
@@ -15,53 +15,54 @@ namespace pocketray {
 struct AccuracyOptions {
   CommonOptions common;
   std::string folder, output = kOutputFormats[Configuration().output].name, reference = "model";
-  std::uint32_t reference_samples = 0;  // a pixel of the chosen reference, both seeds together; 0: what is usual
+  std::uint32_t reference_samples = 0;  // per pixel of the chosen reference, both seeds together; 0: the default
   std::uint32_t rounds = 15;
   double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
   bool restart = false;
-  bool starts_valgrind = false;  // where the CPU counts no instructions; of a program started as `pocketray accuracy …`
-  double save_seconds = 10;      // between two times that a running reference is saved
+  bool starts_valgrind =
+      false;  // if the CPU counts no instructions; only for a program started as `pocketray accuracy …`
+  double save_seconds = 10;                     // between saves of a running reference
   std::function<void(std::uint32_t)> row_done;  // called after each row of a reference, one at a time; may be null
-  std::string counting_folder;  // of the program that valgrind runs, and not empty: what it is to render
+  std::string counting_folder;                  // in the program that valgrind runs: the job to render; else empty
 };
 
-// A scene opened for all configurations that have its geometry.
+// A scene opened for all configurations with its geometry.
 struct Rig {
   OpenScene opened;
-  Configuration baseline;             // as the options have it
+  Configuration baseline;             // as set by the options
   std::string scene_hash;             // of its content
-  std::string front_path;             // in the cache; empty: the scene could not be named
+  std::string front_path;             // in the cache; empty: the scene could not be identified
   std::vector<std::uint32_t> packed;  // pixels of the last frame
   std::vector<std::uint8_t> reference_memory;
-  Reference reference;            // of the posed frame; made where it is needed
-  std::uint32_t part_pixels = 0;  // frames are a part of the picture, of about so many pixels; 0: whole
+  Reference reference;            // of the posed frame; made on demand
+  std::uint32_t part_pixels = 0;  // frames are parts of about this many pixels; 0: the whole picture
 };
 
-// Opens the scene, with cornell's sphere of so many columns, for every configuration that the knobs can make of it.
+// Opens the scene, with `sphere_columns` columns in cornell's sphere, for every configuration the knobs can produce.
 Status open_rig(const AccuracyOptions& options, std::uint32_t sphere_columns, std::unique_ptr<Rig>* rig);
 
-// Makes rig->reference if it is not made yet, of the frame as it is prepared.
+// Makes rig->reference of the prepared frame, unless already made.
 void make_rig_reference(Rig* rig);
 
-// Calls trace_row(row, radiances) for each of the rows by all workers, puts what it gets into `picture`, width ×
-// height, and calls row_done(row), one thread at a time; that may be null. False: interrupted before the last of them.
+// Calls trace_row(row, radiances) for each row, on all workers, and stores the result in `picture`, width × height.
+// Calls row_done(row), unless null, one thread at a time. False if interrupted before the last row.
 bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows,
                 const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
                 const std::function<void(std::uint32_t)>& row_done, Vec3* picture);
 
-// Frames are about a sixteenth of the picture from now on, spread over it in tiles as the whole one is traced in; a
-// small picture stays whole. What they hold elsewhere is left as it was. Returns the pixels.
+// Reduces frames to about a sixteenth of the picture, spread over its tiles; a small picture stays whole. Leaves other
+// pixels unchanged. Returns the number of pixels.
 std::uint32_t take_part(Rig* rig);
 
-// Prepares, renders and packs one frame after another has been prepared with the same settings. Times it; keeps the
-// picture in the rig's renderer. Stops at an interrupt, which the caller has to look for.
+// Prepares, renders, packs and times a frame, after preparing one with the same settings. The picture stays in the
+// rig's renderer. Stops at an interrupt, for which the caller must check.
 Status time_frame(Rig* rig, const Configuration& configuration, double seconds, double* ns_per_pixel);
 
-// Instructions per pixel of tracing and packing what time_frame() times; NaN where none are counted or at an interrupt.
+// Instructions per pixel of tracing and packing, as in time_frame(); NaN if not counted or interrupted.
 Status count_instructions(Rig* rig, const Configuration& configuration, double seconds, double* per_pixel);
 
-// Measures everything. What is there already is taken from the folder; after an interrupt the rest is missing and
-// *whole is false. `front`, where given, becomes what --budget-ms may choose from.
+// Measures everything not yet in the folder. After an interrupt *whole is false and the rest is missing. *front, unless
+// null, receives the front for --budget-ms.
 Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front = nullptr);
 
 }  // namespace pocketray

@@ -8,7 +8,7 @@
 namespace pocketray {
 namespace {
 
-// The names of what is on, wrapped.
+// Names of the effects that are on, wrapped.
 void add_effects(const EffectPlan& plan, HudText* text) {
   char line[kHudColumnMax + 1] = "";
   for (const EffectRow& row : kEffectList) {
@@ -41,7 +41,7 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
   else
     add_hud_line(text, "%.1f ms/frame  %.0f ns/pixel  %u thread%s", frame_ms, ns_per_pixel, renderer.settings.threads,
                  plural);
-  add_hud_line(text, "%.0fk rays  %.2f M/s  %.0fk left out", static_cast<double>(rays) * 1e-3,
+  add_hud_line(text, "%.0fk rays  %.2f M/s  %.0fk skipped", static_cast<double>(rays) * 1e-3,
                progressive.trace_ns ? static_cast<double>(rays) * 1e3 / static_cast<double>(progressive.trace_ns) : 0.0,
                static_cast<double>(counts.rays_left_out) * 1e-3);
   add_hud_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(renderer.memory.total_bytes) / (1 << 20),

@@ -1,4 +1,4 @@
-// What the display over the picture says, and its drawing.
+// The text of the overlay.
 #pragma once
 #include "engine/progressive.h"
 #include "present/hud_text.h"
@@ -6,11 +6,11 @@
 
 namespace pocketray {
 
-// Something to be told over the picture for some seconds, or until there is something else.
+// A message shown over the picture for some seconds, or until the next one.
 struct HudNote {
   char text[600] = {0};
   std::uint64_t until_ns = 0;  // by the screen's clock
-  std::uint32_t number = 0;    // how many there have been
+  std::uint32_t number = 0;    // count of notes so far
 };
 
 // Milliseconds per frame, nanoseconds per pixel, rays, memory, effects on.

@@ -1,6 +1,5 @@
-// Side by side: the left half shows the picture, the right half the reference, refined for as long as nothing changes.
-// For the emulator. Its memory is its own, taken before the seal. viewer/reference has the backend; a device build has
-// none.
+// Side by side, for the emulator: the picture on the left half, the reference on the right, refined while nothing
+// changes. Takes its own memory before the seal. viewer/reference has the backend; device builds have none.
 #pragma once
 #include <string>
 
@@ -19,22 +18,22 @@ struct SideBySide {
 };
 
 struct SideBySideBackend {
-  // With the scene open. The picture is judged as a screen of such pixels shows it.
+  // Call with the scene open. Judges the picture as displayed with `bits_per_pixel`.
   SideBySide* (*open)(const SideBySideOptions& options, const Renderer& renderer, int bits_per_pixel, bool dither);
   void (*close)(SideBySide* side_by_side);
-  // With a picture finished: traces the reference of the same view and time until about `deadline_ns` by clock_ns(),
-  // from the start where these differ from the last call's. `picture` numbers the pictures. Settings are left as they
-  // are; the renderer has to prepare its next frame. Fails as prepare_frame() does.
+  // Call with a finished picture: traces the reference of the same view and time until about `deadline_ns` of
+  // clock_ns(), restarting if view or time differ from the last call's. `picture` numbers the pictures. Settings stay;
+  // the renderer must prepare its next frame. Fails as prepare_frame() does.
   Status (*advance)(SideBySide* side_by_side, Renderer* renderer, double seconds, std::uint32_t picture,
                     std::uint64_t deadline_ns);
-  // The view or the time is about to change: the samples no longer hold.
+  // Discards the samples; call before view or time change.
   void (*forget)(SideBySide* side_by_side);
-  // Nothing is left to refine.
+  // True once nothing is left to refine.
   bool (*is_full)(const SideBySide& side_by_side);
-  // Samples of each pixel.
+  // Samples per pixel so far.
   std::uint32_t (*samples)(const SideBySide& side_by_side);
-  // Radiance of both halves, with a line between them; valid until the next call. Where the reference has nothing yet
-  // it is the picture itself.
+  // Radiance of both halves, with a line between them; valid until the next call. Shows the picture where the reference
+  // has no samples yet.
   const Vec3* (*picture)(SideBySide* side_by_side, const Renderer& renderer);
   // The reference's name and samples, and the distance of the whole picture from it.
   void (*write_lines)(const SideBySide& side_by_side, HudText* text);

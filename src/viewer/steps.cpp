@@ -12,10 +12,10 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint64_t kMillisecond = 1000000;
-constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two looks at the buttons
+constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two polls of the buttons
 constexpr std::uint64_t kIdleNs = 8 * kMillisecond;
 
-// Packs the rows that changed and shows them.
+// Packs and shows the changed rows.
 void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
                std::uint32_t row_end) {
   SealPause pause(takes_memory(*viewer->backend));
@@ -49,12 +49,13 @@ void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, st
   }
 }
 
-// What is written over the picture is what is to be.
+// True if the overlay on the screen is up to date.
 bool is_text_shown(const Viewer& viewer) {
   return viewer.hud == viewer.hud_shown && note_now(viewer) == viewer.note_shown;
 }
 
-// As many frames as were asked for, even of a still; with a reference beside it, when that has some samples.
+// With a frame count, even a still is rendered again to reach it; with a reference, only once that has
+// kSideBySideSamples.
 constexpr std::uint32_t kSideBySideSamples = 32;
 bool goes_on(const Viewer& viewer) { return viewer.options.frame_count > 0 && !shows_side_by_side(viewer); }
 
@@ -64,10 +65,9 @@ void write_picture_lines(const Viewer& viewer, const Renderer& renderer, ViewerL
   if (viewer.servers) viewer.servers->backend->write_lines(*viewer.servers, true, &loop->hud);
 }
 
-// Nothing has changed: the reference beside the picture is refined, or the buttons are waited for.
+// Nothing has changed: refines the reference, or waits for the buttons.
 Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
-  if (viewer->options.frame_count > 0 && !shows_side_by_side(*viewer))
-    loop->passed = true;  // it was put away meanwhile
+  if (viewer->options.frame_count > 0 && !shows_side_by_side(*viewer)) loop->passed = true;  // hidden meanwhile
   bool refines = shows_side_by_side(*viewer) && !viewer->side_by_side->backend->is_full(*viewer->side_by_side);
   if (!refines && !viewer->side_by_side_changed) {
     viewer->backend->sleep_ns(kIdleNs);
@@ -87,10 +87,10 @@ Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Begins the next picture once the present one can be seen, traces a slice of it, shows it.
+// Begins the next picture once the current one is visible, traces a slice of it and shows it.
 Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
-  // A moving camera is followed as soon as something can be seen; time waits until the picture is finished, and so does
-  // everything where finished frames are counted.
+  // A moving camera is followed as soon as a coarse picture is visible. Time waits for the finished picture; so does
+  // the camera when finished frames are counted.
   bool follow = loop->moved && loop->progressive.shown_coarse && viewer->options.frame_count == 0;
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
     RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
@@ -112,11 +112,11 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// A still is rendered again until its settings are settled: so many frames with the same ones, longer than the governor
-// waits before it tries what may fit. Where noise keeps two candidates in turn, there is an end to it.
+// A still is rendered again until its settings settle: kSteadyFrames with the same settings, longer than the governor
+// waits before it tries others. kStillFramesMax ends it if noise makes two candidates alternate.
 constexpr std::uint32_t kSteadyFrames = 16, kStillFramesMax = 100;
 
-// Renders whole frames within a budget; each is shown when it is complete.
+// Renders whole frames within a budget and shows each when complete.
 Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   Budget* budget = viewer->budget;
   if (viewer->front_home || viewer->front_steps != 0) {
@@ -152,7 +152,7 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Traces a slice of a frame that servers share, and shows what has come of it from both ends.
+// Traces a slice of a split frame and shows the rows finished so far from both ends.
 Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
   if (loop->finished && (loop->moved || loop->passed)) {
@@ -173,9 +173,9 @@ Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Who makes the next picture: with servers in reach it is complete soon, without it is refined. One that the device
-// alone is still refining is left to both when a server comes into reach, as a slow device may take minutes for it. A
-// camera that moves is not followed within a frame that servers share, unless they are gone.
+// Chooses who renders the next picture: with servers in reach it completes soon, otherwise the device refines it alone.
+// When a server comes into reach, a picture still being refined is restarted with it, as a slow device may take
+// minutes. A moving camera is not followed within a split frame unless its servers are gone.
 Status step_with_servers(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
   if (!viewer->picture_merged || loop->finished) servers.tend(viewer->servers);
@@ -185,9 +185,9 @@ Status step_with_servers(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   bool helped = any && !viewer->picture_merged && !loop->finished && loop->progressive.shown_coarse;
   bool due = follow || helped || (loop->finished && (loop->moved || loop->passed));
   if (due && viewer->picture_merged != any) {
-    if (any && renderer->image.data) servers.show_own_picture(viewer->servers, *renderer);  // it has the scene
+    if (any && renderer->image.data) servers.show_own_picture(viewer->servers, *renderer);  // the device has the scene
     viewer->picture_merged = any;
-    loop->finished = loop->passed = true;  // what was under way is given up
+    loop->finished = loop->passed = true;  // abandons the current picture
   }
   return viewer->picture_merged ? step_merged(viewer, renderer, loop) : step_picture(viewer, renderer, loop);
 }

@@ -83,7 +83,7 @@ void save_screenshot(Viewer* viewer, Renderer* renderer) {
   tell(viewer, status.ok ? told : status.message);
 }
 
-// What was asked for by buttons that not every run has a use for.
+// Responds to buttons that do nothing in this run.
 void answer_buttons(Viewer* viewer, Renderer* renderer) {
   if (viewer->screenshot) save_screenshot(viewer, renderer);
   viewer->screenshot = false;
@@ -92,11 +92,11 @@ void answer_buttons(Viewer* viewer, Renderer* renderer) {
     viewer->side_by_side_shown = !viewer->side_by_side_shown, viewer->side_by_side_changed = true;
   if (!viewer->side_by_side && viewer->side_by_side_presses > 0)
     tell(viewer, viewer->options.has_reference
-                     ? "V shows the reference beside the picture: start with --side-by-side model to have one"
-                     : "V shows a reference on the desktop: this program was built without it");
+                     ? "V shows the reference beside the picture: start with --side-by-side model to use it"
+                     : "V shows the reference, which this build does not have: use a desktop build");
   viewer->side_by_side_presses = 0;
   if (!viewer->budget && viewer->front_steps != 0)
-    tell(viewer, "page up and down choose settings within a budget: start with --budget-ms to have one");
+    tell(viewer, "page up/down change settings within a budget: start with --budget-ms to use them");
   if (!viewer->budget) viewer->front_steps = 0, viewer->front_home = false;
 }
 
@@ -112,7 +112,7 @@ bool is_file_changed(const Viewer& viewer, FileWatch* watch) {
 
 std::ptrdiff_t row_bytes(const Viewer& viewer) { return screen_width(viewer) * (viewer.format.bits_per_pixel / 8); }
 
-// The last picture, or black, and a text over it; takes events. False: the user wants to leave.
+// Shows the last picture, or black, with a text over it, and handles events. False if the user quit.
 bool show_text(Viewer* viewer, const HudText& text) {
   take_events(viewer);
   if (viewer->quit) return false;
@@ -135,7 +135,7 @@ bool show_text(Viewer* viewer, const HudText& text) {
   return true;
 }
 
-// Keeps the picture as it is on the screen, but for the text over it.
+// Keeps a copy of the picture on the screen, without the overlay.
 void keep_picture(Viewer* viewer, const Renderer& renderer) {
   const Vec3* radiance = shows_side_by_side(*viewer)
                              ? viewer->side_by_side->backend->picture(viewer->side_by_side, renderer)
@@ -149,12 +149,12 @@ void keep_picture(Viewer* viewer, const Renderer& renderer) {
 void keep_view(Viewer* viewer, const ViewerLoop& loop) {
   std::snprintf(viewer->kept.scene_path, sizeof viewer->kept.scene_path, "%s", viewer->scene_path.c_str());
   viewer->kept.control = loop.control;
-  viewer->kept.control.camera.node = kNone;  // it stands where the user put it, whatever moves in the scene
+  viewer->kept.control.camera.node = kNone;  // it stays where the user put it, attached to no moving node
   viewer->kept.camera_moved = loop.camera_moved;
   viewer->kept.seconds = loop.seconds;
 }
 
-// A view that the scene as it is now cannot have is dropped.
+// Restores the kept view, unless the reloaded scene cannot have it.
 void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer.kept.scene_path != viewer.scene_path) return;
   loop->seconds = viewer.kept.seconds;
@@ -163,7 +163,7 @@ void take_kept_view(const Viewer& viewer, Renderer* renderer, ViewerLoop* loop) 
   if (loop->camera_moved) loop->control.camera = viewer.kept.control.camera;
 }
 
-// Where none is named: the first that opens. The one that shows nothing must be asked for.
+// Opens the first screen that works, except `null`, which must be named.
 Status open_any_screen(const platform::ScreenOptions& options, Viewer* viewer, platform::ScreenFormat* format) {
   std::string tried;
   for (int i = 0; i + 1 < platform::kBackendCount; ++i) {
@@ -175,23 +175,22 @@ Status open_any_screen(const platform::ScreenOptions& options, Viewer* viewer, p
     tried += std::string(tried.empty() ? "" : "; ") + backend->name + " " + std::string(error.text).substr(0, 120);
   }
   viewer->backend = nullptr;
-  return failure("no screen was found (%.300s): choose one by --screen, or write pictures with `pocketray render`",
+  return failure("no screen found (%.300s): choose one with --screen, or write pictures with `pocketray render`",
                  tried.c_str());
 }
 
 Status open_screen(const platform::ScreenOptions& options, Viewer* viewer, platform::ScreenFormat* format) {
   const std::string& name = viewer->options.backend;
   if (name == "auto" && !options.device) return open_any_screen(options, viewer, format);
-  viewer->backend = platform::platform_find(name == "auto" ? "linux" : name.c_str());  // whose a framebuffer is
-  if (!viewer->backend)
-    return failure("--screen is '%s': this program has sdl2, linux or null, as built", name.c_str());
+  viewer->backend = platform::platform_find(name == "auto" ? "linux" : name.c_str());  // --framebuffer implies linux
+  if (!viewer->backend) return failure("--screen is '%s': it must be sdl2, linux or null, if built in", name.c_str());
   platform::Error error;
   if (viewer->backend->open(options, format, &error)) return success();
   viewer->backend = nullptr;
   return failure("%s", error.text);
 }
 
-// Moves camera and time on; marks the picture as changed.
+// Advances camera and time; marks the picture as changed.
 Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   std::uint64_t now = viewer->backend->now_ns();
   float elapsed = static_cast<float>(std::min<std::uint64_t>(now - loop->last_ns, 250 * kMillisecond)) * 1e-9f;
@@ -215,13 +214,13 @@ Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Takes memory for pages and opens the screen; what has been taken stays so on failure.
+// Allocates the pages and opens the screen; on failure, leaves resources to close_viewer().
 Status take_screen(const ViewOptions& options, int width, int height, Viewer* viewer) {
   std::size_t page_bytes = platform::page_bytes_max(width, height);
   viewer->page_memory = std::malloc(page_bytes);
   viewer->picture_memory = std::malloc(page_bytes);
   if (!viewer->page_memory || !viewer->picture_memory)
-    return failure("no memory for a page of %dx%d pixels: lower --size", width, height);
+    return failure("not enough memory for a page of %dx%d pixels: lower --size", width, height);
   platform::ScreenOptions screen;
   screen.width = width;
   screen.height = height;
@@ -242,7 +241,7 @@ Status take_screen(const ViewOptions& options, int width, int height, Viewer* vi
   RETURN_IF_ERROR(open_screen(screen, viewer, &format));
   viewer->format = to_pixel_format(format);
   if (format.width >= screen_width(*viewer) && format.height >= screen_height(*viewer)) return success();
-  return failure("the screen has %dx%d pixels, too few for the picture: use --size %dx%d", format.width, format.height,
+  return failure("the screen has only %dx%d pixels: use --size %dx%d", format.width, format.height,
                  quarter_turned(*viewer) ? format.height : format.width,
                  quarter_turned(*viewer) ? format.width : format.height);
 }
@@ -304,10 +303,10 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
   loop.control = make_camera_control(renderer->camera, renderer->accel.bounds);
   take_kept_view(*viewer, renderer, &loop);
   loop.last_ns = viewer->backend->now_ns();
-  loop.finished = true;  // nothing under way
+  loop.finished = true;  // no picture in progress
   viewer->picture_merged = false;
   *again = false;
-  viewer->reload = viewer->dropped[0] != 0;  // while this one was loading
+  viewer->reload = viewer->dropped[0] != 0;  // dropped while this scene was loading
   Status status;
   while (status.ok) {
     take_events(viewer);

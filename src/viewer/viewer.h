@@ -19,44 +19,44 @@ namespace pocketray {
 struct ViewOptions {
   std::string backend = "auto", device, screenshot_folder = ".";
   int rotation = -1, scale = 0;         // degrees clockwise; −1: the device's
-  const std::uint16_t* keys = nullptr;  // of the device's buttons; null: a keyboard's
+  const std::uint16_t* keys = nullptr;  // key codes of the device's buttons; null: a keyboard's
   bool dither = false;
-  const platform::Device* emulated = nullptr;  // whose pixels to show, upright; null: the screen's own
+  const platform::Device* emulated = nullptr;  // device whose screen to show, upright; null: the screen's own pixels
   std::uint32_t frame_count = 0;
-  bool has_reference = false;  // the build has it: side_by_side can be asked for
+  bool has_reference = false;  // the build has --side-by-side
 };
 
-// A file that is loaded anew when it has changed, and nobody is writing it any more: it looks the same twice in a row.
+// Watches a file to reload it after a change, once writing has ended: when it looks the same twice in a row.
 struct FileWatch {
   std::uint64_t loaded = 0, seen = 0;  // stamps
   std::uint64_t last_look_ns = 0;
 };
 
-// What stays of the view when the scene is loaded anew.
+// The parts of the view that survive a reload of the scene.
 struct KeptView {
-  char scene_path[1024] = {0};  // of which scene; empty: nothing was kept
+  char scene_path[1024] = {0};  // the scene it belongs to; empty: nothing kept
   CameraControl control;
-  bool camera_moved = false;  // by the user; else the scene's own camera is shown, which may be another one now
+  bool camera_moved = false;  // by the user; otherwise shows the scene's own camera, which may have changed
   double seconds = 0;
 };
 
 struct Viewer {
   const platform::Backend* backend = nullptr;
   ViewOptions options;
-  std::string scene_path;  // loaded anew when this file changes
+  std::string scene_path;  // reloaded when this file changes
   int width = 0, height = 0;
   Rotation rotation = Rotation::none;
   PixelFormat format;
   Servers* servers = nullptr;          // null: the device renders alone
-  Budget* budget = nullptr;            // null: frames take what they take, and are refined
+  Budget* budget = nullptr;            // null: frames are refined, however long they take
   SideBySide* side_by_side = nullptr;  // null: no reference to show
   bool side_by_side_shown = true;      // the user wants to see it
-  std::uint64_t pack_ns = 0;           // of the last picture shown
-  bool picture_merged = false;         // the picture under way, or shown: by servers, too
+  std::uint64_t pack_ns = 0;           // for the last picture shown
+  bool picture_merged = false;         // servers take part in the current picture
   void* page_memory = nullptr;
   FileWatch watch;
   KeptView kept;
-  void* picture_memory = nullptr;  // the last picture, rows as the screen has them, shown while there is no scene
+  void* picture_memory = nullptr;  // the last picture, in the screen's rows, shown while no scene is loaded
   bool has_picture = false;
   HudNote note;
   char dropped[1024] = {0};  // a file dropped on the window: the scene to show next
@@ -64,33 +64,33 @@ struct Viewer {
   bool quit = false, reload = false, screenshot = false, home = false, change_mode = false;  // asked for
   int front_steps = 0;                                                                       // asked for
   int side_by_side_presses = 0;                                                              // asked for
-  bool side_by_side_changed = false;  // side_by_side_shown has, and the screen not yet
+  bool side_by_side_changed = false;  // side_by_side_shown changed and the screen does not show it yet
   bool front_home = false;            //   as the budget has it
   bool hud = true, hud_shown = false, paused = false;
-  std::uint32_t note_shown = 0, hud_rows_shown = 0;  // on the screen: the note's number, and what the text covers
+  std::uint32_t note_shown = 0,
+                hud_rows_shown = 0;  // on the screen: the note's number, and the rows the overlay covers
   std::uint64_t waiting_since_ns = 0;
   std::uint32_t screenshot_count = 0, frames_finished = 0;
 };
 
-// What the frame arena must hold while viewing: span list and screenshot encoder.
+// Bytes needed in the frame arena for viewing: span list and screenshot encoder.
 std::size_t viewer_bytes(const Settings& settings);
 
 Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* viewer);
-// To be called before the scene is loaded: changes from now on are noticed.
+// Call before loading the scene, to notice changes from then on.
 void watch_scene(Viewer* viewer);
-// Shows a sign of life while a scene loads, over the last picture where there is one, and takes events. False: the user
-// wants to leave.
+// Shows a sign of life while a scene loads, over the last picture if any, and handles events. False if the user quit.
 bool show_waiting(Viewer* viewer, const char* text);
-// The scene cannot be loaded: shows why, over the last picture, until its file changes, another is dropped or the user
-// asks to try again. False: the user wants to leave.
+// Shows why the scene failed to load, over the last picture, until its file changes, another is dropped or the user
+// reloads. False if the user quit.
 bool wait_for_another(Viewer* viewer, const char* why);
-// Tells the user something, over the picture and in a line of standard error.
+// Shows a message over the picture and prints it on stderr.
 void tell(Viewer* viewer, const char* text);
-// Runs until the user leaves (*again false), the scene is to be loaded anew (*again true), or options.frame_count
-// frames are finished. Camera and time go on from viewer->kept where that is of this scene; the view and the picture
-// are kept for the next one. Allocates nothing but for the reference side by side.
+// Runs until the user quits or options.frame_count frames are finished (*again false), or a reload is due (*again
+// true). Continues with the camera and time of viewer->kept if that is of this scene; keeps the view and the picture
+// for the next run. Allocates nothing, except for the reference.
 Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again);
-// Of one that is closed, or that was never opened, too.
+// Safe on a viewer that is closed or was never opened.
 void close_viewer(Viewer* viewer);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// What callgrind writes.
+// Reading the output of callgrind.
 #include "accuracy/callgrind.h"
 
 #include <doctest/doctest.h>
@@ -25,16 +25,16 @@ std::string replaced(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-// Goal: the sum of a dump is read, more than 32 bits of it. Method: a dump of a few lines, whose sums differ here, and
-// whose command line looks like one.
+// Goal: the sum of a dump is read, more than 32 bits of it. Method: a dump of a few lines, with different sums and a
+// command line that looks like one.
 TEST_CASE("callgrind_dump_has_a_total") {
   std::uint64_t instructions = 0;
   REQUIRE(read_callgrind_dump(kDump, &instructions));
   CHECK(instructions == 10000000040u);
 }
 
-// Goal: what is not a whole dump before a function counts nothing. Method: every shorter text; the dump that callgrind
-// makes when the program ends; sums that are no number.
+// Goal: anything but a complete dump before a function is refused. Method: every shorter text; the dump that callgrind
+// makes at program exit; sums that are not numbers.
 TEST_CASE("callgrind_dump_that_is_none_is_refused") {
   std::uint64_t instructions = 5;
   for (std::size_t length = 0; length < kDump.size(); ++length)

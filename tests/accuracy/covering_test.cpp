@@ -24,7 +24,7 @@ bool has_pair(const Covering& c, std::size_t a, int i, std::size_t b, int j) {
                      [&](const std::vector<int>& row) { return row[a] == i && row[b] == j; });
 }
 
-// Every pair is in a row, or the cheapest row that has it is too dear; as counted.
+// Checks that every pair is in a row, or counted because the cheapest row with it exceeds the limit.
 void check_covering(const Prices& prices, double limit, const Covering& c) {
   std::size_t pairs = 0, too_dear = 0;
   for (const std::vector<int>& row : c.rows) {
@@ -48,8 +48,8 @@ void check_covering(const Prices& prices, double limit, const Covering& c) {
 
 }  // namespace
 
-// Goal: all pairs occur, in not many more rows than the largest two knobs need. Method: nine knobs of three levels,
-// where 9 rows are the least for four knobs and 13 the least known for nine; others by count.
+// Goal: all pairs occur in few rows more than the largest two knobs need. Method: nine knobs of three levels (9 rows is
+// the minimum for four knobs, 13 the best known for nine); others by count.
 TEST_CASE("covering_has_every_pair_in_few_rows") {
   struct Case {
     std::size_t knobs, levels, rows_max;
@@ -63,7 +63,7 @@ TEST_CASE("covering_has_every_pair_in_few_rows") {
   }
 }
 
-// Goal: what is too dear is left out and counted, everything else is covered. Method: random prices and limits.
+// Goal: pairs beyond the limit are skipped and counted, all others are covered. Method: random prices and limits.
 TEST_CASE("covering_keeps_to_the_price_limit") {
   Rng rng = make_rng(3);
   std::size_t left_out = 0;

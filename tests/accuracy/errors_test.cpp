@@ -15,8 +15,8 @@ bool near(double a, double b) { return std::fabs(a - b) <= 1e-12 * std::fabs(b);
 
 }  // namespace
 
-// Goal: each number is what its definition says. Method: a hundred values of which one is off by 2 and another by -1;
-// the percentile is that of ranks.
+// Goal: each metric meets its definition. Method: a hundred values, one off by 2 and another by -1; the percentile is
+// by rank.
 TEST_CASE("errors_meet_their_definitions") {
   std::vector<double> reference(100, 0.5), test = reference;
   test[17] = 2.5, test[60] = -0.5;

@@ -1,4 +1,4 @@
-// What can be said of a sweep.
+// Conclusions from a sweep.
 #include "accuracy/findings.h"
 
 #include <doctest/doctest.h>
@@ -7,8 +7,8 @@
 
 using namespace pocketray;
 
-// Goal: the front is what was marked and has figures, the fastest first. Method: three marked ones in the wrong order,
-// one of them without figures.
+// Goal: the front lists marked configurations with figures, fastest first. Method: three marked in the wrong order, one
+// without figures.
 TEST_CASE("findings_front_is_sorted_by_time") {
   Sweep sweep = empty_sweep();
   for (int i = 0; i < 4; ++i)
@@ -22,8 +22,8 @@ TEST_CASE("findings_front_is_sorted_by_time") {
   CHECK(front[1]->value == "0");
 }
 
-// Goal: a knob's ends are its first and last value with figures. Method: the last has none; a gain that is claimed, one
-// that is too small for the reference, and a loss.
+// Goal: a knob's ends are its first and last value with figures. Method: the last has none; a claimed gain, one too
+// small for the reference, and a loss.
 TEST_CASE("findings_ends_are_the_first_and_last_with_figures") {
   Sweep sweep = empty_sweep();
   double errors[] = {0.04, 0.09, 0.01, 0.5};
@@ -43,8 +43,8 @@ TEST_CASE("findings_ends_are_the_first_and_last_with_figures") {
   CHECK(!ends_of(sweep, "none").worst);
 }
 
-// Goal: what buys the most comes first, and what cannot be claimed does not. Method: the cheapest knob gains too little
-// for the reference, another has no price.
+// Goal: the knob that buys the most comes first, unless its gain cannot be claimed. Method: the cheapest knob gains too
+// little for the reference, another has no price.
 TEST_CASE("findings_knobs_are_sorted_by_price") {
   Sweep sweep = empty_sweep();
   add_knob(&sweep, "unknown", 1, kNotMeasured);

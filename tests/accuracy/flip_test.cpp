@@ -37,8 +37,8 @@ Picture read_png(const std::string& path) {
 
 }  // namespace
 
-// Goal: the errors are those that the authors' program finds: means to 1e-4, maxima to 1e-3. Method: their values for
-// four kinds of errors at two distances, where the pictures are.
+// Goal: errors match the authors' program: means to 1e-4, maxima to 1e-3. Method: their values for four kinds of errors
+// at two distances, if the pictures are available.
 TEST_CASE("flip_equals_the_authors") {
   std::string folder = std::string(POCKETRAY_SHARED) + "/flip/";
   std::ifstream table(folder + "expected.csv");

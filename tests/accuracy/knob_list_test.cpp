@@ -1,4 +1,4 @@
-// The knobs: what holds for every row there is, and for those to come.
+// The knobs: properties of every row, including future ones.
 #include "accuracy/knob_list.h"
 
 #include <doctest/doctest.h>
@@ -11,8 +11,8 @@
 
 using namespace pocketray;
 
-// Goal: a row does what it says. Method: put each value in and read it out; everything else of the configuration is
-// as it was, which the other knobs tell; the settings are ones that a renderer takes.
+// Goal: a row sets its value and nothing else. Method: set and read back each value; the other knobs are unchanged; the
+// settings are valid for a renderer.
 TEST_CASE("knobs_set_what_they_get_and_nothing_else") {
   std::set<std::string> names;
   for (const Knob& knob : knob_list()) {
@@ -34,7 +34,7 @@ TEST_CASE("knobs_set_what_they_get_and_nothing_else") {
       for (const Knob& other : knob_list())
         if (&other != &knob) CHECK(other.get(c) == other.get(baseline));
     }
-    // The default is among the values, and as dear as itself.
+    // The default is among the values, at a price of 1.
     std::vector<double> values = knob_values(knob, baseline);
     CHECK(std::count(values.begin(), values.end(), knob.get(baseline)) == 1);
     CHECK(relative_price(knob, baseline, knob.get(baseline)) == 1);
@@ -42,7 +42,7 @@ TEST_CASE("knobs_set_what_they_get_and_nothing_else") {
   CHECK(names.count("samples") == 1);
 }
 
-// Goal: a baseline between the values of the list is swept, too, in its place. Method: 3 samples; a cut-off of 3
+// Goal: a baseline between the values of the list is also swept, in its place. Method: 3 samples; a cut-off of 3
 // levels, whose values fall.
 TEST_CASE("knobs_take_the_baselines_value_in_order") {
   Configuration c;
@@ -56,7 +56,7 @@ TEST_CASE("knobs_take_the_baselines_value_in_order") {
   }
 }
 
-// Goal: knobs that turn nothing are left out, and say why. Method: a plan without effects, then one with each.
+// Goal: knobs without effect are skipped and say why. Method: a plan without effects, then one with each.
 TEST_CASE("knobs_apply_where_their_effect_is_on") {
   EffectPlan none, all;
   all.mask = kAllEffects;

@@ -33,8 +33,7 @@ Status write_whole(const std::string& path, const std::string& bytes) {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// What is wrong with the markup: tags that are not closed in order, attributes without quotes, stray characters. Empty:
-// nothing.
+// A fault in the markup: tags not closed in order, attributes without quotes, stray characters. Empty: none.
 std::string markup_fault(const std::string& page) {
   std::vector<std::string> open;
   for (std::size_t at = page.find('<'); at < page.size(); at = page.find('<', at)) {
@@ -119,8 +118,7 @@ TEST_CASE("page_text_is_for_readers") {
   CHECK(base64("foo\xff") == "Zm9v/w==");
 }
 
-// Goal: the page is well formed, shows everything and needs nothing else. Method: a made-up sweep whose texts hold
-// markup.
+// Goal: the page is well-formed, complete and self-contained. Method: a made-up sweep with markup in its texts.
 TEST_CASE("page_is_well_formed_and_shows_each_knob") {
   Sweep sweep = sample_sweep();
   add_knob(&sweep, "<b>&\"it's\"", 3, 5);
@@ -144,13 +142,13 @@ TEST_CASE("page_is_well_formed_and_shows_each_knob") {
   CHECK(page.size() < 100000);
 }
 
-// Goal: the answer stands first, and names what buys the most; nothing finer than the reference can tell is claimed.
-// Method: knobs of known prices; then a reference that errs by more than any gain.
+// Goal: the page begins with the knob that buys the most and claims nothing finer than the reference can tell. Method:
+// knobs with known prices; then a reference whose error exceeds any gain.
 TEST_CASE("page_answers_what_buys_the_most") {
   Sweep sweep = sample_sweep();
   std::string page = page_of(sweep, {});
-  CHECK(
-      has(page, "<b>area-lights</b> buys the most accuracy per millisecond: .01 of FLIP for <b>0.700 ms</b> a frame"));
+  CHECK(has(page,
+            "<b>area-lights</b> buys the most accuracy per millisecond: .01 of FLIP for <b>0.700 ms</b> per frame"));
   CHECK(has(page, "<b>samples</b> buys the least: 2.40 ms"));
   CHECK(has(page, "Better and no slower: normals."));
   CHECK(page.find("buys the most") < page.find("id=\"samples\""));
@@ -158,18 +156,18 @@ TEST_CASE("page_answers_what_buys_the_most") {
   sweep.reference_flip = 0.01;
   page = page_of(sweep, {});
   CHECK(has(page, "No gain that can be claimed: "));
-  CHECK(has(page, "A reference of more samples may tell more."));
+  CHECK(has(page, "A reference with more samples may show one."));
   CHECK(!has(page, "buys the most accuracy per millisecond:"));
   CHECK(has(page, "<td class=\"weak\"><i>0.0800</i></td>"));
 }
 
-// Goal: the page says what its times and intervals are. Method: a value that another tracer was timed for; few rounds.
+// Goal: the page explains its times and intervals. Method: a value timed with another tracer; few rounds.
 TEST_CASE("page_says_what_was_timed_and_how_surely") {
   Sweep sweep = sample_sweep();
   std::string page = page_of(sweep, {});
   CHECK(has(page, "posing, refitting, placing lights, tracing and packing"));
   CHECK(has(page, "its time is that tracer"));
-  CHECK(has(page, "That interval is of the times alone."));
+  CHECK(has(page, "The interval covers only the times"));
   CHECK(!has(page, "fewer than six rounds"));
   sweep.measured[2].note = "time of <another> tracer", sweep.rounds = 5;
   page = page_of(sweep, {});
@@ -177,8 +175,8 @@ TEST_CASE("page_says_what_was_timed_and_how_surely") {
   CHECK(has(page, "fewer than six rounds"));
 }
 
-// Goal: every sweep gives all files, and figures that are none do not show as such. Method: a whole one; one knob of
-// one value, of no errors, without figures; nothing at all.
+// Goal: every sweep produces all files, and missing figures do not appear as numbers. Method: a complete sweep; one
+// knob with one value, without errors, without figures; an empty one.
 TEST_CASE("report_has_no_gaps") {
   Sweep whole = sample_sweep(), zero = empty_sweep(), missing = sample_sweep(), nothing = empty_sweep();
   add_knob(&zero, "only", 1, kNotMeasured);
@@ -214,7 +212,7 @@ TEST_CASE("report_has_no_gaps") {
   }
 }
 
-// Goal: a folder that is not there is told in one line. Method: one that is not.
+// Goal: a missing folder is reported in one line.
 TEST_CASE("report_names_a_folder_it_cannot_write_to") {
   bool drawn = true;
   Status status = write_report("/nonexistent/folder", sample_sweep(), write_whole, gnuplot, &drawn);

@@ -30,7 +30,7 @@ int points_of(const Plot& plot, const std::string& block) {
 }  // namespace
 
 // Goal: each configuration with figures is a point, the front is marked and numbered. Method: count the data's lines;
-// of one configuration there is nothing to draw, of another no ꟻLIP.
+// one configuration has no figures, another no ꟻLIP.
 TEST_CASE("plot_front_has_a_point_for_all_that_was_measured") {
   Sweep sweep = sample_sweep();
   sweep.measured[1].missing = "too large";
@@ -63,7 +63,7 @@ TEST_CASE("plot_knob_has_its_values_slope_and_theory") {
   CHECK(has(plot.script, "set logscale x"));
 }
 
-// Goal: bars are drawn where a knob has a price, the rest says why not. Method: a knob of each kind.
+// Goal: knobs with a price have a bar, the others a reason. Method: a knob of each kind.
 TEST_CASE("plot_price_has_a_bar_for_each_knob_with_a_price") {
   Sweep sweep = sample_sweep();
   add_knob(&sweep, "idle", 1, kNotMeasured);
@@ -72,12 +72,12 @@ TEST_CASE("plot_price_has_a_bar_for_each_knob_with_a_price") {
   CHECK(has(plot.script, "'free: better and no slower' at graph 0.0000, first 0"));
   CHECK(has(plot.script, "'0.700' at graph"));
   CHECK(has(plot.script, "'no gain that can be claimed' at graph 0.0000, first 3"));
-  sweep.reference_flip = 0.01;  // ten times it is more than any gain
+  sweep.reference_flip = 0.01;  // ten times this exceeds any gain
   CHECK(points_of(price_plot(sweep), "prices") == -1);
 }
 
-// Goal: whatever was found, every number of a script is one. Method: sweeps without errors, with equal ones, of one
-// point and of none.
+// Goal: every number in a script is valid, whatever the sweep. Method: sweeps without errors, with equal ones, with one
+// point and with none.
 TEST_CASE("plot_scripts_hold_numbers_alone") {
   Sweep none = empty_sweep(), zero = sample_sweep(), equal = sample_sweep(), blank = empty_sweep();
   blank.measured.clear();
@@ -95,7 +95,7 @@ TEST_CASE("plot_scripts_hold_numbers_alone") {
   CHECK(has(front_plot(mixed).script, "set ytics ('0' "));
 }
 
-// Goal: an axis shows every value, and zero where logarithms have none. Method: its definition on cases.
+// Goal: an axis shows every value, even zero on a logarithmic one. Method: cases.
 TEST_CASE("plot_axis_shows_every_value") {
   Axis wide = axis_of({0.01, 0.5, 0}, 0, true);
   CHECK(wide.logarithmic);
@@ -143,7 +143,7 @@ TEST_CASE("plot_labels_do_not_overlap") {
   }
 }
 
-// Goal: text of the sweep cannot become a command. Method: what ends a string of gnuplot or of the shell.
+// Goal: text of the sweep cannot become a command. Method: characters that end a gnuplot or shell string.
 TEST_CASE("plot_text_is_quoted") {
   CHECK(gnuplot_string("it's\nso") == "'it''s so'");
   CHECK(shell_word("it's") == "'it'\\''s'");

@@ -30,7 +30,7 @@ inline StripRow sample_row(const std::string& label, const Levels& reference, in
   return {label, 3.1, 0.0421, sample_picture(reference.width, reference.height, shift), map};
 }
 
-// `values` of them, errors falling as time rises.
+// Adds a knob with `values` values; errors fall as time rises.
 inline void add_knob(Sweep* sweep, const std::string& name, int values, double ms_per_flip) {
   KnobFigures knob;
   knob.name = name, knob.what = "what " + name + " turns", knob.effect = "shadow", knob.ms_per_flip = ms_per_flip;

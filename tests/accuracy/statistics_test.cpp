@@ -1,4 +1,4 @@
-// What measurements say, and how surely.
+// Statistics of measurements.
 #include "accuracy/statistics.h"
 
 #include <doctest/doctest.h>
@@ -29,9 +29,9 @@ TEST_CASE("statistics_median_is_the_middle") {
   CHECK(median({2, 2, 9, 2}) == 2);
 }
 
-// Goal: an interval of 95 % holds the true median in 93 to 97 of 100 cases, for any number of values from six on and
-// any distribution. Method: experiments with even, skewed and heavy-tailed noise whose median is known; the range of
-// fewer values as often as it says.
+// Goal: a 95 % interval covers the true median in 93 to 97 % of cases, for any distribution and six or more values.
+// Method: experiments with uniform, skewed and heavy-tailed noise of known median; the range of fewer values has its
+// stated coverage.
 TEST_CASE("statistics_interval_of_a_median_holds_the_truth") {
   const int experiments = kEffortDivisor > 1 ? 300 : 2000;
   const double slack = kEffortDivisor > 1 ? 0.04 : 0.02;
@@ -63,9 +63,8 @@ TEST_CASE("statistics_interval_of_a_median_holds_the_truth") {
   CHECK((open.low == -infinity && open.value == -2 && open.high <= 0));
 }
 
-// Goal: a power law's exponent above any floor, exactly where there is no noise, and how far errors are from any such
-// law. Method: exponents and floors, the last point far from its limit; errors that are off by known shares; a last
-// point that does not stand for the floor.
+// Goal: a power law's exponent is found above any floor, exactly without noise, along with the misfit. Method:
+// exponents and floors, the last point far from its limit; errors off by known fractions; a last point above the floor.
 TEST_CASE("statistics_power_law_is_found") {
   std::vector<double> time = {1, 2, 4, 6, 9, 12, 16}, error(time.size());
   auto errors = [&](double exponent, double floor) {
@@ -81,7 +80,7 @@ TEST_CASE("statistics_power_law_is_found") {
       CHECK(std::fabs(law.exponent - exponent) < 1e-4);
       CHECK(law.misfit < 1e-6);
     }
-  // Whichever point is off, the last one too, it counts as one of seven.
+  // Whichever point is off, even the last, it counts as one of seven.
   double least = 1, most = 0;
   for (std::size_t off = 0; off < time.size(); ++off) {
     errors(-0.5, 0);
@@ -92,13 +91,13 @@ TEST_CASE("statistics_power_law_is_found") {
     least = std::fmin(least, std::fabs(law.exponent + 0.5)), most = std::fmax(most, std::fabs(law.exponent + 0.5));
   }
   CHECK(most > least);
-  // Errors that differ where the time does not, or do not fall, tell of nothing.
+  // Errors that differ at equal times, or do not fall, give no exponent.
   PowerLaw nothing = fit_power_law({1, 1, 1, 2}, {2, 3, 4, 1}, 0);
   CHECK((nothing.exponent < -1 || nothing.misfit > 0.1));
   CHECK(fit_power_law({1, 2, 3, 4}, {1, 2, 3, 4}, 0).misfit > 0.1);
 }
 
-// Goal: the front is what no other point beats. Method: brute force over random points with ties.
+// Goal: the front holds the points that no other beats. Method: brute force over random points with ties.
 TEST_CASE("statistics_pareto_front_is_what_nothing_beats") {
   Rng rng = make_rng(6);
   for (int round = 0; round < 50; ++round) {

@@ -1,4 +1,4 @@
-// What settings look like beside the reference.
+// Strips of settings beside the reference.
 #include "accuracy/strip.h"
 
 #include <doctest/doctest.h>
@@ -35,8 +35,8 @@ TEST_CASE("strip_flip_colors_run_from_black_to_light_yellow") {
   }
 }
 
-// Goal: each panel holds what its heading says, in every row. Method: all pixels of pictures of a size that is
-// magnified and of one that is not, the difference clamped where it is large.
+// Goal: each panel matches its heading in every row. Method: all pixels of a magnified and of an unmagnified picture,
+// with large differences clamped.
 TEST_CASE("strip_panels_hold_reference_setting_difference_and_map") {
   for (std::uint32_t width : {32u, 112u, 350u}) {
     CAPTURE(width);
@@ -66,8 +66,8 @@ TEST_CASE("strip_panels_hold_reference_setting_difference_and_map") {
   }
 }
 
-// Goal: the text has room. Method: it is white, so the columns left and right of it, and the rows between panels, are
-// not; a long label is wrapped and a small picture's row grows with it.
+// Goal: the text fits. Method: it is white, and the columns beside it and the rows between panels are not; a long label
+// wraps and extends a small picture's row.
 TEST_CASE("strip_text_fits_beside_its_row") {
   Levels reference = sample_picture(350, 20, 0);
   Strip strip = {"k",

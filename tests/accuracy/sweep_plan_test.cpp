@@ -1,4 +1,4 @@
-// What a sweep measures, and what it makes of the figures.
+// The plan of a sweep and the summary of its figures.
 #include "accuracy/sweep_plan.h"
 
 #include <doctest/doctest.h>
@@ -39,8 +39,8 @@ const Measured& measured_as(const Sweep& sweep, const char* knob, const char* va
   return sweep.measured[0];
 }
 
-// Times of a power law with noise that rounds have in common, errors that fall with the square root of time to a rest
-// that is owed to other knobs.
+// Times of a power law with noise common to a round; errors that fall with the square root of time to a rest owed to
+// other knobs.
 std::vector<PointFigures> made_up(const SweepPlan& plan) {
   std::vector<PointFigures> figures;
   for (const SweepPoint& point : plan.points) {
@@ -56,8 +56,8 @@ std::vector<PointFigures> made_up(const SweepPlan& plan) {
 
 }  // namespace
 
-// Goal: each value of each knob is there once, with all other knobs as in the baseline; the covering set's points turn
-// several and keep to the limit. Method: cornell with every effect.
+// Goal: each value of each knob occurs once, with all other knobs as in the baseline; the covering set varies several
+// within the limit. Method: cornell with every effect.
 TEST_CASE("sweep_plan_turns_one_knob_at_a_time_and_then_several") {
   Configuration baseline;
   SweepPlan plan = plan_sweep("cornell", all_effects(), baseline, always, 16);
@@ -93,9 +93,9 @@ TEST_CASE("sweep_plan_turns_one_knob_at_a_time_and_then_several") {
   }
 }
 
-// Goal: settings of a ladder are measured once, as far as they can be had and are not too dear, and only what one can
-// choose from frame to frame is on the front. Method: a ladder of a new configuration, one that is there, one too dear
-// and one that cannot be had; knobs that are no settings of a frame.
+// Goal: available settings of a ladder within the limit are measured once, and only settings that can change from frame
+// to frame are on the front. Method: a ladder with a new configuration, an existing one, one beyond the limit and an
+// unavailable one; knobs that are not frame settings.
 TEST_CASE("sweep_plan_measures_a_ladder_beside_the_knobs") {
   Configuration baseline;
   std::vector<Settings> ladder(5, baseline.settings);
@@ -128,8 +128,8 @@ TEST_CASE("sweep_plan_measures_a_ladder_beside_the_knobs") {
   CHECK(others == 0);
 }
 
-// Goal: what cannot be had is listed with the reason, and the covering set does without. Method: no more than 36 points
-// per area light.
+// Goal: unavailable values are listed with the reason and not in the covering set. Method: at most 36 points per area
+// light.
 TEST_CASE("sweep_plan_lists_what_cannot_be_had") {
   auto few = [](const Settings& s) { return s.points_per_area_light > 36 ? failure("too many points") : success(); };
   SweepPlan plan = plan_sweep("file.pray", all_effects(), Configuration(), few, 1e9);
@@ -149,7 +149,7 @@ TEST_CASE("sweep_plan_lists_what_cannot_be_had") {
   CHECK(measured_as(sweep, "area-lights", "256").missing == "too many points");
 }
 
-// Goal: slopes, ratios and the front are those of the figures. Method: figures of a law with exponent -1/2.
+// Goal: slopes, ratios and the front follow from the figures. Method: figures of a law with exponent -1/2.
 TEST_CASE("sweep_sums_up_what_was_measured") {
   SweepPlan plan = plan_sweep("file.pray", all_effects(), Configuration(), always, 16);
   Sweep sweep;
@@ -158,8 +158,8 @@ TEST_CASE("sweep_sums_up_what_was_measured") {
   REQUIRE(sweep.measured.size() == plan.points.size());
   const Measured& sixteen = measured_as(sweep, "samples", "16");
   CHECK(std::fabs(sixteen.time_ratio.value - 16) < 1e-9);
-  CHECK(sixteen.time_ratio.low == sixteen.time_ratio.high);     // the rounds' moods are in both
-  CHECK(sixteen.ns_per_pixel.low < sixteen.ns_per_pixel.high);  // but its own time has them
+  CHECK(sixteen.time_ratio.low == sixteen.time_ratio.high);     // both share the round's noise
+  CHECK(sixteen.ns_per_pixel.low < sixteen.ns_per_pixel.high);  // but its own time has it
   CHECK(sweep.measured[0].ns_per_pixel.low < sweep.measured[0].ns_per_pixel.high);
   CHECK(sixteen.ns_per_pixel.value == doctest::Approx(16 * 1200));
   CHECK(measured_as(sweep, "samples", "1").is_default);
@@ -172,14 +172,14 @@ TEST_CASE("sweep_sums_up_what_was_measured") {
     CHECK(k.ms_per_flip == doctest::Approx(18.0 / 7.5));
   }
   CHECK(sixteen.pareto);
-  CHECK_FALSE(measured_as(sweep, "arithmetic", "double").pareto);  // no setting of the renderer
+  CHECK_FALSE(measured_as(sweep, "arithmetic", "double").pareto);  // not a setting of the renderer
   for (const KnobFigures& k : sweep.knobs)
-    if (k.name == "arithmetic") CHECK(std::isnan(k.ms_per_flip));  // nor its time: another tracer's has no price here
+    if (k.name == "arithmetic") CHECK(std::isnan(k.ms_per_flip));  // nor a price: its time is another tracer's
   CHECK(measured_as(sweep, "arithmetic", "double").note.find("reference's own tracer") != std::string::npos);
   CHECK(measured_as(sweep, "arithmetic", "float").note.empty());
   int front = 0;
   for (const Measured& m : sweep.measured) front += m.pareto;
-  // With a coarse reference less is claimed: no slope of errors below its limit, no front of small steps.
+  // A coarse reference allows fewer claims: no slope of errors below its limit, no small steps on the front.
   sweep.reference_rmse = 0.009, sweep.reference_flip = 0.004;
   sum_up(plan, made_up(plan), &sweep);
   int coarse = 0;
@@ -189,9 +189,9 @@ TEST_CASE("sweep_sums_up_what_was_measured") {
     if (k.name == "samples") CHECK_FALSE(k.has_slope);
 }
 
-// Goal: the intervals of 95 % that a sweep states hold the truth in 93 to 97 of 100 sweeps: of times, of ratios and of
-// a knob's slope. Method: sweeps of 15 rounds with the machine's moods, with noise of the runs and with both; a
-// baseline that is measured by the median of three. Truths are those of the made-up distributions.
+// Goal: a sweep's 95 % intervals of times, ratios and slopes cover the truth in 93 to 97 % of sweeps. Method: sweeps of
+// 15 rounds with noise per round, per run and both; a baseline measured by the median of three; truths from the made-up
+// distributions.
 TEST_CASE("sweep_intervals_hold_the_truth") {
   SweepPlan plan = plan_sweep("file.pray", all_effects(), Configuration(), always, 1);
   const SweptKnob& samples = knob_named(plan, "samples");

@@ -1,6 +1,5 @@
-# What the tests of the program share: source it with the test's own arguments. PROGRAM [EMULATOR...]
-# PROGRAM is built with the sealed heap, so every command here also proves that nothing allocates after the seal.
-# A test ends with `finish`.
+# Shared by the tests of the program: source it with the test's own arguments. PROGRAM [EMULATOR...] PROGRAM is built
+# with the sealed heap, so every command also proves that nothing allocates after the seal. A test ends with `finish`.
 set -u
 program=$(realpath "$1")
 shift
@@ -14,7 +13,7 @@ export XDG_CACHE_HOME=$folder/cache/of_its_own
 passed=0 failed=0
 has_png=$("${run[@]}" render cube --size 8x8 -o probe.png >/dev/null 2>&1 && echo 1 || echo 0)
 
-# expect NAME STATUS PATTERN COMMAND...: the exit status, and a pattern in what it prints.
+# expect NAME STATUS PATTERN COMMAND...: checks the exit status, and a pattern in the output.
 expect() {
   local name=$1 status=$2 pattern=$3
   shift 3
@@ -25,13 +24,13 @@ expect() {
     echo "FAILED $name: exit $got, expected $status: $out" && failed=$((failed + 1))
   elif ! grep -qE -- "$pattern" <<<"$out"; then
     echo "FAILED $name: '$pattern' is not in: $out" && failed=$((failed + 1))
-  elif [ "$status" -eq 1 ] && [ "$(grep -vc '[0-9] %, .* left$' <<<"$out")" -ne 1 ]; then  # but for the progress of slow builds
+  elif [ "$status" -eq 1 ] && [ "$(grep -vc '[0-9] %, .* left$' <<<"$out")" -ne 1 ]; then  # except for progress of slow builds
     echo "FAILED $name: an error must be one line: $out" && failed=$((failed + 1))
   else
     passed=$((passed + 1))
   fi
 }
-# A server comes into use within some frames, and on a busy machine not within these few: then again.
+# Retries, since on a busy machine a server may not come into use within these few frames.
 expect_in_use() {
   local name=$1 pattern=$2
   shift 2

@@ -15,8 +15,8 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
   kill -INT $sweeping
   wait $sweeping
   check accuracy_is_interrupted test $? -eq 3
-  check accuracy_says_that_it_is_kept grep -q 'kept in sweep.*same command' interrupted.err
-  expect accuracy 0 'index.html shows it' accuracy cube "${tiny[@]}" -o sweep --rounds 1 --json sweep.json
+  check accuracy_says_that_it_is_kept grep -q 'so far are in sweep.*same command' interrupted.err
+  expect accuracy 0 'index.html for the results' accuracy cube "${tiny[@]}" -o sweep --rounds 1 --json sweep.json
   check accuracy_table grep -q '^samples,16,[0-9]' sweep/accuracy.csv
   check accuracy_json grep -q '"reference_flip": 0' sweep.json
   check accuracy_page grep -q '</html>' sweep/index.html
@@ -30,7 +30,7 @@ if "${run[@]}" --help | grep -q '^ *accuracy '; then
     printf '#!/bin/sh\nexit 1\n' >fake/valgrind
     chmod +x fake/valgrind
     real_path=$PATH PATH=$PWD/fake:$PATH
-    expect accuracy_failing_valgrind 0 'index.html shows it' accuracy cube "${tiny[@]}" -o other --rounds 1 --json other.json
+    expect accuracy_failing_valgrind 0 'index.html for the results' accuracy cube "${tiny[@]}" -o other --rounds 1 --json other.json
     if ! counts other; then
       check accuracy_tells_that_valgrind_failed grep -q 'not counted: .* valgrind failed' other.json
       cp sweep/accuracy.state counted.state

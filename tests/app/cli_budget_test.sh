@@ -6,13 +6,14 @@
 # one candidate gives the picture of its settings; files in a cache of their own; budgets beyond any machine in both ways.
 one="samples=2 depth=1 area-lights=2 cut-off=0 texture-filter=nearest normals=flat"
 printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$one" >one.front
-expect budget_front_file 0 'expected ꟻLIP 0.2500; gave up: nothing' \
+expect budget_front_file 0 'expected ꟻLIP 0.2500; traded away: nothing' \
   render "$subject" "${small[@]}" --budget-ms 1000000 --front one.front -o budget.ppm
 "${run[@]}" render "$subject" "${small[@]}" --samples 2 --depth 1 --area-lights 2 --cut-off 0 --texture-filter nearest \
   --normals flat -o settings.ppm >/dev/null
 check budget_gives_the_picture_of_its_settings cmp -s budget.ppm settings.ppm
 check budget_keeps_the_price_it_learnt grep -q '^samples=2 depth=1 .* flip=0.25 ns=[0-9.e+]*$' one.front
-# The scene has neither area lights nor reflections, and the last candidate is dominated: all stay, with prices of their own.
+# The scene has neither area lights nor reflections, and the last candidate is dominated: all remain, each with its own
+# price.
 quality="cut-off=0 texture-filter=nearest normals=flat"
 printf "pocketray-front 1\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n%s $quality flip=%s ns=%s\n" \
   'samples=1 depth=1 area-lights=1' 0.5 1 'samples=1 depth=3 area-lights=4' 0.25 2 'samples=2 depth=4 area-lights=1' 0.75 3 \
@@ -40,18 +41,18 @@ printf 'pocketray-front 1\nsamples=99\n' >bad.front
 expect front_is_bad 1 'bad.front: line 2: ' render cube "${small[@]}" --budget-ms 40 --front bad.front -o refused.ppm
 expect budget_aov 1 '--aov' render cube "${small[@]}" --budget-ms 40 --aov depth -o refused.ppm
 expect orbit_of_a_lone_frame 1 '--frames' render cube "${small[@]}" --orbit 2 -o refused.ppm
-expect bench_front 0 'ns a pixel .*samples=1 ' bench cube "${small[@]}" --frames 1 --front new.front
+expect bench_front 0 'ns per pixel .*samples=1 ' bench cube "${small[@]}" --frames 1 --front new.front
 check bench_front_keeps_all test "$(grep -c '^samples=' new.front)" -ge 5
 expect front_in_a_folder_that_is_not_there 1 'no/such/folder/new.front' \
   bench cube "${small[@]}" --frames 1 --front no/such/folder/new.front
 check front_makes_no_folder test ! -e no
 mkdir homeless && cd homeless || exit 1
-XDG_CACHE_HOME= HOME= expect budget_without_a_home 0 'prices are not kept' \
+XDG_CACHE_HOME= HOME= expect budget_without_a_home 0 'prices are not saved' \
   render cube "${small[@]}" --budget-ms 1000000 -o ../found.ppm
 check budget_without_a_home_leaves_no_file test -z "$(ls)"
 cd ..
-expect bench_front_cache 0 'prices kept in .*cache/of_its_own' bench cube "${small[@]}" --frames 1 --front
-XDG_CACHE_HOME=/dev/null expect budget_cache_cannot_be_written 0 '/dev/null.*prices are not kept' \
+expect bench_front_cache 0 'prices saved in .*cache/of_its_own' bench cube "${small[@]}" --frames 1 --front
+XDG_CACHE_HOME=/dev/null expect budget_cache_cannot_be_written 0 '/dev/null.*prices are not saved' \
   render cube "${small[@]}" --budget-ms 1000000 -o found.ppm
 if [ $# -eq 0 ]; then
   for seconds in 1 4 16 64; do  # a busy machine may still be loading

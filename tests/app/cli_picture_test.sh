@@ -10,7 +10,7 @@ check pfm_size test "$(tail -c $((32 * 24 * 12)) a.pfm | wc -c)" -eq $((32 * 24 
 expect render_raw 0 'ns per pixel' render "$subject" "${small[@]}" --raw-format rgb565 --rotate 90 --dither -o a.raw
 check raw_size test "$(stat -c %s a.raw)" -eq $((32 * 24 * 2))
 for aov in depth normal triangle cost; do expect "aov_$aov" 0 'ns per pixel' render "$subject" "${small[@]}" --aov $aov -o "$aov.pfm"; done
-expect sequence 0 'a frame' render seesaw "${small[@]}" --frames 3:5 -o s.ppm
+expect sequence 0 'per frame' render seesaw "${small[@]}" --frames 3:5 -o s.ppm
 for n in 3 4 5; do check "sequence_file_$n" test -s s-000$n.ppm; done
 check no_part_file_is_left test -z "$(ls ./*.part 2>/dev/null)"
 if [ "$has_png" = 1 ]; then
@@ -20,7 +20,7 @@ else
   expect png_is_refused 1 'libpng' render "$subject" "${small[@]}" -o a.png
 fi
 
-# Goal: the picture depends on nothing it should not depend on.
+# Goal: the picture depends only on what it should.
 "${run[@]}" render "$subject" --size 32x24 --threads 1 -o one.ppm >/dev/null
 "${run[@]}" render "$subject" --size 32x24 --threads 5 -o five.ppm >/dev/null
 check threads_give_one_picture cmp -s one.ppm five.ppm

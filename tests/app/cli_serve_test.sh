@@ -6,14 +6,14 @@
 # Method: any free port; an address that other machines reach; a port in use; an interrupt.
 if "${run[@]}" --help | grep -q '^ *serve '; then
   expect serve_help 0 'insecure-lan' serve --help
-  expect serve_to_others 1 'asks nobody who they are.*--insecure-lan' serve --listen 0.0.0.0:0
+  expect serve_to_others 1 'there is no authentication.*--insecure-lan' serve --listen 0.0.0.0:0
   expect serve_without_port 1 'HOST:PORT' serve --listen 127.0.0.1:
   expect serve_without_folder 1 'no/such/folder' serve --listen :0 --scenes no/such/folder
   expect serve_memory 1 'memory' serve --listen :0 --memory 1M
   expect serve_scene_memory 1 '--scene-memory is' serve --listen :0 --scene-memory much
   expect serve_clients 2 'clients' serve --clients 0
 fi
-if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated CPU serves nobody
+if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under an emulated CPU
   "${run[@]}" render cornell --size 32x24 --threads 1 -o one.ppm >/dev/null
   "${run[@]}" bake cornell -o c.pray >/dev/null
   "${run[@]}" bake cornell --accel compact -o d.pray >/dev/null
@@ -22,11 +22,12 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   server=$!
   until grep -q '^listening' serve.out || ! kill -0 $server; do sleep 0.1; done
   check serve_lists_its_scenes grep -q '^ *d.pray ' serve.out
-  check serve_leaves_out_what_is_broken test "$(grep -c '^pocketray: cut.pray is left out: ' serve.err)" = 1
+  check serve_leaves_out_what_is_broken test "$(grep -c '^pocketray: cut.pray is skipped: ' serve.err)" = 1
   address=$(sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' serve.out)
   check serve_says_where_it_listens grep -qE '^127\.0\.0\.1:[0-9]+$' <<<"$address"
 
-  # Goal: a device without the scene fetches it, one without room for it shows what the server renders: the same pixels.
+  # Goal: a device without the scene fetches it, and one without room for it shows the server's rendering: the same
+  # pixels.
   expect scenes 0 '^ *d\.pray +45 109 triangles' scenes --server "$address"
   expect scenes_json 0 '"triangles": 45109' scenes --server "$address" --json -
   expect scenes_of_nobody 1 '127.0.0.1:1: nothing listens' scenes --server 127.0.0.1:1
@@ -36,7 +37,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   check fetched_scene_gives_the_same_picture cmp -s one.ppm fetched.ppm
   expect fetch_from_the_one_that_has_it 0 'ns per pixel' render d --server 127.0.0.1:1 "${remote[@]}" -o second.ppm
   check second_server_gives_the_same_picture cmp -s one.ppm second.ppm
-  expect fetch_unknown 1 'no_such is no file.* 127.*: it has cornell, ' render no_such "${remote[@]}" -o b.ppm
+  expect fetch_unknown 1 'no_such is neither a file.* 127.*: it has cornell, ' render no_such "${remote[@]}" -o b.ppm
   expect fetch_from_nobody 1 'nothing listens' render no_such --server 127.0.0.1:1 -o b.ppm
   for scene in cornell d d.pray; do
     expect "thin_$scene" 0 'device rendered 0 %' \
@@ -44,7 +45,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
     check "thin_${scene}_gives_the_same_picture" cmp -s one.ppm "thin_$scene.ppm"
   done
   expect thin_plan 0 'frame +output' render cornell "${remote[@]}" --memory 700K --plan -o b_thin.ppm
-  expect thin_says_so 0 'does not fit --memory 0.7M: the servers render every pixel.*M would hold' \
+  expect thin_says_so 0 'does not fit in --memory 0.7M: the servers render every pixel.*M would hold' \
     render cornell "${remote[@]}" --memory 700K -o b_thin.ppm
   turned=(--rotate 90 --dither --exposure 0.5 --camera "0,0,3 0,0,0 0,1,0 40")
   expect raw_alone 0 '' render cornell --size 32x24 "${turned[@]}" -o alone.raw
@@ -73,8 +74,8 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   until grep -q '^listening' sharing.out || ! kill -0 $server; do sleep 0.1; done
   address=$(sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' sharing.out)
 
-  # Goal: with a server every picture is the one without, byte for byte, however it is packed and whoever renders what.
-  # Method: sequences, so that the server comes into use; sealed, as all is here.
+  # Goal: pictures with and without a server are equal, byte for byte, in every format and split. Method: sequences, so
+  # that the server comes into use; sealed, like everything here.
   shared=(--size 64x48 --threads 1 --frames 0:7)
   for kind in plain raw share cost; do
     ending=ppm more=() sharing=(--server "$address")
@@ -83,16 +84,16 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
       share) sharing+=(--share 0.3) ;;
       cost) sharing+=(--price 2 --energy-pixel 1e-6 --energy-byte 1e-6 --cost-weight 3) ;;
     esac
-    expect "render_alone_$kind" 0 'a frame' render seesaw "${shared[@]}" "${more[@]}" -o "alone.$ending"
-    expect_in_use "render_shared_$kind" 'shared: the device rendered' \
+    expect "render_alone_$kind" 0 'per frame' render seesaw "${shared[@]}" "${more[@]}" -o "alone.$ending"
+    expect_in_use "render_shared_$kind" 'render servers: the device rendered' \
       render seesaw "${shared[@]}" "${more[@]}" "${sharing[@]}" -o "shared.$ending"
     for n in 0 1 2 3 4 5 6 7; do check "shared_${kind}_$n" cmp -s alone-000$n.$ending shared-000$n.$ending; done
   done
-  # Goal: a flight around the scene is the same whoever renders it, on a device without the scene, too.
+  # Goal: a flight around the scene looks the same whoever renders it, even on a device without the scene.
   flight=(--size 32x24 --threads 1 --frames 0:3 --orbit 7)
-  expect orbit_alone 0 'a frame' render seesaw "${flight[@]}" -o alone.ppm
-  expect orbit_shared 0 'shared: the device rendered' render seesaw "${flight[@]}" --server "$address" -o shared.ppm
-  expect orbit_thin 0 'a frame' render seesaw "${flight[@]}" --memory 700K --server "$address" -o thin.ppm
+  expect orbit_alone 0 'per frame' render seesaw "${flight[@]}" -o alone.ppm
+  expect orbit_shared 0 'render servers: the device rendered' render seesaw "${flight[@]}" --server "$address" -o shared.ppm
+  expect orbit_thin 0 'per frame' render seesaw "${flight[@]}" --memory 700K --server "$address" -o thin.ppm
   for n in 0 1 2 3; do
     check "orbit_shared_$n" cmp -s alone-000$n.ppm shared-000$n.ppm
     check "orbit_thin_$n" cmp -s alone-000$n.ppm thin-000$n.ppm
@@ -103,7 +104,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   check emulated_frames_come test $? -eq 0
   expect_in_use render_two_servers 'gave [0-9]+' render seesaw "${shared[@]}" --server "$address" --server "$address" -o two.ppm
   check two_servers_give_the_same_picture cmp -s alone-0007.ppm two-0007.ppm
-  expect cost_cap 0 'a frame' render seesaw "${shared[@]}" --server "$address" --price 1 --cost-cap 0.001 -o cap.ppm
+  expect cost_cap 0 'per frame' render seesaw "${shared[@]}" --server "$address" --price 1 --cost-cap 0.001 -o cap.ppm
   check cost_cap_gives_the_same_picture cmp -s alone-0007.ppm cap-0007.ppm
   expect view_shared 0 '' view seesaw "${small[@]}" --screen null --frames 5 --server "$address"
   one=(render cube "${small[@]}" -o refused.ppm)
@@ -115,7 +116,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   expect servers_too_many 1 'at most 8' "${one[@]}" $(printf -- "--server $address %.0s" 1 2 3 4 5 6 7 8 9)
   for value in -2 1025; do expect "verify_$value" 1 '0 … 1024' "${one[@]}" --server "$address" --verify=$value; done
   expect verify_without_a_server 1 '--server' "${one[@]}" --verify=3
-  expect_in_use verify_prints_its_odds 'of their pixels a frame checked: one wrong row in each would have been found with' \
+  expect_in_use verify_prints_its_odds 'of their pixels per frame checked, which catches one wrong row per frame with a probability of' \
     render seesaw "${shared[@]}" --server "$address" --verify 9 -o verified.ppm
   for value in 1.5 -0.5; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
   expect share_nan 2 'finite number' "${one[@]}" --server "$address" --share=nan
@@ -128,8 +129,8 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   expect share_without_a_server 1 '--server' "${one[@]}" --share 0.5
   check nothing_refused_is_written test ! -e refused.ppm -a ! -e refused.pfm
 
-  # Goal: a server that is killed in a sequence is told in one line, and every picture is complete. Method: killed when
-  # a few of the frames are there, by an emulated device that takes long enough for each.
+  # Goal: killing a server during a sequence is reported in one line, and every picture is complete. Method: kill it
+  # after a few frames of a slow emulated device.
   many=(render seesaw --size 96x72 --frames 0:24 --emulate tablet)
   "${run[@]}" "${many[@]}" -o lost.ppm --server "$address" >lost.out 2>lost.err &
   device=$!
@@ -138,16 +139,16 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # an emulated
   wait $server 2>/dev/null
   wait $device
   check device_goes_on_without_its_server test $? -eq 0
-  check device_tells_the_loss_in_one_line test "$(grep -c "$address.* going on without it" lost.err)" = 1
+  check device_tells_the_loss_in_one_line test "$(grep -c "$address.* continuing without it" lost.err)" = 1
   check device_tells_nothing_else test "$(grep -vc '[0-9] %, .* left$' lost.err)" = 1
   "${run[@]}" render seesaw --size 96x72 --frames 0:24 -o kept.ppm >/dev/null
   for n in 00 04 05 12 24; do check "frame_${n}_is_complete" cmp -s kept-00$n.ppm lost-00$n.ppm; done
-  expect render_without_its_server 0 'going on without it' render seesaw "${shared[@]}" --server "$address" -o gone.ppm
+  expect render_without_its_server 0 'continuing without it' render seesaw "${shared[@]}" --server "$address" -o gone.ppm
   check without_its_server_the_same_picture cmp -s alone-0007.ppm gone-0007.ppm
-  expect view_without_its_server 0 'going on without it' \
+  expect view_without_its_server 0 'continuing without it' \
     view seesaw "${small[@]}" --screen null --frames 5 --server "$address"
 
-  # Goal: the report on the split in text, JSON and a file; what cannot be is refused; an interrupt keeps what is there.
+  # Goal: the split report as text, JSON and file; invalid options are refused; an interrupt keeps finished results.
   report=(split-report cube --size 64x48 --steps 3 --frames 2 --device-ns 5000 --server-ns 500)
   expect split_report 0 '^ *chosen +0\.[0-9]+ ' "${report[@]}"
   expect split_report_paper 0 'Cornell box +2 ' "${report[@]}"
@@ -169,7 +170,7 @@ assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])'
   expect split_report_many_servers 2 'servers' "${report[@]}" --servers 9
   "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
   reporting=$!
-  # SIGINT, the second of the signals, is caught: the program runs.
+  # SIGINT, signal 2, is caught: the program is running.
   until grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status || ! kill -0 $reporting; do sleep 0.05; done
   sleep 0.2
   kill -INT $reporting

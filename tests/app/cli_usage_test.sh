@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Exit statuses and one-line errors, and what commands report. Usage: cli_usage_test.sh PROGRAM [EMULATOR...]
+# Exit statuses, one-line errors and reports. Usage: cli_usage_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
-# Goal: help teaches and usage errors are told apart from bad input.
+# Goal: help is helpful, and usage errors differ from bad input.
 expect help 0 'render +render a frame' --help
 expect help_of_command 0 '--area-lights' render --help
 expect version 0 '[0-9]+\.[0-9]+' --version
@@ -18,18 +18,18 @@ expect bad_effect 1 'unknown effect' render cube "${small[@]}" --effects auto,-s
 expect bad_camera 1 'VFOV' render cube "${small[@]}" --camera "1 2" -o a.ppm
 expect camera_at_its_target 1 'same point' render cube "${small[@]}" --camera "1,1,1 1,1,1 0,1,0 40" -o a.ppm
 expect camera_index 1 'no camera 7' render cube "${small[@]}" --camera-index 7 -o a.ppm
-expect too_little_memory 1 'memory .*would' render statue --memory 1M -o a.ppm
+expect too_little_memory 1 'memory .*try' render statue --memory 1M -o a.ppm
 expect aov_name 1 'depth, normal' render cube "${small[@]}" --aov colour -o a.ppm
 expect unknown_device 1 'gp2x' render cube "${small[@]}" --device toaster -o a.ppm
 expect device_memory 0 'of 16.0 MiB' plan cornell --device gp2x
 expect emulate_unknown 1 "emulate.*gp2x, miyoo" render cube "${small[@]}" --emulate toaster -o a.ppm
-expect emulate_and_another_device 1 'name one of them' render cube "${small[@]}" --emulate tablet --device gp2x -o a.ppm
+expect emulate_and_another_device 1 'give only one of them' render cube "${small[@]}" --emulate tablet --device gp2x -o a.ppm
 expect emulate_memory 0 'of 16.0 MiB' plan cube --emulate gp2x
 expect isa_name 1 'this CPU has baseline' render cube "${small[@]}" --isa sse9 -o a.ppm
 expect isa_in_report 0 '2 threads, baseline' bench cube "${small[@]}" --frames 1 --no-prices --isa baseline
 expect frames_format 1 'first:last' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
 
-# Goal: a file that lies is refused in one line.
+# Goal: a corrupt file is refused in one line.
 "${run[@]}" bake "$subject" -o c.pray >/dev/null
 head -c 5000 c.pray >cut.pray
 expect truncated_scene 1 'cut.pray' render cut.pray -o b.ppm
@@ -49,14 +49,14 @@ expect plan_map 0 'persistent +accelerator' plan "$subject"
 expect plan_json 0 '"total_bytes"' plan "$subject" --json -
 expect bench 0 'per pixel' bench cube "${small[@]}" --frames 2
 expect bench_json 0 '"scanline_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --json -
-expect bench_sparse 0 ' 10 % of them' bench cube "${small[@]}" --frames 2 --no-prices --sparse
+expect bench_sparse 0 ' 10 % of pixels' bench cube "${small[@]}" --frames 2 --no-prices --sparse
 expect bench_sparse_json 0 '"patch_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --no-prices --sparse --json -
 
-# Goal: a system that has no thread to give costs time and not the picture. Method: stacks of 60 TB for threads, where the
-# shell may ask for them.
+# Goal: failing to create threads costs time but not the picture. Method: thread stacks of 60 TB, if the shell may
+# request them.
 huge_stacks() { (ulimit -s 60000000000 && "$program" "$@") 2>&1; }
 if [ ${#run[@]} -eq 1 ] && huge_stacks --version >/dev/null; then
-  check few_threads_are_told grep -q 'gives 1 of 2 threads' <<<"$(huge_stacks render cube "${small[@]}" -o few.ppm)"
+  check few_threads_are_told grep -q 'allows only 1 of 2 threads' <<<"$(huge_stacks render cube "${small[@]}" -o few.ppm)"
   expect all_threads 0 few render cube "${small[@]}" -o all_but_few.ppm
   check few_threads_render_the_same cmp few.ppm all_but_few.ppm
 fi

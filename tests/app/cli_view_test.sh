@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The viewer on no screen. Usage: cli_view_test.sh PROGRAM [EMULATOR...]
+# The viewer without a screen. Usage: cli_view_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
 expect view_null 0 '' view seesaw "${small[@]}" --screen null --frames 3
 expect view_still_frames 0 '' view cube "${small[@]}" --screen null --frames 3
-export SDL_VIDEODRIVER=dummy  # the emulator, where it is built in
+export SDL_VIDEODRIVER=dummy  # the emulator, if built in
 "${run[@]}" view cube "${small[@]}" --screen sdl2 --frames 1 >/dev/null 2>&1
 if [ $? -ne 1 ]; then
   expect view_window 0 '' view seesaw "${small[@]}" --screen sdl2 --frames 3
@@ -18,7 +18,7 @@ expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
 if [ ! -e /dev/fb0 ]; then
   saved=("${run[@]}")
   run=(env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER "${run[@]}")
-  expect view_without_a_screen 1 'no screen was found \(.*linux needs a framebuffer, /dev/fb0.*\): choose one by --screen' \
+  expect view_without_a_screen 1 'no screen found \(.*linux needs a framebuffer, /dev/fb0.*\): choose one with --screen' \
     view cube "${small[@]}" --frames 1
   run=("${saved[@]}")
 fi
@@ -27,8 +27,8 @@ expect view_screenshots_nowhere 1 'no/such' view cube "${small[@]}" --screen nul
 expect view_screenshots_new 0 '' view cube "${small[@]}" --screen null --frames 1 --screenshots shots
 check view_makes_its_folder test -d shots
 
-# Goal: a scene that is written while it is shown costs no viewer, and each state of it is told. Method: the file is
-# touched until the viewer tells that it has loaded it again; cut short; another one; gone, and there again.
+# Goal: the viewer survives a scene being rewritten and reports each state. Method: touch the file until it is reloaded;
+# truncate it; replace it; remove and restore it.
 if [ $# -eq 0 ]; then
   "${run[@]}" bake cube -o live.pray >/dev/null
   "${run[@]}" bake seesaw -o other.pray >/dev/null
@@ -36,20 +36,20 @@ if [ $# -eq 0 ]; then
   "${run[@]}" view live.pray "${small[@]}" --screen null >view.out 2>view.err &
   viewing=$!
   told() { grep -c "$1" view.err; }
-  until [ "$(told 'live.pray is loaded again')" -gt 0 ] || ! kill -0 $viewing; do touch live.pray && sleep 0.2; done
-  before=$(told 'is loaded again')
+  until [ "$(told 'live.pray reloaded')" -gt 0 ] || ! kill -0 $viewing; do touch live.pray && sleep 0.2; done
+  before=$(told 'reloaded')
   head -c 3000 good.pray >live.pray
-  # A read that the cut interrupts is told first, and tried again.
-  until grep -q 'live.pray: .*; the last picture stays' view.err || ! kill -0 $viewing; do sleep 0.05; done
-  check view_tells_what_is_broken grep -q 'live.pray: .*; the last picture stays, and the file is tried again' view.err
+  # A read interrupted by the truncation is reported first and retried.
+  until grep -q 'live.pray: .*; keeping the last picture' view.err || ! kill -0 $viewing; do sleep 0.05; done
+  check view_tells_what_is_broken grep -q 'live.pray: .*; keeping the last picture until the file changes' view.err
   check view_stays kill -0 $viewing
   : >live.pray
   until [ "$(told 'live.pray is empty')" -gt 0 ] || ! kill -0 $viewing; do sleep 0.05; done
   check view_tells_the_next_fault grep -q 'live.pray is empty' view.err
   rm live.pray
   cp other.pray live.pray
-  until [ "$(told 'is loaded again')" -gt "$before" ] || ! kill -0 $viewing; do sleep 0.05; done
-  check view_loads_it_after_all test "$(told 'is loaded again')" -gt "$before"
+  until [ "$(told 'reloaded')" -gt "$before" ] || ! kill -0 $viewing; do sleep 0.05; done
+  check view_loads_it_after_all test "$(told 'reloaded')" -gt "$before"
   kill -INT $viewing
   wait $viewing
   check view_is_left test $? -eq 3
@@ -64,7 +64,7 @@ if "${run[@]}" view --help | grep -q side-by-side; then
     view cube "${small[@]}" --screen null --frames 2 --side-by-side model --budget-ms 1000000
   expect side_by_side_unknown 2 'side-by-side' view cube --screen null --side-by-side none
   ! "${run[@]}" view --help | grep -q -- --server ||
-    expect side_by_side_of_servers 1 'leave it out, or --server' \
+    expect side_by_side_of_servers 1 'drop --side-by-side or --server' \
       view cube --screen null --side-by-side model --server 127.0.0.1:1
 fi
 expect view_budget 0 '% of 4 frames within' view seesaw "${small[@]}" --screen null --frames 4 --budget-ms 1000

@@ -10,7 +10,7 @@ trap '[ -z "$server" ] || kill "$server"; rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 passed=0 failed=0
 
-# try MEANINGLESS COMMAND... : whether the value can mean anything decides if 0 is allowed.
+# try MEANINGLESS COMMAND... : exit status 0 is allowed only if the value is meaningful.
 try() {
   local meaningless=$1 out status
   shift
@@ -26,7 +26,7 @@ try() {
     passed=$((passed + 1))
   fi
 }
-# sweep "OPTIONS" COMMAND... : each of the options with each value.
+# sweep "OPTIONS" COMMAND... : tries each option with each value.
 sweep() {
   local options=$1 option
   shift
@@ -61,7 +61,7 @@ if "$program" --help | grep -q ' serve '; then
   sweep "--steps --frames --orbit --device-ns --server-ns --servers" split-report nothing "${small[@]}"
   sweep "--share --price --energy-pixel --energy-byte --cost-weight --cost-cap" \
     render nothing "${small[@]}" --server 127.0.0.1:1 -o a.ppm
-  # What a device without room for the scene says to its server is what was typed.
+  # Options of a device without room for the scene reach the server as typed.
   "$program" serve --listen 127.0.0.1:0 --threads 1 >log 2>&1 </dev/null &
   server=$!
   for _ in $(seq 600); do

@@ -1,4 +1,4 @@
-// Options whose help is written from a list.
+// Options whose help is generated from a list.
 #include "app/options.h"
 
 #include <doctest/doctest.h>
@@ -7,8 +7,8 @@
 
 using namespace pocketray;
 
-// Goal: what can be named is listed. Method: every device, and every accelerator with what sets it apart, in the help
-// of its option; the automatic ones after one another, the default first.
+// Goal: help lists every valid name. Method: every device, and every accelerator with its description, in the help of
+// its option; the automatic ones in order, the default first.
 TEST_CASE("options_list_devices_and_accelerators") {
   CLI::App app;
   CommonOptions options;

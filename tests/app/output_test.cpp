@@ -1,4 +1,4 @@
-// What commands write, asked before their work, by the commands themselves.
+// Output files, checked by the commands themselves before their work.
 #include "session/output.h"
 
 #include <doctest/doctest.h>
@@ -30,7 +30,7 @@ struct Folder {
   std::string operator/(const char* name) const { return std::string(path) + "/" + name; }
 };
 
-// The exit status of a command line. What it prints goes where `out` leads.
+// Runs a command line with output to `out`; returns its exit status.
 int run(const std::vector<std::string>& words, const char* out = "/dev/null") {
   int exit_status = kExitDone;
   CLI::App program;
@@ -62,7 +62,7 @@ std::string content(const std::string& path) {
   return text;
 }
 
-// What a command line that fails says on standard error.
+// Standard error of a failing command line.
 std::string told_by(const std::vector<std::string>& words, const std::string& file) {
   int kept = dup(STDERR_FILENO), other = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   REQUIRE(dup2(other, STDERR_FILENO) >= 0);
@@ -77,7 +77,7 @@ bool has(const Status& status, const char* part) { return std::strstr(status.mes
 
 }  // namespace
 
-// Goal: no command replaces what it reads. Method: a scene and its other names as each output; none has changed.
+// Goal: no command overwrites its input. Method: a scene and its other names as each output; all stay unchanged.
 TEST_CASE("output_is_no_input") {
   Folder folder;
   std::string scene = folder / "scene.pray", other = folder / "other.pray", json = folder / "a.json";
@@ -86,7 +86,7 @@ TEST_CASE("output_is_no_input") {
   REQUIRE(link(scene.c_str(), json.c_str()) == 0);
   REQUIRE(link(scene.c_str(), (folder / "a.ppm").c_str()) == 0);
   std::string before = content(scene);
-  CHECK(told_by({"bake", scene, "-o", other}, folder / "told").find("would replace") != std::string::npos);
+  CHECK(told_by({"bake", scene, "-o", other}, folder / "told").find("would overwrite") != std::string::npos);
   CHECK(run({"plan", scene, "--json", json}) == 1);
   CHECK(run({"bench", scene, "--size", "8x6", "--frames", "1", "--json", json}) == 1);
   CHECK(run({"bench", scene, "--size", "8x6", "--frames", "1", "--front", other}) == 1);
@@ -99,8 +99,8 @@ TEST_CASE("output_is_no_input") {
   CHECK(content(folder / "b.ppm").empty());
 }
 
-// Goal: a baked scene has the name of one, so that no model is replaced by a slip. Method: names of other files, and
-// what may have any name.
+// Goal: a baked scene must end in .pray, so that a slip cannot overwrite a model. Method: other names, and outputs that
+// may have any name.
 TEST_CASE("output_of_bake_is_named_so") {
   Folder folder;
   for (const char* name : {"a.glb", "a.pray.obj", "a", ".pray"}) {
@@ -112,8 +112,8 @@ TEST_CASE("output_of_bake_is_named_so") {
   CHECK(run({"bake", "cube", "-o", "/dev/null"}) == 0);
 }
 
-// Goal: what cannot be written is told before the work. Method: two outputs, the later one impossible: the earlier one
-// is not there; a sequence whose last picture is in the way.
+// Goal: an unwritable output is reported before the work. Method: two outputs, the later one impossible: the earlier
+// one is not created; a sequence whose last picture is blocked.
 TEST_CASE("output_is_asked_for_before_the_work") {
   Folder folder;
   std::string nowhere = folder / "no/such.json", picture = folder / "a.ppm";
@@ -132,8 +132,8 @@ TEST_CASE("output_is_asked_for_before_the_work") {
   rmdir(last.c_str());
 }
 
-// Goal: a folder for results is there before the work, and a file in its place is told. Method: a new one, again, one
-// within none, a file.
+// Goal: a folder for results is created before the work, and a file in its place is reported. Method: a new folder, the
+// same again, one in a missing folder, a file.
 TEST_CASE("output_folder_is_made") {
   Folder folder;
   std::string made = folder / "made";
@@ -153,7 +153,7 @@ TEST_CASE("output_folder_is_made") {
 #endif
 }
 
-// Goal: what was printed and did not arrive is an error. Method: a device that is full; text, and JSON.
+// Goal: lost output is an error. Method: a full device; text and JSON.
 TEST_CASE("output_that_does_not_arrive_is_an_error") {
   CHECK(run({"plan", "cube"}, "/dev/null") == 0);
   CHECK(run({"plan", "cube"}, "/dev/full") == 1);
@@ -161,12 +161,12 @@ TEST_CASE("output_that_does_not_arrive_is_an_error") {
   CHECK(run({"bench", "cube", "--size", "8x6", "--frames", "1", "--no-prices"}, "/dev/full") == 1);
 }
 
-// Goal: an empty text is no value. Method: in place of one, and of the scene.
+// Goal: an empty argument is refused. Method: as a value and as the scene.
 TEST_CASE("output_empty_arguments_are_refused") {
   const char* const good[] = {"pocketray", "render", "cube"};
   const char* const value[] = {"pocketray", "render", "cube", "--size", ""};
   const char* const scene[] = {"pocketray", "render", ""};
   CHECK(check_arguments(3, good).ok);
-  CHECK(has(check_arguments(5, value), "--size is followed by an empty text"));
+  CHECK(has(check_arguments(5, value), "--size has an empty value"));
   CHECK(has(check_arguments(3, scene), "argument 2"));
 }

@@ -14,7 +14,7 @@ check() {
   shift
   if "$@"; then passed=$((passed + 1)); else echo "FAILED $name: $*" && failed=$((failed + 1)); fi
 }
-# The server in the background says by its log, or else by the port it has, where it listens.
+# The background server shows its address by its log, or else by its port.
 wait_for() {  # PATTERN FILE
   local i
   for ((i = 0; i < 600; ++i)); do
@@ -36,8 +36,8 @@ end_server() {  # EXPECTED STATUS
 cpu_ticks() { awk '{ print $14 + $15 }' "/proc/$1/stat"; }
 small=(--threads 1 --memory 8M)
 
-# Goal: a server with few descriptors serves fewer clients and says so, survives more clients than it has descriptors
-# for, and does not spin meanwhile. Method: sixteen descriptors in all, thirty connections that are held open.
+# Goal: a server with few descriptors serves fewer clients and says so, survives more clients than descriptors, and does
+# not spin. Method: sixteen descriptors, thirty open connections.
 (ulimit -n 16 && exec "$program" serve --listen 127.0.0.1:0 "${small[@]}" >few.out 2>few.err) &
 server=$!
 check few_descriptors_listens wait_for '^listening' few.out
@@ -60,9 +60,8 @@ out=$( (ulimit -n 7 && exec timeout 60 "$program" serve --listen 127.0.0.1:0 "${
 check too_few_descriptors_status test $? -eq 1
 check too_few_descriptors_says_why grep -q 'raise `ulimit -n`' <<<"$out"
 
-# Goal: standard streams that are closed take no socket's place. Method: each of them and all; the port is asked of the
-# system.
-port_of() { # PID : the port that it listens at, in decimal
+# Goal: closed standard streams are not replaced by sockets. Method: each of them and all; the system reports the port.
+port_of() { # PID : its listening port, in decimal
   local inode
   for inode in $(ls -l "/proc/$1/fd" 2>/dev/null | sed -n 's/.*socket:\[\([0-9]*\)\]/\1/p'); do
     awk -v inode="$inode" '$10 == inode && $4 == "0A" { split($2, at, ":"); print at[2] }' /proc/net/tcp
@@ -83,8 +82,8 @@ for closed in '>&-' '<&-' '2>&-' '<&- >&- 2>&-'; do
   check "closed_streams_ends $closed" end_server 3
 done
 
-# Goal: nobody who reads the log, or nobody who takes more of it, is no reason to end or to stop. Method: a reader that
-# goes after a line, one that never reads.
+# Goal: the server keeps going if its log reader exits or stalls. Method: a reader that exits after a line, one that
+# never reads.
 "$program" serve --listen 127.0.0.1:0 "${small[@]}" > >(head -1 >head.out) 2>piped.err &
 server=$!
 for ((i = 0; i < 100; ++i)); do
@@ -95,8 +94,8 @@ done
 for _ in 1 2 3; do check closed_log_serves offers_scenes "127.0.0.1:$port"; done
 check closed_log_ends end_server 3
 
-# Goal: what is no file is left out of a folder of scenes, and nothing is waited for. Method: a pipe, a loop of links, a
-# folder and a device, each with a scene's name; names that hold what a terminal obeys.
+# Goal: entries of a scene folder that are not files are skipped without blocking. Method: a pipe, a loop of links, a
+# folder and a device, each named like a scene; names with control characters.
 mkdir scenes
 mkfifo scenes/pipe.pray scenes/pipe.glb
 ln -s loop.pray scenes/loop.pray
@@ -107,7 +106,7 @@ cp scenes/good.pray "scenes/$(printf 'bad\033[31m\302\233\342\200\256').pray"
 timeout 120 "$program" serve --listen 127.0.0.1:0 --scenes scenes "${small[@]}" >folder.out 2>folder.err &
 server=$!
 check folder_listens wait_for '^listening' folder.out
-check folder_leaves_out test "$(grep -c 'is left out' folder.err)" -ge 4
+check folder_leaves_out test "$(grep -c 'is skipped' folder.err)" -ge 4
 check folder_shows_no_controls test "$(cat folder.out folder.err | LC_ALL=C tr -d '\n\r\040-\176' | LC_ALL=C grep -c "$(printf '[\033\233]')")" = 0
 "$program" scenes --server "$(address_in folder.out)" >listed.out 2>&1
 check list_shows_no_controls test "$(LC_ALL=C tr -d '\n\r\040-\176' <listed.out | wc -c)" = 0
@@ -115,7 +114,7 @@ kill -INT "$(pgrep -P $server)" 2>/dev/null
 wait "$server" 2>/dev/null
 server=
 
-# Goal: no command waits for a pipe that it takes for a file.
+# Goal: no command blocks on a pipe given as a file.
 for words in 'render pipe.pray -o a.ppm' 'bake pipe.pray -o a.pray' 'plan pipe.pray' 'view pipe.pray --screen null --frames 1' \
   'render cube --size 8x8 --front pipe.pray -o a.ppm' 'compare pipe.pray pipe.pray'; do
   timeout 60 "$program" ${words//pipe.pray/scenes\/pipe.pray} >pipe.out 2>&1

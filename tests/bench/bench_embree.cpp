@@ -34,7 +34,8 @@ float lit_share(const OurSide& ours, const RaySet& shadow) {
   return static_cast<float>(lit) / static_cast<float>(shadow.rays.empty() ? 1 : shadow.rays.size());
 }
 
-// The light stands off the eye by a share of the scene's size: in a narrow room less far, until it reaches a third.
+// The light is offset from the eye by a fraction of the scene's size; in a narrow room by less, until it reaches a
+// third.
 RaySet lit_shadow_rays(const BenchScene& scene, const OurSide& ours, const RaySet& primary,
                        const std::vector<Hit>& hits) {
   RaySet shadow;
@@ -45,7 +46,7 @@ RaySet lit_shadow_rays(const BenchScene& scene, const OurSide& ours, const RaySe
   return shadow;
 }
 
-// The ray sets of a picture size, of the kinds that are asked for.
+// The requested ray sets of a picture size.
 Status make_sets(const BenchScene& scene, const std::string& size, const BenchOptions& options, const OurSide& ours,
                  std::vector<RaySet>* sets) {
   std::uint32_t width, height;
@@ -66,7 +67,7 @@ Status bench_scene(const std::string& name, const BenchOptions& options, std::ve
   bool found;
   RETURN_IF_ERROR(load_bench_scene(name, options.models, options.cache, &scene, &found));
   if (!found) {
-    std::fprintf(stderr, "left out: %s, which is not under %s\n", name.c_str(), options.models.c_str());
+    std::fprintf(stderr, "skipped: %s is not under %s\n", name.c_str(), options.models.c_str());
     return success();
   }
   for (const std::string& isa : options.isas) {
@@ -123,26 +124,25 @@ int run(const BenchOptions& options) {
 void add_options(CLI::App* program, BenchOptions* o) {
   std::vector<std::string> accels;
   for (const AccelInfo* info : kAccelList) accels.push_back(info->name);
-  program->add_option(
-      "--scene", o->scenes,
-      "buddha, bunny, dragon, conference, a built-in scene or a file; several, too. Default: these four, "
-      "cornell and statue");
-  program->add_option("--rays", o->kinds, "primary, shadow, bounce: which to trace; default: all")
+  program->add_option("--scene", o->scenes,
+                      "buddha, bunny, dragon, conference, a built-in scene or a file; may list several. Default: these "
+                      "four, cornell and statue");
+  program->add_option("--rays", o->kinds, "kinds of rays to trace: primary, shadow, bounce; default: all")
       ->check(CLI::IsMember({"primary", "shadow", "bounce"}));
   program->add_option("--size", o->sizes, "picture sizes, multiples of 8; default: 320x240 1280x960");
-  program->add_option("--isa", o->isas, "sse2: both sides held to SSE2; native: all the CPU has; default: both")
+  program->add_option("--isa", o->isas, "sse2: limit both sides to SSE2; native: everything the CPU has; default: both")
       ->check(CLI::IsMember({"sse2", "native"}));
   program->add_option("--accel", o->accel, "our accelerator")->check(CLI::IsMember(accels))->capture_default_str();
-  program->add_option("--rounds", o->rounds, "how often both trace them in turn")
+  program->add_option("--rounds", o->rounds, "rounds in which both trace them in turn")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  program->add_option("--build-rounds", o->build_rounds, "the same for building and refitting; 0: leave them out")
+  program->add_option("--build-rounds", o->build_rounds, "the same for building and refitting; 0: skip them")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  program->add_option("--models", o->models, "where the models lie")->capture_default_str();
-  program->add_option("--cache", o->cache, "where archives are unpacked")->capture_default_str();
+  program->add_option("--models", o->models, "folder of the models")->capture_default_str();
+  program->add_option("--cache", o->cache, "folder to unpack archives into")->capture_default_str();
   program->add_option("--json", o->json, "write the table as JSON to FILE, or - for standard output");
-  program->add_option("--build-json", o->build_json, "write the table of structures as JSON to FILE");
+  program->add_option("--build-json", o->build_json, "write the table of acceleration structures as JSON to FILE");
 }
 
 }  // namespace
@@ -152,13 +152,13 @@ int main(int argument_count, char** arguments) {
   using namespace pocketray;
   CLI::App program{
       "bench_embree traces the same rays through pocketray's accelerator and through Embree, in turn, on one thread,\n"
-      "checks that both hit the same, and prints how many million rays per second each does.\n"
+      "checks that both hit the same, and prints the rays per second of each.\n"
       "Try:  bench_embree --scene bunny --size 320x240 --isa sse2\n"
       "      bench_embree --scene cornell --rays shadow bounce --json -\n"};
   program.name("bench_embree");
   BenchOptions options;
   add_options(&program, &options);
-  program.footer("All of it takes about twenty minutes; Ctrl-C keeps what is finished.");
+  program.footer("A full run takes about twenty minutes; Ctrl-C keeps finished results.");
   catch_interrupts();
   try {
     program.parse(argument_count, arguments);

@@ -22,7 +22,7 @@ bool start_at(const BenchScene& bench, const Ray& ray, const Hit& hit, Start* st
   Vec3 normal = normalize(cross(b - a, c - a));
   if (is_zero(normal)) return false;
   start->normal = dot(normal, ray.direction) > 0 ? -normal : normal;
-  // Far enough in front that no mode of either side meets the surface that the ray leaves.
+  // Far enough in front that no mode of either side hits the surface the ray leaves.
   float in_front = length(extent(bench.bounds)) * 0x1p-16f;
   start->origin = a * (1 - hit.u - hit.v) + b * hit.u + c * hit.v + start->normal * in_front;
   return true;

@@ -16,7 +16,7 @@ constexpr Model kModels[] = {{"buddha", "mesh/happy_vrip_res3.ply", nullptr},
                              {"bunny", "mesh/bunny/bun_zipper.ply", nullptr},
                              {"dragon", "mesh/dragon_100k.obj", nullptr},
                              {"conference", "conference.obj", "rooms/conference.zip"}};
-constexpr std::size_t kBlockBytes = std::size_t(1) << 30;  // more than any of them needs; untouched pages cost nothing
+constexpr std::size_t kBlockBytes = std::size_t(1) << 30;  // more than any scene needs; untouched pages cost nothing
 
 const Model* find_model(const std::string& name) {
   for (const Model& model : kModels)
@@ -35,7 +35,7 @@ std::string quoted(const std::string& text) {
 Status unpack(const std::string& archive, const std::string& folder) {
   std::string command = "mkdir -p " + quoted(folder) + " && unzip -q -o " + quoted(archive) + " -d " + quoted(folder);
   if (std::system(command.c_str()) == 0) return success();
-  return failure("%s could not be unpacked into %s: is unzip installed?", archive.c_str(), folder.c_str());
+  return failure("cannot unpack %s into %s: is unzip installed?", archive.c_str(), folder.c_str());
 }
 
 Status find_file(const Model& model, const std::string& model_folder, const std::string& cache_folder,

@@ -9,7 +9,7 @@
 namespace pocketray {
 
 struct BenchScene {
-  std::string name;  // as asked for: "buddha", "cornell", a file
+  std::string name;  // as requested: "buddha", "cornell", a file
   std::unique_ptr<unsigned char[]> block;
   std::unique_ptr<Renderer> renderer;  // holds the scene
   SceneSource source;
@@ -18,12 +18,11 @@ struct BenchScene {
   const Scene& scene() const { return renderer->scene; }
 };
 
-// Names of the models and built-in scenes that are compared when none is asked for.
+// Names of the models and built-in scenes compared by default.
 const std::vector<std::string>& default_scene_names();
 
-// Loads a scene by its name here, its built-in name or its file. Models are looked for under `model_folder`; what lies
-// there in an archive is unpacked into `cache_folder` once. `found` is false, with success, where a model of the list
-// is not there.
+// Loads a scene by its name here, its built-in name or its file. Looks for models under `model_folder` and unpacks
+// archives into `cache_folder` once. Succeeds with *found false if a listed model is missing.
 Status load_bench_scene(const std::string& name, const std::string& model_folder, const std::string& cache_folder,
                         BenchScene* scene, bool* found);
 

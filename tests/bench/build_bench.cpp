@@ -17,7 +17,7 @@ double per_triangle(const Scene& scene, std::size_t bytes) {
   return static_cast<double>(bytes) / static_cast<double>(scene.triangles.count);
 }
 
-// One build, as a row counts it; the structures themselves are not kept.
+// Measures one build; the structures are not kept.
 BuildRow our_row(const BenchScene& scene, const AccelInfo* info) {
   BuildRow row;
   row.scene = scene.name, row.builder = info->name, row.triangles = scene.scene().triangles.count;
@@ -52,17 +52,17 @@ double refit_ms(const BenchScene& scene, const AccelInfo* info, int rounds) {
   return median(&seconds) * 1e3;
 }
 
-// Each thread takes every other row of tiles. Counted is half the CPU time of both: what the wall clock shows when both
-// cores are free and rows are handed out as threads come free, as the renderer does. The fastest rounds are compared.
+// Each thread takes every other row of tiles. Counts half the CPU time of both: the wall-clock time if both cores are
+// free and rows go to whichever thread is free, as in the renderer. Compares the fastest rounds.
 double two_threads(const OurSide& ours, const RaySet& primary, int rounds) {
-  constexpr int kRoundsMore = 4;  // they are short
+  constexpr int kRoundsMore = 4;  // the rounds are short
   OurTask task = make_our_task(ours, primary);
   std::size_t row_size = primary.width / kTileSide, row_count = primary.height / kTileSide;
   auto trace_rows = [&](std::size_t first, std::size_t step) {
     auto trace = [&] {
       for (std::size_t row = first; row < row_count; row += step) trace_tiles_ours(&task, row * row_size, row_size);
     };
-    trace();  // the frame before: caches are warm on this core
+    trace();  // warm-up frame for this core's caches
     return thread_seconds_of(trace);
   };
   double one = __builtin_inf(), two = __builtin_inf();

@@ -12,7 +12,7 @@ std::string cell(double value, int decimals) {
   return text;
 }
 
-// null where nothing was measured
+// null if not measured
 nlohmann::ordered_json figure(double value) {
   return value < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
 }

@@ -1,4 +1,4 @@
-// What structures cost, for people and for programs, and which figures that the project set itself are reached.
+// Reports the cost of acceleration structures as text and JSON, and which of the project's targets are met.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -11,7 +11,7 @@ namespace pocketray {
 void print_builds(const std::vector<BuildRow>& rows);
 nlohmann::ordered_json builds_json(const std::vector<BuildRow>& rows);
 
-// One line a target: what is wanted, what each scene gives, whether all scenes reach it.
+// One line per target: its value, the result of each scene, whether all scenes meet it.
 void print_verdicts(const std::vector<DuelRow>& duels, const std::vector<BuildRow>& builds);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// The comparison for people and for programs.
+// Reports the comparison as text and JSON.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <vector>

@@ -1,5 +1,5 @@
-// Embree's side of the comparison: devices held to an instruction set or not, scenes by flags and build quality, rays
-// one at a time or in packets.
+// Embree's side of the comparison: devices with a limited or full instruction set, scenes by flags and build quality,
+// single rays or packets.
 #pragma once
 #include <embree3/rtcore.h>
 
@@ -21,8 +21,8 @@ struct EmbreeMode {
 };
 std::string mode_name(const EmbreeMode& mode);  // "single robust medium", "packet4 fast high"
 
-// What is compared for these rays; the fast mode alone has a high build quality (Embree 3.13 builds its robust mode and
-// its compact one at medium quality whatever is asked for); packets wider than four where the CPU is used in full.
+// The modes to compare for these rays. Only the fast mode has a high build quality (Embree 3.13 always builds its
+// robust and compact modes at medium quality); packets wider than four only with the native instruction set.
 std::vector<EmbreeMode> embree_modes(RayKindOfBench kind, const std::string& isa);
 
 class EmbreeSide {
@@ -33,22 +33,22 @@ class EmbreeSide {
   EmbreeSide(const EmbreeSide&) = delete;
   EmbreeSide& operator=(const EmbreeSide&) = delete;
 
-  // The scene for a mode, built at the first call.
+  // The scene for a mode, built on first use.
   RTCScene scene_for(const EmbreeMode& mode);
-  // Bytes that the device holds now, by its memory monitor.
+  // Bytes currently held by the device, from its memory monitor.
   std::size_t bytes() const { return bytes_; }
   RTCScene build(const EmbreeMode& mode);
 
  private:
   RTCDevice device_;
-  std::vector<float> vertices_;  // padded: Embree reads 16 bytes a vertex
+  std::vector<float> vertices_;  // padded: Embree reads 16 bytes per vertex
   std::vector<std::uint32_t> indices_;
   const BenchScene& bench_;
   std::map<std::pair<bool, EmbreeBuild>, RTCScene> scenes_;
   std::size_t bytes_ = 0;
 };
 
-// Rays in the layout that Embree likes best, and the hits that it wrote out.
+// Rays in Embree's best layout, and the hits it wrote.
 struct EmbreeTask {
   RTCScene scene;
   EmbreeMode mode;

@@ -7,7 +7,7 @@
 namespace pocketray {
 namespace {
 
-// Embree asks its users to let denormal numbers be zero, for speed; ours must not.
+// Embree recommends flushing denormals to zero for speed; our code must not.
 struct DenormalsAreZero {
 #ifdef __SSE2__
   unsigned saved = _mm_getcsr();
@@ -43,7 +43,7 @@ void trace_occlusion(EmbreeTask* task) {
   for (std::size_t i = 0; i < task->singles.size(); ++i) {
     RTCRay ray = task->singles[i];
     rtcOccluded1(task->scene, &context, &ray);
-    task->occluded[i] = ray.tfar < 0;  // -infinity where something is in the way
+    task->occluded[i] = ray.tfar < 0;  // -infinity if occluded
   }
 }
 

@@ -34,7 +34,7 @@ std::vector<RayPacket> lay_out_packets(const RaySet& set) {
   return packets;
 }
 
-// The rays from a tile's hits to the light, where it has any.
+// The rays from a tile's hits, if any, to the light.
 void lay_out_segments(OurTask* task) {
   const RaySet& set = *task->set;
   for (std::size_t tile = 0; tile + 1 < set.tile_begin.size(); ++tile) {
@@ -61,7 +61,7 @@ OurSide build_ours(const BenchScene& scene, const AccelInfo* info) {
   std::uint32_t count = scene.scene().triangles.count;
   std::size_t keep_bytes = info->need(count) + kArenaAlignment;
   std::size_t scratch_bytes = info->scratch_need(count) + kArenaAlignment;
-  // As the renderer's block, and as Embree's own: in large pages where the system has some.
+  // In large pages if available, like the renderer's block and Embree's own.
   constexpr std::size_t kLargePage = std::size_t(2) << 20;
   ours.block.reset(new unsigned char[keep_bytes + 2 * kLargePage]);
   unsigned char* begin = ours.block.get() + (-reinterpret_cast<std::uintptr_t>(ours.block.get()) & (kLargePage - 1));

@@ -8,7 +8,7 @@
 
 namespace pocketray {
 
-// An accelerator over a scene, with memory of its own of exactly the planned size.
+// An accelerator over a scene, in its own block of exactly the planned size.
 struct OurSide {
   const AccelInfo* info = nullptr;
   Accel accel;
@@ -17,18 +17,18 @@ struct OurSide {
 
 OurSide build_ours(const BenchScene& scene, const AccelInfo* info);
 
-// "sse2" holds our code to what every x86-64 has, "native" lets it use what this CPU has.
+// "sse2" limits our code to baseline x86-64, "native" lets it use all of this CPU.
 void hold_ours(const std::string& isa);
 
-// Rays in the layout that we like best, and what answers them, in the order of the ray set: occlusion_of() for
-// shadow rays, else `hits`. The side and the set must outlive it.
+// Rays in our best layout and their results, in the order of the ray set: occlusion_of() for shadow rays, else `hits`.
+// The side and the set must outlive it.
 struct OurTask {
   const OurSide* side;
   const RaySet* set;
-  std::vector<RayPacket> packets;       // primary rays: a tile each
-  std::vector<SegmentPacket> segments;  // shadow rays: those of a tile each
+  std::vector<RayPacket> packets;       // primary rays: one per tile
+  std::vector<SegmentPacket> segments;  // shadow rays: one per tile
   std::vector<Hit> hits;
-  std::vector<std::uint64_t> blocked;  // a bit for each ray of the segments
+  std::vector<std::uint64_t> blocked;  // one bit per ray of the segments
 };
 
 std::vector<bool> occlusion_of(const OurTask& task);

@@ -19,13 +19,13 @@ double seconds_of(clockid_t clock, Function function) {
   function();
   return seconds_by(clock) - start;
 }
-// CPU time of the calling thread: what other programs do counts little.
+// CPU time of the calling thread: other programs have little effect.
 template <class Function>
 double thread_seconds_of(Function function) {
   return seconds_of(CLOCK_THREAD_CPUTIME_ID, function);
 }
 
-// The value below which this share of the values lies, interpolated. Sorts them.
+// The interpolated value below which this share of the values lies. Sorts them.
 inline double percentile(std::vector<double>* values, double share) {
   std::sort(values->begin(), values->end());
   double place = share * static_cast<double>(values->size() - 1);

@@ -1,4 +1,4 @@
-// The figures that the project set itself against Embree ("Reach"), each over every scene that was measured.
+// The project's targets against Embree, each over every measured scene.
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -18,7 +18,7 @@ bool starts_with(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
 }
 
-// The least ratio of the scene among rays of a kind (empty: of any) at all sizes and modes whose name starts so.
+// The smallest ratio of the scene for a kind of rays (empty: any), at all sizes and modes with the given prefix.
 double least_ratio(const Figures& f, const std::string& scene, const char* isa, const std::string& rays,
                    const char* mode) {
   double least = kNotMeasured;
@@ -34,7 +34,7 @@ const BuildRow* find_build(const Figures& f, const std::string& scene, const std
     if (row.scene == scene && row.builder == builder) return &row;
   return nullptr;
 }
-// Our default, and the one after it, which is the compact one.
+// Our default accelerator, and the next, the compact one.
 const BuildRow* find_ours(const Figures& f, const std::string& scene, int index) {
   for (const BuildRow& row : f.builds)
     if (row.scene == scene && !starts_with(row.builder, "embree") && index-- == 0) return &row;
@@ -123,7 +123,7 @@ void print_verdicts(const std::vector<DuelRow>& duels, const std::vector<BuildRo
   std::vector<std::string> scenes;
   for (const DuelRow& row : duels)
     if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) scenes.push_back(row.scene);
-  std::printf("\ntargets: ours against Embree's, the least over all picture sizes\n%-40s", "");
+  std::printf("\ntargets: ours against Embree's, smallest over all picture sizes\n%-40s", "");
   for (const std::string& scene : scenes) std::printf(" %10.10s", scene.c_str());
   std::printf("\n");
   for (const Target& target : targets()) print_verdict(target, {duels, builds}, scenes);

@@ -1,4 +1,4 @@
-// Budgets over real frames, in a time that follows from the work done.
+// Budgets over real frames, with time computed from the work done.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using namespace pocketray;
 
 namespace {
 
-constexpr std::uint32_t kPointsMax = 4;  // per area light: more take time and test nothing else
+constexpr std::uint32_t kPointsMax = 4;  // per area light: more would take longer and test nothing else
 
 struct Flight {
   std::unique_ptr<std::uint8_t[]> block;
@@ -36,7 +36,7 @@ struct Flight {
   }
 };
 
-// What a frame takes: steps of traversal as counted, and so the same on every machine and under every load.
+// Frame time from counted traversal steps, the same on every machine and under every load.
 double work_ns(const Renderer& r) {
   Tracer t = total_counts(r);
   double rays = 0;
@@ -52,7 +52,7 @@ struct FlightResult {
   double mean_ns = 0;
 };
 
-// The camera goes around its target by 2° a frame while the scene moves.
+// The camera orbits its target by 2° per frame while the scene moves.
 FlightResult fly(Flight* flight, const Front& front, double budget_ns, std::uint32_t frame_count) {
   Renderer* r = &flight->test->renderer;
   CameraControl camera = make_camera_control(flight->scene.cameras[0], r->accel.bounds);
@@ -78,7 +78,7 @@ FlightResult fly(Flight* flight, const Front& front, double budget_ns, std::uint
   return result;
 }
 
-// What the fastest and the dearest take where the camera begins.
+// A candidate's frame time at the camera's start.
 double frame_ns(Flight* flight, const Candidate& c) {
   Renderer* r = &flight->test->renderer;
   REQUIRE(change_settings(r, with_candidate(r->settings, c)).ok);
@@ -88,9 +88,9 @@ double frame_ns(Flight* flight, const Candidate& c) {
 
 }  // namespace
 
-// Goal: frames of a flight keep budgets, once prices are learnt, and use them. Method: the
-// built-in ladder with its guessed prices, whole frames of real scenes around which the camera turns, two budgets
-// each between what the fastest and the dearest take; time is work done, counted.
+// Goal: once prices are learnt, frames of a flight meet and use their budget. Method: the built-in ladder with its
+// guessed prices, frames of real scenes with an orbiting camera, two budgets each between the fastest and the most
+// expensive candidate; time is counted work.
 TEST_CASE("budget_is_kept_on_a_flight") {
   const std::uint32_t frame_count = static_cast<std::uint32_t>(effort(140));
   for (const char* name : {"cornell", "seesaw"}) {
@@ -105,7 +105,7 @@ TEST_CASE("budget_is_kept_on_a_flight") {
       FlightResult result = fly(&flight, front, factor * fastest, frame_count);
       CAPTURE(name);
       CAPTURE(factor);
-      if (frame_count <= 2 * kSettlingFrames) continue;  // where every access costs, it is enough that it runs
+      if (frame_count <= 2 * kSettlingFrames) continue;  // under instrumentation it is enough that it runs
       double within = 1 - static_cast<double>(result.late) / (frame_count - kSettlingFrames);
       MESSAGE(std::string(name) << ", budget " << factor << " times what the fastest settings take: " << 100 * within
                                 << " % of " << frame_count << " frames within 110 %, settled within " << result.settle

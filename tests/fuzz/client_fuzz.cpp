@@ -1,5 +1,5 @@
-// A device against a server that may do anything: one that keeps to the protocol answers, and the input decides what
-// becomes of each message before it is sent.
+// A device against an arbitrary server: a well-behaved server answers, and the input decides how each message is
+// changed before it is sent.
 #include <algorithm>
 #include <map>
 
@@ -20,7 +20,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint64_t kMs = 1'000'000;
-constexpr double kDeviceNs = 100e3;  // per pixel: 19 ms a frame
+constexpr double kDeviceNs = 100e3;  // per pixel: 19 ms per frame
 constexpr int kFrames = 3;
 constexpr std::size_t kFloodMessages = 300;
 const platform::LinkBackend& net = platform::kNullLink;
@@ -56,7 +56,7 @@ void hang_up() {
   peer->stream = -1;
 }
 
-// What becomes of a message, and what goes before it. Three quarters of all bytes leave it as it is.
+// Changes a message, or sends others before it, as the input says. Three quarters of all bytes leave it unchanged.
 void send(const Message& message) {
   Bytes bytes = wire_bytes(message);
   auto append = [](const Bytes& more) { peer->out.insert(peer->out.end(), more.begin(), more.end()); };
@@ -182,7 +182,7 @@ void step_peer() {
   while (peer->stream >= 0 && !peer->silent) {
     Message message;
     Decoded decoded = decode_message(peer->in.data() + begin, peer->in.size() - begin, kMessageBytesMax, &message);
-    CHECK(decoded.state != DecodeState::malformed);  // whatever it is sent, a device keeps to the protocol
+    CHECK(decoded.state != DecodeState::malformed);  // a device obeys the protocol whatever it receives
     if (decoded.state != DecodeState::message) break;
     begin += decoded.byte_count;
     answer(message);
@@ -211,7 +211,7 @@ platform::LinkBackend both_backend() {
 }
 const platform::LinkBackend kBothLink = both_backend();
 
-// Frames as `render` and `view` have them.
+// Renders frames like `render` and `view`.
 void share_frames(FuzzInput* input, std::uint8_t flags) {
   Renderer* r = fuzz_renderer();
   ClientOptions o;
@@ -243,7 +243,7 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   close_client(&client);
 }
 
-// What is asked before the first frame.
+// Inquiries before the first frame.
 void inquire(FuzzInput*, std::uint8_t) {
   InquiryOptions o;
   o.connect_timeout_ns = o.silence_timeout_ns = 300 * kMs;

@@ -1,4 +1,4 @@
-// Files of fronts and of prices, which have the same form: whatever stands in them.
+// Front and price files, which have the same format, with arbitrary content.
 #include <cmath>
 #include <cstring>
 
@@ -22,7 +22,7 @@ bool is_same(const Front& a, const Front& b) {
   return true;
 }
 
-// What has been read can be used, and reads the same again.
+// Checks that a front that was read can be used, and reads back the same.
 void check(const Front& front) {
   CHECK_GT(front.count, 0u);
   for (std::uint32_t i = 0; i < front.count; ++i) {
@@ -61,7 +61,7 @@ void fuzz_front(const std::uint8_t* bytes, std::size_t byte_count) {
   const void* end = byte_count > 0 ? std::memchr(bytes, 0, byte_count) : nullptr;
   std::size_t first = end ? static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes) : byte_count;
   std::size_t second = end ? byte_count - first - 1 : 0;
-  // Copies of the right size, so that a sanitizer sees what is read beyond them.
+  // Copies of the right size, so that a sanitizer notices overreads.
   std::vector<std::uint8_t> text(bytes, bytes + first), more(bytes + byte_count - second, bytes + byte_count);
   Front front, prices;
   bool is_front = parse_front(text.data(), text.size(), &front).ok;

@@ -1,4 +1,4 @@
-// Fuzz targets: each takes any bytes and aborts where something is wrong. `make fuzz` runs them under libFuzzer with
+// Fuzz targets: each takes any bytes and aborts if something is wrong. `make fuzz` runs them under libFuzzer with
 // sanitizers; the suite replays the committed corpus and the seeds.
 #pragma once
 #include <cstddef>
@@ -8,33 +8,34 @@
 
 namespace pocketray {
 
-// First byte: what the rest is. 0: a stream of messages as it is. 1: messages without length and checksum (type, length
-// of the fields in two bytes, fields), which are put in. 2: chunks for a decoder. 3: pictures for an encoder.
+// The first byte selects the kind of the rest. 0: a raw stream of messages. 1: messages without length and checksum
+// (type, length of the fields in two bytes, fields), which are added. 2: chunks for a decoder. 3: pictures for an
+// encoder.
 void fuzz_message(const std::uint8_t* bytes, std::size_t byte_count);
 
-// A .pray file behind a first byte: odd, its length and checksum are made right. What is accepted is posed and
+// A .pray file after a first byte; if that is odd, length and checksum are corrected. Accepted files are posed and
 // rendered.
 void fuzz_pray(const std::uint8_t* bytes, std::size_t byte_count);
 
-// A model behind a first byte: which of import_endings() its name has. Where the importers are built in.
+// A model after a first byte, which selects its ending from import_endings(). Only with the importers built in.
 void fuzz_import(const std::uint8_t* bytes, std::size_t byte_count);
 std::vector<std::string> import_endings();
 
-// Renders small frames of a scene that was accepted, at two times.
+// Renders small frames of an accepted scene at two times.
 struct Scene;
 void fuzz_render(const Scene& scene);
 
-// The text of a front's file, then, behind a zero, that of a file of prices.
+// The text of a front file, then, after a zero byte, of a price file.
 void fuzz_front(const std::uint8_t* bytes, std::size_t byte_count);
 
-// First byte: what the rest is: an option's text, the state of a sweep, a dump of callgrind.
+// The first byte selects the kind of the rest: an option's text, the state of a sweep, a callgrind dump.
 void fuzz_text(const std::uint8_t* bytes, std::size_t byte_count);
 
-// First byte: what the device is and does. Then, for each message of a server that keeps to the protocol, what becomes
-// of it: client_fuzz.cpp has the list.
+// The first byte configures the device; the rest says how each message of a well-behaved server is changed: see
+// client_fuzz.cpp.
 void fuzz_client(const std::uint8_t* bytes, std::size_t byte_count);
 
-// First byte: the line, and whether the clients greet. Then what two clients do, one act after the other: see
+// The first byte configures the line and whether clients greet; the rest lists the actions of two clients: see
 // server_fuzz.cpp.
 void fuzz_server(const std::uint8_t* bytes, std::size_t byte_count);
 
@@ -42,7 +43,7 @@ struct FuzzSeed {
   std::string name;
   std::vector<std::uint8_t> bytes;
 };
-// What fuzzing starts from: an input of every kind.
+// Seeds for fuzzing: an input of every kind.
 std::vector<FuzzSeed> message_seeds();
 std::vector<FuzzSeed> pray_seeds();
 std::vector<FuzzSeed> import_seeds();
@@ -51,7 +52,7 @@ std::vector<FuzzSeed> text_seeds();
 std::vector<FuzzSeed> client_seeds();
 std::vector<FuzzSeed> server_seeds();
 
-// How far the inputs since the start came, for tests that show that seeds get somewhere.
+// Progress of all inputs so far, for tests that seeds reach the code.
 struct FuzzCounts {
   std::uint64_t messages = 0, chunks = 0, pictures = 0, scenes = 0, imports = 0, frames = 0, fronts = 0, texts = 0,
                 states = 0;

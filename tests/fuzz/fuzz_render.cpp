@@ -6,7 +6,7 @@
 namespace pocketray {
 
 void fuzz_render(const Scene& scene) {
-  // Larger ones take the fuzzer's time and show nothing that small ones do not.
+  // Larger ones only take time.
   constexpr std::uint32_t kTrianglesToRender = 256;
   if (scene.triangles.count > kTrianglesToRender) return;
   Settings settings;

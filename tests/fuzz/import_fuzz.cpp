@@ -1,4 +1,4 @@
-// A model file from anyone, of every format that is read: imported, baked, opened, rendered.
+// An untrusted model file of any supported format: imported, baked, opened, rendered.
 #ifdef POCKETRAY_HAVE_IMPORT
 #include <sys/stat.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@ POCKETRAY_FUZZ_TARGET(fuzz_import)
 namespace pocketray {
 namespace {
 
-// A folder for the files; it goes when the program ends.
+// A folder for the files, removed at program exit.
 struct FuzzFolder {
   std::string path;
   FuzzFolder() {
@@ -38,7 +38,7 @@ void write_file(const std::string& path, const void* bytes, std::size_t byte_cou
 
 }  // namespace
 
-// glTF and OBJ first; an .mtl is read by way of an OBJ that names it.
+// glTF and OBJ first; an .mtl is read through an OBJ that names it.
 std::vector<std::string> import_endings() {
   std::vector<std::string> endings = {"mtl"};
   std::string all = import_formats() + " ";

@@ -1,4 +1,4 @@
-// A small model in each format, written by hand or by code: what fuzzing of the importers starts from.
+// A small model in each format, written by hand or by code: seeds for fuzzing the importers.
 #ifdef POCKETRAY_HAVE_IMPORT
 #include <algorithm>
 #include <cstring>
@@ -46,7 +46,7 @@ std::string binary_stl() {
   return file + std::string(2, '\0');
 }
 
-// A chunk of .3ds: its kind, its length, what is in it.
+// A chunk of .3ds: kind, length, content.
 std::string chunk(std::uint16_t kind, const std::string& content) {
   std::string bytes;
   put(&bytes, kind), put(&bytes, static_cast<std::uint32_t>(6 + content.size()));
@@ -110,7 +110,7 @@ std::vector<Model> models() {
       {"triangle.x3d", "x3d",
        "<?xml version=\"1.0\"?><X3D version=\"3.3\"><Scene><Shape><IndexedFaceSet coordIndex=\"0 1 2 -1\"><Coordinate "
        "point=\"0 0 0 1 0 0 0 1 0\"/></IndexedFaceSet></Shape></Scene></X3D>"},
-      // The rest by the bytes that they are known by; the fuzzer goes on from there.
+      // For the rest only their magic bytes; the fuzzer continues from there.
       {"head.fbx", "fbx", std::string("Kaydara FBX Binary  \0\x1A\0\xE8\x1C\0\0", 27) + std::string(64, '\0')},
       {"head.blend", "blend", "BLENDER-v279REND" + std::string(32, '\0')},
       {"head.lwo", "lwo", std::string("FORM\0\0\0\x14LWO2PNTS\0\0\0\x0C", 20) + std::string(12, '\0')},

@@ -42,8 +42,7 @@ SmallCodec& codec_of(WireFormat format) {
   return *codec;
 }
 
-// Takes a message off the front. A copy of the right size, so that a sanitizer sees what is read beyond it. False where
-// there is none.
+// Takes a message off the front, as a copy of exact size so that a sanitizer notices overreads. False if there is none.
 bool take_message(const std::uint8_t** bytes, std::size_t* byte_count, SmallCodec* codec) {
   Message message;
   Decoded decoded = decode_message(*bytes, *byte_count, kMessageBytesMax, &message);
@@ -103,8 +102,7 @@ void read_chunks(const std::uint8_t* bytes, std::size_t byte_count) {
   }
 }
 
-// Format; then edits of a picture, each sent when it is made: row, rows, level, length, bytes that are repeated over
-// the rows.
+// Format; then edits of a picture, each sent immediately: row, rows, level, length, bytes repeated over the rows.
 void send_pictures(const std::uint8_t* bytes, std::size_t byte_count) {
   if (byte_count == 0) return;
   SmallCodec& codec = codec_of(bytes[0] & 1 ? WireFormat::rgb888 : WireFormat::rgb565);

@@ -1,4 +1,4 @@
-// A .pray file from anyone: opened, posed, rendered.
+// An untrusted .pray file: opened, posed, rendered.
 #include <cstring>
 
 #include "fuzz/fuzz.h"

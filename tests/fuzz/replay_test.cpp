@@ -1,4 +1,4 @@
-// The fuzz targets without a fuzzer: over the committed corpus and the seeds, each whole, cut short and damaged.
+// The fuzz targets without a fuzzer: run over the committed corpus and the seeds, each intact, truncated and damaged.
 #include <dirent.h>
 #include <doctest/doctest.h>
 
@@ -23,7 +23,7 @@ Bytes read_file(const std::string& path) {
   return Bytes(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
 }
 
-// Runs the target over the files of a folder of the corpus; returns how many.
+// Runs the target over the files of a corpus folder; returns their number.
 int replay(const char* folder, Target target) {
   std::string path = std::string(POCKETRAY_CORPUS) + "/" + folder + "/";
   DIR* directory = opendir(path.c_str());
@@ -53,7 +53,7 @@ void damage(const std::vector<FuzzSeed>& seeds, Target target, int rounds) {
   }
 }
 
-// The corpus, which the fuzzer starts from, holds the seeds; POCKETRAY_WRITE_CORPUS=1 writes them anew.
+// Checks that the corpus contains the seeds; POCKETRAY_WRITE_CORPUS=1 rewrites them.
 void check_committed(const char* folder, const std::vector<FuzzSeed>& seeds) {
   for (const FuzzSeed& seed : seeds) {
     std::string path = std::string(POCKETRAY_CORPUS) + "/" + folder + "/" + seed.name;
@@ -107,7 +107,7 @@ TEST_CASE("fuzz_import_corpus_and_damaged_seeds") {
 }
 #endif
 
-// Goal: no file of a front or of prices makes the program abort, and what is read can be used and written again.
+// Goal: no front or price file makes the program abort, and accepted ones can be used and written again.
 TEST_CASE("fuzz_front_corpus_and_damaged_seeds") {
   check_committed("front", front_seeds());
   fuzz_counts = FuzzCounts();
@@ -117,7 +117,7 @@ TEST_CASE("fuzz_front_corpus_and_damaged_seeds") {
   CHECK(replay("front", fuzz_front) >= 4);
 }
 
-// Goal: no text of an option, of a state or of another program's makes the program abort.
+// Goal: no option text, state file or output of another program makes the program abort.
 TEST_CASE("fuzz_text_corpus_and_damaged_seeds") {
   check_committed("text", text_seeds());
   fuzz_counts = FuzzCounts();
@@ -131,8 +131,8 @@ TEST_CASE("fuzz_text_corpus_and_damaged_seeds") {
   CHECK(replay("text", fuzz_text) >= 7);
 }
 
-// Goal: whatever a server does, a device goes on: its frames are complete, and it keeps to the protocol itself. The
-// seeds get as far as rows, scenes and views.
+// Goal: whatever a server does, a device completes its frames and obeys the protocol. The seeds reach rows, scenes and
+// views.
 TEST_CASE("fuzz_client_corpus_and_damaged_seeds") {
   check_committed("client", client_seeds());
   fuzz_counts = FuzzCounts();
@@ -145,7 +145,7 @@ TEST_CASE("fuzz_client_corpus_and_damaged_seeds") {
   CHECK(replay("client", fuzz_client) >= 12);
 }
 
-// Goal: whatever clients do, a server goes on and greets the next one. The seeds get answers of every kind.
+// Goal: whatever clients do, a server continues and greets the next one. The seeds get answers of every kind.
 TEST_CASE("fuzz_server_corpus_and_damaged_seeds") {
   check_committed("server", server_seeds());
   fuzz_counts = FuzzCounts();

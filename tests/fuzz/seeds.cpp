@@ -53,7 +53,7 @@ Bytes pray_seed(const Scene& scene) {
   return bytes;
 }
 
-// With an accelerator of its own in it.
+// A scene with its own accelerator.
 Bytes accelerated_seed(Scene scene) {
   const AccelInfo& info = *kAccelList[0];
   std::size_t keep_bytes = info.need(scene.triangles.count), scratch_bytes = info.scratch_need(scene.triangles.count);
@@ -98,7 +98,7 @@ std::vector<FuzzSeed> pray_seeds() {
   FullScene full;
   make_full_scene(11, 12, 4, &full);
   full.accel.clear();
-  for (Material& material : full.materials) material.brdf = 0;  // the one glossy lobe there is
+  for (Material& material : full.materials) material.brdf = 0;  // the only glossy lobe
   full.bind();
   seeds.push_back({"full", pray_seed(full.scene)});
   seeds.push_back({"accelerated", accelerated_seed(full.scene)});
@@ -146,7 +146,7 @@ std::vector<FuzzSeed> text_seeds() {
                R"(0.1, 0.1, "inf"]}}})")};
 }
 
-// A server that keeps to the protocol, towards a device of each kind; then one that changes, drops, repeats and adds.
+// A well-behaved server with each kind of device; then one that changes, drops, repeats and adds messages.
 std::vector<FuzzSeed> client_seeds() {
   std::vector<FuzzSeed> seeds;
   const char* const kNames[] = {"thin", "scene", "thin_rgb888", "scene_rgb888", "thin_far", "scene_far"};
@@ -158,7 +158,7 @@ std::vector<FuzzSeed> client_seeds() {
   Bytes inquiry(16, 0);
   inquiry[0] = 8;
   seeds.push_back({"inquiry", inquiry});
-  // Behind the hello, the scene and three pongs.
+  // After the hello, the scene and three pongs.
   seeds.push_back({"changes_a_chunk", {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 192, 9, 1, 0, 192, 20, 255, 0}});
   seeds.push_back({"adds_a_pong", {1, 0, 0, 0, 0, 0, 232, 12, 8, 1, 0, 0, 0, 0, 0, 0, 0, 0}});
   seeds.push_back({"floods", {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 244, 12, 8, 1, 0, 0, 0, 0, 0, 0, 0, 0}});
@@ -167,7 +167,7 @@ std::vector<FuzzSeed> client_seeds() {
   return seeds;
 }
 
-// Two clients at once: what each sends, and rounds of the server between.
+// Two clients at once: their messages, with rounds of the server in between.
 std::vector<FuzzSeed> server_seeds() {
   return {{"lists", {4, 2, 1, 0, 0, 1, 0, 7, 3, 2, 0, 0, 1, 0, 7}},
           {"fetches", {4, 2, 3, 16, 0, 1, 0, 7, 3, 3, 255, 0, 1, 0, 7}},

@@ -1,4 +1,4 @@
-// A server against clients that may do anything; afterwards it still greets the next one.
+// A server against arbitrary clients; afterwards it must still greet the next one.
 #include <algorithm>
 
 #include "base/check.h"
@@ -15,7 +15,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint64_t kMs = 1'000'000;
 constexpr int kClients = 2;
 constexpr std::uint32_t kImageSide = 32;
-constexpr double kServerNs = 100e3;  // per pixel: 200 of them in a slice of the CPU
+constexpr double kServerNs = 100e3;  // per pixel: 200 per slice of CPU time
 constexpr int kStepsMax = 400;
 const platform::LinkBackend& net = platform::kNullLink;
 
@@ -52,7 +52,7 @@ struct Stage {
   void connect(FuzzClient* client) {
     platform::Error error;
     hang_up(client);
-    // Fails while the server has not seen yet that earlier connections are gone: the link has only so many.
+    // Fails until the server has noticed that earlier connections are gone, as the link has only a few.
     client->stream = net.connect(link.link, link.address, 100 * kMs, &error);
   }
 };
@@ -79,7 +79,7 @@ void step(Stage* stage, int count) {
   }
 }
 
-// A message that a server has an answer to.
+// A valid message from a client.
 Message sensible_message(FuzzInput* input) {
   static const MessageType kTypes[] = {MessageType::hello,       MessageType::scene_list,    MessageType::scene_query,
                                        MessageType::scene_fetch, MessageType::frame_request, MessageType::frame_change,
@@ -133,7 +133,7 @@ void act(Stage* stage, FuzzInput* input) {
   }
 }
 
-// Another client comes: it is greeted.
+// Connects another client and expects a greeting.
 void greet_one_more(Stage* stage) {
   FuzzClient newcomer;
   stage->connect(&newcomer);

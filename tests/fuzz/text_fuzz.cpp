@@ -1,4 +1,4 @@
-// Texts that a command is given, or finds in its folder: options, the state of a sweep, what valgrind writes.
+// Texts from the command line or from files: options, the state of a sweep, output of valgrind.
 #include <unistd.h>
 
 #include <cstdio>
@@ -21,7 +21,7 @@ namespace pocketray {
 namespace {
 
 #if defined(POCKETRAY_HAVE_ACCURACY)
-// A folder of its own for the process, gone when it ends.
+// A folder for this process, removed at exit.
 struct Folder {
   std::string path;
   Folder() {
@@ -35,7 +35,7 @@ struct Folder {
   }
 };
 
-// Bytes of a state file are read or refused, and what is read is written again.
+// Reads or refuses a state file; writes an accepted one back.
 void read_state(const std::string& text) {
   static Folder folder;
   std::ofstream(folder.path + "/accuracy.state", std::ios::binary) << text;

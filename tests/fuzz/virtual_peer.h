@@ -1,5 +1,5 @@
-// What the fuzz targets of client and server have in common: a link of its own in simulated time, a small scene, and
-// the input as a supply of decisions.
+// Shared by the fuzz targets of client and server: a link in simulated time, a small scene, and the input as a source
+// of decisions.
 #pragma once
 #include <memory>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace pocketray {
 
-// An input, taken from the front. Beyond its end everything is 0.
+// Reads an input from the front; zeros follow its end.
 struct FuzzInput {
   const std::uint8_t* at;
   std::size_t left;
@@ -27,7 +27,7 @@ struct FuzzInput {
   }
 };
 
-// A link that lives as long as this.
+// Owns a link.
 struct FuzzLink {
   std::vector<std::max_align_t> memory;
   platform::Link* link = nullptr;
@@ -38,7 +38,7 @@ struct FuzzLink {
   FuzzLink& operator=(const FuzzLink&) = delete;
 };
 
-// The built-in cube as servers keep it.
+// The built-in cube in a server's store.
 const SceneStore& fuzz_store();
 constexpr std::uint32_t kFuzzWidth = 16, kFuzzHeight = 12;
 // A renderer for pictures of it of that size.
@@ -46,11 +46,11 @@ Renderer* fuzz_renderer();
 
 // The message on the wire.
 std::vector<std::uint8_t> wire_bytes(const Message& message);
-// A message of any type and payload, with its length and checksum right.
+// A message of any type and payload, with correct length and checksum.
 std::vector<std::uint8_t> sealed_bytes(std::uint8_t type, const std::vector<std::uint8_t>& payload);
 // Changes a byte of the payload and seals the message again.
 void change_sealed(std::vector<std::uint8_t>* bytes, std::uint8_t offset, std::uint8_t difference);
-// Writes what there is room for; false: the connection is over.
+// Writes as much as fits; false if the connection has ended.
 bool write_some(platform::Link* link, int stream, std::vector<std::uint8_t>* bytes);
 
 }  // namespace pocketray

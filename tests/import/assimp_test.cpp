@@ -1,4 +1,4 @@
-// Formats read by assimp, where it is built in.
+// Formats read by assimp, if built in.
 #include <cstring>
 #include <initializer_list>
 
@@ -33,7 +33,7 @@ TEST_CASE("assimp_ply_quads_and_vertex_colors") {
   CHECK(is_zero(s.materials[0].specular));
 }
 
-// Goal: a PLY header that promises more than the file holds is refused before memory is taken.
+// Goal: a PLY header that states more than the file holds is refused before allocating.
 TEST_CASE("assimp_ply_header_that_lies_is_refused") {
   if (!reads("ply")) return;
   TemporaryFolder folder;
@@ -42,7 +42,7 @@ TEST_CASE("assimp_ply_header_that_lies_is_refused") {
         load_error(folder.write("a.ply", std::string("ply\nformat ") + format +
                                              " 1.0\nelement vertex 4000000000\nproperty float x\nproperty float "
                                              "y\nproperty float z\nend_header\n0 0 0\n"));
-    CHECK(contains(error, "promises 4000000000"));
+    CHECK(contains(error, "states 4000000000"));
   }
 }
 
@@ -64,9 +64,8 @@ std::string words(std::initializer_list<std::int32_t> values) {
 
 }  // namespace
 
-// Goal: faces with no corners, a negative number of them, more than there can be, or of vertices that do not exist are
-// refused by name, before assimp has them, of whose steps some crash. Method: such lists in text and in bytes, after a
-// sound face; sound lists are read.
+// Goal: faces with no corners, a negative number, too many, or missing vertices are refused by name before they reach
+// assimp, parts of which would crash. Method: such lists in text and binary, after a valid face; valid lists are read.
 TEST_CASE("assimp_ply_faces_that_lie_are_refused") {
   if (!reads("ply")) return;
   TemporaryFolder folder;
@@ -78,7 +77,7 @@ TEST_CASE("assimp_ply_faces_that_lie_are_refused") {
   CHECK(contains(error("ascii", "int", "3 0 1 2\n-3 0 1 2\n"), "list 1 of the PLY file has -3 entries"));
   CHECK(contains(error("ascii", "int", "3 0 1 2\n100000 0 1 2\n"), "has 100000 entries"));
   CHECK(contains(error("ascii", "uchar", "3 0 1 2\n3 0 -3 2\n"), "face 1 of the PLY file uses vertex -3"));
-  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n3 0 4 2\n"), "uses vertex 4, and there are 4"));
+  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n3 0 4 2\n"), "uses vertex 4 of 4"));
   const char* little = "binary_little_endian";
   CHECK(contains(error(little, "int", words({3, 0, 1, 2, 0})), "face 1 of the PLY file has no corners"));
   CHECK(contains(error(little, "int", words({3, 0, 1, 2, -3, 0, 1, 2})), "list 1 of the PLY file has -3 entries"));
@@ -88,7 +87,7 @@ TEST_CASE("assimp_ply_faces_that_lie_are_refused") {
   CHECK(imported.scene.triangles.count == 2);
 }
 
-// Goal: so are faces without corners in formats that are not looked into before. Method: COLLADA's list of polygons.
+// Goal: faces without corners are also refused in formats that are not pre-checked. Method: COLLADA's list of polygons.
 TEST_CASE("assimp_faces_without_corners_are_refused") {
   if (!reads("dae")) return;
   TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// Models of which many triangles fall together in a point: they render as by brute force, by every way a scene takes.
+// Models with many triangles collapsed to a point: they render as by brute force on every path of a scene.
 #include <vector>
 
 #include "accel/accel_list.h"
@@ -15,7 +15,7 @@ namespace {
 
 float between(Rng* rng, float low, float high) { return low + (high - low) * next_float(rng); }
 
-// A part of so many triangles that grows out of a point within a second.
+// A part of `triangle_count` triangles that grows out of a point within a second.
 std::string growing_part(int triangle_count) {
   GltfWriter w;
   Rng rng = make_rng(1);
@@ -30,14 +30,14 @@ std::string growing_part(int triangle_count) {
       "\"target\":{\"node\":0,\"path\":\"scale\"}}]}]");
 }
 
-// One triangle, and so many whose corners are all its first.
+// One triangle, and `point_count` more whose corners all equal its first.
 std::string one_and_points(int point_count) {
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   for (int i = 0; i < point_count; ++i) text += "f 1 1 1\n";
   return text;
 }
 
-// Triangles at random, of which some are one and the same point.
+// Random triangles, some collapsed to the same point.
 std::string some_collapsed(int triangle_count, int collapsed_count) {
   Rng rng = make_rng(2);
   std::string text = "v 0 0 0\n";
@@ -71,9 +71,9 @@ std::vector<Picture> pictures(const Scene& scene, const AccelInfo* accel) {
 
 }  // namespace
 
-// Goal: a model with triangles that have collapsed renders, whoever builds its tree: the renderer, `bake` and a server
-// (build_heap_accel()), or the reader of a .pray without an accelerator. Method: the pictures of brute force, bit for
-// bit, while a part grows out of a point and goes back.
+// Goal: a model with collapsed triangles renders, whoever builds its tree: the renderer, `bake` and a server
+// (build_heap_accel()), or the reader of a .pray without an accelerator. Method: compare with brute force, bit for bit,
+// while a part grows out of a point and shrinks back.
 TEST_CASE("import_collapsed_triangles_render_as_by_brute_force") {
   TemporaryFolder folder;
   for (const auto& file :

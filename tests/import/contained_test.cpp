@@ -1,4 +1,4 @@
-// Readers that misbehave, each in a process of its own.
+// Misbehaving readers, each in a child process.
 #include <unistd.h>
 
 #include <atomic>
@@ -43,8 +43,7 @@ void make_triangle(ImportedScene* imported) {
 
 }  // namespace
 
-// Goal: what a contained reader reads arrives, and its warning. Method: a triangle; the descriptors are all closed
-// again.
+// Goal: the scene and warning of a contained reader arrive. Method: a triangle; all descriptors are closed again.
 TEST_CASE("contained_scene_and_warning_arrive") {
   int before = dup(0);
   close(before);
@@ -60,8 +59,8 @@ TEST_CASE("contained_scene_and_warning_arrive") {
   CHECK(after == before);
 }
 
-// Goal: a reader that crashes, throws, loops, or asks for too much ends in one line, and this process goes on; nothing
-// that it prints is seen, and what it changes is its own. Method: each once.
+// Goal: a reader that crashes, throws, loops, or allocates too much ends in one line, and this process continues; its
+// output and changes are not visible. Method: each once.
 TEST_CASE("contained_reader_takes_nothing_with_it") {
   CHECK(contains(error_of([](ImportedScene*) { std::raise(SIGSEGV); }), "signal 11"));
   CHECK(contains(error_of([](ImportedScene*) { std::raise(SIGBUS); }), "signal 7"));
@@ -87,7 +86,7 @@ TEST_CASE("contained_reader_takes_nothing_with_it") {
 #if !defined(__SANITIZE_ADDRESS__)
   CHECK(contains(error_of([](ImportedScene* imported) {
                    char* volatile many =
-                       new char[std::size_t(1) << 30];  // seen from outside: no compiler leaves it out
+                       new char[std::size_t(1) << 30];  // visible outside, so the compiler cannot omit it
                    make_triangle(imported);
                    delete[] many;
                  }),
@@ -95,7 +94,7 @@ TEST_CASE("contained_reader_takes_nothing_with_it") {
 #endif
 }
 
-// Goal: a scene larger than the reader may make it is refused. Method: a limit below that of a triangle.
+// Goal: a scene beyond the size limit is refused. Method: a limit below that of a triangle.
 TEST_CASE("contained_scene_is_no_larger_than_allowed") {
   ImportedScene result;
   CHECK_THROWS_AS(import_contained({0, 1, 64}, make_triangle, &result), ImportError);

@@ -1,4 +1,4 @@
-// Bits of the sample models are turned, and what becomes of them is imported, baked and rendered: nothing crashes.
+// Flips bits of the sample models and imports, bakes and renders the results: nothing crashes.
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -21,7 +21,7 @@ using namespace pocketray;
 
 namespace {
 
-// A file whose bits are turned, and the model that is imported then: itself, or one that names it.
+// A file whose bits are flipped, and the model imported then: itself, or one that names it.
 struct Target {
   std::string file, model;
   std::size_t byte_count;
@@ -63,7 +63,7 @@ void list_targets(const std::string& folder, std::vector<Target>* targets) {
   }
 }
 
-// Where a flip turns which bits.
+// Position and bits of a flip.
 struct Flip {
   std::size_t target;
   std::uint32_t count;
@@ -71,8 +71,7 @@ struct Flip {
   std::uint8_t bit[4];
 };
 
-// Small files are as often taken as is their due by the time that they take; half of the flips go to the first
-// kilobytes, where headers are.
+// Chooses small files more often, as they take less time; half of the flips hit the first kilobytes, where headers are.
 Flip make_flip(std::uint64_t number, const std::vector<Target>& targets) {
   Rng rng = make_rng(number, 5);
   double sum = 0;
@@ -104,10 +103,10 @@ void turn_bits(const Target& target, const Flip& flip) {
   close(file);
 }
 
-// What a batch came to; shared with the process that works on it.
+// Progress of a batch, shared with its process.
 struct Progress {
-  std::uint64_t now;  // the flip at work
-  bool turned;        // its bits are
+  std::uint64_t now;  // the current flip
+  bool turned;        // its bits are flipped
   std::uint64_t refused, read, rendered;
 };
 
@@ -146,7 +145,7 @@ void try_flip(const std::vector<Target>& targets, std::uint64_t number, Progress
   progress->turned = false;
 }
 
-// What a flip may take: 30 seconds of the processor, a gigabyte and a half of address space beyond what there is.
+// Limits a flip to 30 seconds of CPU time and 1.5 GB of additional address space.
 void limit_flip() {
   itimerval limit = {{0, 0}, {30, 0}};
   setitimer(ITIMER_PROF, &limit, nullptr);
@@ -164,8 +163,8 @@ void limit_memory() {
 #endif
 }
 
-// Runs flips from `first` on in a process of its own, up to `end`. Returns the first that was not tried; a flip that
-// ended the process counts as tried, and *fatal_status says how it did.
+// Runs flips from `first` to `end` in a child process. Returns the first one not tried; a flip that ended the process
+// counts as tried, and *fatal_status says how it ended.
 std::uint64_t run_batch(const std::vector<Target>& targets, std::uint64_t first, std::uint64_t end, Progress* progress,
                         int* fatal_status) {
   *fatal_status = 0;
@@ -196,8 +195,8 @@ std::uint64_t number_from(const char* name, std::uint64_t otherwise) {
 
 }  // namespace
 
-// Goal: a model with turned bits ends in a picture or in one line, in bounded time and memory. Method: flips by number,
-// of every sample model and what it names, in batches whose end is watched. `make flips` has a hundred thousand.
+// Goal: a model with flipped bits ends in a picture or one line, in bounded time and memory. Method: numbered flips of
+// every sample model and its files, in monitored batches. `make flips` runs a hundred thousand.
 TEST_CASE("flips_of_every_model_end_in_a_picture_or_one_line") {
   if (!have(shared_scene(""))) return;
   TemporaryFolder folder;

@@ -31,7 +31,7 @@ float width_of(const Scene& scene, const Pose& pose, std::uint32_t mesh) {
   return extent(box).x;
 }
 
-// Positions and normals the file holds are those of animation 0 at time 0.
+// Checks that stored positions and normals are those of animation 0 at time 0.
 void check_starts_posed(const Scene& scene) {
   Posed posed(scene);
   pose_at(scene, 0, 0, &posed.pose);
@@ -169,7 +169,7 @@ TEST_CASE("gltf_sample_skins_bend") {
   }
 }
 
-// Goal: the other animated samples. Method: the morph cube's keyed weights; the milk truck's wheels alone move.
+// Goal: the other animated samples. Method: the morph cube's keyed weights; only the milk truck's wheels move.
 TEST_CASE("gltf_sample_morph_cube_and_milk_truck") {
   std::string cube = shared_scene("gltf/AnimatedMorphCube.glb");
   if (have(cube)) {

@@ -142,7 +142,7 @@ TEST_CASE("gltf_metallic_roughness_texture_counts_by_its_mean") {
   double metallic = 64 / 255.0, roughness = 128 / 255.0, alpha = roughness * roughness;
   CHECK(imported.scene.materials[0].diffuse.x == doctest::Approx(1 - metallic));
   CHECK(imported.scene.materials[0].exponent == doctest::Approx(2 / (alpha * alpha) - 2));
-  CHECK(imported.scene.textures.count == 0);  // it is no texture of the scene
+  CHECK(imported.scene.textures.count == 0);  // it is not a texture of the scene
   CHECK(contains(imported.warning, "normal maps"));
   CHECK(contains(imported.warning, "by their mean"));
 }
@@ -187,8 +187,7 @@ TEST_CASE("gltf_punctual_lights_follow_their_node") {
   CHECK(load_text(triangle_gltf("")).scene.info.auto_exposure == 0);
 }
 
-// Goal: perspective and orthographic cameras stand where their node is; a camera that sees nothing is left out and
-// named.
+// Goal: perspective and orthographic cameras stand where their node is; an invalid camera is skipped with a note.
 TEST_CASE("gltf_cameras_stand_where_their_node_is") {
   auto with_camera = [](const std::string& camera) {
     return triangle_gltf("", ",\"cameras\":[" + camera + "]", ",\"camera\":0,\"translation\":[0,1,5]");

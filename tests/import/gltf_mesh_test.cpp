@@ -28,8 +28,8 @@ std::string mesh_document(const std::string& primitives, const std::string& node
 
 }  // namespace
 
-// Goal: strips and fans become the same triangles, all facing one way; what makes no triangles is named. Method: a flat
-// quad of four vertices in every mode.
+// Goal: strips and fans become the same triangles, all facing one way; modes without triangles are reported. Method: a
+// flat quad of four vertices in every mode.
 TEST_CASE("gltf_primitive_modes_make_triangles_that_face_alike") {
   GltfWriter w;
   w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
@@ -49,7 +49,7 @@ TEST_CASE("gltf_primitive_modes_make_triangles_that_face_alike") {
   CHECK(imported.warning == "not used: points, lines");
 }
 
-// Goal: a sparse accessor without a buffer view is zeros but for its own values.
+// Goal: a sparse accessor without a buffer view is zero except for its own values.
 TEST_CASE("gltf_sparse_accessor_replaces_elements") {
   GltfWriter w;
   w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -65,8 +65,8 @@ TEST_CASE("gltf_sparse_accessor_replaces_elements") {
   CHECK(imported.scene.positions[2] == Vec3{0, 3, 0});
 }
 
-// Goal: vertex colours of every component type and width arrive linear, 16 bits a channel. Method: the colour (1, 0.5,
-// 0, …) in each.
+// Goal: vertex colours of every component type and width arrive linear, with 16 bits per channel. Method: the colour
+// (1, 0.5, 0, …) in each.
 TEST_CASE("gltf_vertex_colors_of_all_types_become_linear_16_bit") {
   GltfWriter w;
   w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -120,7 +120,7 @@ TEST_CASE("hard_27_singular_transforms_are_refused_naming_the_node") {
   }
 }
 
-// Goal: denormal coordinates are taken, indices out of range refused (HARDCASES row 8; non_finite_test.cpp has the
+// Goal: denormal coordinates are accepted, indices out of range refused (HARDCASES row 8; non_finite_test.cpp has the
 // rest).
 TEST_CASE("hard_08_denormal_vertices_are_taken_and_indices_out_of_range_refused") {
   count_assertions("left out and counted");
@@ -182,8 +182,8 @@ TEST_CASE("gltf_binary_container_reads_like_json") {
   for (std::uint32_t v = 0; v < 3; ++v) CHECK(binary.scene.positions[v] == text.scene.positions[v]);
 }
 
-// Goal: the samples' traps. Method: MultipleScenes shows one; SimpleInstancing's 125 cubes; NegativeScaleTest's
-// triangles all agree with their normals.
+// Goal: special cases of the samples. Method: MultipleScenes shows one; SimpleInstancing's 125 cubes;
+// NegativeScaleTest's triangles all agree with their normals.
 TEST_CASE("gltf_samples_scenes_instances_and_negative_scales") {
   std::string multiple = shared_scene("gltf/MultipleScenes/MultipleScenes.gltf");
   if (have(multiple)) {

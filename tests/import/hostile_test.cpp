@@ -9,8 +9,7 @@
 
 using namespace pocketray;
 
-// Assimp loses a few kilobytes when its PLY reader gives a file up; that is its own, and no bug of this program hides
-// there.
+// Assimp leaks a few kilobytes when its PLY reader refuses a file; that leak is not ours and hides none of ours.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 
@@ -75,7 +74,8 @@ std::string altered(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-// Goal: glTF files that lie are refused with the reason. Method: one lie each in an otherwise sound document.
+// Goal: inconsistent glTF files are refused with the reason. Method: one inconsistency each in an otherwise valid
+// document.
 TEST_CASE("gltf_lies_are_refused_with_the_reason") {
   const char* const cases[][3] = {
       {"\"count\":3", "\"count\":4", "do not fit into buffer view 0"},
@@ -92,7 +92,7 @@ TEST_CASE("gltf_lies_are_refused_with_the_reason") {
       {"\"mesh\":0", "\"mesh\":0,\"children\":[0]", "reached twice"},
       {"\"mesh\":0", "\"mesh\":0,\"skin\":0", "skin 0 does not exist"},
       {"\"mesh\":0", "\"mesh\":0,\"camera\":9", "camera 9 does not exist"},
-      {"\"mesh\":0", "\"mesh\":0,\"rotation\":[0,0,0,0]", "no quaternion"},
+      {"\"mesh\":0", "\"mesh\":0,\"rotation\":[0,0,0,0]", "not a quaternion"},
       {"\"mesh\":0", "\"mesh\":0,\"extensions\":{\"KHR_lights_punctual\":{\"light\":2}}", "light does not exist"},
       {"\"materials\":[{}", "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":4}}}",
        "texture 4 does not exist"},
@@ -105,7 +105,7 @@ TEST_CASE("gltf_lies_are_refused_with_the_reason") {
        "beside the scene"},
       {"\"uri\":\"data:application/octet-stream;base64,", "\"uri\":\"%2Fetc/passwd\",\"x\":\"", "beside the scene"},
       {"\"uri\":\"data:application/octet-stream;base64,", "\"uri\":\"a/%2e%2e/%2e%2e/b\",\"x\":\"", "beside the scene"},
-      {"\"scene\":0", "\"scene\":0,", "no valid JSON"},
+      {"\"scene\":0", "\"scene\":0,", "not a valid JSON"},
   };
   for (const auto& c : cases) {
     CAPTURE(c[1]);
@@ -126,11 +126,11 @@ TEST_CASE("gltf_image_header_that_lies_is_refused") {
   CHECK(contains(error_of("a.gltf", text), "image 0 is too large"));
 }
 
-// Goal: what would become larger than asked is refused, file or scene. Method: limits around a small file.
+// Goal: files and scenes larger than the limit are refused. Method: limits around a small file.
 TEST_CASE("import_byte_count_max_bounds_file_and_scene") {
   ImportOptions options;
   options.byte_count_max = 100;
-  CHECK(contains(error_of("a.gltf", triangle_gltf(""), options), "more than the 100"));
+  CHECK(contains(error_of("a.gltf", triangle_gltf(""), options), "more than the limit of 100"));
   GltfWriter w;
   w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
   w.vec3s(std::vector<float>(3 * 30000, 0.0f));
@@ -188,11 +188,11 @@ TEST_CASE("import_every_prefix_and_every_changed_byte_ends_in_a_status") {
   CHECK(refused > read / 10);
 }
 
-// Goal: what is no scene file is refused with the formats that are.
+// Goal: files that are not scenes are refused with a list of the formats.
 TEST_CASE("import_unknown_endings_empty_and_absent_files") {
   CHECK(contains(error_of("a.txt", "hello"), "gltf glb obj"));
   CHECK(contains(error_of("a.obj", ""), "empty"));
   CHECK(contains(load_error("/nowhere/a.glb"), "cannot read"));
-  CHECK(contains(load_error("/"), "no regular file"));
+  CHECK(contains(load_error("/"), "not a regular file"));
   CHECK(contains(error_of("a.obj", "v 0 0 0\n"), "no triangles"));
 }

@@ -1,4 +1,4 @@
-// Shared by the import tests: sample files, scene files written on the spot, and small questions to ask a scene.
+// Shared by the import tests: sample files, generated scene files, and small queries of a scene.
 #pragma once
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ namespace pocketray {
 
 inline std::string shared_scene(const std::string& name) { return std::string(POCKETRAY_SHARED) + "/scenes/" + name; }
 
-// Whether the file is there; prints what is skipped otherwise.
+// True if the file exists; otherwise prints what is skipped.
 inline bool have(const std::string& path) {
   struct stat info;
   if (stat(path.c_str(), &info) == 0) return true;
@@ -40,7 +40,7 @@ inline std::string load_error(const std::string& path, const ImportOptions& opti
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// A folder that goes when the test ends.
+// A folder removed at the end of the test.
 struct TemporaryFolder {
   std::string path;
   TemporaryFolder() {

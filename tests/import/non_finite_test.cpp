@@ -1,6 +1,6 @@
-// HARDCASES row 8 at the door: a number in a scene file that is no number, not finite, larger than a float or farther
-// than a coordinate is refused, and the one line of the refusal names where it stands. Method, throughout: a file that
-// reads well, then the same with one number replaced.
+// HARDCASES row 8 at import: a number in a scene file that is invalid, not finite, beyond float or beyond the limit of
+// coordinates is refused with one line that names its place. Method, throughout: a valid file, then the same with one
+// number replaced.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -32,7 +32,7 @@ void check_refused(const std::string& path, const std::string& place) {
 
 }  // namespace
 
-// Goal: OBJ lines. The bare reader takes "nan" for 0.
+// Goal: OBJ lines. The library alone reads "nan" as 0.
 TEST_CASE("hard_08_obj_numbers_that_are_not_finite_are_refused_by_line") {
   TemporaryFolder folder;
   const std::string obj =
@@ -101,7 +101,7 @@ TEST_CASE("hard_08_mtl_numbers_that_are_not_finite_are_refused_by_file_and_line"
       check_refused(path, "m.mtl, line 3: '" + std::string(number));
     }
   folder.write("m.mtl", "newmtl m\nTr 0  illum 2\nmap_Kd -o 0.5 gone.png\nmap_Ks -boost 2 nan.png # nan\n");
-  load(path);  // as files have it
+  load(path);  // as in real files
 }
 
 // Goal: glTF's JSON: literals that JSON does not have, and numbers beyond float, wherever a number may stand.
@@ -226,7 +226,7 @@ TEST_CASE("hard_08_gltf_sparse_values_and_placed_vertices_are_refused_by_name") 
                        "\"mesh\":0,\"scale\":[1," +
                        std::string(far ? "1e10" : "1e2") + ",1]}],\"scenes\":[{\"nodes\":[0]}]"));
     if (far)
-      check_refused(path, "mesh 0 'sky': a vertex is placed at (0, 1e+22, 0)");
+      check_refused(path, "mesh 0 'sky': a vertex is at (0, 1e+22, 0)");
     else
       load(path);
   }

@@ -14,8 +14,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 all_suites="base effect brdf indirect accel hard shade reference present plan golden pipeline split remote split_report
   accuracy session app budget sweep viewer platform api"
-import_suites="import fuzz"  # with the importers built in, which takes longer: where a fault names one of them
-seconds_max=240  # what takes longer hangs
+import_suites="import fuzz"  # need the importers, which take longer to build: only for faults that name one
+seconds_max=240  # anything longer counts as a hang
 jobs=$(nproc 2>/dev/null || echo 2) build=$root/build-mutants mode=run
 only=() name=() file=() suites=() why=() old=() new=()
 
@@ -61,7 +61,7 @@ pattern_of() {
 # exactly one match.
 find_fault() {
   local tree=$1 i=$2 content pattern
-  [ -f "$tree/${file[i]}" ] || { echo "${name[i]}: there is no file ${file[i]}" && return 1; }
+  [ -f "$tree/${file[i]}" ] || { echo "${name[i]}: no such file ${file[i]}" && return 1; }
   content=$(<"$tree/${file[i]}")
   pattern=$(pattern_of "${old[i]}")
   [[ $content =~ $pattern ]] || { echo "${name[i]}: ${file[i]} has no text: ${old[i]}" && return 1; }
@@ -101,13 +101,13 @@ make_copy() {
     -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 -DPOCKETRAY_WERROR=OFF -DPOCKETRAY_IMPORT=$import \
     -DPOCKETRAY_SHARED="$root/../shared" >"$copy/log" 2>&1 || { cat "$copy/log" >&2; return 1; }
 }
-build_suites() {  # COPY JOBS SUITE... ; in a folder of its own name a copy's objects are found in the compiler's cache
+build_suites() {  # COPY JOBS SUITE... ; a fixed folder name lets the compiler cache find a copy's objects
   local copy=$1 count=$2
   shift 2
   CCACHE_BASEDIR=$copy CCACHE_NOHASHDIR=1 \
     cmake --build "$copy/build" "-j$count" --target "${@/#/test_}" >"$copy/log" 2>&1
 }
-run_suite() {  # COPY SUITE : its first failing test is in $copy/log
+run_suite() {  # COPY SUITE : leaves its first failing test in $copy/log
   (cd "$1/build" && timeout $seconds_max "./test_$2" --abort-after=1 --no-colors >"$1/log" 2>&1) 2>/dev/null
 }
 

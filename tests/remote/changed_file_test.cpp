@@ -1,4 +1,4 @@
-// Scene files that change while they are served or rendered: what was checked is what is used.
+// Scene files that change while served or rendered: the checked data is the used data.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ struct SceneFile {
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   }
   ~SceneFile() { std::remove(path.c_str()); }
-  // Every vertex of every triangle far beyond the vertices that there are, as somebody who means harm would have it.
+  // Sets every vertex index of every triangle far out of range, like an attacker.
   void alter() {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
     std::vector<char> high(bytes.size() / 2, 0x7f);
@@ -43,8 +43,8 @@ struct SceneFile {
 
 }  // namespace
 
-// Goal: a server sends and renders the scene that it has checked, and nothing that was written over it since. Method:
-// the file altered, then cut short, under a store that has read it; its bytes, its hash and its checks.
+// Goal: a server sends and renders the scene it has checked, and nothing written to the file since. Method: alter, then
+// truncate, a file that the store has read; check its bytes, hash and validity.
 TEST_CASE("changed_file_leaves_a_served_scene_as_it_was") {
   SceneFile file;
   SceneStore store;
@@ -61,7 +61,7 @@ TEST_CASE("changed_file_leaves_a_served_scene_as_it_was") {
 }
 
 // Goal: the same for frames of a scene file, in render and view alike: both go through load_scene(). Method: a frame,
-// the file altered, a frame, the file cut short, a frame: all three are the same.
+// alter the file, a frame, truncate the file, a frame: all three are equal.
 TEST_CASE("changed_file_leaves_a_rendered_scene_as_it_was") {
   SceneFile file;
   std::vector<std::uint8_t> block(16u << 20);
@@ -86,8 +86,8 @@ TEST_CASE("changed_file_leaves_a_rendered_scene_as_it_was") {
   }
 }
 
-// Goal: a file too large for the memory is named by its hash without being held: in parts it is the same as whole.
-// Method: lengths around the size of a part.
+// Goal: a file too large for memory is hashed in parts, with the same result as whole. Method: lengths around the size
+// of a part.
 TEST_CASE("changed_file_hash_in_parts_is_the_hash") {
   const std::string path = "changed_file_test.bin";
   for (std::size_t count : {1, 15, 16, 17, 65535, 65536, 65537, 200'003}) {

@@ -1,4 +1,4 @@
-// A device and a server that wants its time: whatever is sent, the frame goes on.
+// A device and a server that wastes its time: whatever it sends, the frame goes on.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -46,8 +46,8 @@ constexpr Flood kFloods[] = {
 
 }  // namespace
 
-// Goal: a server that sends without end what it was not asked for is left, and costs next to nothing. Method: every
-// kind of message, as fast as the device can read; each would go on for longer than a frame may.
+// Goal: a server that floods unrequested messages is dropped at almost no cost. Method: every kind of message, as fast
+// as the device can read, for longer than a frame may take.
 TEST_CASE("client_leaves_a_server_that_floods") {
   for (const Flood& flood : kFloods)
     for (bool before_hello : {false, true}) {
@@ -64,15 +64,14 @@ TEST_CASE("client_leaves_a_server_that_floods") {
     }
 }
 
-// Goal: rows that a server may still send, since they were asked for before others were, end no connection; one row
-// more does. Method: a server that keeps back the rows of some frames and sends them with the next request, each
-// frame's before those of the next, as a slow line would bring them; and then a few that it has sent already.
+// Goal: late rows of earlier requests do not end the connection; one row too many does. Method: a server holds back the
+// rows of some frames and sends them in order with the next request, as a slow line would; then it repeats a few.
 TEST_CASE("client_takes_late_rows_no_more_than_it_asked_for") {
   for (bool sends_more : {false, true}) {
     CAPTURE(sends_more);
     HostileRig rig;
     rig.frames_until_ready();
-    rig.client.options.device_share = 0.5;  // whatever becomes known of the server
+    rig.client.options.device_share = 0.5;  // whatever the client learns about the server
     std::vector<FrameRequest> kept;
     std::size_t asked_before = rig.all.size();
     rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
@@ -94,12 +93,12 @@ TEST_CASE("client_takes_late_rows_no_more_than_it_asked_for") {
     }
     CHECK(rig.all.size() >= asked_before + 4);
     CHECK(rig.log.empty() == !sends_more);
-    for (const std::string& line : rig.log) CHECK(line.find("rows that it was not asked for") != std::string::npos);
+    for (const std::string& line : rig.log) CHECK(line.find("unrequested rows") != std::string::npos);
   }
 }
 
-// Goal: what was asked for in many frames and comes at once takes no more of a look than a frame can bring. Method: a
-// server that answers pings alone for some frames, and then sends all rows that it owes, one at a time.
+// Goal: one poll handles at most a frame's worth of input, even if rows of many frames arrive at once. Method: a server
+// answers only pings for some frames and then sends all rows it owes, one at a time.
 TEST_CASE("client_look_is_bounded") {
   HostileRig rig;
   rig.frames_until_ready();
@@ -107,7 +106,7 @@ TEST_CASE("client_look_is_bounded") {
   std::vector<FrameRequest> kept;
   bool gives = false;
   rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
-    if (message.type == MessageType::ping && !gives) return {};  // which would end what is owed
+    if (message.type == MessageType::ping && !gives) return {};  // it would cancel the owed rows
     if (!r->note_request(message)) return {};
     kept.push_back(r->request);
     if (!gives) return {};
@@ -135,11 +134,11 @@ TEST_CASE("client_look_is_bounded") {
   CHECK(s->late_rows == 0);
   CHECK(most <= kHeight);
   CHECK(looks >= owed / kHeight);
-  CHECK(rig.fake.now() - begin < looks * kMs / 5);  // what has come is not waited for
+  CHECK(rig.fake.now() - begin < looks * kMs / 5);  // input already received is not waited for
 }
 
-// Goal: a message that never ends is no answer. Method: the first bytes of a pong or of rows, one a tenth of a second;
-// the connection ends when the answer is overdue, in each phase.
+// Goal: a message that never ends is not an answer. Method: the first bytes of a pong or of rows, one every 0.1 s; the
+// connection ends when the answer is overdue, in each phase.
 TEST_CASE("client_leaves_a_server_that_dribbles") {
   for (MessageType until :
        {MessageType::hello, MessageType::scene_query, MessageType::ping, MessageType::frame_request}) {

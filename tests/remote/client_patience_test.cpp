@@ -1,4 +1,4 @@
-// How long a device waits for servers that begin well and give nothing, and what it says of them.
+// How long a device waits for servers that start well but deliver nothing, and what it logs.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,10 +14,10 @@ constexpr double kSecond = 1e9;
 
 struct Failing {
   const char* what;
-  double patience_s;  // that a device without the scene has with it
-  // Instead of an answer. Empty: nothing is said; `hangs_up`: and the connection ends.
+  double patience_s;  // of a device without the scene
+  // Selects messages to fail on: silently, or with `hangs_up` by closing the connection.
   bool (*fails)(const Message& message);
-  bool hangs_up, errs, dies;  // dies: from then on nothing is answered in this connection
+  bool hangs_up, errs, dies;  // dies: answers nothing more on this connection
 };
 bool after_hello(const Message& m) { return m.type != MessageType::hello; }
 bool after_pings(const Message& m) {
@@ -33,7 +33,7 @@ constexpr Failing kFailing[] = {
     {"answers pings alone", 30, after_pings, false, false},
 };
 
-// Seconds until the device gives up its frame; or until the end.
+// Seconds until the device gives up its frame, or `seconds`.
 double wait_for_rows(HostileRig* rig, double seconds) {
   std::uint64_t begin = rig->fake.now(), end = begin + static_cast<std::uint64_t>(seconds * kSecond);
   REQUIRE(begin_frame(&rig->device->renderer, &rig->client, 0).ok);
@@ -44,9 +44,9 @@ double wait_for_rows(HostileRig* rig, double seconds) {
 
 }  // namespace
 
-// Goal: without the scene a device gives up on a server that gives no rows after five seconds, after thirty where it
-// lives; what is wrong is told once, and it is tried again ever more seldom. Method: a server that greets it and then
-// fails, in each way there is; the time until it is given up, connections and lines in 45 s.
+// Goal: without the scene, a device gives up on a server that sends no rows after five seconds, or thirty if it is
+// alive; it logs the reason once and retries at growing intervals. Method: a server greets and then fails in every way;
+// time until the device gives up, connections and log lines in 45 s.
 TEST_CASE("thin_client_gives_up_on_a_server_that_gives_no_rows") {
   for (const Failing& failing : kFailing) {
     CAPTURE(failing.what);
@@ -70,7 +70,7 @@ TEST_CASE("thin_client_gives_up_on_a_server_that_gives_no_rows") {
       advance_client(&rig.client, 100 * kMs);
     CHECK(rig.fake.connection_count <= 9);
     CHECK(rig.log.size() <= 1);
-    // It sends rows at last, and is used.
+    // It finally sends rows and is used.
     rig.act = nullptr;
     CHECK(wait_for_rows(&rig, 60) < 45);
     CHECK(has_all_rows(rig.client));
@@ -78,8 +78,8 @@ TEST_CASE("thin_client_gives_up_on_a_server_that_gives_no_rows") {
   }
 }
 
-// Goal: a slow server is no dead one. Method: a chunk each four seconds, pings in between, with the rows of a frame on
-// their way for longer than any patience.
+// Goal: a slow server does not count as dead. Method: a chunk every four seconds, pings in between, so that a frame
+// takes longer than any time-out.
 TEST_CASE("thin_client_is_patient_with_a_slow_server") {
   HostileRig rig(false);
   std::vector<Message> kept;
@@ -101,8 +101,8 @@ TEST_CASE("thin_client_is_patient_with_a_slow_server") {
   CHECK(rig.log.empty());
 }
 
-// Goal: a server that comes and goes is told of ever more seldom. Method: one that gives the rows of a frame or two and
-// hangs up, again and again, with the scene on the device and without.
+// Goal: a server that comes and goes is logged at growing intervals. Method: one that repeatedly sends the rows of a
+// frame or two and hangs up, with and without the scene on the device.
 TEST_CASE("client_backs_off_from_a_server_that_comes_and_goes") {
   for (bool has_scene : {true, false}) {
     CAPTURE(has_scene);
@@ -126,9 +126,8 @@ TEST_CASE("client_backs_off_from_a_server_that_comes_and_goes") {
   }
 }
 
-// Goal: how much faster a frame is with servers than alone counts what the device does before it, which no server
-// takes off it; and who renders what does not depend on it, as nobody renders meanwhile. Method: frames of which the
-// preparation takes half a minute, by the device's word.
+// Goal: the reported speed-up includes the device's preparation of a frame, which servers do not save; the split does
+// not depend on it. Method: frames whose preparation takes half a minute, as stated by the device.
 TEST_CASE("client_counts_preparation") {
   constexpr std::uint64_t kPrepareNs = 30'000'000'000;
   std::uint32_t rows[2];

@@ -1,4 +1,4 @@
-// What a device knows of the link to a server that was gone and is back.
+// Measuring the link to a server that returns.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,10 +11,10 @@ using namespace pocketray;
 
 namespace {
 
-constexpr double kNsPerByte = 2105;  // of a radio of 475 kB/s
+constexpr double kNsPerByte = 2105;  // a radio of 475 kB/s
 constexpr int kFrames = 24;          // after a return
 
-// Turns the camera on, so that rows take bytes.
+// Turns the camera, so that rows take bytes.
 void next_frame(SplitRig* rig, int frame) {
   Camera camera = rig->built->scene.cameras[0];
   double angle = 0.02 * (frame % 20 + 1);
@@ -32,10 +32,9 @@ double known_ns_per_byte(const SplitRig& rig, std::uint32_t server) {
 
 }  // namespace
 
-// Goal: what a byte from a server takes is known again when the server is back, whatever the device and other servers
-// do meanwhile, and it gets its share of the rows. Method: one to three servers behind a radio whose speed is known;
-// one of them ends and comes back while frames go on, from devices that look at the link seldom and often; the figure
-// of each server, over the truth.
+// Goal: a returning server's link is measured again, whatever the device and other servers do, and it gets its share of
+// rows. Method: one to three servers behind a radio of known speed; one ends and returns while frames go on, on devices
+// that poll rarely and often; each server's figure relative to the truth.
 TEST_CASE("client_measures_the_link_of_a_server_that_is_back") {
   struct Case {
     std::uint32_t server_count, width;
@@ -66,7 +65,7 @@ TEST_CASE("client_measures_the_link_of_a_server_that_is_back") {
       while (rig.client.servers[0].phase != ServerPhase::ready && rig.now() < limit) next_frame(&rig, frame++);
       REQUIRE(rig.client.servers[0].phase == ServerPhase::ready);
       for (int i = 0; i < kFrames; ++i) next_frame(&rig, frame++);
-      std::printf("%u servers, %.0f ns a pixel here, %.0f there: of %.0f ns a byte", c.server_count, c.device_ns,
+      std::printf("%u servers, %.0f ns per pixel here, %.0f there: of %.0f ns per byte", c.server_count, c.device_ns,
                   c.server_ns, kNsPerByte);
       for (std::uint32_t s = 0; s < c.server_count; ++s) {
         CAPTURE(s);

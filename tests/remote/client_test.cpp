@@ -1,4 +1,4 @@
-// Frames that a device shares with servers: the same pixels, sooner.
+// Frames rendered with servers: the same pixels, sooner.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ std::uint32_t server_rows(const FrameShare& share) {
   return rows;
 }
 
-// Moves the camera on around the scene, so that nearly every pixel changes.
+// Orbits the camera, so that nearly every pixel changes.
 void move_on(SplitRig* rig, int frame) {
   Camera camera = rig->built->scene.cameras[0];
   double angle = 0.02 * (frame + 1);
@@ -32,7 +32,7 @@ void move_on(SplitRig* rig, int frame) {
 
 }  // namespace
 
-// Goal: whoever rendered which rows, the merged frame is the device's own, byte for byte. Method: still and moving
+// Goal: whoever rendered which rows, the merged frame equals the device's own, byte for byte. Method: still and moving
 // scenes, one to three servers, both formats, dither; the rig compares every frame.
 TEST_CASE("client_merged_frames_equal_local_ones") {
   for (const char* scene : {"cornell", "seesaw"})
@@ -54,14 +54,14 @@ TEST_CASE("client_merged_frames_equal_local_ones") {
         CHECK(share.device_rows > 0);
         CHECK(server_rows(share) > options.height / 2);
         CHECK(share.device_rows + server_rows(share) == options.height);
-        // Of a small picture's rows one server may be all that pays.
+        // For a small picture, more than one server may not pay off.
         for (std::uint32_t i = 0; i < server_count && kEffortDivisor == 1; ++i) CHECK(share.server_rows[i] > 0);
         CHECK(rig.log.empty());
       }
 }
 
-// Goal: at the paper's own times a frame takes what full overlap allows, within 5 %. Method: [Aranha07] table 1 in
-// emulation, T_t about 400 ns a pixel as the rows compress, with a camera that moves. The bound is that of
+// Goal: at the paper's times a frame takes at most 5 % more than full overlap allows. Method: [Aranha07] table 1 in
+// emulation, T_t about 400 ns per pixel as the rows compress, with a moving camera. The bound is that of
 // overlapped_split(); a chunk of the pipeline and the requests come on top.
 TEST_CASE("client_takes_what_overlap_allows_at_the_papers_times") {
   struct Row {
@@ -78,9 +78,9 @@ TEST_CASE("client_takes_what_overlap_allows_at_the_papers_times") {
     options.width = kEffortDivisor > 1 ? 24 : 160, options.height = 240;
     options.device_ns = row.device_ns;
     options.server_ns = {row.server_ns};
-    options.client.check_count = 0;  // the split alone
+    options.client.check_count = 0;  // the split only
     options.compares = false;
-    // What rows take on average here; what they took in the end makes T_t, a few percent off 400 ns.
+    // The average bytes per pixel here; the actual bytes make T_t a few percent off 400 ns.
     double ns_per_byte = 400 / 0.78, bytes = 0, pixels = 0, ns = 0;
     options.line.bytes_per_second = static_cast<std::uint64_t>(1e9 / ns_per_byte);
     SplitRig rig(options);
@@ -95,16 +95,17 @@ TEST_CASE("client_takes_what_overlap_allows_at_the_papers_times") {
     }
     double bytes_per_pixel = bytes / pixels;
     ClosedSplit ideal = overlapped_split({row.device_ns, row.server_ns, bytes_per_pixel * ns_per_byte});
-    std::printf("%-12s %d processors: paper %4.0f ns a pixel, full overlap %4.0f, here %4.0f (%.3f bytes a pixel)\n",
-                row.scene, row.processors, row.paper_ns, ideal.ns_per_pixel, ns, bytes_per_pixel);
-    // Where rendering and sending take the same, rows that compress worse than others stall the pipeline.
+    std::printf(
+        "%-12s %d processors: paper %4.0f ns per pixel, full overlap %4.0f, here %4.0f (%.3f bytes per pixel)\n",
+        row.scene, row.processors, row.paper_ns, ideal.ns_per_pixel, ns, bytes_per_pixel);
+    // When rendering and sending take equally long, rows that compress badly stall the pipeline.
     CHECK(ns <= (std::fabs(row.server_ns - 400) < 20 ? 1.16 : kEffortDivisor > 1 ? 1.3 : 1.08) * ideal.ns_per_pixel);
     CHECK(ns >= 0.95 * ideal.ns_per_pixel);
   }
 }
 
-// Goal: a server that goes costs time and never a pixel; it is said once; when it is back it is used again. Method: it
-// is stopped between frames and in the middle of one, and started anew.
+// Goal: losing a server costs time but no pixel and is logged once; it is used again when it returns. Method: stop it
+// between frames and during one, and restart it.
 TEST_CASE("client_does_without_a_server_that_goes_and_takes_it_back") {
   SplitRigOptions options;
   SplitRig rig(options);

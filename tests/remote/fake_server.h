@@ -1,5 +1,4 @@
-// A server that answers as a test tells it to, over a simulated link: what a device does with one that lies, floods or
-// falls silent.
+// A server scripted by a test, over a simulated link: one that lies, floods or falls silent.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -16,7 +15,7 @@ struct FakeLink : platform::LinkBackend {
   FakeServer* server = nullptr;
 };
 
-// Works whenever the device waits, and where it `floods` whenever the device reads, too: then there is always more.
+// Works whenever the device waits and, if it `floods`, also whenever the device reads, so that input never ends.
 struct FakeServer {
   using Answer = std::function<std::vector<Message>(const Message&)>;
   std::vector<std::max_align_t> memory;
@@ -26,7 +25,7 @@ struct FakeServer {
   int listener = -1, stream = -1;
   std::vector<std::uint8_t> in, out;
   Answer answer;
-  std::function<std::vector<std::uint8_t>()> flood;  // bytes to send whenever nothing waits to be sent; empty: none
+  std::function<std::vector<std::uint8_t>()> flood;  // bytes to send whenever its queue is empty; empty: none
   bool accepts = true, reads = true;
   std::uint32_t connection_count = 0;
   std::uint64_t bytes_sent = 0;
@@ -38,10 +37,10 @@ struct FakeServer {
 
   std::uint64_t now() { return platform::kNullLink.now_ns(link); }
   void step();
-  void hang_up();  // and wait for the next connection
+  void hang_up();  // then waits for the next connection
 };
 
-// Black rows as a server sends them: a valid stream of chunks, whatever was asked for.
+// Black rows as a server would send them: a valid stream of chunks for any request.
 struct RowSource {
   std::vector<std::uint8_t> memory;
   Arena arena;
@@ -52,10 +51,10 @@ struct RowSource {
   WireFormat format;
 
   RowSource(std::uint32_t width, std::uint32_t height, WireFormat format);
-  void restart();  // with a connection
-  // `shade`: of all pixels; another one than before makes the rows differ.
+  void restart();  // for a new connection
+  // `shade`: of all pixels; a different one makes the rows differ.
   Message chunk(std::uint32_t frame, std::uint32_t row_begin, std::uint32_t row_count, std::uint8_t shade = 0);
-  // All rows that were asked for.
+  // All requested rows.
   std::vector<Message> rows(const FrameRequest& request, std::uint8_t shade = 0);
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSizes[][2] = {{8, 8}, {16, 12}, {8, 40}}, kLargerSizes[][2] = {{12, 60}, {8, 64}, {16, 48}};
 
-// Means of 1, as all rows together cost what the plan says.
+// Normalised to a mean of 1, so that all rows together cost what the plan says.
 void draw_rows(FaultRandom* random, FaultPlan* plan) {
   static const char* const kNames[] = {"alike", "a cheap sky", "dear at the top", "one dear row", "ragged"};
   std::uint64_t kind = random->below(std::size(kNames));
@@ -30,7 +30,7 @@ void draw_rows(FaultRandom* random, FaultPlan* plan) {
     plan->row_costs[row] = static_cast<float>(cost), sum += cost;
   }
   for (std::uint32_t row = 0; row < plan->height; ++row) plan->row_costs[row] *= static_cast<float>(plan->height / sum);
-  // Pictures of others at the servers may be higher.
+  // Other clients' pictures may be higher.
   for (std::uint32_t row = plan->height; row < kSessionRowsMax; ++row) plan->row_costs[row] = 1;
 }
 
@@ -41,7 +41,7 @@ void set_size(FaultPlan* plan, std::uint32_t width, std::uint32_t height) {
   plan->width = width, plan->height = height;
 }
 
-// Not of the kind that only checks reveal.
+// Excludes malice that only spot checks reveal.
 Malice draw_malice(FaultRandom* random) {
   Malice malice = static_cast<Malice>(1 + random->below(kMaliceCount - 2));
   return malice >= Malice::wrong_pixels ? static_cast<Malice>(static_cast<int>(malice) + 1) : malice;
@@ -69,7 +69,7 @@ FaultPlan draw_faults(std::uint64_t seed) {
   plan.line.pipe_bytes = 24576;
   plan.line.seed = random.below(1u << 30) + 1;
   plan.line.fault_count = static_cast<int>(random.below(kSessionFaultsMax + 1));
-  // Half of them within the overture's small messages.
+  // Half of them fall within the overture's small messages.
   std::uint64_t byte_count = random.below(2) ? 200 : 30'000;
   draw_link_faults(random.below(~0u), kFaultyConnections, byte_count, plan.faults, plan.line.fault_count);
   plan.event_count = static_cast<int>(random.below(kSessionEventsMax + 1));
@@ -108,11 +108,11 @@ FaultPlan draw_hostile_faults(std::uint64_t seed) {
                             1 + static_cast<int>(random.below(3))};
   }
   plan.has_scene = random.below(6) != 0;
-  // What a flood sends comes as soon as what was there is read: the device is in the same house.
+  // A flood refills the link as soon as it is read: the device is nearby.
   bool floods = std::any_of(plan.malice, plan.malice + plan.server_count,
                             [](Malice m) { return m >= Malice::pongs && m <= Malice::repeated_rows; });
   if (floods && random.below(2)) plan.line.bytes_per_second = plan.line.latency_ns = plan.line.jitter_ns = 0;
-  // Where all pixels of a frame are wrong, one check of each server finds the lie before it is shown.
+  // If all pixels of a frame are wrong, one check per server finds the lie before it is shown.
   if (plan.has_scene && random.below(6) == 0) {
     plan.malice[random.below(plan.server_count)] = Malice::wrong_pixels;
     plan.check_count = static_cast<int>(plan.server_count);
@@ -138,8 +138,8 @@ std::string plan_text(const FaultPlan& plan) {
   char text[400];
   std::snprintf(
       text, sizeof text,
-      "%ux%u %s%s, device %.0f ns a pixel, share %.2f, servers %u: %.0f %.0f %.0f, %.0f kB/s, latency %.2f ms, "
-      "jitter %.2f ms, rows %s, %.1f ns a byte%s",
+      "%ux%u %s%s, device %.0f ns per pixel, share %.2f, servers %u: %.0f %.0f %.0f, %.0f kB/s, latency %.2f ms, "
+      "jitter %.2f ms, rows %s, %.1f ns per byte%s",
       plan.width, plan.height, plan.format == WireFormat::rgb565 ? "rgb565" : "rgb888", plan.dither ? " dithered" : "",
       plan.device_ns, plan.device_share, plan.server_count, plan.server_ns[0], plan.server_ns[1], plan.server_ns[2],
       static_cast<double>(plan.line.bytes_per_second) / 1e3, static_cast<double>(plan.line.latency_ns) / 1e6,

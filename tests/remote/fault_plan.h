@@ -1,5 +1,5 @@
-// What goes wrong in a session, drawn from a seed: the line between a device and its servers, what breaks on it, when
-// servers die, freeze and come back, what rows cost, who lies, and who else is at the servers.
+// The plan of a faulty session, drawn from a seed: the line between device and servers and its faults, when servers
+// die, freeze and return, costs of rows, liars, and other clients of the servers.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,61 +9,61 @@
 
 namespace pocketray {
 
-constexpr int kFaultFrames = 10;       // in which things go wrong
+constexpr int kFaultFrames = 10;       // frames with faults
 constexpr int kSessionFaultsMax = 4;   // on the line
 constexpr int kSessionEventsMax = 4;   // of servers
-constexpr int kFaultyConnections = 5;  // the first ones, of all servers
+constexpr int kFaultyConnections = 5;  // the first ones of all servers
 constexpr int kSessionServersMax = 3;
 constexpr int kNeighboursMax = 6;
 constexpr std::uint32_t kSessionRowsMax = 64;  // of a picture
 
 enum class ServerEvent : std::uint8_t {
-  kill,    // its connections break, it listens no more
-  end,     // it takes its leave; before the frame
-  freeze,  // it does nothing any more, and its connections stay
+  kill,    // its connections break and it stops listening
+  end,     // it says goodbye before the frame
+  freeze,  // it hangs, with its connections open
 };
 
 struct PlannedEvent {
   ServerEvent event;
   std::uint32_t server;
-  int frame;       // in which it happens
-  double at;       // so much of the frame's time alone is over; 0: before it
-  int back_frame;  // before which the server is back
+  int frame;       // the frame in which it happens
+  double at;       // fraction of the frame's time alone; 0: before the frame
+  int back_frame;  // the frame before which the server is back
 };
 
-// What a server does that a device had better not have connected to.
+// Behaviour of a malicious server.
 enum class Malice : std::uint8_t {
   none,
-  pongs,            // sends pongs that nobody asked for, without end
-  entries,          // the same with descriptions of scenes
-  errors,           // reports errors, one after the other
-  old_rows,         // sends rows of frames that are over, well encoded, without end
-  wrong_pixels,     // sends rows as they should be, but for their pixels, from some frame on
-  foreign_rows,     // sends wrong pixels for rows that others are asked for
+  pongs,            // floods unrequested pongs
+  entries,          // floods scene entries
+  errors,           // floods errors
+  old_rows,         // floods correctly encoded rows of past frames
+  wrong_pixels,     // sends rows with wrong pixels from some frame on
+  foreign_rows,     // sends wrong pixels for other servers' rows
   repeated_rows,    // sends its rows twice, the second time wrong
-  free_pixels,      // says that its pixels take no time
-  dear_pixels,      // says that each takes it milliseconds
-  random_prices,    // says anything
-  wrong_scene,      // describes another scene, or sizes that cannot be
-  wrong_hello,      // speaks another version, or takes no picture
-  quick_pongs,      // answers pings at once, and takes its time for rows
-  dawdles,          // sends each chunk just before it would be given up
-  flaps,            // greets, then dies, stalls or reports an error, now here and now there
-  junk,             // sends what is no message
-  device_messages,  // sends what only devices send
+  free_pixels,      // claims that its pixels take no time
+  dear_pixels,      // claims milliseconds per pixel
+  random_prices,    // claims random times
+  wrong_scene,      // describes another scene or impossible sizes
+  wrong_hello,      // speaks another version or accepts no picture
+  quick_pongs,      // answers pings at once but is slow with rows
+  dawdles,          // sends each chunk just before the time-out
+  flaps,            // greets, then dies, stalls or reports an error at varying points
+  junk,             // sends malformed messages
+  device_messages,  // sends messages that only devices send
 };
 constexpr int kMaliceCount = 18;
 const char* malice_name(Malice malice);
 
-// What other clients of the servers do.
+// Behaviour of other clients of the servers.
 enum class Nuisance : std::uint8_t {
   silent,       // connects and says nothing
   idle,         // greets and says no more
-  pings,        // asks for as many answers as it can
-  frames,       // asks for frames, one after the other
-  views,        // asks how the scene looks with its exposure measured
-  never_reads,  // asks for pieces of scenes and takes none
-  junk,         // sends what is no message
+  pings,        // floods pings
+  frames,       // requests frame after frame
+  views,        // requests views with measured exposure
+  never_reads,  // requests pieces of scenes and never reads
+  junk,         // sends malformed messages
   comes_and_goes,
 };
 constexpr int kNuisanceCount = 8;
@@ -85,21 +85,21 @@ struct FaultPlan {
   platform::NullFault faults[kSessionFaultsMax];
   PlannedEvent events[kSessionEventsMax];
   int event_count;
-  // Below: nothing of it where the plan is of a line and its servers alone.
-  const char* rows;                  // how what they cost goes from the top to the bottom
+  // The fields below are unused if the plan has only a line and its servers.
+  const char* rows;                  // how the cost of rows varies from top to bottom
   float row_costs[kSessionRowsMax];  // over device_ns or server_ns
-  double read_ns;                    // of the device for each byte that it takes from the link
+  double read_ns;                    // device time per byte read from the link
   Malice malice[kSessionServersMax];
-  int check_count;  // of servers' pixels in a frame, as ClientOptions has it
+  int check_count;  // servers' pixels checked per frame, as in ClientOptions
   Neighbour neighbours[kNeighboursMax];
   int neighbour_count;
   bool has_scene;  // false: the device leaves all to the servers
   std::uint64_t seed;
 };
 
-// Of the line and of servers that keep to the protocol, with rows that cost the same.
+// Faults of the line and of well-behaved servers, with rows of equal cost.
 FaultPlan draw_faults(std::uint64_t seed);
-// The same with larger pictures, unequal rows, servers that do not keep to it and hostile neighbours.
+// The same with larger pictures, unequal rows, malicious servers and hostile neighbours.
 FaultPlan draw_hostile_faults(std::uint64_t seed);
 std::string plan_text(const FaultPlan& plan);
 

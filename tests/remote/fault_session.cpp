@@ -11,19 +11,19 @@
 namespace pocketray {
 namespace {
 
-// Of the device alone, whatever happens; the pixel by which a check may be longer than it should comes to that.
+// Limit on a frame's time relative to the device alone; one extra checked pixel is allowed on top.
 constexpr double kTimeMax = 1.05;
-// No frame takes longer. So little is certain only where the device has measured rows one by one: see frames_late. The
-// worst of 10^6 frames was 1.25, of 8 rows of which the uppermost costs a quarter of the frame.
+// Limit for every frame, since kTimeMax holds only once the device has measured single rows: see frames_late. The worst
+// of 10^6 frames was 1.25, with 8 rows of which the uppermost costs a quarter of the frame.
 constexpr double kTimeLimit = 1.3;
-// Where a lie is found, what the liar sent is rendered again.
+// When a lie is found, the liar's rows are rendered again.
 constexpr double kLieTimeMax = 2 * kTimeLimit;
-constexpr double kSettledMax = 1.5;  // of the best split, beside two rows that the device begins and nobody needs
+constexpr double kSettledMax = 1.5;  // relative to the best split, plus two rows that the device begins in vain
 constexpr int kSettleFrames = 12, kJudgedFrames = 5;
-constexpr std::uint64_t kSettlePauseNs = 600 * kMs;  // between them: links are measured anew every few seconds
-// A lost connection is noticed, its place at the server is free again, the next try is due, the overture is over.
+constexpr std::uint64_t kSettlePauseNs = 600 * kMs;  // between them, as links are measured again every few seconds
+// Time to notice a lost connection, free its place at the server, reconnect and finish the overture.
 constexpr std::uint64_t kReturnNsMax = kSilenceNs + kServerIdleNs + 2 * kRetryMaxNs + 3 * kSilenceNs;
-// Without the scene: so long without a row, and then the next look.
+// Without the scene: time without a row, plus the next poll.
 constexpr std::uint64_t kCutOffNsMax = 5'000 * kMs + 3 * kSilenceNs;
 
 std::string fail(const FaultWorld& w, const std::string& what, double value = 0) {
@@ -53,7 +53,7 @@ void begin_frame(FaultWorld* w) {
   w->lost_ns = 0;
 }
 
-// Nobody who keeps to the protocol is taken for a liar, and a liar is not used again.
+// Honest servers are never taken for liars, and liars are never used again.
 std::string check_lies(const FaultWorld& w, SessionResult* result) {
   result->lies += static_cast<int>(w.client.share.lies);
   for (std::uint32_t i = 0; i < w.plan.server_count; ++i) {
@@ -65,8 +65,8 @@ std::string check_lies(const FaultWorld& w, SessionResult* result) {
   return "";
 }
 
-// One frame, against the device's own and its time: nothing is taken off but what the device cannot know of. `ratio` is
-// the frame's time over that.
+// One frame, compared with the device's own picture and time, excluding only what the device cannot know of. `ratio`:
+// the frame's time relative to that.
 std::string run_frame(FaultWorld* w, SessionResult* result) {
   const FaultPlan& plan = w->plan;
   int second = w->frame % static_cast<int>(std::size(kFaultSeconds));
@@ -96,7 +96,7 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   return "";
 }
 
-// The same without the scene: it takes what the servers take, and is left when no rows have come for long.
+// The same without the scene: takes as long as the servers do, and ends when no rows have come for long.
 std::string run_thin_frame(FaultWorld* w, SessionResult* result) {
   int second = w->frame % static_cast<int>(std::size(kFaultSeconds));
   device_picture(w->plan, second);
@@ -123,28 +123,28 @@ std::string run_any_frame(FaultWorld* w, SessionResult* result) {
   return w->plan.has_scene ? run_frame(w, result) : run_thin_frame(w, result);
 }
 
-// In pixels that cost as much as those of the picture on average.
+// The most expensive row's cost in average pixels.
 double dearest_row(const FaultPlan& plan) {
   return *std::max_element(plan.row_costs, plan.row_costs + plan.height) * static_cast<double>(plan.width);
 }
 
-// Between two frames.
+// Idles between two frames.
 void let_client_rest(FaultWorld* w, std::uint64_t ns) {
   for (std::uint64_t until = w->elapsed() + ns; w->elapsed() < until;) advance_client(&w->client, until - w->elapsed());
 }
 
-// Whether a server is in use. One whose first rows take most of a frame has no part in frames: it is asked for some in
-// each, and they come too late.
+// True if a server is in use. One whose first rows take most of a frame takes no part: it is asked in every frame, but
+// its rows come too late.
 bool is_back(const FaultWorld& w, std::uint32_t i) {
   const FaultPlan& plan = w.plan;
-  if (w.client.servers[i].lied) return true;  // it stays away
+  if (w.client.servers[i].lied) return true;  // it stays out
   ServerPhase phase = w.client.servers[i].phase;
   double rows_ns = 2 * static_cast<double>(plan.line.latency_ns + plan.line.jitter_ns) +
                    plan.server_count * (4 * plan.server_ns[i] * dearest_row(plan) + 2e6);
   return phase == ServerPhase::ready || (phase == ServerPhase::probing && rows_ns > w.client.share.measured_ns / 4);
 }
 
-// Lines come in turns: lost, in use again; the last one of a liar says so.
+// Log lines alternate: lost, in use again; a liar's last line says so.
 std::string check_log(const FaultWorld& w, SessionResult* result) {
   for (std::uint32_t i = 0; i < w.plan.server_count; ++i) {
     bool lost = false, lied = false;
@@ -153,11 +153,11 @@ std::string check_log(const FaultWorld& w, SessionResult* result) {
       if (lied) return fail(w, "is reported after it was dropped: " + line);
       lied = line.find("wrong pixels") != std::string::npos;
       bool back = line.find("in use again") != std::string::npos;
-      if (back != lost && !lied) return fail(w, "is reported out of turn: " + line);
+      if (back != lost && !lied) return fail(w, "is reported out of order: " + line);
       lost = !back;
       result->losses += lost;
     }
-    // Without the scene, some get no rows of a small picture: they are not in use.
+    // Without the scene, some servers get no rows of a small picture and are not in use.
     bool used = w.plan.has_scene || w.client.share.server_rows[i] > 0;
     if (lost && used && w.client.servers[i].phase == ServerPhase::ready)
       return fail(w, "a server that is back is not reported so");
@@ -177,7 +177,7 @@ std::string run_troubles(FaultWorld* w, SessionResult* result) {
   return "";
 }
 
-// All are back within a bounded time.
+// All servers are back within a bounded time.
 std::string run_return(FaultWorld* w, SessionResult* result) {
   auto all_ready = [&] {
     for (std::uint32_t i = 0; i < w->plan.server_count; ++i)
@@ -185,7 +185,7 @@ std::string run_return(FaultWorld* w, SessionResult* result) {
     return true;
   };
   std::uint64_t begin = w->elapsed();
-  // A connection of which the device does not know yet that it is dead is found out meanwhile.
+  // Long enough to notice dead connections.
   std::uint64_t quiet_ns = kSilenceNs + 600 * kMs;
   while (!all_ready() || w->elapsed() - begin < quiet_ns) {
     if (!all_ready() && w->elapsed() - begin > kReturnNsMax + 10 * w->local_ns)
@@ -199,7 +199,7 @@ std::string run_return(FaultWorld* w, SessionResult* result) {
   return "";
 }
 
-// What frames then take, over what the best split of them takes: the best of them, as a link may just be measured.
+// Frame time relative to the best split, for the best of some frames, as a link may be under measurement.
 std::string run_settled(FaultWorld* w, SessionResult* result) {
   if (!w->plan.has_scene || w->plan.device_share >= 0) return "";
   std::vector<double> times;
@@ -230,7 +230,7 @@ SessionResult run_fault_session(const FaultPlan& plan) {
   result.faults_struck = w.faults_struck;
   for (int i = 0; i < plan.line.fault_count; ++i) ++result.struck[static_cast<int>(plan.faults[i].fault)];
 
-  // No server keeps a client that is gone.
+  // No server keeps a departed client.
   close_client(&w.client);
   let_pass(kServerIdleNs + kSilenceNs + 200 * kMs);
   for (std::uint32_t i = 0; i < plan.server_count; ++i)

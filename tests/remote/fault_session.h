@@ -1,4 +1,4 @@
-// A session that goes wrong, by a plan, and what has to hold in it all the same.
+// A session with planned faults, and the properties that must still hold.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,17 +7,17 @@
 
 namespace pocketray {
 
-// Of one session, for the sum of all.
+// Result of one session, to be summed over all.
 struct SessionResult {
   std::string failure;  // empty: none
   int frames = 0, frames_disturbed = 0, faults_struck = 0, losses = 0;
-  int frames_late = 0;                         // beyond 1.05 times the device's alone
+  int frames_late = 0;                         // over 1.05 times the device's time alone
   int lies = 0;                                // found
-  bool far_from_best = false;                  // in the end: frames take far longer than with the best split
-  int struck[platform::kLinkFaultCount] = {};  // drawn, of sessions in which as many struck
-  double worst_calm = 0, worst_disturbed = 0;  // time of a frame over the device's alone
-  double worst_settled = 0;                    // over the best split's, when everything is known and nothing goes wrong
-  std::uint64_t return_ns = 0;                 // till all servers were in use again
+  bool far_from_best = false;                  // at the end, frames take far longer than with the best split
+  int struck[platform::kLinkFaultCount] = {};  // faults drawn, in sessions where all struck
+  double worst_calm = 0, worst_disturbed = 0;  // frame time relative to the device's alone
+  double worst_settled = 0;                    // relative to the best split, with everything known and no faults
+  std::uint64_t return_ns = 0;                 // until all servers were in use again
 };
 SessionResult run_fault_session(const FaultPlan& plan);
 

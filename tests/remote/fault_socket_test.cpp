@@ -1,4 +1,4 @@
-// Servers and lines that fail, over real sockets.
+// Failing servers and lines over real sockets.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -26,13 +26,13 @@ namespace {
 
 constexpr std::uint32_t kWidth = 16, kHeight = 24;
 constexpr double kDeviceNs = 12e6 / (kWidth * kHeight);  // a frame alone takes 12 ms
-constexpr double kSlackNs = 80e6;                        // what a machine does to a frame beside its other work
-constexpr int kAttempts = 6;                             // to find it idle enough
-constexpr std::uint64_t kSilenceNs = 150 * kMs;          // short, as tests wait for it; a busy machine may keep it, too
-constexpr std::uint64_t kCalmSilenceNs = 20'000 * kMs;   // where no loss may be reported
-constexpr int kMessages = 12;                            // to the device: the overture's, and chunks of some frames
+constexpr double kSlackNs = 80e6;                        // delay of a frame by other work of the machine
+constexpr int kAttempts = 6;                             // to find the machine idle enough
+constexpr std::uint64_t kSilenceNs = 150 * kMs;  // short, since tests wait for it; a busy machine may cause it too
+constexpr std::uint64_t kCalmSilenceNs = 20'000 * kMs;  // if no loss may be reported
+constexpr int kMessages = 12;  // messages to the device: the overture's, and chunks of some frames
 
-// Which is when frames are timed, too: then the machine is at rest. Simulated sessions are timed always.
+// Frames are also timed only then, when the machine is idle. Simulated sessions are always timed.
 bool is_thorough() { return std::getenv("POCKETRAY_FAULT_SESSIONS") != nullptr; }
 
 std::atomic<std::int64_t> clock_offset_ns{0};
@@ -63,7 +63,7 @@ platform::LinkAddress address_of(int port) {
   return address;
 }
 
-// The process of a server: tells its port, serves till it is killed or nobody is left to serve.
+// A server process: reports its port and serves until killed or without clients.
 void run_server(int port_to) {
   TcpLink link(40);
   ServerOptions o;
@@ -78,7 +78,7 @@ void run_server(int port_to) {
   for (pid_t parent = getppid(); getppid() == parent;) step_server(server, 100 * kMs);
 }
 
-// A device that shares frames with one server.
+// A device that uses one server.
 struct Device {
   std::unique_ptr<BuiltScene> built = build_builtin("cube");
   std::unique_ptr<TestRenderer> renderer;
@@ -87,7 +87,7 @@ struct Device {
   std::vector<std::string> log;
   Client client;
   int frame_count = 0;
-  double worst_ns = 0;  // of the frames since it was last set to 0
+  double worst_ns = 0;  // since last reset to 0
   std::string failure;
 
   explicit Device(int port, std::uint64_t silence_ns = kSilenceNs) {
@@ -133,7 +133,7 @@ struct Device {
     for (std::uint64_t until = wall_ns() + ns, now = wall_ns(); now < until; now = wall_ns())
       advance_client(&client, until - now);
   }
-  // Frames until it is so, for ten seconds at most.
+  // Renders frames until the condition holds, for at most ten seconds.
   template <class Condition>
   bool frames_until(Condition condition) {
     for (std::uint64_t begin = wall_ns(); !condition();) {
@@ -161,7 +161,7 @@ void start_server() {
   REQUIRE(the_server().port != 0);
 }
 
-// One fault from the first byte to the server's being in use again. Empty: all went well, "late": perhaps.
+// Runs one fault, from the first byte until the server is in use again. Empty: success; "late": maybe.
 std::string run_fault(const ProxyPlan& plan) {
   if (the_server().pid <= 0) start_server();
   FaultyProxy proxy(plan, &the_server());
@@ -173,7 +173,7 @@ std::string run_fault(const ProxyPlan& plan) {
   if (!device.frames_until([&] { return device.is_ready(); })) return "the server is not in use again";
   for (int i = 0; i < 2; ++i) device.frame();
   if (!device.failure.empty()) return device.failure;
-  if (!harmless && (device.lines_with("going on without it") != 1 || device.lines_with("in use again") != 1))
+  if (!harmless && (device.lines_with("continuing without it") != 1 || device.lines_with("in use again") != 1))
     return "not one line for the loss and one for the return: " + device.first_line();
   if (harmless && !device.log.empty()) return "it says " + device.first_line();
   return device.is_late() ? "late" : "";
@@ -182,7 +182,7 @@ std::string run_fault(const ProxyPlan& plan) {
 void check_fault(const ProxyPlan& plan) {
   std::string failure;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    // A machine at work may make a frame late, or the server silent once more. It does not make pixels wrong.
+    // A busy machine may delay a frame or silence the server once more, but never makes pixels wrong.
     if (failure = run_fault(plan); failure.empty() || failure.find("a frame") == 0) break;
     the_server().kill();
   }
@@ -193,9 +193,9 @@ void check_fault(const ProxyPlan& plan) {
 
 }  // namespace
 
-// Goal: a server that is killed or stopped, and a line that breaks, falls silent, trickles, or changes bytes, at any
-// message to the device or in the middle of one: frames stay complete, the device's own and in time, the loss is told
-// in one line, and the server comes back into use. Method: a proxy before a server in a process of its own.
+// Goal: if a server is killed or stopped, or a line breaks, falls silent, trickles or corrupts bytes, at or within any
+// message to the device, frames stay complete, correct and in time, the loss is logged in one line, and the server
+// returns. Method: a proxy in front of a server process.
 TEST_CASE("faults_over_sockets_cost_no_pixel") {
   for (ProxyFault fault : {ProxyFault::kill, ProxyFault::stop, ProxyFault::truncate, ProxyFault::reset,
                            ProxyFault::flip, ProxyFault::silence, ProxyFault::trickle})
@@ -209,8 +209,8 @@ TEST_CASE("faults_over_sockets_cost_no_pixel") {
       }
 }
 
-// Goal: rows that come twice, in the wrong order, or of frames that are over do not get into the picture. Method: a
-// proxy that repeats and exchanges messages, from the first chunk on.
+// Goal: repeated, reordered or outdated rows do not get into the picture. Method: a proxy that repeats and swaps
+// messages from the first chunk on.
 TEST_CASE("faults_over_sockets_replayed_rows_do_not_count") {
   for (ProxyFault fault : {ProxyFault::duplicate, ProxyFault::swap, ProxyFault::replay})
     for (int message = 6; message < 6 + effort(6); ++message) {
@@ -220,8 +220,8 @@ TEST_CASE("faults_over_sockets_replayed_rows_do_not_count") {
     }
 }
 
-// Goal: what a server of another version says, or one that does not have the scene, or one that has said goodbye, is
-// told in a line of its own, and frames go on. Method: one message of the overture is another.
+// Goal: a server of another version, without the scene, or shut down is logged in a specific line, and frames go on.
+// Method: replace one message of the overture.
 TEST_CASE("faults_over_sockets_tell_what_is_wrong") {
   struct Case {
     Message message;
@@ -236,10 +236,10 @@ TEST_CASE("faults_over_sockets_tell_what_is_wrong") {
   cases[1].index = 1, cases[1].text = "does not have this scene";
   cases[2].message.type = MessageType::error;
   cases[2].message.error.code = WireError::busy;
-  cases[2].index = 2, cases[2].text = "as many clients as it takes";
+  cases[2].index = 2, cases[2].text = "it is full";
   cases[3].message.type = MessageType::frame_request;
   cases[3].message.frame_request = frame_request("cube", 1);
-  cases[3].index = 3, cases[3].text = "not asked for";
+  cases[3].index = 3, cases[3].text = "unrequested";
   for (const Case& c : cases) {
     if (the_server().pid <= 0) start_server();
     ProxyPlan plan;
@@ -252,8 +252,8 @@ TEST_CASE("faults_over_sockets_tell_what_is_wrong") {
   }
 }
 
-// Goal: nobody there, or somebody who takes the connection and says nothing, costs no frame. Method: a port on which
-// nobody listens, and one that nobody accepts at; then the server is there.
+// Goal: a missing or silent server costs no frame. Method: a port without a listener, and one without accept(); then
+// the server appears.
 TEST_CASE("faults_over_sockets_nobody_answers") {
   for (bool listens : {false, true}) {
     int port = 0, listener = listen_locally(&port);
@@ -274,8 +274,8 @@ TEST_CASE("faults_over_sockets_nobody_answers") {
   }
 }
 
-// Goal: a clock that is set back does not hold up frames. Method: by ten seconds within the overture and later; a frame
-// that waited for the clock would take them.
+// Goal: a clock that is set back does not hold up frames. Method: by ten seconds, during the overture and later; a
+// frame waiting for the clock would take that long.
 TEST_CASE("faults_over_sockets_clock_is_set_back") {
   if (the_server().pid <= 0) start_server();
   FaultyProxy proxy(ProxyPlan(), &the_server());
@@ -293,8 +293,8 @@ TEST_CASE("faults_over_sockets_clock_is_set_back") {
   CHECK(device.worst_ns < 5e9);
 }
 
-// Goal: ten thousand connections, one after the other, take neither descriptors nor places. Method: a share of them
-// here, all in `make faults`; the server is told a goodbye each time or none.
+// Goal: ten thousand successive connections leak neither descriptors nor places. Method: some of them here, all in
+// `make faults`; with a goodbye or without.
 TEST_CASE("faults_over_sockets_reconnects_leave_nothing_behind") {
   if (the_server().pid <= 0) start_server();
   auto descriptor = [] {
@@ -307,7 +307,7 @@ TEST_CASE("faults_over_sockets_reconnects_leave_nothing_behind") {
   int before = descriptor();
   for (int i = 0; i < (is_thorough() ? 10'000 : effort(300)); ++i) {
     RemoteServer* s = &device.client.servers[0];
-    close_message_stream(&s->messages);  // as the radio does that is switched off
+    close_message_stream(&s->messages);  // like a radio switched off
     s->phase = ServerPhase::waiting;
     s->retry_ns = 0;
     s->timer = platform::link_timer(client_now_ns(device.client), 0);

@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kStreams = 128;
 constexpr std::uint64_t kNeighbourStepNs = 10 * kMs;
-constexpr double kStuckTimes = 10;  // of the device's own time for a frame,
-constexpr int kStuckReads = 1000;   // or reads between two waits, by which a flood has shown what it can do
+constexpr double kStuckTimes = 10;  // in units of the device's time for a frame,
+constexpr int kStuckReads = 1000;   // or reads between two waits: enough to test a flood
 
-// The device's renderer and what its frames look like, for all sessions.
+// The device's renderer and reference pictures, shared by all sessions.
 struct Device {
   std::unique_ptr<BuiltScene> built;
   std::unique_ptr<TestRenderer> renderer;
@@ -62,7 +62,7 @@ namespace {
 
 FaultWorld* world = nullptr;
 
-// The world as whoever is no device sees it.
+// The world as seen by everyone but the device.
 struct Outside {
   const platform::LinkBackend* backend = world->link->backend;
   Outside() { world->link->backend = &platform::kNullLink; }
@@ -122,7 +122,7 @@ void happen(const PlannedEvent& event) {
     Outside outside;
     close_server(place->server);
     place->server = nullptr;
-    world->lost_ns += world->elapsed() - world->disturbed_ns;  // while it says goodbye, nobody else gets to do anything
+    world->lost_ns += world->elapsed() - world->disturbed_ns;  // nobody else runs while it says goodbye
   }
 }
 
@@ -165,7 +165,7 @@ void step_others() {
   }
 }
 
-// Until one of the others has something to do.
+// Time until another party has something to do.
 std::uint64_t others_due_ns() {
   Outside outside;
   std::uint64_t next = world->plan.neighbour_count > 0 && !world->peace ? kNeighbourStepNs : 100 * kMs;
@@ -190,14 +190,14 @@ std::uint64_t others_due_ns() {
   return next;
 }
 
-// The device cannot know how long ago its clock was set back: since its last look at most.
+// The device cannot know when its clock was set back: at most since its last poll.
 void note_clock(std::uint64_t looked_ns) {
   std::uint64_t set_back_ns = static_cast<platform::null_link::NullLink*>(world->link)->set_back_ns;
   if (set_back_ns != world->set_back_ns) world->lost_ns += world->elapsed() - looked_ns;
   world->set_back_ns = set_back_ns;
 }
 
-// While the device waits, the others go on.
+// While the device waits, the others run.
 int poll_world(platform::Link* link, platform::LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
   std::uint64_t begin = world->elapsed();
   world->reads = 0;
@@ -218,7 +218,7 @@ int poll_world(platform::Link* link, platform::LinkWait* waits, int wait_count, 
   }
 }
 
-// Takes the device its time, in which a flood goes on; one that holds it for long has shown what it can do, and stops.
+// Reading takes device time, during which a flood continues; one that has held the device for long stops.
 platform::LinkResult read_world(platform::Link* link, int stream, void* bytes, std::size_t byte_count_max,
                                 std::size_t* byte_count, platform::Error* error) {
   platform::LinkResult result = platform::kNullLink.read(link, stream, bytes, byte_count_max, byte_count, error);

@@ -1,5 +1,5 @@
-// The simulated world of a session that goes wrong: a device, its servers and who else is there, by one clock. The same
-// plan takes the same course.
+// The simulated world of a faulty session: a device, its servers and other clients, on one clock. Deterministic for a
+// given plan.
 #pragma once
 #include <memory>
 #include <string>
@@ -18,9 +18,9 @@ constexpr const char* kFaultScene = "cube";
 constexpr std::uint64_t kSilenceNs = 2'000 * kMs, kConnectNs = 500 * kMs;
 constexpr std::uint64_t kRetryMinNs = 100 * kMs, kRetryMaxNs = 1'000 * kMs;
 constexpr std::uint64_t kServerIdleNs = 4'000 * kMs;
-constexpr double kFaultSeconds[] = {0, 0.3, 0.7, 1.1};  // of the animation, one frame after the other
+constexpr double kFaultSeconds[] = {0, 0.3, 0.7, 1.1};  // animation times of successive frames
 
-// Where a server is, or is not.
+// The place of a server, which may be empty.
 struct Place {
   platform::LinkAddress address;
   Server* server = nullptr;
@@ -41,14 +41,14 @@ struct FaultWorld {
 
   int frame = 0;
   std::uint64_t frame_begin_ns = 0;
-  std::uint64_t local_ns = 0;      // what a frame takes the device alone
-  std::uint64_t lost_ns = 0;       // of the frame, what the device cannot know of: its clock was set back
+  std::uint64_t local_ns = 0;      // frame time of the device alone
+  std::uint64_t lost_ns = 0;       // time in the frame that the device cannot know of, as its clock was set back
   std::uint64_t set_back_ns = 0;   // so far
-  int reads = 0;                   // of the device since it last waited
-  bool stuck = false;              // who floods has held the device
-  bool peace = false;              // nothing goes wrong any more
-  bool disturbed = false;          // something has gone wrong in this frame
-  std::uint64_t disturbed_ns = 0;  // when it last did
+  int reads = 0;                   // by the device since it last waited
+  bool stuck = false;              // a flood has held the device
+  bool peace = false;              // no more faults
+  bool disturbed = false;          // a fault has struck in this frame
+  std::uint64_t disturbed_ns = 0;  // time of the last fault
   int faults_struck = 0;
   bool done[kSessionEventsMax] = {};
   std::vector<platform::LinkWait> waits;
@@ -56,21 +56,21 @@ struct FaultWorld {
   std::uint64_t elapsed() const { return platform::null_link_record(link).elapsed_ns; }
 };
 
-// With the device connected to nobody yet. There is one world at a time.
+// Opens the world, with the device not yet connected. Only one world at a time.
 void open_fault_world(const FaultPlan& plan, FaultWorld* world);
 void close_fault_world(FaultWorld* world);
-// The device's renderer for pictures of that size, and what its own frames look like: the pixels of a second.
+// The device's renderer for pictures of that size, and its reference pixels for a given time.
 Renderer* device_renderer(const FaultPlan& plan);
 const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int second);
 
-// What the plan has for before the frame, or for within it by now.
+// Applies planned events: those before the frame, or those due within it.
 void look_for_events(bool before);
 void note_faults();
-// A server that is gone or frozen is there again; in times of peace one that keeps to the protocol.
+// Brings a dead or frozen server back; after make_peace(), a well-behaved one.
 void bring_back(std::uint32_t server);
-// Nobody does harm any more.
+// Ends all faults and malice.
 void make_peace();
-// Lets time pass, for all.
+// Lets time pass for everyone.
 void let_pass(std::uint64_t ns);
 
 }  // namespace pocketray

@@ -27,7 +27,7 @@ FrameRequest small_frame(HostileClient* c) {
   return request;
 }
 
-// The next things that it asks for.
+// Queues its next requests.
 void make_demands(HostileClient* c) {
   Message message;
   for (int i = 0; i < 8; ++i) {

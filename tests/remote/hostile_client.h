@@ -1,4 +1,4 @@
-// Who else is at a server: a client that takes its time, its places or its patience.
+// A hostile client of a server that consumes its CPU, its places or its patience.
 #pragma once
 #include <vector>
 
@@ -18,7 +18,7 @@ struct HostileClient {
   std::uint32_t frame = 0;
 };
 
-// Connects where it has no connection, and makes itself felt.
+// Connects if necessary, and acts.
 void step_hostile_client(platform::Link* link, const platform::LinkAddress& server, HostileClient* client);
 void close_hostile_client(platform::Link* link, HostileClient* client);
 

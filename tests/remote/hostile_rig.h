@@ -1,4 +1,4 @@
-// A device and a server that a test has do what no server should, in virtual time.
+// A device and a server that misbehaves as a test wants, in virtual time.
 #pragma once
 #include <doctest/doctest.h>
 
@@ -17,15 +17,15 @@
 namespace pocketray {
 
 constexpr std::uint32_t kWidth = 32, kHeight = 64;
-constexpr double kDeviceNs = 20'000, kLocalNs = kDeviceNs * kWidth * kHeight;  // 41 ms a frame
-constexpr std::uint32_t kFloodMessages = 20'000;  // after which a flood ends, so that a device that falls for it fails
+constexpr double kDeviceNs = 20'000, kLocalNs = kDeviceNs * kWidth * kHeight;  // 41 ms per frame
+constexpr std::uint32_t kFloodMessages = 20'000;  // ends a flood, so that a device caught in it fails the test
 
-// A server that is sound until a test has it do something else, and the device.
+// A device and a server that is well-behaved unless a test overrides it.
 struct HostileRig {
   RowSource rows{kWidth, kHeight, WireFormat::rgb565};
   FrameRequest request;                                                  // the last
-  std::vector<FrameRequest> all;                                         // that came
-  std::function<std::vector<Message>(HostileRig*, const Message&)> act;  // instead; empty: sound
+  std::vector<FrameRequest> all;                                         // received
+  std::function<std::vector<Message>(HostileRig*, const Message&)> act;  // overrides its answers; empty: well-behaved
   FakeServer fake{[this](const Message& message) { return act ? act(this, message) : answer(message); }, fine_clock()};
   std::unique_ptr<BuiltScene> built = build_builtin("cube");
   std::unique_ptr<TestRenderer> device;
@@ -65,7 +65,7 @@ struct HostileRig {
     message.pong = {ping.id, 100'000, {payload.data(), ping.reply_bytes}};
     return message;
   }
-  // As a sound server answers.
+  // The answer of a well-behaved server.
   std::vector<Message> answer(const Message& message) {
     if (message.type == MessageType::hello) {
       rows.restart();
@@ -88,7 +88,7 @@ struct HostileRig {
   }
 
   bool is_ready() const { return client.servers[0].phase == ServerPhase::ready; }
-  // A frame; the time it took, over the device's alone.
+  // Renders a frame; returns its time relative to the device's alone.
   double frame() {
     std::uint64_t begin = fake.now();
     REQUIRE(render_frame(&device->renderer, &client, 0).ok);

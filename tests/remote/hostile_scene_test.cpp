@@ -1,4 +1,4 @@
-// Servers that lie about the size of their scenes: nothing is written beyond the room there is.
+// Servers that lie about the size of their scenes: nothing is written out of bounds.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<std::uint8_t> kRubbish(kPieceBytesMax, 0xA5);
 
-// Its one scene has so many bytes, it says, and it sends whatever it is asked for.
+// Claims one scene of `byte_count` bytes, and sends every piece requested.
 FakeServer::Answer scene_of(std::uint64_t byte_count) {
   return [=](const Message& question) -> std::vector<Message> {
     Message answer;
@@ -43,9 +43,9 @@ const std::uint64_t kLies[] = {1u << 20,           (1u << 24) + 1,     0x7FFFFFF
 
 }  // namespace
 
-// Goal: a device takes no more bytes from a server than it has room for, whatever the server says and whatever the
-// width of the CPU's addresses. Method: the whole way of `render lie --server` against sizes around every power at
-// which a count could wrap; a sanitizer, or the heap, notices a byte too many.
+// Goal: a device takes no more bytes from a server than fit, whatever the server claims and whatever the CPU's address
+// width. Method: the whole path of `render lie --server` with sizes around every power at which a count could wrap; a
+// sanitizer or the heap notices overruns.
 TEST_CASE("hostile_scene_sizes_are_refused_with_one_line") {
   for (std::uint64_t lie : kLies) {
     CAPTURE(lie);
@@ -63,13 +63,13 @@ TEST_CASE("hostile_scene_sizes_are_refused_with_one_line") {
     CHECK(!status.ok);
     CHECK(std::strlen(status.message) > 0);
     CHECK(std::strchr(status.message, '\n') == nullptr);
-    if (lie > (1u << 24)) CHECK(std::strstr(status.message, "does not fit --memory 4.0M") != nullptr);
+    if (lie > (1u << 24)) CHECK(std::strstr(status.message, "does not fit in --memory 4.0M") != nullptr);
     bool hopeless = lie > kMemoryBytesMax / 5 * 4;
     if (lie > (1u << 24)) CHECK((std::strstr(status.message, "would be a start") == nullptr) == hopeless);
   }
 }
 
-// Goal: fetch_scene() keeps to the room it is given by itself.
+// Goal: fetch_scene() itself stays within its buffer.
 TEST_CASE("hostile_scene_is_not_fetched_beyond_the_room") {
   for (std::uint64_t lie : kLies) {
     FakeServer server(scene_of(lie));
@@ -80,7 +80,7 @@ TEST_CASE("hostile_scene_is_not_fetched_beyond_the_room") {
     std::vector<std::uint8_t> bytes(64 + 64, 7);
     Status status = fetch_scene(&inquiry, entry, bytes.data(), 64, {});
     CHECK(!status.ok);
-    CHECK(std::strstr(status.message, "there is room for 64") != nullptr);
+    CHECK(std::strstr(status.message, "only 64 are free") != nullptr);
     CHECK(bytes == std::vector<std::uint8_t>(64 + 64, 7));
   }
 }

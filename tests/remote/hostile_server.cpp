@@ -10,8 +10,8 @@
 namespace pocketray {
 namespace {
 
-constexpr std::size_t kFloodBytes = 1024;  // that a flood keeps waiting to be sent
-constexpr int kRefillsMax = 2;             // between two looks at the link
+constexpr std::size_t kFloodBytes = 1024;  // that a flood keeps queued
+constexpr int kRefillsMax = 2;             // between two polls of the link
 const platform::LinkBackend& net = platform::kNullLink;
 
 using Connection = HostileConnection;
@@ -80,7 +80,7 @@ void say_error(HostileServer* server, Connection* c) {
   say(c, message);
 }
 
-// Rows of a frame, each pixel turned over where they are to be wrong.
+// Sends rows of a frame, with inverted pixels if they are to be wrong.
 void say_rows(HostileServer* server, Connection* c, std::uint32_t frame, std::uint32_t begin, std::uint32_t end,
               bool wrong) {
   const FrameRequest& q = c->request;
@@ -147,7 +147,7 @@ void take_request(HostileServer* server, Connection* c, const FrameRequest& requ
   plan_chunk(server, c);
 }
 
-// What is sent without being asked for, as much as there is room for.
+// Sends unrequested messages, as many as fit.
 void flood(HostileServer* server, Connection* c) {
   FaultRandom* random = &server->random;
   Malice malice = server->settings.malice;
@@ -173,7 +173,7 @@ void flood(HostileServer* server, Connection* c) {
   }
 }
 
-// False: it dies.
+// False if it dies.
 bool flap(HostileServer* server, Connection* c) {
   if (server->settings.malice != Malice::flaps || c->patience-- > 0) return true;
   std::uint64_t kind = server->random.below(3);
@@ -190,7 +190,7 @@ void answer(HostileServer* server, Connection* c, const Message& message) {
       return say_entry(server, c, message.scene_query.hash);
     case MessageType::ping:
       c->ping_id = message.ping.id;
-      // Without the payload the link seems to be fast beyond measure.
+      // Without the payload the link seems immeasurably fast.
       return say_pong(server, c, message.ping.id, malice == Malice::quick_pongs ? 0 : message.ping.reply_bytes);
     case MessageType::frame_request:
     case MessageType::frame_change:
@@ -204,7 +204,7 @@ void answer(HostileServer* server, Connection* c, const Message& message) {
   }
 }
 
-// False: the connection is over.
+// False if the connection has ended.
 bool step_connection(HostileServer* server, Connection* c) {
   platform::Error error;
   std::uint8_t part[1024];
@@ -217,7 +217,7 @@ bool step_connection(HostileServer* server, Connection* c) {
   while (!c->silent) {
     Message message;
     Decoded decoded = decode_message(c->in.data() + begin, c->in.size() - begin, 512, &message);
-    if (decoded.state == DecodeState::malformed) return false;  // of a line that flips bits
+    if (decoded.state == DecodeState::malformed) return false;  // from a line that flips bits
     if (decoded.state != DecodeState::message) break;
     begin += decoded.byte_count;
     if (!flap(server, c)) return false;
@@ -225,7 +225,7 @@ bool step_connection(HostileServer* server, Connection* c) {
   }
   c->in.erase(c->in.begin(), c->in.begin() + static_cast<std::ptrdiff_t>(begin));
   if (!c->silent) send_due_rows(server, c), flood(server, c);
-  // Bytes to a peer that is gone are taken without end.
+  // Writes to a departed peer always succeed.
   for (int refills = 0; !c->out.empty() && refills < kRefillsMax; ++refills) {
     result = net.write(server->link, c->stream, c->out.data(), c->out.size(), &count, &error);
     if (result == platform::LinkResult::failed) return false;
@@ -270,7 +270,7 @@ void step_hostile_server(HostileServer* server) {
 
 std::uint64_t hostile_due_ns(const HostileServer& server) {
   std::uint64_t now = net.now_ns(server.link), due = ~std::uint64_t(0);
-  // A flood waits for room now and then: to a peer that is gone there always is some.
+  // A flood must wait for room at times, but not with a departed peer.
   for (const auto& c : server.connections)
     if (!c->out.empty()) due = std::min(due, kMs);
   for (const auto& c : server.connections)

@@ -1,4 +1,4 @@
-// What a device asks before its first frame, and servers that lie.
+// A device's inquiries before its first frame, with honest and lying servers.
 #include "remote/client/inquiry.h"
 
 #include <doctest/doctest.h>
@@ -52,7 +52,7 @@ Message piece_of(const SceneFetch& fetch) {
   return message;
 }
 
-// What fetching from it ends with; a piece goes through `change` before it is sent.
+// Error of fetching from it; `change` modifies each piece before it is sent.
 std::string fetch_error(const std::function<void(Message*)>& change) {
   FakeServer fake([&](const Message& message) -> std::vector<Message> {
     if (message.type == MessageType::hello) return {hello_of_server()};
@@ -72,7 +72,7 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 
 }  // namespace
 
-// Goal: a device gets a server's list and any of its scenes, as it lies there. Method: all of the built-in ones.
+// Goal: a device gets a server's list and any of its scenes unchanged. Method: all built-in ones.
 TEST_CASE("inquiry_lists_and_fetches_scenes") {
   InquiryRig rig;
   std::vector<SceneEntry> entries;
@@ -109,9 +109,8 @@ TEST_CASE("inquiry_finds_names_but_for_the_ending") {
   CHECK(find_entry(entries, "") == nullptr);
 }
 
-// Goal: the view that a server tells of is the one that a device with the scene begins with. Method: camera, bounds and
-// exposure by make_renderer(), the scene's own, measured, and measured from a stated camera; a camera that there is
-// not.
+// Goal: a server describes the view that a device with the scene would begin with. Method: camera, bounds and exposure
+// from make_renderer(): the scene's own, measured, and measured from a stated camera; a missing camera.
 TEST_CASE("inquiry_view_is_what_a_device_would_see") {
   for (const char* name : {"cornell", "seesaw"})
     for (int round = 0; round < 3; ++round) {
@@ -154,7 +153,7 @@ TEST_CASE("inquiry_view_is_what_a_device_would_see") {
     }
 }
 
-// Goal: bytes that are not those of the scene are refused, and why is said.
+// Goal: bytes that do not match the scene are refused with the reason.
 TEST_CASE("inquiry_refuses_a_scene_that_is_not_what_was_told") {
   CHECK(fetch_error([](Message*) {}).empty());
   std::vector<std::uint8_t> other(kFile);
@@ -162,23 +161,23 @@ TEST_CASE("inquiry_refuses_a_scene_that_is_not_what_was_told") {
   CHECK(has(fetch_error([&](Message* m) {
               if (m->scene_piece.offset == 0) m->scene_piece.bytes.data = other.data();
             }),
-            "not the scene that it told of"));
-  CHECK(has(fetch_error([](Message* m) { --m->scene_piece.bytes.count; }), "shorter than it told"));
+            "a different scene than announced"));
+  CHECK(has(fetch_error([](Message* m) { --m->scene_piece.bytes.count; }), "shorter than announced"));
   CHECK(has(fetch_error([](Message* m) {
               if (m->scene_piece.offset == 0) ++m->scene_piece.bytes.count;
             }),
-            "longer than it told"));
-  CHECK(has(fetch_error([](Message* m) { m->scene_piece.offset += 1; }), "another piece"));
-  CHECK(has(fetch_error([](Message* m) { m->scene_piece.hash.low ^= 1; }), "another piece"));
-  CHECK(has(fetch_error([](Message* m) { *m = entry_of(0, 1, "a"); }), "what it was not asked for"));
+            "longer than announced"));
+  CHECK(has(fetch_error([](Message* m) { m->scene_piece.offset += 1; }), "the wrong piece"));
+  CHECK(has(fetch_error([](Message* m) { m->scene_piece.hash.low ^= 1; }), "the wrong piece"));
+  CHECK(has(fetch_error([](Message* m) { *m = entry_of(0, 1, "a"); }), "an unrequested message"));
   CHECK(has(fetch_error([](Message* m) {
               m->type = MessageType::error;
               m->error.code = WireError::busy;
             }),
-            "as many clients as it takes"));
+            "it is full"));
 }
 
-// Goal: a server that falls silent, or nobody at all, is given up after a while. Method: virtual time.
+// Goal: a silent or missing server is given up after a while. Method: virtual time.
 TEST_CASE("inquiry_gives_up_on_silence") {
   FakeServer fake([&](const Message& message) -> std::vector<Message> {
     if (message.type == MessageType::hello) return {hello_of_server()};
@@ -200,18 +199,18 @@ TEST_CASE("inquiry_gives_up_on_silence") {
   fake.stream = -1;
   REQUIRE(open_inquiry(options, fake.link, fake.address, &stopped).ok);
   stop = true;
-  CHECK(has(list_scenes(&stopped, &entries).message, "not waited for"));
+  CHECK(has(list_scenes(&stopped, &entries).message, "interrupted"));
 }
 
-// Goal: an inquiry can be stopped however fast a server answers. Method: one whose answers are there whenever the
-// device reads, so that it never waits; stopped at the first piece of a scene, and while a list is read.
+// Goal: an inquiry can be stopped however fast a server answers. Method: a server whose answers are always ready, so
+// that the device never waits; stopped at the first piece of a scene, and while reading a list.
 TEST_CASE("inquiry_stops_while_a_server_never_makes_it_wait") {
   FakeServer fake([&](const Message& message) -> std::vector<Message> {
     if (message.type == MessageType::hello) return {hello_of_server()};
     if (message.type == MessageType::scene_list) return {entry_of(message.scene_list.index, 60'000, "a")};
     return {piece_of(message.scene_fetch)};
   });
-  fake.flood = [] { return std::vector<std::uint8_t>(); };  // it works while the device reads
+  fake.flood = [] { return std::vector<std::uint8_t>(); };  // it sends while the device reads
   bool stop = false;
   std::uint32_t asked = 0;
   InquiryOptions options;
@@ -225,7 +224,7 @@ TEST_CASE("inquiry_stops_while_a_server_never_makes_it_wait") {
         come = done;
         stop = true;
       });
-  CHECK(has(status.message, "not waited for"));
+  CHECK(has(status.message, "interrupted"));
   CHECK(come < kFile.size() / 2);
   stop = false;
   asked = 0;
@@ -233,12 +232,12 @@ TEST_CASE("inquiry_stops_while_a_server_never_makes_it_wait") {
   Inquiry another;
   fake.hang_up();
   REQUIRE(open_inquiry(options, fake.link, fake.address, &another).ok);
-  CHECK(has(list_scenes(&another, &entries).message, "not waited for"));
+  CHECK(has(list_scenes(&another, &entries).message, "interrupted"));
   CHECK(entries.size() < 2000);
 }
 
-// Goal: a server that says more than it was asked is believed no further. Method: two answers for one question, of each
-// kind, the second of which comes in place of the next answer.
+// Goal: a server that sends extra answers is no longer trusted. Method: two answers to one question, of each kind; the
+// second arrives in place of the next answer.
 TEST_CASE("inquiry_ends_with_an_answer_to_no_question") {
   for (int kind = 0; kind < 3; ++kind) {
     CAPTURE(kind);
@@ -252,11 +251,11 @@ TEST_CASE("inquiry_ends_with_an_answer_to_no_question") {
     std::vector<SceneEntry> entries;
     REQUIRE(open_inquiry(InquiryOptions(), fake.link, fake.address, &inquiry).ok);
     Status status = list_scenes(&inquiry, &entries);
-    CHECK(has(status.message, kind == 1 ? "contradicts itself" : "what it was not asked for"));
+    CHECK(has(status.message, kind == 1 ? "is inconsistent" : "an unrequested message"));
   }
 }
 
-// Goal: a list that contradicts itself is refused, an empty one is not; names cannot move a terminal's cursor.
+// Goal: an inconsistent list is refused, an empty one accepted; names cannot control a terminal.
 TEST_CASE("inquiry_does_not_trust_lists") {
   std::uint16_t count = 2, second_count = 2, second_index = 1;
   auto answer = [&](const Message& message) -> std::vector<Message> {
@@ -277,9 +276,9 @@ TEST_CASE("inquiry_does_not_trust_lists") {
   REQUIRE(entries.size() == 2);
   CHECK(std::strcmp(entries[0].name, "a?[2J") == 0);
   second_count = 9;
-  CHECK(has(list(&entries).message, "contradicts itself"));
+  CHECK(has(list(&entries).message, "is inconsistent"));
   second_count = 2, second_index = 0;
-  CHECK(has(list(&entries).message, "contradicts itself"));
+  CHECK(has(list(&entries).message, "is inconsistent"));
   count = 0;
   CHECK(list(&entries).ok);
   CHECK(entries.empty());

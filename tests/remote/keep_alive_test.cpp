@@ -1,4 +1,4 @@
-// Servers and devices that take long for everything are still there.
+// Very slow servers and devices do not count as lost.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 using namespace pocketray;
 
-// Goal: a server that lives is never taken for lost, whatever a row costs it or the device. Method: rows of 10 s on
-// either side or on both, far beyond the silence after which a server counts as lost.
+// Goal: a live server never counts as lost, however long a row takes on either side. Method: rows of 10 s on either
+// side or on both, far beyond the silence after which a server counts as lost.
 TEST_CASE("client_keeps_servers_whose_rows_take_long") {
   constexpr double kDearNs = 10e9 / 32, kCheapNs = 1e5;  // per pixel
   const double times[][2] = {{kDearNs, kDearNs}, {kDearNs, kCheapNs}, {kCheapNs, kDearNs}};
@@ -35,8 +35,8 @@ TEST_CASE("client_keeps_servers_whose_rows_take_long") {
   }
 }
 
-// Goal: a server is never busy for long before it looks at its clients again, so that it answers them, whatever a pixel
-// costs. Method: 0.3 s a pixel; the longest work at once, the first included, takes the time of a few.
+// Goal: a server polls its clients often and answers them, whatever a pixel costs. Method: 0.3 s per pixel; the longest
+// uninterrupted work, including the first, is a few pixels.
 TEST_CASE("server_looks_up_often_whatever_a_pixel_costs") {
   constexpr std::uint64_t kPixelNs = 300 * kMs;
   ServerOptions options;

@@ -43,9 +43,9 @@ bool camera_accepts(int place, const std::string& number) {
   Camera camera;
   return parse_camera(text, &camera).ok;
 }
-// What is no count becomes one that is too large for any.
+// Maps values that are not counts to a count beyond any limit.
 std::uint32_t count_of(double x) { return x >= 0 && x <= 1e9 ? static_cast<std::uint32_t>(x) : ~std::uint32_t(0); }
-// The setting with these limits; null where no setting has them.
+// The setting with these limits; null if none.
 const SettingRow* setting_of(Quantity quantity) {
   for (const SettingRow& row : kSettingList)
     if (row.field.kind != SettingKind::choice && row.field.quantity == quantity) return &row;
@@ -186,10 +186,10 @@ std::vector<std::uint8_t> bytes_with(const Field& field, double x) {
   return bytes;
 }
 
-// The encoder's limits: what it would refuse it is not given.
+// The encoder's limits, checked before encoding.
 bool sender_accepts(const Field& field, double x) { return can_encode(message_with(field, x)); }
 
-// The decoder's, by bytes that no encoder of ours writes: the field is found by what changes with its lowest byte.
+// The decoder's limits, with bytes our encoder never writes: the field is located by what changes with its lowest byte.
 bool receiver_accepts(const Field& field, double x) {
   double other = field.byte_count <= 2   ? 2
                  : field.byte_count == 4 ? double(std::nextafterf(1, 2))
@@ -215,7 +215,7 @@ bool is_count(Quantity q) {
   return q == Quantity::width || q == Quantity::height || q == Quantity::samples || q == Quantity::depth ||
          q == Quantity::area_light_points || q == Quantity::camera_index;
 }
-// Which quantities a file states.
+// Quantities stored in files.
 bool is_in_files(Quantity q) {
   return q == Quantity::coordinate || q == Quantity::field_of_view || q == Quantity::vertical_extent ||
          q == Quantity::camera_index || q == Quantity::seconds || q == Quantity::exposure || q == Quantity::frame_rate;
@@ -226,7 +226,7 @@ struct Value {
   bool good;
 };
 
-// The ends, what lies just beyond, and what is no number.
+// The limits, values just beyond, and non-numbers.
 std::vector<Value> values_of(const LimitRow& row) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   if (is_count(row.quantity)) {
@@ -247,9 +247,9 @@ std::vector<Value> values_of(const LimitRow& row) {
 
 }  // namespace
 
-// Goal: command line, file and message accept the same numbers, so that none of them lets in what a later one takes for
-// a mistake of ours. Method: each row of the table: both ends by every way there is, just beyond, NaN and infinities; a
-// row that no message has, or nothing but one way, is a row that need not be there.
+// Goal: command line, file and message accept the same numbers, so that none accepts a value that a later CHECK
+// rejects. Method: for each row of the table, both limits on every path, just beyond, NaN and infinities; every row
+// must be used by a message and at least one other path.
 TEST_CASE("limits_are_the_same_for_command_line_file_and_wire") {
   const std::vector<Field> fields = message_fields();
   for (const LimitRow& row : kLimitList) {
@@ -272,7 +272,7 @@ TEST_CASE("limits_are_the_same_for_command_line_file_and_wire") {
   }
 }
 
-// Goal: stops on the command line reach as far as exposures do, and not further: nor does a product with the scene's.
+// Goal: stops on the command line have exactly the range of exposures, also multiplied by the scene's.
 TEST_CASE("limits_of_stops_are_those_of_exposures") {
   bool measured;
   float factor;
@@ -291,7 +291,7 @@ TEST_CASE("limits_of_stops_are_those_of_exposures") {
   }
 }
 
-// Goal: no frame is prepared for a time, or from a camera, beyond the table. Method: what a library's caller may pass.
+// Goal: no frame is prepared for a time or camera beyond the limits. Method: values a library's caller may pass.
 TEST_CASE("limits_hold_for_frames") {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   std::unique_ptr<BuiltScene> built = build_builtin("cube");

@@ -1,5 +1,5 @@
-// What other clients can do to one that asks for light frames, in virtual time: the CPU is emulated, pixels and
-// messages are counted, so that it does not matter how busy the machine is that this runs on.
+// The effect of other clients on one with light frames, in virtual time: with an emulated CPU and counted pixels and
+// messages, the load of this machine does not matter.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t kPixelNs = 50'000;
 constexpr std::uint32_t kGoodWidth = 40, kGoodHeight = 30;
 
-// Addresses of connections, by the order in which they are made: the simulated link has but one.
+// Addresses of connections in order of creation, as the simulated link has only one.
 std::vector<int>* address_of = nullptr;
 const char* named_by_address(const platform::Link* link, int stream) {
   static char name[48];
@@ -35,13 +35,13 @@ const char* named_by_address(const platform::Link* link, int stream) {
 enum class Attack {
   none,
   heavy_frames,  // of 8 s each
-  given_up,      // that are replaced after a while
+  given_up,      // replaced after a while
   views,         // with measured exposure
-  pings,         // with as much to answer as can be asked for
+  pings,         // with the largest answers
   fetches,       // of a scene
   small_messages,
-  silence,       // a place and nothing else
-  light_frames,  // as light as the good client's: it is one of many then
+  silence,       // holds a place and nothing else
+  light_frames,  // as light as the good client's
 };
 
 struct Attacker {
@@ -93,7 +93,7 @@ void attack(Attack kind, ServerRig* rig, Attacker* a) {
     }
 }
 
-// Median time of a frame of the good client, in ms, with so many attackers from so many addresses.
+// Median frame time of the good client, in ms, with the given numbers of attackers and addresses.
 double median_ms(Attack kind, int attacker_count, int address_count, bool hidden_among_them = false) {
   ServerOptions options;
   options.pace.ns_per_pixel = static_cast<double>(kPixelNs);
@@ -139,9 +139,9 @@ double median_ms(Attack kind, int attacker_count, int address_count, bool hidden
 
 }  // namespace
 
-// Goal: whatever twenty others do, from one address or from twenty, a client whose frames are light waits at most twice
-// as long for them as alone; but where they ask for frames as light as its own, it is one of twenty-one. Method: the
-// median of its frames, asked for one after the other, against what it is alone, once it is known who is who.
+// Goal: whatever twenty others do, from one address or twenty, light frames of a client take at most twice as long as
+// alone, unless the others also request light frames; then it is one of twenty-one. Method: the median of successive
+// frames relative to the client alone, once the server has classified everyone.
 TEST_CASE("neighbours_cost_a_light_client_half_its_frames_at_most") {
   double alone = median_ms(Attack::none, 0, 1);
   CHECK(alone == doctest::Approx(kGoodWidth * kGoodHeight * kPixelNs * 1e-6).epsilon(0.05));
@@ -168,8 +168,8 @@ TEST_CASE("neighbours_cost_a_light_client_half_its_frames_at_most") {
   }
 }
 
-// Goal: what a view_query measures is measured in slices, so that nobody waits for the whole of it. Method: the longest
-// that the emulated CPU is busy at once, for an exposure of 125 s; a ping that is answered meanwhile.
+// Goal: a view_query measures exposure in slices, so that nobody waits for all of it. Method: the longest busy time of
+// the emulated CPU for an exposure of 125 s; a ping answered meanwhile.
 TEST_CASE("server_measures_exposures_in_slices") {
   ServerOptions options;
   options.pace.ns_per_pixel = 25e6;
@@ -193,13 +193,13 @@ TEST_CASE("server_measures_exposures_in_slices") {
         return client.has(MessageType::view_entry);
       },
       200'000 * kMs);
-  CHECK(longest_ns <= 8 * 25'000'000ull);  // the first ones, of which nothing is known
+  CHECK(longest_ns <= 8 * 25'000'000ull);  // the first ones, with unknown cost
   client.send(ping);
   client.wait_for(MessageType::pong);
 }
 
-// Goal: silent clients hold no place that another wants. Method: eight that say hello and no more, from eight
-// addresses; a ninth is told that the server is busy, and let in when they have been silent for ten seconds.
+// Goal: silent clients give way to others. Method: eight that only say hello, from eight addresses; a ninth is told
+// that the server is busy, and admitted once they have been silent for ten seconds.
 TEST_CASE("server_gives_the_place_of_who_is_silent_to_who_comes") {
   ServerRig rig;
   std::vector<int> addresses = {1, 2, 3, 4, 5, 6, 7, 8, 9, 9};
@@ -223,8 +223,8 @@ TEST_CASE("server_gives_the_place_of_who_is_silent_to_who_comes") {
   rig.server->net = &platform::kNullLink;
 }
 
-// Goal: one address does not keep the others out, however busy its clients are. Method: eight from one address with
-// frames under way; two from others come, and a third from the first address does not.
+// Goal: one address cannot keep others out, however busy its clients are. Method: eight from one address with frames in
+// progress; two from other addresses get in, a ninth from the first does not.
 TEST_CASE("server_gives_no_address_all_places_for_long") {
   ServerOptions options;
   options.pace.ns_per_pixel = 100'000;
@@ -251,8 +251,8 @@ TEST_CASE("server_gives_no_address_all_places_for_long") {
   rig.server->net = &platform::kNullLink;
 }
 
-// Goal: a listener that cannot accept is left alone for a while. Method: a link whose accept() fails, with a peer that
-// waits; how often it is called in ten seconds, and what the log says.
+// Goal: after a failed accept() the listener rests for a while. Method: a link whose accept() fails, with a waiting
+// peer; calls in ten seconds, and the log.
 TEST_CASE("server_rests_where_it_cannot_accept") {
   static int calls = 0;
   calls = 0;
@@ -274,7 +274,7 @@ TEST_CASE("server_rests_where_it_cannot_accept") {
   waiting.wait_for(MessageType::hello);
 }
 
-// Goal: frame 0, which stands for none in an error, cannot be asked for. Method: a request for it.
+// Goal: frame 0, which means none in an error, cannot be requested. Method: request it.
 TEST_CASE("server_refuses_frame_zero") {
   ServerRig rig;
   ScriptedClient client(&rig);
@@ -282,9 +282,9 @@ TEST_CASE("server_refuses_frame_zero") {
   CHECK(client.wait_for(MessageType::error)->message.error.code == WireError::bad_request);
 }
 
-// Goal: pixels that suddenly are dear do not make a slice long: cheap ones that come before them tell little. Method:
-// what a slice takes of a room behind a background that costs a thousandth, with settings that make rooms dear; cheap
-// settings, of which slices are as long as they should be.
+// Goal: suddenly expensive pixels do not make a slice long, since cheap pixels before them say little. Method: slice
+// time in a room behind a background a thousand times cheaper, with expensive settings; with cheap settings slices have
+// their normal length.
 TEST_CASE("server_slices_expect_dear_pixels_behind_cheap_ones") {
   constexpr std::uint64_t kSliceNs = 20 * kMs;
   constexpr double kRoomNs = 650'000, kBackgroundNs = 650;
@@ -295,7 +295,7 @@ TEST_CASE("server_slices_expect_dear_pixels_behind_cheap_ones") {
   CHECK(slice_pixels(dear, 512, 1e12, kSliceNs) == 1);
   CHECK(slice_pixels(cheap, 8, 2'000, kSliceNs) == kSliceNs / 2'000);
   double known = kRoomNs;
-  for (int i = 0; i < 3; ++i) known = dear_pixel_ns(known, kBackgroundNs);  // to the left and right of the room
+  for (int i = 0; i < 3; ++i) known = dear_pixel_ns(known, kBackgroundNs);  // left and right of the room
   CHECK(known > 0.6 * kRoomNs);
   CHECK(dear_pixel_ns(known, kRoomNs) == kRoomNs);
 }

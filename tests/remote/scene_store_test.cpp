@@ -1,4 +1,4 @@
-// The scenes of a server: which there are, and that a client can have them.
+// The scenes of a server, and fetching them.
 #include "remote/server/scene_store.h"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ using namespace pocketray;
 
 namespace {
 
-// A folder of its own, removed with what a test put into it.
+// A temporary folder, removed with its contents.
 struct Folder {
   std::string path = "scene_store_test";
   std::vector<std::string> files;
@@ -43,9 +43,9 @@ const StoredScene* named(const SceneStore& store, const std::string& name) {
 
 }  // namespace
 
-// Goal: the store has every scene of a folder, named as a device names it; what it cannot read is left out with one
-// line, what is no scene without. Method: a folder with a .pray file, the same once more, a damaged one, a model, an
-// empty model and a text.
+// Goal: the store has every scene of a folder, identified as by a device; it skips unreadable scenes with one line, and
+// other files silently. Method: a folder with a .pray file, a copy of it, a damaged one, a model, an empty model and a
+// text.
 TEST_CASE("scene_store_has_the_scenes_of_a_folder") {
   const StoredScene* cube = named(builtin_store(), "cube");
   REQUIRE(cube != nullptr);
@@ -71,7 +71,7 @@ TEST_CASE("scene_store_has_the_scenes_of_a_folder") {
   CHECK(named(store, "cube")->hash == cube->hash);
 #ifdef POCKETRAY_HAVE_IMPORT
   REQUIRE(store.warnings.size() == 2);
-  CHECK(store.warnings[1].find("none.obj is left out: ") == 0);
+  CHECK(store.warnings[1].find("none.obj is skipped: ") == 0);
   std::vector<std::uint8_t> block(8u << 20);
   Renderer renderer;
   start_renderer(block.data(), block.size(), Settings(), &renderer);
@@ -85,10 +85,10 @@ TEST_CASE("scene_store_has_the_scenes_of_a_folder") {
 #else
   REQUIRE(store.warnings.size() == 1);
 #endif
-  CHECK(store.warnings[0].find("damaged.pray is left out: ") == 0);
+  CHECK(store.warnings[0].find("damaged.pray is skipped: ") == 0);
 }
 
-// Goal: scenes beyond the limit of bytes are left out. Method: room for the smallest ones alone.
+// Goal: scenes beyond the byte limit are skipped. Method: room for only the smallest ones.
 TEST_CASE("scene_store_keeps_to_its_limit") {
   SceneStoreOptions options;
   options.bytes_max = 100'000;
@@ -110,8 +110,8 @@ TEST_CASE("scene_store_keeps_to_its_limit") {
   CHECK_FALSE(open_scene_store(options, &none).ok);
 }
 
-// Goal: a client can list the scenes and fetch one, byte by byte what it is. Method: every index and one beyond; every
-// hash and one that is none; the cube in pieces of 1000 bytes, the last of them short, and one behind the end.
+// Goal: a client can list the scenes and fetch one byte for byte. Method: every index and one beyond; every hash and an
+// unknown one; the cube in pieces of 1000 bytes, the last one short, and one past the end.
 TEST_CASE("server_lists_its_scenes_and_gives_their_bytes") {
   ServerRig rig;
   ScriptedClient client(&rig);

@@ -1,4 +1,4 @@
-// What clients get: the pixels they would have rendered themselves, in fair turns.
+// Frames from a server: the pixels of local rendering, in fair turns.
 #include <doctest/doctest.h>
 
 #include "platform/net/tcp.h"
@@ -11,7 +11,7 @@ using namespace pocketray;
 
 namespace {
 
-// Asks for the frame and compares it with the one rendered here.
+// Requests the frame and compares it with local rendering.
 void check_frame(ScriptedClient* client, const FrameRequest& request, MessageType type = MessageType::frame_request) {
   client->request(request, type);
   client->wait_for_rows(request.settings.height);
@@ -20,9 +20,9 @@ void check_frame(ScriptedClient* client, const FrameRequest& request, MessageTyp
 
 }  // namespace
 
-// Goal: a frame that comes by chunks is, bit for bit, the one rendered here, in whichever form. Method: several frames
-// of one connection, so that scene, camera, time, exposure and settings change while the codec's picture stays, and
-// pixel formats and sizes, with which it begins anew.
+// Goal: a frame in chunks equals local rendering bit for bit, in every format. Method: several frames on one
+// connection: scene, camera, time, exposure and settings change while the codec's picture stays; pixel formats and
+// sizes, which restart it, change too.
 TEST_CASE("server_frames_equal_local_ones") {
   ServerOptions options;
   options.thread_count = 2;
@@ -60,9 +60,8 @@ TEST_CASE("server_frames_equal_local_ones") {
   CHECK(server_totals(*rig.server).row_count == 8 * 48 + 2 * 30);
 }
 
-// Goal: every setting that changes pixels has its effect, and so has the choice of a camera, whichever came before.
-// Method: a scene with all features, which are chosen one after the other on one connection; three cameras, of which
-// one moves.
+// Goal: every setting that changes pixels takes effect, as does the choice of camera, whatever came before. Method: a
+// scene with all features, selected in turn on one connection; three cameras, one of which moves.
 TEST_CASE("server_frames_follow_every_setting") {
   auto generated = generate_scene(kAllFeatures, 3);
   generated->cameras.assign(3, generated->cameras[0]);
@@ -116,15 +115,14 @@ TEST_CASE("server_frames_follow_every_setting") {
   request = plain;
   request.camera_index = 2, request.camera_stated = true, request.camera.eye = {0, 3, 5};
   check(request, true);
-  request.camera_stated = false, request.seconds = 0.6;  // the moving camera is back
+  request.camera_stated = false, request.seconds = 0.6;  // back to the moving camera
   check(request, true);
   request.settings.cut_off_levels = 0;
   check(request, false);
 }
 
-// Goal: rows are not made long before they can be sent, so that cancelling saves their time and their bytes. Method: a
-// slow line that holds 2 KiB; the rows that the server has made are ahead of those that have come by what it, the queue
-// and a chunk hold.
+// Goal: rows are not rendered long before they can be sent, so that cancelling saves time and bytes. Method: a slow
+// line that holds 2 KiB; rendered rows are ahead of received ones by at most the contents of line, queue and a chunk.
 TEST_CASE("server_makes_rows_no_earlier_than_they_can_be_sent") {
   platform::NullLinkSettings settings;
   settings.bytes_per_second = 100'000;
@@ -156,8 +154,8 @@ TEST_CASE("server_frames_equal_local_ones_over_tcp") {
   CHECK(second.picture() == rendered_here(other));
 }
 
-// Goal: a band is all that is sent of a frame, and the rest of the client's picture stays. Method: rows 10 to 29 in
-// chunks of 8: 22–29, 14–21, 10–13.
+// Goal: only the requested band of a frame is sent, and the rest of the client's picture stays. Method: rows 10 to 29
+// in chunks of 8: 22–29, 14–21, 10–13.
 TEST_CASE("server_sends_the_rows_of_the_band_from_below") {
   ServerRig rig;
   ScriptedClient client(&rig);
@@ -179,8 +177,8 @@ TEST_CASE("server_sends_the_rows_of_the_band_from_below") {
   CHECK(picture == expected);
 }
 
-// Goal: no chunk is larger than the client takes. Method: one that takes messages of 3 KiB, asks for chunks of 48 rows
-// and gets them in several; one that takes none that could hold a row is told that the picture is too large.
+// Goal: no chunk is larger than the client accepts. Method: one accepts messages of 3 KiB, requests chunks of 48 rows
+// and gets several; one whose limit is below a row is told that the picture is too large.
 TEST_CASE("server_cuts_chunks_to_the_size_that_the_client_takes") {
   ServerRig rig;
   ScriptedClient client(&rig, false), small(&rig, false);
@@ -199,8 +197,8 @@ TEST_CASE("server_cuts_chunks_to_the_size_that_the_client_takes") {
   CHECK(small.wait_for(MessageType::error)->message.error.code == WireError::too_large);
 }
 
-// Goal: chunks that wait for room go out as soon as there is some. Method: 16 threads trace 32 rows at once, which make
-// more bytes than may wait; the server may sleep for a second in every step, but the frame takes less than that.
+// Goal: chunks waiting for room are sent as soon as there is some. Method: 16 threads trace 32 rows at once, more bytes
+// than may be queued; the server may sleep for a second in every step, but the frame takes less.
 TEST_CASE("server_sends_chunks_that_waited_without_delay") {
   ServerOptions options;
   options.thread_count = 16;
@@ -218,8 +216,8 @@ TEST_CASE("server_sends_chunks_that_waited_without_delay") {
   CHECK(client.picture() == rendered_here(request));
 }
 
-// Goal: a request takes the place of the one before; cancelling ends it. Method: an emulated CPU of 1 µs a pixel; after
-// the first chunk of a frame another one, then that one cancelled after its first chunk, then a last one.
+// Goal: a request replaces the previous one; cancelling ends it. Method: an emulated CPU of 1 µs per pixel; after the
+// first chunk of a frame request another, cancel that after its first chunk, then request a last one.
 TEST_CASE("server_drops_what_is_replaced_or_cancelled") {
   ServerOptions options;
   options.pace.ns_per_pixel = 1000;
@@ -253,8 +251,8 @@ TEST_CASE("server_drops_what_is_replaced_or_cancelled") {
   CHECK(client.picture() == rendered_here(request));
 }
 
-// Goal: an emulated CPU takes its time, and chunks and pongs tell what a pixel cost. Method: 64 × 48 pixels at 2 µs by
-// the simulated clock, on a link without delay: 6.144 ms, and 2 000 000 ps a pixel.
+// Goal: an emulated CPU keeps its pace, and chunks and pongs report the time per pixel. Method: 64 × 48 pixels at 2 µs
+// by the simulated clock, on a link without delay: 6.144 ms, and 2 000 000 ps per pixel.
 TEST_CASE("server_keeps_the_pace_of_the_emulated_cpu") {
   ServerOptions options;
   options.pace.ns_per_pixel = 2000;
@@ -262,7 +260,7 @@ TEST_CASE("server_keeps_the_pace_of_the_emulated_cpu") {
   ScriptedClient client(&rig);
   FrameRequest request = frame_request("cornell", 1);
   client.request(request);
-  client.wait_for_rows(48);  // the first frame is built for
+  client.wait_for_rows(48);  // the first frame includes the build
   request.frame = 2;
   std::uint64_t start = rig.now();
   client.request(request);
@@ -280,8 +278,8 @@ TEST_CASE("server_keeps_the_pace_of_the_emulated_cpu") {
   CHECK(pong->message.pong.pixel_ps == doctest::Approx(2e6).epsilon(0.02));
 }
 
-// Goal: a client is told at once what another one costs it. Method: at 20 µs a pixel the other comes in the middle of a
-// frame; the frame's last chunks say 40 µs.
+// Goal: a client learns at once what another one costs it. Method: at 20 µs per pixel another client arrives during a
+// frame, whose last chunks report 40 µs.
 TEST_CASE("server_tells_what_a_pixel_costs_now") {
   ServerOptions options;
   options.pace.ns_per_pixel = 20'000;
@@ -298,7 +296,7 @@ TEST_CASE("server_tells_what_a_pixel_costs_now") {
   second.wait_for_rows(96);
   CHECK(second.chunks.back().pixel_ps == doctest::Approx(2e7).epsilon(0.1));
   ScriptedClient third(&rig);
-  const double expected[] = {4e7, 2e7, 2e7};  // its own last one; that of another where it has none
+  const double expected[] = {4e7, 2e7, 2e7};  // its own last figure; another client's if it has none
   ScriptedClient* clients[] = {&first, &second, &third};
   Message ping;
   ping.type = MessageType::ping;
@@ -308,8 +306,8 @@ TEST_CASE("server_tells_what_a_pixel_costs_now") {
   }
 }
 
-// Goal: a small frame does not wait for a row of a large one that takes long. Method: 1 ms a pixel, rows of 1.28 s; the
-// small frame has the CPU half of the time, and the large one is whole in the end.
+// Goal: a small frame does not wait for a slow row of a large one. Method: 1 ms per pixel, rows of 1.28 s; the small
+// frame gets the CPU half of the time, and the large one completes.
 TEST_CASE("server_interrupts_rows_that_take_long") {
   ServerOptions options;
   options.pace.ns_per_pixel = 1'000'000;
@@ -329,9 +327,9 @@ TEST_CASE("server_interrupts_rows_that_take_long") {
   CHECK(first.picture() == rendered_here(large));
 }
 
-// Goal: clients get equal shares of the CPU, whatever they ask for, and are told what that makes of a pixel. Method:
-// two clients of an emulated CPU ask for frame after frame for 4 s: one for small pictures in chunks of a row, the
-// other for large ones in chunks of 16 rows. A third that comes later gets no more than its share, either.
+// Goal: clients get equal shares of the CPU, whatever they request, and learn the resulting time per pixel. Method: two
+// clients of an emulated CPU request frame after frame for 4 s: one small pictures in chunks of a row, the other large
+// ones in chunks of 16 rows. A third that comes later gets no more than its share.
 TEST_CASE("server_shares_its_time_fairly") {
   ServerOptions options;
   options.pace.ns_per_pixel = 20'000;

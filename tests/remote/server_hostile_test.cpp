@@ -1,4 +1,4 @@
-// Clients that make mistakes, mean harm or are in trouble: each costs itself, and the others nothing.
+// Faulty, hostile or failing clients harm only themselves.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -28,7 +28,7 @@ std::vector<std::uint8_t> request_bytes(const FrameRequest& request) {
   return bytes_of(message);
 }
 
-// Sends the bytes and expects to be told that they are malformed, and to be closed.
+// Sends the bytes and expects the error `malformed` and a closed connection.
 void check_malformed(ServerRig* rig, const std::vector<std::uint8_t>& bytes, WireError code = WireError::malformed) {
   ScriptedClient client(rig, false);
   client.send_bytes(bytes);
@@ -39,9 +39,9 @@ void check_malformed(ServerRig* rig, const std::vector<std::uint8_t>& bytes, Wir
 
 }  // namespace
 
-// Goal: whoever sends what is no message is told so and closed. Method: noise; noise behind a hello; every message with
-// a byte flipped behind a hello; messages that only servers send; a request before the hello; rows out of range, made
-// by changing a valid request without its checksum, and with it.
+// Goal: a client that sends a malformed message is told so and disconnected. Method: noise; noise behind a hello; every
+// message with a byte flipped behind a hello; messages that only servers send; a request before the hello; rows out of
+// range, made by changing a valid request without its checksum, and with it.
 TEST_CASE("server_ends_whoever_sends_what_is_no_message") {
   ServerRig rig;
   Rng rng = make_rng(11);
@@ -70,18 +70,18 @@ TEST_CASE("server_ends_whoever_sends_what_is_no_message") {
   check_serves(&rig);
 }
 
-// Goal: another version is told apart from noise. Method: a hello with its version changed and its checksum made anew,
-// as message.h decodes it.
+// Goal: another version differs from noise. Method: a hello with a changed version and a new checksum, as message.h
+// decodes it.
 TEST_CASE("server_tells_another_version_why_it_is_closed") {
   ServerRig rig;
   Message hello = hello_message();
   hello.hello.version = kWireVersion + 1;
   check_malformed(&rig, bytes_of(hello), WireError::wrong_version);
-  CHECK(rig.logged("another version"));
+  CHECK(rig.logged("another protocol version"));
 }
 
-// Goal: what cannot be rendered is refused by its reason, and the connection goes on. Method: one request of each kind,
-// and a good frame behind each.
+// Goal: impossible requests are refused with the reason, and the connection goes on. Method: one request of each kind,
+// each followed by a good frame.
 TEST_CASE("server_refuses_requests_that_it_cannot_meet") {
   ServerOptions options;
   options.client_memory_bytes = 8u << 20;
@@ -96,14 +96,14 @@ TEST_CASE("server_refuses_requests_that_it_cannot_meet") {
     CHECK(error->message.error.code == code);
     CHECK(error->message.error.frame == frame);
     FrameRequest good = frame_request("cube", ++frame, 16, 12);
-    client.decoder = nullptr;  // another shape went before: the codec begins anew
+    client.decoder = nullptr;  // the shape changed, so the codec starts over
     client.request(good);
     client.wait_for_rows(12);
     CHECK(client.picture() == rendered_here(good));
   };
   FrameRequest request = frame_request("cube", 0, 8192, 8192);
   check_refused(request, WireError::too_large);
-  request = frame_request("cube", 0, 2048, 2048);  // within the sides, not within the memory
+  request = frame_request("cube", 0, 2048, 2048);  // within the limit on sides but not on memory
   check_refused(request, WireError::too_large);
   request = frame_request("cube", 0, 20, 12);
   request.scene.low ^= 1;
@@ -118,8 +118,8 @@ TEST_CASE("server_refuses_requests_that_it_cannot_meet") {
   CHECK(client_count(*rig.server) == 1);
 }
 
-// Goal: a change of no request, or to rows that its picture does not have, is refused, and the connection goes on.
-// Method: before the first request, and after one; a change that can be met gives its picture.
+// Goal: a change without a request, or to rows outside the picture, is refused, and the connection goes on. Method:
+// before and after the first request; a valid change gives its picture.
 TEST_CASE("server_refuses_changes_of_what_was_not_asked_for") {
   ServerRig rig;
   ScriptedClient client(&rig);
@@ -144,7 +144,7 @@ TEST_CASE("server_refuses_changes_of_what_was_not_asked_for") {
   CHECK(client.picture() == rendered_here(whole));
 }
 
-// Goal: frame numbers count up; an old one is refused and disturbs nothing, the same one asks for further rows. Method:
+// Goal: frame numbers increase; an old one is refused without side effects, the same one requests more rows. Method:
 // number 3 while the upper half of frame 5 is rendered, then its lower half.
 TEST_CASE("server_refuses_old_frame_numbers") {
   ServerOptions options;
@@ -163,8 +163,8 @@ TEST_CASE("server_refuses_old_frame_numbers") {
   CHECK(client.picture() == rendered_here(whole));
 }
 
-// Goal: a client that never reads costs its own buffer and is closed in time; the others go on as if it were not there.
-// Method: it asks for frames whose rows do not fit its pipe; the frames of another take as long as without it.
+// Goal: a client that never reads fills only its own buffer and is closed in time; others are unaffected. Method: it
+// requests frames whose rows do not fit its pipe; the frames of another take as long as without it.
 TEST_CASE("server_ends_a_client_that_never_reads") {
   ServerOptions options;
   options.stall_timeout_ns = 3000 * kMs;
@@ -192,12 +192,12 @@ TEST_CASE("server_ends_a_client_that_never_reads") {
   double waited = static_cast<double>(rig.now() - start);
   CHECK(waited > 2.9e9);
   CHECK(waited < 4.5e9);
-  CHECK(rig.logged("takes nothing"));
+  CHECK(rig.logged("does not read its answers"));
   check_serves(&rig);
 }
 
-// Goal: half a message is not waited for, for ever; silence alone is allowed for longer. Method: half a hello, half a
-// request, one byte a second of a request, and nothing at all, with the times that they are closed at.
+// Goal: a partial message times out; mere silence is allowed for longer. Method: half a hello, half a request, a
+// request at one byte per second, and nothing at all, with their closing times.
 TEST_CASE("server_ends_who_stops_in_a_message_or_is_silent_for_too_long") {
   ServerOptions options;
   options.message_timeout_ns = 2000 * kMs;
@@ -229,8 +229,8 @@ TEST_CASE("server_ends_who_stops_in_a_message_or_is_silent_for_too_long") {
   check_serves(&rig);
 }
 
-// Goal: one client too many is told so at once, and is let in when there is a place. Method: eight, a ninth and twenty
-// more, then one of the eight goes.
+// Goal: one client too many is told so at once, and admitted when a place is free. Method: eight, a ninth and twenty
+// more, then one of the eight leaves.
 TEST_CASE("server_tells_one_client_too_many_that_it_is_busy") {
   ServerRig rig;
   std::vector<std::unique_ptr<ScriptedClient>> clients;
@@ -243,7 +243,7 @@ TEST_CASE("server_tells_one_client_too_many_that_it_is_busy") {
     if (i < 3) rig.run_until([&] { return ninth.poll(), ninth.closed; });
   }
   CHECK(client_count(*rig.server) == 8);
-  // Those that do not go by themselves are closed in time, the first ones at once where there are many.
+  // Those that do not leave are closed in time, the first ones at once if there are many.
   std::vector<std::unique_ptr<ScriptedClient>> late;
   for (int i = 0; i < 20; ++i) {
     late.push_back(std::make_unique<ScriptedClient>(&rig));
@@ -262,13 +262,13 @@ TEST_CASE("server_tells_one_client_too_many_that_it_is_busy") {
   check_serves(&rig);
 }
 
-// Goal: a thousand connections leave nothing behind. Method: each does one of five things: goes at once, in its hello,
-// in the middle of a frame, behind a frame, or is malformed; then the server still renders, with all its places free.
+// Goal: a thousand connections leave nothing behind. Method: each leaves at once, within its hello, during a frame or
+// after one, or sends malformed data; then the server still renders, with all places free.
 TEST_CASE("server_state_stays_bounded_over_a_thousand_connections") {
   ServerRig rig;
   Rng rng = make_rng(5);
   for (int i = 0; i < 1000; ++i) {
-    rig.step();  // lets in who came last
+    rig.step();  // admits the latest
     rig.run_until([&] { return client_count(*rig.server) < 4; });
     ScriptedClient client(&rig, false);
     std::vector<std::uint8_t> hello = hello_bytes();
@@ -300,12 +300,12 @@ TEST_CASE("server_state_stays_bounded_over_a_thousand_connections") {
   rig.run_until([&] { return rig.now() >= later; });
   check_serves(&rig);
   double seconds = static_cast<double>(platform::null_link_record(rig.link).elapsed_ns) * 1e-9;
-  CHECK(static_cast<double>(rig.log.size()) < 45 + seconds);  // a flood does not fill a disk
-  CHECK(rig.logged("left out"));
+  CHECK(static_cast<double>(rig.log.size()) < 45 + seconds);  // a flood does not fill the disk
+  CHECK(rig.logged("omitted"));
 }
 
-// Goal: a client that asks and asks without reading the answers is not answered without bound. Method: pings of 64 KiB,
-// each message valid, for as long as they are taken.
+// Goal: answers to a client that never reads are bounded. Method: valid pings of 64 KiB, for as long as they are
+// accepted.
 TEST_CASE("server_reads_no_more_than_it_can_answer") {
   ServerOptions options;
   options.stall_timeout_ns = 1000 * kMs;
@@ -319,12 +319,12 @@ TEST_CASE("server_reads_no_more_than_it_can_answer") {
   for (int i = 0; i < 5000; ++i) many.insert(many.end(), one.begin(), one.end());
   client.send_bytes(many);
   rig.run_until([&] { return client_count(*rig.server) == 0; });
-  CHECK(rig.logged("takes nothing"));
+  CHECK(rig.logged("does not read its answers"));
   check_serves(&rig);
 }
 
-// Goal: who reads late gets everything all the same, whole and in order. Method: 150 pings of 60 000 bytes, more than
-// eight times what the server queues, over a line whose other end is read a little at a time.
+// Goal: a slow reader still gets everything, complete and in order. Method: 150 pings of 60 000 bytes, more than eight
+// times what the server queues, over a line whose other end is read a little at a time.
 TEST_CASE("server_answers_in_order_however_slowly_it_is_read") {
   ServerRig rig;
   ScriptedClient client(&rig);
@@ -346,8 +346,8 @@ TEST_CASE("server_answers_in_order_however_slowly_it_is_read") {
   }
 }
 
-// Goal: many messages that come at once are all answered at once, though no client has the server for longer than a few
-// of them take. Method: 200 pings in one write; the server may sleep for a second in every step.
+// Goal: many messages at once are all answered without delay, though no client occupies the server for more than a few
+// of them. Method: 200 pings in one write; the server may sleep for a second in every step.
 TEST_CASE("server_answers_many_messages_without_delay") {
   ServerRig rig;
   ScriptedClient client(&rig);
@@ -365,7 +365,7 @@ TEST_CASE("server_answers_many_messages_without_delay") {
   CHECK(rig.now() - start < 100 * kMs);
 }
 
-// Goal: clients are told that the server ends. Method: close it while one waits for a frame.
+// Goal: clients are told when the server shuts down. Method: close it while one waits for a frame.
 TEST_CASE("server_says_that_it_ends") {
   ServerOptions options;
   options.pace.ns_per_pixel = 1000;

@@ -1,4 +1,4 @@
-// Whose turn it is: the rules alone, with work that is counted.
+// The scheduler in isolation, with counted work.
 #include "remote/server/share.h"
 
 #include <doctest/doctest.h>
@@ -11,11 +11,11 @@ namespace {
 
 constexpr std::uint64_t kMs = 1'000'000;
 
-// Accounts that share one CPU. Each asks for work of `piece_ns` at once, as one of its frames or in vain.
+// An account on a common CPU. It requests work in pieces of `piece_ns`, for a frame or in vain.
 struct Player {
   Account account;
-  std::uint64_t frame_ns = 0;  // of each of its frames; 0: messages
-  bool gives_up = false;       // before a row is sent
+  std::uint64_t frame_ns = 0;  // per frame; 0: only messages
+  bool gives_up = false;       // abandons frames before a row is sent
   std::uint64_t done_ns = 0, got_ns = 0;
 };
 
@@ -49,9 +49,8 @@ double share_of(const Player& p, std::uint64_t ns) { return static_cast<double>(
 
 }  // namespace
 
-// Goal: whoever asks for what is done soon gets three quarters of the CPU, however many ask for more than that. Method:
-// frames of 100 ms against twenty that ask for frames of 10 s, for frames that they give up, or send messages alone;
-// after the time that it takes to know them.
+// Goal: an account with light frames gets three quarters of the CPU against any number of heavy ones. Method: frames of
+// 100 ms against twenty accounts with frames of 10 s, abandoned frames or only messages, once they are classified.
 TEST_CASE("share_of_light_frames_does_not_depend_on_heavy_neighbours") {
   struct Case {
     std::uint64_t frame_ns;
@@ -71,8 +70,8 @@ TEST_CASE("share_of_light_frames_does_not_depend_on_heavy_neighbours") {
   }
 }
 
-// Goal: equals get equal shares, in either lane, and so do those who come later. Method: five with light frames of
-// unequal sizes; five with heavy ones; then a sixth.
+// Goal: equals get equal shares in either lane, even if they come later. Method: five with light frames of unequal
+// sizes; five with heavy ones; then a sixth.
 TEST_CASE("share_is_equal_among_equals") {
   for (std::uint64_t frame_ns : {20 * kMs, 5'000 * kMs}) {
     CAPTURE(frame_ns);
@@ -88,8 +87,8 @@ TEST_CASE("share_is_equal_among_equals") {
   }
 }
 
-// Goal: who has been heavy is so no longer once it asks for light frames, and one heavy frame in between does not pay
-// off. Method: what is owed after each.
+// Goal: a heavy account becomes light again once it requests light frames, and a heavy frame in between does not pay
+// off. Method: the debt after each.
 TEST_CASE("share_forgives_who_asks_for_less") {
   Account a;
   end_frame(&a, 5'000 * kMs, 5'000 * kMs);
@@ -97,14 +96,14 @@ TEST_CASE("share_forgives_who_asks_for_less") {
   CHECK(is_heavy(a));
   for (int i = 0; i < 3; ++i) end_frame(&a, 100 * kMs, 100 * kMs);
   CHECK_FALSE(is_heavy(a));
-  for (int i = 0; i < 2; ++i) end_frame(&a, 200 * kMs, 10 * kMs);  // given up
+  for (int i = 0; i < 2; ++i) end_frame(&a, 200 * kMs, 10 * kMs);  // abandoned
   CHECK(is_heavy(a));
   forgive(&a, 1'000'000 * kMs, 4);
   CHECK(a.owed_ns == 0);
 }
 
-// Goal: the ports of one address, and the hosts of one IPv6 network, are one; other addresses are not. Method: names as
-// the link gives them.
+// Goal: all ports of an address, and all hosts of an IPv6 network, count as one; other addresses do not. Method: names
+// as given by the link.
 TEST_CASE("share_knows_addresses") {
   CHECK(address_key("127.0.0.1:80") == address_key("127.0.0.1:7411"));
   CHECK(address_key("127.0.0.1:80") != address_key("127.0.0.2:80"));

@@ -1,4 +1,4 @@
-// What a device learns of a link and of its servers when its own rows take long and it seldom looks.
+// Measuring link and servers when the device's rows are slow and it rarely polls.
 #include <doctest/doctest.h>
 
 #include "split_rig.h"
@@ -24,8 +24,8 @@ SplitRigOptions slow_link() {
 
 }  // namespace
 
-// Goal: several servers behind one slow radio are each measured as if alone, whatever the device does meanwhile.
-// Method: the speed of the line is known; what the overture, and then the frames, say of it.
+// Goal: several servers behind one slow radio are each measured as if alone, whatever the device does. Method: figures
+// of the overture, and then of frames, against the known speed of the line.
 TEST_CASE("client_measures_a_slow_link_that_servers_share") {
   SplitRig rig(slow_link());
   for (int i = 0; i < 6; ++i) {
@@ -41,8 +41,8 @@ TEST_CASE("client_measures_a_slow_link_that_servers_share") {
   CHECK(rig.client.share.device_rows == 0);
 }
 
-// Goal: while the device renders all rows itself and looks at the link once a row, the time of a row is not taken for
-// the time that a server takes to answer. Method: frames without servers' rows, in which only pings tell of them.
+// Goal: while the device renders all rows and polls once per row, a row's time does not count as a server's answer
+// time. Method: frames without servers' rows, with only pings.
 TEST_CASE("client_start_is_measured_while_the_device_is_at_work") {
   SplitRig rig(slow_link());
   for (int i = 0; i < 3; ++i) rig.frame(0.1 * i);

@@ -1,4 +1,4 @@
-// A device and its servers in one simulated world, so that a frame takes the same course every time.
+// A device and its servers in one simulated world, so that frames are reproducible.
 #pragma once
 #include <doctest/doctest.h>
 
@@ -25,9 +25,9 @@ struct SplitRigOptions {
   std::uint32_t width = 64, height = 48;
   std::uint32_t server_count = 1;
   double device_ns = 1000;             // per pixel
-  std::vector<double> server_ns = {};  // per pixel; fewer than servers: the last one's, none: 100
+  std::vector<double> server_ns = {};  // per pixel; missing entries repeat the last; empty: 100
   platform::NullLinkSettings line = fine_clock();
-  bool compares = true;  // every frame with the device's own
+  bool compares = true;  // compares every frame with the device's own
   ClientOptions client;
 };
 
@@ -48,12 +48,12 @@ struct SplitRig {
   std::uint64_t now() { return world_now_ns(world); }
   void stop_server(std::uint32_t index);
   void start_server(std::uint32_t index);
-  // A frame by client and servers; it is compared with the device's own where the options say so.
+  // Renders a frame by client and servers; compares it with the device's own if the options say so.
   const FrameShare& frame(double seconds);
   // Lets time pass without a frame.
   void idle(std::uint64_t ns);
   bool logged(const std::string& text) const;
-  // The frame as the device alone renders it.
+  // The frame rendered by the device alone.
   std::vector<std::uint8_t> local_pixels();
 };
 

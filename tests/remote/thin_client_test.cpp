@@ -1,4 +1,4 @@
-// A device without the scene: servers render every row, and one that fails leaves its rows to the others.
+// A device without the scene: servers render every row, and others take over the rows of one that fails.
 #include <doctest/doctest.h>
 
 #include "engine/frame.h"
@@ -17,7 +17,7 @@ SplitRigOptions thin(std::uint32_t server_count) {
   return options;
 }
 
-// The frame has begun, and some of its rows have come.
+// Begins a frame and waits until some of its rows have come.
 void begin_frame(SplitRig* rig, double seconds) {
   REQUIRE(begin_frame(&rig->device->renderer, &rig->client, seconds).ok);
   std::uint64_t limit = rig->now() + 1000 * kMs;
@@ -31,7 +31,7 @@ bool advance(SplitRig* rig, std::uint64_t ns) {
   return advance_frame(&rig->device->renderer, &rig->client, rig->now() + ns);
 }
 
-// What has been merged is what the device would have rendered.
+// Checks that the merged pixels equal those the device would have rendered.
 void check_pixels(SplitRig* rig, double seconds) {
   std::vector<std::uint8_t> merged(rig->client.pixels.begin(), rig->client.pixels.end());
   REQUIRE(render_frame(&rig->device->renderer, seconds).ok);
@@ -40,8 +40,8 @@ void check_pixels(SplitRig* rig, double seconds) {
 
 }  // namespace
 
-// Goal: the servers' rows make the frame that a device with the scene shows, byte for byte. Method: scenes that stand
-// and move, by their own camera and by a stated one, one to three servers, both formats; the rig compares every frame.
+// Goal: the servers' rows equal the frame of a device with the scene, byte for byte. Method: static and moving scenes,
+// with their own and a stated camera, one to three servers, both formats; the rig compares every frame.
 TEST_CASE("thin_client_frames_equal_local_ones") {
   for (const char* scene : {"cornell", "seesaw"})
     for (std::uint32_t server_count : {1u, 3u})
@@ -69,8 +69,8 @@ TEST_CASE("thin_client_frames_equal_local_ones") {
       }
 }
 
-// Goal: rows go to servers by their speed. Method: one that is four times as fast as the other; the time of a frame
-// against that of both at work to the end.
+// Goal: rows are divided among servers by speed. Method: one is four times as fast as the other; frame time against
+// both working to the end.
 TEST_CASE("thin_client_shares_rows_by_speed") {
   SplitRigOptions options = thin(2);
   options.server_ns = {500, 2000};
@@ -84,7 +84,7 @@ TEST_CASE("thin_client_shares_rows_by_speed") {
   CHECK(share.measured_ns < 1.35 * ideal);
 }
 
-// Goal: no row is lost while one server lives. Method: of two or three, all but the last end in the middle of a frame.
+// Goal: no row is lost while one server is alive. Method: all but the last of two or three end during a frame.
 TEST_CASE("thin_client_rows_of_a_lost_server_come_from_the_others") {
   for (std::uint32_t server_count : {2u, 3u}) {
     SplitRigOptions options = thin(server_count);
@@ -105,8 +105,8 @@ TEST_CASE("thin_client_rows_of_a_lost_server_come_from_the_others") {
   }
 }
 
-// Goal: a server that stands still delays a frame by little: the others take its rows long before it counts as lost.
-// Method: one of two is not run any more in the middle of a frame, and is again later.
+// Goal: a stalled server delays a frame only a little: the others take its rows long before it counts as lost. Method:
+// one of two stops running during a frame and continues later.
 TEST_CASE("thin_client_takes_over_from_a_server_that_stands_still") {
   SplitRigOptions options = thin(2);
   options.server_ns = {20000};
@@ -126,7 +126,7 @@ TEST_CASE("thin_client_takes_over_from_a_server_that_stands_still") {
   for (int i = 0; i < 3; ++i) rig.frame(0.1 * i);
 }
 
-// Goal: without any server the frame waits, which can be told; it goes on by itself where it stopped.
+// Goal: without any server the frame waits and reports it; it then continues where it stopped.
 TEST_CASE("thin_client_waits_for_servers_to_come_back") {
   SplitRigOptions options = thin(1);
   options.server_ns = {20000};

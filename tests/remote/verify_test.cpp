@@ -1,4 +1,5 @@
-// Servers that send wrong pixels with right checksums: found by spot checks, dropped, and not shown from then on.
+// Servers that send wrong pixels with valid checksums are found by spot checks and dropped, and their pixels are not
+// shown from then on.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -34,7 +35,7 @@ struct LiarRig {
   ~LiarRig() { forget_lies(); }
 
   RemoteServer& server(std::uint32_t i) { return rig.client.servers[i]; }
-  // Whether the frame shows what the device alone would.
+  // True if the frame equals that of the device alone.
   bool shows_truth(double seconds) {
     rig.frame(seconds);
     std::vector<std::uint8_t> shown(rig.client.pixels.begin(), rig.client.pixels.end());
@@ -52,7 +53,7 @@ struct LiarRig {
 struct Kind {
   const char* name;
   Lie lie;
-  int frames_max;  // within which it is found, with these seeds
+  int frames_max;  // within which it is found with these seeds
 };
 const Kind kKinds[] = {
     {"all pixels", [](std::uint32_t, std::uint32_t, std::uint32_t) { return true; }, 3},
@@ -67,9 +68,9 @@ const Kind kKinds[] = {
 
 }  // namespace
 
-// Goal: whatever a server lies about, it is found out, told once with what proves it, never used again, and from the
-// frame on in which it was found every frame is the device's own, byte for byte; an honest server goes on. Method: a
-// liar beside an honest server, both formats, 8 pixels a frame.
+// Goal: a lying server is found, logged once with proof and never used again, and every frame from then on equals the
+// device's own, byte for byte; an honest server stays in use. Method: a liar beside an honest server, both formats, 8
+// pixels per frame.
 TEST_CASE("verify_drops_a_liar_and_shows_the_truth") {
   for (const Kind& kind : kKinds)
     for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888}) {
@@ -91,12 +92,12 @@ TEST_CASE("verify_drops_a_liar_and_shows_the_truth") {
       REQUIRE(own.server(1).lied);
       CHECK(truth);  // the frame in which it was found
       CHECK(lies_told() > 0);
-      CHECK(own.lines("sends wrong pixels and is not used any more: frame") == 1);
+      CHECK(own.lines("sent wrong pixels and is no longer used: frame") == 1);
       CHECK(own.rig.log.size() == 1);
       for (int i = 0; i < 12; ++i, ++frame) {
         CHECK(own.shows_truth(0.05 * frame));
         CHECK(own.rows_of(1) == 0);
-        own.rig.idle(8'000'000'000);  // longer than the first tries after a loss
+        own.rig.idle(8'000'000'000);  // longer than the first retries after a loss
       }
       CHECK(own.rows_of(0) > 0);
       CHECK(!own.server(0).lied);
@@ -104,8 +105,8 @@ TEST_CASE("verify_drops_a_liar_and_shows_the_truth") {
     }
 }
 
-// Goal: the rows of a liar come from the device and the other servers, within the frame. Method: a fast liar and a fast
-// honest server; the frame in which the lie is found has rows of the honest one in the liar's place.
+// Goal: the device and other servers replace a liar's rows within the frame. Method: a fast liar and a fast honest
+// server; in the frame in which the lie is found, the honest server has replaced the liar's rows.
 TEST_CASE("verify_asks_others_anew_within_the_frame") {
   SplitRigOptions options = small(2);
   options.height = 96;
@@ -127,7 +128,7 @@ TEST_CASE("verify_asks_others_anew_within_the_frame") {
   CHECK(taken_over > (end - begin) / 3);
 }
 
-// Goal: two liars at once are both found, and one alone leaves the device to itself. Method: all servers lie.
+// Goal: two liars at once are both found, and without honest servers the device renders alone. Method: all servers lie.
 TEST_CASE("verify_does_without_any_server") {
   for (std::uint32_t server_count : {1u, 3u}) {
     SplitRigOptions options = small(server_count);
@@ -142,9 +143,9 @@ TEST_CASE("verify_does_without_any_server") {
   }
 }
 
-// Goal: a server is found out as often as the printed probability says. Method: one wrong row in every frame, 3 pixels
-// checked; a liar that was found is forgiven and its connection begun anew; the number of times against the sum of what
-// catch_probability() says of each frame, four standard deviations.
+// Goal: a liar is caught as often as the printed probability says. Method: one wrong row in every frame, 3 pixels
+// checked; a caught liar is forgiven and reconnected; the count against the sum of catch_probability() over frames,
+// within four standard deviations.
 TEST_CASE("verify_catches_as_often_as_printed") {
   SplitRigOptions options = small(1);
   options.width = 16, options.height = 24;
@@ -165,7 +166,7 @@ TEST_CASE("verify_catches_as_often_as_printed") {
       s->lied = s->told = false;
       own.rig.idle(20'000'000);
     }
-    if (*rows == 0) continue;  // or it was found by a row that both have
+    if (*rows == 0) continue;  // or it was caught by a row that both have
     double p = catch_probability({*rows, options.width, 1, 1, 3});
     expected += p, variance += p * (1 - p);
     caught += found;
@@ -176,8 +177,8 @@ TEST_CASE("verify_catches_as_often_as_printed") {
   CHECK(std::fabs(caught - expected) <= 4 * std::sqrt(variance) + 1);
 }
 
-// Goal: checks take at most a hundredth of the time and a pixel, and most of that; a device for which one pixel is more
-// checks one every few frames. Method: pixels counted, each of which costs what the emulated device takes.
+// Goal: checks take at most a hundredth of the time plus a pixel, and most of that; a device for which one pixel
+// exceeds that checks one every few frames. Method: count pixels, each costing what the emulated device takes.
 TEST_CASE("verify_costs_a_hundredth_of_the_time") {
   struct Row {
     std::uint32_t width, height;
@@ -206,8 +207,8 @@ TEST_CASE("verify_costs_a_hundredth_of_the_time") {
   }
 }
 
-// Goal: a slow device that checks a pixel every few frames finds a liar, too, and no phase of the frames is safe.
-// Method: wrong in every third frame, a picture so small that a pixel is more than a hundredth of it.
+// Goal: a slow device that checks a pixel every few frames also finds a liar, and no phase of frames is safe. Method:
+// wrong in every third frame, a picture so small that a pixel is more than a hundredth of it.
 TEST_CASE("verify_of_a_slow_device_finds_a_liar") {
   SplitRigOptions options = small(1);
   options.width = 16, options.height = 12, options.device_ns = 20000, options.server_ns = {4000};
@@ -218,8 +219,8 @@ TEST_CASE("verify_of_a_slow_device_finds_a_liar") {
   CHECK(own.server(0).lied);
 }
 
-// Goal: nobody can foresee which pixels are checked: they follow from what the system's entropy gave, and from nothing
-// else. Method: the same session with two seeds; a system without entropy is refused unless nothing is checked.
+// Goal: checked pixels are unpredictable: they depend only on the system's entropy. Method: the same session with two
+// seeds; a system without entropy is refused unless checks are off.
 TEST_CASE("verify_pixels_follow_the_entropy") {
   std::vector<Span> picked[3];
   for (int k = 0; k < 3; ++k) {
@@ -250,7 +251,7 @@ TEST_CASE("verify_pixels_follow_the_entropy") {
   CHECK(make_verifier(0, no_random_bytes, settings, &arena, &verifier).ok);
 }
 
-// Goal: --verify 0 checks nothing; what is shown is what came. Method: a liar, every frame.
+// Goal: --verify 0 checks nothing and shows what arrives. Method: a liar, every frame.
 TEST_CASE("verify_of_no_pixels_checks_nothing") {
   SplitRigOptions options = small(1);
   options.client.check_count = 0;
@@ -263,8 +264,8 @@ TEST_CASE("verify_of_no_pixels_checks_nothing") {
   CHECK(own.rig.client.share.checked[0] == 0);
 }
 
-// Goal: rows that both have are compared at no cost. Method: rows that the device has rendered come from a server, too,
-// as they are and with a pixel changed; no pixel is due.
+// Goal: rows that both have are compared at no cost. Method: rows the device has rendered also come from a server,
+// unchanged and with a changed pixel; no pixel check is due.
 TEST_CASE("verify_compares_rows_that_both_have") {
   SplitRigOptions options = small(1);
   LiarRig own(options);
@@ -281,8 +282,8 @@ TEST_CASE("verify_compares_rows_that_both_have") {
   CHECK(own.lines("row 0, column 31 is") == 1);
 }
 
-// Goal: without the scene, of three servers the one that lies is found by the other two, and the frames are true from
-// then on. Method: each of the three in turn; all pixels, one row.
+// Goal: without the scene, two of three servers expose the third as a liar, and frames are correct from then on.
+// Method: each of the three in turn; all pixels, one row.
 TEST_CASE("verify_without_the_scene_finds_one_liar_of_three") {
   for (std::uint32_t liar : {0u, 1u, 2u})
     for (int kind : {0, 1}) {
@@ -299,7 +300,7 @@ TEST_CASE("verify_without_the_scene_finds_one_liar_of_three") {
       for (const std::string& line : own.rig.log) INFO(line);
       REQUIRE(own.server(liar).lied);
       CHECK(truth);
-      CHECK(own.lines("differs from what two others send") == 1);
+      CHECK(own.lines("differs from two other servers") == 1);
       CHECK(own.rig.log.size() == 1);
       for (int i = 0; i < 6; ++i) CHECK(own.shows_truth(0.05 * (frames + i)));
       for (std::uint32_t i = 0; i < 3; ++i) CHECK(own.server(i).lied == (i == liar));
@@ -307,7 +308,8 @@ TEST_CASE("verify_without_the_scene_finds_one_liar_of_three") {
     }
 }
 
-// Goal: of two servers nobody can tell who lies: that is said once, the picture counts as disputed, and frames go on.
+// Goal: with only two servers the liar cannot be told: that is logged once, the picture counts as disputed, and frames
+// go on.
 TEST_CASE("verify_without_the_scene_tells_of_a_dispute") {
   SplitRigOptions options = small(2);
   options.client.has_scene = false;
@@ -316,7 +318,7 @@ TEST_CASE("verify_without_the_scene_tells_of_a_dispute") {
   make_liar(&own.rig.world, 1, kKinds[0].lie);
   for (int i = 0; i < 8; ++i) own.rig.frame(0.05 * i);
   CHECK(own.rig.client.verifier.disputed);
-  CHECK(own.lines("send different pixels for row") == 1);
+  CHECK(own.lines("sent different pixels for row") == 1);
   CHECK(own.rig.log.size() == 1);
   CHECK(!own.server(0).lied);
   CHECK(!own.server(1).lied);
@@ -343,8 +345,8 @@ TEST_CASE("verify_without_the_scene_trusts_the_honest") {
   }
 }
 
-// Goal: the commands take the system's entropy, refuse a number of pixels that cannot be, and remember a liar when the
-// scene is opened anew. Method: clients as the backend makes them, twice; nobody listens there.
+// Goal: the commands use the system's entropy, refuse an invalid number of pixels, and remember a liar when the scene
+// is reopened. Method: clients made by the backend, twice, without a listener.
 TEST_CASE("verify_as_the_commands_start_it") {
   ServersOptions options;
   options.addresses = {"127.0.0.1:9", "127.0.0.1:10"};

@@ -1,4 +1,4 @@
-// The viewer with servers in reach and without.
+// The viewer with and without servers in reach.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@ using namespace pocketray;
 
 namespace {
 
-// Views finished frames of a scene that moves, on no screen.
+// Views frames of a moving scene on the null screen.
 ServersTotals view(const std::string& server, std::uint32_t frame_count, Viewer* viewer) {
   CommonOptions common;
   common.scene = "seesaw", common.size = "32x24", common.threads = 1;
@@ -39,9 +39,8 @@ ServersTotals view(const std::string& server, std::uint32_t frame_count, Viewer*
 
 }  // namespace
 
-// Goal: with no server in reach pictures are refined as without sharing, and one that comes into reach takes its share
-// of them from then on. Method: a port at which nobody listens; a server on a thread of its own, and as many frames as
-// its overture takes.
+// Goal: without a server in reach pictures are refined as usual, and a server that comes into reach takes its share
+// from then on. Method: a port without a listener; a server on its own thread, and enough frames for its overture.
 TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
   ServerRig rig(ServerOptions(), platform::NullLinkSettings(), platform::kTcpLink);
   std::string address = server_address(*rig.server);
@@ -52,7 +51,7 @@ TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
   Viewer with;
   ServersTotals shared;
   std::uint32_t frame_count = 600;
-  for (; shared.frames == 0 && frame_count < 600'000; frame_count *= 4) {  // a busy server takes its time
+  for (; shared.frames == 0 && frame_count < 600'000; frame_count *= 4) {  // a busy server takes longer
     with = Viewer();
     shared = view(address, frame_count, &with);
     CHECK(with.frames_finished == frame_count);
@@ -73,9 +72,9 @@ TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
   CHECK(alone.frames == 0);
 }
 
-// Goal: a slow device does not render its first picture by itself to the end when a server comes into reach meanwhile:
-// both finish it. Method: an emulated device and its server by a virtual clock, no screen. What the device refines
-// before takes few milliseconds a pixel of the wall clock; each finished picture is a shared one.
+// Goal: a slow device does not finish its first picture alone if a server comes into reach: both finish it. Method: an
+// emulated device and its server on a virtual clock, null screen. Pixels refined before take few milliseconds of
+// wall-clock time; each finished picture is a split one.
 TEST_CASE("view_leaves_its_first_picture_to_servers") {
   VirtualWorld world;
   REQUIRE(open_world(platform::NullLinkSettings(), builtin_store(), 1, &world).ok);

@@ -1,4 +1,4 @@
-// The name by which device and server know a scene.
+// The identity of a scene for device and server.
 #include "session/scene_identity.h"
 
 #include <doctest/doctest.h>
@@ -47,9 +47,8 @@ void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes)
 
 }  // namespace
 
-// Goal: a scene has one name however it was opened, and no two share one. Method: every built-in scene, in memory that
-// was full of ones and of zeros before; from the .pray file that it bakes to without an accelerator; all of them
-// compared.
+// Goal: a scene has the same identity however it was opened, and no two share one. Method: every built-in scene, in
+// memory prefilled with ones and with zeros; the .pray file it bakes to without an accelerator; all compared.
 TEST_CASE("scene_identity_is_of_the_content_alone") {
   int count;
   const BuiltinScene* list = builtin_list(&count);
@@ -73,8 +72,8 @@ TEST_CASE("scene_identity_is_of_the_content_alone") {
   }
 }
 
-// Goal: naming a scene leaves the memory as it was, and says what is missing where it cannot. Method: the arena's mark
-// before and after; a block in which the scene fits, but no second one.
+// Goal: identifying a scene releases its memory, and says what is missing if it cannot. Method: the arena's mark before
+// and after; a block that holds the scene only once.
 TEST_CASE("scene_identity_gives_its_memory_back_or_says_what_it_needs") {
   Loaded loaded("statue");
   REQUIRE(loaded.status.ok);
@@ -90,8 +89,7 @@ TEST_CASE("scene_identity_gives_its_memory_back_or_says_what_it_needs") {
 }
 
 #ifdef POCKETRAY_HAVE_IMPORT
-// Goal: an imported model is known by what it would be baked to. Method: a triangle as OBJ, its bytes by
-// import_model().
+// Goal: an imported model is identified by its baked form. Method: a triangle as OBJ, its bytes by import_model().
 TEST_CASE("scene_identity_of_a_model_is_that_of_its_baked_file") {
   const std::string path = "identity_triangle.obj";
   std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -1,4 +1,4 @@
-// The report on the split: the program's choice against the best of a sweep.
+// The split report: the program's choice against the best of a sweep.
 #include "split_report/split_report.h"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ using namespace pocketray;
 namespace {
 
 constexpr std::uint32_t kSteps = 5;
-constexpr double kServerNs = 700;  // of a pixel; the device's is as many times that as its profile says
+constexpr double kServerNs = 700;  // per pixel; the device's is slower by its profile's factor
 
 struct Reporting {
   std::unique_ptr<TestRenderer> device;
@@ -33,7 +33,7 @@ const StoredScene& stored_scene(const SceneStore& store, const std::string& name
   return store.scenes[0];
 }
 
-// A narrow picture in the time of one of 320 columns, so that latency weighs no more than there.
+// A narrow picture that takes as long as 320 columns, so that latency weighs no more than there.
 void make_reporting(const SceneStore& store, const char* scene, const char* device_name, std::uint32_t server_count,
                     Reporting* r) {
   const StoredScene& stored = stored_scene(store, scene);
@@ -59,9 +59,9 @@ void make_reporting(const SceneStore& store, const char* scene, const char* devi
 
 }  // namespace
 
-// Goal: a frame with the split that the program chooses takes at most 5 % longer than with the best fixed share; the
-// network makes none slower than the device alone. Method: three of the profiles, a sweep and more
-// shares around the best; split_report_table has the others.
+// Goal: a frame with the chosen split takes at most 5 % longer than with the best fixed share, and the network makes
+// none slower than the device alone. Method: three profiles, a sweep with more shares around the best;
+// split_report_table has the other profiles.
 TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
   struct Case {
     const char *scene, *device;
@@ -76,7 +76,7 @@ TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
     Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
     Status status = measure_split(r.setup, kSteps, &progress, &figures);
     REQUIRE_MESSAGE(status.ok, status.message);
-    std::printf("%-8s %-10s %u servers: chosen m %.3f %8.1f ns a pixel, best m %.3f %8.1f, alone %10.1f\n", c.scene,
+    std::printf("%-8s %-10s %u servers: chosen m %.3f %8.1f ns per pixel, best m %.3f %8.1f, alone %10.1f\n", c.scene,
                 c.device, c.server_count, figures.chosen.m, figures.chosen.ns_per_pixel, figures.best.m,
                 figures.best.ns_per_pixel, figures.local.ns_per_pixel);
     CAPTURE(c.device);
@@ -90,9 +90,9 @@ TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
   }
 }
 
-// Goal: every server that is ready gets rows, and each makes the frame faster. Method: a device to which the link costs
-// next to nothing, where each server is worth the same; the second and third servers are still measured when the first
-// frame is shared. A sweep alone would not tell: it has the same servers.
+// Goal: every ready server gets rows, and each makes the frame faster. Method: a device with a nearly free link, where
+// all servers are worth the same; the second and third are still being measured when the first frame is split. A sweep
+// alone would not show this, as it has the same servers.
 TEST_CASE("split_report_every_ready_server_gets_rows") {
   double before = 0;
   for (std::uint32_t server_count : {1u, 3u}) {
@@ -102,7 +102,7 @@ TEST_CASE("split_report_every_ready_server_gets_rows") {
     SplitFigures figures;
     Progress progress = start_progress("split", split_frame_count(r.setup, 2));
     REQUIRE(measure_split(r.setup, 2, &progress, &figures).ok);
-    std::printf("desktop, %u servers: %.0f ns a pixel, rows", server_count, figures.chosen.ns_per_pixel);
+    std::printf("desktop, %u servers: %.0f ns per pixel, rows", server_count, figures.chosen.ns_per_pixel);
     for (std::uint32_t i = 0; i < server_count; ++i) std::printf(" %.1f", figures.chosen.server_rows[i]);
     std::printf("\n");
     CAPTURE(server_count);
@@ -117,7 +117,7 @@ TEST_CASE("split_report_every_ready_server_gets_rows") {
   }
 }
 
-// Goal: the same report every time, whatever the machine does meanwhile. Method: twice, bit for bit.
+// Goal: the report is reproducible under any load. Method: twice, bit for bit.
 TEST_CASE("split_report_repeats_itself") {
   SplitFigures figures[2];
   for (SplitFigures& f : figures) {
@@ -135,7 +135,7 @@ TEST_CASE("split_report_repeats_itself") {
   CHECK(figures[0].chosen.ns_per_pixel == figures[1].chosen.ns_per_pixel);
 }
 
-// Goal: an interrupt keeps the points that are finished. Method: interrupted before the first.
+// Goal: an interrupt keeps finished points. Method: interrupted before the first.
 TEST_CASE("split_report_interrupt_leaves_no_half_point") {
   Reporting r;
   make_reporting(builtin_store(), "cornell", "tablet", 1, &r);
@@ -150,8 +150,8 @@ TEST_CASE("split_report_interrupt_leaves_no_half_point") {
 }
 
 // Goal: within 5 % of the best for every device, with one to three servers, on two built-in scenes and the Buddha.
-// Method: as above, all of them, or those of the device that POCKETRAY_SPLIT_DEVICE names; `make split-table` runs it.
-// Pixels cost the same on every scene here: what differs is how they compress.
+// Method: as above, all of them, or only the device named by POCKETRAY_SPLIT_DEVICE; run by `make split-table`. Pixels
+// cost the same in every scene here; only their compression differs.
 TEST_CASE("split_report_table" * doctest::skip()) {
   SceneStore store;
   for (const char* name : {"cornell", "statue"}) REQUIRE(store_scene(name, name, ~std::uint64_t(0), &store).ok);

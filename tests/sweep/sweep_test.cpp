@@ -83,7 +83,7 @@ void copy_file(const std::string& from, const std::string& to) {
   platform::unload_file(&file);
 }
 
-// Ends what is being measured as soon as one round is whole.
+// Interrupts the sweep as soon as one round is complete.
 void interrupt_after_a_round(const Folder& folder, const std::atomic<bool>& done) {
   while (!done) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -101,7 +101,7 @@ void interrupt_after_a_round(const Folder& folder, const std::atomic<bool>& done
 }  // namespace
 
 // Goal: the sweep has every knob of the scene with figures, a strip of each, and samples reduce errors. Method: `cube`,
-// which has no mirror: depth and cut-off are left out and said to be.
+// which has no mirror: depth and cut-off are skipped with a note.
 TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   Folder folder;
   Sweep sweep = measure(small(folder));
@@ -115,7 +115,7 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   for (const KnobFigures& k : sweep.knobs) names += k.name + " ";
   for (const std::string& note : sweep.notes) notes += note + "\n";
   CHECK(names == "samples area-lights normals arithmetic output ");
-  CHECK(notes.find("depth is left out") != std::string::npos);
+  CHECK(notes.find("depth is skipped") != std::string::npos);
   CHECK(sweep.strips.size() == sweep.knobs.size());
   for (const Strip& strip : sweep.strips) {
     CHECK(strip.rows.size() >= 2);
@@ -125,7 +125,7 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
       CHECK(row.ms > 0);
       double sum = 0;
       for (float e : row.flip_map) sum += static_cast<double>(e);
-      CHECK(sum / (32 * 24) == doctest::Approx(row.flip));  // the picture that was measured
+      CHECK(sum / (32 * 24) == doctest::Approx(row.flip));  // the measured picture
     }
   }
   double one = 0, sixteen = 0;
@@ -142,8 +142,8 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   CHECK(sixteen < 0.7 * one);
 }
 
-// Goal: the time of a frame is that of all that a frame takes. Method: a moving scene and a few pixels, so that posing
-// and refitting take longer than packing: no less than the renderer's own times of that frame together.
+// Goal: a frame's time covers all its work. Method: a moving scene with few pixels, so that posing and refitting
+// dominate: at least the sum of the renderer's own times.
 TEST_CASE("accuracy_times_whole_frames") {
   Folder folder;
   AccuracyOptions o = small(folder);
@@ -157,8 +157,8 @@ TEST_CASE("accuracy_times_whole_frames") {
   CHECK(ns_per_pixel * 8 * 6 * 1e-6 >= t.pose_ms + t.refit_ms + t.trace_ms);
 }
 
-// Goal: interrupted and resumed, a sweep ends with the errors of one that was not. Method: an interrupt amid the
-// rounds; then as many rounds as are whole and one; against a fresh folder with one round.
+// Goal: a sweep that was interrupted and resumed has the errors of an uninterrupted one. Method: an interrupt between
+// rounds; then only the finished rounds, then one more; against a fresh folder with one round.
 TEST_CASE("accuracy_resumes_where_it_was_interrupted") {
   Folder stopped, fresh;
   AccuracyOptions o = small(stopped);
@@ -173,21 +173,21 @@ TEST_CASE("accuracy_resumes_where_it_was_interrupted") {
   interrupted = false;
   REQUIRE_MESSAGE(status.ok, status.message);
   CHECK_FALSE(whole);
-  o.rounds = 1;  // those that are whole suffice
+  o.rounds = 1;  // the finished ones suffice
   Sweep resumed = measure(o);
   CHECK(resumed.rounds >= 1);
   CHECK(resumed.rounds < 1000);
   AccuracyOptions other = small(fresh);
   other.rounds = 1;
   check_same_errors(resumed, measure(other));
-  // One more round is measured, none again.
+  // Measures one more round and repeats none.
   o.rounds = resumed.rounds + 1;
   Sweep more = measure(o);
   CHECK(more.rounds == resumed.rounds + 1);
   check_same_errors(more, resumed);
 }
 
-// Goal: an interrupt at once keeps the folder usable, and half a reference is none. Method: the flag is up before the
+// Goal: an immediate interrupt leaves the folder usable, without a partial reference. Method: set the flag before the
 // first picture; then the same command, against a fresh folder.
 TEST_CASE("accuracy_interrupted_in_a_reference_goes_on") {
   Folder folder;
@@ -206,9 +206,9 @@ TEST_CASE("accuracy_interrupted_in_a_reference_goes_on") {
   check_same_errors(measure(o), measure(other));
 }
 
-// Goal: what is traced of a reference is not lost, and its picture is that of one that was never interrupted. Method:
-// an interrupt after seven rows of the second picture; each row is traced once over both runs. Then a program that was
-// killed after it had saved some rows: its files, copied at that time, against the fresh folder.
+// Goal: traced rows of a reference are kept, and its picture equals an uninterrupted one. Method: an interrupt after
+// seven rows of the second picture; each row is traced once over both runs. Then the files of a program killed after
+// saving some rows, against the fresh folder.
 TEST_CASE("accuracy_goes_on_within_a_reference") {
   constexpr std::uint32_t kRows = 24, kPictures = 4;  // two seeds of each kind
   Folder folder, fresh, killed;
@@ -241,14 +241,14 @@ TEST_CASE("accuracy_goes_on_within_a_reference") {
   std::uint32_t left = 0;
   after.row_done = [&](std::uint32_t) { ++left; };
   check_same_errors(measure(after), never_stopped);
-  CHECK(left == kPictures * kRows - 8);  // the ninth was not saved yet
+  CHECK(left == kPictures * kRows - 8);  // the ninth was not yet saved
   after.restart = true, left = 0;
   measure(after);
   CHECK(left == kPictures * kRows);
 }
 
-// Goal: what another sweep measured is not taken for this one's. Method: other options in the same folder; the message
-// names what differs and how to mend it; --restart starts anew.
+// Goal: another sweep's measurements are not reused. Method: other options in the same folder; the message names the
+// difference and the remedy; --restart starts over.
 TEST_CASE("accuracy_refuses_the_state_of_another_sweep") {
   Folder folder;
   AccuracyOptions o = small(folder);
@@ -343,7 +343,7 @@ TEST_CASE("accuracy_refuses_damaged_files") {
     CHECK_FALSE(status.ok);
     CHECK(std::string(status.message).find("--restart") != std::string::npos);
   }
-  for (std::size_t at = 0; at < text.size(); at += 3) {  // whatever comes of it, it ends well
+  for (std::size_t at = 0; at < text.size(); at += 3) {  // any result is fine, but no crash
     std::string changed = text;
     changed[at] = changed[at] == '9' ? '"' : '9';
     REQUIRE(save_text(folder.path, "accuracy.state", changed).ok);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_sources.sh ROOT : the rules of the source tree that no compiler checks. Prints each violation as file:line: rule and
-# fails when there is one. source_rules_test.sh shows for every rule that a violation is found.
+# check_sources.sh ROOT : checks the source rules that no compiler checks. Prints each violation as file:line: rule, and
+# fails if there are any. source_rules_test.sh tests that every rule finds violations.
 set -eu
 cd "$1"
 
@@ -9,25 +9,25 @@ ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 spli
   engine=7 session=8 remote=9 budget=9 viewer=10 sweep=10 split_report=10 app=11"
 line_count_max=450
 
-# Rooms on the heap; all others, and platform/, are the core. Rooms that use what the platform offers.
+# heap_rooms may use the heap; all others, and platform/, are the core. platform_rooms may include the platform.
 heap_rooms='reference|accuracy|import|session|remote|budget|viewer|sweep|split_report|app'
-# Threads are the C++ library's, which allocates for each, before the seal.
+# The C++ library allocates for each thread, before the seal.
 heap_files='src/engine/workers\.cpp'
 platform_rooms='session|remote|budget|viewer|sweep|split_report|app'
 
-# Words that the core must do without, as extended regular expressions.
+# Words forbidden in the core, as extended regular expressions.
 language='\b(try|throw|catch|dynamic_cast|typeid)\b'
 heap='\b(new|delete|malloc|calloc|realloc|free|strdup|aligned_alloc|posix_memalign)\b'
 containers='\bstd::(nothrow|vector|string|deque|list|map|set|multimap|multiset|unordered_[a-z]+|function|any|shared_ptr|unique_ptr|make_[a-z]+)\b'
 headers='#[[:space:]]*include <(vector|string|deque|list|map|set|unordered_map|unordered_set|functional|any|memory|iostream|fstream|sstream|stdexcept|regex|locale)>'
-# libm functions that round differently from one C library to the next, or fuse. Ours are det_* in base/fmath.h.
+# libm functions that round differently between C libraries, or fuse. Use det_* in base/fmath.h instead.
 libm='(^|[^A-Za-z0-9_.>:]|std::|[^:]::)(a?(sin|cos|tan)h?|atan2|exp2?|expm1|log(2|10|1p|b)?|pow|cbrt|hypot|erfc?|[tl]gamma|fma)[fl]?[[:space:]]*\('
 systems='^[[:space:]]*#[[:space:]]*(if|elif|ifdef|ifndef)\b.*(__linux|__unix|__APPLE__|_WIN32|_WIN64|__ANDROID__|__FreeBSD__|__MINGW|__CYGWIN__|__EMSCRIPTEN__)'
 
 plain=$(mktemp -d)
 trap 'rm -rf "$plain"' EXIT
 
-# Copies sources to $plain without comments and without the content of strings, line by line; includes stay as they are.
+# Copies sources to $plain line by line, without comments and contents of strings; keeps includes.
 strip_sources() {
   sed 's|/[^/]*$||' "$plain/.all" | sort -u | sed "s|^|$plain/|" | tr '\n' '\0' | xargs -0 -r mkdir -p
   tr '\n' '\0' <"$plain/.all" | xargs -0 -r awk -v plain="$plain/" '
@@ -53,7 +53,7 @@ strip_sources() {
     }'
 }
 
-# Lines of the files listed in LIST that match the expression, and not the exception, reported with the rule's text.
+# Reports lines of the files in LIST that match the expression but not the exception, with the rule's text.
 forbid() {  # LIST EXPRESSION TEXT [EXCEPTION]
   (cd "$plain" && tr '\n' '\0' <"$1" | xargs -0 -r grep -HnE "$2" || true) |
     { if [ -n "${4:-}" ]; then grep -vE "$4" || true; else cat; fi; } | awk -F: -v text="$3" '{ print $1 ":" $2 ": " text }'
@@ -84,8 +84,9 @@ check_includes() {
     }'
 }
 
-# Two types of one name in one namespace break C++'s rule of one definition, which no compiler sees across files. Types of
-# anonymous namespaces are nobody else's; a folder of tests/ is a program of its own; one of the simd_*.h is compiled.
+# Two types with the same name in a namespace violate C++'s one-definition rule, which compilers do not check across
+# files. Exempt: types in anonymous namespaces, different folders of tests/ (separate programs), and simd_*.h (only one
+# is compiled).
 check_types() {
   (cd "$plain" && grep -v '^src/base/simd_' .all | tr '\n' '\0' | xargs -0 -r awk '
     FNR == 1 { depth = outer = hidden = 0; scope[0] = "" }

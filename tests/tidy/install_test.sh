@@ -60,7 +60,7 @@ done
 header=$(sed -n 's/^#define POCKETRAY_VERSION_[MP][A-Z]* //p' "$prefix/include/pocketray/pocketray.h" | paste -sd.)
 [ "$header" = "$(pkg-config --modversion pocketray)" ] || fail "the header is of $header, the package of another version"
 
-# Symbols that others can see or clash with: defined, global or weak. The C++ library's own templates are its namespace's.
+# Symbols that can be seen or clash: defined, global or weak, except the C++ library's own templates.
 exported=$("$objdump" -t "$(find "$prefix" -name libpocketray.a)" |
   awk '/^[0-9a-f]+ ([gw!u]| [gw])/ && !/\*UND\*/ { print ($0 ~ /\.hidden/ ? "hidden " : "visible ") $NF }')
 grep -q '^hidden _ZN.*9pocketray' <<<"$exported" || fail "no hidden symbol was found: has objdump another format?"

@@ -14,15 +14,16 @@ trap 'rm -rf "$work"' EXIT
 fused='[[:space:]](vfn?m(add|sub|addsub|subadd)[0-9]*[sp][sd]|fn?m(add|sub)|fml[as]|fmlal2?|vfn?m[as](\.[a-z0-9]+)*)[[:space:]]'
 symbols=' U (malloc|calloc|realloc|free|aligned_alloc|posix_memalign|strdup|_Zn[wa].*|_Zd[la].*|__cxa_throw|__cxa_allocate_exception|__cxa_begin_catch|__dynamic_cast|(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|fma)[fl]?)$'
 
-# Box tests of wide kernels may round once: their bounds are wide enough, and no answer is made of them.
+# Box tests of wide kernels may round once: their bounds are wide enough, and results do not depend on them.
 box_test='vfmsub[0-9]*ps[[:space:]].*%xmm'
 
 fused_in() { "$objdump" -d --no-show-raw-insn "$@" | grep -E "$fused" | sort | uniq -c || true; }
 symbols_in() { "$nm" -A --undefined-only "$@" | grep -E "$symbols" || true; }
 constructors_in() { "$objdump" -h "$@" | grep -E '\.(init_array|ctors)' || true; }
 
-# Weak symbols of kernels for a wider instruction set, but those of its own namespace: the linker may take such a copy for
-# all objects, and CPUs without the set would then run it. Without optimisation nothing is inlined and this means nothing.
+# Weak symbols of kernels for a wider instruction set, outside their own namespace: the linker may choose such a copy
+# for all objects, and CPUs without that instruction set would run it. Meaningless without optimisation, as nothing is
+# inlined.
 weak_in() {
   "$nm" -A --defined-only "$@" | grep -E ' [uVvWw] ' | grep -vE ' [uVvWw] _Z(T[A-Z]|Z)*N[KO]*9pocketray(4avx2|6avx512)' || true
 }

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# source_rules_test.sh ROOT : ROOT keeps the rules of check_sources.sh, and the checker finds what breaks them.
-# Method: every rule is broken once in a small tree of its own; the report must name the planted file and the rule. Look-alikes
-# that are allowed must pass.
+# source_rules_test.sh ROOT : ROOT obeys the rules of check_sources.sh, and the checker finds violations. Method: break
+# every rule once in a small tree; the report must name the planted file and the rule. Allowed look-alikes must pass.
 set -eu
 root=$1
 check=$(cd "$(dirname "$0")" && pwd)/check_sources.sh
@@ -9,7 +8,7 @@ tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 failures=0
 
-plant() {  # FILE LINES... : a tree with this file alone
+plant() {  # FILE LINES... : a tree with only this file
   rm -rf "${tree:?}"/*
   mkdir -p "$tree/src" "$tree/platform" "$tree/tests" "$tree/$(dirname "$1")"
   printf '%s\n' "${@:2}" >"$tree/$1"
@@ -57,9 +56,9 @@ must_fail "libm function" src/brdf/a.cpp 'x = std::fma(a, b, c);'
 must_fail "longer than" src/base/a.cpp $(seq 451)
 must_fail "longer than" tests/base/a_test.cpp $(seq 451)
 
-# A type that another file has in the same namespace, with members or without, after a template and behind an alignment.
+# A type defined in another file of the same namespace, with and without members, as a template and with an alignment.
 plant_beside() { printf '%s\n' "${@:2}" >"$tree/$1"; }
-twice_must() {  # found|allowed FILE OTHER-FILE LINES... : both files have these lines
+twice_must() {  # found|allowed FILE OTHER-FILE LINES... : puts these lines in both files
   local output
   plant "$2" "${@:4}"
   mkdir -p "$(dirname "$tree/$3")"

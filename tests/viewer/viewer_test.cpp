@@ -1,4 +1,4 @@
-// The viewer on no screen, by a script of buttons and a clock of its own.
+// The viewer on the null screen, with scripted buttons and clock.
 #include "viewer/viewer.h"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;
 
-// Frames of a still that are rendered within a budget, where the user leaves at a time.
+// Number of frames of a still rendered within a budget until the user quits.
 std::uint32_t frames_until(std::uint64_t quit_ns, double budget_ms) {
   platform::Event script[1];
   script[0].type = platform::EventType::quit, script[0].time_ns = quit_ns;
@@ -52,8 +52,8 @@ std::uint32_t frames_until(std::uint64_t quit_ns, double budget_ms) {
 
 }  // namespace
 
-// Goal: a still with a budget is rendered again until its settings are settled, and no longer. Method: a user who
-// leaves after ten seconds of the screen's clock, and one who leaves after a hundred; a frame takes a sixtieth of one.
+// Goal: a still with a budget is rendered again until its settings settle, and no longer. Method: the user quits after
+// ten seconds of the screen's clock, and after a hundred; a frame takes 1/60 s.
 TEST_CASE("viewer_settles_a_still_within_a_budget") {
   std::uint32_t early = frames_until(10 * kSecond, 1e6), late = frames_until(100 * kSecond, 1e6);
   CHECK(early > 1);
@@ -65,7 +65,7 @@ TEST_CASE("viewer_settles_a_still_within_a_budget") {
 
 namespace {
 
-// A viewer on a screen in memory, with a script of buttons.
+// A viewer on an in-memory screen, with scripted buttons.
 struct Stage {
   std::vector<platform::Event> script;
   std::vector<std::uint32_t> screen = std::vector<std::uint32_t>(kWidth * kHeight);
@@ -92,7 +92,7 @@ struct Stage {
     options.backend = "null", options.rotation = 0, options.screenshot_folder = screenshots;
     REQUIRE(open_viewer(options, scene.c_str(), kWidth, kHeight, &viewer).ok);
   }
-  // Shows a built-in scene; true: it is to be loaded anew.
+  // Shows a built-in scene; true if a reload is due.
   bool show(const char* scene, OpenScene* opened) {
     CommonOptions common;
     common.scene = scene, common.size = "320x60", common.threads = 1;
@@ -114,8 +114,8 @@ bool is_equal(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y &&
 
 }  // namespace
 
-// Goal: each button says what came of it, for a while. Method: buttons that this run has no use for, and a screenshot;
-// what is on the screen two seconds later, and eight.
+// Goal: each button shows its result for a while. Method: buttons without effect in this run, and a screenshot; the
+// screen two and eight seconds later.
 TEST_CASE("viewer_answers_each_button") {
   char folder[] = "/tmp/pocketray_XXXXXX";
   REQUIRE(mkdtemp(folder) != nullptr);
@@ -130,7 +130,7 @@ TEST_CASE("viewer_answers_each_button") {
     for (bool soon : {true, false}) {
       CAPTURE(row.answer);
       Stage stage;
-      stage.press(0, platform::Button::hud);  // away with what is always there
+      stage.press(0, platform::Button::hud);  // hides the permanent overlay
       stage.press(1, row.button);
       stage.leave(soon ? 3 : 9);
       stage.open("cube", folder);
@@ -147,7 +147,7 @@ TEST_CASE("viewer_answers_each_button") {
   rmdir(folder);
 }
 
-// Goal: a screen without a note is the picture again. Method: pixels before a note and after it.
+// Goal: once its note is gone, the screen shows the picture again. Method: pixels before a note and after it.
 TEST_CASE("viewer_takes_its_note_away") {
   std::vector<std::uint32_t> screens[2];
   for (bool told : {false, true}) {
@@ -163,8 +163,8 @@ TEST_CASE("viewer_takes_its_note_away") {
   CHECK(screens[0] == screens[1]);
 }
 
-// Goal: a scene that is loaded anew is seen from where the user was; one that he did not move away from, from its own
-// camera; another scene from its own. Method: the camera is turned, or not, and the scene loaded again.
+// Goal: a reloaded scene is shown from the user's camera, or from its own if the user did not move; another scene from
+// its own. Method: turn the camera, or not, and reload.
 TEST_CASE("viewer_keeps_the_camera") {
   for (bool moved : {true, false}) {
     for (bool other : {false, true}) {
@@ -188,9 +188,8 @@ TEST_CASE("viewer_keeps_the_camera") {
   }
 }
 
-// Goal: while there is no scene its last picture is seen, and the user is told why; the file's change ends the wait
-// when it is written no more, as do the buttons. Method: a scene is to be loaded again; pixels below the text; a file
-// that has changed, the button, and leaving.
+// Goal: without a scene, the last picture stays and the user is told why; a finished change of the file ends the wait,
+// as do buttons. Method: a reload is due; pixels below the text; a changed file, the button, and quitting.
 TEST_CASE("viewer_keeps_the_picture_without_a_scene") {
   char path[] = "/tmp/pocketray_XXXXXX";
   int file = mkstemp(path);
@@ -221,9 +220,9 @@ TEST_CASE("viewer_keeps_the_picture_without_a_scene") {
   CHECK(wait_for_another(&stage.viewer, "it is broken"));
   CHECK(unlike(static_cast<int>(stage.viewer.hud_rows_shown)) == 0);
   std::uint64_t waited = stage.viewer.backend->now_ns() - start;
-  CHECK(waited > kSecond);  // two looks
+  CHECK(waited > kSecond);  // two polls
   CHECK(waited < 3 * kSecond);
-  // Nothing changes: the button, then the user leaves.
+  // Nothing changes: the reload button, then quit.
   watch_scene(&stage.viewer);
   CHECK(wait_for_another(&stage.viewer, "it is broken"));
   CHECK(stage.viewer.backend->now_ns() > 19 * kSecond);
@@ -233,7 +232,7 @@ TEST_CASE("viewer_keeps_the_picture_without_a_scene") {
   std::remove(path);
 }
 
-// Goal: nobody is shown a picture on no screen who did not ask for that. Method: no display and no framebuffer.
+// Goal: the null screen is used only on request. Method: no display and no framebuffer.
 TEST_CASE("viewer_wants_a_screen") {
   if (access("/dev/fb0", F_OK) == 0) return;
   std::string kept[3];
@@ -247,7 +246,7 @@ TEST_CASE("viewer_wants_a_screen") {
   options.rotation = 0;
   Status status = open_viewer(options, "cube", 32, 24, &viewer);
   CHECK_FALSE(status.ok);
-  CHECK(std::strstr(status.message, "no screen was found") != nullptr);
+  CHECK(std::strstr(status.message, "no screen found") != nullptr);
   CHECK(std::strstr(status.message, "linux needs a framebuffer") != nullptr);
   CHECK(std::strstr(status.message, "--screen") != nullptr);
   close_viewer(&viewer);

@@ -1,4 +1,4 @@
-// The command of builds with the reference, as app/commands.h describes.
+// The accuracy command, in builds with the reference; see app/commands.h.
 #pragma once
 
 namespace CLI {

@@ -1,4 +1,4 @@
-// The commands of builds with a network, each as app/commands.h describes.
+// The commands of builds with a network; see app/commands.h.
 #pragma once
 
 namespace CLI {

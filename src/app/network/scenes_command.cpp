@@ -1,8 +1,10 @@
-// pocketray scenes: what render servers offer.
+// pocketray scenes: lists the scenes that render servers offer.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/network/network_commands.h"
+#include "app/options.h"
+
 #include "remote/client/servers.h"
 #include "session/output.h"
 #include "session/report.h"
@@ -56,13 +58,11 @@ int run(const ScenesOptions& o) {
 void add_scenes_command(CLI::App* program, int* exit_status) {
   auto o = std::make_shared<ScenesOptions>();
   CLI::App* command = program->add_subcommand("scenes", "list the scenes that render servers offer");
-  command->add_option("--server", o->servers.addresses, "HOST:PORT of a `pocketray serve`; may be given several times")
-      ->allow_extra_args(false)
-      ->required();
-  command->add_option("--json", o->json, "also write them as JSON to FILE, or - for standard output");
+  add_server_option(command, &o->servers.addresses)->required();
+  add_json_option(command, &o->json);
   command->footer(
-      "`render` and `view` take any of the names with the same --server: the scene is fetched, or, where --memory\n"
-      "does not hold it, left to the server.");
+      "Pass any of these names to `render` or `view` with the same --server. They fetch the scene, or leave it to the\n"
+      "server if it does not fit in --memory.");
   command->callback([=] { *exit_status = run(*o); });
 }
 

@@ -1,4 +1,4 @@
-// pocketray serve: renders for devices that share their frames with it.
+// pocketray serve: the render server.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cinttypes>
@@ -42,12 +42,12 @@ struct Serving {
   }
 };
 
-// Whoever reads the log may go, or fall asleep: that is no matter of the clients.
+// A log reader that hangs or exits must not affect clients.
 void print_line(void*, const char* line) { (void)platform::print_line_at_once(line); }
 
-// Plans for as many streams as files may be open, or fails where that is too few.
+// Fits the number of streams to the limit on open files; fails if that limit is too low.
 Status plan_streams(ServerOptions* options) {
-  constexpr int kOtherFiles = 4;  // the listener's spare, a scene being read, what the C library opens
+  constexpr int kOtherFiles = 4;  // the listener's spare, a scene being read, files the C library opens
   int wanted = server_stream_count(*options) + kOtherFiles, left = platform::descriptors_left(wanted);
   if (left >= wanted) return success();
   int own = server_stream_count(*options) - options->client_count_max - options->guest_count_max + kOtherFiles;
@@ -55,8 +55,8 @@ Status plan_streams(ServerOptions* options) {
   options->guest_count_max = std::max(1, std::min((left - own) / 3, options->guest_count_max));
   options->client_count_max = std::min(left - own - options->guest_count_max, client_count);
   if (options->client_count_max < 1)
-    return failure("this program may open %d more files and needs %d to serve anybody: raise `ulimit -n` by %d", left,
-                   own + 2, own + 2 - left);
+    return failure("this program may open only %d more files and needs %d to serve one client: raise `ulimit -n` by %d",
+                   left, own + 2, own + 2 - left);
   if (options->client_count_max < client_count)
     print_note("the limit on open files allows " + std::to_string(options->client_count_max) + " clients, not " +
                std::to_string(client_count) + ": raise it with `ulimit -n`");
@@ -68,9 +68,8 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
   if (!platform::kTcpLink.resolve(o.listen.c_str(), address, &error)) return failure("--listen: %s", error.text);
   if (address->loopback || o.insecure_lan) return success();
   return failure(
-      "--listen %s is open to other machines, and this server asks nobody who they are: whoever reaches the port can "
-      "use its CPU and see its scenes. Listen at 127.0.0.1:7411 and come through an SSH tunnel, or trust the network "
-      "with "
+      "--listen %s is open to other machines and there is no authentication: anyone who reaches the port can use the "
+      "CPU and see the scenes. Listen at 127.0.0.1:7411 and connect through an SSH tunnel, or trust the network with "
       "--insecure-lan",
       o.listen.c_str());
 }
@@ -110,7 +109,7 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   platform::Error error;
   serving->link = platform::kTcpLink.open(link_options, &error);
   if (!serving->link) return failure("%s", error.text);
-  // The address first: that another program has it is told before the scenes are read, which takes its time.
+  // Takes the address first, so that one already in use is reported before the slow reading of scenes.
   RETURN_IF_ERROR(open_server(*options, serving->store, serving->link, address, &serving->server));
   RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
   for (const std::string& warning : serving->store.warnings) print_note(warning);
@@ -121,7 +120,7 @@ void print_start(const Serving& serving, const ServerOptions& options) {
   for (const StoredScene& scene : serving.store.scenes)
     std::printf("  %-24s %9s triangles %8.1f MiB\n", scene.name, grouped(scene.scene.triangles.count).c_str(),
                 static_cast<double>(scene.byte_count) / (1 << 20));
-  std::printf("listening at %s: %zu scenes, %u thread%s, %d clients of %.0f MiB each; Ctrl-C ends it\n",
+  std::printf("listening at %s: %zu scenes, %u thread%s, %d clients of %.0f MiB each; Ctrl-C stops it\n",
               server_address(*serving.server), serving.store.scenes.size(), options.thread_count,
               options.thread_count == 1 ? "" : "s", options.client_count_max,
               static_cast<double>(options.client_memory_bytes) / (1 << 20));
@@ -129,7 +128,7 @@ void print_start(const Serving& serving, const ServerOptions& options) {
 }
 
 int run(const ServeOptions& o) {
-  constexpr std::uint64_t kStepNs = 100'000'000;  // till an interrupt is noticed
+  constexpr std::uint64_t kStepNs = 100'000'000;  // longest delay until an interrupt is noticed
   platform::survive_closed_pipes();
   Serving serving;
   ServerOptions options;
@@ -154,32 +153,33 @@ int run(const ServeOptions& o) {
 
 void add_serve_command(CLI::App* program, int* exit_status) {
   auto o = std::make_shared<ServeOptions>();
-  CLI::App* command = program->add_subcommand("serve", "render for devices that share their frames with this machine");
+  CLI::App* command =
+      program->add_subcommand("serve", "run a render server that traces part of each frame for devices");
   command
       ->add_option("--listen", o->listen,
-                   "HOST:PORT to wait at, port 0 for any that is free; one that other machines reach needs "
+                   "HOST:PORT to listen at; port 0 takes any free one; addresses that other machines can reach need "
                    "--insecure-lan")
       ->capture_default_str();
   command->add_flag("--insecure-lan", o->insecure_lan,
-                    "listen also where other machines reach it; nobody is asked who they are");
+                    "allow addresses that other machines can reach; there is no authentication");
   command->add_option("--scenes", o->scenes,
-                      "a folder of scenes to offer beside the built-in ones: .pray files and, on a desktop, models");
-  command->add_option("--threads", o->threads, "threads that trace, shared by all clients; 0: one per core")
+                      "folder of scenes to offer besides the built-in ones: .pray files and, on a desktop, models");
+  command->add_option("--threads", o->threads, "tracing threads, shared by all clients; 0: one per core")
       ->capture_default_str();
-  command->add_option("--clients", o->clients, "most clients at once; one more is told that the server is busy")
+  command
+      ->add_option("--clients", o->clients, "maximum number of clients; further ones are told that the server is busy")
       ->check(CLI::Range(1, kServerClientsMax))
       ->capture_default_str();
-  command->add_option("--memory", o->memory, "block of each client: its picture and what rendering takes, as 64M")
+  command->add_option("--memory", o->memory, "memory per client, for its picture and for rendering, e.g. 64M")
       ->capture_default_str();
-  command->add_option("--scene-memory", o->scene_memory, "most that all scenes may take together, as 1G")
+  command->add_option("--scene-memory", o->scene_memory, "memory for all scenes together, e.g. 1G")
       ->capture_default_str();
-  command->add_option("--size-max", o->image_side_max, "longest side of a picture in pixels")
+  command->add_option("--size-max", o->image_side_max, "longest picture side in pixels")
       ->check(CLI::Range(1u, kImageSideMax))
       ->capture_default_str();
-  command->add_option("--idle", o->idle_seconds, "seconds after which a silent client is closed")
+  command->add_option("--idle", o->idle_seconds, "seconds of silence before a client is disconnected")
       ->capture_default_str();
-  command->add_option("--isa", o->isa, "instruction set to trace with: baseline, avx2 or avx512")
-      ->default_str("the best of this CPU");
+  add_isa_option(command, &o->isa);
   command->callback([=] { *exit_status = run(*o); });
 }
 

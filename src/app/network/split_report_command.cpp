@@ -1,4 +1,5 @@
-// pocketray split-report: what sharing a scene's frames gains a device, over the share, and beside the paper's table.
+// pocketray split-report: measures what render servers gain a device, for each share of rows, next to the paper's
+// table.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,7 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kClockStepNs = 50;  // by each look at the simulated clock
+constexpr std::uint64_t kClockStepNs = 50;  // advance per reading of the simulated clock
 constexpr std::uint64_t kSceneBytesMax = std::uint64_t(1) << 36;
 
 struct ReportOptions {
@@ -28,7 +29,7 @@ struct ReportOptions {
   bool no_paper = false;
 };
 
-// What a pixel costs one thread of this machine: the median of a few frames.
+// Cost of a pixel on one thread of this machine: the median of a few frames.
 Status measure_pixel_ns(Renderer* renderer, double* ns) {
   constexpr std::uint32_t kFrames = 3;
   Workers* workers = renderer->workers;
@@ -66,7 +67,7 @@ std::string title_of(const ReportOptions& o, const SplitSetup& s) {
   const Settings& settings = s.device->settings;
   char text[400];
   std::snprintf(text, sizeof text,
-                "%.200s, %ux%u, on %s with %u server%s: a pixel costs %.4g ns on the device, %.4g ns on a server; link "
+                "%.200s, %ux%u, on %s with %u server%s: %.4g ns per pixel on the device, %.4g ns on a server; link "
                 "%.3g MB/s, %.3g ms",
                 o.common.scene.c_str(), settings.width, settings.height, o.common.emulate.c_str(), s.server_count,
                 s.server_count == 1 ? "" : "s", s.device_ns, s.server_ns,
@@ -115,12 +116,12 @@ void print_sweep(const SplitSetup& setup, const SplitFigures& s) {
       std::printf("  %-14s %6.3f %14.1f %12.2f %12.1f\n", what, p.m, p.ns_per_pixel, p.ns_per_pixel * pixels * 1e-6,
                   p.bytes * 1e-3);
   };
-  std::printf("  %-14s %6s %14s %12s %12s\n", "", "m", "ns per pixel", "ms a frame", "kB a frame");
+  std::printf("  %-14s %6s %14s %12s %12s\n", "", "m", "ns per pixel", "ms per frame", "kB per frame");
   for (const SplitPoint& p : s.sweep) print("m fixed", p);
   print("best of these", s.best);
   print("chosen", s.chosen);
   if (s.sweep.empty()) return;
-  std::printf("  chosen: %.3f of the best's time, %.4g times as fast as the device alone\n",
+  std::printf("  chosen m takes %.3f of the best time and is %.4g times as fast as the device alone\n",
               s.chosen.ns_per_pixel / s.best.ns_per_pixel, s.local.ns_per_pixel / s.chosen.ns_per_pixel);
 }
 
@@ -128,7 +129,7 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
   double raw = pixel_count(*setup.device) * pixel_bytes(setup.format);
   double sent = s.chosen.row_count / setup.device->settings.height;
   std::printf(
-      "bytes a frame, chosen m: %.0f, of which %.0f are messages around the rows; the rows sent whole: %.0f "
+      "bytes per frame at the chosen m: %.0f, of which %.0f message overhead; rows sent without deltas: %.0f "
       "compressed, %.0f raw\n",
       s.chosen.bytes, s.chosen.bytes - s.chosen.row_bytes, s.whole_bytes * sent, raw * sent);
 }
@@ -136,16 +137,15 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
 void print_paper(const SplitFigures& s) {
   if (s.paper.empty()) return;
   std::printf(
-      "Aranha et al. 2007, Table 1: this scene's rows in the paper's times, T_m and T_s as printed there for its "
-      "scenes,\n"
-      "T_t = 400 ns a pixel as the rows compress\n");
+      "Aranha et al. 2007, Table 1: this scene's rows with the paper's times, T_m and T_s as printed for its scenes,\n"
+      "T_t = 400 ns per pixel, scaled by how well the rows compress\n");
   std::printf("  %-12s %10s %15s %15s %17s %12s\n", "times of", "processors", "share, paper", "ns per pixel",
               "full overlap, ns", "bytes/pixel");
   for (const PaperRow& row : s.paper)
     std::printf("  %-12s %10d %6.2f%% %6.2f%% %7.0f %7.0f %8.0f (%+.1f%%) %10.3f\n", row.scene, row.processors,
                 100 * row.our_share, 100 * row.share, row.our_ns, row.ns_per_pixel, row.bound_ns,
                 100 * (row.our_ns / row.bound_ns - 1), row.bytes_per_pixel);
-  std::printf("  (of each pair the first is ours)\n");
+  std::printf("  (in each pair, ours comes first)\n");
 }
 
 Status write_files(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& figures) {
@@ -156,8 +156,8 @@ Status write_files(const ReportOptions& o, const SplitSetup& setup, const SplitF
   RETURN_IF_ERROR(draw_split(o.folder, {title_of(o, setup), pixels}, figures, &drawn));
   if (!drawn)
     std::fprintf(stderr,
-                 "pocketray: split.png is left out: gnuplot is not installed or failed; install it (Debian: gnuplot), "
-                 "then: cd -- %s && gnuplot split.gnuplot\n",
+                 "pocketray: no split.png: gnuplot is missing or failed; install it (Debian: gnuplot), then: cd -- %s "
+                 "&& gnuplot split.gnuplot\n",
                  shell_word(o.folder).c_str());
   return success();
 }
@@ -198,8 +198,7 @@ int run(const ReportOptions& o) {
   if (!status.ok) return report(status);
   if (figures.chosen.ns_per_pixel <= 0) return kExitInterrupted;
   if (o.common.json != "-") {
-    std::printf(
-        "real pixels, rows and messages; time is a virtual clock's, by which pixels and bytes take what follows\n");
+    std::printf("pixels, rows and messages are real; time is simulated, at these costs\n");
     std::printf("%s\n", title_of(o, setup).c_str());
     print_sweep(setup, figures);
     print_bytes(setup, figures);
@@ -208,7 +207,7 @@ int run(const ReportOptions& o) {
   status = write_files(o, setup, figures);
   if (status.ok && !o.common.json.empty()) status = write_json(o.common.json, to_json(o, setup, figures));
   if (status.ok && interrupted) {
-    std::fprintf(stderr, "pocketray: interrupted; %zu points of the sweep and %zu rows of the table are kept\n",
+    std::fprintf(stderr, "pocketray: interrupted; kept %zu points of the sweep and %zu rows of the table\n",
                  figures.sweep.size(), figures.paper.size());
     return kExitInterrupted;
   }
@@ -221,43 +220,41 @@ void add_split_report_command(CLI::App* program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
   o->common.emulate = "tablet";
   CLI::App* command = program->add_subcommand(
-      "split-report", "show what sharing frames with servers gains a device, over the share that it renders itself");
+      "split-report", "measure the speed-up by render servers over the device's share of the rows");
   command->footer(
-      "Device, link and servers are emulated in this program by a virtual clock: nothing has to be started, and a "
-      "busy\n"
-      "machine changes no figure but the cost of a pixel, which --device-ns and --server-ns fix.\n"
+      "Device, link and servers are simulated on a virtual clock, so you need not start any. A busy machine affects "
+      "only\n"
+      "the measured cost per pixel; fix that with --device-ns and --server-ns.\n"
       "Try:  pocketray split-report cornell --emulate pi-zero -o .\n"
       "      pocketray split-report statue --emulate tablet --servers 3 --json -");
   add_scene_options(command, &o->common);
-  command->add_option("--servers", o->server_count, "servers that take part")
+  command->add_option("--servers", o->server_count, "number of servers")
       ->check(CLI::Range(1u, kServerCountMax))
       ->capture_default_str();
   command->add_option("-o,--output", o->folder,
-                      "folder for split.csv and, where gnuplot is installed, split.png; made if missing");
+                      "folder for split.csv and, if gnuplot is installed, split.png; created if missing");
   command
       ->add_option("--steps", o->step_count,
-                   "shares to measure from 0 to 1; a few more are added around the fastest of them")
+                   "number of shares to measure, from 0 to 1; a few more are added around the fastest")
       ->check(CLI::Range(2u, 1000u))
       ->capture_default_str();
-  command->add_option("--frames", o->frame_count, "frames of each share; the median counts")
+  command->add_option("--frames", o->frame_count, "frames per share; the median is used")
       ->check(CLI::Range(2u, 1000u))
       ->capture_default_str();
   command
-      ->add_option("--orbit", o->orbit_degrees,
-                   "degrees that the camera turns about its target from frame to frame; 0: it stands, "
-                   "and only what the scene itself moves is sent")
+      ->add_option(
+          "--orbit", o->orbit_degrees,
+          "degrees that the camera orbits per frame; 0: it stands still and only rows changed by animation are sent")
       ->check(CLI::Range(-90.0f, 90.0f))
       ->capture_default_str();
   command
       ->add_option("--device-ns", o->device_ns,
-                   "nanoseconds that a pixel costs the device, instead of what it costs here times its slowdown")
+                   "the device's time per pixel in ns, instead of this machine's times the device's slowdown")
       ->check(CLI::Range(1.0, 1e9));
-  command
-      ->add_option("--server-ns", o->server_ns,
-                   "nanoseconds that a pixel costs a server, instead of what it costs one core here")
+  command->add_option("--server-ns", o->server_ns, "a server's time per pixel in ns, instead of one core's here")
       ->check(CLI::Range(1.0, 1e9));
-  command->add_flag("--no-paper", o->no_paper, "leave out the paper's table");
-  command->add_option("--json", o->common.json, "also write figures as JSON to FILE, or - for standard output");
+  command->add_flag("--no-paper", o->no_paper, "skip the paper's table");
+  add_json_option(command, &o->common.json);
   command->callback([=] { *exit_status = run(*o); });
 }
 

@@ -9,16 +9,17 @@
 namespace pocketray {
 namespace {
 
-constexpr std::size_t kOutBytes = 1024;     // of requests that wait to be sent
+constexpr std::size_t kOutBytes = 1024;     // for requests waiting to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
-constexpr double kWaitShare = 0.03;         // of a frame's time that the device may wait in vain: less than the 5 %
-                                            // that a network may cost, of which checks take one
-constexpr double kCertainPart = 0.5;        // of what a row is thought to take: rows are measured several at a time
-constexpr double kLateFactor = 1.03;        // of a frame's predicted time, after which nobody waits for rows; and of
-                                            // the device's alone, likewise
-constexpr double kLookNs = 20e6;            // between two looks at the link: a frame that a screen shows
-constexpr double kLooksWatched = 16;  // in a frame that is watched. It costs the device's packets some of their speed:
-constexpr std::uint64_t kWatchedFirst = 4, kWatchedEvery = 16;  // so only the first of these and each of those is
+constexpr double kWaitShare = 0.03;  // of a frame's time that the device may wait in vain: within the 5 % a network may
+                                     // cost, of which spot checks take 1 %
+constexpr double kCertainPart = 0.5;  // of a row's estimated time, since rows are measured several at a time
+constexpr double kLateFactor =
+    1.03;  // of a frame's predicted time, and of the device's alone, after which the device waits for no more rows
+constexpr double kLookNs = 20e6;      // between two polls of the link: about a display frame
+constexpr double kLooksWatched = 16;  // polls in a watched frame. They slow the device's packets,
+constexpr std::uint64_t kWatchedFirst = 4,
+                        kWatchedEvery = 16;  // so only the first frames and some later ones are watched
 
 CodecShape codec_shape(const Settings& settings, WireFormat format) {
   return {settings.width, settings.height, std::min(kChunkRowsMax, settings.height), format};
@@ -35,16 +36,16 @@ void mark_dirty(Client* client, std::uint32_t begin, std::uint32_t end) {
   client->dirty_end = std::max(client->dirty_end, end);
 }
 
-// Frames in which the device looks often, so that it sees when rows come: the first ones with a server, and a few
-// later.
+// True if the device polls often in this frame to see when rows arrive: in the first frames with a server and a few
+// later ones.
 bool is_watched(const Client& client) {
   return client.frames_with_servers < kWatchedFirst || client.frames_with_servers % kWatchedEvery == 0;
 }
 
-// How much longer the device may do nothing in this frame, so that it is done within 1 + kWaitShare times what it takes
-// alone even if nothing comes any more. What that is has to be certain: rows count as they were in this frame or, by as
-// much as this frame's are cheaper, in the frames before; for those that the device never rendered a part of the mean
-// is certain, and `come_share` of the time that rows which have come have saved.
+// How much longer the device may idle in this frame and still finish within 1 + kWaitShare times its time alone, even
+// if nothing more arrives. The estimate is conservative: rows count with their time in this frame or, scaled down as
+// far as this frame's rows are cheaper, in earlier frames. Rows the device never rendered count kCertainPart of the
+// mean; arrived rows count `come_share` of the time they saved.
 double time_to_spare(const Client& client, double come_share) {
   auto is_measured = [](const RowModel& row) { return is_known(row.device_ns) && !row.guessed; };
   double seen = 0, seen_before = 0, others = 0, come = 0, unknown = 0;
@@ -60,7 +61,7 @@ double time_to_spare(const Client& client, double come_share) {
     else
       others += before, come += client.merge.rows[r].state == RowState::server ? before : 0;
   }
-  // Rows that were rendered at once have their mean: by a few of them a frame only seems to be dearer than the last.
+  // Rows rendered together share their mean, so a few of them can make a frame look slower than the last.
   double change = seen_before > 0 ? std::min(1.0, seen / seen_before) : 1;
   double alone = std::max(client.device_ns, std::min(client.device_ns + change * others, seen_before + others));
   alone += kCertainPart * unknown * device_pixel_ns(client) * client.settings.width;
@@ -68,7 +69,8 @@ double time_to_spare(const Client& client, double come_share) {
   return kWaitShare * alone + come_share * change * come - idle;
 }
 
-// What the rows that are not done would take the device: as this frame's and as those before, whichever is more.
+// Time the device would need for the missing rows, estimated from this frame and from earlier ones, whichever is
+// longer.
 double rows_left_ns(const Client& client) {
   double known = 0, count = client.merge.rows.count - client.merge.row_count_done;
   for (std::uint32_t r = 0; r < client.model.rows.count; ++r)
@@ -77,8 +79,8 @@ double rows_left_ns(const Client& client) {
   return std::max(known, device_pixel_ns(client) * client.settings.width * count);
 }
 
-// Whether the servers' rows are due before the device could render one, or late by less than that takes; and should
-// none of them come, it is still done about when it would be alone.
+// True if the servers' rows are due before the device could render one, or late by less than that, and the device would
+// still finish about as early as alone if none arrived.
 bool is_worth_waiting(const Client& client) {
   double prepare = static_cast<double>(client.prepare_ns), due = client.share.predicted_ns - prepare;
   double elapsed = static_cast<double>(client_now_ns(client) - client.begin_ns),
@@ -90,7 +92,7 @@ bool is_worth_waiting(const Client& client) {
   return elapsed + rows_left_ns(client) <= latest && (any_guessed || time_to_spare(client, kCertainPart) > 0);
 }
 
-// Rows that the device may render without a look at the link: while somebody is there to look for, not for long.
+// Rows that the device may render between two polls of the link; few while servers are connected.
 std::uint32_t rows_between_looks(const Client& client) {
   bool any = false;
   for (std::uint32_t i = 0; i < client.server_count; ++i) any = any || client.servers[i].phase != ServerPhase::waiting;
@@ -99,14 +101,14 @@ std::uint32_t rows_between_looks(const Client& client) {
     look_ns = std::min(look_ns, (client.share.predicted_ns - static_cast<double>(client.prepare_ns)) / kLooksWatched);
   look_ns = std::min(look_ns, work_ns_max(client));
   if (!any) return client.settings.height;
-  // By this frame's rows so far, and by those of the frames before: what follows the sky costs more.
+  // By this frame's rows so far and by earlier frames, as rows below the sky cost more.
   std::uint32_t count = 0;
   for (double ns = 0; ns < look_ns && client.merge.next_row + count < client.model.rows.count; ++count)
     ns += std::max(row_ns, static_cast<double>(client.model.rows[client.merge.next_row + count].device_ns.value));
   return std::max(1u, count);
 }
 
-// Takes what has come, after waiting `timeout_ns` at most for something.
+// Handles what has arrived, after waiting for at most `timeout_ns`.
 void look_at_servers(Client* client, std::uint64_t timeout_ns) {
   platform::LinkWait waits[kServerCountMax];
   int wait_count = 0;
@@ -137,12 +139,12 @@ void cancel_rest(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
     if (!server->frame.open) continue;
-    // None of its rows came in time: it takes at least that long to start.
+    // None of its rows came in time, so it takes at least this long to start.
     if (server->frame.rows_come == 0 && server->phase == ServerPhase::ready)
       observe_start(&client->model, i, static_cast<double>(client_now_ns(*client) - server->frame.asked_ns));
     server->frame.open = false;
     bool sent = send_message(&server->messages, message);
-    sent ? flush_server(client, server) : lose_server(client, server, "it does not read what it is sent");
+    sent ? flush_server(client, server) : lose_server(client, server, "it stopped reading");
   }
 }
 
@@ -172,7 +174,8 @@ Status make_client(const ClientOptions& options, const Settings& settings, const
   client->server_count = server_count;
   CodecShape shape = codec_shape(settings, options.format);
   if (!codec_shape_valid(shape))
-    return failure("pictures of %ux%u pixels cannot be shared: use a smaller --size", settings.width, settings.height);
+    return failure("servers cannot render pictures of %ux%u pixels: use a smaller --size", settings.width,
+                   settings.height);
   client->pixels = arena_array_zeroed<std::uint8_t>(
       arena, std::size_t(settings.width) * settings.height * pixel_bytes(options.format));
   client->merge = make_merge(settings.height, arena);
@@ -202,20 +205,20 @@ void close_client(Client* client) {
 void work_until(Client* client, std::uint64_t due_ns) {
   for (std::uint64_t now = client_now_ns(*client), before = 0; now < due_ns && now != before;
        now = client_now_ns(*client)) {
-    before = now;  // still, where the clock has been set back meanwhile: the time is over all the same
+    before = now;  // also if the clock was set back meanwhile: the time is still over
     client->link->backend->poll(client->link, nullptr, 0, due_ns - now);
   }
 }
 
 void advance_client(Client* client, std::uint64_t timeout_ns) {
   look_at_servers(client, timeout_ns);
-  // A while of doing nothing but waiting for the answers of the overture, within what a network may cost.
+  // Idles for a while to wait for answers of the overture, within the time a network may cost.
   while (timeout_ns == 0 && !client->complete) {
     std::uint64_t wanted = wait_wanted_ns(*client);
     if (wanted == 0) return;
     double left = time_to_spare(*client, 0);
     std::uint64_t begin = client_now_ns(*client);
-    // What the servers in use have saved is not for others to waste.
+    // Does not waste on new servers the time that others saved.
     if (client->joined)
       left = std::min(left, kWaitShare * client->share.predicted_ns - static_cast<double>(client->waited_ns));
     if (left <= 0) return;
@@ -250,7 +253,7 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   if (!agrees_with_device(client, s, begin, end)) return;
   if (!client->options.has_scene) compare_with_others(client, s, begin, end);
   if (s->useful_ns == 0 || s->told) server_is_useful(client, s);
-  // Rows that are done keep their pixels: a row's sender answers for it.
+  // Finished rows keep their pixels: a row's sender stays accountable for it.
   std::size_t row_bytes = std::size_t(client->settings.width) * pixel_bytes(client->options.format);
   for (std::uint32_t row = begin; row < end; ++row)
     if (!is_done(client->merge.rows[row]))
@@ -277,8 +280,8 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
   FrameRequest* q = &client->request;
   ++q->frame;
   q->scene = client->scene, q->seconds = seconds;
-  q->camera_stated =
-      client->options.has_scene || renderer.camera_overridden;  // without the scene: it moves as it does there
+  q->camera_stated = client->options.has_scene ||
+                     renderer.camera_overridden;  // without the scene, an animated camera moves as on the server
   q->camera_index = static_cast<std::uint16_t>(renderer.camera_index);
   q->camera = renderer.camera;
   q->camera.node = kNone;
@@ -311,7 +314,7 @@ bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t
   if (next < own_end) {
     row_count_max = std::min(row_count_max, own_end - next);
   } else {
-    // Rows of servers that have not come, one at a time: they may be there any moment.
+    // Takes servers' missing rows one at a time, as they may arrive any moment.
     bool awaited = false;
     for (std::uint32_t i = 0; i < client->server_count; ++i) awaited = awaited || client->servers[i].frame.open;
     if (awaited && (!client->options.device_goes_on || is_worth_waiting(*client))) return false;

@@ -1,8 +1,8 @@
-// Client: the device's side of the split ([Aranha07] sec. 3.2-3.3). It keeps a connection to each render server, learns
-// in an overture what they and the link can do, asks them for their rows of each frame and merges what comes with the
-// device's own. A server that is late or gone costs time and no pixel. One that sends wrong pixels is found by spot
-// checks (client_verify.h), with a probability that is known; what it sent before may have been shown.
-// Everything lies in one arena; time is the link's, and nothing waits but where the link is polled.
+// Client: the device's side of the split ([Aranha07] sec. 3.2-3.3). It keeps a connection to each render server,
+// measures server and link in an overture, requests rows of each frame and merges them with the device's own. A late or
+// lost server costs time but no pixel. Spot checks (client/verify.h) find servers that send wrong pixels, with a known
+// probability; earlier pixels of such a server may have been shown. All memory is in one arena, time is the link's, and
+// only link polling blocks.
 #pragma once
 #include "engine/pace.h"
 #include "engine/renderer.h"
@@ -14,34 +14,35 @@
 
 namespace pocketray {
 
-// Rows that a server sends at once: at the ends of a frame and at most between; and everywhere where chunks do not
-// grow. Larger ones take fewer headers and compress better, smaller ones keep nobody waiting; measured by split-report.
+// Rows per chunk that a server sends: at the ends of a frame, at most in between, and throughout if chunks do not grow.
+// Larger chunks need fewer headers and compress better, smaller ones arrive sooner; tuned with split-report.
 constexpr std::uint32_t kChunkRowsMin = 4, kChunkRowsMax = 32, kChunkRowsEven = 8;
 
 struct ClientOptions {
   WireFormat format = WireFormat::rgb888;
   bool dither = false;
   SplitWish wish;
-  double cost_per_device_pixel = 0, cost_per_byte = 0;  // energy, in the unit of the wish
+  double cost_per_device_pixel = 0, cost_per_byte = 0;  // energy, in the unit of the cost cap
   double cost_per_megabyte = 0;                         // price of 10⁶ bytes
-  double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; below 0: the best
-  bool device_goes_on = true;                           // into rows that have not come; false: for comparisons
+  double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; negative: the best
+  bool device_goes_on = true;                           // goes on into missing rows; false: for comparisons
   Pace pace;                                            // the CPU to emulate
-  const float* row_costs = nullptr;                     // on it, see row_costs.h
-  bool has_scene = true;              // false: the device renders nothing, and shows what servers render
-  int check_count = kCheckCountAuto;  // of servers' pixels in a frame, at most kSpotChecksMax; 0: none
-  // Gives random numbers that no server can foresee, as platform/entropy.h; null: the same ones every time, for tests.
+  const float* row_costs = nullptr;                     // relative row costs on it; see row_costs.h
+  bool has_scene = true;                                // false: the device only shows what servers render
+  int check_count = kCheckCountAuto;  // servers' pixels to check per frame, at most kSpotChecksMax; 0: none
+  // Random bytes that no server can predict, as in platform/entropy.h; null: a fixed sequence, for tests.
   bool (*entropy)(void* bytes, std::size_t byte_count) = nullptr;
   std::uint64_t connect_timeout_ns = 3'000'000'000;
-  std::uint64_t silence_timeout_ns = 3'000'000'000;   // without an answer, half a message included
-  std::uint64_t prepare_timeout_ns = 30'000'000'000;  // the same till the first rows: the server builds its scene first
+  std::uint64_t silence_timeout_ns = 3'000'000'000;  // without an answer; half a message is none
+  std::uint64_t prepare_timeout_ns =
+      30'000'000'000;  // the same until the first rows, as the server builds its scene first
   std::uint64_t retry_ns_min = 500'000'000, retry_ns_max = 30'000'000'000;
-  void (*log)(void* context, const char* line) = nullptr;  // one line when a server is lost and when it is back
+  void (*log)(void* context, const char* line) = nullptr;  // one line when a server is lost or back
   void* log_context = nullptr;
 };
 
 enum class ServerPhase : std::uint8_t {
-  waiting,  // for the next try to connect
+  waiting,  // for the next attempt to connect
   connecting,
   greeting,   // hello
   asking,     // for the scene
@@ -51,22 +52,22 @@ enum class ServerPhase : std::uint8_t {
 };
 
 const char* phase_text(ServerPhase phase);
-// What an error that a server reports means, and what to do about it.
+// Describes a server's error and what to do about it.
 const char* wire_error_text(WireError code);
 
-// What became of a server's rows in a frame.
+// A server's rows in a frame.
 struct ServerFrame {
   std::uint32_t row_begin = 0, row_end = 0;  // asked for
-  std::uint32_t rows_come = 0;               // of them, also those that the device had already done
+  std::uint32_t rows_come = 0;               // of these received, including rows the device had already done
   std::uint64_t asked_ns = 0, bytes = 0;
-  std::uint64_t row_bytes = 0;     // of them, what the rows take without their messages
-  double render_ns = 0;            // of the rows that have come, by the server's word
-  bool open = false;               // rows are still to come
-  std::uint64_t heard_ns = 0;      // when rows came last
-  std::uint64_t first_ns = 0;      // and first
-  std::uint64_t bytes_behind = 0;  // of the chunks behind the first
-  double render_behind_ns = 0;     //   and what their rows took the server
-  bool answers = false;            // it has answered since it was asked, be it a ping
+  std::uint64_t row_bytes = 0;     // of these, rows without message overhead
+  double render_ns = 0;            // for the received rows, as reported by the server
+  bool open = false;               // more rows are expected
+  std::uint64_t heard_ns = 0;      // when the last rows came
+  std::uint64_t first_ns = 0;      // when the first rows came
+  std::uint64_t bytes_behind = 0;  // of the chunks after the first
+  double render_behind_ns = 0;     // and the server's time for their rows
+  bool answers = false;            // it has answered since the request, even if only a ping
 };
 
 struct RemoteServer {
@@ -74,62 +75,62 @@ struct RemoteServer {
   ServerPhase phase = ServerPhase::waiting;
   MessageStream messages;
   RowDecoder* decoder = nullptr;
-  platform::LinkTimer timer;                           // of the phase: the next try, or when it counts as lost
-  std::uint64_t retry_ns = 0;                          // till the next try
-  bool told = false;                                   // why it is not in use
-  bool lied = false;                                   // it has sent wrong pixels: never used again
-  std::uint64_t useful_ns = 0;                         // since when this connection has brought rows; 0: none so far
-  std::uint32_t ping_id = 0, ping_bytes = 0;           // that an answer is awaited to, and its payload; id 0: none
-  std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the answer came unwatched
+  platform::LinkTimer timer;                           // of the phase: next attempt, or when the server counts as lost
+  std::uint64_t retry_ns = 0;                          // until the next attempt
+  bool told = false;                                   // the reason it is not in use has been logged
+  bool lied = false;                                   // it has sent wrong pixels and is never used again
+  std::uint64_t useful_ns = 0;                         // when this connection first brought rows; 0: not yet
+  std::uint32_t ping_id = 0, ping_bytes = 0;           // of the ping awaiting an answer, and its payload; id 0: none
+  std::uint32_t pings_answered = 0, pings_missed = 0;  // missed: the device did not poll when the answer came
   std::uint64_t ping_ns = 0, ping_due_ns = 0;
-  bool ping_alone = false;  // no rows of any server were under way when it was sent
+  bool ping_alone = false;  // no rows of any server were in flight when it was sent
   double round_trip_ns = 0, ns_per_byte = 0;
-  double scaled = 1;                 // ns_per_byte, by what rows took, since it was measured by itself
-  std::uint64_t quiet_until_ns = 0;  // its link is measured meanwhile: no rows are asked of others
-  std::uint64_t anew_ns = 0;         // not before then its link is measured anew
+  double scaled = 1;                 // factor on ns_per_byte from rows' times since its own measurement
+  std::uint64_t quiet_until_ns = 0;  // until then its link is measured and others send no rows
+  std::uint64_t anew_ns = 0;         // earliest time to measure its link again
   double probe_ns_per_pixel = 0;
-  Smoothed row_ns;                 // of a device without the scene: that a row took, from the request until it came
-  FrameRequest asked;              // last; frame 0: nothing with this connection
-  std::uint32_t due_end = 0;       // of that, rows [asked.row_begin, due_end) have yet to come
-  std::uint64_t late_rows = 0;     // of what was asked for before, which may still be under way; so much of that when
-  std::uint64_t late_at_ping = 0;  // the ping was sent
-  bool more = false;               // has come and not been looked at: a look takes no more than a frame can bring
-  bool unanswered = false;         // since rows were asked for; asking anew gives no more time
-  std::uint32_t chunk_count = 0;   // that have come with this connection
+  Smoothed row_ns;                 // for a device without the scene: time from request to arrival of a row
+  FrameRequest asked;              // last request; frame 0: none on this connection
+  std::uint32_t due_end = 0;       // its rows [asked.row_begin, due_end) are still expected
+  std::uint64_t late_rows = 0;     // rows of earlier requests that may be in flight;
+  std::uint64_t late_at_ping = 0;  // their number when the ping was sent
+  bool more = false;               // unread input remains: one poll handles at most a frame's worth
+  bool unanswered = false;         // no answer since rows were requested; new requests do not extend the time
+  std::uint32_t chunk_count = 0;   // received on this connection
   std::uint8_t chunk_growth = 0;   // 16ths, see FrameRequest; 0: they do not grow
   ServerFrame frame;
-  bool is_witness = false;   // it is asked for a row of another's; meanwhile its own rows are
-  ServerFrame frame_before;  //   those of
+  bool is_witness = false;   // asked for another server's row; its own rows of the frame
+  ServerFrame frame_before;  // are then kept here
   ServerChecks checks;
 };
 
-// A frame as it went, for people and for the report.
+// Summary of a finished frame, for users and the report.
 struct FrameShare {
   std::uint32_t frame = 0;
-  double predicted_ns = 0;                          // by the split that was chosen; 0: nothing was known yet
+  double predicted_ns = 0;                          // by the chosen split; 0: unknown
   double measured_ns = 0;                           // from its preparation to its completion
-  double local_ns = 0;                              // predicted for the device alone; 0: not known
+  double local_ns = 0;                              // predicted for the device alone; 0: unknown
   std::uint32_t device_rows = 0;                    // rendered by the device
-  std::uint32_t server_rows[kServerCountMax] = {};  // that were a server's
-  std::uint32_t row_begin[kServerCountMax] = {}, row_end[kServerCountMax] = {};  // that they were asked for
-  std::uint64_t server_bytes[kServerCountMax] = {};                              // received for it
-  std::uint32_t checked[kServerCountMax] = {};  // of their pixels; of their rows where the device has no scene
-  std::uint32_t lies = 0;                       // servers found to send wrong pixels
-  std::uint64_t row_bytes = 0;                  // received, of the rows alone, without their messages
-  std::uint64_t bytes_in = 0, bytes_out = 0;    // on the wire, of all connections
+  std::uint32_t server_rows[kServerCountMax] = {};  // rendered by each server
+  std::uint32_t row_begin[kServerCountMax] = {}, row_end[kServerCountMax] = {};  // requested from each
+  std::uint64_t server_bytes[kServerCountMax] = {};                              // received from each
+  std::uint32_t checked[kServerCountMax] = {};  // pixels checked; rows if the device has no scene
+  std::uint32_t lies = 0;                       // servers caught with wrong pixels
+  std::uint64_t row_bytes = 0;                  // received, rows without message overhead
+  std::uint64_t bytes_in = 0, bytes_out = 0;    // on the wire, all connections
 };
 
-// The time in which rows of a frame came in: from the first chunk, which began nobody knows when, to the last.
+// Arrival of a frame's rows, from the first chunk, whose start is unknown, to the last.
 struct Arrivals {
-  std::uint64_t first_ns = 0, last_ns = 0, bytes = 0;  // bytes: of the chunks behind the first
-  std::uint64_t gap_ns_max = 0;                        // between two looks at the link
+  std::uint64_t first_ns = 0, last_ns = 0, bytes = 0;  // bytes: of the chunks after the first
+  std::uint64_t gap_ns_max = 0;                        // between two polls of the link
 };
 
-// The row that the device renders in parts, as it takes longer than the device may work at once.
+// A row that the device renders in parts because it takes longer than the time between polls.
 struct DeviceRow {
-  bool in_parts = false;  // there is one
+  bool in_parts = false;  // such a row is in progress
   std::uint32_t row = 0, columns_done = 0;
-  double pixel_ns = 0;        // of the last part, or of earlier rows; 0: not known
+  double pixel_ns = 0;        // of the last part or of earlier rows; 0: unknown
   std::uint64_t took_ns = 0;  // so far
 };
 
@@ -149,67 +150,67 @@ struct Client {
   // The current frame.
   FrameRequest request;
   bool complete = true, joined = false;
-  bool held = false;  // rows are asked for once a link is measured
+  bool held = false;  // requests wait until a link is measured
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
   std::uint64_t prepare_ns = 0;  // of work on it before it began
   mutable platform::LinkClock clock;
-  std::uint64_t unwatched_ns = 0;  // before the latest look: by so much what came may have come earlier
+  std::uint64_t unwatched_ns = 0;  // time before the latest poll: input may have arrived that much earlier
   Arrivals arrivals;
   DeviceRow device_row;
-  double device_ns = 0;  // that its rows took, in this frame
+  double device_ns = 0;  // spent on its own rows in this frame
   std::uint32_t device_rows = 0;
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_merged_rows()
   std::uint64_t frames_with_servers = 0;         // since a server came into use
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
   FrameShare share;               // of the last complete frame
-  std::uint64_t progress_ns = 0;  // when rows that were missing came last
+  std::uint64_t progress_ns = 0;  // when missing rows last came
 };
 
-// The level at which rows are asked for from a link of that speed, as zlib counts.
+// zlib level to request for rows over a link of that speed.
 std::uint8_t deflate_level(double ns_per_byte);
 
-// Bytes of an arena for pictures of that size. The number of streams of the link that it takes is server_count.
+// Arena bytes for pictures of that size. The client uses server_count streams of the link.
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count);
-// The addresses are resolved; nothing has connected yet. The client stays where it has been made.
+// Addresses must be resolved; does not connect yet. The client must not be moved.
 Status make_client(const ClientOptions& options, const Settings& settings, const ContentHash& scene,
                    platform::Link* link, const platform::LinkAddress* servers, std::uint32_t server_count, Arena* arena,
                    Client* client);
 // Says goodbye and closes the connections.
 void close_client(Client* client);
 
-// Lets connections, overtures and arriving rows go on; waits `timeout_ns` at most for something to come.
+// Advances connections, overtures and arriving rows; blocks for at most `timeout_ns`.
 void advance_client(Client* client, std::uint64_t timeout_ns);
 
-// Begins a frame that the renderer is prepared for, or, without the scene, has camera and exposure of, `prepare_ns` of
-// work ago: plans the split and asks for the servers' rows. `seconds` is the time of the animation. A frame that was
-// not finished is given up.
+// Begins a frame: plans the split and requests the servers' rows. The renderer must be prepared or, without the scene,
+// have the camera and exposure; `prepare_ns` is the time that took. `seconds` is the animation time. Abandons an
+// unfinished frame.
 void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns);
-// Rows that the device is to render next, at most `row_count_max`; false: there are none left.
+// The rows for the device to render next, at most `row_count_max`; false if none are left.
 bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
-// The device has rendered them, which took it so long by the wall clock, and their pixels are in client->pixels.
+// Call when the device has rendered them in `ns` of wall-clock time into client->pixels.
 void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns);
-// Takes over what the frame told, and lets servers drop what is left of it. Called once, when all rows are there.
+// Learns from the frame's measurements and lets servers drop the rest of it. Call once, when all rows are complete.
 void end_client_frame(Client* client);
 
-// Whether the frame has all its rows.
+// True if the frame has all its rows.
 inline bool has_all_rows(const Client& client) { return is_complete(client.merge); }
-// How long the device may work at once before it looks at the link again; shorter while an answer is timed.
+// How long the device may work between polls of the link; shorter while an answer is timed.
 double work_ns_max(const Client& client);
-// Whether every server is in use, or waits for its next try after a failure that was told: what can be known is known.
+// True if every server is in use or waits for its next attempt after a logged failure.
 bool is_settled(const Client& client);
-// Whether a device without the scene had better give up: no row has come for five seconds, nor has a server that is
-// asked for some answered a ping; or for as long as a server may prepare its scene, whatever it answers.
+// True if a device without the scene should give up: for five seconds no row has come and no server with requests has
+// answered a ping, or no row has come for as long as a server may prepare its scene.
 bool is_cut_off(const Client& client);
 // Rows changed since the last call.
 bool take_merged_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end);
 
-// By the link's clock, but never less than before.
+// By the link's clock, but monotonic.
 std::uint64_t client_now_ns(const Client& client);
-// Of the current frame, its preparation included.
+// Time in the current frame, preparation included.
 inline std::uint64_t client_elapsed_ns(const Client& client) {
   return client_now_ns(client) - client.begin_ns + client.prepare_ns;
 }
-// Where a row begins in client->pixels.
+// Start of a row in client->pixels.
 inline std::uint8_t* merged_row(const Client& client, std::uint32_t row) {
   return client.pixels.data + std::size_t(row) * client.settings.width * pixel_bytes(client.options.format);
 }

@@ -11,8 +11,8 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kWaitNs = 500'000;  // for rows, when there is nothing else to do, between two looks around
-constexpr std::uint32_t kFirstPixels = 8;   // of a row, while nothing is known of what they cost
+constexpr std::uint64_t kWaitNs = 500'000;  // between polls while waiting for rows
+constexpr std::uint32_t kFirstPixels = 8;   // first part of a row while the cost of pixels is unknown
 
 void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t row_begin, std::uint32_t row_end) {
   int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
@@ -22,7 +22,7 @@ void pack_device_rows(const Renderer& renderer, Client* client, std::uint32_t ro
             width * static_cast<int>(pixel_bytes(client->options.format)));
 }
 
-// Takes the time that the emulated device takes for so many pixels; returns how long that was.
+// Takes as long as the emulated device takes for `pixel_count` pixels; returns that time.
 std::uint64_t take_time_at(Client* client, const Pace& pace, std::uint64_t pixel_count, std::uint64_t begin_ns) {
   std::uint64_t elapsed = client_now_ns(*client) - begin_ns;
   if (!is_paced(pace)) return elapsed;
@@ -31,24 +31,24 @@ std::uint64_t take_time_at(Client* client, const Pace& pace, std::uint64_t pixel
   return elapsed;
 }
 
-// The same for pixels of these rows, which may cost more or less than others.
+// The same for pixels of these rows, by their relative cost.
 std::uint64_t take_row_time(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t pixel_count,
                             std::uint64_t begin_ns) {
   return take_time_at(client, pace_of_rows(client->options.pace, client->options.row_costs, row_begin, row_end),
                       pixel_count, begin_ns);
 }
 
-// The rows that the device renders, as spans; while there are none, the client looks at the servers.
+// The device's rows as spans; polls the servers while there are none.
 struct ClientRows {
   Renderer* renderer;
   Client* client;
-  std::uint32_t row_begin = 0, row_end = 0;  // of the batch; of a row that is rendered in parts
-  std::uint32_t column_end = 0;              //   the part's
+  std::uint32_t row_begin = 0, row_end = 0;  // of the batch, or the row rendered in parts
+  std::uint32_t column_end = 0;              // of the part
   Span parts[kThreadCountMax];
 };
 
-// The next part of a row that takes longer than the device may work at once. Between parts it looks at the servers:
-// they are not to take the device for lost, nor it them.
+// The next part of a row that takes longer than the time between polls. Polls the servers between parts, so that
+// neither side takes the other for lost.
 void next_part(ClientRows* s, SpanBatch* batch) {
   const Client& client = *s->client;
   const DeviceRow& row = client.device_row;
@@ -67,7 +67,7 @@ void next_rows(void* context, SpanBatch* batch) {
   const Renderer& renderer = *s->renderer;
   Client* client = s->client;
   DeviceRow* row = &client->device_row;
-  // A server may have sent it meanwhile.
+  // A server may have sent the row meanwhile.
   if (row->in_parts && client->merge.rows[row->row].state != RowState::taken) row->in_parts = false;
   if (row->in_parts) return next_part(s, batch);
   if (has_all_rows(*client)) return;
@@ -94,7 +94,7 @@ std::uint64_t pace_batch(void* context, const SpanBatch& batch, std::uint64_t be
   return take_row_time(s.client, s.row_begin, s.row_end, span_pixel_count(batch.spans, batch.span_count), begin_ns);
 }
 
-// Notes what the batch took. True: all of its rows are rendered.
+// Records the batch's time. True if all its rows are rendered.
 bool finish_batch(const ClientRows& s, const SpanBatch& batch) {
   Client* client = s.client;
   DeviceRow* row = &client->device_row;
@@ -133,7 +133,7 @@ Status begin_frame(Renderer* renderer, Client* client, double seconds) {
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   std::uint64_t begin_ns = client_now_ns(*client);
   if (client->options.has_scene) RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  // What emulates a CPU has taken its time for that already.
+  // With an emulated CPU, its pace has already covered this time.
   std::uint64_t prepare_ns =
       is_paced(renderer->pace) ? client_now_ns(*client) - begin_ns : take_time(client, 0, begin_ns);
   begin_client_frame(client, *renderer, seconds, prepare_ns);

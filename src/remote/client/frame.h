@@ -1,17 +1,17 @@
-// One frame, shared: scene → plan → accelerate → split → trace + shade spans → merge. The device takes rows from the
-// top and goes on into those that have not come; the servers' come from the bottom; where they meet, the frame is done.
+// One split frame: scene → plan → accelerate → split → trace + shade spans → merge. The device renders rows from the
+// top, going on into missing ones; the servers send theirs from the bottom; when they meet, the frame is complete.
 #pragma once
 #include "remote/client/client.h"
 
 namespace pocketray {
 
-// Prepares the scene for the time and asks the servers for their rows.
+// Prepares the scene for the time and requests the servers' rows.
 Status begin_frame(Renderer* renderer, Client* client, double seconds);
-// Renders and merges until about `deadline_ns` by client_now_ns(), at least a few rows, or until `stop` is set. True:
-// the frame is complete, in client->pixels, and client->share tells how it went.
+// Renders and merges until about `deadline_ns` by client_now_ns(), at least a few rows, or until `stop` is set. True if
+// the frame is complete: in client->pixels, summarised in client->share.
 bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns,
                    const std::atomic<bool>* stop = nullptr);
-// Both: the whole frame, but for a stop. *complete may be null.
+// Does both for the whole frame, unless stopped. `complete` may be null.
 Status render_frame(Renderer* renderer, Client* client, double seconds, const std::atomic<bool>* stop = nullptr,
                     bool* complete = nullptr);
 

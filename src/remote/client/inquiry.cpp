@@ -9,13 +9,13 @@ namespace pocketray {
 namespace {
 
 constexpr std::size_t kOutBytes = 1024;
-constexpr std::uint32_t kPieceBytes = 32768, kPiecesAhead = 2;  // asked for while another is on its way
-constexpr std::uint64_t kLookNs = 50'000'000;                   // till a stop is noticed
+constexpr std::uint32_t kPieceBytes = 32768, kPiecesAhead = 2;  // requested while another is in flight
+constexpr std::uint64_t kLookNs = 50'000'000;                   // longest delay until a stop is noticed
 
 std::uint64_t now_ns(const Inquiry& q) { return q.link->backend->now_ns(q.link); }
 
 Status check_stop(const Inquiry& q) {
-  return q.options.stopped && q.options.stopped() ? failure("it is not waited for any longer") : success();
+  return q.options.stopped && q.options.stopped() ? failure("interrupted") : success();
 }
 
 Status wait_for_news(Inquiry* q, bool want_write, std::uint64_t left_ns) {
@@ -45,20 +45,20 @@ Status connect(Inquiry* q, const platform::LinkAddress& address) {
 }
 
 Status send(Inquiry* q, const Message& message) {
-  return send_message(&q->messages, message) ? success() : failure("it does not read what it is sent");
+  return send_message(&q->messages, message) ? success() : failure("it stopped reading");
 }
 
-// The answer of that type; its arrays hold until the next.
+// Waits for an answer of that type; its arrays are valid until the next.
 Status await(Inquiry* q, MessageType type, Message* answer) {
   platform::LinkTimer whole = platform::link_timer(now_ns(*q), q->options.answer_timeout_ns);
   platform::LinkTimer silence = platform::link_timer(now_ns(*q), q->options.silence_timeout_ns);
-  RETURN_IF_ERROR(check_stop(*q));  // a fast server is never waited for
+  RETURN_IF_ERROR(check_stop(*q));  // even if the server answers without a wait
   for (;;) {
     DecodeState state = take_message(&q->messages, answer);
-    if (state == DecodeState::malformed) return failure("what it sends is no message of the protocol");
+    if (state == DecodeState::malformed) return failure("it sent a malformed message");
     if (state == DecodeState::message) {
       if (answer->type == MessageType::error) return failure("%s", wire_error_text(answer->error.code));
-      return answer->type == type ? success() : failure("it sends what it was not asked for");
+      return answer->type == type ? success() : failure("it sent an unrequested message");
     }
     platform::Error error;
     std::uint64_t bytes_in = q->messages.bytes_in;
@@ -84,7 +84,7 @@ Status greet(Inquiry* q) {
   return check_version(answer.hello);
 }
 
-// A server's word goes to a terminal: no control characters.
+// Removes control characters from a server's text, which goes to a terminal.
 void make_printable(char* text) {
   for (; *text; ++text)
     if (static_cast<unsigned char>(*text) < 0x20 || *text == 0x7F) *text = '?';
@@ -119,7 +119,7 @@ Status list_scenes(Inquiry* q, std::vector<SceneEntry>* entries) {
     SceneEntry* entry = &answer.scene_entry;
     if (entry->byte_count == 0 && i == 0) return success();
     if (entry->index != i || entry->byte_count == 0 || (i > 0 && entry->count != count))
-      return failure("its list of scenes contradicts itself");
+      return failure("its list of scenes is inconsistent");
     count = entry->count;
     make_printable(entry->name);
     entries->push_back(*entry);
@@ -139,8 +139,8 @@ const SceneEntry* find_entry(const std::vector<SceneEntry>& entries, const std::
 Status fetch_scene(Inquiry* q, const SceneEntry& entry, std::uint8_t* bytes, std::size_t byte_count_max,
                    const std::function<void(std::uint64_t)>& progress) {
   if (entry.byte_count > byte_count_max)
-    return failure("the scene has %llu bytes and there is room for %zu",
-                   static_cast<unsigned long long>(entry.byte_count), byte_count_max);
+    return failure("the scene has %llu bytes but only %zu are free", static_cast<unsigned long long>(entry.byte_count),
+                   byte_count_max);
   std::uint64_t asked = 0, come = 0;
   auto piece_bytes = [&](std::uint64_t offset) {
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(kPieceBytes, entry.byte_count - offset));
@@ -155,16 +155,15 @@ Status fetch_scene(Inquiry* q, const SceneEntry& entry, std::uint8_t* bytes, std
     Message answer;
     RETURN_IF_ERROR(await(q, MessageType::scene_piece, &answer));
     const ScenePiece& piece = answer.scene_piece;
-    if (!(piece.hash == entry.hash) || piece.offset != come)
-      return failure("it sends another piece of the scene than it was asked for");
+    if (!(piece.hash == entry.hash) || piece.offset != come) return failure("it sent the wrong piece of the scene");
     if (piece.bytes.count != piece_bytes(come))
-      return failure("the scene is %s than it told", piece.bytes.count < piece_bytes(come) ? "shorter" : "longer");
+      return failure("the scene is %s than announced", piece.bytes.count < piece_bytes(come) ? "shorter" : "longer");
     std::memcpy(bytes + come, piece.bytes.data, piece.bytes.count);
     come += piece.bytes.count;
     if (progress) progress(come);
   }
   if (content_hash(bytes, to_size(entry.byte_count)) == entry.hash) return success();
-  return failure("what it sent is not the scene that it told of");
+  return failure("it sent a different scene than announced");
 }
 
 Status ask_view(Inquiry* q, const ViewQuery& query, ViewEntry* entry) {
@@ -174,7 +173,7 @@ Status ask_view(Inquiry* q, const ViewQuery& query, ViewEntry* entry) {
   RETURN_IF_ERROR(send(q, message));
   RETURN_IF_ERROR(await(q, MessageType::view_entry, &answer));
   *entry = answer.view_entry;
-  return entry->scene == query.scene ? success() : failure("it tells of another scene than it was asked for");
+  return entry->scene == query.scene ? success() : failure("it described a different scene than requested");
 }
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// One server as the device sees it: connection, overture, rows that come, failures.
+// One server as seen by the device: connection, overture, rows, failures.
 #include <cinttypes>
 #include <cstdarg>
 #include <cstdio>
@@ -9,10 +9,10 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between two looks at a server that gets no rows
-constexpr std::uint64_t kLastingWaits = 10;   // a connection that was of use for so many times the wait before it was a
-                                              // sound one: the next try is soon
-constexpr std::uint32_t kLookMessages = 256;  // of a server in one look, and no more rows than a picture has
+constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server without rows
+constexpr std::uint64_t kLastingWaits =
+    10;  // a connection useful for this many times the wait before it was sound, so the next attempt comes soon
+constexpr std::uint32_t kLookMessages = 256;  // per server and poll, and no more rows than a picture has
 void tell(Client* client, const char* format, ...) __attribute__((format(printf, 2, 3)));
 void tell(Client* client, const char* format, ...) {
   if (!client->options.log) return;
@@ -73,10 +73,9 @@ void take_scene_entry(Client* client, RemoteServer* server, const SceneEntry& en
   send_ping(client, server, 0);
 }
 
-// Whether a server owes these rows: the next of what it was asked for last, from the bottom upward, or some that were
-// under way when that took the place of an earlier request. None is owed twice, so that what a server can make the
-// device decode is bounded by what the device asked for. A chunk of the last request says that those before it are
-// over.
+// True if the server owes these rows: the next of the last request, from the bottom up, or rows in flight when that
+// replaced an earlier request. No row is owed twice, which bounds what a server can make the device decode. A chunk of
+// the last request ends the earlier ones.
 bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
   std::uint32_t end = std::uint32_t(chunk.row_begin) + chunk.row_count;
   if (chunk.frame == server->asked.frame && end == server->due_end && chunk.row_begin >= server->asked.row_begin) {
@@ -91,14 +90,14 @@ bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
 }
 
 void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
-  if (!takes_owed_rows(server, chunk)) return lose_server(client, server, "it sends rows that it was not asked for");
+  if (!takes_owed_rows(server, chunk)) return lose_server(client, server, "it sent unrequested rows");
   if (chunk.bytes.count > encoded_bytes_max(server->decoder->state.shape, chunk.row_count))
-    return lose_server(client, server, "it sends more bytes than its rows can take");
-  // Decoded twice or in another order, rows would spoil the picture that the decoder keeps.
+    return lose_server(client, server, "it sent more bytes than its rows can take");
+  // Rows decoded twice or out of order would corrupt the decoder's picture.
   if (!take_chunk_number(&chunk, server->chunk_count++))
-    return lose_server(client, server, "it sends rows out of turn");
+    return lose_server(client, server, "it sent rows out of order");
   std::uint64_t begin_ns = client_now_ns(*client);
-  if (!decode_rows(server->decoder, chunk)) return lose_server(client, server, "it sends rows that cannot be decoded");
+  if (!decode_rows(server->decoder, chunk)) return lose_server(client, server, "it sent rows that cannot be decoded");
   std::uint64_t unpacked_ns = client_now_ns(*client) - begin_ns;
   if (client->options.pace.slowdown > 1) {
     std::uint64_t paced = static_cast<std::uint64_t>(static_cast<double>(unpacked_ns) * client->options.pace.slowdown);
@@ -122,7 +121,7 @@ void take(Client* client, RemoteServer* server, const Message& message) {
   lose_server(client, server, kUnasked);
 }
 
-// Whether an answer or rows are awaited.
+// True if an answer or rows are due.
 bool is_awaited(const Client& client, const RemoteServer& server) {
   if (server.phase == ServerPhase::ready || server.phase == ServerPhase::probing)
     return server.frame.open || server.ping_id != 0 || server.unanswered;
@@ -130,7 +129,7 @@ bool is_awaited(const Client& client, const RemoteServer& server) {
   return server.phase != ServerPhase::waiting;
 }
 
-// Takes what has come, but no more than a frame can bring: whatever a server sends, the device goes on.
+// Reads at most a frame's worth, so that no server can stall the device.
 void read_server(Client* client, RemoteServer* server) {
   platform::Error error;
   std::uint32_t messages = 0, rows = 0;
@@ -143,8 +142,7 @@ void read_server(Client* client, RemoteServer* server) {
       if (server->more) return;
       Message message;
       DecodeState state = take_message(&server->messages, &message);
-      if (state == DecodeState::malformed)
-        return lose_server(client, server, "what it sends is no message of the protocol");
+      if (state == DecodeState::malformed) return lose_server(client, server, "it sent a malformed message");
       if (state == DecodeState::need_more) break;
       took = true;
       ++messages;
@@ -166,15 +164,15 @@ void enter(Client* client, RemoteServer* server, ServerPhase phase) {
 }
 
 void send(Client* client, RemoteServer* server, const Message& message) {
-  if (!send_message(&server->messages, message)) lose_server(client, server, "it does not read what it is sent");
+  if (!send_message(&server->messages, message)) lose_server(client, server, "it stopped reading");
 }
 
 const char* wire_error_text(WireError code) {
   switch (code) {
     case WireError::wrong_version:
-      return "it speaks another version of the protocol: update one of the two";
+      return "it speaks another protocol version: update one of the two";
     case WireError::malformed:
-      return "it could not read what it was sent";
+      return "it could not decode a message";
     case WireError::unknown_scene:
       return "it does not have this scene: put the same file into the folder it serves (--scenes)";
     case WireError::too_large:
@@ -182,17 +180,17 @@ const char* wire_error_text(WireError code) {
     case WireError::bad_request:
       return "it cannot render with these settings";
     case WireError::busy:
-      return "it has as many clients as it takes: serve with more --clients";
+      return "it is full: serve with more --clients";
     case WireError::closing:
-      return "it was ended";
+      return "it was shut down";
   }
-  return "it reports an error";
+  return "it reported an error";
 }
 
 const char* phase_text(ServerPhase phase) {
   switch (phase) {
     case ServerPhase::waiting:
-      return "not in reach";
+      return "unreachable";
     case ServerPhase::connecting:
       return "connecting";
     case ServerPhase::greeting:
@@ -228,9 +226,9 @@ void lose_server(Client* client, RemoteServer* server, const char* reason) {
                                                            : next;
   server->timer = platform::link_timer(now, server->retry_ns);
   const char* name = server->address.text;
-  bool named = std::strncmp(reason, name, std::strlen(name)) == 0;  // the link's errors begin with it
+  bool named = std::strncmp(reason, name, std::strlen(name)) == 0;  // the link's errors begin with the name
   if (!server->told)
-    tell(client, "server %s%s%s; going on without it, and trying again", named ? "" : name, named ? "" : ": ", reason);
+    tell(client, "server %s%s%s; continuing without it and retrying", named ? "" : name, named ? "" : ": ", reason);
   server->told = true;
 }
 
@@ -279,8 +277,8 @@ void advance_server(Client* client, RemoteServer* server) {
   } else {
     std::uint64_t left = platform::link_timer_left(&server->timer, client_now_ns(*client));
     std::uint64_t half = silence_limit_ns(*client, *server) / 2;
-    // It may have no time for rows, and yet be there: asked, it has the other half to answer, even where the device was
-    // too busy to look for longer than that.
+    // The server may be alive but too busy for rows: half way through the limit it is pinged and gets the other half to
+    // answer, even if the device was too busy to poll for longer than that.
     if (server->phase >= ServerPhase::probing && server->ping_id == 0 && left < half) {
       server->timer = platform::link_timer(client_now_ns(*client), half);
       send_ping(client, server, 0);

@@ -1,29 +1,28 @@
-// What a client learns by asking: how long an answer takes, and what a byte takes on the way. An answer with a payload
-// means something where the device saw it come and no rows were on the same link: then the device looks often, and asks
-// for rows a moment later.
+// Measures links by pings: round trip and time per byte. An answer with a payload counts only if the device polled when
+// it came and no rows were on the link; so the device polls often then and requests rows a moment later.
 #include "remote/client/parts.h"
 
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kPings = 3;            // without a payload: the least of them is the round trip
-constexpr std::uint32_t kPingsMissedMax = 24;  // after which answers that came unwatched have to do
+constexpr std::uint32_t kPings = 3;            // without a payload; the fastest is the round trip
+constexpr std::uint32_t kPingsMissedMax = 24;  // after which unwatched answers must do
 constexpr double kUnwatchedInverse = 8,
-                 kSizedUnwatchedInverse = 16;    // of an answer's time that the device may not have looked
-constexpr double kSizingLookNs = 250e3;          // between two looks while an answer with a payload is timed
-constexpr double kLongWorkNs = 100e6;            // and while there is none: servers and device are not to take each
-                                                 // other for lost
-constexpr std::uint64_t kQuietNs = 400'000'000;  // that others' rows may be held back while a link is measured,
-constexpr std::uint64_t kAnewQuietNs = 200'000'000, kAnewNs = 3'000'000'000;  // and while it is again, this seldom
-constexpr double kAnewAnswerNs = 100e6;            // that the answer then takes at most, as far as is known
-constexpr double kScaledMax = 1.08;                // beyond which what follows from others is to be measured,
-constexpr double kScaledAloneMax = 1.5;            // or from a single server's rows
-constexpr std::uint32_t kPingBytesLeast = 1024;    // of the one that measures the bandwidth; twice as many each time,
-constexpr std::uint32_t kPingBytesMost = 16384;    // until they take
-constexpr double kPingTripsMin = 8;                // times as long as one without
-constexpr std::uint64_t kPingWaitNs = 20'000'000;  // that the device waits for an answer and does nothing else,
+                 kSizedUnwatchedInverse = 16;  // inverse fraction of an answer's time without polls
+constexpr double kSizingLookNs = 250e3;        // between polls while an answer with a payload is timed
+constexpr double kLongWorkNs = 100e6;  // and otherwise, so that servers and device do not take each other for lost
+constexpr std::uint64_t kQuietNs = 400'000'000;  // longest hold on others' rows while a link is measured,
+constexpr std::uint64_t kAnewQuietNs = 200'000'000,
+                        kAnewNs = 3'000'000'000;   // and while it is measured again, at this interval
+constexpr double kAnewAnswerNs = 100e6;            // longest expected answer of a repeated measurement
+constexpr double kScaledMax = 1.08;                // scaled by others' rows beyond this, a link is measured again;
+constexpr double kScaledAloneMax = 1.5;            // the same for a single server's rows
+constexpr std::uint32_t kPingBytesLeast = 1024;    // payload to measure the bandwidth; doubles each time
+constexpr std::uint32_t kPingBytesMost = 16384;    // up to this, or until the answer
+constexpr double kPingTripsMin = 8;                // takes this many times one without payload
+constexpr std::uint64_t kPingWaitNs = 20'000'000;  // longest idle wait for an answer,
 constexpr std::uint64_t kSizedPingWaitNs = 200'000'000;  // and for one with a payload, over a slow link
-constexpr double kNsPerByteMin = 1e-3;  // a link faster than a terabyte a second is one that was not measured
+constexpr double kNsPerByteMin = 1e-3;                   // a link faster than a terabyte per second was not measured
 
 bool rows_are_under_way(const Client& client) {
   for (std::uint32_t i = 0; i < client.server_count; ++i)
@@ -31,12 +30,12 @@ bool rows_are_under_way(const Client& client) {
   return false;
 }
 
-// The payload of the answer that is to be timed next. Servers may share the device's radio: one after the other.
+// Payload of the next answer to time. Servers may share the device's radio, so one is measured at a time.
 std::uint32_t next_ping_bytes(const Client& client, const RemoteServer& server) {
   if (server.pings_answered < kPings) return 0;
   bool disturbed =
       client.options.has_scene && rows_are_under_way(client) && client_now_ns(client) < server.quiet_until_ns;
-  if (disturbed) return 0;  // it comes when they are not
+  if (disturbed) return 0;  // wait until they have come
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
     const RemoteServer& other = client.servers[i];
     if (&other != &server && other.phase == ServerPhase::measuring && other.ping_id != 0 && other.ping_bytes > 0)
@@ -46,25 +45,25 @@ std::uint32_t next_ping_bytes(const Client& client, const RemoteServer& server) 
   return wanted < room ? wanted : room;
 }
 
-// Whether an answer was awaited when it came, so that its time means something.
+// True if the device polled often enough when the answer came to time it.
 bool is_watched(const Client& client, double ns, std::uint32_t byte_count) {
   double inverse = byte_count > 0 ? kSizedUnwatchedInverse : kUnwatchedInverse;
   return inverse * static_cast<double>(client.unwatched_ns) < ns;
 }
 
-// And one with a payload was alone on the link; a device without the scene does without that.
+// And if it has a payload, it was alone on the link; not required without the scene.
 bool is_sound(const Client& client, const RemoteServer& server, double ns, std::uint32_t byte_count) {
   bool alone = server.ping_alone && !rows_are_under_way(client);
   return is_watched(client, ns, byte_count) && (alone || byte_count == 0 || !client.options.has_scene);
 }
 
-// What a byte takes by an answer of that time.
+// Time per byte from the time of an answer.
 double ns_per_byte_of(const RemoteServer& server, double ns, std::uint32_t byte_count) {
   double per_byte = (ns - server.round_trip_ns) / byte_count;
   return per_byte > kNsPerByteMin ? per_byte : kNsPerByteMin;
 }
 
-// The overture's answers: first without a payload, then with as much as it takes to tell the link from its latency.
+// Answers of the overture: first without a payload, then with enough to tell bandwidth from latency.
 void take_measuring_pong(Client* client, RemoteServer* server, double ns, std::uint32_t byte_count) {
   bool sound = is_sound(*client, *server, ns, byte_count), waits = byte_count == 0 && server->pings_answered >= kPings;
   if (!waits && !sound && ++server->pings_missed < kPingsMissedMax)
@@ -81,8 +80,8 @@ void take_measuring_pong(Client* client, RemoteServer* server, double ns, std::u
   enter(client, server, ServerPhase::probing);
 }
 
-// The link of a server that is in use, measured anew. An answer that was seen late, or that rows held up, still says
-// that the link is no slower.
+// Measures the link of a server in use again. An answer that was seen late or delayed by rows still bounds the link
+// from below.
 void take_ready_pong(Client* client, RemoteServer* server, double ns, std::uint32_t byte_count) {
   server->quiet_until_ns = 0;
   ServerModel* model = &client->model.servers[index_of(*client, server)];
@@ -111,10 +110,10 @@ void send_ping(Client* client, RemoteServer* server, std::uint32_t reply_bytes) 
 }
 
 void take_pong(Client* client, RemoteServer* server, const Pong& pong) {
-  // One ping is under way at most, so that there is no other to answer.
+  // At most one ping is in flight, so no other can be answered.
   if (server->ping_id == 0 || pong.id != server->ping_id || pong.bytes.count != server->ping_bytes)
     return lose_server(client, server, kUnasked);
-  server->late_rows -= server->late_at_ping;  // they would have come before it
+  server->late_rows -= server->late_at_ping;  // they would have arrived before it
   server->late_at_ping = 0;
   double ns = static_cast<double>(client_now_ns(*client) - server->ping_ns);
   server->ping_id = 0;
@@ -151,7 +150,7 @@ void measure_anew(Client* client) {
     server->anew_ns = now + kAnewNs;
     server->quiet_until_ns = now + kAnewQuietNs;
     send_ping(client, server, static_cast<std::uint32_t>(bytes < least ? least : bytes > most ? most : bytes));
-    return flush_server(client, server);  // one after the other
+    return flush_server(client, server);  // one at a time
   }
 }
 

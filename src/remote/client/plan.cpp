@@ -1,4 +1,4 @@
-// What a client asks of whom: the split of a frame, servers that join it, what a frame tells of the link.
+// Plans requests: the split of a frame, servers that join it, the link measured by a frame.
 #include <algorithm>
 #include <cmath>
 
@@ -7,18 +7,18 @@
 namespace pocketray {
 namespace {
 
-constexpr double kGapsMin = 4;       // looks in which rows have to come for their time to mean something
-constexpr double kDisproved = 1.25;  // times that a link is faster than it was thought to be, if that is no noise
-constexpr double kLinkBound = 1.15;  // times that rows take on the link beyond what they take on the servers
+constexpr double kGapsMin = 4;       // polls in which rows must arrive for their time to count
+constexpr double kDisproved = 1.25;  // a link faster than estimated by more than this is not noise
+constexpr double kLinkBound = 1.15;  // rows that take this much longer than on the servers are bound by the link
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
-constexpr double kGrowthMin = 4, kGrowthMax = 32;                // of chunks, in 16ths, where they grow
-// Nanoseconds a byte beyond which fewer bytes are worth more of the server's time. Measured (codec_frames_test): level
-// 1 takes 400 ns and saves 1.5 bytes a pixel of RGB565, level 6 takes another 300 and saves 0.06.
+constexpr double kGrowthMin = 4, kGrowthMax = 32;                // of growing chunks, in 16ths
+// Nanoseconds per byte beyond which fewer bytes are worth more server time. Measured (codec_frames_test), per pixel of
+// RGB565: level 1 takes 400 ns and saves 1.5 bytes, level 6 takes another 300 ns and saves 0.06.
 constexpr double kDeflateNsPerByte = 250, kDeflateMoreNsPerByte = 5000;
 
-// How far chunks may grow from one to the next without keeping the slower of rendering and sending from its work: while
-// one chunk is in the slower, the next passes the faster. 0 where neither is much slower. Stays as it is within a
-// factor of two: rows compress better where they are cut as in the frame before.
+// How much chunks may grow from one to the next without starving the slower of rendering and sending: while one chunk
+// is in the slower stage, the next passes the faster one. 0 if neither is much slower. Changes only by a factor of two
+// or more, as rows compress better when cut as in the last frame.
 std::uint8_t chunk_growth(const SplitProblem& p, std::uint32_t server, const Split& split, std::uint8_t before) {
   const ServerTables& t = p.servers[server];
   std::uint32_t begin = split.boundary[server], end = split.boundary[server + 1];
@@ -32,7 +32,7 @@ std::uint8_t chunk_growth(const SplitProblem& p, std::uint32_t server, const Spl
   return growth < kGrowthMin ? std::uint8_t(0) : static_cast<std::uint8_t>(growth);
 }
 
-// Fixed share: the device's rows as told, the others among the servers by their speed.
+// Fixed share: the device's rows as given, the others divided among the servers by speed.
 Split split_by_share(const Client& client, const SplitProblem& problem) {
   Split split;
   split.server_count = client.server_count;
@@ -52,7 +52,7 @@ Split split_by_share(const Client& client, const SplitProblem& problem) {
   return split;
 }
 
-// Servers whose overture has come to their first rows get them from the bottom.
+// Requests the first rows, from the bottom, of servers whose overture has got that far.
 void probe_servers(Client* client) {
   std::uint32_t bottom = client->settings.height;
   std::uint32_t rows = std::max(1u, std::min(kProbeRowsMax, bottom / kProbeDivisor));
@@ -108,7 +108,7 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   if (server->asked.frame > 0) server->late_rows += server->due_end - server->asked.row_begin;
   server->asked = message.frame_request;
   server->due_end = row_end;
-  if (!send_message(&server->messages, message)) return lose_server(client, server, "it does not read what it is sent");
+  if (!send_message(&server->messages, message)) return lose_server(client, server, "it stopped reading");
   std::uint64_t bytes = server->frame.bytes, row_bytes = server->frame.row_bytes;
   server->frame = {row_begin, row_end, 0, client_now_ns(*client), bytes, row_bytes, 0, true};
   if (!server->unanswered)
@@ -129,7 +129,7 @@ double device_pixel_ns(const Client& client) {
 
 void share_rows(Client* client, std::uint64_t elapsed_ns) {
   SplitProblem problem = make_problem(&client->model, client->options.wish);
-  // Times count from the frame's begin: the device could render from then on, servers begin when they are asked.
+  // Times count from the begin of the frame: the device can render from then on, servers start when asked.
   auto from_now = [&](std::uint64_t* start_ns) { *start_ns = std::min(kRowTableMax, *start_ns + elapsed_ns); };
   from_now(&problem.link_start_ns);
   for (std::uint32_t i = 0; i < client->server_count; ++i) from_now(&problem.servers[i].start_ns);
@@ -146,7 +146,7 @@ void share_rows(Client* client, std::uint64_t elapsed_ns) {
   client->share.local_ns = static_cast<double>(alone.time_ns + client->prepare_ns);
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    if (server->phase != ServerPhase::ready) continue;  // the others' figure is their overture's
+    if (server->phase != ServerPhase::ready) continue;  // for others the overture's figure stands
     server->ns_per_byte = static_cast<double>(client->model.servers[i].ns_per_byte.value);
     server->chunk_growth = chunk_growth(problem, i, client->split, server->chunk_growth);
     ask_for_rows(client, server, client->split.boundary[i], client->split.boundary[i + 1]);
@@ -172,8 +172,7 @@ void let_join(Client* client) {
 
 namespace {
 
-// A server's bytes came no slower than its link allows: where they came faster than it was thought to be, that is
-// wrong.
+// A link is at least as fast as its bytes came: corrects an estimate below that.
 void measure_own_links(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const ServerFrame& f = client->servers[i].frame;
@@ -184,8 +183,8 @@ void measure_own_links(Client* client) {
   }
 }
 
-// All of a server's rows came within the frame, however seldom the device looked: its link is no slower than that. How
-// fast it is, is to be measured.
+// All of a server's rows came within the frame, however rarely the device polled, so its link is at least that fast.
+// Its actual speed must be measured.
 void bound_own_links(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
@@ -201,8 +200,8 @@ void bound_own_links(Client* client) {
   }
 }
 
-// Bytes per nanosecond that a server makes of the rows behind its first chunk: the arrivals begin with that one, and
-// its rows may be far cheaper than theirs.
+// Bytes per nanosecond that a server produces after its first chunk. Arrivals count from that one, whose rows may be
+// far cheaper than the rest.
 double rate_of(const ServerFrame& f) {
   if (f.render_behind_ns > 0) return static_cast<double>(f.bytes_behind) / f.render_behind_ns;
   return f.render_ns > 0 ? static_cast<double>(f.bytes) / f.render_ns : 0;
@@ -216,7 +215,7 @@ void measure_link(Client* client) {
   double ns = static_cast<double>(a.last_ns - a.first_ns), bytes = static_cast<double>(a.bytes);
   if (bytes == 0 || ns < kGapsMin * static_cast<double>(a.gap_ns_max)) return;
   measure_own_links(client);
-  double rate = 0;  // bytes per nanosecond that the servers make
+  double rate = 0;  // bytes per nanosecond from all servers
   std::uint32_t count = 0, last = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const ServerFrame& f = client->servers[i].frame;
@@ -231,7 +230,7 @@ void measure_link(Client* client) {
   smooth(link, ns / bytes);
   if (count == 1 && link_bound) observe_transfer(&client->model, last, bytes, ns);
   if (!(before > 0)) return;
-  // What has become of each by itself is measured when it has become doubtful.
+  // Each link is measured by itself once its figure has become doubtful.
   double factor = static_cast<double>(link->value) / before;
   if (count == 1) {
     if (link_bound) client->servers[last].scaled *= factor;

@@ -1,4 +1,4 @@
-// The scene: fetched from servers where the device does not have it, left to them where the device has no room for it.
+// Opens the scene: fetches it from servers if the device lacks it, leaves it to them if it does not fit on the device.
 #include <cstdio>
 
 #include "base/printable.h"
@@ -18,7 +18,7 @@ namespace {
 
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
-// "; 24.0M would hold the scene": what --memory would have to be. Empty where no --memory suffices.
+// "; 24.0M would hold the scene": the --memory needed. Empty if no --memory suffices.
 std::string memory_hint(const char* before, std::size_t wanted, const char* would) {
   if (wanted > kMemoryBytesMax) return "";
   char text[80];
@@ -32,7 +32,7 @@ Status ask(ConnectedServers* s, std::size_t server, Inquiry* inquiry) {
   return open_inquiry(options, s->link, s->addresses[server], inquiry);
 }
 
-// "127.0.0.1:7411: it does not answer; …", each server once; the link's own errors begin with its name.
+// "127.0.0.1:7411: it does not answer; …", each server once; the link's errors already begin with the name.
 void add_reason(const ConnectedServers& s, std::size_t server, const std::string& reason, std::string* reasons) {
   const std::string name = s.addresses[server].text;
   *reasons += (reasons->empty() ? "" : "; ") + (reason.compare(0, name.size(), name) == 0 ? "" : name + ": ") + reason;
@@ -41,10 +41,10 @@ void add_reason(const ConnectedServers& s, std::size_t server, const std::string
 std::string names_of(const std::vector<SceneEntry>& entries) {
   std::string names;
   for (const SceneEntry& entry : entries) names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  return names.empty() ? "it has no scene" : "it has " + names;
+  return names.empty() ? "it has no scenes" : "it has " + names;
 }
 
-// The entry of the scene called so in the server's list.
+// Finds the scene `name` in the server's list.
 Status find_on(Inquiry* inquiry, const std::string& name, SceneEntry* entry) {
   std::vector<SceneEntry> entries;
   RETURN_IF_ERROR(list_scenes(inquiry, &entries));
@@ -54,8 +54,8 @@ Status find_on(Inquiry* inquiry, const std::string& name, SceneEntry* entry) {
   return success();
 }
 
-// Into the scene arena, where there is room. How long the scene is, is the server's word: 64 bits, of which a CPU may
-// address 32.
+// Fetches into the scene arena, if it fits. The size is the server's claim, 64 bits, of which this CPU may address only
+// 32.
 Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry, Renderer* renderer,
              SceneSource* source) {
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, entry.byte_count));
@@ -72,7 +72,7 @@ Status fetch(Inquiry* inquiry, const std::string& name, const SceneEntry& entry,
   return success();
 }
 
-// From the first server that has the scene and sends it.
+// Loads from the first server that has the scene and sends it.
 Status load_from_servers(ConnectedServers* s, const std::string& name, Renderer* renderer, SceneSource* source,
                          SceneStorage* storage) {
   std::string reasons;
@@ -93,7 +93,7 @@ Status load_from_servers(ConnectedServers* s, const std::string& name, Renderer*
     s->is_named = false;
     add_reason(*s, i, status.message, &reasons);
   }
-  return failure("%.200s is no file, nor a built-in scene, nor to be had from a server; %s", name.c_str(),
+  return failure("%.200s is neither a file nor a built-in scene, and no server offers it; %s", name.c_str(),
                  reasons.c_str());
 }
 
@@ -114,7 +114,7 @@ Status name_loaded(ConnectedServers* s, SceneSource* source, Renderer* renderer)
   return status;
 }
 
-// The hash of a scene that did not fit: of a file by its bytes, of a built-in scene by a server that has it, too.
+// Hash of a scene that did not fit: a file by its bytes, a built-in scene by asking a server that has it.
 Status name_without_loading(ConnectedServers* s, const std::string& name) {
   bool is_builtin = find_builtin(name.c_str()) != nullptr;
   if (!is_builtin && is_baked_name(name)) return hash_file(name, &s->scene);
@@ -160,12 +160,12 @@ EffectPlan effects_of_servers(EffectMask mask) {
   for (int i = 0; i < kEffectCount; ++i) {
     EffectDecision* decision = &plan.decisions[i];
     decision->on = has(mask, static_cast<Effect>(i));
-    std::snprintf(decision->reason, sizeof decision->reason, "as the servers plan it");
+    std::snprintf(decision->reason, sizeof decision->reason, "planned by the servers");
   }
   return plan;
 }
 
-// Without the scene: what is shown is what the servers render.
+// Opens without the scene: shows what the servers render.
 Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
   ViewQuery query;
   query.settings = opened->renderer.settings;
@@ -179,7 +179,7 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output
   query.scene = s->scene;
   if (status.ok) status = find_view(s, query);
   if (!status.ok)
-    return failure("%.100s does not fit --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
+    return failure("%.100s does not fit in --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
                    megabytes(limit), memory_hint(" (", wanted, "be a start)").c_str(), status.message);
   opened->source = SceneSource();
 
@@ -199,9 +199,10 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output
   renderer->accel.bounds = s->view.bounds;
   s->is_named = s->is_thin = true;
   char line[400];
-  std::snprintf(line, sizeof line,
-                "%.100s does not fit --memory %.1fM: the servers render every pixel, this device shows them%s",
-                o.scene.c_str(), megabytes(limit), memory_hint("; ", wanted, "hold the scene").c_str());
+  std::snprintf(
+      line, sizeof line,
+      "%.100s does not fit in --memory %.1fM: the servers render every pixel and this device only shows them%s",
+      o.scene.c_str(), megabytes(limit), memory_hint("; ", wanted, "hold the scene").c_str());
   opened->source.warning = line;
   return success();
 }
@@ -248,7 +249,7 @@ Status list_offered_scenes(Servers* servers, std::size_t server, std::vector<Off
   if (!status.ok) return failure("%s", reason.c_str());
   for (const SceneEntry& entry : entries) {
     OfferedScene scene = {entry.name, entry.triangle_count, entry.byte_count};
-    make_printable(&scene.name[0], scene.name.size());  // whatever the server sent
+    make_printable(&scene.name[0], scene.name.size());  // the server may have sent anything
     scenes->push_back(scene);
   }
   return success();

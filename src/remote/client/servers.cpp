@@ -45,7 +45,7 @@ WireFormat wire_format(bool small_pixels) { return small_pixels ? WireFormat::rg
 
 Status check(const ServersOptions& o) {
   if (o.addresses.size() > kServerCountMax)
-    return failure("--server is given %zu times: at most %u servers take part", o.addresses.size(), kServerCountMax);
+    return failure("--server is given %zu times: use at most %u servers", o.addresses.size(), kServerCountMax);
   if (o.device_share != kBestShare && !(o.device_share >= 0 && o.device_share <= 1))
     return failure("--share is %g: it must lie in 0 … 1", o.device_share);
   for (double x : {o.price, o.energy_pixel, o.energy_byte, o.cost_weight_ms, o.cost_cap})
@@ -53,12 +53,12 @@ Status check(const ServersOptions& o) {
   if (o.verify != kVerifyAuto && !(o.verify >= 0 && o.verify <= static_cast<int>(kSpotChecksMax)))
     return failure("--verify is %d: it must lie in 0 … %u", o.verify, kSpotChecksMax);
   if (o.addresses.empty() && o.verify != kVerifyAuto)
-    return failure("--verify checks the pixels of render servers: name one with --server");
+    return failure("--verify checks pixels of render servers: add --server");
   bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
   if (o.addresses.empty() && (any || o.device_share != kBestShare))
-    return failure("shares, prices and energies are about render servers: name one with --server");
+    return failure("shares, prices and energies apply to render servers: add --server");
   if (o.cost_weight_ms > 0 && o.cost_cap > 0)
-    return failure("--cost-weight and --cost-cap exclude each other: give one of them");
+    return failure("--cost-weight and --cost-cap exclude each other: use one of them");
   return success();
 }
 
@@ -146,7 +146,7 @@ bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t deadline_
 
 void tend_client(Servers* servers) { advance_client(&connected(servers)->client, 0); }
 
-// A picture that is refined shows sooner than one that is complete: servers are in use once one is in reach.
+// Servers count as in use once one has passed its overture, as a refined picture shows sooner than a complete one.
 ServersState state_of(const Servers& servers) {
   const ConnectedServers& s = connected(servers);
   const Client& client = s.client;
@@ -195,13 +195,13 @@ void add_server_lines(const ConnectedServers& s, HudText* text) {
 void add_share_lines(const ConnectedServers& s, HudText* text) {
   const Client& client = s.client;
   const FrameShare& f = s.last;
-  if (is_cut_off(client)) add_hud_line(text, "no server sends rows: the picture stands still");
+  if (is_cut_off(client)) add_hud_line(text, "no server answers: the picture is frozen");
   if (f.measured_ns > 0) {
     if (f.local_ns > 0)
       add_hud_line(text, "%.1f ms, predicted %.1f, alone %.1f: %.1f times", f.measured_ns * 1e-6, f.predicted_ns * 1e-6,
                    f.local_ns * 1e-6, f.local_ns / f.measured_ns);
     else if (s.is_thin)
-      add_hud_line(text, "%.1f ms  all of it by servers", f.measured_ns * 1e-6);
+      add_hud_line(text, "%.1f ms  all by servers", f.measured_ns * 1e-6);
     else
       add_hud_line(text, "%.1f ms  device alone so far", f.measured_ns * 1e-6);
     const char* device = client.options.pace.device ? client.options.pace.device : "device";
@@ -217,7 +217,7 @@ void add_share_lines(const ConnectedServers& s, HudText* text) {
     if (f.server_rows[i] > 0) caught = std::min(caught, client.servers[i].checks.caught_row_last);
   }
   if (checked > 0)
-    add_hud_line(text, "%llu %s checked: a wrong row is seen with %.2g %%", static_cast<unsigned long long>(checked),
+    add_hud_line(text, "%llu %s checked: finds a wrong row with %.2g %%", static_cast<unsigned long long>(checked),
                  s.is_thin ? "rows" : "pixels", 100 * caught);
 }
 

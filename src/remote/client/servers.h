@@ -1,4 +1,4 @@
-// The backend of session/servers.h: a Client over TCP, and the scene, fetched or left to the servers.
+// The backend of session/servers.h: a Client over TCP, and a scene fetched from or left to the servers.
 #pragma once
 #include "remote/client/client.h"
 #include "session/servers.h"
@@ -14,12 +14,12 @@ struct ConnectedServers : Servers {
   platform::Link* tcp = nullptr;
   platform::Link* link = nullptr;  // tcp, or the emulated radio over it
   ContentHash scene;
-  bool is_named = false;  // `scene` is the hash of the scene that is open
-  bool is_thin = false;   // the device has no room for it
-  ViewEntry view;         // of it, where that is so
+  bool is_named = false;  // `scene` is the hash of the open scene
+  bool is_thin = false;   // the scene does not fit on the device
+  ViewEntry view;         // of the scene, if is_thin
   Client client;
   bool started = false;
-  bool lied[kServerCountMax] = {};  // found out by a client before this one
+  bool lied[kServerCountMax] = {};  // caught by an earlier client
   ServersTotals totals;
   FrameShare last;  // of the last complete frame
   std::atomic<bool> stopped{false};
@@ -32,10 +32,10 @@ inline const ConnectedServers& connected(const Servers& servers) {
 
 extern const ServersBackend kRenderServers;
 
-// Closes the client's connections, if there is one.
+// Closes the client's connections, if any.
 void end_client(ConnectedServers* servers);
 
-// Of the backend; scene.cpp has them.
+// Functions of the backend in scene.cpp.
 Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
                               OpenScene* opened);
 void stop_opening(Servers* servers);

@@ -1,5 +1,4 @@
-// A device without the scene: every row of a frame is a server's, and a pixel that one fails to send another one has
-// to.
+// A device without the scene: servers render every row, and rows that one fails to send are requested from another.
 #include <algorithm>
 
 #include "remote/client/parts.h"
@@ -7,12 +6,12 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows: longer than a connection may take
-// A server that has been silent for the time of so many of its chunks is taken to have stopped; at least for so long,
-// which is more than a busy system takes to go on.
+constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows; longer than connecting may take
+// A server silent for the time of kSilentChunks of its chunks counts as stopped, but not before kSilentNsMin, longer
+// than the pauses of a busy system.
 constexpr double kSilentChunks = 4, kSilentNsMin = 30e6;
 
-// How many servers have been asked for the row.
+// Number of servers asked for the row.
 std::uint32_t asked_count(const Client& client, std::uint32_t row) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
@@ -26,7 +25,7 @@ struct Run {
   std::uint32_t begin = 0, end = 0;
 };
 
-// The longest run of missing rows in [begin, end) that so many servers have been asked for.
+// The longest run of missing rows in [begin, end) requested from exactly `count` servers.
 Run longest_run(const Client& client, std::uint32_t begin, std::uint32_t end, std::uint32_t count) {
   Run best, run = {begin, begin};
   for (std::uint32_t row = begin; row < end; ++row) {
@@ -42,7 +41,7 @@ Run longest_run(const Client& client, std::uint32_t begin, std::uint32_t end, st
 
 bool is_idle(const RemoteServer& server) { return server.phase == ServerPhase::ready && !server.frame.open; }
 
-// Rows in a time; all are alike while nothing is known.
+// Rows per time; the same for all while unknown.
 double speed_of(const Client& client, const RemoteServer& server) {
   double sum = 0, count = 0;
   for (std::uint32_t i = 0; i < client.server_count; ++i)
@@ -51,7 +50,7 @@ double speed_of(const Client& client, const RemoteServer& server) {
   return count > 0 ? sum / count : 1;
 }
 
-// Every idle server gets its part of the run, by its speed.
+// Divides the run among idle servers by their speed.
 void divide(Client* client, const Run& run) {
   double speed_sum = 0, so_far = 0, rows = run.end - run.begin;
   for (std::uint32_t i = 0; i < client->server_count; ++i)
@@ -67,8 +66,8 @@ void divide(Client* client, const Run& run) {
   }
 }
 
-// Rows that the server alone has been asked for and that somebody else had better render: all where it has fallen
-// silent, else the upper half, which it would send last.
+// Rows requested only from this server that another should render: all if it has fallen silent, otherwise the upper
+// half, which it would send last.
 Run rows_to_spare(const Client& client, const RemoteServer& server) {
   Run run = longest_run(client, server.frame.row_begin, server.frame.row_end, 1);
   double silent = static_cast<double>(client_now_ns(client) - std::max(server.frame.asked_ns, server.frame.heard_ns));
@@ -95,7 +94,7 @@ void ask_idle_servers(Client* client) {
   bool idle = false;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
-    if (server->phase == ServerPhase::probing) server_is_ready(client, server);  // what it renders is seen as it comes
+    if (server->phase == ServerPhase::probing) server_is_ready(client, server);  // its speed shows as rows come
     idle = idle || is_idle(*server);
   }
   if (!idle || client->complete) return;
@@ -123,7 +122,7 @@ bool is_cut_off(const Client& client) {
   for (std::uint32_t i = 0; i < client.server_count; ++i) {
     const RemoteServer& server = client.servers[i];
     if (server.phase == ServerPhase::ready && server.frame.open && server.frame.answers)
-      return false;  // it lives, and takes its time
+      return false;  // it is alive, just slow
   }
   return true;
 }

@@ -11,7 +11,7 @@
 namespace pocketray {
 namespace {
 
-// What a check is taken to cost until one has been timed, in pixels of whole rows, whose rays are traced in packets. A
+// Assumed cost of a check until one has been timed, relative to a pixel of whole rows, which are traced in packets. A
 // guess.
 constexpr double kLonePixelFactor = 2;
 
@@ -24,17 +24,17 @@ void write_pixel_text(const std::uint8_t* pixel, WireFormat format, char text[8]
     std::snprintf(text, 8, "%02x%02x%02x", pixel[0], pixel[1], pixel[2]);
 }
 
-// What proves the lie, for the log: where, what was sent and what is right.
+// Describes a wrong pixel for the log: where, what was sent and what is right.
 void write_proof(const Client& client, std::uint32_t row, std::uint32_t column, const std::uint8_t* sent,
                  const std::uint8_t* right, char text[160]) {
   char was[8], is[8];
   write_pixel_text(sent, client.options.format, was);
   write_pixel_text(right, client.options.format, is);
-  std::snprintf(text, 160, "frame %u, row %u, column %u is %s where %s is right", client.request.frame, row, column,
-                was, is);
+  std::snprintf(text, 160, "frame %u, row %u, column %u is %s instead of %s", client.request.frame, row, column, was,
+                is);
 }
 
-// Pixels that are due in this frame, of so many servers. The frame is checked again where a lie was found in it.
+// Pixels to check in this frame for `sender_count` servers. A frame with a wrong pixel is checked again.
 std::uint32_t due_count(Client* client, std::uint32_t sender_count) {
   Verifier* v = &client->verifier;
   if (v->check_count > 0) return std::max(static_cast<std::uint32_t>(v->check_count), sender_count);
@@ -43,12 +43,12 @@ std::uint32_t due_count(Client* client, std::uint32_t sender_count) {
   double pixel_ns = kLonePixelFactor * device_pixel_ns(*client);
   if (is_known(v->check_ns)) pixel_ns = static_cast<double>(v->check_ns.value);
   double frame_ns = static_cast<double>(client_now_ns(*client) - client->begin_ns);
-  // What a pixel costs is not known where the device renders none: then one tells.
+  // Without a known pixel cost, because the device renders none, one pixel measures it.
   double paid = pixel_ns > 0 ? kCheckShare * frame_ns / pixel_ns : 1;
   return v->due_count = due_checks(&v->schedule, paid, &v->random);
 }
 
-// Appends pixels of the server's rows to v->spans; returns how many there are then.
+// Appends pixels of the server's rows to v->spans; returns the new count.
 std::uint32_t pick_pixels(Client* client, std::uint32_t server, std::uint32_t count, std::uint32_t span_count) {
   Verifier* v = &client->verifier;
   if (count == 0) return span_count;
@@ -64,7 +64,7 @@ std::uint32_t pick_pixels(Client* client, std::uint32_t server, std::uint32_t co
   return span_count;
 }
 
-// Renders the first `count` pixels of v->spans into v->pixels, as the frame has them.
+// Renders the first `count` pixels of v->spans into v->pixels, in the format of the frame.
 struct PixelCheck {
   Renderer* renderer;
   Client* client;
@@ -96,7 +96,7 @@ void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
   trace_frame(renderer, source);
 }
 
-// The first of these pixels that the server sent wrong, or `end`.
+// Index of the first wrong pixel in [begin, end), or `end`.
 std::uint32_t find_wrong(const Client& client, std::uint32_t begin, std::uint32_t end) {
   const Verifier& v = client.verifier;
   std::size_t bytes = pixel_bytes(client.options.format);
@@ -118,12 +118,12 @@ void count_checks(Client* client, std::uint32_t server, std::uint32_t rows, std:
   client->share.checked[server] = pixels;
 }
 
-// Servers that are left get parts of the missing rows by their speed, the device keeps the upper ones.
+// Divides the missing rows among the remaining servers by speed; the device keeps the upper ones.
 void share_missing_rows(Client* client) {
   std::uint32_t begin = client->merge.next_row, end = client->settings.height;
   while (end > begin && client->merge.rows[end - 1].state != RowState::missing) --end;
   auto speed_of = [&](std::uint32_t i) {
-    const Smoothed& speed = client->model.servers[i].speed;  // its time over the device's
+    const Smoothed& speed = client->model.servers[i].speed;  // its time relative to the device's
     bool usable = client->servers[i].phase == ServerPhase::ready && !client->servers[i].frame.open && is_known(speed);
     return usable ? 1 / static_cast<double>(speed.value) : 0;
   };
@@ -139,7 +139,7 @@ void share_missing_rows(Client* client) {
   }
 }
 
-// True: no lie was found.
+// True if no wrong pixel was found.
 bool check_pixels(Renderer* renderer, Client* client) {
   Verifier* v = &client->verifier;
   std::uint32_t pixels[kServerCountMax] = {}, counts[kServerCountMax] = {}, ends[kServerCountMax] = {}, senders = 0;
@@ -188,7 +188,8 @@ Status make_verifier(int check_count, bool (*entropy)(void*, std::size_t), const
   std::uint64_t seed[2] = {1, 1};
   if (check_count != 0 && entropy && !entropy(seed, sizeof seed))
     return failure(
-        "this system gives no random numbers, by which pixels of servers are checked: --verify 0 goes on unchecked");
+        "this system provides no random numbers to choose pixels for checks: use --verify 0 to continue without "
+        "checks");
   v->random = make_rng(seed[0], seed[1]);
   v->schedule = make_check_schedule(&v->random);
   v->rows = arena_array<std::uint16_t>(arena, settings.height);
@@ -223,7 +224,7 @@ bool agrees_with_device(Client* client, RemoteServer* server, std::uint32_t row_
 }
 
 void drop_liar(Client* client, RemoteServer* server, const char* proof) {
-  server->told = true;  // why it is lost, here
+  server->told = true;  // the line below gives the reason
   lose_server(client, server, "");
   server->lied = true;
   ++client->share.lies;
@@ -231,9 +232,9 @@ void drop_liar(Client* client, RemoteServer* server, const char* proof) {
   if (!client->options.log) return;
   char line[400], before[100] = "";
   if (server->checks.rows > 0)
-    std::snprintf(before, sizeof before, "; %llu rows of earlier frames are its and may be wrong, too",
+    std::snprintf(before, sizeof before, "; %llu of its rows in earlier frames may also be wrong",
                   static_cast<unsigned long long>(server->checks.rows));
-  std::snprintf(line, sizeof line, "server %s sends wrong pixels and is not used any more: %s%s", server->address.text,
+  std::snprintf(line, sizeof line, "server %s sent wrong pixels and is no longer used: %s%s", server->address.text,
                 proof, before);
   client->options.log(client->options.log_context, line);
 }

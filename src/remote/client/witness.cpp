@@ -1,4 +1,4 @@
-// Checks of a device without the scene: it can render nothing itself, but it can ask another server for the same row.
+// Checks without the scene: the device cannot render, but can ask another server for the same row.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -8,7 +8,7 @@
 namespace pocketray {
 namespace {
 
-// An answer that takes longer than so many usual ones, and at least this time, is not waited for.
+// The device stops waiting for an answer after kLateAnswers times the usual time, but not before kAnswerNsMin.
 constexpr double kLateAnswers = 4;
 constexpr double kAnswerNsMin = 50e6;
 
@@ -16,7 +16,7 @@ std::size_t row_bytes(const Client& client) {
   return std::size_t(client.settings.width) * pixel_bytes(client.options.format);
 }
 
-// Servers that can be asked, in a random order.
+// Servers ready to be asked, in random order.
 std::uint32_t ready_servers(Client* client, std::uint32_t servers[kServerCountMax]) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i)
@@ -36,9 +36,9 @@ std::uint32_t random_row_of(Client* client, std::uint32_t server, std::uint32_t 
 void ask_witness(Client* client, std::uint32_t witness, std::uint32_t row) {
   RemoteServer* server = &client->servers[witness];
   server->frame_before = server->frame;
-  server->frame_before.open = false;  // rows that it has not sent are a later request's
+  server->frame_before.open = false;  // its unsent rows were left to a later request
   request_rows(client, server, row, row + 1);
-  if (server->phase != ServerPhase::ready) return;  // lost just now
+  if (server->phase != ServerPhase::ready) return;  // just lost
   server->is_witness = true;
   client->verifier.is_asking = true;
 }
@@ -50,7 +50,7 @@ bool is_late(const Client& client) {
   return ns > std::max(kAnswerNsMin, kLateAnswers * usual);
 }
 
-// Whether nobody is waited for any more.
+// True if no answers are due.
 bool answers_are_here(Client* client) {
   Verifier* v = &client->verifier;
   bool late = is_late(*client);
@@ -82,7 +82,7 @@ void count_row(Client* client, std::uint32_t server) {
   checks->caught_row = either_probability(checks->caught_row, checks->caught_row_last);
 }
 
-// Each server that has sent rows has one of them compared, by the next in a circle.
+// Has a row of each server compared by the next server in the ring.
 void ask_all(Client* client) {
   std::uint32_t order[kServerCountMax], count = ready_servers(client, order);
   if (count < 2) return;
@@ -93,7 +93,7 @@ void ask_all(Client* client) {
   }
 }
 
-// As many rounds as are due, in this frame 0 or 1.
+// True if a round of checks is due in this frame.
 bool is_due(Client* client) {
   Verifier* v = &client->verifier;
   bool again = v->again;
@@ -105,7 +105,7 @@ bool is_due(Client* client) {
   return due_checks(&v->schedule, kCheckShare * frame_ns / static_cast<double>(v->check_ns.value), &v->random) > 0;
 }
 
-// Asks somebody who has no part in it; false: there is nobody.
+// Asks a server outside the dispute; false if there is none.
 bool ask_judge(Client* client) {
   Dispute* d = &client->verifier.dispute;
   std::uint32_t order[kServerCountMax], count = ready_servers(client, order);
@@ -124,18 +124,17 @@ void tell_dispute(Client* client) {
   Verifier* v = &client->verifier;
   if (!v->disputed && client->options.log) {
     char line[400];
-    std::snprintf(
-        line, sizeof line,
-        "servers %s and %s send different pixels for row %u of frame %u: without the scene this device cannot "
-        "tell which are right; name a third server, or give it the --memory for the scene",
-        client->servers[v->dispute.server].address.text, client->servers[v->dispute.other].address.text, v->dispute.row,
-        client->request.frame);
+    std::snprintf(line, sizeof line,
+                  "servers %s and %s sent different pixels for row %u of frame %u, and without the scene this device "
+                  "cannot tell which are right: add a third --server, or enough --memory for the scene",
+                  client->servers[v->dispute.server].address.text, client->servers[v->dispute.other].address.text,
+                  v->dispute.row, client->request.frame);
     client->options.log(client->options.log_context, line);
   }
   v->disputed = true;
 }
 
-// Drops the one of the two that differs from the judge, where just one does.
+// Drops the one that differs from the judge, if exactly one does.
 void judge(Client* client) {
   Verifier* v = &client->verifier;
   Dispute* d = &v->dispute;
@@ -144,14 +143,13 @@ void judge(Client* client) {
   for (int k = 0; k < 2; ++k) agrees[k] = std::memcmp(v->versions[k].data, third, row_bytes(*client)) == 0;
   if (agrees[0] == agrees[1]) return;
   char proof[160];
-  std::snprintf(proof, sizeof proof, "frame %u, row %u differs from what two others send", client->request.frame,
-                d->row);
+  std::snprintf(proof, sizeof proof, "frame %u, row %u differs from two other servers", client->request.frame, d->row);
   drop_liar(client, &client->servers[agrees[0] ? d->other : d->server], proof);
   d->open = false;
   v->again = true;
 }
 
-// Two servers have sent different rows. One dispute at a time: what else they differ in is told by the next frames.
+// Opens a dispute between two servers. One at a time: later frames show further differences.
 void open_dispute(Client* client, std::uint32_t row, std::uint32_t server, std::uint32_t other) {
   Verifier* v = &client->verifier;
   if (v->dispute.open) return;

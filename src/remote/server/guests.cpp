@@ -1,5 +1,5 @@
-// Who is let in: connections become guests, guests that say hello get a place. Where all places are taken, an address
-// that has more of them than the newcomer's gives one up.
+// Admission: connections become guests, and guests that say hello get a place. If all places are taken, an address with
+// more places than the newcomer's gives one up.
 #include <algorithm>
 #include <cstring>
 
@@ -11,14 +11,15 @@ namespace {
 
 using platform::LinkResult;
 
-constexpr std::uint64_t kLingerNs = 2'000'000'000;      // for who leaves to read why
-constexpr std::uint64_t kMakeWayNs = 10'000'000'000;    // of silence, after which a client makes way for another
-constexpr std::uint64_t kAcceptRestNs = 1'000'000'000;  // after a failure: what is missing will still be, at once
+constexpr std::uint64_t kLingerNs = 2'000'000'000;    // for a leaving peer to read the reason
+constexpr std::uint64_t kMakeWayNs = 10'000'000'000;  // of silence after which a client makes way for another
+constexpr std::uint64_t kAcceptRestNs =
+    1'000'000'000;  // pause after a failed accept, since what was short will not be free at once
 constexpr int kAcceptsAtOnce = 16;
 
 void queue(Guest* guest, const Message& message) { CHECK(send_message(&guest->messages, message)); }
 
-// Sends what there is room for; false: the connection is lost.
+// Sends as much as there is room for; false if the connection is lost.
 bool flush(Guest* guest) {
   platform::Error error;
   return flush_message_stream(&guest->messages, &error);
@@ -39,7 +40,8 @@ int guests_of(const Server& server, std::uint64_t key) {
                                         [&](const Guest& g) { return is_open(g) && g.key == key; }));
 }
 
-// A free slot, or that of the one that has waited longest of those that leave or, else, of the address with most.
+// A free slot, else that of the longest-waiting guest among those leaving or, failing that, of the address with most
+// guests.
 Guest* free_guest(Server* server) {
   Guest* chosen = nullptr;
   int most = 0;
@@ -67,7 +69,7 @@ void receive_guest(Server* server, int stream) {
   if (!flush(guest)) close_guest(guest);
 }
 
-// Of the addresses that nobody is at the one that was seen longest ago.
+// The least recently seen address without sessions.
 int forgotten_address(const Server& server) {
   const std::vector<Address>& all = server.addresses;
   int oldest = -1;
@@ -78,11 +80,11 @@ int forgotten_address(const Server& server) {
     if (!taken && (oldest < 0 || all[i].last_ns < all[static_cast<std::size_t>(oldest)].last_ns))
       oldest = static_cast<int>(i);
   }
-  CHECK_GE(oldest, 0);  // there are more of them than sessions
+  CHECK_GE(oldest, 0);  // there are more addresses than sessions
   return oldest;
 }
 
-// The account of an address: its own, or else a new one, if need be that of another.
+// Finds or creates the account of an address, reusing another if necessary.
 int find_address(Server* server, std::uint64_t key) {
   std::vector<Address>& all = server->addresses;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -111,8 +113,9 @@ std::uint64_t silent_ns(Server* server, Session* session) {
   return server->options.idle_timeout_ns - std::min(left, server->options.idle_timeout_ns);
 }
 
-// Who has to go for one of `address` to come: of the address with most places the one that has been silent longest, if
-// that address has two more, or if it is idle and has more, or is the newcomer's own. Null: nobody.
+// The session that must leave for one of `address`: the longest silent one, of the address with most places, among
+// those whose address has at least two more places, and idle ones whose address has more places or is `address` itself.
+// Null if none.
 Session* find_leaver(Server* server, int address) {
   int own = places_of(*server, address), most = 0;
   std::uint64_t longest = 0;
@@ -148,24 +151,24 @@ const char* name_of(const Server& server, const Guest& guest) {
   return server.net->stream_name(server.link, guest.messages.stream);
 }
 
-// Gives a connection to another stream, with what has come and what waits to be sent.
+// Moves a connection to another stream, with its pending input and output.
 void hand_over(MessageStream* from, MessageStream* to) {
-  std::size_t come = input_bytes(*from), waiting = queued_bytes(*from);
-  CHECK_LE(come, to->in.count);
-  std::memcpy(to->in.data, from->in.data + from->in_begin, come);
-  to->in_end = come;
-  std::memcpy(reserve_output(to, waiting), from->out.data + from->out_begin, waiting);
-  to->out_end += waiting;
+  std::size_t received = input_bytes(*from), queued = queued_bytes(*from);
+  CHECK_LE(received, to->in.count);
+  std::memcpy(to->in.data, from->in.data + from->in_begin, received);
+  to->in_end = received;
+  std::memcpy(reserve_output(to, queued), from->out.data + from->out_begin, queued);
+  to->out_end += queued;
   to->ended = from->ended;
   from->stream = -1;
 }
 
-// Gives the guest's connection a place.
+// Gives the guest a place.
 void seat(Server* server, Guest* guest, const Hello& hello) {
   int address = find_address(server, guest->key);
   Session* session = find_place(server, address);
   if (!session) {
-    log_line(&server->log, now_ns(server), "%s was sent away: all %zu places are taken", name_of(*server, *guest),
+    log_line(&server->log, now_ns(server), "%s was turned away: all %zu places are taken", name_of(*server, *guest),
              server->sessions.size());
     return send_away(server, guest, WireError::busy);
   }
@@ -182,13 +185,14 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   hand_over(&guest->messages, &session->messages);
   session->more_to_take = true;
   ++server->totals.client_count;
-  log_line(&server->log, now, "%s came", session->name);
+  log_line(&server->log, now, "%s connected", session->name);
 }
 
 void log_guest(Server* server, const Guest& guest, const char* reason) {
-  log_line(&server->log, now_ns(server), "%s went: %s", name_of(*server, guest), reason);
+  log_line(&server->log, now_ns(server), "%s disconnected: %s", name_of(*server, guest), reason);
 }
 
+// Reads the first message; the bytes after it belong to the session.
 void read_hello(Server* server, Guest* guest) {
   platform::Error error;
   bool open = read_message_stream(&guest->messages, &error);
@@ -196,7 +200,7 @@ void read_hello(Server* server, Guest* guest) {
   DecodeState state = take_message(&guest->messages, &message);
   if (state == DecodeState::message && message.type == MessageType::hello) {
     if (message.hello.version == kWireVersion) return seat(server, guest, message.hello);
-    log_guest(server, *guest, "it speaks another version of the protocol");
+    log_guest(server, *guest, "it speaks another protocol version");
     return send_away(server, guest, WireError::wrong_version);
   }
   if (state != DecodeState::need_more) {
@@ -228,7 +232,7 @@ void tend_guest(Server* server, Guest* guest) {
     read_hello(server, guest);
   }
   if (!is_open(*guest) || platform::link_timer_left(&guest->timer, now_ns(server)) > 0) return;
-  if (!guest->leaves) log_guest(server, *guest, "it stopped in a message");
+  if (!guest->leaves) log_guest(server, *guest, "it stopped in the middle of a message");
   close_guest(guest);
 }
 
@@ -243,7 +247,7 @@ void accept_clients(Server* server) {
       receive_guest(server, stream);
       continue;
     }
-    log_line(&server->log, now_ns(server), "a client could not be let in: %s", error.text);
+    log_line(&server->log, now_ns(server), "could not accept a client: %s", error.text);
     server->accept_rests = true;
     server->accept_timer = platform::link_timer(now_ns(server), kAcceptRestNs);
     return;

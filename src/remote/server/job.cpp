@@ -1,4 +1,4 @@
-// How a job comes from a request to pixels, a slice of the CPU at a time.
+// Takes a job from request to pixels, one slice of CPU time at a time.
 #include <algorithm>
 #include <cmath>
 
@@ -10,10 +10,10 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kFirstPixels = 8;               // of an exposure, while nothing is known of what they cost
-constexpr std::uint32_t kServerChunkPixels = 1u << 15;  // a chunk is packed and deflated in one go
+constexpr std::uint32_t kFirstPixels = 8;               // first pixels of an exposure, while their cost is unknown
+constexpr std::uint32_t kServerChunkPixels = 1u << 15;  // a chunk is packed and deflated at once
 
-// As many rows as a chunk of pictures of that shape can have.
+// Largest number of rows in a chunk of that shape.
 std::uint32_t chunk_rows_max(CodecShape shape) {
   shape.chunk_rows_max = std::min(shape.height, std::max(1u, kServerChunkPixels / shape.width));
   while (shape.chunk_rows_max > 1 && !codec_shape_valid(shape)) shape.chunk_rows_max -= shape.chunk_rows_max / 8 + 1;
@@ -22,10 +22,10 @@ std::uint32_t chunk_rows_max(CodecShape shape) {
 
 Status make_codec(Session* session) {
   arena_release(&session->block, session->frame_mark);
-  session->built_scene = nullptr;  // its renderer lay behind
+  session->built_scene = nullptr;  // its renderer lay behind the codec
   std::size_t pixels = std::size_t(session->shape.width) * session->shape.height * pixel_bytes(session->shape.format);
   if (arena_need(pixels) + row_encoder_need(session->shape) > arena_free(session->block))
-    return failure("%ux%u pixels take more than the memory of a client", session->shape.width, session->shape.height);
+    return failure("%ux%u pixels need more than the memory per client", session->shape.width, session->shape.height);
   session->pixels = arena_array<std::uint8_t>(&session->block, pixels);
   Status status = make_row_encoder(session->shape, &session->block, &session->encoder);
   if (!status.ok) session->encoder = nullptr;
@@ -43,7 +43,7 @@ bool is_built_for(const Session& session) {
          session.renderer.camera_index == request.camera_index;
 }
 
-// Rows of the largest chunk that was asked for, that the codec makes and that the client takes.
+// Rows of the largest chunk within the limits of request, codec and client.
 std::uint32_t largest_chunk_rows(const Session& session) {
   std::uint32_t rows = session.job.request.chunk_rows_max;
   if (rows > session.shape.chunk_rows_max) rows = session.shape.chunk_rows_max;
@@ -55,17 +55,17 @@ std::uint32_t largest_chunk_rows(const Session& session) {
 Status plan_chunks(Session* session) {
   if (!session->encoder) {
     session->shape.chunk_rows_max = chunk_rows_max(session->shape);
-    if (!codec_shape_valid(session->shape)) return failure("no message can hold a row of it");
+    if (!codec_shape_valid(session->shape)) return failure("no message can hold one of its rows");
     RETURN_IF_ERROR(make_codec(session));
   }
   FrameRequest* request = &session->job.request;
   std::uint16_t rows_max = static_cast<std::uint16_t>(largest_chunk_rows(*session));
   request->chunk_rows_max = rows_max;
   request->chunk_rows = std::min(request->chunk_rows, rows_max);
-  return rows_max > 0 ? success() : failure("the client takes no message that could hold a row");
+  return rows_max > 0 ? success() : failure("the client accepts no message large enough for a row");
 }
 
-// Makes the renderer for the scene and the settings of the job.
+// Builds the renderer for the job's scene and settings.
 Status build(Session* session, const JobTools& tools, WireError* code) {
   session->built_scene = nullptr;
   session->trace_ns = session->probe_ns = 0;
@@ -78,7 +78,7 @@ Status build(Session* session, const JobTools& tools, WireError* code) {
   const Scene& scene = session->job.scene->scene;
   renderer->camera_index = session->job.request.camera_index;
   if (renderer->camera_index > 0 && renderer->camera_index >= scene.cameras.count)
-    return failure("there is no camera %u: the scene has %u", renderer->camera_index, scene.cameras.count);
+    return failure("no camera %u: the scene has %u", renderer->camera_index, scene.cameras.count);
   start_renderer(session->block.base + session->block.used, arena_free(session->block), settings, renderer);
   renderer->scene = scene;
   *code = WireError::too_large;
@@ -92,7 +92,7 @@ Status build(Session* session, const JobTools& tools, WireError* code) {
   return success();
 }
 
-// Codec, renderer, and the start of the exposure that the scene wants measured.
+// Sets up codec and renderer, and starts measuring the scene's exposure if required.
 Status plan(Session* session, const JobTools& tools, WireError* code) {
   *code = WireError::too_large;
   if (!session->job.is_view_query) RETURN_IF_ERROR(plan_chunks(session));
@@ -100,14 +100,14 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   if (!built) RETURN_IF_ERROR(build(session, tools, code));
   session->job.stage = session->own_exposure > 0 ? JobStage::aim : JobStage::own_exposure;
   if (session->own_exposure > 0 || !built) return success();
-  // Its measuring was given up for another request: from the start.
+  // Its measurement was abandoned for another request: restarts it.
   session->renderer.camera = session->own_camera;
   session->renderer.camera_overridden = false;
   session->renderer.exposure = session->renderer.scene.info.exposure;
   return prepare_frame(&session->renderer, 0);
 }
 
-// The view and the moment that were asked for.
+// Sets the requested view and time.
 Status aim(Session* session) {
   FrameJob* job = &session->job;
   Renderer* renderer = &session->renderer;
@@ -116,7 +116,7 @@ Status aim(Session* session) {
   if (job->request.camera_stated) RETURN_IF_ERROR(set_camera(renderer, job->request.camera));
   job->stage = JobStage::rows;
   if (job->is_view_query) {
-    // As build_renderer() does, but from where the camera is.
+    // Like build_renderer(), but from the camera's position.
     renderer->exposure = renderer->scene.info.exposure;
     RETURN_IF_ERROR(prepare_frame(renderer, 0));
     job->stage = JobStage::view_exposure;
@@ -126,7 +126,7 @@ Status aim(Session* session) {
   return prepare_frame(renderer, job->request.seconds);
 }
 
-// The next pixels of an exposure, for about `slice_ns`.
+// Traces the next pixels of an exposure, for about `slice_ns`.
 Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
   const Renderer& renderer = session->renderer;
   std::uint32_t count = slice_pixels(renderer.settings, renderer.light_points.count, session->probe_ns, slice_ns);

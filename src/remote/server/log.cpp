@@ -25,8 +25,8 @@ void log_line(ServerLog* log, std::uint64_t now_ns, const char* format, ...) {
   int length = std::vsnprintf(line, sizeof line, format, arguments);
   va_end(arguments);
   if (log->left_out_count > 0 && length >= 0 && length < static_cast<int>(sizeof line))
-    std::snprintf(line + length, sizeof line - static_cast<std::size_t>(length), " (before it, %" PRIu64 " left out)",
-                  log->left_out_count);
+    std::snprintf(line + length, sizeof line - static_cast<std::size_t>(length),
+                  " (%" PRIu64 " lines before it omitted)", log->left_out_count);
   log->left_out_count = 0;
   log->write(log->context, line);
 }

@@ -5,7 +5,7 @@
 namespace pocketray {
 namespace {
 
-// Of one client, before the others have their turn.
+// From one client before the others get their turn.
 constexpr int kMessagesAtOnce = 32;
 constexpr std::uint64_t kMessagesNs = 2'000'000;
 
@@ -55,13 +55,13 @@ void begin_job(Session* session, const StoredScene* scene) {
   session->job.scene = scene;
 }
 
-// The request takes the place of what is left of the one before, whatever becomes of it.
+// Replaces the previous request, even if this one is refused.
 void take_request(Server* server, Session* session, const FrameRequest& request) {
   const Settings& settings = request.settings;
   if (request.frame == 0) return refuse(server, session, WireError::bad_request, 0, "frames count from 1");
-  bool is_late = request.frame < session->frame_last;  // further rows of the same frame may be asked for
+  bool is_late = request.frame < session->frame_last;  // more rows of the same frame may be requested
   if (is_late)
-    return refuse(server, session, WireError::bad_request, request.frame, "a later frame was asked for before");
+    return refuse(server, session, WireError::bad_request, request.frame, "a later frame was already requested");
   drop_job(session);
   ++session->job_number;
   session->frame_last = request.frame;
@@ -69,13 +69,13 @@ void take_request(Server* server, Session* session, const FrameRequest& request)
   if (settings.width != session->shape.width || settings.height != session->shape.height ||
       request.format != session->shape.format) {
     session->shape = {settings.width, settings.height, 1, request.format};
-    session->encoder = nullptr;  // both ends begin anew
+    session->encoder = nullptr;  // both ends start over
   }
   if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
     return refuse(server, session, WireError::too_large, request.frame,
                   "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, request.scene);
-  if (!scene) return refuse(server, session, WireError::unknown_scene, request.frame, "its scene is not known here");
+  if (!scene) return refuse(server, session, WireError::unknown_scene, request.frame, "unknown scene");
   begin_job(session, scene);
   session->job.request = request;
   session->job.traced_begin = session->job.sent_begin = request.row_end;
@@ -83,7 +83,7 @@ void take_request(Server* server, Session* session, const FrameRequest& request)
 
 void take_frame_change(Server* server, Session* session, const FrameRequest& change) {
   if (session->request.frame == 0 || change.row_end > session->request.settings.height)
-    return refuse(server, session, WireError::bad_request, change.frame, "it changes what was not asked for");
+    return refuse(server, session, WireError::bad_request, change.frame, "it changes a frame that was not requested");
   FrameRequest request = session->request;
   take_change(change, &request);
   take_request(server, session, request);
@@ -96,7 +96,7 @@ void take_view_query(Server* server, Session* session, const ViewQuery& query) {
   if (settings.width > server->options.image_side_max || settings.height > server->options.image_side_max)
     return refuse(server, session, WireError::too_large, 0, "the picture is larger than this server allows");
   const StoredScene* scene = find_scene(*server->store, query.scene);
-  if (!scene) return refuse(server, session, WireError::unknown_scene, 0, "its scene is not known here");
+  if (!scene) return refuse(server, session, WireError::unknown_scene, 0, "unknown scene");
   begin_job(session, scene);
   session->job.is_view_query = true;
   session->job.measure_exposure = query.measure_exposure;
@@ -106,7 +106,7 @@ void take_view_query(Server* server, Session* session, const ViewQuery& query) {
   request->camera = query.camera, request->settings = query.settings;
 }
 
-// False: the session is at its end.
+// False if the session has ended.
 bool take_message(Server* server, Session* session, const Message& message) {
   constexpr WireError kMalformed = WireError::malformed;
   const SceneStore& store = *server->store;
@@ -138,7 +138,7 @@ bool take_message(Server* server, Session* session, const Message& message) {
       send_pong(session, message.ping, session->pixel_ps ? session->pixel_ps : server->pixel_ps);
       return true;
     case MessageType::error:
-      end_session(server, session, message.error.code == WireError::closing ? "it ended" : "it reported an error");
+      end_session(server, session, message.error.code == WireError::closing ? "it shut down" : "it reported an error");
       return false;
     case MessageType::hello:
     case MessageType::scene_entry:
@@ -148,7 +148,7 @@ bool take_message(Server* server, Session* session, const Message& message) {
     case MessageType::view_entry:
       break;
   }
-  leave(server, session, &kMalformed, "it sent what only servers send");
+  leave(server, session, &kMalformed, "it sent a message only servers send");
   return false;
 }
 
@@ -173,7 +173,7 @@ int take_messages(Server* server, Session* session) {
     if (state == DecodeState::need_more) break;
     ++count;
     if (state == DecodeState::malformed) {
-      leave(server, session, &kMalformed, "it sent what is no message");
+      leave(server, session, &kMalformed, "it sent a malformed message");
       return count;
     }
     std::uint64_t now = now_ns(server);
@@ -198,7 +198,7 @@ void read_session(Server* server, Session* session) {
   platform::Error error;
   if (!read_message_stream(messages, &error)) return end_session(server, session, error.text);
   session->more_to_take |= !leaving && messages->bytes_in > before;
-  // What it said before it closed the connection counts.
+  // Its earlier messages still count.
   if (messages->ended && (leaving || !session->more_to_take)) end_session(server, session, "it closed the connection");
 }
 

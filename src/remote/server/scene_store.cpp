@@ -14,7 +14,7 @@
 namespace pocketray {
 namespace {
 
-// Whether a file's name is that of a scene; those beside them are textures and the like.
+// True if the file name is that of a scene; other files are textures and the like.
 bool is_scene_file(const std::string& name) {
   if (has_suffix(name.c_str(), ".pray")) return true;
 #ifdef POCKETRAY_HAVE_IMPORT
@@ -31,7 +31,7 @@ void release(StoredScene* stored) {
   stored->baked_block = stored->accel_block = nullptr;
 }
 
-// A block of so many bytes aligned as a baked file must be.
+// Allocates `byte_count` bytes with the alignment of a baked file.
 std::uint8_t* take_aligned(std::uint64_t byte_count, void** block) {
   if (byte_count > kMemoryBytesMax) return nullptr;
   *block = take_block(arena_need(byte_count) + kArenaAlignment);
@@ -41,14 +41,13 @@ std::uint8_t* take_aligned(std::uint64_t byte_count, void** block) {
 }
 
 Status too_many_bytes(std::uint64_t bytes_max) {
-  return failure("there is no room for it in the %.0f MiB that all scenes may take",
-                 static_cast<double>(bytes_max) / (1 << 20));
+  return failure("it does not fit in the %.0f MiB for all scenes", static_cast<double>(bytes_max) / (1 << 20));
 }
 
-// The baked bytes, from wherever they come.
+// Reads or makes the baked bytes.
 Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene* stored) {
   if (is_baked_name(path)) {
-    // A copy: who writes to the file, or cuts it short, while it is served changes nothing that clients or threads see.
+    // A copy: writing to or truncating the file while it is served does not affect clients or threads.
     auto take = [&](std::uint64_t byte_count) -> std::uint8_t* {
       return byte_count <= bytes_left ? take_aligned(byte_count, &stored->baked_block) : nullptr;
     };
@@ -65,7 +64,7 @@ Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene
   std::size_t byte_count = baked_size(heap.scene);
   if (byte_count > bytes_left) return too_many_bytes(bytes_left);
   std::uint8_t* bytes = take_aligned(byte_count, &stored->baked_block);
-  if (!bytes) return failure("%zu bytes of memory cannot be had", byte_count);
+  if (!bytes) return failure("cannot get %zu bytes of memory", byte_count);
   baked_write(heap.scene, bytes);
   stored->bytes = bytes;
   stored->byte_count = byte_count;
@@ -80,14 +79,14 @@ Status read_scene(const std::string& path, std::uint64_t bytes_left, StoredScene
   if (!stored->scene.accel.empty()) return success();
   Array<const std::uint8_t> accel;
   stored->accel_block = build_heap_accel(kBvhAccel, stored->scene, &accel);
-  if (!stored->accel_block) return failure("its accelerator needs more memory than can be had");
+  if (!stored->accel_block) return failure("not enough memory for its accelerator");
   stored->scene.accel = accel;
   stored->accel_bytes = accel.bytes();
   if (stored->byte_count + stored->accel_bytes > bytes_left) return too_many_bytes(bytes_left);
   return success();
 }
 
-// Cut where a character of UTF-8 begins. Clients show it: nothing is in it that a terminal obeys.
+// Truncated at a UTF-8 character. Clients print it, so control characters are removed.
 void set_name(const std::string& name, StoredScene* stored) {
   std::size_t length = std::min(name.size(), std::size_t(kNameBytes - 1));
   while (length > 0 && length < name.size() && (name[length] & 0xC0) == 0x80) --length;
@@ -110,7 +109,7 @@ SceneStore::~SceneStore() {
 Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store) {
   StoredScene stored;
   Status status = read_scene(path, bytes_left, &stored);
-  if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server has no more than 65535 scenes");
+  if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server holds at most 65535 scenes");
   if (status.ok && !find_scene(*store, stored.hash)) {
     set_name(name, &stored);
     store->scenes.push_back(stored);
@@ -145,7 +144,7 @@ Status open_scene_store(const SceneStoreOptions& options, SceneStore* store) {
   Progress progress = start_progress("reading scenes", sources.size());
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Status status = store_scene(sources[i].name, sources[i].path, bytes_left, store);
-    if (!status.ok) store->warnings.push_back(sources[i].name + " is left out: " + status.message);
+    if (!status.ok) store->warnings.push_back(sources[i].name + " is skipped: " + status.message);
     bytes_left = options.bytes_max - stored_bytes(*store);
     show_progress(&progress, i + 1);
   }

@@ -1,5 +1,4 @@
-// The scenes of a render server: all built-in ones and the files of a folder, each as its baked file, ready to be
-// shared by all clients and sent to them.
+// The scenes of a render server: all built-in ones and the files of a folder, each as a baked file for all clients.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,18 +12,18 @@ namespace pocketray {
 
 struct StoredScene {
   ContentHash hash;
-  char name[kNameBytes] = {0};          // the built-in scene's or the file's, for people
+  char name[kNameBytes] = {0};          // the built-in scene's or the file's, for display
   const std::uint8_t* bytes = nullptr;  // the baked file, a copy
   std::size_t byte_count = 0;
-  Scene scene;                  // a view of it, with an accelerator of ours where it brings none
-  std::size_t accel_bytes = 0;  // of ours
+  Scene scene;                  // a view of it, with our accelerator if it has none
+  std::size_t accel_bytes = 0;  // of our accelerator
   void* baked_block = nullptr;
   void* accel_block = nullptr;
 };
 
 struct SceneStore {
   std::vector<StoredScene> scenes;
-  std::vector<std::string> warnings;  // a line for each file that was left out
+  std::vector<std::string> warnings;  // one line per skipped file
   SceneStore() = default;
   SceneStore(const SceneStore&) = delete;
   SceneStore& operator=(const SceneStore&) = delete;
@@ -32,19 +31,19 @@ struct SceneStore {
 };
 
 struct SceneStoreOptions {
-  std::string folder;                                // empty: the built-in scenes alone
-  std::uint64_t bytes_max = std::uint64_t(1) << 30;  // of all scenes with their accelerators; more are left out
+  std::string folder;                                // empty: only the built-in scenes
+  std::uint64_t bytes_max = std::uint64_t(1) << 30;  // for all scenes with their accelerators; further ones are skipped
 };
 
-// Reads the scenes; shows progress where that takes long. Fails where the folder cannot be read or memory is short. A
-// file that is no scene is passed over; one that cannot be read is left out with a warning.
+// Reads the scenes, showing progress if that takes long. Fails if the folder is unreadable or memory is short. Ignores
+// files that are not scenes; skips unreadable ones with a warning.
 Status open_scene_store(const SceneStoreOptions& options, SceneStore* store);
 
-// Adds one scene, called `name`: a built-in one's name or a file at `path`, of `bytes_left` at most with its
-// accelerator. One that the store has already is added no second time.
+// Adds a scene called `name`: a built-in one, or the file at `path`; at most `bytes_left` with its accelerator. Does
+// not add a scene twice.
 Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store);
 
-// Null: there is none.
+// Null if there is none.
 const StoredScene* find_scene(const SceneStore& store, const ContentHash& hash);
 
 }  // namespace pocketray

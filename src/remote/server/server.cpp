@@ -13,8 +13,8 @@ namespace {
 
 using platform::LinkResult;
 
-constexpr std::uint64_t kLingerNs = 2'000'000'000;  // for who leaves to read why
-constexpr std::uint64_t kFarewellNs = 500'000'000;  // for all to be told that the server ends
+constexpr std::uint64_t kLingerNs = 2'000'000'000;  // for a leaving client to read the reason
+constexpr std::uint64_t kFarewellNs = 500'000'000;  // for telling all clients that the server shuts down
 
 bool accepts(Server* server) {
   return !server->accept_rests || platform::link_timer_left(&server->accept_timer, now_ns(server)) == 0;
@@ -29,7 +29,7 @@ void write_session(Server* server, Session* session) {
   if (!open) end_session(server, session, error.text);
 }
 
-// Sends what there is, and rows that waited for room, unless they have to wait for their turn as well.
+// Sends queued output, and rows waiting for room unless they must also wait for their turn.
 void send_session(Server* server, Session* session) {
   for (;;) {
     std::uint64_t start = now_ns(server), queued_before = queued_bytes(session->messages);
@@ -43,7 +43,7 @@ void send_session(Server* server, Session* session) {
   }
 }
 
-// Whether it waits for the rest of a message; for the client to take what it is sent; for nothing.
+// True while waiting for the rest of a message; for the client to read its output; for nothing.
 bool awaits_message(const Session& session) {
   return session.phase == SessionPhase::serving && input_bytes(session.messages) > 0;
 }
@@ -52,7 +52,7 @@ bool is_idle(const Session& session) {
   return session.phase == SessionPhase::serving && !has_job(session) && queued_bytes(session.messages) == 0;
 }
 
-// Nanoseconds till one of the session's times is over.
+// Nanoseconds until the first of the session's timers expires.
 std::uint64_t session_due_ns(Session* session, std::uint64_t now) {
   std::uint64_t due = ~std::uint64_t(0);
   auto consider = [&](bool counts, platform::LinkTimer* timer) {
@@ -80,14 +80,14 @@ void look_at_clock(Server* server, Session* session) {
     return;
   }
   if (over(awaits_room(*session), &session->stall_timer))
-    return end_session(server, session, "it takes nothing of what it asked for");
+    return end_session(server, session, "it does not read its answers");
   if (over(awaits_message(*session), &session->message_timer))
-    return leave(server, session, nullptr, "it stopped in a message");
+    return leave(server, session, nullptr, "it stopped in the middle of a message");
   if (over(is_idle(*session), &session->idle_timer))
-    return leave(server, session, nullptr, "it has been silent for too long");
+    return leave(server, session, nullptr, "it was silent for too long");
 }
 
-// Waits until there is something to do.
+// Blocks until there is something to do.
 void wait_for_news(Server* server, std::uint64_t timeout_ns) {
   std::uint64_t due = work_due_ns(server), now = now_ns(server);
   if (timeout_ns < due) due = timeout_ns;
@@ -114,7 +114,7 @@ void wait_for_news(Server* server, std::uint64_t timeout_ns) {
   server->net->poll(server->link, server->waits.data(), static_cast<int>(server->waits.size()), due);
 }
 
-// Queues a last word for everybody and sends what can be sent in a moment.
+// Queues a last message for every client and sends what it can at once.
 void say_farewell(Server* server) {
   for (Session& session : server->sessions)
     if (session.phase == SessionPhase::serving && output_room(session.messages) >= kReplyBytesMax)
@@ -138,15 +138,16 @@ void say_farewell(Server* server) {
 
 Status check_options(const ServerOptions& o) {
   if (o.client_count_max < 1 || o.client_count_max > kServerClientsMax)
-    return failure("a server has 1 to %d clients, not %d", kServerClientsMax, o.client_count_max);
+    return failure("the number of clients must lie in 1 … %d, not %d", kServerClientsMax, o.client_count_max);
   if (o.guest_count_max < 1 || o.guest_count_max > kServerClientsMax)
-    return failure("a server has room for 1 to %d guests, not %d", kServerClientsMax, o.guest_count_max);
+    return failure("the number of guests must lie in 1 … %d, not %d", kServerClientsMax, o.guest_count_max);
   if (o.client_memory_bytes < kSessionBytesMin)
-    return failure("a client's memory is %zu bytes: give it %zu or more", o.client_memory_bytes, kSessionBytesMin);
+    return failure("the memory per client is %zu bytes: it must be at least %zu", o.client_memory_bytes,
+                   kSessionBytesMin);
   if (o.thread_count < 1 || o.thread_count > kThreadCountMax)
-    return failure("%u threads: there can be 1 to %u", o.thread_count, kThreadCountMax);
+    return failure("the number of threads is %u: it must lie in 1 … %u", o.thread_count, kThreadCountMax);
   if (o.image_side_max < 1 || o.image_side_max > kImageSideMax)
-    return failure("pictures can have sides of up to %u pixels, not %u", kImageSideMax, o.image_side_max);
+    return failure("the longest picture side may be at most %u pixels, not %u", kImageSideMax, o.image_side_max);
   return success();
 }
 
@@ -159,7 +160,7 @@ Status take_memory(Server* server) {
   for (Session& session : server->sessions) {
     void* block = take_block(o.client_memory_bytes);
     if (!block)
-      return failure("%d clients of %.0f MiB each cannot be had: allow fewer, or less for each", o.client_count_max,
+      return failure("not enough memory for %d clients of %.0f MiB each: lower one of them", o.client_count_max,
                      static_cast<double>(o.client_memory_bytes) / (1 << 20));
     server->blocks.push_back(block);
     make_session(block, o.client_memory_bytes, &session);
@@ -195,7 +196,7 @@ void end_session(Server* server, Session* session, const char* reason) {
   server->totals.frame_count += session->frame_count;
   server->totals.row_count += session->row_count;
   server->totals.byte_count += session->messages.bytes_out;
-  log_line(&server->log, now_ns(server), "%s went after %llu frames, %llu rows, %.1f KiB: %s", session->name,
+  log_line(&server->log, now_ns(server), "%s disconnected after %llu frames, %llu rows, %.1f KiB: %s", session->name,
            static_cast<unsigned long long>(session->frame_count), static_cast<unsigned long long>(session->row_count),
            static_cast<double>(session->messages.bytes_out) / 1024, reason);
 }
@@ -266,7 +267,7 @@ void close_server(Server* server) {
   if (!server) return;
   say_farewell(server);
   for (Session& session : server->sessions)
-    if (session.phase != SessionPhase::unused) end_session(server, &session, "this server ends");
+    if (session.phase != SessionPhase::unused) end_session(server, &session, "this server shut down");
   for (Guest& guest : server->guests)
     if (is_open(guest)) close_guest(&guest);
   release(server);

@@ -1,6 +1,6 @@
-// The render server: renders rows of frames for up to a few clients at once, each in memory of its own, by the protocol
-// of wire/PROTOCOL.md. A step function: single-threaded but for the threads that trace, without globals, waiting only
-// where the link is polled. It takes every time from the link's clock.
+// The render server: renders rows of frames for a few clients at once, each in its own memory, over the protocol of
+// wire/PROTOCOL.md. Driven by a step function: single-threaded except for tracing, no globals, blocks only while
+// polling the link. All times are from the link's clock.
 #pragma once
 #include <cstdint>
 
@@ -14,41 +14,41 @@ namespace pocketray {
 constexpr int kServerClientsMax = 64;
 
 struct ServerOptions {
-  int client_count_max = 8;                           // one more is told `busy`
-  int guest_count_max = 16;                           // connections that have not said hello, or are told to go
-  std::size_t client_memory_bytes = 64u << 20;        // block of each: buffers, encoder, renderer; without the scene
-  std::uint32_t image_side_max = 2048;                // pixels; larger pictures are refused
-  std::uint32_t thread_count = 1;                     // that trace, shared by all clients
-  Pace pace;                                          // the CPU to emulate: what pixels cost it, and
-  std::uint64_t message_ns = 0, byte_ps = 0;          //   a message and a byte of its answer; 0: nothing
-  const float* row_costs = nullptr;                   //   rows over each other, see row_costs.h
-  std::uint64_t message_timeout_ns = 10'000'000'000;  // for a message to be whole; the hello, from the start
-  std::uint64_t idle_timeout_ns = 300'000'000'000;    // without a message, nor anything to send
-  std::uint64_t stall_timeout_ns = 10'000'000'000;    // without taking anything of what is sent
-  void (*log)(void* context, const char* line) = nullptr;  // one line for each event, no more than a few a second
+  int client_count_max = 8;                                // further ones are told `busy`
+  int guest_count_max = 16;                                // connections before their hello or on their way out
+  std::size_t client_memory_bytes = 64u << 20;             // per client: buffers, encoder, renderer; without the scene
+  std::uint32_t image_side_max = 2048;                     // pixels; larger pictures are refused
+  std::uint32_t thread_count = 1;                          // for tracing, shared by all clients
+  Pace pace;                                               // the CPU to emulate: cost of pixels,
+  std::uint64_t message_ns = 0, byte_ps = 0;               // of a message and a byte of its answer (0: none),
+  const float* row_costs = nullptr;                        // and relative cost of rows; see row_costs.h
+  std::uint64_t message_timeout_ns = 10'000'000'000;       // for a complete message; for the hello, since connecting
+  std::uint64_t idle_timeout_ns = 300'000'000'000;         // without a message and with nothing to send
+  std::uint64_t stall_timeout_ns = 10'000'000'000;         // without the client reading anything
+  void (*log)(void* context, const char* line) = nullptr;  // one line per event, rate-limited
   void* log_context = nullptr;
 };
 
 struct ServerTotals {
-  std::uint64_t client_count = 0;                                // that said hello
+  std::uint64_t client_count = 0;                                // with a hello
   std::uint64_t frame_count = 0, row_count = 0, byte_count = 0;  // sent
 };
 
 struct Server;
 
-// Streams of its link that a server takes.
+// Number of link streams that a server uses.
 int server_stream_count(const ServerOptions& options);
-// Takes all memory, listens and starts the threads; nothing is allocated afterwards. The store and the link stay the
-// caller's and have to outlive the server; the store may be filled until the first step. On failure *server is null.
+// Allocates all memory, listens and starts the threads; allocates nothing afterwards. The caller keeps the store and
+// the link, which must outlive the server; the store may be filled until the first step. On failure *server is null.
 Status open_server(const ServerOptions& options, const SceneStore& store, platform::Link* link,
                    const platform::LinkAddress& address, Server** server);
-// Where it listens, HOST:PORT in numbers.
+// Its numeric listening address, HOST:PORT.
 const char* server_address(const Server& server);
-// One round: waits for news, `timeout_ns` at most and not at all while there is work; takes what clients sent, renders
-// a part of one frame, sends what is ready.
+// One round: blocks for at most `timeout_ns`, and not while there is work; reads messages, renders a part of one frame,
+// sends finished rows.
 void step_server(Server* server, std::uint64_t timeout_ns);
 ServerTotals server_totals(const Server& server);
-// Tells the clients, for half a second at most, and gives everything back. Null is allowed.
+// Notifies the clients, for at most half a second, and frees everything. Accepts null.
 void close_server(Server* server);
 
 }  // namespace pocketray

@@ -10,9 +10,10 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kFirstPixels = 8;  // for a thread, while nothing is known of what they cost
-constexpr double kLightPointNs = 80;       // of a sample; measured: 512 points, 16 samples, 0.65 ms a pixel of cornell
-constexpr std::uint32_t kPartPixels = 8;   // of a row for a thread, unless as few take longer than they may
+constexpr std::uint32_t kFirstPixels = 8;  // per thread, while the cost of pixels is unknown
+constexpr double kLightPointNs =
+    80;  // per light point and sample; measured: 512 points, 16 samples, 0.65 ms per pixel of cornell
+constexpr std::uint32_t kPartPixels = 8;  // pixels of a row per thread, unless even those exceed the slice
 
 PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 
@@ -48,13 +49,13 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   session->row_count += row_count;
 }
 
-// Rows of the chunk that is to be sent next; 0: all are sent.
+// Rows of the next chunk to send; 0: all sent.
 std::uint32_t next_chunk_rows(const Session& session) {
   const FrameJob& job = session.job;
   return next_chunk_rows(job.request, job.chunk_rows, job.sent_begin - job.request.row_begin);
 }
 
-// A slice of a job as spans: one batch.
+// A slice of a job as one batch of spans.
 struct SliceSource {
   Session* session;
   std::uint64_t slice_ns;
@@ -62,7 +63,7 @@ struct SliceSource {
   Span parts[kThreadCountMax];
 };
 
-// The next pixels of a row, about as many for each thread.
+// The next pixels of a row, divided evenly among threads.
 void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) {
   const FrameJob& job = source->session->job;
   const Settings& settings = source->session->renderer.settings;
@@ -81,13 +82,13 @@ void next_slice(void* context, SpanBatch* batch) {
   const Session& session = *source->session;
   const FrameJob& job = session.job;
   const Settings& settings = session.renderer.settings;
-  // trace_ns is of all threads together.
+  // trace_ns sums over all threads.
   std::uint32_t pixels_max = kFirstPixels * settings.threads;
   if (session.trace_ns > 0)
     pixels_max = slice_pixels(settings, session.renderer.light_points.count, session.trace_ns * settings.threads,
                               source->slice_ns * settings.threads);
   if (job.traced_columns > 0 || pixels_max < settings.width) return next_part(source, pixels_max, batch);
-  // The rest of a chunk, but enough rows for all threads to be busy to the end.
+  // The rest of the chunk, but enough rows to keep all threads busy to the end.
   std::uint32_t rest = next_chunk_rows(session) - (job.sent_begin - job.traced_begin);
   std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
   std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});

@@ -19,7 +19,7 @@ void note(Lanes* lanes, Account* account, bool waits) {
 int choose_lane(Lanes* lanes, bool light_waits, bool heavy_waits) {
   const bool waits[2] = {light_waits, heavy_waits};
   for (int lane = 0; lane < 2; ++lane) {
-    // A lane that was empty is owed nothing for it.
+    // A lane is not compensated for the time it was empty.
     if (waits[lane] && !lanes->waits[lane]) lanes->used_ns[lane] = std::max(lanes->used_ns[0], lanes->used_ns[1]);
     lanes->waits[lane] = waits[lane];
   }
@@ -51,7 +51,7 @@ void forgive(Account* account, std::uint64_t passed_ns, std::uint64_t account_co
 }
 
 std::uint64_t address_key(const char* name) {
-  // FNV-1a over what counts of the address.
+  // FNV-1a over the significant part of the address.
   std::uint64_t key = 0xcbf29ce484222325;
   auto add = [&](unsigned value) { key = (key ^ value) * 0x100000001b3; };
   if (name[0] != '[') {
@@ -59,7 +59,7 @@ std::uint64_t address_key(const char* name) {
       add(static_cast<unsigned char>(*name));
     return key;
   }
-  // Groups of 16 bits in hexadecimal, "::" for those that are zero: as many as are missing of eight.
+  // Hexadecimal groups of 16 bits; "::" stands for the zero groups missing from eight.
   unsigned groups[8] = {0}, behind = 0, count = 0, gap = 8;
   for (const char* at = name + 1; *at && *at != ']' && count < 8;) {
     if (at[0] == ':' && at[1] == ':') {

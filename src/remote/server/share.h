@@ -1,60 +1,59 @@
-// Whose turn it is on the server's CPU: first among addresses, then among the connections of one. Pure; times are what
-// work took by the link's clock.
+// Schedules the server's CPU: first among addresses, then among the connections of one. Pure; times are work by the
+// link's clock.
 //
-// Work is in two lanes. The light lane has whoever is done soon: frames of no more than kLightNs. The heavy lane has
-// the rest: longer frames, what was rendered and then not sent, and whoever asks and asks for other things. While both
-// have something to do, the light lane gets kHeavyPart - 1 of kHeavyPart turns, counted in time. Within a lane the one
-// goes first that has used the CPU least [Goyal et al. 1996, start-time fair queueing]; who has been away is owed the
-// turns of kCreditNs at most, who is new none.
+// There are two lanes. The light lane serves accounts with frames of at most kLightNs. The heavy lane serves the rest:
+// longer frames, rendered but unsent rows, and floods of other requests. While both have work, the light lane gets
+// kHeavyPart - 1 of kHeavyPart turns, measured in time. Within a lane the account that has used the least CPU goes
+// first [Goyal et al. 1996, start-time fair queueing]; one that was away is credited at most kCreditNs, a new one
+// nothing.
 #pragma once
 #include <cstdint>
 
 namespace pocketray {
 
-constexpr std::uint64_t kLightNs = 250'000'000;   // a picture that comes later is no longer one that a person steers by
-constexpr std::uint64_t kCreditNs = 100'000'000;  // a frame of ten a second
-constexpr std::uint64_t kHeavyPart = 4;           // the heavy lane's is one of so many parts, if it comes to that
+constexpr std::uint64_t kLightNs = 250'000'000;   // later pictures are too late for interactive steering
+constexpr std::uint64_t kCreditNs = 100'000'000;  // one frame at ten per second
+constexpr std::uint64_t kHeavyPart = 4;           // the heavy lane gets one of this many parts under contention
 constexpr std::uint64_t kOwedNsMax = 2 * kLightNs;
-// What is owed is forgiven in so many times as long as it took, times the number of connections: what all of them
-// together can use without being heavy is one part of so many, too.
+// Debt is forgiven over this many times the time it took, times the number of connections, so all of them together can
+// use at most one part in this many without becoming heavy.
 constexpr std::uint64_t kForgiveFactor = 16;
 
 struct Account {
-  std::uint64_t used_ns = 0;          // of the CPU, by the reckoning of its lane
-  std::uint64_t owed_ns = 0;          // used for other things than rows that were sent, and not forgiven yet
-  std::uint64_t job_ns = 0;           // used for the frame under way: not sent yet, perhaps never
-  bool heavy = false, waits = false;  // at the last choice
-  bool known = false;                 // has had something to do before
+  std::uint64_t used_ns = 0;          // CPU time, as charged in its lane
+  std::uint64_t owed_ns = 0;          // used for anything but sent rows and not yet forgiven
+  std::uint64_t job_ns = 0;           // used for the current frame, which may never be sent
+  bool heavy = false, waits = false;  // as of the last choice
+  bool known = false;                 // has had work before
 };
 
-// The lanes that some accounts share.
+// The lanes of a group of accounts.
 struct Lanes {
-  std::uint64_t floor_ns[2] = {0, 0};  // what the one had used that was chosen last; [1]: the heavy lane
-  std::uint64_t used_ns[2] = {0, 0};   // by the lane, weighted
+  std::uint64_t floor_ns[2] = {0, 0};  // used_ns of the account chosen last; [1]: the heavy lane
+  std::uint64_t used_ns[2] = {0, 0};   // weighted use of each lane
   bool waits[2] = {false, false};
 };
 
 inline bool is_heavy(const Account& account) { return account.owed_ns + account.job_ns > kLightNs; }
 
-// Looks at an account before a choice: whether it has something to do now.
+// Updates an account before a choice; `waits`: it has work.
 void note(Lanes* lanes, Account* account, bool waits);
-// Of two accounts that were noted and have something to do, whether the first goes before the second in the same lane.
+// True if the first of two waiting accounts in the same lane goes first.
 inline bool goes_before(const Account& a, const Account& b) { return a.used_ns < b.used_ns; }
-// The lane that goes first of those that have something to do.
+// Chooses among the lanes with work.
 int choose_lane(Lanes* lanes, bool light_waits, bool heavy_waits);
-// The account has had the CPU for so long.
+// Charges CPU time to the account.
 void charge(Lanes* lanes, Account* account, std::uint64_t took_ns);
 
-// What work counts as: for messages or in vain, or for the frame under way.
+// Adds to the debt: work on messages, or on rows that were never sent.
 void owe(Account* account, std::uint64_t took_ns);
-// The frame is at its end: `sent_ns` of what it took went into rows that were sent. Those of a light frame pay for what
-// was owed.
+// Ends a frame: `sent_ns` of its time went into sent rows. Those of a light frame repay debt.
 void end_frame(Account* account, std::uint64_t took_ns, std::uint64_t sent_ns);
-// So much time has passed for one of `account_count` accounts.
+// Forgives debt for `passed_ns`, for one of `account_count` accounts.
 void forgive(Account* account, std::uint64_t passed_ns, std::uint64_t account_count);
 
-// What stands for a peer's address in a name like "HOST:PORT": all of an IPv4 address, of an IPv6 one the network of 64
-// bits that whoever has one has as a whole [RFC 6177].
+// Key of a peer's address from a name like "HOST:PORT": the whole IPv4 address, or the 64-bit network of an IPv6
+// address, all of which belongs to one owner [RFC 6177].
 std::uint64_t address_key(const char* stream_name);
 
 }  // namespace pocketray

@@ -1,4 +1,4 @@
-// What a server tells of a scene to a device that has no room for it.
+// Describes a scene to a device on which it does not fit.
 #include "remote/server/session.h"
 
 namespace pocketray {
@@ -16,7 +16,7 @@ Status answer_view_query(Session* session) {
   entry->effects = renderer->effects.mask;
   entry->triangle_count = renderer->scene.triangles.count;
   if (!is_empty(renderer->accel.bounds)) entry->bounds = renderer->accel.bounds;
-  if (!can_encode(message)) return failure("its camera, size or exposure is beyond what a message takes");
+  if (!can_encode(message)) return failure("its camera, size or exposure does not fit in a message");
   send_message(session, message);
   drop_job(session);
   return success();

@@ -6,11 +6,11 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint64_t kSliceNs = 20'000'000;  // of the CPU, before another client may have its turn
+constexpr std::uint64_t kSliceNs = 20'000'000;  // of CPU time before another client may have its turn
 
 std::uint64_t elapsed(std::uint64_t begin, std::uint64_t end) { return end > begin ? end - begin : 0; }
 
-// Closes the books on frames that have come to their end, and lets time forgive.
+// Accounts for finished frames and forgives debt for the time passed.
 void settle(Server* server, std::uint64_t now) {
   std::uint64_t passed = elapsed(server->settled_ns, now), count = 1;
   server->settled_ns = now;
@@ -31,8 +31,8 @@ bool has_turn(const Server& server, const Session& session) {
   return can_work(session) || (in_turn(server) && (wants_messages(session) || has_chunk(session)));
 }
 
-// One of those with something to do: of the address whose turn it is, the session whose turn it is. Notes since when
-// they wait. -1: there is none.
+// Chooses among sessions with work: the next session of the next address. Records when each began to wait. -1 if there
+// is none.
 int choose_session(Server* server) {
   std::uint64_t now = now_ns(server);
   settle(server, now);
@@ -77,7 +77,7 @@ Pace pace_of(const Server& server, const Session& session, const Slice& slice) {
   return pace_of_rows(server.options.pace, server.options.row_costs, end - row_count, end);
 }
 
-// How long the work was, by the CPU that is emulated if there is one.
+// Duration of the work, on the emulated CPU if there is one.
 std::uint64_t work_ns(const Server& server, const Session& session, const Work& work, std::uint64_t took) {
   const ServerOptions& o = server.options;
   if (!is_paced(o.pace)) return took;
@@ -85,7 +85,7 @@ std::uint64_t work_ns(const Server& server, const Session& session, const Work& 
   return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
 }
 
-// Takes messages, queues what waited for room, prepares a frame or traces a part of it.
+// Handles messages, queues rows that waited for room, prepares a frame or traces a part of it.
 void begin_work(Server* server, int index) {
   Session* session = &server->sessions[static_cast<std::size_t>(index)];
   Work* work = &server->work;
@@ -117,7 +117,7 @@ void begin_work(Server* server, int index) {
   work->end_ns = now;
   if (is_paced(server->options.pace)) {
     took = work_ns(*server, *session, *work, took);
-    // Who waited already when the CPU became free was begun with at that moment.
+    // Work that already waited when the CPU became free began at that moment.
     if (work->is_job && waited_since < server->cpu_free_ns && server->cpu_free_ns < start)
       work->begin_ns = server->cpu_free_ns;
     if (work->begin_ns + took > now) work->end_ns = work->begin_ns + took;
@@ -134,8 +134,7 @@ void end_work(Server* server) {
   bool goes_on = work->is_job && has_job(*session) && session->job_number == work->job_number;
   bool is_job = work->is_job && session->address == work->address;
   account_for(server, session, took, is_job);
-  if (is_job)
-    (goes_on ? session->job.took_ns : session->ended_took_ns) += took;  // of a frame that was given up: in vain
+  if (is_job) (goes_on ? session->job.took_ns : session->ended_took_ns) += took;  // of an abandoned frame: wasted
   if (!goes_on) return;
   if (work->slice.pixel_count > 0)
     end_slice(session, work->slice, took, elapsed(session->waiting_since_ns, work->end_ns));
@@ -170,7 +169,7 @@ void account_for(Server* server, Session* session, std::uint64_t took, bool is_j
 
 void refuse(Server* server, Session* session, WireError code, std::uint32_t frame, const char* reason) {
   send_error(session, code, frame);
-  log_line(&server->log, now_ns(server), "%s: frame %u is refused: %s", session->name, frame, reason);
+  log_line(&server->log, now_ns(server), "%s: frame %u refused: %s", session->name, frame, reason);
 }
 
 void do_work(Server* server) {

@@ -14,8 +14,8 @@
 namespace pocketray {
 namespace {
 
-constexpr std::uint32_t kSamplesMax = 1u << 14;  // of each seed
-constexpr std::uint32_t kSeedCount = 2;          // their difference tells what the reference itself errs by
+constexpr std::uint32_t kSamplesMax = 1u << 14;  // per seed
+constexpr std::uint32_t kSeedCount = 2;          // their difference estimates the reference's own error
 
 bool is_same(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 bool is_same(const Camera& a, const Camera& b) {
@@ -24,25 +24,25 @@ bool is_same(const Camera& a, const Camera& b) {
 }
 
 struct Errors {
-  std::uint32_t picture = 0, samples = 0;  // of which; no samples: not measured
+  std::uint32_t picture = 0, samples = 0;  // picture and sample count measured; no samples: not measured
   double flip = 0, rmse = 0, reference_rmse = 0;
 };
 
 struct ReferenceView : SideBySide {
-  std::string name;  // of the reference
-  int output = 0;    // of kOutputFormats, by which the picture is judged
+  std::string name;  // the reference's
+  int output = 0;    // index into kOutputFormats; the picture is judged in this format
   ReferenceOptions reference_options;
-  FrameData frame;  // with the scene's own textures and normals, whatever settings the picture has
+  FrameData frame;  // with the scene's own textures and normals, whatever the picture's settings
   Reference reference;
   bool aimed = false;
   Camera camera;
   double seconds = 0;
   std::uint32_t width = 0, height = 0;
-  std::uint32_t samples = 0, row = 0;  // of every pixel; rows before this one have one more
+  std::uint32_t samples = 0, row = 0;  // per pixel; rows before this one have one more
   Errors errors;
   std::vector<LightPoint> lights;
   std::vector<std::uint8_t> memory;                // the reference's
-  std::vector<Vec3d> sums[kSeedCount], row_light;  // row_light: a row for each thread
+  std::vector<Vec3d> sums[kSeedCount], row_light;  // row_light: one row per thread
   std::vector<Vec3> shown;
 };
 
@@ -54,7 +54,7 @@ void forget(ReferenceView* view) {
   view->errors = Errors();
 }
 
-// The frame of a picture with everything as the scene has it.
+// Prepares a frame with all effects and settings as the scene defines them.
 Status prepare_reference(ReferenceView* view, Renderer* renderer, double seconds) {
   const Settings before = renderer->settings;
   RETURN_IF_ERROR(change_settings(renderer, reference_settings(before)));
@@ -68,7 +68,7 @@ Status prepare_reference(ReferenceView* view, Renderer* renderer, double seconds
   return status.ok ? restored : status;
 }
 
-// Points the reference at what the picture shows; makes it anew where geometry may have moved.
+// Gives the reference the picture's view and time; rebuilds it if geometry may have moved.
 Status aim(ReferenceView* view, Renderer* renderer, double seconds) {
   SealPause pause;
   bool stands = view->aimed && view->seconds == seconds;
@@ -106,7 +106,7 @@ bool take_row(void* context, std::uint32_t thread, std::uint32_t row) {
   return clock_ns() < pass.deadline_ns;
 }
 
-// One more sample of each pixel, or of as many rows as there is time for.
+// Adds one sample per pixel, for as many rows as time allows.
 void trace_pass(ReferenceView* view, Workers* workers, std::uint64_t deadline_ns) {
   Pass pass = {view, deadline_ns};
   view->row = share_items(workers, view->row, view->height, take_row, &pass);
@@ -127,7 +127,7 @@ std::vector<Vec3> mean_of_seeds(const ReferenceView& view, std::initializer_list
   return mean;
 }
 
-// Where all pixels have the same number of samples.
+// Call when all pixels have the same number of samples.
 void measure_errors(ReferenceView* view, const Renderer& renderer) {
   SealPause pause;
   std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.exposure);
@@ -207,16 +207,16 @@ const Vec3* picture_beside(SideBySide* side_by_side, const Renderer& renderer) {
 
 void write_lines(const SideBySide& side_by_side, HudText* text) {
   const ReferenceView& view = view_of(side_by_side);
-  add_hud_line(text, "right: %s reference, %u samples a pixel", view.name.c_str(), sample_count(view));
+  add_hud_line(text, "right: %s reference, %u samples per pixel", view.name.c_str(), sample_count(view));
   if (view.errors.samples > 0)
-    add_hud_line(text, "FLIP %.4f, RMSE %.4f from it (itself %.4f)", view.errors.flip, view.errors.rmse,
+    add_hud_line(text, "FLIP %.4f, RMSE %.4f from it (its own %.4f)", view.errors.flip, view.errors.rmse,
                  view.errors.reference_rmse);
 }
 
 void print(const SideBySide& side_by_side) {
   const ReferenceView& view = view_of(side_by_side);
   if (view.errors.samples == 0) return;
-  std::printf("  ꟻLIP %.4f, RMSE %.4f from the %s reference of %u samples a pixel, which itself errs by RMSE %.4f\n",
+  std::printf("  ꟻLIP %.4f, RMSE %.4f from the %s reference of %u samples per pixel, whose own RMSE is %.4f\n",
               view.errors.flip, view.errors.rmse, view.name.c_str(), kSeedCount * view.errors.samples,
               view.errors.reference_rmse);
 }

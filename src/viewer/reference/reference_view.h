@@ -1,4 +1,4 @@
-// The backend of viewer/side_by_side.h: the reference of what the viewer shows.
+// The backend of viewer/side_by_side.h: traces the reference of the viewer's picture.
 #pragma once
 #include "viewer/side_by_side.h"
 

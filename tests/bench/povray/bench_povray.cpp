@@ -21,7 +21,7 @@ struct PovrayOptions {
   int rounds = 5;
 };
 
-// A ratio is POV-Ray's CPU time over ours, both for tracing alone, of frames rendered in turn.
+// A ratio is POV-Ray's CPU time over ours, both only for tracing, of frames rendered in turn.
 struct FrameRow {
   std::string size;
   double povray_ns, ours_ns;  // per pixel, medians
@@ -50,7 +50,7 @@ void compare(const Array<Vec3>& ours, const std::vector<Vec3>& povray, FrameRow*
   }
 }
 
-// Both pictures, to be looked at.
+// Writes both pictures for inspection.
 Status write_pictures(const std::string& folder, const std::vector<Vec3>& povray, Renderer* r) {
   std::string size = std::to_string(r->settings.width) + "x" + std::to_string(r->settings.height);
   RETURN_IF_ERROR(write_picture((folder + "/statue-" + size + "-ours.png").c_str(), PictureOptions(), r));
@@ -124,7 +124,7 @@ Json rows_json(const std::vector<FrameRow>& rows) {
 
 int run(const PovrayOptions& options) {
   if (std::system(("mkdir -p '" + options.folder + "'").c_str()) != 0)
-    return report(failure("%s cannot be made", options.folder.c_str()));
+    return report(failure("cannot create %s", options.folder.c_str()));
   std::vector<FrameRow> rows;
   for (const std::string& size : options.sizes) {
     Status status = bench_size(size, options, &rows);
@@ -146,16 +146,16 @@ int main(int argument_count, char** arguments) {
   using namespace pocketray;
   PovrayOptions options;
   CLI::App program{
-      "bench_povray renders the statue under one point light with hard shadows by POV-Ray and by pocketray, in turn,\n"
-      "on one thread, compares the pictures, and prints what tracing a pixel costs each.\n"
+      "bench_povray renders the statue under one point light with hard shadows with POV-Ray and pocketray, in turn,\n"
+      "on one thread, compares the pictures, and prints the tracing time per pixel of each.\n"
       "Try:  bench_povray --size 320x240\n"};
   program.name("bench_povray");
   program.add_option("--size", options.sizes, "picture sizes; default: 320x240 1280x960");
-  program.add_option("--rounds", options.rounds, "how often both render in turn")
+  program.add_option("--rounds", options.rounds, "rounds in which both render in turn")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   program.add_option("--povray", options.program, "POV-Ray's command")->capture_default_str();
-  program.add_option("--folder", options.folder, "for the scene and the pictures")->capture_default_str();
+  program.add_option("--folder", options.folder, "folder for the scene and the pictures")->capture_default_str();
   program.add_option("--json", options.json, "write the table as JSON to FILE, or - for standard output");
   try {
     program.parse(argument_count, arguments);

@@ -27,7 +27,7 @@ Status read_trace_time(const std::string& log, double* seconds) {
   return failure("POV-Ray's log does not say how long it traced");
 }
 
-// The next number of a PPM's header, after blanks and comments; 0 where there is none.
+// The next number of a PPM header, after blanks and comments; 0 if there is none.
 std::uint32_t next_number(const std::string& bytes, std::size_t* at) {
   while (*at < bytes.size() && (std::isspace(static_cast<unsigned char>(bytes[*at])) || bytes[*at] == '#'))
     *at = bytes[*at] == '#' ? std::min(bytes.find('\n', *at), bytes.size()) : *at + 1;
@@ -42,7 +42,7 @@ Status read_ppm(const std::string& path, std::uint32_t width, std::uint32_t heig
   std::size_t at = 2, need = std::size_t(3) * width * height;
   bool fits = bytes.compare(0, 2, "P6") == 0 && next_number(bytes, &at) == width && next_number(bytes, &at) == height &&
               next_number(bytes, &at) == 255 && bytes.size() >= at + 1 + need;
-  if (!fits) return failure("%s is not the picture that POV-Ray was asked for", path.c_str());
+  if (!fits) return failure("%s is not the requested picture", path.c_str());
   const char* level = bytes.data() + at + 1;
   for (std::size_t i = 0; i < need; i += 3) {
     auto linear = [&](std::size_t k) { return srgb_to_linear(static_cast<std::uint8_t>(level[i + k])); };

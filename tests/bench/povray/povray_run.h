@@ -1,4 +1,4 @@
-// POV-Ray as a program: one picture of a scene file, and what it says of the time it took.
+// Runs POV-Ray: one picture of a scene file, and its reported time.
 #pragma once
 #include <string>
 #include <vector>

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t(256) << 20;
 
-// What both show alike: Lambertian surfaces under one light.
+// Reduces the scene to what both render alike: Lambertian surfaces under one light.
 void simplify(PovrayScene* s) {
   Scene* scene = &s->renderer->scene;
   for (const Material& m : scene->materials) {
@@ -54,8 +54,8 @@ void write_camera(std::FILE* file, const CameraRays& camera) {
   std::fprintf(file, "}\n");
 }
 
-// POV-Ray gives color · 2 / (1 + (d/f)²) at a distance d and counts no 1/π: a fade distance f far below d leaves the
-// inverse square.
+// POV-Ray gives color · 2 / (1 + (d/f)²) at a distance d and counts no 1/π: a fade distance f far below d approximates
+// the inverse square.
 void write_light(std::FILE* file, const Light& light) {
   constexpr double kFade = 0.01, kPi = 3.14159265358979323846;
   std::fprintf(file, "light_source {\n");
@@ -99,12 +99,12 @@ Status open_povray_scene(std::uint32_t width, std::uint32_t height, PovrayScene*
 
 Status write_povray_scene(const PovrayScene& s, const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "w");
-  if (!file) return failure("%s cannot be written", path.c_str());
+  if (!file) return failure("cannot write %s", path.c_str());
   std::fprintf(file, "#version 3.7;\nglobal_settings { assumed_gamma 1 }\nbackground { rgb 0 }\n");
   write_camera(file, s.renderer->frame.camera);
   write_light(file, s.light);
   write_mesh(file, s.renderer->scene);
-  return std::fclose(file) == 0 ? success() : failure("%s could not be written: is the disk full?", path.c_str());
+  return std::fclose(file) == 0 ? success() : failure("cannot write %s: is the disk full?", path.c_str());
 }
 
 }  // namespace pocketray

@@ -10,7 +10,7 @@ namespace pocketray {
 
 struct PovrayScene {
   std::unique_ptr<unsigned char[]> block;
-  std::unique_ptr<Renderer> renderer;  // ready to render frames; one thread, one sample, nothing left out
+  std::unique_ptr<Renderer> renderer;  // ready to render frames; one thread, one sample, no cut-off
   SceneSource source;
   std::vector<Material> materials;
   Light light;

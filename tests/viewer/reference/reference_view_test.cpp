@@ -32,14 +32,14 @@ struct Scenery {
   }
   ~Scenery() { kReferenceView.close(side_by_side); }
 
-  // Until the reference has so many samples of each seed; the deadlines are too short for a whole pass.
+  // Refines until the reference has `samples` samples per seed; the deadlines are too short for a whole pass.
   void refine(std::uint32_t samples, double seconds, std::uint64_t slice_ns = 200'000) {
     do REQUIRE(kReferenceView.advance(side_by_side, r, seconds, 1, clock_ns() + slice_ns).ok);
     while (kReferenceView.samples(*side_by_side) < 2 * samples);
   }
 };
 
-// The mean of both seeds, as the reference gives it in one go.
+// The mean of both seeds, traced at once.
 std::vector<Vec3d> whole_reference(Renderer* r, Transport transport, std::uint32_t samples) {
   std::vector<std::uint8_t> memory(reference_need(r->frame) + kArenaAlignment);
   Arena arena = make_arena("reference", memory.data(), memory.size());
@@ -60,21 +60,22 @@ bool is_near(const Vec3& a, const Vec3d& b) {
   return near(a.x, b.x) && near(a.y, b.y) && near(a.z, b.z);
 }
 
-// Pixels of the right half that are not those of the reference of the frame as it is prepared.
+// Number of pixels in the right half that differ from the reference of the prepared frame.
 std::uint32_t unlike_reference(const Scenery& s, Transport transport, const Vec3* shown) {
   std::uint32_t samples = kReferenceView.samples(*s.side_by_side) / 2, count = 0;
   std::vector<Vec3d> before = whole_reference(s.r, transport, samples),
                      after = whole_reference(s.r, transport, samples + 1);
-  for (std::uint32_t i = 0; i < s.r->image.count; ++i)  // the upper rows may have a sample more, of an unfinished pass
+  for (std::uint32_t i = 0; i < s.r->image.count;
+       ++i)  // the upper rows may have one more sample from an unfinished pass
     if (i % 24 > 12) count += !is_near(shown[i], before[i]) && !is_near(shown[i], after[i]);
   return count;
 }
 
 }  // namespace
 
-// Goal: the left half is the picture, the right half the reference, however its rows came to be. Method: slices of time
-// too short for all rows, by one and by three threads, on both kinds; the reference traced in one go, of the same view
-// and time with the scene's own settings, though the picture's are others.
+// Goal: the left half is the picture and the right half the reference, however its rows were traced. Method: time
+// slices too short for all rows, one and three threads, both kinds; compared with a reference traced at once, of the
+// same view and time with the scene's own settings, unlike the picture's.
 TEST_CASE("side_by_side_shows_picture_and_reference") {
   for (const char* kind : {"model", "physical"})
     for (std::uint32_t threads : {1u, 3u}) {
@@ -106,8 +107,8 @@ TEST_CASE("side_by_side_shows_picture_and_reference") {
     }
 }
 
-// Goal: what is seen from elsewhere or at another time is never mixed with what was. Method: the camera moves, then
-// time passes; the samples begin anew.
+// Goal: samples of different views or times are never mixed. Method: the camera moves, then time passes; sampling
+// restarts.
 TEST_CASE("side_by_side_begins_anew_when_the_view_changes") {
   Scenery s("seesaw", "model", 1);
   REQUIRE(render_frame(s.r, 0).ok);
@@ -133,8 +134,8 @@ TEST_CASE("side_by_side_begins_anew_when_the_view_changes") {
   CHECK(kReferenceView.samples(*s.side_by_side) == 0);
 }
 
-// Goal: the user sees it, can put it away, and time stands still while it shows. Method: a screen in memory and a
-// script: two frames, in both of which the right half is the reference; then the key.
+// Goal: the user sees it and can hide it, and time stands still while it shows. Method: an in-memory screen and a
+// script: two frames with the reference on the right half; then the key.
 TEST_CASE("side_by_side_is_shown_by_the_viewer") {
   CommonOptions common;
   common.scene = "seesaw", common.size = "24x16", common.threads = 1;
