@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "accel/bvh.h"
+#include "base/check.h"
 
 namespace pocketray {
 namespace {
@@ -37,6 +38,8 @@ bool leaf_is_sound(const Walk& walk, std::uint32_t reference, const Box& box) {
 
 // Checks the children of a node and appends the nodes among them to the stack.
 Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* stack_count) {
+  CHECK_LT(visit.node, walk->bvh.header->node_count);
+  CHECK_LE(*stack_count + 4, std::uint32_t(kBvhStackSize));
   const BvhNode& node = walk->bvh.nodes[visit.node];
   if (visit.depth > kBvhDepthMax)
     return failure("accelerator: deeper than %u nodes; bake the scene again", kBvhDepthMax);
@@ -71,6 +74,7 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
 
 // That every triangle is in some leaf, once, is not asked: a file that leaves one out shows a scene without it.
 Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data) {
+  CHECK_LE(kind.bytes, sizeof(TriangleBlock));  // a leaf is compared with one of these
   if (reinterpret_cast<std::uintptr_t>(data.data) % alignof(BvhNode) != 0)
     return failure("accelerator: not aligned to %zu bytes", alignof(BvhNode));
   if (data.bytes() < bvh_bytes(1, 0)) return failure("accelerator: cut off; bake the scene again");
