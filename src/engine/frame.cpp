@@ -2,12 +2,14 @@
 // first frame; which spans are traced, and when, is the source's; showing the frame is the caller's.
 #include "engine/frame.h"
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "engine/prepare.h"
 
 namespace pocketray {
 
 Status prepare_frame(Renderer* renderer, double seconds) {
+  CHECK(renderer->accel_info != nullptr && renderer->image.data != nullptr);  // it has been built
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   renderer->pace.owed_ns = 0;
   pose_scene(renderer, seconds);
