@@ -39,10 +39,10 @@ bool leaf_is_sound(const Walk& walk, std::uint32_t reference, const Box& box) {
 // Checks the children of a node and appends the nodes among them to the stack.
 Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* stack_count) {
   CHECK_LT(visit.node, walk->bvh.header->node_count);
-  CHECK_LE(*stack_count + 4, std::uint32_t(kBvhStackSize));
   const BvhNode& node = walk->bvh.nodes[visit.node];
   if (visit.depth > kBvhDepthMax)
     return failure("accelerator: deeper than %u nodes; bake the scene again", kBvhDepthMax);
+  CHECK_LE(*stack_count + 4, std::uint32_t(kBvhStackSize));
   bool ended = false;
   for (int lane = 0; lane < 4; ++lane) {
     std::uint32_t child = node.child[lane];
