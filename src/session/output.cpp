@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/check.h"
 #include "platform/file.h"
 #include "scene/builtin/builtin.h"
 #include "session/report.h"
@@ -51,6 +52,7 @@ Status make_output_folder(const std::string& folder) {
 }
 
 Status write_with(const char* path, Status (*encode)(void* context, const ByteSink& sink), void* context) {
+  CHECK(path != nullptr && encode != nullptr);
   platform::FileWriter writer;
   platform::FileError error;
   std::fflush(stdout);  // the file may be standard output
