@@ -9,6 +9,7 @@ namespace {
 
 // Moves what is left to the front.
 void compact(Array<std::uint8_t> bytes, std::size_t* begin, std::size_t* end) {
+  CHECK(*begin <= *end && *end <= bytes.count);
   if (*begin == 0) return;
   std::memmove(bytes.data, bytes.data + *begin, *end - *begin);
   *end -= *begin, *begin = 0;
@@ -24,6 +25,7 @@ bool read_in(MessageStream* s, platform::Error* error) {
     if (result == platform::LinkResult::failed) return false;
     if (result == platform::LinkResult::ended) s->ended = true;
     s->in_end += count, s->bytes_in += count;
+    CHECK_LE(s->in_end, s->in.count);  // a link reads no more than there is room for
   }
   return true;
 }
@@ -43,6 +45,8 @@ MessageStream make_message_stream(std::size_t in_bytes, std::size_t out_bytes, A
 }
 
 void start_message_stream(MessageStream* s, platform::Link* link, int connection) {
+  CHECK(link != nullptr && connection >= 0);
+  CHECK_LT(s->stream, 0);  // the connection before is closed
   Array<std::uint8_t> in = s->in, out = s->out;
   *s = MessageStream();
   s->in = in, s->out = out;
@@ -62,12 +66,14 @@ bool flush_message_stream(MessageStream* s, platform::Error* error) {
     if (result == platform::LinkResult::later) return true;
     if (result != platform::LinkResult::done) return false;
     s->out_begin += count, s->bytes_out += count;
+    CHECK_LE(s->out_begin, s->out_end);
   }
   s->out_begin = s->out_end = 0;
   return true;
 }
 
 bool pump_message_stream(MessageStream* s, platform::Error* error) {
+  CHECK_GE(s->stream, 0);
   if (!flush_message_stream(s, error) || !read_in(s, error)) return false;
   if (!s->ended || s->in_end > s->in_begin) return true;
   std::snprintf(error->text, sizeof error->text, "the peer has closed the connection");
@@ -93,6 +99,7 @@ bool send_message(MessageStream* s, const Message& message) {
   if (byte_count > s->out.count - s->out_end) compact(s->out, &s->out_begin, &s->out_end);
   encode_message(message, s->out.data + s->out_end);
   s->out_end += byte_count;
+  CHECK_LE(s->out_end, s->out.count);
   return true;
 }
 

@@ -18,6 +18,7 @@ constexpr int kAcceptsAtOnce = 16;
 
 void queue(Guest* guest, const Message& message) {
   std::uint32_t byte_count = message_bytes(message);
+  CHECK_GE(guest->stream, 0);
   CHECK_LE(guest->output_end + byte_count, sizeof guest->output);
   encode_message(message, guest->output + guest->output_end);
   guest->output_end += byte_count;
@@ -32,11 +33,13 @@ bool flush(Server* server, Guest* guest) {
                                            guest->output_end - guest->output_begin, &sent, &error);
     if (result != LinkResult::done) return result == LinkResult::later;
     guest->output_begin += sent;
+    CHECK_LE(guest->output_begin, guest->output_end);  // a link sends no more than it is given
   }
   return true;
 }
 
 void send_away(Server* server, Guest* guest, WireError code) {
+  CHECK(!guest->leaves);
   Message message;
   message.type = MessageType::error;
   message.error.code = code;
@@ -63,11 +66,13 @@ Guest* free_guest(Server* server) {
     if (count < most || (count == most && left >= least)) continue;
     chosen = &guest, most = count, least = left;
   }
+  CHECK(chosen != nullptr);  // there is room for one at least
   close_guest(server, chosen);
   return chosen;
 }
 
 void receive_guest(Server* server, int stream) {
+  CHECK_GE(stream, 0);
   Guest* guest = free_guest(server);
   *guest = Guest();
   guest->stream = stream;
@@ -95,6 +100,7 @@ int forgotten_address(const Server& server) {
 // The account of an address: its own, or else a new one, if need be that of another.
 int find_address(Server* server, std::uint64_t key) {
   std::vector<Address>& all = server->addresses;
+  CHECK_LE(all.size(), std::size_t(kAddressCountMax));
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].key == key) return static_cast<int>(i);
   int chosen = static_cast<int>(all.size());
@@ -218,6 +224,7 @@ void read_hello(Server* server, Guest* guest) {
 }  // namespace
 
 void close_guest(Server* server, Guest* guest) {
+  CHECK_GE(guest->stream, 0);
   server->net->close(server->link, guest->stream);
   guest->stream = -1;
 }
@@ -227,10 +234,12 @@ bool drop_input(Server* server, int stream) {
   std::size_t count = 0;
   platform::Error error;
   LinkResult result = server->net->read(server->link, stream, bytes, sizeof bytes, &count, &error);
+  CHECK_LE(count, sizeof bytes);
   return result != LinkResult::ended && result != LinkResult::failed;
 }
 
 void tend_guest(Server* server, Guest* guest) {
+  CHECK_GE(guest->stream, 0);
   if (!flush(server, guest)) return close_guest(server, guest);
   if (guest->leaves) {
     if (!drop_input(server, guest->stream)) return close_guest(server, guest);

@@ -1,9 +1,11 @@
 // What a server tells of a scene to a device that has no room for it.
+#include "base/check.h"
 #include "remote/server/session.h"
 
 namespace pocketray {
 
 Status answer_view_query(Session* session) {
+  CHECK(has_job(*session) && session->job.is_view_query);
   const Renderer* renderer = &session->renderer;
   Message message;
   message.type = MessageType::view_entry;
