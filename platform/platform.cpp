@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "platform/check.h"
 #include "platform/null/null.h"
 #if defined(POCKETRAY_HAVE_SDL2)
 #include "platform/sdl2/sdl2.h"
@@ -24,12 +25,14 @@ const Backend* const kBackends[] = {
 const int kBackendCount = sizeof kBackends / sizeof kBackends[0];
 
 const Backend* platform_find(const char* name) {
+  PLATFORM_CHECK(name != nullptr);
   for (const Backend* backend : kBackends)
     if (std::strcmp(backend->name, name) == 0) return backend;
   return nullptr;
 }
 
 ScreenFormat screen_format(int width, int height, int bits_per_pixel, bool blue_first) {
+  PLATFORM_CHECK(width > 0 && height > 0);
   ScreenFormat format = {width, height, 32, {16, 8}, {8, 8}, {0, 8}, {}};
   if (bits_per_pixel == 16) format = {width, height, 16, {11, 5}, {5, 6}, {0, 5}, {}};
   if (!blue_first) return format;

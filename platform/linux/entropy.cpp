@@ -5,6 +5,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -40,6 +42,7 @@ bool read_device(unsigned char* bytes, std::size_t byte_count) {
 }  // namespace
 
 bool random_bytes(void* bytes, std::size_t byte_count) {
+  PLATFORM_CHECK(bytes != nullptr || byte_count == 0);
   unsigned char* at = static_cast<unsigned char*>(bytes);
   return ask_kernel(at, byte_count) || read_device(at, byte_count);
 }

@@ -5,6 +5,8 @@
 #include <linux/input.h>
 #include <stdio.h>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -52,6 +54,7 @@ void push(InputQueue* queue, EventType type, Button button) {
 }
 
 void set_button(InputQueue* queue, Button button, bool down) {
+  PLATFORM_CHECK_LT(static_cast<int>(button), kButtonCount);
   std::uint32_t bit = 1u << static_cast<int>(button);
   if (((queue->held & bit) != 0) == down) return;
   queue->held ^= bit;
@@ -104,6 +107,7 @@ void find_axes(const Driver& driver, Input* input) {
 }
 
 void drop_input(InputQueue* queue, int index) {
+  PLATFORM_CHECK(index >= 0 && index < queue->input_count);
   queue->driver->close(queue->inputs[index].file);
   queue->inputs[index] = queue->inputs[--queue->input_count];
   release_all(queue);  // the device is gone: its button releases will not arrive
@@ -132,11 +136,13 @@ void input_open(const Driver& driver, const std::uint16_t* keys, InputQueue* que
     input.file = driver.open(path, O_RDONLY | O_NONBLOCK);
     if (input.file < 0) continue;
     find_axes(driver, &input);
+    PLATFORM_CHECK_LT(queue->input_count, kInputCountMax);
     queue->inputs[queue->input_count++] = input;
   }
 }
 
 bool input_poll(InputQueue* queue, Event* event) {
+  PLATFORM_CHECK(event != nullptr && queue->driver != nullptr);
   // Reads events until one matters; a device that never stops sending does not block us.
   for (int round = 0; round < 64 && queue->count == 0 && queue->input_count > 0; ++round) {
     pollfd files[kInputCountMax];

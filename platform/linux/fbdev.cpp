@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -71,12 +73,14 @@ bool can_flip(Framebuffer* fb, const fb_fix_screeninfo& fixed, std::size_t map_o
 }
 
 unsigned char* page_address(const Framebuffer* fb, int page) {
+  PLATFORM_CHECK(page == 0 || page == 1);
   return fb->first_row + static_cast<std::size_t>(page) * static_cast<std::size_t>(fb->page_lines) *
                              static_cast<std::size_t>(fb->line_bytes);
 }
 
 void copy_rows(Framebuffer* fb, const unsigned char* from, int from_line_bytes, unsigned char* to, int row_begin,
                int row_end) {
+  PLATFORM_CHECK(row_begin >= 0 && row_end <= fb->height);
   std::size_t bytes = static_cast<std::size_t>(fb->width) * static_cast<std::size_t>(fb->pixel_bytes);
   for (int row = row_begin; row < row_end; ++row)
     memcpy(to + static_cast<std::ptrdiff_t>(row) * fb->line_bytes,
@@ -92,6 +96,8 @@ bool fail(Framebuffer* fb) {
 
 bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Framebuffer* fb, ScreenFormat* format,
                       Error* error) {
+  PLATFORM_CHECK(options.width > 0 && options.height > 0);
+  PLATFORM_CHECK(format != nullptr && error != nullptr);
   const char* path = options.device ? options.device : "/dev/fb0";
   *fb = Framebuffer();
   fb->driver = &driver;
@@ -160,6 +166,7 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
 }
 
 Page framebuffer_begin_frame(Framebuffer* fb) {
+  PLATFORM_CHECK_GE(fb->file, 0);
   if (!fb->flips) return {fb->memory, fb->memory_line_bytes, fb->frames_drawn > 0 ? 1 : 0};
   // The page to draw into was visible until the flip, which happens within one frame of the request.
   if (fb->frames_drawn > 0) {
@@ -174,6 +181,7 @@ Page framebuffer_begin_frame(Framebuffer* fb) {
 }
 
 void framebuffer_end_frame(Framebuffer* fb, int row_begin, int row_end) {
+  PLATFORM_CHECK_GE(fb->file, 0);
   if (row_begin < 0) row_begin = 0;
   if (row_end > fb->height) row_end = fb->height;
   ++fb->frames_drawn;

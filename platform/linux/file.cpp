@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -39,6 +41,8 @@ int open_regular(const char* path, struct stat* info, FileError* error) {
 }  // namespace
 
 bool open_reader(const char* path, FileReader* reader, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && error != nullptr);
+  PLATFORM_CHECK_LT(reader->descriptor, 0);  // what was read before is closed
   struct stat info;
   int descriptor = open_regular(path, &info, error);
   if (descriptor < 0) return false;
@@ -54,6 +58,8 @@ bool open_reader(const char* path, FileReader* reader, FileError* error) {
 }
 
 bool read_bytes(FileReader* reader, void* bytes, std::size_t byte_count, FileError* error) {
+  PLATFORM_CHECK_GE(reader->descriptor, 0);
+  PLATFORM_CHECK(bytes != nullptr || byte_count == 0);
   char* at = static_cast<char*>(bytes);
   while (byte_count > 0) {
     ssize_t n = read(reader->descriptor, at, byte_count);
@@ -75,6 +81,7 @@ void close_reader(FileReader* reader) {
 }
 
 bool load_file(const char* path, LoadedFile* file, FileError* error) {
+  PLATFORM_CHECK(file != nullptr && file->bytes == nullptr);
   FileReader reader;
   if (!open_reader(path, &reader, error)) return false;
   void* bytes = MAP_FAILED;
@@ -102,6 +109,7 @@ void unload_file(LoadedFile* file) {
 }
 
 bool list_folder(const char* path, void (*found)(void* context, const char* name), void* context, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && found != nullptr);
   DIR* folder = opendir(path);
   if (!folder) return fail(error, "cannot be opened as a folder", errno);
   errno = 0;
@@ -115,6 +123,7 @@ bool list_folder(const char* path, void (*found)(void* context, const char* name
 }
 
 bool make_folder(const char* path, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && error != nullptr);
   struct stat info;
   if (mkdir(path, 0777) == 0) return true;
   int number = errno;
@@ -123,6 +132,7 @@ bool make_folder(const char* path, FileError* error) {
 }
 
 bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && path_bytes > 0);
   const char* where = getenv("TMPDIR");
   if (!where || !*where) where = "/tmp";
   int length = snprintf(path, path_bytes, "%s/pocketray_XXXXXX", where);
@@ -134,6 +144,7 @@ bool make_temporary_folder(char* path, std::size_t path_bytes, FileError* error)
 }
 
 void remove_folder(const char* path) {
+  PLATFORM_CHECK(path != nullptr && *path != 0);
   int descriptor = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
   FileError error;
@@ -144,6 +155,7 @@ void remove_folder(const char* path) {
 }
 
 std::uint64_t file_stamp(const char* path) {
+  PLATFORM_CHECK(path != nullptr);
   struct stat info;
   if (stat(path, &info) != 0) return 0;
   std::uint64_t time =

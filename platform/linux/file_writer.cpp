@@ -9,6 +9,7 @@
 
 #include <initializer_list>
 
+#include "platform/check.h"
 #include "platform/file.h"
 
 namespace platform {
@@ -151,6 +152,8 @@ void remove_part(FileWriter* writer) {
 }  // namespace
 
 bool open_writer(const char* path, FileWriter* writer, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && error != nullptr);
+  PLATFORM_CHECK_LT(writer->descriptor, 0);  // what was written before is closed
   *writer = FileWriter();
   if (strcmp(path, "-") == 0) {
     writer->descriptor = STDOUT_FILENO;
@@ -172,6 +175,8 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
 }
 
 void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) {
+  PLATFORM_CHECK_GE(writer->descriptor, 0);
+  PLATFORM_CHECK(bytes != nullptr || byte_count == 0);
   const char* at = static_cast<const char*>(bytes);
   while (byte_count > 0 && !writer->failed) {
     ssize_t n = write(writer->descriptor, at, byte_count);
@@ -185,6 +190,7 @@ void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) 
 }
 
 bool close_writer(FileWriter* writer, FileError* error) {
+  PLATFORM_CHECK_GE(writer->descriptor, 0);
   bool is_direct = !writer->path[0];
   bool ok = !writer->failed && (is_direct || bring_to_disk(writer->descriptor));
   if (writer->descriptor != STDOUT_FILENO && close(writer->descriptor) != 0) ok = false;
@@ -214,6 +220,7 @@ void discard_writer(FileWriter* writer) {
 }
 
 bool can_write(const char* path, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && error != nullptr);
   if (strcmp(path, "-") == 0) return true;
   Destination d;
   if (!find_destination(path, &d, error)) return false;
@@ -225,12 +232,14 @@ bool can_write(const char* path, FileError* error) {
 }
 
 bool is_device_or_pipe(const char* path) {
+  PLATFORM_CHECK(path != nullptr);
   Destination d;
   FileError error;
   return strcmp(path, "-") == 0 || (find_destination(path, &d, &error) && d.is_direct);
 }
 
 bool is_same_file(const char* one, const char* other) {
+  PLATFORM_CHECK(one != nullptr && other != nullptr);
   struct stat a, b;
   bool there = stat(one, &a) == 0;
   if (there != (stat(other, &b) == 0)) return false;

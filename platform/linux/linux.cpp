@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 
+#include "platform/check.h"
 #include "platform/linux/console.h"
 #include "platform/linux/driver.h"
 #include "platform/linux/evdev.h"
@@ -50,6 +51,7 @@ Page begin_frame() { return framebuffer_begin_frame(&state.framebuffer); }
 void end_frame(int row_begin, int row_end) { framebuffer_end_frame(&state.framebuffer, row_begin, row_end); }
 
 bool poll(Event* event) {
+  PLATFORM_CHECK(event != nullptr);
   if (console_quit_requested() && !state.quit_told) {
     state.quit_told = true;
     *event = Event();

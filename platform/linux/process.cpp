@@ -11,6 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -41,6 +43,7 @@ ProcessState collect(Process* process, int options) {
 }  // namespace
 
 bool find_program(const char* name, char* path, std::size_t path_bytes) {
+  PLATFORM_CHECK(name != nullptr && path != nullptr && path_bytes > 0);
   const char* folders = getenv("PATH");
   while (folders && *folders) {
     size_t length = strcspn(folders, ":");
@@ -55,6 +58,8 @@ bool find_program(const char* name, char* path, std::size_t path_bytes) {
 }
 
 bool start_program(const char* path, const char* const* words, const char* folder, Process* process, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && words != nullptr && words[0] != nullptr);
+  PLATFORM_CHECK_EQ(process->id, 0);  // the one before has been seen to end
   pid_t parent = getpid(), child = fork();
   if (child == 0) become(path, words, folder, parent);
   process->id = child > 0 ? child : 0;
@@ -73,6 +78,7 @@ void kill_process(Process* process) {
 }
 
 bool own_program(char* path, std::size_t path_bytes) {
+  PLATFORM_CHECK(path != nullptr && path_bytes > 0);
   ssize_t length = readlink("/proc/self/exe", path, path_bytes);
   if (length <= 0 || static_cast<size_t>(length) >= path_bytes) return false;
   path[length] = 0;
@@ -80,6 +86,7 @@ bool own_program(char* path, std::size_t path_bytes) {
 }
 
 std::size_t own_words(char* words, std::size_t words_bytes) {
+  PLATFORM_CHECK(words != nullptr && words_bytes > 0);
   int descriptor = open("/proc/self/cmdline", O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return 0;
   size_t count = 0;

@@ -1,12 +1,16 @@
 #include <cstdio>
 #include <cstring>
 
+#include "platform/check.h"
+
 #include "platform/link.h"
 
 namespace platform {
 
 bool link_parse_address(const char* text, char* host, std::size_t host_bytes, int* port, Error* error) {
   // 1. The last colon separates host and port, unless the host contains colons itself and is in brackets.
+  PLATFORM_CHECK(text != nullptr && port != nullptr);
+  PLATFORM_CHECK_GE(host_bytes, sizeof "127.0.0.1");
   const char *host_begin = text, *host_end = text, *digits = text;
   if (text[0] == '[') {
     host_begin = text + 1;

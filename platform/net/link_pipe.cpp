@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "platform/check.h"
+
 namespace platform {
 
 std::uint64_t line_arrival_ns(const LinkLine& line, std::size_t byte_count, std::uint64_t now_ns,
@@ -23,6 +25,8 @@ std::uint64_t random_u64(std::uint64_t* state) {
 std::size_t pipe_need(std::size_t capacity) { return kPiecesMax * sizeof(LinkPiece) + (capacity + 15) / 16 * 16; }
 
 void place_pipe(LinkPipe* pipe, std::size_t capacity, unsigned char** memory) {
+  PLATFORM_CHECK_GT(capacity, 0u);
+  PLATFORM_CHECK_EQ(reinterpret_cast<std::uintptr_t>(*memory) % alignof(LinkPiece), 0u);
   pipe->pieces = reinterpret_cast<LinkPiece*>(*memory);
   pipe->bytes = *memory + kPiecesMax * sizeof(LinkPiece);
   pipe->capacity = capacity;
@@ -46,6 +50,7 @@ std::size_t pipe_room(const LinkPipe& pipe) {
 
 void push_piece(LinkPipe* pipe, const unsigned char* bytes, std::size_t byte_count, unsigned char flip,
                 std::uint64_t arrival_ns) {
+  PLATFORM_CHECK(byte_count > 0 && byte_count <= pipe_room(*pipe));
   for (std::size_t i = 0; i < byte_count; ++i)
     pipe->bytes[(pipe->first + pipe->used + i) % pipe->capacity] =
         static_cast<unsigned char>(i == 0 ? bytes[i] ^ flip : bytes[i]);
@@ -64,6 +69,8 @@ std::size_t due_bytes(const LinkPipe& pipe, std::uint64_t now_ns, const unsigned
 
 void drop_bytes(LinkPipe* pipe, std::size_t byte_count) {
   LinkPiece* piece = &pipe->pieces[pipe->piece_first];
+  PLATFORM_CHECK_GT(pipe->piece_count, 0);
+  PLATFORM_CHECK_LE(byte_count, piece->byte_count);
   pipe->first = (pipe->first + byte_count) % pipe->capacity;
   pipe->used -= byte_count;
   piece->byte_count -= byte_count;

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -69,6 +71,7 @@ bool add_name(LinkAddress* address, const char* host, int port, Error* error) {
 }  // namespace
 
 SocketAddress socket_address(const LinkAddress& address, int place) {
+  PLATFORM_CHECK(place >= 0 && place < LinkAddress::kPlacesMax);
   SocketAddress at;
   memcpy(&at, address.places[place], sizeof at);
   return at;
@@ -86,6 +89,7 @@ void socket_address_text(const SocketAddress& at, char* text, std::size_t text_b
 }
 
 bool resolve_address(const char* text, LinkAddress* address, Error* error) {
+  PLATFORM_CHECK(text != nullptr && address != nullptr && error != nullptr);
   *address = LinkAddress();
   address->loopback = true;
   snprintf(address->text, sizeof address->text, "%s", text);

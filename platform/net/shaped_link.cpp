@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "platform/check.h"
 #include "platform/net/link_slots.h"
 
 namespace platform {
@@ -92,6 +93,7 @@ void send(ShapedLink* link, Slot* slot, std::uint64_t now_ns) {
     if (due_count == 0) break;
     LinkResult result = net(link).write(link->inner, slot->inner, bytes, due_count, &count, &slot->error);
     if (result == LinkResult::failed) lose(link, slot);
+    PLATFORM_CHECK_LE(count, due_count);
     slot->blocked = result == LinkResult::later;
     drop_bytes(&slot->out, count);
   }
@@ -306,6 +308,7 @@ int poll_once(ShapedLink* link, LinkWait* waits, int wait_count, std::uint64_t w
     link->waits[inner_count++].stream = slot->inner;
   }
   // 3. Wait. If the inner link reports nothing, that much time has passed, whatever its clock says.
+  PLATFORM_CHECK_LE(inner_count, link->slot_count);
   std::uint64_t until_ns = ready_count > 0 ? link->clock_ns : next_ns;
   int told_count = net(link).poll(link->inner, link->waits, inner_count, until_ns - link->clock_ns);
   if (tell_clock(link) < until_ns && told_count == 0) link->clock_ns = until_ns;
@@ -320,6 +323,7 @@ int poll_once(ShapedLink* link, LinkWait* waits, int wait_count, std::uint64_t w
 }
 
 int poll(Link* base, LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
+  PLATFORM_CHECK(wait_count == 0 || (wait_count > 0 && waits != nullptr));
   ShapedLink* link = shaped(base);
   if (wait_count > link->slot_count) wait_count = link->slot_count;
   std::uint64_t until_ns = tell_clock(link) + (timeout_ns < kHourNs ? timeout_ns : kHourNs);
@@ -383,6 +387,7 @@ std::size_t shaped_link_need(int stream_count_max, const ShapedLinkSettings& set
 }
 
 Link* shaped_link_open(Link* inner, const LinkOptions& options, const ShapedLinkSettings& settings, Error* error) {
+  PLATFORM_CHECK(inner != nullptr && inner->backend != nullptr);
   int count = options.stream_count_max;
   if (count < 1 || count > kLinkStreamsMax || !options.memory ||
       options.memory_bytes < shaped_link_need(count, settings)) {

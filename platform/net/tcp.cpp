@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "platform/check.h"
 #include "platform/net/descriptors.h"
 #include "platform/net/link_slots.h"
 #include "platform/net/resolve.h"
@@ -176,6 +177,7 @@ void try_places(Slot* slot) {
 }
 
 int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Error* error) {
+  PLATFORM_CHECK(address.place_count > 0 && address.place_count <= LinkAddress::kPlacesMax);  // it has been resolved
   TcpLink* link = tcp(base);
   Slot* slot = take_slot(link, error);
   if (!slot) return -1;
@@ -223,6 +225,7 @@ LinkResult connected(Link* base, int stream, Error* error) {
 }
 
 int listen(Link* base, const LinkAddress& address, Error* error) {
+  PLATFORM_CHECK_GT(address.place_count, 0);
   TcpLink* link = tcp(base);
   Slot* slot = take_slot(link, error);
   if (!slot) return -1;
@@ -248,6 +251,7 @@ int listen(Link* base, const LinkAddress& address, Error* error) {
 }
 
 LinkResult accept(Link* base, int listener, int* stream, Error* error) {
+  PLATFORM_CHECK(stream != nullptr);
   TcpLink* link = tcp(base);
   Slot* from = slot_of(link, listener);
   if (!from || from->phase != Phase::listening) return stale_stream(error);
@@ -286,6 +290,7 @@ LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max,
   if (!slot) return stale_stream(error);
   LinkResult state = progress(tcp(base), slot, error);
   if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
+  PLATFORM_CHECK(bytes != nullptr);
   ssize_t n = recv(slot->file, bytes, byte_count_max, 0);
   if (n == 0) return LinkResult::ended;
   if (n < 0) return would_wait(errno) ? LinkResult::later : fail(slot, errno, error);
@@ -300,6 +305,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
   if (!slot) return stale_stream(error);
   LinkResult state = progress(tcp(base), slot, error);
   if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
+  PLATFORM_CHECK(bytes != nullptr);
   ssize_t n = send(slot->file, bytes, byte_count_max, MSG_NOSIGNAL);
   if (n < 0) return would_wait(errno) ? LinkResult::later : fail(slot, errno, error);
   *byte_count = static_cast<std::size_t>(n);
@@ -309,6 +315,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
 // Polls the first `file_count` of link->files. If the system cannot tell, for lack of memory or because the limit on
 // open files was lowered, everything counts as ready after a pause: whoever tries finds out.
 int ask_system(TcpLink* link, int file_count, std::uint64_t wait_ns) {
+  PLATFORM_CHECK(file_count >= 0 && file_count <= link->slot_count);
   auto time_of = [](std::uint64_t ns) {
     return timespec{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
   };
@@ -380,6 +387,7 @@ int poll_once(TcpLink* link, LinkWait* waits, int wait_count, std::uint64_t wait
 
 // Waits again after a signal, and when a connection moved on to the next place of its address.
 int poll(Link* base, LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
+  PLATFORM_CHECK(wait_count == 0 || (wait_count > 0 && waits != nullptr));
   TcpLink* link = tcp(base);
   if (wait_count > link->slot_count) wait_count = link->slot_count;
   LinkTimer timer = link_timer(link->now_ns(), timeout_ns < kPollNsMax ? timeout_ns : kPollNsMax);

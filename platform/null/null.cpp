@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -62,6 +64,8 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
 Page begin_frame() { return {state.page, state.record.line_bytes, state.record.frames_shown > 0 ? 1 : 0}; }
 
 void end_frame(int row_begin, int row_end) {
+  PLATFORM_CHECK(state.record.open);
+  PLATFORM_CHECK(row_begin >= 0 && row_end <= state.format.height);
   NullRecord& record = state.record;
   if (state.settings.screen && row_begin < row_end) {
     std::size_t offset = static_cast<std::size_t>(row_begin) * static_cast<std::size_t>(record.line_bytes);
@@ -75,6 +79,7 @@ void end_frame(int row_begin, int row_end) {
 }
 
 bool poll(Event* event) {
+  PLATFORM_CHECK(event != nullptr);
   if (state.events_taken == state.settings.script_count) return false;
   const Event& next = state.settings.script[state.events_taken];
   if (next.time_ns > state.clock_ns) return false;

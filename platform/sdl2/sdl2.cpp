@@ -9,6 +9,8 @@
 #include <cstring>
 #include <thread>
 
+#include "platform/check.h"
+
 namespace platform {
 namespace {
 
@@ -152,6 +154,7 @@ int line_bytes() { return state.format.width * (state.format.bits_per_pixel / 8)
 Page begin_frame() { return {state.page, line_bytes(), state.shown ? 1 : 0}; }
 
 void end_frame(int row_begin, int row_end) {
+  PLATFORM_CHECK(state.texture != nullptr);  // it is open
   if (row_begin < 0) row_begin = 0;
   if (row_end > state.format.height) row_end = state.format.height;
   if (row_begin < row_end) {
@@ -173,6 +176,7 @@ Event* push(EventType type) {
 }
 
 void set_button(Button button, bool down) {
+  PLATFORM_CHECK_LT(static_cast<int>(button), kButtonCount);
   std::uint32_t bit = 1u << static_cast<int>(button);
   if (((state.held & bit) != 0) == down) return;
   state.held ^= bit;
@@ -186,6 +190,7 @@ void take_key(SDL_Scancode key, bool down) {
 }
 
 void take_stick(int axis, int value) {
+  PLATFORM_CHECK(axis == 0 || axis == 1);
   int direction = value <= -16384 ? -1 : value >= 16384 ? 1 : 0;
   if (direction == state.stick[axis]) return;
   Button negative = axis ? Button::up : Button::left, positive = axis ? Button::down : Button::right;
@@ -268,6 +273,7 @@ void pump() {
 }
 
 bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
+  PLATFORM_CHECK(format != nullptr && error != nullptr);
   close();
   bool turned = options.rotation == 90 || options.rotation == 270;
   int width = turned ? options.height : options.width, height = turned ? options.width : options.height;
@@ -299,6 +305,7 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
 }
 
 bool poll(Event* event) {
+  PLATFORM_CHECK(event != nullptr);
   pump();
   if (state.count == 0) return false;
   *event = state.queue[state.first];

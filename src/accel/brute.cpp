@@ -5,6 +5,7 @@
 #include "accel/by_rays.h"
 #include "accel/point_distance.h"
 #include "accel/triangle.h"
+#include "base/check.h"
 
 namespace pocketray {
 namespace {
@@ -21,6 +22,7 @@ void update_bounds(Accel* accel) {
 }
 
 void brute_build(Accel* accel, Arena*, Arena*) {
+  CHECK_LE(accel->triangles.count, kTriangleCountMax);
   accel->data = {};
   update_bounds(accel);
 }

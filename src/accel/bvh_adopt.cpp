@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "accel/bvh.h"
+#include "base/check.h"
 
 namespace pocketray {
 namespace {
@@ -37,9 +38,11 @@ bool leaf_is_sound(const Walk& walk, std::uint32_t reference, const Box& box) {
 
 // Checks the children of a node and pushes the inner ones onto the stack.
 Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* stack_count) {
+  CHECK_LT(visit.node, walk->bvh.header->node_count);
   const BvhNode& node = walk->bvh.nodes[visit.node];
   if (visit.depth > kBvhDepthMax)
     return failure("accelerator: deeper than %u nodes; bake the scene again", kBvhDepthMax);
+  CHECK_LE(*stack_count + 4, std::uint32_t(kBvhStackSize));
   bool ended = false;
   for (int lane = 0; lane < 4; ++lane) {
     std::uint32_t child = node.child[lane];
@@ -71,6 +74,7 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
 
 // Whether every triangle is in exactly one leaf is not checked: a file that omits one shows a scene without it.
 Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data) {
+  CHECK_LE(kind.bytes, sizeof(TriangleBlock));  // a leaf is compared with one of these
   if (reinterpret_cast<std::uintptr_t>(data.data) % alignof(BvhNode) != 0)
     return failure("accelerator: not aligned to %zu bytes", alignof(BvhNode));
   if (data.bytes() < bvh_bytes(1, 0)) return failure("accelerator: cut off; bake the scene again");

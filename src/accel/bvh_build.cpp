@@ -90,6 +90,7 @@ BvhNode* clear_node(Builder* builder, std::uint32_t index) {
 
 std::uint32_t add_node(Builder* builder) {
   CHECK_LT(builder->node_count, builder->node_max);
+  CHECK_LT(builder->node_count, kLeafBit);
   return builder->node_count++;
 }
 
@@ -122,6 +123,8 @@ void build_lower(Builder* builder, const BuildPart& part, std::uint32_t root) {
     BvhNode* node = clear_node(builder, pair.to);
     std::uint32_t children[4];
     std::uint32_t count = treelet_children(t, pair.from, children);
+    CHECK(count >= 1 && count <= 4);
+    CHECK_LE(top + int(count), int(kTreeletLeafMax));
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       const TreeletNode& child = t.nodes[children[lane]];
       if (child.left) {
@@ -129,6 +132,7 @@ void build_lower(Builder* builder, const BuildPart& part, std::uint32_t root) {
         stack[top++] = {children[lane], node->child[lane]};
       } else {
         std::uint32_t ids[kBvhLeafSize];
+        CHECK_LE(child.count, kBvhLeafSize);
         for (std::uint32_t i = 0; i < child.count; ++i) ids[i] = triangle_of(primitives[t.order[0][child.begin + i]]);
         set_leaf(builder, node, int(lane), ids, child.count);
       }
@@ -153,6 +157,7 @@ std::uint32_t build_node(Builder* builder, const Task& task, Task* stack, std::u
     BuildPart whole = parts[i];
     divide_part(builder->primitives, whole, halve, &parts[i], &parts[part_count]);
   }
+  CHECK_LE(stack_count + 4, std::uint32_t(kBvhStackSize));
   BvhNode* node = clear_node(builder, task.node);
   for (int lane = 0; lane < part_count; ++lane) {
     const BuildPart& part = parts[lane];
@@ -202,15 +207,18 @@ std::size_t bvh_need(const LeafKind& kind, std::uint32_t triangle_count) {
 std::size_t bvh_scratch_need(std::uint32_t triangle_count) { return arena_need<BuildPrimitive>(triangle_count); }
 
 void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch) {
+  CHECK(keep != scratch);  // each is released to its own mark
   std::uint32_t triangle_count = accel->triangles.count;
   CHECK_LE(triangle_count, kTriangleCountMax);
   std::size_t scratch_mark = arena_mark(*scratch), keep_mark = arena_mark(*keep);
   BuildPrimitive* primitives = arena_array<BuildPrimitive>(scratch, triangle_count).data;
   std::uint32_t count = collect_primitives(*accel, primitives);
+  CHECK_LE(count, triangle_count);
   std::size_t leaf_max = leaf_count_max(count), node_max = node_count_max(leaf_max);
   BuildPart root = make_part(primitives, 0, count, static_cast<std::uint32_t>(leaf_max));
 
   std::uint8_t* data = static_cast<std::uint8_t*>(arena_allocate(keep, bvh_bytes(node_max, leaf_max, kind.bytes)));
+  CHECK_EQ(reinterpret_cast<std::uintptr_t>(data) % alignof(BvhNode), 0u);
   Builder builder = {kind,
                      accel,
                      primitives,
@@ -229,6 +237,7 @@ void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch) 
   *reinterpret_cast<BvhHeader*>(data) = {kind.magic, triangle_count, builder.node_count, builder.leaf_count, {0}};
   arena_release(keep, keep_mark);
   arena_allocate(keep, bytes);
+  CHECK_LE(arena_need(bytes), bvh_need(kind, triangle_count));
   arena_release(scratch, scratch_mark);
   accel->data = {data, static_cast<std::uint32_t>(bytes)};
   accel->bounds = node_box(*BvhView(data).nodes);

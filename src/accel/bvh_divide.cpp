@@ -118,6 +118,7 @@ void partition(BuildPrimitive* primitives, const BuildPart& part, const BinMap& 
     *p = *middle, *middle = here;
     middle += is_left;
   }
+  CHECK_EQ(middle - first, std::ptrdiff_t(division.left_count));
 }
 
 struct CentroidLess {
@@ -130,6 +131,8 @@ struct CentroidLess {
 
 // Moves the boundary between two sides, taking the primitives nearest to it.
 void move_boundary(BuildPrimitive* primitives, const BuildPart& part, int axis, std::uint32_t from, std::uint32_t to) {
+  CHECK_LE(from, part.count);
+  CHECK_LE(to, part.count);
   BuildPrimitive* first = primitives + part.begin;
   for (; from < to; ++from)
     std::swap(first[from], *std::min_element(first + from, first + part.count, CentroidLess{axis}));
@@ -162,6 +165,8 @@ BuildPart make_part(const BuildPrimitive* primitives, std::uint32_t begin, std::
 }
 
 void divide_part(BuildPrimitive* primitives, const BuildPart& part, bool halve, BuildPart* left, BuildPart* right) {
+  CHECK(can_be_divided(part.count));
+  CHECK_LE(leaves_for(part.count), part.leaf_max);
   BinMap map(part.centroids);
   BinDivision division;
   if (!halve) {
@@ -179,12 +184,15 @@ void divide_part(BuildPrimitive* primitives, const BuildPart& part, bool halve, 
     BuildPrimitive* first = primitives + part.begin;
     std::sort(first, first + part.count, CentroidLess{widest_axis(part.centroids)});
   }
+  CHECK(middle > 0 && middle < part.count);
+  CHECK_LE(leaves_for(middle) + leaves_for(part.count - middle), part.leaf_max);
   std::uint32_t right_count = part.count - middle, spare = part.leaf_max - leaves_for(middle) - leaves_for(right_count);
   std::uint32_t left_spare =
       static_cast<std::uint32_t>((2 * std::uint64_t(spare) * middle + part.count) / (2 * std::uint64_t(part.count)));
   std::uint32_t begin = part.begin;
   *left = make_part(primitives, begin, middle, leaves_for(middle) + left_spare);
   *right = make_part(primitives, begin + middle, right_count, leaves_for(right_count) + spare - left_spare);
+  CHECK_EQ(left->leaf_max + right->leaf_max, part.leaf_max);
 }
 
 }  // namespace pocketray

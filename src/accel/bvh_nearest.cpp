@@ -3,6 +3,7 @@
 
 #include "accel/bvh.h"
 #include "accel/point_distance.h"
+#include "base/check.h"
 
 namespace pocketray {
 namespace {
@@ -38,6 +39,7 @@ double squared_leaf_distance(const Vec3d& p, const TriangleBlock& block, std::ui
 
 float bvh_nearest_distance(const LeafKind& kind, const Accel& accel, const Vec3& point) {
   if (!is_finite(point)) return 0;
+  CHECK_LE(bvh_bytes(1, 0), accel.data.bytes());
   BvhView bvh(accel.data.data);
   Vec3d p = to_double(point);
   double least = std::numeric_limits<double>::infinity();

@@ -5,9 +5,12 @@
 namespace pocketray {
 
 void bvh_refit(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data) {
+  CHECK_LE(bvh_bytes(1, 0), data.bytes());
+  CHECK_EQ(reinterpret_cast<std::uintptr_t>(data.data) % alignof(BvhNode), 0u);
   BvhWritableView bvh(data.data);
   CHECK_EQ(bvh.header->triangle_count, accel->triangles.count);
   CHECK_EQ(bvh.header->magic, kind.magic);
+  CHECK_EQ(data.bytes(), bvh_bytes(bvh.header->node_count, bvh.header->leaf_count, kind.bytes));
   std::uint8_t* leaves = data.data + bvh_bytes(bvh.header->node_count, 0);
   // Children come after their parents: from the last node to the first, every child is updated before its parent.
   for (std::uint32_t i = bvh.header->node_count; i-- > 0;) {

@@ -121,6 +121,7 @@ void partition_orders(Treelet* treelet, const TreeletNode& node, const SweepDivi
       left_count += is_left, right_count += 1u - is_left;
     }
     std::memcpy(order + left_count, right, right_count);
+    CHECK_EQ(left_count, division.left_count);
   }
 }
 
@@ -136,6 +137,7 @@ std::uint32_t add_node(Treelet* treelet, std::uint32_t begin, std::uint32_t coun
 
 void divide_node(Treelet* treelet, TreeletNode* node) {
   SweepDivision division = sweep(*treelet, *node);
+  CHECK(division.left_count > 0 && division.left_count < node->count);
   partition_orders(treelet, *node, division);
   node->left = add_node(treelet, node->begin, division.left_count);
   node->right = add_node(treelet, node->begin + division.left_count, node->count - division.left_count);
@@ -176,6 +178,8 @@ void choose_roots(TreeletNode* node, const Treelet& treelet) {
 
 void add_children(const Treelet& treelet, std::uint32_t index, std::uint32_t roots, std::uint32_t children[4],
                   std::uint32_t* count) {
+  CHECK(roots >= 1 && roots <= 4);
+  CHECK_LT(*count, 4u);
   const TreeletNode& node = treelet.nodes[index];
   if (roots == 1 || node.left_roots[roots] == 0) {
     children[(*count)++] = index;
@@ -200,6 +204,7 @@ void build_treelet(const BuildPrimitive* primitives, std::uint32_t count, Treele
 }
 
 std::uint32_t treelet_children(const Treelet& treelet, std::uint32_t index, std::uint32_t children[4]) {
+  CHECK_LT(index, treelet.node_count);
   const TreeletNode& node = treelet.nodes[index];
   if (node.left == 0) return children[0] = index, 1;
   std::uint32_t count = 0;

@@ -74,6 +74,7 @@ struct Search {
 }  // namespace
 
 Covering cover_pairs(const std::vector<std::vector<double>>& prices, double limit) {
+  CHECK_GE(limit, 1);
   Covering covering;
   Search search{prices, limit, {}};
   for (std::size_t a = 0; a < prices.size(); ++a)
@@ -97,6 +98,8 @@ Covering cover_pairs(const std::vector<std::vector<double>>& prices, double limi
         std::size_t covers = search.gain(row);
         if (covers > most) best = row, most = covers;
       }
+    CHECK_GT(most, 0u);
+    CHECK_EQ(best.size(), prices.size());
     covering.rows.push_back(best);
     search.open.erase(
         std::remove_if(search.open.begin(), search.open.end(), [&](const Pair& p) { return search.holds(best, p); }),

@@ -2,9 +2,13 @@
 
 #include <cmath>
 
+#include "base/check.h"
+
 namespace pocketray {
 
 std::vector<double> exposed_light(const Vec3* radiance, std::size_t pixel_count, float exposure) {
+  CHECK(radiance != nullptr || pixel_count == 0);
+  CHECK_GT(exposure, 0);
   std::vector<double> light;
   light.reserve(3 * pixel_count);
   for (std::size_t i = 0; i < pixel_count; ++i)
@@ -41,6 +45,7 @@ Levels displayed_levels(const Vec3* radiance, std::uint32_t width, std::uint32_t
                     read_pixel(output.format, pixels + row * line + column * static_cast<std::size_t>(bytes)), shown);
       for (int level : shown) levels.rgb.push_back(static_cast<std::uint8_t>(level));
     }
+  CHECK_EQ(levels.rgb.size(), std::size_t(3) * width * height);
   return levels;
 }
 

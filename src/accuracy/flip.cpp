@@ -79,6 +79,7 @@ void convolve_lines(const std::vector<double>& in, const std::vector<double>& fi
 }
 
 Plane convolve(const Plane& in, const std::vector<double>& along_x, const std::vector<double>& along_y) {
+  CHECK(along_x.size() % 2 == 1 && along_y.size() % 2 == 1);  // filters have a middle
   Plane middle(in.width, in.height), out(in.width, in.height);
   convolve_lines(in.values, along_x, in.width, 1, in.height, in.width, &middle.values);
   convolve_lines(middle.values, along_y, in.height, in.width, in.width, 1, &out.values);
@@ -205,6 +206,8 @@ std::vector<float> flip_errors(const std::vector<float>& reference, const std::v
                                std::size_t height, double pixels_per_degree) {
   CHECK_EQ(reference.size(), 3 * width * height);
   CHECK_EQ(test.size(), 3 * width * height);
+  CHECK(width > 0 && height > 0);
+  CHECK_GT(pixels_per_degree, 0);
   Seen a = ycxcz_of_srgb(reference, width, height), b = ycxcz_of_srgb(test, width, height);
   std::vector<Color> color_a = perceived(a, pixels_per_degree), color_b = perceived(b, pixels_per_degree);
   Features feature_a = find_features(a.lightness, pixels_per_degree);

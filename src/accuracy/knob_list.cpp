@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/check.h"
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 
@@ -112,6 +113,7 @@ std::string value_label(const Knob& knob, double value) {
 
 std::vector<double> knob_values(const Knob& knob, const Configuration& baseline) {
   std::vector<double> values = knob.values;
+  CHECK(!values.empty());
   double own = knob.get(baseline);
   if (std::find(values.begin(), values.end(), own) != values.end()) return values;
   bool falls = values.front() > values.back();

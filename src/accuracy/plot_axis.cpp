@@ -72,6 +72,7 @@ double drawn_value(const Axis& axis, double value) {
 }
 
 double place_on(const Axis& axis, double value) {
+  CHECK_LT(axis.low, axis.high);
   value = drawn_value(axis, value);
   if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
   return std::log(value / axis.low) / std::log(axis.high / axis.low);

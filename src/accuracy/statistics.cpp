@@ -65,6 +65,7 @@ double median(std::vector<double> values) {
 }
 
 Interval median_interval(const std::vector<double>& values) {
+  CHECK(!values.empty());
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   std::size_t n = sorted.size(), k = 0;
@@ -80,6 +81,7 @@ Interval median_interval(const std::vector<double>& values) {
 PowerLaw fit_power_law(const std::vector<double>& time, const std::vector<double>& error, double resolution) {
   CHECK_EQ(time.size(), error.size());
   CHECK_GE(time.size(), 4u);
+  CHECK_GE(resolution, 0);
   constexpr double kSteepest = -8;
   constexpr int kSteps = 80;
   LawAt law = {time, error, resolution};

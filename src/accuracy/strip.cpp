@@ -124,6 +124,7 @@ Levels draw_strip(const Levels& reference, const Strip& strip) {
   Levels result;
   result.width = static_cast<std::uint32_t>(at.width), result.height = static_cast<std::uint32_t>(at.height);
   result.rgb.resize(std::size_t{3} * result.width * result.height);
+  CHECK_EQ(reference.rgb.size(), std::size_t(3) * reference.width * reference.height);
   const std::string headings[4] = {"reference", "setting", format("%dx difference", kDifferenceGain), "FLIP map"};
   for (int i = 0; i < 4; ++i) draw_text(&result, at.panel_column[i], 0, {headings[i]});
   for (std::size_t i = 0; i < strip.rows.size(); ++i) {
@@ -137,6 +138,7 @@ Levels draw_strip(const Levels& reference, const Strip& strip) {
 
 Status encode_png(const Levels& picture, std::string* bytes) {
   int width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
+  CHECK_EQ(picture.rgb.size(), std::size_t(3) * picture.width * picture.height);
   std::vector<std::uint8_t> block(encode_png_need(width) + kArenaAlignment);
   Arena arena = make_arena("picture", block.data(), block.size());
   bytes->clear();

@@ -152,6 +152,7 @@ void find_slope(const std::vector<PointFigures>& figures, const std::vector<std:
   }
   double resolution = kClaimFactor * sweep.reference_rmse;
   std::size_t rounds = figures[0].ns_per_pixel.size();
+  CHECK_GE(points.size(), 4u);
   for (std::size_t i : points) rounds = std::min(rounds, figures[i].ns_per_pixel.size());
   for (std::size_t round = 0; round < rounds; ++round) {
     std::vector<double> times;
@@ -165,6 +166,8 @@ void find_slope(const std::vector<PointFigures>& figures, const std::vector<std:
 
 KnobFigures figures_of(const SweptKnob& swept, const SweepPlan& plan, const std::vector<PointFigures>& figures,
                        const Sweep& sweep) {
+  CHECK(swept.knob != nullptr);
+  CHECK_LE(swept.first + swept.count, sweep.measured.size());
   const Knob& knob = *swept.knob;
   KnobFigures k;
   k.name = knob.name, k.what = knob.what, k.effect = knob.effect, k.theory = knob.theory;

@@ -5,6 +5,8 @@
 namespace pocketray {
 
 Arena make_arena(const char* name, void* block, std::size_t capacity) {
+  CHECK(name != nullptr);
+  CHECK(block != nullptr || capacity == 0);
   std::uintptr_t start = reinterpret_cast<std::uintptr_t>(block);
   std::size_t skip = (kArenaAlignment - start % kArenaAlignment) % kArenaAlignment;
   CHECK_LE(skip, capacity);
@@ -18,6 +20,8 @@ Arena make_arena(const char* name, void* block, std::size_t capacity) {
 std::size_t arena_free(const Arena& arena) { return arena.capacity - arena.used; }
 
 void* arena_try_allocate(Arena* arena, std::uint64_t bytes) {
+  CHECK_LE(arena->used, arena->capacity);
+  CHECK_EQ(arena->used % kArenaAlignment, 0u);
   if (bytes > arena->capacity)
     return nullptr;  // compared before narrowing to size_t and before rounding up, which could wrap
   std::size_t need = arena_need(static_cast<std::size_t>(bytes));
@@ -36,6 +40,7 @@ void* arena_allocate(Arena* arena, std::uint64_t bytes) {
 
 void arena_release(Arena* arena, std::size_t mark) {
   CHECK_LE(mark, arena->used);
+  CHECK_EQ(mark % kArenaAlignment, 0u);
   arena->used = mark;
 }
 

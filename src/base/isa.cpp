@@ -40,6 +40,7 @@ void select_isa(Isa isa) {
 }
 
 const char* isa_name(Isa isa) {
+  CHECK(isa >= Isa::kBaseline && isa <= Isa::kAvx512);
   static constexpr const char* kNames[kIsaCount] = {"baseline", "avx2", "avx512"};
   return kNames[static_cast<int>(isa)];
 }

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/check.h"
+
 namespace pocketray {
 namespace {
 
@@ -35,6 +37,7 @@ bool is_harmless(std::uint32_t c) {
 }  // namespace
 
 void make_printable(char* text, std::size_t byte_count) {
+  CHECK(text != nullptr || byte_count == 0);
   for (std::size_t i = 0; i < byte_count;) {
     std::uint32_t character = 0;
     std::size_t length = decode(reinterpret_cast<const unsigned char*>(text) + i, byte_count - i, &character);

@@ -43,6 +43,7 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
   }
   f->is_guess = f->front.count == 0;
   if (f->is_guess) f->front = builtin_front();
+  CHECK_GT(f->front.count, 0u);
   f->effects = renderer.effects.mask;
   sort_front(&f->front);
   drop_what_scene_ignores(&f->front, f->effects);
@@ -58,6 +59,7 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t o
   RETURN_IF_ERROR(plan_renderer(renderer, storage, output_bytes));
   RETURN_IF_ERROR(load_front(*renderer, source, identity, f));
   const Front all = f->front;
+  CHECK_GT(all.count, 0u);
   std::uint32_t left_out = 0;
   while (true) {
     std::uint32_t most = 0;
@@ -116,6 +118,7 @@ void print_notes(const OpenFront& front) {
 }
 
 Front with_prices(const OpenFront& f, const Front& priced) {
+  CHECK_LE(f.file.count, kFrontCandidateMax);
   Front known, kept = f.file;
   for (std::uint32_t i = 0; i < kept.count; ++i) {
     Front alone;
@@ -137,6 +140,8 @@ Status keep_measured(const OpenFront& f, const Front& measured) {
 
 void start_budget(const BudgetOptions& options, const OpenFront& front, const Renderer& renderer,
                   std::size_t frame_count, Budget* budget) {
+  CHECK_GT(options.ms, 0);
+  CHECK(budget != nullptr);
   *budget = Budget();
   budget->front = front;
   budget->ms = options.ms;
@@ -151,6 +156,7 @@ void start_budget(const BudgetOptions& options, const OpenFront& front, const Re
 Status begin_budget_frame(Budget* budget, Renderer* renderer) {
   std::uint32_t before = budget->governor.current;
   std::uint32_t chosen = budget->pinned ? before : next_candidate(&budget->governor);
+  CHECK_LT(chosen, budget->governor.front.count);
   if (chosen != before) budget->previous = before;
   return change_settings(renderer, with_candidate(renderer->settings, budget->governor.front.candidates[chosen]));
 }
@@ -170,6 +176,7 @@ void end_budget_frame(Budget* budget, std::uint64_t ns) {
   observe_frame(&budget->governor, static_cast<double>(ns));
   ++budget->frames;
   budget->last = budget->governor.current;
+  CHECK_LT(budget->last, budget->governor.front.count);
   ++budget->uses[budget->last];
   budget->late += ms > 1.1 * budget->ms;
   if (budget->frame_ms.size() < budget->frame_ms.capacity()) budget->frame_ms.push_back(ms);
@@ -188,6 +195,7 @@ Status finish_budget(const Budget& budget) {
     c.ns_per_pixel = clamped_price(price);
     learnt.candidates[learnt.count++] = c;
   }
+  CHECK_LE(learnt.count, g.front.count);
   if (!wrong || budget.frames == 0 || budget.front.path.empty()) return success();
   if (budget.front.is_whole) return write_front(budget.front.path, with_prices(budget.front, learnt));
   for (std::uint32_t i = 0; i < budget.front.measured.count && learnt.count < kFrontCandidateMax; ++i) {
@@ -209,6 +217,7 @@ std::string error_text(const Candidate& c) {
 
 void write_budget_lines(const Budget& budget, HudText* text) {
   const Governor& g = budget.governor;
+  CHECK(g.current < g.front.count && budget.previous < g.front.count);
   const Candidate &now = g.front.candidates[g.current], &before = g.front.candidates[budget.previous];
   add_hud_line(text, "%s %.7g ms: %" PRIu32 " of %" PRIu32 "%s", budget.pinned ? "by hand, not" : "budget", budget.ms,
                g.current + 1, g.front.count, budget_too_small(g) ? ", too small" : "");
@@ -252,6 +261,8 @@ Json budget_json(const Budget& budget) {
 void print_budget(const Budget& budget, bool last_alone) {
   if (budget.frames == 0) return;
   const Governor& g = budget.governor;
+  CHECK_LT(budget.last, g.front.count);
+  CHECK_LE(budget.late, budget.frames);
   std::uint32_t most = budget.last;
   for (std::uint32_t i = 0; i < g.front.count && !last_alone; ++i)
     if (budget.uses[i] > budget.uses[most]) most = i;

@@ -3,6 +3,7 @@
 #include <cinttypes>
 #include <cstdlib>
 
+#include "base/check.h"
 #include "base/isa.h"
 #include "platform/file.h"
 #include "scene/builtin/builtin.h"
@@ -42,6 +43,7 @@ std::string machine_name(const char* emulated, std::uint32_t thread_count) {
 }
 
 Status read_front(const std::string& path, Front* front, bool* there) {
+  CHECK(front != nullptr && there != nullptr);
   *front = Front();
   *there = platform::file_stamp(path.c_str()) != 0;
   if (!*there) return success();
@@ -55,6 +57,7 @@ Status read_front(const std::string& path, Front* front, bool* there) {
 }
 
 Status write_front(const std::string& path, const Front& front) {
+  CHECK_LE(front.count, kFrontCandidateMax);
   std::string text(kFrontTextMax, 0);
   text.resize(format_front(front, &text[0], text.size()));
   return write_file(path, text);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "engine/frame.h"
 #include "present/pack.h"
 #include "session/interrupt.h"
@@ -14,6 +15,7 @@ constexpr std::uint32_t kFramesBetweenRounds = 5;  // samples several times of a
 
 // Times a frame as render and view do.
 Status time_frame(Renderer* renderer, double seconds, void* page, double* ns) {
+  CHECK(page != nullptr && ns != nullptr);
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
@@ -43,6 +45,7 @@ Status measure_round(Renderer* renderer, const Front& front, std::uint32_t round
 }  // namespace
 
 FrontPrices make_front_prices(const Front& front, std::uint32_t round_count) {
+  CHECK_LE(front.count, kFrontCandidateMax);
   FrontPrices p;
   for (std::uint32_t i = 0; i < front.count; ++i) p.ns_per_pixel[i].reserve(round_count);
   return p;
@@ -53,6 +56,7 @@ std::size_t front_prices_bytes(const Settings& settings) {
 }
 
 Status measure_front(Renderer* renderer, const Front& front, FrontPrices* p) {
+  CHECK_GT(front.count, 0u);
   const Settings before = renderer->settings;
   const Pace pace = renderer->pace;
   renderer->pace = Pace();
@@ -84,6 +88,7 @@ Front measured_front(const Front& front, FrontPrices* p) {
     c.ns_per_pixel = clamped_price(median);
     measured.candidates[measured.count++] = c;
   }
+  CHECK_LE(measured.count, front.count);
   sort_by_price(&measured);  // keeps dominated candidates: their prices are known all the same
   return measured;
 }

@@ -32,4 +32,11 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::back_face_culling, "back-face-culling", "a material visible from the front only"},
 };
 
+constexpr bool effects_in_order() {
+  for (int i = 0; i < kEffectCount; ++i)
+    if (static_cast<int>(kEffectList[i].effect) != i) return false;
+  return true;
+}
+static_assert(effects_in_order(), "one row for each effect, in their order");
+
 }  // namespace pocketray

@@ -9,6 +9,7 @@
 namespace pocketray {
 
 const SettingRow* find_setting(const char* name) {
+  CHECK(name != nullptr);
   for (const SettingRow& row : kSettingList)
     if (std::strcmp(row.name, name) == 0) return &row;
   return nullptr;
@@ -30,6 +31,7 @@ Status check_setting(const SettingRow& row, double value, const char* name) {
 }
 
 bool find_choice(const SettingRow& row, const char* name, std::size_t name_bytes, double* value) {
+  CHECK(name != nullptr && value != nullptr);
   CHECK(row.field.kind == SettingKind::choice);
   for (int i = 0; i < row.field.name_count; ++i) {
     const char* choice = row.field.names[i];
@@ -42,6 +44,7 @@ bool find_choice(const SettingRow& row, const char* name, std::size_t name_bytes
 
 void describe_range(const SettingRow& row, char* text, std::size_t size) {
   CHECK_GT(size, 0u);
+  CHECK(text != nullptr);
   const SettingField& field = row.field;
   if (field.kind != SettingKind::choice) {
     const LimitRow& limits = limit_of(field.quantity);
@@ -57,6 +60,8 @@ void describe_range(const SettingRow& row, char* text, std::size_t size) {
 
 void describe_value(const SettingRow& row, double value, int digits, char* text, std::size_t size) {
   CHECK(within_setting(row, value));
+  CHECK(text != nullptr);
+  CHECK_GT(size, 0u);
   if (row.field.kind == SettingKind::choice)
     std::snprintf(text, size, "%s", row.field.names[static_cast<int>(value)]);
   else if (row.field.kind == SettingKind::count)

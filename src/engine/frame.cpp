@@ -2,12 +2,14 @@
 // the source decides which spans are traced, and when; showing the frame is up to the caller.
 #include "engine/frame.h"
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "engine/prepare.h"
 
 namespace pocketray {
 
 Status prepare_frame(Renderer* renderer, double seconds) {
+  CHECK(renderer->accel_info != nullptr && renderer->image.data != nullptr);  // it has been built
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   renderer->pace.owed_ns = 0;
   pose_scene(renderer, seconds);

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "scene/builtin/builtin.h"
 #include "shade/camera.h"
@@ -15,11 +16,14 @@ thread_local char last_message[sizeof Status::message] = {0};
 }  // namespace
 
 pocketray_result refuse(pocketray_result result, const Status& status) {
+  CHECK_LT(result, 0);
+  CHECK(!status.ok);
   std::memcpy(last_message, status.message, sizeof last_message);
   return result;
 }
 
 Status check_struct(const char* name, const void* structure, std::size_t first_size, std::size_t size) {
+  CHECK_LE(first_size, size);
   if (!structure) return failure("%s is a null pointer", name);
   std::size_t given;
   std::memcpy(&given, structure, sizeof given);
@@ -34,6 +38,7 @@ Status check_instance(const pocketray_instance* instance) {
 }
 
 Status check_choice(const char* name, int value, int choice_count) {
+  CHECK_GT(choice_count, 0);
   if (value >= 0 && value < choice_count) return success();
   return failure("%s is %d: it must lie in 0 … %d", name, value, choice_count - 1);
 }

@@ -2,6 +2,7 @@
 #include <climits>
 #include <cstring>
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "engine/frame.h"
 #include "engine/library.h"
@@ -53,6 +54,9 @@ Status read_pixels(const pocketray_pixels* given, const Settings& settings, Targ
 }
 
 void write_pixels(const Renderer& renderer, std::uint32_t row_begin, std::uint32_t row_end, const Target& target) {
+  CHECK_LE(row_begin, row_end);
+  CHECK_LE(row_end, renderer.settings.height);
+  CHECK(target.format >= 0 && target.format < kFormatCount);
   int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
   if (target.format != POCKETRAY_RGB_FLOAT) {
     pack_rows(renderer.image.data, width, height, static_cast<int>(row_begin), static_cast<int>(row_end),
@@ -81,6 +85,7 @@ void clear_costs(pocketray_instance* instance) {
 
 // Bands of rows, with a call of the progress function after each, which may end the frame.
 Status render_bands(pocketray_instance* instance, double seconds) {
+  CHECK(instance->progress != nullptr);
   Renderer* renderer = &instance->renderer;
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   SpanList bands = row_bands(renderer);
@@ -113,6 +118,7 @@ pocketray_result pocketray_render(pocketray_instance* instance, double seconds, 
   status = instance->progress ? render_bands(instance, seconds)
                               : render_frame(renderer, seconds, Aov::none, &instance->stop, &instance->rows_done);
   if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
+  CHECK_LE(instance->rows_done, renderer->settings.height);
   write_pixels(*renderer, 0, instance->rows_done, target);
   return instance->rows_done < renderer->settings.height ? POCKETRAY_STOPPED : POCKETRAY_OK;
 }
@@ -157,6 +163,7 @@ pocketray_result pocketray_refine(pocketray_instance* instance, double milliseco
     if (finished) result = POCKETRAY_OK;
     if (clock_ns() >= deadline) break;
   }
+  CHECK_LE(instance->rows_done, renderer->settings.height);
   renderer->timings.trace_ms = static_cast<double>(progressive->trace_ns) * 1e-6;
   std::uint32_t begin, end;
   if (take_dirty_rows(progressive, &begin, &end)) write_pixels(*renderer, begin, end, target);
@@ -201,6 +208,7 @@ pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, std
     return refuse(POCKETRAY_ERROR_ARGUMENT,
                   failure("row_count is %u, the picture has %u rows", row_count, instance->renderer.settings.height));
   Array<std::uint64_t> row_ns = instance->renderer.row_ns;
+  CHECK_EQ(row_ns.count, row_count);
   std::memcpy(nanoseconds, row_ns.data, row_ns.bytes());
   return POCKETRAY_OK;
 }

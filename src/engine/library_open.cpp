@@ -3,6 +3,7 @@
 #include <new>
 
 #include "accel/accel_list.h"
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "effect/effect_list.h"
 #include "engine/library.h"
@@ -175,6 +176,7 @@ pocketray_result load_scene(const Request& q, bool copies, Renderer* renderer) {
   Arena* arena = &renderer->scene_arena;
   if (q.builtin) {
     q.builtin->build(arena, &renderer->scene);
+    CHECK_LE(arena->used, q.builtin->need());
   } else {
     const std::uint8_t* bytes = static_cast<const std::uint8_t*>(q.source.bytes);
     if (copies) {
@@ -218,6 +220,7 @@ pocketray_result need_more(const char* what, std::size_t needed, std::size_t giv
 void attach_changes(pocketray_instance* instance) {
   Pose* pose = &instance->renderer.pose;
   if (pose->nodes.empty()) return;  // nothing moves
+  CHECK(instance->overrides.empty() || instance->overrides.count == pose->nodes.count);
   if (instance->posed_lights.count) pose->lights = {instance->posed_lights.data, instance->renderer.scene.lights.count};
   pose->overrides = instance->overrides;
 }
@@ -225,6 +228,8 @@ void attach_changes(pocketray_instance* instance) {
 pocketray_result build(const Request& q, pocketray_instance* instance) {
   Renderer* renderer = &instance->renderer;
   if (instance->lights.count) {
+    CHECK_LE(renderer->scene.lights.count, instance->lights.count);
+    CHECK_EQ(instance->posed_lights.count, instance->lights.count);
     for (std::uint32_t i = 0; i < renderer->scene.lights.count; ++i) instance->lights[i] = renderer->scene.lights[i];
     renderer->scene.lights = {instance->lights.data, renderer->scene.lights.count};
   }
@@ -282,6 +287,7 @@ std::size_t instance_need(const Renderer& renderer) {
 
 void write_plan(const Renderer& renderer, std::size_t scratch_bytes, pocketray_plan* plan) {
   const Scene& scene = renderer.scene;
+  CHECK(renderer.accel_info != nullptr);  // it has been planned
   std::memset(static_cast<void*>(plan), 0, sizeof *plan);
   plan->memory_bytes = instance_need(renderer);
   plan->scratch_bytes = scratch_bytes;

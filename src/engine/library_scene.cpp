@@ -1,6 +1,7 @@
 // Reading and changing an open scene between frames.
 #include <cstring>
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "engine/frame.h"
 #include "engine/library.h"
@@ -51,6 +52,7 @@ Light from_caller(const pocketray_light& light) {
 }
 
 pocketray_result change_lights(pocketray_instance* instance, const pocketray_light* lights, std::uint32_t count) {
+  CHECK_LE(count, instance->posed_lights.count);
   Renderer* renderer = &instance->renderer;
   Array<Light> changed = {instance->posed_lights.data, count};  // refilled for every frame
   for (std::uint32_t i = 0; i < count; ++i) changed[i] = from_caller(lights[i]);
@@ -201,6 +203,7 @@ pocketray_result pocketray_get_node(const pocketray_instance* instance, std::uin
   pocketray_node read = POCKETRAY_NODE_INIT;
   bool posed = renderer.pose.nodes.count > 0;
   const Node& local = posed ? renderer.pose.local_nodes[node] : renderer.scene.nodes[node];
+  CHECK(!posed || renderer.pose.nodes.count == renderer.scene.nodes.count);
   Transform to_parent = compose(local.translation, local.rotation, local.scale), to_world;
   read.parent = local.parent;
   read.overridden = instance->overrides.count && instance->overrides[node].on;
@@ -220,6 +223,7 @@ pocketray_result pocketray_set_node(pocketray_instance* instance, std::uint32_t 
   for (int i = 0; to_parent && i < 12; ++i)
     REFUSE_IF_ERROR(POCKETRAY_ERROR_ARGUMENT, check_limit(Quantity::coordinate, static_cast<double>(to_parent[i]),
                                                           "a number of the node's transform"));
+  CHECK_EQ(instance->overrides.count, instance->renderer.scene.nodes.count);
   NodeOverride* o = &instance->overrides[node];
   o->on = to_parent != nullptr;
   if (o->on) o->to_parent = to_transform(to_parent);

@@ -1,4 +1,5 @@
 // Kernels, lights and camera of a frame.
+#include "base/check.h"
 #include "base/color.h"
 #include "effect/setting_list.h"
 #include "engine/prepare.h"
@@ -29,13 +30,17 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.surface = find_surface_function(renderer->effects.mask);
   renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
   renderer->frame.find_shadows = has(renderer->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
+  CHECK(renderer->frame.surface != nullptr && renderer->frame.radiance != nullptr);
   make_filters(&renderer->frame);
 }
 
 void light_scene(Renderer* renderer) {
+  CHECK_GT(renderer->exposure, 0);
+  CHECK_LE(renderer->light_points.count, renderer->light_point_count_max);
   if (!is_lit(*renderer)) {
     place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
                  renderer->light_points, &renderer->frame);
+    CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
     renderer->frame.radiance_bound = spawns ? radiance_bound(renderer->frame) : 0;
@@ -46,6 +51,7 @@ void light_scene(Renderer* renderer) {
 }
 
 Status aim_camera(Renderer* renderer) {
+  CHECK(renderer->pose.cameras.empty() || renderer->camera_index < renderer->pose.cameras.count);
   if (!renderer->camera_overridden && renderer->pose.cameras.count)
     renderer->camera = renderer->pose.cameras[renderer->camera_index];
   RETURN_IF_ERROR(

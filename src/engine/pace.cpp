@@ -3,6 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "base/check.h"
+
 namespace pocketray {
 namespace {
 
@@ -26,6 +28,8 @@ std::uint64_t paced_ns(const Pace& pace, std::uint64_t pixel_count, std::uint64_
 
 void pace_spans(const Pace& pace, const Span* spans, std::uint32_t span_count, std::uint32_t thread_count,
                 std::uint64_t* span_ns) {
+  CHECK_GE(thread_count, 1u);
+  CHECK(span_count == 0 || (spans != nullptr && span_ns != nullptr));
   for (std::uint32_t i = 0; i < span_count; ++i) {
     std::uint64_t each = paced_ns(pace, span_pixel_count(&spans[i], 1), span_ns[i]);
     span_ns[i] = pace.ns_per_pixel > 0 ? each * thread_count : each;

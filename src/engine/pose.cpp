@@ -1,4 +1,5 @@
 // Poses the scene and updates the accelerator.
+#include "base/check.h"
 #include "effect/effect_probe.h"
 #include "engine/prepare.h"
 
@@ -7,6 +8,8 @@ namespace {
 
 // An accelerator without refit is rebuilt, in memory that plan_memory() set aside.
 void follow_motion(Renderer* renderer) {
+  CHECK(renderer->accel_info != nullptr);  // it has been planned
+  CHECK_EQ(renderer->frame.positions.count, renderer->scene.positions.count);
   renderer->accel.positions = renderer->frame.positions;
   if (renderer->accel_info->refit) return renderer->accel_info->refit(&renderer->accel, renderer->accel_data);
   Arena keep = make_arena("accelerator", renderer->accel_data.data, renderer->accel_data.bytes());

@@ -37,6 +37,7 @@ void next_row(void* context, SpanBatch* batch) {
   const Refinement& r = *static_cast<Refinement*>(context);
   batch->spans = r.row_spans.data;
   batch->span_count = list_row(r.renderer->settings, r.progressive->row, r.progressive->step, r.row_spans);
+  CHECK_LE(batch->span_count, r.row_spans.count);
 }
 
 // Copies each traced pixel to its whole cell.
@@ -60,6 +61,7 @@ bool finish_row(void* context, const SpanBatch& batch) {
   const Refinement& r = *static_cast<Refinement*>(context);
   Progressive* progressive = r.progressive;
   const std::uint32_t height = r.renderer->settings.height;
+  CHECK_GT(progressive->step, 0u);
   progressive->pixels_traced += span_pixel_count(batch.spans, batch.span_count);
   progressive->trace_ns += batch.took_ns;
   if (progressive->dirty_begin == progressive->dirty_end) progressive->dirty_begin = progressive->row;
@@ -80,6 +82,8 @@ bool advance_progressive(Renderer* renderer, Array<Span> row_spans, std::uint64_
                          Progressive* progressive) {
   CHECK_GE(row_spans.count, renderer->settings.width);
   if (progressive->step == 0) return true;
+  CHECK_LE(progressive->step, kCoarsestStep);
+  CHECK_LT(progressive->row, renderer->settings.height);
   Refinement refinement = {renderer, row_spans, progressive};
   SpanSource source = {&refinement, next_row, finish_row, fill_cells};
   source.deadline_ns = deadline_ns;
@@ -87,6 +91,7 @@ bool advance_progressive(Renderer* renderer, Array<Span> row_spans, std::uint64_
 }
 
 bool take_dirty_rows(Progressive* progressive, std::uint32_t* begin, std::uint32_t* end) {
+  CHECK(begin != nullptr && end != nullptr);
   if (progressive->dirty_begin >= progressive->dirty_end) return false;
   *begin = progressive->dirty_begin;
   *end = progressive->dirty_end;

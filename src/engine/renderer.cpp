@@ -40,6 +40,7 @@ bool moves(const Renderer& renderer) {
 }
 
 Arena take_front(Arena* rest, const char* name, std::size_t bytes) {
+  CHECK_LE(bytes, rest->capacity - rest->used);
   Arena arena = make_arena(name, rest->base + rest->used, bytes);
   rest->used += bytes;
   return arena;
@@ -97,6 +98,7 @@ Status choose_accel(Renderer* renderer, const SceneStorage& storage, std::size_t
 }  // namespace
 
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* renderer) {
+  CHECK(renderer != nullptr);
   renderer->settings = settings;
   renderer->scene_arena = make_arena("scene", block, block_bytes);
   renderer->settings.memory_bytes =
@@ -130,12 +132,15 @@ Status build_renderer_unexposed(Renderer* renderer) {
   renderer->frame_arena = take_front(&rest, "frame", renderer->memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
   CHECK_LE(rest.used, rest.capacity);
 
+  CHECK(renderer->accel_info != nullptr && renderer->image.empty());  // planned, and not built before
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(adopt_or_build(renderer));
   renderer->timings.build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
 
   if (moves(*renderer)) renderer->pose = make_pose(renderer->scene, &renderer->persistent_arena);
+  const std::size_t used = renderer->persistent_arena.used;
   renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->effects.mask, &renderer->persistent_arena);
+  CHECK_LE(renderer->persistent_arena.used - used, indirect_need(renderer->scene, renderer->effects.mask));
   if (renderer->light_points.count)
     renderer->light_points = arena_array<LightPoint>(&renderer->persistent_arena, renderer->light_points.count);
   renderer->tracers = arena_array<Tracer>(&renderer->persistent_arena, renderer->settings.threads);
@@ -210,6 +215,7 @@ Tracer total_counts(const Renderer& renderer) {
 
 bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_count_max, std::uint32_t* pixel_count,
                     float* exposure) {
+  CHECK(pixel_count != nullptr && exposure != nullptr);
   constexpr float kGrey = 0.18f;
   constexpr std::uint32_t kStep = 10;
   auto places = [](std::uint32_t side) { return (side + kStep / 2 - 1) / kStep; };
@@ -229,6 +235,7 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
   const LimitRow& limit = limit_of(Quantity::exposure);
   double measured = p->lit ? kGrey / det_exp(p->log_sum / p->lit) : 1;
   *exposure = static_cast<float>(std::fmin(std::fmax(measured, limit.low), limit.high));
+  CHECK(within(Quantity::exposure, *exposure));
   return true;
 }
 

@@ -9,6 +9,7 @@ namespace {
 
 void next_spans(void* context, SpanBatch* batch) {
   const SpanList& list = *static_cast<const SpanList*>(context);
+  CHECK_LE(list.done_count, list.span_count);
   batch->spans = list.spans + list.done_count;
   batch->span_count = std::min(list.batch_spans, list.span_count - list.done_count);
   batch->span_ns = list.span_ns ? list.span_ns + list.done_count : nullptr;
@@ -27,6 +28,7 @@ bool finish_spans(void* context, const SpanBatch& batch) {
 
 SpanSource list_source(SpanList* list) {
   CHECK_LT(0u, list->batch_spans);
+  CHECK(list->spans != nullptr || list->span_count == 0);
   return {list, next_spans, finish_spans};
 }
 
@@ -39,6 +41,7 @@ SpanList whole_frame(Renderer* renderer) {
 }
 
 SpanList row_bands(Renderer* renderer) {
+  CHECK_GE(renderer->settings.threads, 1u);
   SpanList list = whole_frame(renderer);
   list.batch_spans = 4 * kTileRows * renderer->settings.threads;
   return list;
@@ -47,6 +50,7 @@ SpanList row_bands(Renderer* renderer) {
 void divide_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end, std::uint32_t part_count, Span* spans) {
   CHECK_LE(begin, end);
   CHECK_LT(0u, part_count);
+  CHECK(row < kImageSideMax && end <= kImageSideMax);  // a span's numbers are 16 bits wide
   std::uint32_t count = end - begin;
   for (std::uint32_t i = 0; i < part_count; ++i)
     spans[i] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin + count * i / part_count),

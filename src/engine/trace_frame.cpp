@@ -22,11 +22,13 @@ std::uint64_t keep_pace(Renderer* renderer, const SpanSource& source, const Span
 
 void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch) {
   CHECK_LE(worker_thread_count(renderer->workers), renderer->tracers.count);
+  CHECK(batch->spans != nullptr);
   std::uint64_t begin_ns = now_ns(*renderer, source);
   batch->done_count =
       trace_with(renderer->workers, {batch->spans, batch->span_count, source.aov, renderer->image.data,
                                      renderer->tracers.data, batch->span_ns, batch->stoppable ? source.stop : nullptr});
   CHECK(batch->done_count == batch->span_count || batch->stoppable);
+  CHECK_LE(batch->done_count, batch->span_count);
   if (source.pack) source.pack(source.context, *batch);
   batch->took_ns =
       source.pace ? source.pace(source.context, *batch, begin_ns) : keep_pace(renderer, source, *batch, begin_ns);
@@ -36,6 +38,7 @@ void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch)
 
 bool trace_frame(Renderer* renderer, const SpanSource& source) {
   CHECK(!source.pace == !source.now_ns);
+  CHECK(source.next != nullptr && source.finished != nullptr);
   do {
     if (source.stop && source.stop->load(std::memory_order_relaxed)) return false;
     SpanBatch batch;

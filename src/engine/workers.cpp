@@ -96,6 +96,7 @@ void run_worker(Workers* w, std::uint32_t thread) {
     lock.unlock();
     work(context, thread);
     lock.lock();
+    CHECK_GT(w->busy, 0u);
     if (--w->busy == 0) w->end.notify_one();
   }
 }
@@ -139,9 +140,11 @@ void stop_workers(Workers* workers) {
 std::uint32_t worker_thread_count(const Workers* workers) { return workers ? workers->count + 1 : 1; }
 
 void run_with(Workers* w, void (*work)(void* context, std::uint32_t thread), void* context) {
+  CHECK(work != nullptr);
   if (!w) return work(context, 0);
   {
     std::lock_guard<std::mutex> lock(w->mutex);
+    CHECK_EQ(w->busy, 0u);  // one job at a time
     w->work = work;
     w->context = context;
     w->busy = w->count;
@@ -164,8 +167,11 @@ std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t e
 }
 
 std::uint32_t trace_with(Workers* w, const TraceJob& job) {
+  CHECK(job.span_count == 0 || (job.spans != nullptr && job.image != nullptr));
+  CHECK(job.tracers != nullptr);
   SpanQueue queue{job, worker_thread_count(w)};
   run_with(w, take_spans, &queue);
+  CHECK_LE(queue.done_count.load(), job.span_count);
   return queue.done_count;
 }
 

@@ -12,6 +12,7 @@ namespace {
 bool dominates(const Candidate& a, const Candidate& b) { return a.ns_per_pixel <= b.ns_per_pixel && a.flip <= b.flip; }
 
 void drop(Front* front, std::uint32_t index) {
+  CHECK_LT(index, front->count);
   for (std::uint32_t i = index + 1; i < front->count; ++i) front->candidates[i - 1] = front->candidates[i];
   --front->count;
 }
@@ -19,6 +20,7 @@ void drop(Front* front, std::uint32_t index) {
 }  // namespace
 
 const Candidate* find_candidate(const Front& front, const Quality& quality) {
+  CHECK_LE(front.count, kFrontCandidateMax);
   for (std::uint32_t i = 0; i < front.count; ++i)
     if (same_quality(front.candidates[i], quality)) return &front.candidates[i];
   return nullptr;
@@ -42,6 +44,7 @@ Settings with_candidate(const Settings& settings, const Quality& quality) {
 }
 
 bool errors_known(const Front& front) {
+  CHECK_LE(front.count, kFrontCandidateMax);
   for (std::uint32_t i = 0; i < front.count; ++i)
     if (std::isnan(front.candidates[i].flip)) return false;
   return true;
@@ -80,6 +83,7 @@ bool adopt_prices(Front* front, const Front& measured) {
       ++found;
     }
   if (found == 0) return false;
+  CHECK(std::isfinite(log_sum));  // prices are positive
   double ratio = det_exp(log_sum / found);
   for (std::uint32_t i = 0; i < front->count; ++i) {
     Candidate& c = front->candidates[i];
@@ -96,6 +100,7 @@ Front builtin_front() {
   } kLadder[] = {{1, 0, 1, 4},      {1, 1, 1, 4},      {1, 1, 1, 0.5f}, {1, 2, 2, 0.5f}, {1, 8, 4, 0.5f},
                  {2, 8, 4, 0.5f},   {4, 8, 4, 0.5f},   {4, 8, 8, 0.5f}, {8, 8, 8, 0.5f}, {8, 8, 16, 0.5f},
                  {16, 8, 16, 0.5f}, {16, 8, 64, 0.5f}, {16, 16, 64, 0}};
+  static_assert(sizeof kLadder / sizeof kLadder[0] <= kFrontCandidateMax, "a front holds them");
   Front front;
   Candidate c;
   c.texture_filter = TextureFilter::nearest;
@@ -117,6 +122,7 @@ Front builtin_front() {
 }
 
 void drop_what_scene_ignores(Front* front, EffectMask effects) {
+  CHECK_EQ(effects & ~kAllEffects, 0u);
   const Quality usual;
   for (std::uint32_t i = 0; i < front->count; ++i)
     for (const SettingRow& row : kSettingList)

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/check.h"
 #include "plan/front.h"
 
 namespace pocketray {
@@ -150,6 +151,7 @@ Status parse_lines(Text rest, Front* front) {
 // Appends to a terminated text, truncated to its size.
 __attribute__((format(printf, 4, 5))) void append(char* text, std::size_t size, std::size_t* length, const char* format,
                                                   ...) {
+  CHECK_LT(*length, size);
   va_list arguments;
   va_start(arguments, format);
   int count = std::vsnprintf(text + *length, size - *length, format, arguments);
@@ -166,6 +168,7 @@ struct Value {
 };
 
 void append_quality(const Quality& quality, char* text, std::size_t size, std::size_t* length) {
+  CHECK(text != nullptr);
   constexpr int kDigits = 9;  // as many as a float needs
   for (const SettingRow& row : kSettingList)
     append(text, size, length, "%s%s=%s", *length && text[*length - 1] != '\n' ? " " : "", row.name,
@@ -175,6 +178,8 @@ void append_quality(const Quality& quality, char* text, std::size_t size, std::s
 }  // namespace
 
 Status parse_front(const void* bytes, std::size_t byte_count, Front* front) {
+  CHECK(front != nullptr);
+  CHECK(bytes != nullptr || byte_count == 0);
   *front = Front();
   Status status = parse_lines({static_cast<const char*>(bytes), byte_count}, front);
   if (!status.ok) *front = Front();
@@ -182,6 +187,8 @@ Status parse_front(const void* bytes, std::size_t byte_count, Front* front) {
 }
 
 std::size_t format_front(const Front& front, char* text, std::size_t size) {
+  CHECK(text != nullptr && size > 0);
+  CHECK_LE(front.count, kFrontCandidateMax);
   std::size_t length = 0;
   append(text, size, &length, "%s\n", kFirstLine);
   for (std::uint32_t i = 0; i < front.count; ++i) {
@@ -199,6 +206,7 @@ void format_quality(const Quality& quality, char* text, std::size_t size) {
 }
 
 void format_hud_quality(const Quality& quality, char* text, std::size_t size) {
+  CHECK(text != nullptr && size > 0);
   constexpr int kDigits = 2;
   std::size_t length = 0;
   text[0] = 0;
@@ -208,6 +216,7 @@ void format_hud_quality(const Quality& quality, char* text, std::size_t size) {
 }
 
 void describe_change(const Quality& before, const Quality& after, char* text, std::size_t size) {
+  CHECK(text != nullptr && size > 0);
   constexpr int kDigits = 3;
   std::size_t length = 0;
   text[0] = 0;

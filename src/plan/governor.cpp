@@ -46,6 +46,8 @@ constexpr std::uint32_t kRankMax = 4;
 
 // The rank-th highest, counted from 1.
 double highest(const double* values, std::uint32_t count, std::uint32_t rank) {
+  CHECK(rank >= 1 && rank <= kRankMax);
+  CHECK_LE(count, kLoadFrameCount);
   double best[kRankMax] = {-1e300, -1e300, -1e300, -1e300};
   for (std::uint32_t i = 0; i < count; ++i) {
     double value = values[i];
@@ -126,6 +128,7 @@ void center_corrections(Governor* g) {
   int count = 0;
   for (std::uint32_t i = 0; i < g->front.count; ++i)
     if (g->ran[i]) sum += g->corrections[i], ++count;
+  CHECK_GT(count, 0);
   double mean = sum / count;
   for (std::uint32_t i = 0; i < g->front.count; ++i)
     if (g->ran[i]) g->corrections[i] -= mean;
@@ -150,6 +153,7 @@ void attribute(Governor* g, double load) {
 }
 
 void switch_to(Governor* g, std::uint32_t candidate) {
+  CHECK_LT(candidate, g->front.count);
   if (candidate == g->current) return;
   g->current = candidate;
   g->frames_at_current = 0;
@@ -170,6 +174,7 @@ void start_governor(const Front& front, double budget_ns, double pixel_count, do
   g->front = front;
   g->budget_ns = budget_ns;
   g->pixel_count = pixel_count;
+  for (std::uint32_t i = 0; i < front.count; ++i) CHECK_GT(front.candidates[i].ns_per_pixel, 0);
   for (std::uint32_t i = 0; i < front.count; ++i) g->doubts[i] = det_log(doubt);
   g->current = g->home = load_known ? choose(*g) : fastest(*g);
   g->frames_at_current = kAttributedFrames;  // no load yet to compare with
@@ -179,6 +184,7 @@ void start_governor(const Front& front, double budget_ns, double pixel_count, do
 
 void set_doubt(Governor* g, std::uint32_t candidate, double doubt) {
   CHECK_LT(candidate, g->front.count);
+  CHECK_GE(doubt, 1);
   g->doubts[candidate] = det_log(doubt);
 }
 
@@ -201,6 +207,7 @@ void force_candidate(Governor* g, std::uint32_t candidate) {
 }
 
 void observe_frame(Governor* g, double frame_ns) {
+  CHECK_LT(g->current, g->front.count);
   if (!(frame_ns > 0) || !std::isfinite(frame_ns)) return;
   g->late_share += ((det_log(frame_ns / g->budget_ns) > kLate ? 1 : 0) - g->late_share) / kLateFrames;
   std::uint32_t now = g->current;

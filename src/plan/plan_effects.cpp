@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "base/check.h"
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 
@@ -17,6 +18,7 @@ struct Census {
 
 // If emission is forced off, unlit materials scatter like others.
 Census take_census(const Scene& scene, const Settings& settings) {
+  CHECK_LE(scene.materials.count, kMaterialCountMax);
   bool shows_unlit = !has(settings.forced_off, Effect::emission);
   Census c;
   std::uint32_t used[kMaterialCountMax / 32] = {};
@@ -109,6 +111,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   for (int i = 0; i < kEffectCount; ++i) {
     Effect effect = static_cast<Effect>(i);
     EffectDecision& d = plan.decisions[i];
+    CHECK(d.reason[0] != 0);  // every effect has been decided
     bool on = (d.on || has(settings.forced_on, effect)) && !has(settings.forced_off, effect);
     if (on != d.on) {
       char reason[sizeof d.reason];
@@ -122,6 +125,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
 }
 
 Status parse_effects(const char* text, Settings* settings) {
+  CHECK(text != nullptr && settings != nullptr);
   settings->forced_on = settings->forced_off = 0;
   bool automatic = false, named = false;
   for (const char* at = text;;) {

@@ -15,6 +15,7 @@ namespace pocketray {
 namespace {
 
 constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
+static_assert(sizeof kKinds / sizeof kKinds[0] == sizeof FrameData::light_runs / sizeof(LightRun), "a run for each");
 
 // A piece of an area light: a triangle, or two that form a parallelogram.
 struct Emitter {
@@ -108,6 +109,7 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
 // The points that represent one emissive material, each with an equal share of its area.
 std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, LightPoint* points) {
   std::uint32_t n = frame.settings.points_per_area_light;
+  CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
   double total = 0;
   each_emitter(frame, material, [&](const Emitter& e) { total += e.area; });
   if (!(total > 0)) return 0;
@@ -126,6 +128,7 @@ std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, L
       points[placed++] = point_on(frame, triangle, u, v, total / n);
     }
   });
+  CHECK_LE(placed, n);
   return placed;
 }
 
@@ -187,6 +190,7 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
 }  // namespace
 
 Status light_point_count(const Scene& scene, const Settings& settings, EffectMask mask, std::uint32_t* count) {
+  CHECK(count != nullptr);
   std::uint64_t n = 0;
   for (const Light& light : scene.lights) n += has(mask, effect_of(light.kind));
   if (has(mask, Effect::area_light))
@@ -200,6 +204,7 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
 }
 
 void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame) {
+  CHECK(frame != nullptr && frame->scene != nullptr);
   const Scene& scene = *frame->scene;
   std::uint32_t count = 0;
   frame->light_run_count = 0;
@@ -230,6 +235,7 @@ float radiance_bound(const FrameData& frame) {
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));
     if (passes > reflectance) reflectance = passes;
     float f = max_component(m.diffuse) / kPiF;
+    CHECK_LT(m.brdf, kBrdfCount);
     if (!is_zero(m.specular)) f += max_component(kBrdfList[m.brdf]->peak(m));
     if (f > scattering) scattering = f;
   }
@@ -249,7 +255,8 @@ float radiance_bound(const FrameData& frame) {
     float next = leaves + (reflectance > 0 ? reflectance * bound : 0);
     bound = next > background ? next : background;
   }
-  return bound * 1.0001f;  // covers rounding of the sums
+  CHECK_GE(bound, background);  // fails for NaN, too
+  return bound * 1.0001f;       // covers rounding of the sums
 }
 
 }  // namespace pocketray

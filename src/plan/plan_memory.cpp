@@ -13,6 +13,7 @@ namespace pocketray {
 namespace {
 
 void add_part(MemoryPlan* plan, const char* name, ArenaKind arena, std::size_t bytes) {
+  CHECK(name != nullptr);
   if (bytes == 0) return;  // an absent effect has no part
   CHECK_LT(plan->part_count, kMemoryPartMax);
   plan->parts[plan->part_count++] = {name, arena, bytes};
@@ -28,6 +29,8 @@ void align_arenas(MemoryPlan* plan) {
     bytes = size_sum(bytes, kArenaAlignment);
     plan->total_bytes = size_sum(plan->total_bytes, kArenaAlignment);
   }
+  const std::size_t* bytes = plan->arena_bytes;
+  CHECK_EQ(size_sum(size_sum(bytes[0], bytes[1]), bytes[2]), plan->total_bytes);
 }
 
 std::size_t megabytes_up(std::size_t bytes) { return ((bytes - 1) >> 20) + 1; }
@@ -38,6 +41,9 @@ double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
                    const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
                    MemoryPlan* plan) {
+  CHECK(plan != nullptr);
+  CHECK(settings.threads >= 1 && settings.threads <= kThreadCountMax);
+  CHECK(settings.width <= kImageSideMax && settings.height <= kImageSideMax);
   *plan = MemoryPlan();
   plan->limit_bytes = settings.memory_bytes;
   add_part(plan, "scene", ArenaKind::scene, storage.arena_bytes);
@@ -81,6 +87,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
 }
 
 Status plan_output_memory(const Settings& settings, std::size_t output_bytes, MemoryPlan* plan) {
+  CHECK(plan != nullptr);
   *plan = MemoryPlan();
   plan->limit_bytes = settings.memory_bytes;
   add_part(plan, "output", ArenaKind::frame, output_bytes);
@@ -100,6 +107,8 @@ std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t siz
     if (n > 0) length = std::min(length + static_cast<std::size_t>(n), size - 1);
   };
   CHECK_GT(size, 0u);
+  CHECK(text != nullptr);
+  CHECK_LE(plan.part_count, kMemoryPartMax);
   text[0] = 0;
   auto line = [&](const char* name, const char* where, std::size_t bytes) {
     char bar[33];

@@ -1,5 +1,6 @@
 #include "plan/plan_scene.h"
 
+#include "base/check.h"
 #include "base/fmath.h"
 
 namespace pocketray {
@@ -12,6 +13,7 @@ Box scene_bounds(const Scene& scene) {
 }
 
 Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
+  CHECK_GT(aspect, 0);
   Camera camera;
   if (is_empty(bounds)) return camera;
   camera.vertical_fov = static_cast<float>(radians(40));
@@ -48,6 +50,7 @@ Camera inside_camera(const Box& bounds) {
 }
 
 bool is_room(const Scene& scene, const Box& bounds, Vec3* opening) {
+  CHECK(opening != nullptr);
   // By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative if normals point inward.
   // The area vectors of a closed surface add up to zero; a remainder is the area vector of the missing side.
   Vec3 middle = center(bounds), size = extent(bounds);
@@ -86,6 +89,7 @@ bool lights_itself(const Scene& scene) {
 }
 
 void default_lights(const Scene& scene, const Camera& camera, Light* lights) {
+  CHECK(lights != nullptr);
   lights[0] = lights[1] = Light();
   Box bounds = scene_bounds(scene);
   Vec3 opening;

@@ -54,6 +54,9 @@ int text_box_height(int lines, int scale) { return (lines * kCellHeight - 1 + 2 
 void draw_text_box(const Canvas& canvas, int column, int row, int scale, const char* const* lines, int line_count) {
   CHECK_LE(1, scale);
   CHECK(pixel_format_valid(canvas.format));
+  CHECK(canvas.pixels != nullptr);
+  CHECK(line_count == 0 || lines != nullptr);
+  CHECK(canvas.rotation <= Rotation::three_quarters);
   int characters = 0;
   for (int i = 0; i < line_count; ++i) {
     int length = static_cast<int>(std::strlen(lines[i]));

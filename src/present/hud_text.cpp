@@ -4,11 +4,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/check.h"
 #include "present/hud.h"
 
 namespace pocketray {
 
 void add_hud_line(HudText* text, const char* format, ...) {
+  CHECK(text->line_count >= 0 && text->line_count <= kHudLineMax);
   if (text->line_count == kHudLineMax) return;
   va_list arguments;
   va_start(arguments, format);
@@ -17,6 +19,7 @@ void add_hud_line(HudText* text, const char* format, ...) {
 }
 
 void add_hud_text(HudText* text, const char* words) {
+  CHECK(words != nullptr);
   constexpr std::size_t kColumns = static_cast<std::size_t>(kHudColumnMax);
   while (*words && text->line_count < kHudLineMax) {
     std::size_t length = std::strlen(words), end = length;
@@ -37,6 +40,7 @@ std::uint32_t hud_rows(const HudText& text) {
 void draw_hud_text(const HudText& text, const PixelFormat& format, Rotation rotation, int width, int height,
                    void* pixels, int line_bytes) {
   if (text.line_count == 0) return;
+  CHECK_LE(text.line_count, kHudLineMax);
   const char* lines[kHudLineMax];
   for (int i = 0; i < text.line_count; ++i) lines[i] = text.lines[i];
   draw_text_box({pixels, line_bytes, format, width, height, rotation}, 0, 0, 1, lines, text.line_count);

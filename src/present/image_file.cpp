@@ -19,6 +19,8 @@ void put_little_endian(float value, unsigned char* bytes) {
 }  // namespace
 
 void encode_ppm(const std::uint8_t* rgb, int width, int height, const ByteSink& sink) {
+  CHECK(rgb != nullptr && sink.write != nullptr);
+  CHECK(width > 0 && height > 0);
   char header[48];
   std::snprintf(header, sizeof header, "P6\n%d %d\n255\n", width, height);
   write_text(sink, header);
@@ -27,6 +29,8 @@ void encode_ppm(const std::uint8_t* rgb, int width, int height, const ByteSink& 
 
 void encode_pfm(const float* values, int channels, int width, int height, const ByteSink& sink) {
   CHECK(channels == 1 || channels == 3);
+  CHECK(values != nullptr && sink.write != nullptr);
+  CHECK(width > 0 && height > 0);
   char header[48];
   std::snprintf(header, sizeof header, "%s\n%d %d\n-1.0\n", channels == 3 ? "PF" : "Pf", width, height);
   write_text(sink, header);
@@ -45,6 +49,8 @@ void encode_pfm(const float* values, int channels, int width, int height, const 
 
 void encode_raw(const void* pixels, int row_bytes, int line_bytes, int rows, const ByteSink& sink) {
   CHECK_LE(row_bytes, line_bytes);
+  CHECK(pixels != nullptr && sink.write != nullptr);
+  CHECK(row_bytes > 0 && rows > 0);
   for (int row = 0; row < rows; ++row)
     sink.write(sink.user, static_cast<const unsigned char*>(pixels) + static_cast<std::ptrdiff_t>(row) * line_bytes,
                static_cast<std::size_t>(row_bytes));

@@ -146,6 +146,7 @@ bool pixel_format_valid(const PixelFormat& format) {
 }
 
 bool rotation_from_degrees(int degrees, Rotation* rotation) {
+  CHECK(rotation != nullptr);
   if (degrees != 0 && degrees != 90 && degrees != 180 && degrees != 270) return false;
   *rotation = static_cast<Rotation>(degrees / 90);
   return true;
@@ -184,6 +185,10 @@ ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin,
   CHECK(pixel_format_valid(format));
   CHECK_LE(0, row_begin);
   CHECK_LE(row_end, height);
+  CHECK_LE(row_begin, row_end);
+  CHECK(radiance != nullptr && pixels != nullptr);
+  CHECK(rotation <= Rotation::three_quarters);
+  CHECK_GE(exposure, 0);
   int bytes = format.bits_per_pixel / 8;
   if (bytes != 3) CHECK_EQ((reinterpret_cast<std::uintptr_t>(pixels) | static_cast<unsigned>(line_bytes)) % bytes, 0u);
   Packer packer;
@@ -198,6 +203,8 @@ ToneCounts pack_rows(const Vec3* radiance, int width, int height, int row_begin,
 void pack_spans(const Vec3* radiance, int width, const Span* spans, std::uint32_t span_count, float exposure,
                 const PixelFormat& format, bool dither, std::uint8_t* pixels) {
   CHECK(pixel_format_valid(format));
+  CHECK(span_count == 0 || (radiance != nullptr && spans != nullptr && pixels != nullptr));
+  CHECK_GE(exposure, 0);
   Packer packer;
   make_packer(format, &packer);
   int bytes = format.bits_per_pixel / 8;

@@ -4,6 +4,8 @@
 #include <png.h>
 
 #include <csetjmp>
+
+#include "base/check.h"
 #endif
 
 namespace pocketray {
@@ -69,6 +71,8 @@ std::size_t encode_png_need(int width) {
 }
 
 Status encode_png(const std::uint8_t* rgb, int width, int height, Arena* arena, const ByteSink& sink) {
+  CHECK(rgb != nullptr && arena != nullptr && sink.write != nullptr);
+  CHECK(width > 0 && height > 0);
   std::size_t mark = arena_mark(*arena);
   Encoder encoder = {arena, sink, ""};
   png_structp png =

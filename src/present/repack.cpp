@@ -20,7 +20,11 @@ void repack_rows(const PixelFormat& from, const void* picture, int from_line_byt
   CHECK(pixel_format_valid(from) && pixel_format_valid(to));
   CHECK_LE(0, row_begin);
   CHECK_LE(row_end, height);
+  CHECK_LE(row_begin, row_end);
+  CHECK(picture != nullptr && pixels != nullptr);
+  CHECK(rotation <= Rotation::three_quarters);
   int from_bytes = from.bits_per_pixel / 8, to_bytes = to.bits_per_pixel / 8;
+  CHECK_LE(width * from_bytes, from_line_bytes);
   bool as_it_lies = same_format(from, to) && rotation == Rotation::none;
   for (int row = row_begin; row < row_end; ++row) {
     const unsigned char* in =

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "base/check.h"
 #include "base/fmath.h"
 #include "brdf/directions.h"
 
@@ -113,6 +114,7 @@ std::size_t reference_cells_need() {
 }
 
 void make_reference_cells(Arena* arena, ReferenceGuide* guide) {
+  CHECK(arena != nullptr && guide != nullptr);
   guide->table = arena_array<ReferenceSlot>(arena, kTableSize);
   for (ReferenceSlot& slot : guide->table) slot = {0, kNone};
   guide->cells = arena_array<ReferenceCell>(arena, kCellCountMax);

@@ -1,6 +1,7 @@
 // Paths from the lights, for the guide.
 #include <limits>
 
+#include "base/check.h"
 #include "base/fmath.h"
 #include "brdf/directions.h"
 #include "reference/guide.h"
@@ -147,6 +148,7 @@ double scene_extent(const FrameData& frame) {
 }
 
 void follow_area_lights(const Reference& reference, std::uint32_t path_count, Arena* arena, ReferenceGuide* guide) {
+  CHECK(!reference.emitters.empty());
   const FrameData& frame = *reference.world.frame;
   std::size_t mark = arena_mark(*arena);
   Array<ReferenceEmitter> targets = arena_array<ReferenceEmitter>(arena, frame.scene->triangles.count);
@@ -180,6 +182,7 @@ void make_reference_guide(const FrameData& frame, std::uint32_t path_count, Aren
   bool any_mirror = false;
   for (const Material& m : frame.scene->materials) any_mirror = any_mirror || is_specular(m);
   any_mirror = any_mirror && !reference->emitters.empty();
+  CHECK(arena != nullptr && reference->world.frame == &frame);
   double scene_size = scene_extent(frame), total = 0;
   for_punctual_lights(frame,
                       [&](const PunctualLight& light) { total += near_power(reference->world, light, scene_size); });

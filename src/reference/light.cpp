@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "base/check.h"
 #include "base/fmath.h"
 #include "reference/guide.h"
 #include "shade/lights.h"
@@ -164,6 +165,7 @@ std::uint32_t find_parts(const FrameData& frame, double (*power)(const Material&
     parts[count++] = {i, total, area};
   }
   for (std::uint32_t i = 0; i < count; ++i) parts[i].share_end /= total;
+  CHECK(count == 0 || parts[count - 1].share_end == 1);
   return count;
 }
 

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "base/check.h"
 #include "base/fmath.h"
 #include "reference/guide.h"
 #include "reference/light.h"
@@ -144,11 +145,14 @@ std::size_t reference_need(const FrameData& frame) {
 }
 
 Reference make_reference(const FrameData& frame, Arena* arena, std::uint32_t guide_path_count) {
+  CHECK(frame.scene != nullptr && arena != nullptr);
+  const std::size_t used = arena->used;
   Reference reference;
   reference.world = make_reference_world(frame, arena);
   reference.emitters = arena_array<ReferenceEmitter>(arena, frame.scene->triangles.count);
   reference.emitters.count = find_parts(frame, emitted_power, reference.emitters.data);
   make_reference_guide(frame, guide_path_count, arena, &reference);
+  CHECK_LE(arena->used - used, reference_need(frame));
   return reference;
 }
 
@@ -164,6 +168,9 @@ void trace_reference(const Reference& reference, const ReferenceOptions& options
                      std::uint32_t row_end, Vec3d* means) {
   const CameraRays& camera = reference.world.frame->camera;
   std::uint32_t width = static_cast<std::uint32_t>(camera.width), n = options.samples_per_pixel;
+  CHECK_GT(n, 0u);
+  CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(camera.height));
+  CHECK(means != nullptr);
   for (std::uint32_t y = row_begin; y < row_end; ++y)
     for (std::uint32_t x = 0; x < width; ++x) {
       ReferenceSamples samples(options.seed, std::uint64_t(y) * width + x);

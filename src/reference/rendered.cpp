@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "base/check.h"
 #include "reference/light.h"
 #include "shade/trace_spans.h"
 
@@ -78,6 +79,9 @@ Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& 
 void trace_as_rendered(const Reference& reference, std::uint32_t row_begin, std::uint32_t row_end, Vec3d* picture) {
   const FrameData& frame = *reference.world.frame;
   std::uint32_t width = static_cast<std::uint32_t>(frame.camera.width), n = frame.settings.samples_per_pixel;
+  CHECK(n >= 1 && n <= kSampleCountMax);
+  CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(frame.camera.height));
+  CHECK(picture != nullptr);
   for (std::uint32_t y = row_begin; y < row_end; ++y)
     for (std::uint32_t x = 0; x < width; ++x) {
       Vec3d sum = {0, 0, 0};

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "base/box.h"
+#include "base/check.h"
 #include "reference/world.h"
 
 namespace pocketray {
@@ -97,6 +98,7 @@ int part_in_four(Item* items, Range* ranges, bool halve) {
     if (largest < 0) break;
     Range whole = ranges[largest];
     std::uint32_t left = part(items + whole.begin, whole.count, halve);
+    CHECK(left > 0 && left < whole.count);
     ranges[largest] = {whole.begin, left, box_of(items + whole.begin, left)};
     ranges[count++] = {whole.begin + left, whole.count - left, box_of(items + whole.begin + left, whole.count - left)};
   }
@@ -104,6 +106,7 @@ int part_in_four(Item* items, Range* ranges, bool halve) {
 }
 
 ReferenceLeaf make_leaf(const FrameData& frame, const Item* items, std::uint32_t count) {
+  CHECK(count >= 1 && count <= kLeafCountMax);
   ReferenceLeaf leaf;
   for (std::uint32_t lane = 0; lane < 4; ++lane) {
     leaf.triangle[lane] = lane < count ? items[lane].triangle : kNone;
@@ -154,6 +157,7 @@ ReferenceWorld make_reference_world(const FrameData& frame, Arena* arena) {
   tasks[0] = {0, 0, {0, triangle_count, box_of(items.data, triangle_count)}};
   while (task_count > 0) {
     Task task = tasks[--task_count];
+    CHECK_LT(task.depth, kReferenceDepthMax);
     Range ranges[4] = {task.range};
     int count = part_in_four(items.data, ranges, task.depth >= kHalveDepth);
     ReferenceNode& node = world.nodes[task.node];
@@ -173,6 +177,8 @@ ReferenceWorld make_reference_world(const FrameData& frame, Arena* arena) {
     }
   }
   arena_release(arena, mark);
+  CHECK_LE(world.nodes.count, triangle_count + 1);
+  CHECK_LE(world.leaves.count, triangle_count);
   return world;
 }
 

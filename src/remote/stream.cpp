@@ -9,6 +9,7 @@ namespace {
 
 // Moves the remaining bytes to the front.
 void compact(Array<std::uint8_t> bytes, std::size_t* begin, std::size_t* end) {
+  CHECK(*begin <= *end && *end <= bytes.count);
   if (*begin == 0) return;
   std::memmove(bytes.data, bytes.data + *begin, *end - *begin);
   *end -= *begin, *begin = 0;
@@ -29,6 +30,8 @@ MessageStream make_message_stream(std::size_t in_bytes, std::size_t out_bytes, A
 }
 
 void start_message_stream(MessageStream* s, platform::Link* link, int connection) {
+  CHECK(link != nullptr && connection >= 0);
+  CHECK_LT(s->stream, 0);  // the connection before is closed
   Array<std::uint8_t> in = s->in, out = s->out;
   std::uint32_t message_bytes_max = s->message_bytes_max;
   *s = MessageStream();
@@ -49,6 +52,7 @@ bool flush_message_stream(MessageStream* s, platform::Error* error) {
     if (result == platform::LinkResult::later) return true;
     if (result != platform::LinkResult::done) return false;
     s->out_begin += count, s->bytes_out += count;
+    CHECK_LE(s->out_begin, s->out_end);  // nor sends more than it is given
   }
   s->out_begin = s->out_end = 0;
   return true;
@@ -64,11 +68,13 @@ bool read_message_stream(MessageStream* s, platform::Error* error) {
     if (result == platform::LinkResult::failed) return false;
     if (result == platform::LinkResult::ended) s->ended = true;
     s->in_end += count, s->bytes_in += count;
+    CHECK_LE(s->in_end, s->in.count);  // a link reads no more than there is room for
   }
   return true;
 }
 
 bool pump_message_stream(MessageStream* s, platform::Error* error) {
+  CHECK_GE(s->stream, 0);
   if (!flush_message_stream(s, error) || !read_message_stream(s, error)) return false;
   if (!s->ended || input_bytes(*s) > 0) return true;
   std::snprintf(error->text, sizeof error->text, "the peer has closed the connection");
@@ -96,6 +102,7 @@ bool send_message(MessageStream* s, const Message& message) {
   if (byte_count > output_room(*s)) return false;
   encode_message(message, reserve_output(s, byte_count));
   s->out_end += byte_count;
+  CHECK_LE(s->out_end, s->out.count);
   return true;
 }
 

@@ -29,10 +29,14 @@ std::uint32_t posed_position_count(const Scene& scene) { return moves_vertices(s
 
 template <class T>
 void copy(Array<const T> from, Array<T> to) {
+  CHECK(to.empty() || from.count == to.count);
   if (to.count) std::memcpy(static_cast<void*>(to.data), from.data, to.bytes());
 }
 
 void apply_channels(const Scene& scene, const Animation& animation, double time, Pose* pose) {
+  CHECK_LE(std::uint64_t(animation.channel_begin) + animation.channel_count, scene.channels.count);
+  CHECK_EQ(pose->local_nodes.count, scene.nodes.count);
+  CHECK_EQ(pose->weights.count, scene.weights.count);
   copy(scene.nodes, pose->local_nodes);
   copy(scene.weights, pose->weights);
   for (std::uint32_t c = 0; c < animation.channel_count; ++c) {
@@ -56,6 +60,7 @@ void apply_channels(const Scene& scene, const Animation& animation, double time,
 }
 
 void place_nodes(const Scene& scene, Pose* pose) {
+  CHECK_EQ(pose->joints.count, scene.joints.count);
   for (std::uint32_t n = 0; n < scene.nodes.count; ++n) {
     const Node& node = pose->local_nodes[n];
     bool overridden = pose->overrides.count && pose->overrides[n].on;
@@ -110,8 +115,11 @@ void rest_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
 }
 
 void place_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
+  CHECK_LE(std::uint64_t(mesh.vertex_begin) + mesh.vertex_count, pose->positions.count);
+  CHECK_LE(std::uint64_t(mesh.rest_begin) + mesh.vertex_count, scene.rest_positions.count);
   bool with_normals = pose->normals.count > 0;
   bool skinned = mesh.skin != kNone;
+  CHECK(skinned ? mesh.skin < scene.skins.count : mesh.node < pose->nodes.count);
   const float* weights = mesh.morph_count ? pose->weights.data + pose->local_nodes[mesh.node].weight_begin : nullptr;
   const Transform* joints = skinned ? pose->joints.data + scene.skins[mesh.skin].joint_begin : nullptr;
   Transform placed;
@@ -133,6 +141,8 @@ void place_mesh(const Scene& scene, const MovingMesh& mesh, Pose* pose) {
 }
 
 void place_lights_and_cameras(const Scene& scene, Pose* pose) {
+  CHECK_EQ(pose->lights.count, scene.lights.count);
+  CHECK_EQ(pose->cameras.count, scene.cameras.count);
   for (std::uint32_t i = 0; i < scene.lights.count; ++i) {
     Light light = scene.lights[i];
     if (light.node != kNone) {
@@ -181,6 +191,7 @@ std::size_t pose_need(const Scene& scene) {
 Pose make_pose(const Scene& scene, Arena* arena) {
   Pose pose;
   if (!is_animated(scene)) return pose;
+  std::size_t used = arena->used;
   pose.positions = arena_array<Vec3>(arena, posed_position_count(scene));
   pose.normals = arena_array<Vec3>(arena, posed_normal_count(scene));
   pose.nodes = arena_array<Transform>(arena, scene.nodes.count);
@@ -189,6 +200,7 @@ Pose make_pose(const Scene& scene, Arena* arena) {
   pose.local_nodes = arena_array<Node>(arena, scene.nodes.count);
   pose.weights = arena_array<float>(arena, scene.weights.count);
   pose.joints = arena_array<Transform>(arena, scene.joints.count);
+  CHECK_EQ(arena->used - used, pose_need(scene));
   copy(scene.positions, pose.positions);
   copy(scene.normals, pose.normals);
   pose_at(scene, 0, 0, &pose);

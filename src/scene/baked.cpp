@@ -84,6 +84,7 @@ constexpr std::uint64_t kFirstOffset = aligned(sizeof(FileHeader) + kSectionCoun
 
 // zlib counts in uInt, which may be narrower than size_t.
 std::uint32_t crc(std::uint32_t start, const void* bytes, std::size_t byte_count) {
+  CHECK(bytes != nullptr || byte_count == 0);
   constexpr std::size_t step_max = std::size_t(1) << 30;
   const Bytef* at = static_cast<const Bytef*>(bytes);
   uLong value = start;
@@ -96,6 +97,7 @@ std::uint32_t crc(std::uint32_t start, const void* bytes, std::size_t byte_count
 }
 
 std::uint32_t file_checksum(const std::uint8_t* bytes, std::size_t byte_count) {
+  CHECK_LE(kChecksumBegin, byte_count);
   return crc(0, bytes + kChecksumBegin, byte_count - kChecksumBegin);
 }
 
@@ -103,6 +105,8 @@ std::uint32_t file_checksum(const std::uint8_t* bytes, std::size_t byte_count) {
 // Any other table is refused, which rules out overlaps, gaps, duplicates and unknown kinds at once.
 Status check_section(const Section& section, std::uint32_t kind, const char* name, std::uint32_t element_bytes,
                      std::uint64_t byte_count, std::uint64_t* next_offset) {
+  CHECK_GT(element_bytes, 0u);
+  CHECK_EQ(*next_offset % kSectionAlignment, 0u);
   if (section.kind != kind) return failure("section %u is of kind %u, not %s: bake it again", kind, section.kind, name);
   if (section.element_bytes != element_bytes || section.reserved != 0)
     return failure("%s has elements of %u bytes, not %u: bake it again", name, section.element_bytes, element_bytes);
@@ -139,6 +143,7 @@ Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeade
 }
 
 Section section_at(const std::uint8_t* bytes, std::uint32_t kind) {
+  CHECK_LT(kind, kSectionCount);
   Section section;
   std::memcpy(&section, bytes + sizeof(FileHeader) + kind * sizeof(Section), sizeof section);
   return section;
@@ -154,14 +159,18 @@ std::size_t baked_size(const Scene& scene) {
 }
 
 void baked_write(const Scene& scene, std::uint8_t* bytes) {
+  CHECK(bytes != nullptr);
   std::size_t size = baked_size(scene);
   std::memset(bytes, 0, size);
   std::uint64_t offset = kFirstOffset;
   std::uint32_t kind = 0;
   auto write = [&](const void* data, std::uint32_t element_bytes, std::uint32_t count) {
+    CHECK_LT(kind, kSectionCount);
+    CHECK(data != nullptr || count == 0);
     Section section = {kind, element_bytes, offset, count, 0};
     std::memcpy(bytes + sizeof(FileHeader) + kind * sizeof(Section), &section, sizeof section);
     std::size_t section_bytes = std::size_t(element_bytes) * count;
+    CHECK_LE(section_bytes, size - offset);
     if (section_bytes) std::memcpy(bytes + offset, data, section_bytes);
     offset = aligned(offset + section_bytes);
     ++kind;
@@ -181,6 +190,8 @@ void baked_write(const Scene& scene, std::uint8_t* bytes) {
 }
 
 Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scene) {
+  CHECK(bytes != nullptr || byte_count == 0);
+  CHECK(scene != nullptr);
   FileHeader header;
   RETURN_IF_ERROR(check_header(bytes, byte_count, &header));
   Scene opened;
@@ -201,6 +212,7 @@ Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scen
     ++kind;
   });
   if (!status.ok) return status;
+  CHECK_EQ(kind, kSectionCount);
   if (offset != byte_count) return failure("bytes after the last section: bake it again");
   status = validate_scene(opened);
   if (!status.ok) return failure("%.400s; bake it again", status.message);
@@ -214,6 +226,7 @@ std::uint32_t scene_hash(const Scene& scene) {
     const std::uint32_t prefix[2] = {++kind, array.count};
     hash ^= crc(crc(0, prefix, sizeof prefix), array.data, array.bytes());
   });
+  CHECK_EQ(kind, kArrayCount);
   return hash;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/check.h"
 #include "base/fmath.h"
 #include "base/limits.h"
 
@@ -16,6 +17,8 @@ struct KeyPosition {
 };
 
 KeyPosition find_key(const Scene& scene, const Channel& channel, double time) {
+  CHECK_GT(channel.key_count, 0u);
+  CHECK_LE(std::uint64_t(channel.key_begin) + channel.key_count, scene.key_times.count);
   const float* times = scene.key_times.data + channel.key_begin;
   std::uint32_t last = channel.key_count - 1;
   if (time <= times[0]) return {0, 0, 0};
@@ -78,9 +81,11 @@ void slerp(const float* a, const float* b, double t, double* result) {
 }  // namespace
 
 void channel_value(const Scene& scene, const Channel& channel, double time, std::uint32_t width, float* value) {
+  CHECK_GT(width, 0u);
   KeyPosition at = find_key(scene, channel, time);
   bool is_cubic = channel.interpolation == Interpolation::cubic;
   std::uint32_t stride = is_cubic ? 3 * width : width;
+  CHECK_LE(channel.value_begin + std::uint64_t(channel.key_count) * stride, scene.key_values.count);
   const float* key = scene.key_values.data + channel.value_begin + std::size_t(at.key) * stride;
   if (at.fraction == 0 || channel.interpolation == Interpolation::step) {
     if (is_cubic) key += width;
@@ -95,6 +100,7 @@ void channel_value(const Scene& scene, const Channel& channel, double time, std:
 }
 
 Quaternion channel_rotation(const Scene& scene, const Channel& channel, double time) {
+  CHECK(channel.path == ChannelPath::rotation);
   double q[4];
   KeyPosition at = find_key(scene, channel, time);
   if (channel.interpolation == Interpolation::linear && at.fraction > 0) {

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "base/check.h"
+
 namespace pocketray {
 namespace {
 
@@ -28,6 +30,8 @@ std::uint64_t load(const std::uint8_t* bytes, std::size_t count) {
 }  // namespace
 
 void hash_part(ContentHasher* hasher, const void* data, std::size_t byte_count) {
+  CHECK(data != nullptr || byte_count == 0);
+  CHECK_EQ(hasher->byte_count % 16, 0u);  // only the last part may have an odd length
   const std::uint8_t* bytes = static_cast<const std::uint8_t*>(data);
   std::uint64_t a = hasher->a, b = hasher->b;
   std::size_t left = byte_count;

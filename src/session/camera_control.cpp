@@ -1,5 +1,6 @@
 #include "session/camera_control.h"
 
+#include "base/check.h"
 #include "base/limit_list.h"
 
 namespace pocketray {
@@ -46,6 +47,7 @@ CameraControl make_camera_control(const Camera& camera, const Box& bounds) {
 }
 
 bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
+  CHECK(control != nullptr && control->size >= 0);
   if (in.right == 0 && in.up == 0 && in.forward == 0 && in.sideways == 0 && in.rise == 0) return false;
   Camera& c = control->camera;
   const Camera before = c;

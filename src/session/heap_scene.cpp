@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "scene/builtin/builtin.h"
 
 namespace pocketray {
 
 Status read_heap_scene(const std::string& name, const ModelOptions& options, HeapScene* result) {
+  CHECK(result != nullptr);
   if (const BuiltinScene* builtin = find_builtin(name.c_str())) {
     result->memory.resize(builtin->need() + kArenaAlignment);
     Arena arena = make_arena("scene", result->memory.data(), result->memory.size());
@@ -28,6 +30,7 @@ Status read_heap_scene(const std::string& name, const ModelOptions& options, Hea
 }
 
 void* build_heap_accel(const AccelInfo& info, const Scene& scene, Array<const std::uint8_t>* result) {
+  CHECK(result != nullptr);
   std::uint32_t count = scene.triangles.count;
   std::size_t keep_bytes = arena_need(info.need(count)) + kArenaAlignment,
               scratch_bytes = arena_need(info.scratch_need(count)) + kArenaAlignment;
@@ -39,6 +42,7 @@ void* build_heap_accel(const AccelInfo& info, const Scene& scene, Array<const st
   accel.positions = scene.positions;
   accel.triangles = scene.triangles;
   info.build(&accel, &keep, &scratch);
+  CHECK_LE(accel.data.bytes(), info.need(count));
   void* block = take_block(arena_need(accel.data.count) + kArenaAlignment);
   if (block) {
     Arena kept = make_arena("accelerator", block, arena_need(accel.data.count) + kArenaAlignment);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/check.h"
 #include "base/rng.h"
 #include "engine/frame.h"
 #include "session/interrupt.h"
@@ -12,6 +13,7 @@ namespace pocketray {
 namespace {
 
 Status render_once(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel) {
+  CHECK_GT(renderer->scene.info.frames_per_second, 0);
   double seconds = frame / static_cast<double>(renderer->scene.info.frames_per_second);
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   *ns_per_pixel = renderer->timings.trace_ms * 1e6 / pixel_count(*renderer);
@@ -21,6 +23,7 @@ Status render_once(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel
 Status measure_price(Renderer* renderer, Effect effect, double* price) {
   constexpr int kRounds = 3;
   EffectMask mask = renderer->effects.mask;
+  CHECK(has(mask, effect));
   std::uint32_t samples = renderer->settings.samples_per_pixel;
   double with[kRounds], without[kRounds];
   for (int round = 0; round < kRounds; ++round) {
@@ -39,6 +42,7 @@ Status measure_price(Renderer* renderer, Effect effect, double* price) {
 
 // Time per pixel of the spans, traced repeatedly until it takes about as long as a frame.
 double trace_list(Renderer* renderer, const std::vector<Span>& spans, double fraction) {
+  CHECK(fraction > 0 && fraction <= 1);
   std::uint32_t span_count = static_cast<std::uint32_t>(spans.size());
   std::uint64_t pixels = 0, begin_ns = clock_ns();
   for (int repeat = 0; repeat < static_cast<int>(1 / fraction); ++repeat) {
@@ -59,11 +63,14 @@ double pixel_count(const Renderer& renderer) {
 }
 
 Range range_of(double* values, std::uint32_t count) {
+  CHECK(values != nullptr);
+  CHECK_GT(count, 0u);
   std::sort(values, values + count);
   return {values[0], (values[(count - 1) / 2] + values[count / 2]) / 2, values[count - 1]};
 }
 
 Measurement make_measurement(const Renderer& renderer, std::uint32_t frame_count_max) {
+  CHECK_LE(frame_count_max, kFrameCountMax);
   Measurement m;
   m.frame_count_max = frame_count_max;
   m.ns_per_pixel.resize(frame_count_max);
@@ -75,6 +82,8 @@ Measurement make_measurement(const Renderer& renderer, std::uint32_t frame_count
 }
 
 Status measure_frames(Renderer* renderer, Measurement* m) {
+  CHECK_EQ(m->ns_per_pixel.size(), m->frame_count_max);
+  CHECK_EQ(m->row_ns.size(), std::size_t(renderer->settings.height) * m->frame_count_max);
   double warm_up;
   RETURN_IF_ERROR(render_once(renderer, 0, &warm_up));
   for (std::uint32_t frame = 0; frame < m->frame_count_max && !interrupted; ++frame) {
@@ -108,6 +117,7 @@ Status measure_prices(Renderer* renderer, Measurement* m) {
 }
 
 std::vector<Span> sparse_spans(const Settings& settings, double fraction, bool patches) {
+  CHECK(fraction > 0 && fraction <= 1);
   constexpr std::uint32_t kSeed = 1;
   const std::uint32_t side = patches ? kPatchSide : 1, offset = side / 3;
   const std::uint32_t cells = (settings.width + offset) / side + 1;
@@ -130,6 +140,8 @@ std::vector<Span> sparse_spans(const Settings& settings, double fraction, bool p
 }
 
 Status measure_sparse(Renderer* renderer, int round_count, SparseCost* costs) {
+  CHECK_GT(round_count, 0);
+  CHECK(costs != nullptr);
   std::vector<Span> spans[kSparseFractionCount][2];
   std::vector<double> ns[kSparseFractionCount][2];
   for (int i = 0; i < kSparseFractionCount; ++i)

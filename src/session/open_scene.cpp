@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "session/interrupt.h"
 #include "session/note.h"
@@ -13,6 +14,8 @@ Status set_pace(const CommonOptions& o, Renderer* renderer) {
   const platform::Device* device;
   RETURN_IF_ERROR(find_device(o, &device));
   if (o.emulate.empty()) return success();
+  CHECK(device != nullptr);
+  CHECK_GE(device->slowdown, 1);
   renderer->pace.slowdown = device->slowdown;
   renderer->pace.device = device->name;
   renderer->pace.stop = &interrupted;
@@ -22,6 +25,7 @@ Status set_pace(const CommonOptions& o, Renderer* renderer) {
 }  // namespace
 
 Status change_exposure(float factor, float* exposure) {
+  CHECK(exposure != nullptr);
   *exposure *= factor;
   return check_limit(Quantity::exposure, static_cast<double>(*exposure), "the scene's exposure times --exposure");
 }
@@ -32,6 +36,8 @@ OpenScene::~OpenScene() {
 }
 
 Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* opened) {
+  CHECK(hooks.load && hooks.plan && hooks.output_bytes);
+  CHECK(opened->block == nullptr);  // opened once
   Settings settings;
   RETURN_IF_ERROR(read_settings(o, &settings));
   Isa isa;
@@ -62,6 +68,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
 }
 
 Status start_scene(OpenScene* opened, const CommonOptions& o) {
+  CHECK(opened->block != nullptr && opened->renderer.workers == nullptr);
   Renderer* renderer = &opened->renderer;
   renderer->workers = start_workers(renderer->settings.threads);
   bool measured;

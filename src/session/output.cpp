@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/check.h"
 #include "platform/file.h"
 #include "scene/builtin/builtin.h"
 #include "session/report.h"
@@ -59,6 +60,7 @@ Status make_output_folder(const std::string& folder) {
 }
 
 Status write_with(const char* path, Status (*encode)(void* context, const ByteSink& sink), void* context) {
+  CHECK(path != nullptr && encode != nullptr);
   platform::FileWriter writer;
   platform::FileError error;
   std::fflush(stdout);  // the file may be standard output

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/check.h"
 #include "present/image_file.h"
 #include "present/png_file.h"
 #include "present/repack.h"
@@ -24,8 +25,10 @@ Kind kind_of(const char* path) {
 }
 
 Status encode(Kind kind, const PictureOptions& o, Renderer* renderer, const ByteSink& sink) {
+  CHECK(kind != Kind::unknown);  // check_picture_path() has been asked
   int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height);
   const Vec3* radiance = o.radiance ? o.radiance : renderer->image.data;
+  CHECK(radiance != nullptr || o.packed != nullptr);
   if (kind == Kind::pfm) {
     encode_pfm(&radiance->x, 3, width, height, sink);
     return success();

@@ -3,12 +3,14 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/check.h"
 #include "engine/workers.h"
 #include "platform/file.h"
 
 namespace pocketray {
 
 Progress start_progress(const char* what, std::uint64_t total) {
+  CHECK(what != nullptr);
   Progress p;
   p.what = what;
   p.total = total;

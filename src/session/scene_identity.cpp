@@ -1,10 +1,13 @@
 #include "session/scene_identity.h"
 
+#include "base/check.h"
 #include "scene/baked.h"
 
 namespace pocketray {
 
 Status identify_scene(const SceneSource& source, Renderer* renderer, ContentHash* hash) {
+  CHECK(renderer != nullptr && hash != nullptr);
+  CHECK((source.baked != nullptr) == (source.baked_bytes > 0));
   if (source.baked) {
     *hash = content_hash(source.baked, source.baked_bytes);
     return success();

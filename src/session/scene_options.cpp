@@ -55,6 +55,7 @@ SettingOptions::SettingOptions() {
 
 SettingOption& SettingOptions::operator[](const char* name) {
   const SettingRow* row = find_setting(name);
+  CHECK(name != nullptr);
   CHECK(row != nullptr);
   return options[row - kSettingList];
 }
@@ -76,6 +77,7 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // checked even by commands that show nothing
   if (o.threads > kThreadCountMax) return failure("--threads is %u: it must lie in 0 … %u", o.threads, kThreadCountMax);
   unsigned cores = std::thread::hardware_concurrency();
+  CHECK(o.emulate.empty() || device != nullptr);
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
   settings->threads = choose_thread_count(o.threads, cores);
   return validate_settings(*settings);
@@ -103,6 +105,7 @@ Status picture_size(const CommonOptions& o, std::uint32_t* width, std::uint32_t*
   *height = 240;
   if (!o.size.empty()) return parse_size(o.size, width, height);
   if (o.emulate.empty()) return success();
+  CHECK(device != nullptr);
   bool turned = device->rotation % 180 != 0;
   *width = static_cast<std::uint32_t>(turned ? device->screen_height : device->screen_width);
   *height = static_cast<std::uint32_t>(turned ? device->screen_width : device->screen_height);
@@ -110,6 +113,7 @@ Status picture_size(const CommonOptions& o, std::uint32_t* width, std::uint32_t*
 }
 
 std::uint32_t choose_thread_count(std::uint32_t asked, unsigned core_count) {
+  CHECK_LE(asked, kThreadCountMax);
   if (asked > 0) return asked;
   return core_count < 1 ? 1 : core_count > kThreadCountMax ? kThreadCountMax : core_count;
 }

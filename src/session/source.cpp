@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "base/check.h"
 #include "plan/plan_scene.h"
 #include "platform/file.h"
 #include "platform/memory.h"
@@ -16,6 +17,7 @@ Status load_builtin(const BuiltinScene& builtin, Renderer* renderer, SceneSource
   if (builtin.need() > arena_free(renderer->scene_arena))
     return scene_too_large(builtin.name, builtin.need(), renderer->settings.memory_bytes, source);
   builtin.build(&renderer->scene_arena, &renderer->scene);
+  CHECK_LE(renderer->scene_arena.used, builtin.need());
   storage->arena_bytes = renderer->scene_arena.used;
   return success();
 }
@@ -67,6 +69,7 @@ Status import_model(const std::string& name, const ImportOptions& options, Impor
 #endif
 
 void* take_block(std::size_t bytes) {
+  CHECK_GT(bytes, 0u);
   void* block = std::malloc(bytes);
   if (block) platform::wish_large_pages(block, bytes);
   return block;
@@ -83,6 +86,7 @@ Status read_baked(const std::string& path, const std::function<std::uint8_t*(std
   platform::FileReader file;
   platform::FileError error;
   if (!platform::open_reader(path.c_str(), &file, &error)) return failure("%s", error.text);
+  CHECK(take != nullptr && bytes != nullptr && byte_count != nullptr);
   *byte_count = file.byte_count;
   *bytes = take(file.byte_count);
   bool ok = *bytes != nullptr;
@@ -95,6 +99,7 @@ Status read_baked(const std::string& path, const std::function<std::uint8_t*(std
 }
 
 Status hash_file(const std::string& path, ContentHash* hash) {
+  CHECK(hash != nullptr);
   platform::FileReader file;
   platform::FileError error;
   if (!platform::open_reader(path.c_str(), &file, &error)) return failure("%.300s %s", path.c_str(), error.text);
@@ -113,6 +118,7 @@ Status hash_file(const std::string& path, ContentHash* hash) {
 }
 
 Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t limit, SceneSource* source) {
+  CHECK(source != nullptr);
   std::uint64_t megabytes = (need >> 20) + (need >> 22) + 4;  // plus a quarter for data derived from it
   bool hopeless = megabytes > kMemoryBytesMax >> 20;
   source->bytes_wanted = hopeless ? SIZE_MAX : static_cast<std::size_t>(megabytes << 20);
@@ -128,6 +134,7 @@ bool is_local_scene(const std::string& name) {
 }
 
 Status load_scene(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+  CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
   *storage = SceneStorage();
   if (const BuiltinScene* builtin = find_builtin(name.c_str()))
     return load_builtin(*builtin, renderer, source, storage);

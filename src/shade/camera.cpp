@@ -1,10 +1,14 @@
 #include "shade/camera.h"
 
+#include "base/check.h"
 #include "base/limit_list.h"
 
 namespace pocketray {
 
 Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t height, CameraRays* rays) {
+  CHECK(rays != nullptr);
+  CHECK(width > 0 && width <= kImageSideMax);
+  CHECK(height > 0 && height <= kImageSideMax);
   for (const Vec3& v : {camera.eye, camera.target, camera.up})
     for (float x : {v.x, v.y, v.z})
       RETURN_IF_ERROR(check_limit(Quantity::coordinate, static_cast<double>(x), "a coordinate of the camera"));

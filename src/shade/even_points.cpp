@@ -49,6 +49,7 @@ Cell equal_cell(std::uint32_t index, std::uint32_t count) {
     begin = end;
     end = (2 * row * count + rows - 1) / (2 * rows);  // row · count / rows, halves rounded down
   }
+  CHECK(begin <= index && index < end && end <= count);
   double width = end - begin, column = index - begin;
   return {column / width, (column + 1) / width, (static_cast<double>(begin) + end) / (2.0 * count)};
 }

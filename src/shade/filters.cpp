@@ -1,5 +1,6 @@
 #include "shade/filters.h"
 
+#include "base/check.h"
 #include "effect/effect_probe.h"
 #include "shade/texture.h"
 
@@ -43,6 +44,7 @@ bool accept_clear(const void* context, std::uint32_t triangle, float u, float v)
 }  // namespace
 
 void make_filters(FrameData* frame) {
+  CHECK(frame != nullptr && frame->scene != nullptr);
   bool masked = has(frame->mask, Effect::alpha_mask);
   bool clear = has(frame->mask, Effect::refraction) || has(frame->mask, Effect::alpha_blend);
   frame->visible_filter = {masked ? accept_visible : nullptr, frame};

@@ -2,6 +2,8 @@
 
 #include <initializer_list>
 
+#include "base/check.h"
+
 namespace pocketray {
 namespace {
 
@@ -19,6 +21,7 @@ void cross_contact(const Scene& scene, const Contact& contact, MediumStack* stac
 }
 
 MediumStack media_at(const FrameData& frame, const Vec3& eye, const Vec3& direction) {
+  CHECK(frame.scene != nullptr && frame.accel_info != nullptr && frame.surface != nullptr);
   // Walking outward, an exit without its entry belongs to a body that contains the eye; the first such is the
   // innermost.
   std::uint32_t exits[kMediumDepthMax];

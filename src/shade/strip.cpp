@@ -16,6 +16,7 @@ std::uint32_t spread_row(std::uint32_t row) { return (row & 1) << 1 | (row & 2) 
 }  // namespace
 
 void make_strip(const Span* spans, std::uint32_t span_count, TileStrip* strip) {
+  CHECK(spans != nullptr || span_count == 0);
   std::uint32_t begin = kImageSideMax, end = 0;
   for (std::uint32_t i = 0; i < span_count; ++i) {
     if (spans[i].column_begin >= spans[i].column_end) continue;
@@ -24,6 +25,7 @@ void make_strip(const Span* spans, std::uint32_t span_count, TileStrip* strip) {
   }
   CHECK_LE(end, kImageSideMax);
   strip->tile_count = begin < end ? (end - begin + kTileSide - 1) / kTileSide : 0;
+  CHECK_LE(strip->tile_count, kImageSideMax / kTileSide);
   if (strip->tile_count == 0) return;
   strip->row = spans[0].row, strip->column = begin, strip->row_count = 0;
   std::fill_n(strip->mask, strip->tile_count, 0);

@@ -144,6 +144,7 @@ void trace_pixels(Tracer* tracer, const Tile& tile, Vec3* image) {
 // pixels: rays that are far apart have no boxes in common.
 void trace_strip(Tracer* tracer, const TileStrip& strip, Vec3* image) {
   if (strip.tile_count == 0) return;
+  CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
   const std::uint32_t tiles_max = kTileRows / strip.row_count;
   Tile tile;
   for (std::uint32_t i = 0; i < strip.tile_count; i += tiles_max) {
@@ -166,6 +167,8 @@ void trace_span(Tracer* tracer, const Span& span, Aov aov, Vec3* image) {
 Vec2 sample_offset(std::uint32_t sample, std::uint32_t sample_count) { return rook_point(sample, sample_count); }
 
 Tracer make_tracer(const FrameData& frame) {
+  CHECK(frame.scene != nullptr && frame.accel_info != nullptr);
+  CHECK(frame.surface != nullptr && frame.radiance != nullptr);
   Tracer tracer;
   tracer.frame = &frame;
   return tracer;
@@ -179,11 +182,15 @@ std::uint32_t strip_span_count(const Span* spans, std::uint32_t span_count) {
 }
 
 void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Aov aov, Vec3* image) {
+  CHECK(tracer->frame != nullptr);
+  CHECK(span_count == 0 || (spans != nullptr && image != nullptr));
   const FrameData& frame = *tracer->frame;
   for (std::uint32_t i = 0; i < span_count; ++i) {
     CHECK_LT(spans[i].row, frame.settings.height);
     CHECK_LE(spans[i].column_end, frame.settings.width);
   }
+  const std::uint32_t sample_count = frame.settings.samples_per_pixel;
+  CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
   if (aov != Aov::none || frame.camera.orthographic) {
     for (std::uint32_t i = 0; i < span_count; ++i) trace_span(tracer, spans[i], aov, image);
     return;
@@ -191,6 +198,7 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
   TileStrip strip;
   for (std::uint32_t i = 0, count; i < span_count; i += count) {
     count = strip_span_count(spans + i, span_count - i);
+    CHECK_GT(count, 0u);
     make_strip(spans + i, count, &strip);
     trace_strip(tracer, strip, image);
   }

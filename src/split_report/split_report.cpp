@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "remote/client/frame.h"
 #include "session/camera_control.h"
 #include "session/interrupt.h"
@@ -46,6 +47,9 @@ Status open_whole_encoder(Experiment* e) {
 }
 
 Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_t* frames_done, Experiment* e) {
+  CHECK(setup.device != nullptr && setup.store != nullptr);
+  CHECK(setup.server_count >= 1 && setup.server_count <= kServerCountMax);
+  CHECK_GT(setup.frame_count, 0u);
   e->setup = setup;
   e->progress = progress, e->frames_done = frames_done;
   e->times.resize(kChosenLaps * std::size_t(setup.frame_count));
@@ -84,6 +88,7 @@ Status next_frame(Experiment* e, bool* complete) {
 
 // Bytes of the picture if no part of it was sent before.
 double whole_bytes(Experiment* e) {
+  CHECK(e->whole != nullptr);
   restart_row_encoder(e->whole);
   int level = deflate_level(e->client.servers[0].ns_per_byte);
   std::uint32_t height = e->client.settings.height;
@@ -113,6 +118,7 @@ Status settle(Experiment* e, bool* complete) {
 Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, double* whole) {
   const Settings& settings = e->client.settings;
   const std::uint32_t frame_count = lap_count * e->setup.frame_count;
+  CHECK_LE(frame_count, e->times.size());
   *point = SplitPoint();
   *complete = true;
   std::uint32_t measured = 0;
@@ -131,12 +137,14 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
       point->server_rows[i] += double(share.server_rows[i]) / frame_count;
     if (whole) *whole += whole_bytes(e) / frame_count;
   }
+  CHECK(!*complete || measured == frame_count);
   if (*complete) point->ns_per_pixel = range_of(e->times.data(), frame_count).median;
   return success();
 }
 
 // Measures a point of the sweep unless it is already there.
 Status measure_share(Experiment* e, double m, std::vector<SplitPoint>* sweep, bool* complete) {
+  CHECK(m >= 0 && m <= 1);
   double height = e->client.settings.height, row = std::floor(m * height + 0.5);
   for (const SplitPoint& point : *sweep)
     if (std::floor(point.m * height + 0.5) == row) return success();
@@ -151,12 +159,14 @@ Status measure_share(Experiment* e, double m, std::vector<SplitPoint>* sweep, bo
 }
 
 std::size_t least_of(const std::vector<SplitPoint>& sweep) {
+  CHECK(!sweep.empty());
   auto faster = [](const SplitPoint& a, const SplitPoint& b) { return a.ns_per_pixel < b.ns_per_pixel; };
   return static_cast<std::size_t>(std::min_element(sweep.begin(), sweep.end(), faster) - sweep.begin());
 }
 
 Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::uint64_t* frames_done,
                          Progress* progress, PaperRow* row, bool* complete) {
+  CHECK_GT(*bytes_per_pixel, 0);
   SplitSetup setup = given;
   setup.server_count = 1;
   setup.device_ns = row->device_ns, setup.server_ns = row->server_ns;
@@ -189,6 +199,7 @@ std::uint64_t paper_frame_count(const SplitSetup& setup) {
 }
 
 Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress* progress, SplitFigures* figures) {
+  CHECK_GE(step_count, 2u);
   Experiment e;
   std::uint64_t frames_done = 0;
   bool complete;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "remote/server/state.h"
 
 namespace pocketray {
@@ -43,6 +44,7 @@ VirtualWorld::~VirtualWorld() {
 
 Status open_world(const platform::NullLinkSettings& line, const SceneStore& store, std::uint32_t server_count,
                   VirtualWorld* world) {
+  CHECK(world->link == nullptr);
   platform::LinkOptions options;
   options.memory_bytes = null_link_need(kStreams, line);
   world->memory.resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
@@ -64,6 +66,8 @@ Status open_world(const platform::NullLinkSettings& line, const SceneStore& stor
 }
 
 Status start_server(VirtualWorld* world, std::uint32_t i, const ServerOptions& options) {
+  CHECK_LT(i, world->servers.size());
+  CHECK(world->servers[i] == nullptr);
   RETURN_IF_ERROR(open_server(options, *world->store, world->link, world->addresses[i], &world->servers[i]));
   platform::Error error;
   if (platform::kNullLink.resolve(server_address(*world->servers[i]), &world->addresses[i], &error)) return success();
@@ -71,6 +75,7 @@ Status start_server(VirtualWorld* world, std::uint32_t i, const ServerOptions& o
 }
 
 void stop_server(VirtualWorld* world, std::uint32_t i) {
+  CHECK_LT(i, world->servers.size());
   world->stepping = true;  // it polls to say goodbye, and the others must wait for it
   close_server(world->servers[i]);
   world->servers[i] = nullptr;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "base/check.h"
+
 namespace pocketray {
 
 Front front_of_sweep(const SweepPlan& plan, const Sweep& sweep) {
+  CHECK_EQ(sweep.measured.size(), plan.points.size());
   std::vector<Candidate> all;
   for (std::size_t i = 0; i < plan.points.size(); ++i) {
     const Measured& m = sweep.measured[i];

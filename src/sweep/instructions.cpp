@@ -8,6 +8,7 @@
 
 #include "accuracy/callgrind.h"
 #include "accuracy/text.h"
+#include "base/check.h"
 #include "platform/process.h"
 #include "session/interrupt.h"
 
@@ -180,6 +181,7 @@ Status read_job(const std::string& folder, AccuracyOptions* o, float* exposure, 
 
 void count_by_valgrind(const AccuracyOptions& options, const Rig& rig, const SweepPlan& plan, AccuracyState* state,
                        bool* whole, std::string* note) {
+  CHECK(state != nullptr && whole != nullptr && note != nullptr);
   *whole = true;
   *note = state->counted;
   Counting counting;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accuracy/display.h"
+#include "base/check.h"
 #include "effect/setting_list.h"
 #include "engine/frame.h"
 
@@ -26,6 +27,8 @@ void compare(const Rig& rig, double pixels_per_degree, const std::vector<Vec3>& 
              ReferencePictures* p) {
   const Renderer& renderer = rig.opened.renderer;
   std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
+  CHECK_EQ(one.size(), std::size_t(width) * height);
+  CHECK_EQ(other.size(), one.size());
   std::vector<Vec3> mean(one.size());
   for (std::size_t i = 0; i < one.size(); ++i) mean[i] = one[i] * 0.5f + other[i] * 0.5f;
   p->one = exposed_light(one.data(), one.size(), renderer.exposure);
@@ -53,6 +56,8 @@ namespace {
 // Saves the finished rows of an unfinished picture to its file. The file may hold rows the state does not list yet.
 Status save_begun(const AccuracyOptions& options, const Settings& settings, const std::vector<Vec3>& picture,
                   const AccuracyState& state) {
+  CHECK_EQ(state.begun_rows.size(), settings.height);
+  CHECK_EQ(picture.size(), std::size_t(settings.width) * settings.height);
   std::vector<Vec3> there(picture.size(), Vec3{0, 0, 0});  // without rows that other threads are writing
   std::ptrdiff_t width = settings.width;
   for (std::ptrdiff_t row = 0; row < static_cast<std::ptrdiff_t>(settings.height); ++row)
@@ -108,6 +113,7 @@ Status render_seed(const AccuracyOptions& options, const ReferenceOptions& o, co
 Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
                         ReferencePictures* pictures, bool* whole) {
   const Settings& settings = rig->opened.renderer.settings;
+  CHECK(state != nullptr && pictures != nullptr);
   std::vector<Vec3> seeds[2];
   *whole = true;
   for (int i = 0; i < 2; ++i) {

@@ -3,6 +3,7 @@
 
 #include <mutex>
 
+#include "base/check.h"
 #include "base/limits.h"
 #include "budget/front_file.h"
 #include "engine/frame.h"
@@ -53,6 +54,7 @@ Status load_cornell(std::uint32_t sphere_columns, Renderer* renderer, SceneStora
   if (tessellated_cornell_need(sphere_columns) > arena_free(renderer->scene_arena))
     return failure("cornell with a sphere of %u columns does not fit in --memory: raise it", sphere_columns);
   build_tessellated_cornell(sphere_columns, &renderer->scene_arena, &renderer->scene);
+  CHECK_LE(renderer->scene_arena.used, tessellated_cornell_need(sphere_columns));
   *storage = SceneStorage();
   storage->arena_bytes = renderer->scene_arena.used;
   return success();
@@ -138,6 +140,8 @@ void make_rig_reference(Rig* rig) {
 bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows,
                 const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
                 const std::function<void(std::uint32_t)>& row_done, Vec3* picture) {
+  CHECK(trace_row && picture != nullptr);
+  CHECK_GE(settings.threads, 1u);
   struct Context {
     const std::vector<std::uint32_t>& rows;
     const std::function<void(std::uint32_t, Vec3d*)>& trace_row;
@@ -174,6 +178,7 @@ std::uint32_t take_part(Rig* rig) {
       renderer->spans[count++] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin),
                                   static_cast<std::uint16_t>(begin + quarter)};
     }
+  CHECK(count > 0 && count <= renderer->spans.count);
   renderer->spans.count = count;
   return rig->part_pixels = count * quarter;
 }
@@ -189,6 +194,7 @@ Status time_frame(Rig* rig, const Configuration& configuration, double seconds, 
   else
     RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
   double frame_ns = static_cast<double>(clock_ns() - start);
+  CHECK_GE(configuration.output, 0);
   const OutputFormat& output = kOutputFormats[configuration.output];
   int width = static_cast<int>(renderer->settings.width), height = static_cast<int>(renderer->settings.height),
       line_bytes = width * output.format.bits_per_pixel / 8;
@@ -202,6 +208,7 @@ Status time_frame(Rig* rig, const Configuration& configuration, double seconds, 
 }
 
 Status count_instructions(Rig* rig, const Configuration& configuration, double seconds, double* per_pixel) {
+  CHECK(per_pixel != nullptr);
   *per_pixel = kNotMeasured;
   std::uint64_t start = platform::instruction_count();
   if (start == 0) return success();

@@ -1,5 +1,6 @@
 #include "sweep/rigs.h"
 
+#include "base/check.h"
 #include "plan/plan_lights.h"
 
 namespace pocketray {
@@ -36,6 +37,7 @@ Status plan_rigs(Rigs* rigs, SweepPlan* plan) {
 }
 
 Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig) {
+  CHECK(rig != nullptr && rigs->by_columns.count(kCornellSphereColumns) == 1);  // planned
   std::unique_ptr<Rig>& there = rigs->by_columns[configuration.sphere_columns];
   if (!there) {
     RETURN_IF_ERROR(open_rig(rigs->options, configuration.sphere_columns, &there));
@@ -48,6 +50,7 @@ Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig) {
 std::string id_of(const SweepPoint& point) { return point.value.empty() ? point.knob : point.knob + " " + point.value; }
 
 bool is_measured(const SweepPlan& plan, std::size_t point_index) {
+  CHECK_LT(point_index, plan.points.size());
   const SweepPoint& point = plan.points[point_index];
   return point_index == 0 || (point.missing.empty() && !point.is_default);
 }

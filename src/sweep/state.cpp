@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/check.h"
 #include "platform/file.h"
 #include "session/output.h"
 
@@ -96,6 +97,7 @@ std::string written(const Json& json) { return json.dump(1, ' ', false, Json::er
 }  // namespace
 
 Status open_state(const std::string& folder, const Json& wanted, bool restart, AccuracyState* state) {
+  CHECK(state != nullptr);
   *state = AccuracyState();
   Json key = Json::parse(written(wanted));  // as it will be read back
   platform::FileError error;
@@ -131,6 +133,8 @@ Status save_text(const std::string& folder, const std::string& name, const std::
 Status save_radiance(const std::string& folder, const std::string& name, std::uint32_t width, std::uint32_t height,
                      const std::vector<Vec3>& radiance) {
   std::string path = folder + "/" + name + ".pfm";
+  CHECK_EQ(radiance.size(), std::size_t(width) * height);
+  CHECK(!radiance.empty());
   return write_encoded(path.c_str(), [&](const ByteSink& sink) {
     encode_pfm(&radiance[0].x, 3, static_cast<int>(width), static_cast<int>(height), sink);
     return success();
@@ -140,6 +144,7 @@ Status save_radiance(const std::string& folder, const std::string& name, std::ui
 Status load_radiance(const std::string& folder, const std::string& name, std::uint32_t width, std::uint32_t height,
                      std::vector<Vec3>* radiance) {
   std::string path = folder + "/" + name + ".pfm";
+  CHECK(radiance != nullptr);
   platform::LoadedFile file;
   platform::FileError error;
   if (!platform::load_file(path.c_str(), &file, &error))

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "accuracy/display.h"
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "base/rng.h"
 #include "effect/setting_list.h"
@@ -83,6 +84,7 @@ void find_errors(const Run& run, const Rig& rig, const Configuration& configurat
   std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.exposure);
   Levels levels =
       displayed_levels(renderer.image.data, width, height, renderer.exposure, kOutputFormats[configuration.output]);
+  CHECK_EQ(light.size(), run.reference.mean.size());
   const ReferencePictures& reference = run.reference;
   double ppd = run.options.pixels_per_degree;
   f->flip = mean_of(flip_errors(reference.encoded, encoded_levels(levels), width, height, ppd));
@@ -95,6 +97,7 @@ void find_errors(const Run& run, const Rig& rig, const Configuration& configurat
 
 // The order of a round: points at random, the baseline several times.
 std::vector<std::size_t> round_order(const SweepPlan& plan, std::uint32_t round) {
+  CHECK(!plan.points.empty());
   std::vector<std::size_t> order(kBaselineRuns, 0);
   for (std::size_t i = 1; i < plan.points.size(); ++i)
     if (is_measured(plan, i)) order.push_back(i);
@@ -111,6 +114,7 @@ struct RoundProgress {
 
 // Measures each point once. After an interrupt *whole is false and the times of the round are discarded.
 Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
+  CHECK_LT(run->state.rounds, run->options.rounds);
   std::map<std::size_t, std::vector<double>> times;
   for (std::size_t i : round_order(run->plan, run->state.rounds)) {
     const SweepPoint& point = run->plan.points[i];
@@ -165,6 +169,7 @@ Status measure_rounds(Run* run, bool* whole) {
 }
 
 Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
+  CHECK_LE(swept.first + swept.count, sweep->measured.size());
   Strip strip;
   strip.knob = swept.knob->name;
   std::vector<std::size_t> there;
@@ -264,6 +269,7 @@ Status count_otherwise(Run* run, const Rig& rig, bool by_cpu, Sweep* sweep, bool
 }  // namespace
 
 Status measure_sweep(const AccuracyOptions& options, Sweep* sweep, bool* whole, SweptFront* front) {
+  CHECK(sweep != nullptr && whole != nullptr);
   Run run = {options, {options, {}}, {}, {}, {}};
   *whole = true;
   RETURN_IF_ERROR(check_options(options));

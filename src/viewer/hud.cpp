@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/check.h"
 #include "effect/effect_list.h"
 
 namespace pocketray {
@@ -27,6 +28,7 @@ void add_effects(const EffectPlan& plan, HudText* text) {
 
 void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text) {
   text->line_count = 0;
+  CHECK_GE(renderer.settings.threads, 1u);
   Tracer counts = total_counts(renderer);
   std::uint64_t rays = 0;
   for (std::uint64_t n : counts.rays) rays += n;
@@ -51,6 +53,7 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
 }
 
 void write_waiting(const char* what, double seconds, HudText* text) {
+  CHECK(what != nullptr);
   text->line_count = 0;
   add_hud_line(text, "%s, %.1f s", what, seconds);
 }

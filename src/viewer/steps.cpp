@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/check.h"
 #include "base/seal.h"
 #include "engine/frame.h"
 #include "present/repack.h"
@@ -18,6 +19,7 @@ constexpr std::uint64_t kIdleNs = 8 * kMillisecond;
 // Packs and shows the changed rows.
 void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
                std::uint32_t row_end) {
+  CHECK(row_begin <= row_end && row_end <= renderer.settings.height);
   SealPause pause(takes_memory(*viewer->backend));
   platform::Page page = viewer->backend->begin_frame();
   if (!page.pixels) return;
@@ -201,6 +203,7 @@ void pack_picture(const Viewer& viewer, const Renderer& renderer, const Vec3* ra
               viewer.rotation, viewer.options.dither, page.pixels, page.line_bytes);
     return;
   }
+  CHECK(viewer.servers != nullptr);
   MergedPicture merged = viewer.servers->backend->picture(*viewer.servers);
   repack_rows(merged.format, merged.pixels, merged.line_bytes, viewer.width, viewer.height, row_begin, row_end,
               viewer.format, viewer.rotation, page.pixels, page.line_bytes);
@@ -209,6 +212,8 @@ void pack_picture(const Viewer& viewer, const Renderer& renderer, const Vec3* ra
 bool takes_memory(const platform::Backend& screen) { return std::strcmp(screen.name, "sdl2") == 0; }
 
 Status step_viewer(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
+  CHECK(viewer->backend != nullptr);
+  CHECK_GE(loop->row_spans.count, renderer->settings.width);
   if (viewer->budget) return step_budgeted(viewer, renderer, loop);
   return viewer->servers ? step_with_servers(viewer, renderer, loop) : step_picture(viewer, renderer, loop);
 }

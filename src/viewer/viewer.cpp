@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/check.h"
 #include "base/printable.h"
 #include "base/seal.h"
 #include "platform/file.h"
@@ -36,6 +37,7 @@ void take_events(Viewer* viewer) {
       viewer->reload = true;
     }
     if (!down && event.type != platform::EventType::button_up) continue;
+    CHECK_LT(static_cast<int>(event.button), platform::kButtonCount);
     viewer->held[static_cast<int>(event.button)] = down;
     if (!down) continue;
     if (event.button == Button::hud || event.button == Button::y) viewer->hud = !viewer->hud;
@@ -141,6 +143,7 @@ void keep_picture(Viewer* viewer, const Renderer& renderer) {
                              ? viewer->side_by_side->backend->picture(viewer->side_by_side, renderer)
                              : renderer.image.data;
   if (!viewer->picture_merged && !radiance) return;
+  CHECK(viewer->picture_memory != nullptr);
   pack_picture(*viewer, renderer, radiance, 0, viewer->height,
                {viewer->picture_memory, static_cast<int>(row_bytes(*viewer)), 0});
   viewer->has_picture = true;
@@ -216,6 +219,8 @@ Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 
 // Allocates the pages and opens the screen; on failure, leaves resources to close_viewer().
 Status take_screen(const ViewOptions& options, int width, int height, Viewer* viewer) {
+  CHECK(width > 0 && height > 0);
+  CHECK(viewer->page_memory == nullptr && viewer->picture_memory == nullptr);
   std::size_t page_bytes = platform::page_bytes_max(width, height);
   viewer->page_memory = std::malloc(page_bytes);
   viewer->picture_memory = std::malloc(page_bytes);
@@ -251,6 +256,7 @@ Status take_screen(const ViewOptions& options, int width, int height, Viewer* vi
 std::size_t viewer_bytes(const Settings& settings) { return picture_bytes(settings) + progressive_need(settings); }
 
 Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* viewer) {
+  CHECK(scene != nullptr && viewer->backend == nullptr);  // opened once
   viewer->options = options;
   viewer->scene_path = scene;
   viewer->width = width;
@@ -273,6 +279,7 @@ void watch_scene(Viewer* viewer) {
 }
 
 void tell(Viewer* viewer, const char* text) {
+  CHECK(text != nullptr);
   std::snprintf(viewer->note.text, sizeof viewer->note.text, "%s", text);
   make_printable(viewer->note.text, std::strlen(viewer->note.text));
   std::fprintf(stderr, "pocketray: %s\n", viewer->note.text);
@@ -297,6 +304,9 @@ bool wait_for_another(Viewer* viewer, const char* why) {
 }
 
 Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
+  CHECK(viewer->backend != nullptr);
+  CHECK_EQ(renderer->settings.width, static_cast<std::uint32_t>(viewer->width));
+  CHECK_EQ(renderer->settings.height, static_cast<std::uint32_t>(viewer->height));
   ViewerLoop loop;
   std::size_t mark = arena_mark(renderer->frame_arena);
   loop.row_spans = arena_array<Span>(&renderer->frame_arena, renderer->settings.width);

@@ -50,17 +50,20 @@ bool codec_shape_valid(const CodecShape& shape) {
 
 void make_codec_state(const CodecShape& shape, std::size_t zlib_bytes, Arena* arena, CodecState* state) {
   CHECK(codec_shape_valid(shape));
+  std::size_t used = arena->used;
   *state = CodecState();
   state->shape = shape;
   state->picture = arena_array<std::uint8_t>(arena, picture_bytes(shape));
   state->runs = arena_array<std::uint8_t>(arena, run_bytes_max(chunk_pixels(shape, shape.chunk_rows_max)));
   state->body = arena_array<std::uint8_t>(arena, body_bytes_max(shape, shape.chunk_rows_max) + 1);
   state->zlib_arena = make_arena("zlib", arena_allocate(arena, zlib_bytes), arena_need(zlib_bytes));
+  CHECK_EQ(arena->used - used, codec_state_need(shape, zlib_bytes));
   state->stream.zalloc = take, state->stream.zfree = give_back, state->stream.opaque = &state->zlib_arena;
   restart_codec_state(state);
 }
 
 void restart_codec_state(CodecState* state) {
+  CHECK(state->picture.data != nullptr);
   std::memset(state->picture.data, 0, state->picture.bytes());
   state->broken = false;
 }

@@ -14,11 +14,13 @@ std::uint32_t inflate_body(CodecState* s, const RowChunk& chunk) {
   static constexpr std::uint8_t kFlushEnd[4] = {0x00, 0x00, 0xFF, 0xFF};  // omitted by the sender
   z_stream* z = &s->stream;
   std::uint32_t capacity = body_bytes_max(s->shape, chunk.row_count) + 1;
+  CHECK_LE(capacity, s->body.count);
   z->next_out = s->body.data, z->avail_out = capacity;
   z->next_in = const_cast<Bytef*>(chunk.bytes.data), z->avail_in = chunk.bytes.count;
   if (inflate(z, Z_SYNC_FLUSH) != Z_OK || z->avail_in != 0 || z->avail_out == 0) return 0;
   z->next_in = const_cast<Bytef*>(kFlushEnd), z->avail_in = sizeof kFlushEnd;
   if (inflate(z, Z_SYNC_FLUSH) != Z_OK || z->avail_in != 0 || z->avail_out == 0) return 0;
+  CHECK_LE(z->avail_out, capacity);
   return capacity - z->avail_out;
 }
 
@@ -64,6 +66,7 @@ bool decode_chunk(CodecState* s, const RowChunk& chunk) {
   if (byte_count == 0) return false;
   bool predicted = (chunk.encoding & kEncodingPredicted) != 0;
   std::uint32_t width = s->shape.width, pixel_count = width * chunk.row_count;
+  CHECK_LE(std::uint64_t(chunk.row_begin) * width + pixel_count, std::uint64_t(s->shape.height) * width);
   std::uint8_t* pixels = picture_row(*s, chunk.row_begin);
   return s->shape.format == WireFormat::rgb565
              ? apply_body<Pixel565>(body, byte_count, predicted, width, pixel_count, pixels)
@@ -77,6 +80,7 @@ std::size_t row_decoder_need(const CodecShape& shape) {
 }
 
 Status make_row_decoder(const CodecShape& shape, Arena* arena, RowDecoder** decoder) {
+  CHECK(arena != nullptr && decoder != nullptr);
   *decoder = arena_array<RowDecoder>(arena, 1).data;
   CodecState* s = &(*decoder)->state;
   make_codec_state(shape, kInflateBytes, arena, s);

@@ -119,12 +119,14 @@ Body make_body(CodecState* s, const std::uint8_t* pixels, const std::uint8_t* be
     Pixel::store(at, pixel);
     at += Pixel::kBytes;
   });
+  CHECK_LE(static_cast<std::size_t>(at - s->body.data), s->body.count);
   return {static_cast<std::uint32_t>(at - s->body.data), choice};
 }
 
 std::uint32_t deflate_body(CodecState* s, std::uint32_t body_bytes, int level, std::uint8_t* bytes,
                            std::uint32_t capacity) {
   z_stream* z = &s->stream;
+  CHECK_LE(body_bytes, s->body.count);
   z->next_in = s->body.data, z->avail_in = 0;
   z->next_out = bytes, z->avail_out = capacity;
   if (level != s->level) {
@@ -148,6 +150,7 @@ std::size_t row_encoder_need(const CodecShape& shape) {
 }
 
 Status make_row_encoder(const CodecShape& shape, Arena* arena, RowEncoder** encoder) {
+  CHECK(arena != nullptr && encoder != nullptr);
   *encoder = arena_array<RowEncoder>(arena, 1).data;
   CodecState* s = &(*encoder)->state;
   make_codec_state(shape, kDeflateBytes, arena, s);
@@ -166,6 +169,8 @@ void restart_row_encoder(RowEncoder* encoder) {
 std::uint32_t encode_rows(RowEncoder* encoder, std::uint32_t row_begin, std::uint32_t row_count,
                           const std::uint8_t* pixels, int level, std::uint8_t* bytes, std::uint8_t* encoding) {
   CodecState* s = &encoder->state;
+  CHECK(pixels != nullptr && bytes != nullptr && encoding != nullptr);
+  CHECK_GT(row_count, 0u);
   CHECK_LE(row_count, s->shape.chunk_rows_max);
   CHECK_LE(row_begin, s->shape.height - row_count);
   CHECK(level >= 0 && level <= 9);

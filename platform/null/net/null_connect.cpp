@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "platform/check.h"
 #include "platform/null/net/null_state.h"
 
 namespace platform {
@@ -76,6 +77,7 @@ Slot* begin_connection(NullLink* link, const LinkAddress& address, std::uint64_t
 }  // namespace
 
 bool resolve(const char* text, LinkAddress* address, Error* error) {
+  PLATFORM_CHECK(text != nullptr && address != nullptr);
   *address = LinkAddress();
   char host[256];
   int port;
@@ -153,6 +155,7 @@ Slot* waiting_at(NullLink* link, const Slot* listener) {
 }
 
 LinkResult accept(Link* base, int listener, int* stream, Error* error) {
+  PLATFORM_CHECK(stream != nullptr);
   NullLink* link = null(base);
   Slot* from = slot_of(link, listener);
   if (!from || from->phase != Phase::listening) return stale_stream(error);

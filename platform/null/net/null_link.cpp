@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "platform/check.h"
 #include "platform/null/net/null_state.h"
 
 namespace platform {
@@ -157,6 +158,7 @@ std::uint64_t look(NullLink* link, LinkWait* wait) {
 }
 
 int poll(Link* base, LinkWait* waits, int wait_count, std::uint64_t timeout_ns) {
+  PLATFORM_CHECK(wait_count == 0 || (wait_count > 0 && waits != nullptr));
   NullLink* link = null(base);
   if (wait_count > link->slot_count) wait_count = link->slot_count;
   std::uint64_t until_ns = timeout_ns < kClockStartNs ? link->clock_ns + timeout_ns : link->clock_ns + kClockStartNs;
@@ -198,6 +200,7 @@ std::size_t null_link_need(int stream_count_max, const NullLinkSettings& setting
 }
 
 Link* null_link_open(const LinkOptions& options, const NullLinkSettings& settings, Error* error) {
+  PLATFORM_CHECK_EQ(reinterpret_cast<std::uintptr_t>(options.memory) % alignof(NullLink), 0u);
   int count = options.stream_count_max;
   if (count < 1 || count > kLinkStreamsMax || !options.memory || settings.fault_count > kNullFaultsMax ||
       settings.pipe_bytes == 0 || options.memory_bytes < null_link_need(count, settings)) {

@@ -31,6 +31,7 @@ std::size_t in_bytes(const CodecShape& shape) {
 }
 
 void mark_dirty(Client* client, std::uint32_t begin, std::uint32_t end) {
+  CHECK(begin <= end && end <= client->settings.height);
   if (client->dirty_begin == client->dirty_end) client->dirty_begin = begin, client->dirty_end = end;
   client->dirty_begin = std::min(client->dirty_begin, begin);
   client->dirty_end = std::max(client->dirty_end, end);
@@ -166,6 +167,10 @@ Status make_client(const ClientOptions& options, const Settings& settings, const
                    platform::Link* link, const platform::LinkAddress* servers, std::uint32_t server_count, Arena* arena,
                    Client* client) {
   CHECK_LE(server_count, kServerCountMax);
+  CHECK(link != nullptr && arena != nullptr && (servers != nullptr || server_count == 0));
+  CHECK_LE(options.check_count, static_cast<int>(kSpotChecksMax));
+  CHECK_LE(options.device_share, 1);
+  const std::size_t used = arena->used;
   *client = Client();
   client->options = options;
   client->settings = settings;
@@ -195,6 +200,7 @@ Status make_client(const ClientOptions& options, const Settings& settings, const
     client->model.servers[i].chunk_rows = kChunkRowsMin;
     RETURN_IF_ERROR(make_row_decoder(shape, arena, &server->decoder));
   }
+  CHECK_LE(arena->used - used, client_need(settings, options.format, server_count));
   return success();
 }
 
@@ -234,6 +240,7 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   bool current = chunk.frame == client->request.frame && !client->complete;
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
+  CHECK_LE(end, client->settings.height);
   s->frame.heard_ns = client_now_ns(*client);
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
   if (s->phase == ServerPhase::probing) s->probe_ns_per_pixel = 1e-3 * chunk.pixel_ps;
@@ -268,6 +275,9 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
     cancel_rest(client);
     end_frame(&client->model);
   }
+  CHECK_EQ(renderer.settings.width, client->settings.width);
+  CHECK_EQ(renderer.settings.height, client->settings.height);
+  CHECK_GT(renderer.exposure, 0);
   FrameShare last = client->share;
   client->share = FrameShare();
   client->share.measured_ns = last.measured_ns;
@@ -308,6 +318,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
 
 bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end) {
   if (!client->options.has_scene) return false;
+  CHECK_GT(row_count_max, 0u);
   row_count_max = std::min(row_count_max, rows_between_looks(*client));
   std::uint32_t own_end = client->joined ? client->split.boundary[0] : client->settings.height;
   std::uint32_t next = client->merge.next_row;
@@ -324,6 +335,7 @@ bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t
 }
 
 void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns) {
+  CHECK_LT(row_begin, row_end);
   std::uint32_t count = row_end - row_begin;
   for (std::uint32_t row = row_begin; row < row_end; ++row)
     observe_device_row(&client->model, row, static_cast<double>(ns) / count);
@@ -333,6 +345,7 @@ void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t r
 }
 
 void end_client_frame(Client* client) {
+  CHECK(!client->complete);
   CHECK(is_complete(client->merge));
   client->complete = true;
   FrameShare* share = &client->share;
@@ -346,6 +359,9 @@ void end_client_frame(Client* client) {
     share->row_bytes += client->servers[i].frame.row_bytes;
     share->bytes_in += client->servers[i].messages.bytes_in, share->bytes_out += client->servers[i].messages.bytes_out;
   }
+  std::uint32_t rows = share->device_rows;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) rows += share->server_rows[i];
+  CHECK_EQ(rows, client->merge.rows.count);
   auto since = [](std::uint64_t now, std::uint64_t before) { return now > before ? now - before : 0; };
   share->bytes_in = since(share->bytes_in, client->bytes_in_before);
   share->bytes_out = since(share->bytes_out, client->bytes_out_before);
@@ -366,6 +382,7 @@ bool is_settled(const Client& client) {
 }
 
 bool take_merged_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end) {
+  CHECK(row_begin != nullptr && row_end != nullptr);
   if (client->dirty_begin >= client->dirty_end) return false;
   *row_begin = client->dirty_begin, *row_end = client->dirty_end;
   client->dirty_begin = client->dirty_end = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "engine/frame.h"
 #include "engine/row_costs.h"
@@ -53,6 +54,7 @@ void next_part(ClientRows* s, SpanBatch* batch) {
   const Client& client = *s->client;
   const DeviceRow& row = client.device_row;
   const std::uint32_t width = client.settings.width;
+  CHECK_LT(row.columns_done, width);
   double pixels = row.pixel_ns > 0 ? work_ns_max(client) / row.pixel_ns : kFirstPixels;
   std::uint32_t count = pixels < width ? std::max(1u, static_cast<std::uint32_t>(pixels)) : width;
   s->row_begin = row.row, s->row_end = row.row + 1;
@@ -142,6 +144,8 @@ Status begin_frame(Renderer* renderer, Client* client, double seconds) {
 
 bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
   if (client->complete) return true;
+  CHECK_EQ(renderer->settings.width, client->settings.width);
+  CHECK_EQ(renderer->settings.height, client->settings.height);
   ClientRows rows;
   rows.renderer = renderer, rows.client = client;
   SpanSource source = {&rows, next_rows, merge_rows, pack_batch};

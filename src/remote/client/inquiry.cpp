@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/check.h"
 #include "remote/client/client.h"
 
 namespace pocketray {
@@ -96,6 +97,7 @@ std::string without_ending(const std::string& name) { return name.substr(0, name
 
 Status open_inquiry(const InquiryOptions& options, platform::Link* link, const platform::LinkAddress& address,
                     Inquiry* q) {
+  CHECK(link != nullptr && q->messages.stream < 0);
   q->options = options;
   q->link = link;
   std::size_t in_bytes = kPiecesAhead * (kPieceBytes + 64);
@@ -107,6 +109,7 @@ Status open_inquiry(const InquiryOptions& options, platform::Link* link, const p
 }
 
 Status list_scenes(Inquiry* q, std::vector<SceneEntry>* entries) {
+  CHECK(entries != nullptr);
   entries->clear();
   std::uint32_t count = 1;
   platform::LinkTimer whole = platform::link_timer(now_ns(*q), q->options.answer_timeout_ns);
@@ -141,6 +144,7 @@ Status fetch_scene(Inquiry* q, const SceneEntry& entry, std::uint8_t* bytes, std
   if (entry.byte_count > byte_count_max)
     return failure("the scene has %llu bytes but only %zu are free", static_cast<unsigned long long>(entry.byte_count),
                    byte_count_max);
+  CHECK(bytes != nullptr || entry.byte_count == 0);
   std::uint64_t asked = 0, come = 0;
   auto piece_bytes = [&](std::uint64_t offset) {
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(kPieceBytes, entry.byte_count - offset));
@@ -162,11 +166,13 @@ Status fetch_scene(Inquiry* q, const SceneEntry& entry, std::uint8_t* bytes, std
     come += piece.bytes.count;
     if (progress) progress(come);
   }
+  CHECK_EQ(come, entry.byte_count);
   if (content_hash(bytes, to_size(entry.byte_count)) == entry.hash) return success();
   return failure("it sent a different scene than announced");
 }
 
 Status ask_view(Inquiry* q, const ViewQuery& query, ViewEntry* entry) {
+  CHECK(entry != nullptr);
   Message message, answer;
   message.type = MessageType::view_query;
   message.view_query = query;

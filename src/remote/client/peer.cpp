@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/check.h"
 #include "remote/client/parts.h"
 
 namespace pocketray {
@@ -25,6 +26,7 @@ void tell(Client* client, const char* format, ...) {
 }
 
 void connect_server(Client* client, RemoteServer* server) {
+  CHECK(server->phase == ServerPhase::waiting);
   platform::Error error;
   int stream =
       client->link->backend->connect(client->link, server->address, client->options.connect_timeout_ns, &error);
@@ -37,6 +39,7 @@ void connect_server(Client* client, RemoteServer* server) {
 }
 
 void greet_server(Client* client, RemoteServer* server) {
+  CHECK(server->phase == ServerPhase::connecting);
   restart_row_decoder(server->decoder);
   server->pings_answered = server->pings_missed = 0, server->ping_id = 0, server->round_trip_ns = 0;
   server->chunk_count = 0, server->chunk_growth = 0, server->unanswered = false;
@@ -211,6 +214,7 @@ std::uint64_t silence_limit_ns(const Client& client, const RemoteServer& server)
 }
 
 void lose_server(Client* client, RemoteServer* server, const char* reason) {
+  CHECK(reason != nullptr);
   close_message_stream(&server->messages);
   server->more = false;
   std::uint32_t i = index_of(*client, server);
@@ -239,6 +243,7 @@ void flush_server(Client* client, RemoteServer* server) {
 }
 
 void server_is_ready(Client* client, RemoteServer* server) {
+  CHECK(server->phase == ServerPhase::probing);
   server->phase = ServerPhase::ready;
   server->ping_due_ns = client_now_ns(*client) + kIdlePingNs;
   client->model.servers[index_of(*client, server)].connected = true;

@@ -1,5 +1,6 @@
 // Measures links by pings: round trip and time per byte. An answer with a payload counts only if the device polled when
 // it came and no rows were on the link; so the device polls often then and requests rows a moment later.
+#include "base/check.h"
 #include "remote/client/parts.h"
 
 namespace pocketray {
@@ -41,6 +42,7 @@ std::uint32_t next_ping_bytes(const Client& client, const RemoteServer& server) 
     if (&other != &server && other.phase == ServerPhase::measuring && other.ping_id != 0 && other.ping_bytes > 0)
       return 0;
   }
+  CHECK_LE(server.pings_answered - kPings, 8u);  // the payload doubles until an answer tells
   std::uint32_t wanted = kPingBytesLeast << (server.pings_answered - kPings), room = server.messages.in.count - 64;
   return wanted < room ? wanted : room;
 }
@@ -59,6 +61,7 @@ bool is_sound(const Client& client, const RemoteServer& server, double ns, std::
 
 // Time per byte from the time of an answer.
 double ns_per_byte_of(const RemoteServer& server, double ns, std::uint32_t byte_count) {
+  CHECK_GT(byte_count, 0u);
   double per_byte = (ns - server.round_trip_ns) / byte_count;
   return per_byte > kNsPerByteMin ? per_byte : kNsPerByteMin;
 }
@@ -98,6 +101,7 @@ void take_ready_pong(Client* client, RemoteServer* server, double ns, std::uint3
 }  // namespace
 
 void send_ping(Client* client, RemoteServer* server, std::uint32_t reply_bytes) {
+  CHECK_LE(reply_bytes, kPingBytesMax);
   Message message;
   message.type = MessageType::ping;
   if (++server->ping_id == 0) ++server->ping_id;
@@ -113,6 +117,7 @@ void take_pong(Client* client, RemoteServer* server, const Pong& pong) {
   // At most one ping is in flight, so no other can be answered.
   if (server->ping_id == 0 || pong.id != server->ping_id || pong.bytes.count != server->ping_bytes)
     return lose_server(client, server, kUnasked);
+  CHECK_LE(server->late_at_ping, server->late_rows);
   server->late_rows -= server->late_at_ping;  // they would have arrived before it
   server->late_at_ping = 0;
   double ns = static_cast<double>(client_now_ns(*client) - server->ping_ns);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "remote/client/parts.h"
 
 namespace pocketray {
@@ -20,6 +21,7 @@ constexpr double kDeflateNsPerByte = 250, kDeflateMoreNsPerByte = 5000;
 // is in the slower stage, the next passes the faster one. 0 if neither is much slower. Changes only by a factor of two
 // or more, as rows compress better when cut as in the last frame.
 std::uint8_t chunk_growth(const SplitProblem& p, std::uint32_t server, const Split& split, std::uint8_t before) {
+  CHECK_LT(server, p.server_count);
   const ServerTables& t = p.servers[server];
   std::uint32_t begin = split.boundary[server], end = split.boundary[server + 1];
   if (begin == end) return before;
@@ -34,6 +36,7 @@ std::uint8_t chunk_growth(const SplitProblem& p, std::uint32_t server, const Spl
 
 // Fixed share: the device's rows as given, the others divided among the servers by speed.
 Split split_by_share(const Client& client, const SplitProblem& problem) {
+  CHECK(client.options.device_share >= 0 && client.options.device_share <= 1);
   Split split;
   split.server_count = client.server_count;
   double rows = problem.row_count, speed_sum = 0, so_far = 0;
@@ -85,6 +88,7 @@ std::uint8_t deflate_level(double ns_per_byte) {
 }
 
 void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end) {
+  CHECK(row_begin <= row_end && row_end <= client->settings.height);
   auto is_done = [&](std::uint32_t row) {
     return client->merge.rows[row].state == RowState::device || client->merge.rows[row].state == RowState::server;
   };
@@ -94,6 +98,8 @@ void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
 
 void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end) {
   Message message;
+  CHECK(row_begin < row_end && row_end <= client->settings.height);
+  CHECK_GE(server->messages.stream, 0);
   message.frame_request = client->request;
   message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);
   message.frame_request.row_end = static_cast<std::uint16_t>(row_end);
@@ -105,6 +111,7 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   message.frame_request.deflate_level = deflate_level(server->ns_per_byte);
   bool like_the_last = server->asked.frame > 0 && is_change(message.frame_request, server->asked);
   message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
+  CHECK(server->asked.frame == 0 || server->asked.row_begin <= server->due_end);
   if (server->asked.frame > 0) server->late_rows += server->due_end - server->asked.row_begin;
   server->asked = message.frame_request;
   server->due_end = row_end;
@@ -128,6 +135,7 @@ double device_pixel_ns(const Client& client) {
 }
 
 void share_rows(Client* client, std::uint64_t elapsed_ns) {
+  CHECK(client->options.has_scene && !client->complete);
   SplitProblem problem = make_problem(&client->model, client->options.wish);
   // Times count from the begin of the frame: the device can render from then on, servers start when asked.
   auto from_now = [&](std::uint64_t* start_ns) { *start_ns = std::min(kRowTableMax, *start_ns + elapsed_ns); };

@@ -1,6 +1,7 @@
 // Opens the scene: fetches it from servers if the device lacks it, leaves it to them if it does not fit on the device.
 #include <cstdio>
 
+#include "base/check.h"
 #include "base/printable.h"
 #include "platform/net/tcp.h"
 #include "remote/client/inquiry.h"
@@ -27,6 +28,7 @@ std::string memory_hint(const char* before, std::size_t wanted, const char* woul
 }
 
 Status ask(ConnectedServers* s, std::size_t server, Inquiry* inquiry) {
+  CHECK_LT(server, s->addresses.size());
   InquiryOptions options;
   options.stopped = [s] { return s->stopped.load() || interrupted.load(); };
   return open_inquiry(options, s->link, s->addresses[server], inquiry);
@@ -167,6 +169,7 @@ EffectPlan effects_of_servers(EffectMask mask) {
 
 // Opens without the scene: shows what the servers render.
 Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
+  CHECK(opened->block != nullptr);
   ViewQuery query;
   query.settings = opened->renderer.settings;
   query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked

@@ -5,6 +5,7 @@
 #include <memory>
 #include <new>
 
+#include "base/check.h"
 #include "platform/entropy.h"
 #include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
@@ -30,6 +31,7 @@ platform::LinkOptions link_options(int stream_count_max, std::size_t byte_count,
 Status open_link(const platform::Device* emulated, ConnectedServers* s) {
   int streams = static_cast<int>(s->addresses.size());
   platform::Error error;
+  CHECK_LE(s->addresses.size(), std::size_t(kServerCountMax));
   s->tcp = s->link = kNet.open(link_options(streams, kNet.need(streams), &s->tcp_memory), &error);
   if (s->tcp && emulated) {
     platform::ShapedLinkSettings radio = platform::shaped_link_settings(*emulated);
@@ -130,6 +132,7 @@ Status begin_frame(Servers* servers, Renderer* renderer, double seconds) {
 
 bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
   ConnectedServers* s = connected(servers);
+  CHECK(s->started);
   if (!advance_frame(renderer, &s->client, deadline_ns, stop)) return false;
   const FrameShare& share = s->client.share;
   ServersTotals* t = &s->totals;
@@ -161,6 +164,7 @@ ServersState state_of(const Servers& servers) {
 }
 
 MergedPicture merged_picture(const Servers& servers) {
+  CHECK(connected(servers).started);
   const Client& client = connected(servers).client;
   WireFormat format = client.options.format;
   return {client.pixels.data, static_cast<int>(client.settings.width * pixel_bytes(format)),

@@ -1,6 +1,7 @@
 // A device without the scene: servers render every row, and rows that one fails to send are requested from another.
 #include <algorithm>
 
+#include "base/check.h"
 #include "remote/client/parts.h"
 
 namespace pocketray {
@@ -27,6 +28,7 @@ struct Run {
 
 // The longest run of missing rows in [begin, end) requested from exactly `count` servers.
 Run longest_run(const Client& client, std::uint32_t begin, std::uint32_t end, std::uint32_t count) {
+  CHECK(begin <= end && end <= client.merge.rows.count);
   Run best, run = {begin, begin};
   for (std::uint32_t row = begin; row < end; ++row) {
     if (client.merge.rows[row].state != RowState::missing || asked_count(client, row) != count) {
@@ -55,6 +57,7 @@ void divide(Client* client, const Run& run) {
   double speed_sum = 0, so_far = 0, rows = run.end - run.begin;
   for (std::uint32_t i = 0; i < client->server_count; ++i)
     if (is_idle(client->servers[i])) speed_sum += speed_of(*client, client->servers[i]);
+  CHECK_GT(speed_sum, 0);  // some server is idle
   std::uint32_t begin = run.begin;
   for (std::uint32_t i = 0; i < client->server_count && begin < run.end; ++i) {
     RemoteServer* server = &client->servers[i];
@@ -79,6 +82,7 @@ Run rows_to_spare(const Client& client, const RemoteServer& server) {
 }
 
 void take_over(Client* client, RemoteServer* idle) {
+  CHECK(is_idle(*idle));
   Run best;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     if (!client->servers[i].frame.open) continue;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/check.h"
 #include "engine/trace_frame.h"
 #include "present/pack.h"
 #include "remote/client/parts.h"
@@ -56,6 +57,7 @@ std::uint32_t pick_pixels(Client* client, std::uint32_t server, std::uint32_t co
   for (std::uint32_t row = 0; row < client->merge.rows.count; ++row)
     if (client->merge.rows[row].state == RowState::server && client->merge.rows[row].server == server)
       v->rows[rows++] = static_cast<std::uint16_t>(row);
+  CHECK_LE(span_count + count, v->spans.count);
   draw_distinct(&v->random, rows * width, count, v->picks.data);
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint16_t column = static_cast<std::uint16_t>(v->picks[i] % width);
@@ -72,6 +74,7 @@ struct PixelCheck {
 };
 
 void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
+  CHECK(count > 0 && count <= kSpotChecksMax);
   PixelCheck check = {renderer, client, count};
   SpanSource source = {&check};
   source.next = [](void* context, SpanBatch* batch) {
@@ -85,6 +88,7 @@ void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
                own.request.exposure, pixel_format(own.options.format), own.options.dither, own.verifier.pixels.data);
   };
   source.finished = [](void* context, const SpanBatch& batch) {
+    CHECK_GT(batch.span_count, 0u);
     smooth(&static_cast<PixelCheck*>(context)->client->verifier.check_ns,
            static_cast<double>(batch.took_ns) / batch.span_count);
     return true;
@@ -99,6 +103,7 @@ void render_pixels(Renderer* renderer, Client* client, std::uint32_t count) {
 // Index of the first wrong pixel in [begin, end), or `end`.
 std::uint32_t find_wrong(const Client& client, std::uint32_t begin, std::uint32_t end) {
   const Verifier& v = client.verifier;
+  CHECK(begin <= end && end <= client.verifier.spans.count);
   std::size_t bytes = pixel_bytes(client.options.format);
   std::uint32_t i = begin;
   while (i < end && std::memcmp(merged_row(client, v.spans[i].row) + v.spans[i].column_begin * bytes,
@@ -108,12 +113,14 @@ std::uint32_t find_wrong(const Client& client, std::uint32_t begin, std::uint32_
 }
 
 void count_checks(Client* client, std::uint32_t server, std::uint32_t rows, std::uint32_t pixels) {
+  CHECK_LT(server, client->server_count);
   ServerChecks* checks = &client->servers[server].checks;
   SpotCheck odds;
   odds.rows = rows, odds.width = client->settings.width, odds.wrong_rows = 1, odds.pixels = pixels;
   checks->rows += rows;
   checks->checked += pixels;
   checks->caught_row_last = catch_probability(odds);
+  CHECK(checks->caught_row_last >= 0 && checks->caught_row_last <= 1);
   checks->caught_row = either_probability(checks->caught_row, checks->caught_row_last);
   client->share.checked[server] = pixels;
 }
@@ -183,6 +190,7 @@ std::size_t verifier_need(const Settings& settings) {
 
 Status make_verifier(int check_count, bool (*entropy)(void*, std::size_t), const Settings& settings, Arena* arena,
                      Verifier* v) {
+  CHECK(check_count == kCheckCountAuto || (check_count >= 0 && check_count <= static_cast<int>(kSpotChecksMax)));
   *v = Verifier();
   v->check_count = check_count;
   std::uint64_t seed[2] = {1, 1};
@@ -224,6 +232,7 @@ bool agrees_with_device(Client* client, RemoteServer* server, std::uint32_t row_
 }
 
 void drop_liar(Client* client, RemoteServer* server, const char* proof) {
+  CHECK(proof != nullptr && !server->lied);
   server->told = true;  // the line below gives the reason
   lose_server(client, server, "");
   server->lied = true;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/check.h"
 #include "remote/client/parts.h"
 
 namespace pocketray {
@@ -28,12 +29,15 @@ std::uint32_t ready_servers(Client* client, std::uint32_t servers[kServerCountMa
 
 std::uint32_t random_row_of(Client* client, std::uint32_t server, std::uint32_t row_count) {
   std::uint32_t left = random_below(&client->verifier.random, row_count), row = 0;
-  for (;; ++row)
+  for (;; ++row) {
+    CHECK_LT(row, client->merge.rows.count);
     if (client->merge.rows[row].state == RowState::server && client->merge.rows[row].server == server && left-- == 0)
       return row;
+  }
 }
 
 void ask_witness(Client* client, std::uint32_t witness, std::uint32_t row) {
+  CHECK(witness < client->server_count && row < client->settings.height);
   RemoteServer* server = &client->servers[witness];
   server->frame_before = server->frame;
   server->frame_before.open = false;  // its unsent rows were left to a later request
@@ -52,6 +56,7 @@ bool is_late(const Client& client) {
 
 // True if no answers are due.
 bool answers_are_here(Client* client) {
+  CHECK(client->verifier.is_asking);
   Verifier* v = &client->verifier;
   bool late = is_late(*client);
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
@@ -79,6 +84,7 @@ void count_row(Client* client, std::uint32_t server) {
   SpotCheck odds;
   odds.rows = count_rows(client->merge, server), odds.width = 1, odds.wrong_rows = 1, odds.pixels = 1;
   checks->caught_row_last = catch_probability(odds);
+  CHECK(checks->caught_row_last >= 0 && checks->caught_row_last <= 1);
   checks->caught_row = either_probability(checks->caught_row, checks->caught_row_last);
 }
 
@@ -138,6 +144,7 @@ void tell_dispute(Client* client) {
 void judge(Client* client) {
   Verifier* v = &client->verifier;
   Dispute* d = &v->dispute;
+  CHECK_LT(d->judge, client->server_count);
   const std::uint8_t* third = picture_row(client->servers[d->judge].decoder->state, d->row);
   bool agrees[2];
   for (int k = 0; k < 2; ++k) agrees[k] = std::memcmp(v->versions[k].data, third, row_bytes(*client)) == 0;
@@ -151,6 +158,7 @@ void judge(Client* client) {
 
 // Opens a dispute between two servers. One at a time: later frames show further differences.
 void open_dispute(Client* client, std::uint32_t row, std::uint32_t server, std::uint32_t other) {
+  CHECK(server != other);
   Verifier* v = &client->verifier;
   if (v->dispute.open) return;
   v->dispute = Dispute();

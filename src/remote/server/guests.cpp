@@ -26,6 +26,7 @@ bool flush(Guest* guest) {
 }
 
 void send_away(Server* server, Guest* guest, WireError code) {
+  CHECK(!guest->leaves);
   Message message;
   message.type = MessageType::error;
   message.error.code = code;
@@ -53,11 +54,13 @@ Guest* free_guest(Server* server) {
     if (count < most || (count == most && left >= least)) continue;
     chosen = &guest, most = count, least = left;
   }
+  CHECK(chosen != nullptr);  // there is room for one at least
   close_guest(chosen);
   return chosen;
 }
 
 void receive_guest(Server* server, int stream) {
+  CHECK_GE(stream, 0);
   Guest* guest = free_guest(server);
   *guest = Guest();
   guest->messages.in = {guest->input, sizeof guest->input};
@@ -87,6 +90,7 @@ int forgotten_address(const Server& server) {
 // Finds or creates the account of an address, reusing another if necessary.
 int find_address(Server* server, std::uint64_t key) {
   std::vector<Address>& all = server->addresses;
+  CHECK_LE(all.size(), std::size_t(kAddressCountMax));
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].key == key) return static_cast<int>(i);
   int chosen = static_cast<int>(all.size());
@@ -214,7 +218,10 @@ void read_hello(Server* server, Guest* guest) {
 
 }  // namespace
 
-void close_guest(Guest* guest) { close_message_stream(&guest->messages); }
+void close_guest(Guest* guest) {
+  CHECK(is_open(*guest));
+  close_message_stream(&guest->messages);
+}
 
 bool discard_input(MessageStream* messages) {
   platform::Error error;
@@ -225,6 +232,7 @@ bool discard_input(MessageStream* messages) {
 }
 
 void tend_guest(Server* server, Guest* guest) {
+  CHECK(is_open(*guest));
   if (!flush(guest)) return close_guest(guest);
   if (guest->leaves) {
     if (!discard_input(&guest->messages)) return close_guest(guest);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "effect/setting_list.h"
 #include "engine/frame.h"
 #include "plan/plan_effects.h"
@@ -21,6 +22,7 @@ std::uint32_t chunk_rows_max(CodecShape shape) {
 }
 
 Status make_codec(Session* session) {
+  CHECK(session->encoder == nullptr);
   arena_release(&session->block, session->frame_mark);
   session->built_scene = nullptr;  // its renderer lay behind the codec
   std::size_t pixels = std::size_t(session->shape.width) * session->shape.height * pixel_bytes(session->shape.format);
@@ -67,6 +69,7 @@ Status plan_chunks(Session* session) {
 
 // Builds the renderer for the job's scene and settings.
 Status build(Session* session, const JobTools& tools, WireError* code) {
+  CHECK_GE(tools.thread_count, 1u);
   session->built_scene = nullptr;
   session->trace_ns = session->probe_ns = 0;
   Renderer* renderer = &session->renderer;
@@ -109,6 +112,8 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
 
 // Sets the requested view and time.
 Status aim(Session* session) {
+  CHECK(session->built_scene == session->job.scene);
+  CHECK_GT(session->own_exposure, 0);
   FrameJob* job = &session->job;
   Renderer* renderer = &session->renderer;
   renderer->camera = session->own_camera;
@@ -128,6 +133,7 @@ Status aim(Session* session) {
 
 // Traces the next pixels of an exposure, for about `slice_ns`.
 Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
+  CHECK(session->built_scene == session->job.scene);
   const Renderer& renderer = session->renderer;
   std::uint32_t count = slice_pixels(renderer.settings, renderer.light_points.count, session->probe_ns, slice_ns);
   if (session->probe_ns == 0) count = std::min(count, kFirstPixels);
@@ -148,6 +154,7 @@ Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
 }  // namespace
 
 Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns, Slice* slice, WireError* code) {
+  CHECK(has_job(*session));
   *slice = {};
   *code = WireError::bad_request;
   switch (session->job.stage) {
@@ -159,6 +166,7 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
     case JobStage::view_exposure:
       return probe(session, slice_ns, slice);
     case JobStage::rows:
+      CHECK(session->encoder != nullptr && session->built_scene == session->job.scene);
       *slice = trace_slice(session, slice_ns);
       break;
   }

@@ -4,10 +4,13 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "base/check.h"
+
 namespace pocketray {
 
 void log_line(ServerLog* log, std::uint64_t now_ns, const char* format, ...) {
   if (!log->write) return;
+  CHECK(log->line_count_left >= 0 && log->line_count_left <= kLogBurst);
   while (log->line_count_left < kLogBurst && platform::link_timer_left(&log->next, now_ns) == 0) {
     std::uint64_t over_ns = log->next.passed_ns - log->next.timeout_ns;
     log->next = platform::link_timer(now_ns, kLogIntervalNs);

@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "base/check.h"
 #include "remote/server/state.h"
 
 namespace pocketray {
@@ -14,6 +15,7 @@ void send_scene_entry(Session* session, const SceneStore& store, const ContentHa
   reply.type = MessageType::scene_entry;
   SceneEntry* entry = &reply.scene_entry;
   entry->hash = hash;
+  CHECK_LE(store.scenes.size(), std::size_t(UINT16_MAX));
   entry->count = static_cast<std::uint16_t>(store.scenes.size());
   if (scene) {
     entry->hash = scene->hash;
@@ -33,6 +35,7 @@ void send_scene_piece(Session* session, const SceneFetch& fetch, const StoredSce
   reply.scene_piece.offset = fetch.offset;
   std::uint64_t left = fetch.offset < scene->byte_count ? scene->byte_count - fetch.offset : 0;
   std::uint32_t count = left < fetch.byte_count ? static_cast<std::uint32_t>(left) : fetch.byte_count;
+  CHECK_LE(count, kPieceBytesMax);
   reply.scene_piece.bytes = {count ? scene->bytes + fetch.offset : nullptr, count};
   send_message(session, reply);
 }
@@ -51,6 +54,7 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
 }
 
 void begin_job(Session* session, const StoredScene* scene) {
+  CHECK(scene != nullptr && !has_job(*session));
   session->job = FrameJob();
   session->job.scene = scene;
 }
@@ -77,6 +81,7 @@ void take_request(Server* server, Session* session, const FrameRequest& request)
   const StoredScene* scene = find_scene(*server->store, request.scene);
   if (!scene) return refuse(server, session, WireError::unknown_scene, request.frame, "unknown scene");
   begin_job(session, scene);
+  CHECK(request.row_begin < request.row_end && request.row_end <= settings.height);
   session->job.request = request;
   session->job.traced_begin = session->job.sent_begin = request.row_end;
 }
@@ -182,6 +187,7 @@ int take_messages(Server* server, Session* session) {
     if (!take_message(server, session, message)) return count;
     if (count == kMessagesAtOnce || now_ns(server) > start + kMessagesNs) break;
   }
+  CHECK_LE(begin, session->input_count);
   if (session->messages.ended && !wants_messages(*session) && session->phase == SessionPhase::serving &&
       !session->more_to_take)
     end_session(server, session, "it closed the connection");
@@ -190,6 +196,7 @@ int take_messages(Server* server, Session* session) {
 
 void read_session(Server* server, Session* session) {
   MessageStream* messages = &session->messages;
+  CHECK(session->phase != SessionPhase::unused);
   bool leaving = session->phase == SessionPhase::leaving;
   if (leaving) drop_input(messages);
   if (input_bytes(*messages) == 0)

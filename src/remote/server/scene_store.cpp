@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/check.h"
 #include "base/printable.h"
 #include "platform/file.h"
 #include "scene/baked.h"
@@ -90,6 +91,7 @@ Status read_scene(const std::string& path, std::uint64_t bytes_left, StoredScene
 void set_name(const std::string& name, StoredScene* stored) {
   std::size_t length = std::min(name.size(), std::size_t(kNameBytes - 1));
   while (length > 0 && length < name.size() && (name[length] & 0xC0) == 0x80) --length;
+  CHECK_LT(length, sizeof stored->name);
   std::memcpy(stored->name, name.data(), length);
   make_printable(stored->name, length);
 }
@@ -107,6 +109,7 @@ SceneStore::~SceneStore() {
 }
 
 Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store) {
+  CHECK(store != nullptr);
   StoredScene stored;
   Status status = read_scene(path, bytes_left, &stored);
   if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server holds at most 65535 scenes");
@@ -145,6 +148,7 @@ Status open_scene_store(const SceneStoreOptions& options, SceneStore* store) {
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Status status = store_scene(sources[i].name, sources[i].path, bytes_left, store);
     if (!status.ok) store->warnings.push_back(sources[i].name + " is skipped: " + status.message);
+    CHECK_LE(stored_bytes(*store), options.bytes_max);
     bytes_left = options.bytes_max - stored_bytes(*store);
     show_progress(&progress, i + 1);
   }

@@ -111,6 +111,7 @@ void wait_for_news(Server* server, std::uint64_t timeout_ns) {
     std::uint64_t left = platform::link_timer_left(&guest.timer, now);
     if (left < due) due = left;
   }
+  CHECK_EQ(std::size_t(wait - server->waits.data()), server->waits.size());
   server->net->poll(server->link, server->waits.data(), static_cast<int>(server->waits.size()), due);
 }
 
@@ -178,6 +179,8 @@ void release(Server* server) {
 }  // namespace
 
 void leave(Server* server, Session* session, const WireError* code, const char* reason) {
+  CHECK(session->phase == SessionPhase::serving);
+  CHECK(reason != nullptr);
   drop_job(session);
   if (code) send_error(session, *code, 0);
   std::snprintf(session->reason, sizeof session->reason, "%s", reason);
@@ -189,6 +192,8 @@ void leave(Server* server, Session* session, const WireError* code, const char* 
 }
 
 void end_session(Server* server, Session* session, const char* reason) {
+  CHECK(session->phase != SessionPhase::unused);
+  CHECK_GE(session->stream, 0);
   close_message_stream(&session->messages);
   if (session->phase == SessionPhase::leaving && session->reason[0]) reason = session->reason;
   session->phase = SessionPhase::unused;
@@ -205,6 +210,7 @@ int server_stream_count(const ServerOptions& options) { return 2 + options.clien
 
 Status open_server(const ServerOptions& options, const SceneStore& store, platform::Link* link,
                    const platform::LinkAddress& address, Server** result) {
+  CHECK(link != nullptr && link->backend != nullptr && result != nullptr);
   *result = nullptr;
   RETURN_IF_ERROR(check_options(options));
   Server* server = new Server;
@@ -232,6 +238,7 @@ Status open_server(const ServerOptions& options, const SceneStore& store, platfo
 const char* server_address(const Server& server) { return server.net->stream_name(server.link, server.listener); }
 
 void step_server(Server* server, std::uint64_t timeout_ns) {
+  CHECK(server != nullptr);
   wait_for_news(server, timeout_ns);
   const platform::LinkWait* wait = server->waits.data();
   bool comes = (wait++)->can_read;

@@ -18,11 +18,14 @@ constexpr std::uint32_t kPartPixels = 8;  // pixels of a row per thread, unless 
 PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 
 std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
+  CHECK_GT(pixel_count, 0u);
   double ps = static_cast<double>(ns) * 1000 / static_cast<double>(pixel_count);
   return ps < 4294967295.0 ? static_cast<std::uint32_t>(ps) : ~0u;
 }
 
 void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end) {
+  CHECK_LT(row_begin, row_end);
+  CHECK_LE(row_end - row_begin, session->shape.chunk_rows_max);
   const FrameRequest& request = session->job.request;
   const Renderer& renderer = session->renderer;
   int width = static_cast<int>(renderer.settings.width),
@@ -43,6 +46,7 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
       encode_rows(session->encoder, row_begin, row_count,
                   session->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes),
                   request.deflate_level, at + prefix, &chunk->encoding);
+  CHECK_EQ(chunk->encoding >> kChunkNumberShift, 0);
   add_chunk_number(chunk, session->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};
   send_message(session, message);
@@ -67,6 +71,8 @@ struct SliceSource {
 void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) {
   const FrameJob& job = source->session->job;
   const Settings& settings = source->session->renderer.settings;
+  CHECK_LT(job.traced_columns, settings.width);
+  CHECK_LT(job.request.row_begin, job.traced_begin);
   std::uint32_t begin = job.traced_columns, left = settings.width - begin;
   std::uint32_t part_pixels = pixels_max < kPartPixels ? 1 : kPartPixels;
   std::uint32_t count = std::min(std::max(pixels_max, part_pixels), left);
@@ -92,6 +98,7 @@ void next_slice(void* context, SpanBatch* batch) {
   std::uint32_t rest = next_chunk_rows(session) - (job.sent_begin - job.traced_begin);
   std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
   std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});
+  CHECK(rows > 0 && rows <= job.traced_begin);
   batch->spans = session.renderer.spans.data + job.traced_begin - rows;
   batch->span_count = rows;
   source->slice = {rows, 0, rows * settings.width, false};
@@ -100,6 +107,8 @@ void next_slice(void* context, SpanBatch* batch) {
 }  // namespace
 
 void make_session(void* memory, std::size_t byte_count, Session* session) {
+  CHECK(memory != nullptr && session != nullptr);
+  CHECK_GE(byte_count, kSessionBytesMin);
   session->block = make_arena("client", memory, byte_count);
   session->messages =
       make_message_stream(kInputBytes, kMessageBytesMax + kReplyBytesMax + kAheadBytes, &session->block);
@@ -108,6 +117,7 @@ void make_session(void* memory, std::size_t byte_count, Session* session) {
 }
 
 void restart_session(Session* session, platform::Link* link, int connection) {
+  CHECK(session->phase == SessionPhase::unused);
   Arena block = session->block;
   MessageStream messages = session->messages;
   std::size_t frame_mark = session->frame_mark;
@@ -136,6 +146,7 @@ void send_error(Session* session, WireError code, std::uint32_t frame) {
 void drop_job(Session* session) {
   FrameJob* job = &session->job;
   if (!has_job(*session)) return;
+  CHECK(job->traced_begin <= job->sent_begin && job->sent_begin <= job->request.row_end);
   job->scene = nullptr;
   std::uint32_t traced = job->request.row_end - job->traced_begin, sent = job->request.row_end - job->sent_begin;
   session->ended_took_ns += job->took_ns;
@@ -162,6 +173,7 @@ std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_c
 }
 
 Slice trace_slice(Session* session, std::uint64_t slice_ns) {
+  CHECK(has_job(*session) && session->job.stage == JobStage::rows);
   SliceSource source;
   source.session = session, source.slice_ns = slice_ns;
   trace_frame(&session->renderer, {&source, next_slice, [](void*, const SpanBatch&) { return true; }});
@@ -170,10 +182,12 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns) {
 
 void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns) {
   FrameJob* job = &session->job;
+  CHECK_GT(slice.pixel_count, 0u);
   if (slice.is_probe) {
     session->probe_ns = dear_pixel_ns(session->probe_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
     return;
   }
+  CHECK_LE(slice.row_count, job->traced_begin - job->request.row_begin);
   job->traced_begin -= slice.row_count;
   job->traced_columns = slice.column_end;
   job->wall_ns += wall_ns;
@@ -187,6 +201,7 @@ void send_chunks(Session* session) {
     std::uint32_t rows = next_chunk_rows(*session);
     send_chunk(session, job->sent_begin - rows, job->sent_begin);
     job->sent_begin -= rows;
+    CHECK_GE(job->sent_begin, job->request.row_begin);
     job->chunk_rows = rows;
     if (job->sent_begin == job->traced_begin) job->wall_ns = job->pixel_count = 0;
     if (job->sent_begin == job->request.row_begin) {

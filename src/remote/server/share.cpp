@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/check.h"
+
 namespace pocketray {
 
 void note(Lanes* lanes, Account* account, bool waits) {
@@ -46,11 +48,13 @@ void end_frame(Account* account, std::uint64_t took_ns, std::uint64_t sent_ns) {
 }
 
 void forgive(Account* account, std::uint64_t passed_ns, std::uint64_t account_count) {
+  CHECK_GT(account_count, 0u);
   if (account->owed_ns == 0) return;
   account->owed_ns -= std::min(account->owed_ns, passed_ns / (kForgiveFactor * account_count));
 }
 
 std::uint64_t address_key(const char* name) {
+  CHECK(name != nullptr);
   // FNV-1a over the significant part of the address.
   std::uint64_t key = 0xcbf29ce484222325;
   auto add = [&](unsigned value) { key = (key ^ value) * 0x100000001b3; };

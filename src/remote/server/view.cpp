@@ -1,9 +1,11 @@
 // Describes a scene to a device on which it does not fit.
+#include "base/check.h"
 #include "remote/server/session.h"
 
 namespace pocketray {
 
 Status answer_view_query(Session* session) {
+  CHECK(has_job(*session) && session->job.is_view_query);
   const Renderer* renderer = &session->renderer;
   Message message;
   message.type = MessageType::view_entry;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/check.h"
 #include "engine/row_costs.h"
 #include "remote/server/state.h"
 
@@ -87,6 +88,8 @@ std::uint64_t work_ns(const Server& server, const Session& session, const Work& 
 
 // Handles messages, queues rows that waited for room, prepares a frame or traces a part of it.
 void begin_work(Server* server, int index) {
+  CHECK_LT(server->work.session, 0);
+  CHECK(index >= 0 && index < static_cast<int>(server->sessions.size()));
   Session* session = &server->sessions[static_cast<std::size_t>(index)];
   Work* work = &server->work;
   *work = Work();
@@ -127,6 +130,7 @@ void begin_work(Server* server, int index) {
 }
 
 void end_work(Server* server) {
+  CHECK_GE(server->work.session, 0);
   Work* work = &server->work;
   Session* session = &server->sessions[static_cast<std::size_t>(work->session)];
   work->session = -1;
@@ -156,6 +160,7 @@ void end_work(Server* server) {
 
 void account_for(Server* server, Session* session, std::uint64_t took, bool is_job) {
   if (session->address < 0) return;
+  CHECK_LT(session->address, static_cast<int>(server->addresses.size()));
   Address* address = &server->addresses[static_cast<std::size_t>(session->address)];
   charge(&server->lanes, &address->account, took);
   charge(&address->lanes, &session->account, took);

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "base/check.h"
 #include "scene/builtin/builtin_scenes.h"
 
 namespace pocketray {
@@ -21,11 +22,13 @@ constexpr BuiltinScene kScenes[] = {
 }  // namespace
 
 const BuiltinScene* builtin_list(int* count) {
+  CHECK(count != nullptr);
   *count = static_cast<int>(sizeof kScenes / sizeof *kScenes);
   return kScenes;
 }
 
 const BuiltinScene* find_builtin(const char* name) {
+  CHECK(name != nullptr);
   for (const BuiltinScene& scene : kScenes)
     if (std::strcmp(scene.name, name) == 0) return &scene;
   return nullptr;

@@ -1,5 +1,6 @@
 #include "scene/builtin/figure.h"
 
+#include "base/check.h"
 #include "base/fmath.h"
 #include "scene/builtin/figure_field.h"
 
@@ -20,6 +21,7 @@ constexpr RayFan kArmFan[] = {{0.f, .0f, -60}, {.15f, .0f, 0}, {.85f, .97f, 0}, 
 
 template <std::size_t n>
 RayFan fan_at(const RayFan (&fan)[n], float at) {
+  CHECK(at >= 0 && at <= 1);
   std::size_t i = 0;
   while (i + 2 < n && at > fan[i + 1].at) ++i;
   float t = (at - fan[i].at) / (fan[i + 1].at - fan[i].at);
@@ -62,6 +64,7 @@ template <std::size_t n, class Distance>
 void add_tube(MeshWriter* mesh, const Placement& placement, const Frame& frame, const RayFan (&fan)[n],
               std::uint32_t columns, std::uint32_t rows, float first_reach, const Distance& distance) {
   std::uint32_t first_vertex = mesh->vertex_count, first_triangle = mesh->triangle_count;
+  CHECK_GE(rows, 2u);
   Vec3 bottom = frame.origin + frame.axis * (fan[0].height * frame.length);
   RayFan end = fan_at(fan, 1);
   Vec3 top = frame.origin + frame.axis * (end.height * frame.length);
@@ -87,6 +90,7 @@ void add_tube(MeshWriter* mesh, const Placement& placement, const Frame& frame, 
   }
   float t = cross_surface(top, frame.axis, .5f, [&](const Vec3& p) { return distance(p, 0); });
   add_vertex(mesh, place(placement, top + frame.axis * t), {0, 0, 0});
+  CHECK_EQ(mesh->vertex_count - first_vertex, tube_size(columns, rows).vertices);
   add_tube_triangles(mesh, first_vertex, columns, rows);
   smooth_normals(mesh, first_vertex, first_triangle);
 }

@@ -1,5 +1,6 @@
 #include "scene/builtin/figure_field.h"
 
+#include "base/check.h"
 #include "base/fmath.h"
 
 namespace pocketray {
@@ -214,6 +215,7 @@ float arm_distance(int side, const Vec3& p) {
 }
 
 void arm_axis(int side, Vec3* from, Vec3* to) {
+  CHECK(side == 0 || side == 1);
   *from = kArms[side].shoulder;
   *to = kArms[side].break_at;
 }

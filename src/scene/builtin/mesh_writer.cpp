@@ -57,6 +57,9 @@ void add_box(MeshWriter* mesh, const Vec3& low, const Vec3& high, const Transfor
 }
 
 void add_sphere(MeshWriter* mesh, const Vec3& center, const Vec3& radii, std::uint32_t columns, std::uint32_t rows) {
+  CHECK_GE(columns, 3u);
+  CHECK_GE(rows, 2u);
+  CHECK(radii.x > 0 && radii.y > 0 && radii.z > 0);
   std::uint32_t first = add_vertex(mesh, center - Vec3{0, radii.y, 0}, {0, -1, 0});
   for (std::uint32_t row = 1; row < rows; ++row) {
     double polar = kPi * row / rows;
@@ -70,10 +73,13 @@ void add_sphere(MeshWriter* mesh, const Vec3& center, const Vec3& radii, std::ui
     }
   }
   add_vertex(mesh, center + Vec3{0, radii.y, 0}, {0, 1, 0});
+  CHECK_EQ(mesh->vertex_count - first, sphere_size(columns, rows).vertices);
   add_tube_triangles(mesh, first, columns, rows - 1);
 }
 
 void add_lathe(MeshWriter* mesh, const Vec3& center, Array<const Vec2> profile, std::uint32_t columns) {
+  CHECK_GE(profile.count, 2u);
+  CHECK_GE(columns, 3u);
   for (std::uint32_t band = 0; band + 1 < profile.count; ++band) {
     Vec2 low = profile[band], high = profile[band + 1];
     Vec3 slope = normalize(Vec3{high.y - low.y, low.x - high.x, 0});  // outward, in the plane of the profile
@@ -94,6 +100,9 @@ void add_lathe(MeshWriter* mesh, const Vec3& center, Array<const Vec2> profile, 
 }
 
 void add_tube_triangles(MeshWriter* mesh, std::uint32_t first_vertex, std::uint32_t columns, std::uint32_t rows) {
+  CHECK_GE(columns, 3u);
+  CHECK_GE(rows, 1u);
+  CHECK_LE(first_vertex + tube_size(columns, rows).vertices, mesh->vertex_count);
   std::uint32_t last_pole = first_vertex + 1 + columns * rows;
   for (std::uint32_t column = 0; column < columns; ++column) {
     std::uint32_t next = (column + 1) % columns;
@@ -108,6 +117,8 @@ void add_tube_triangles(MeshWriter* mesh, std::uint32_t first_vertex, std::uint3
 }
 
 void smooth_normals(MeshWriter* mesh, std::uint32_t first_vertex, std::uint32_t first_triangle) {
+  CHECK_LE(first_vertex, mesh->vertex_count);
+  CHECK_LE(first_triangle, mesh->triangle_count);
   for (std::uint32_t v = first_vertex; v < mesh->vertex_count; ++v) mesh->normals[v] = {0, 0, 0};
   for (std::uint32_t i = first_triangle; i < mesh->triangle_count; ++i) {
     const Triangle& t = mesh->triangles[i];

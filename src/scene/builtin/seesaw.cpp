@@ -54,6 +54,8 @@ Quaternion about_z(float angle) {
 }
 
 float* next_channel(ChannelWriter* writer, std::uint32_t node, ChannelPath path) {
+  CHECK_LT(writer->channel_count, writer->channels.count);
+  CHECK_LT(node, kNodeCount);
   Channel* channel = &writer->channels[writer->channel_count++];
   *channel = {node, 0, kFrames, writer->value_count, path, Interpolation::linear, 0};
   float* values = writer->values.data + writer->value_count;
@@ -167,6 +169,8 @@ void add_moving_meshes(Arena* arena, Scene* scene, std::uint32_t first_vertex) {
     meshes[i].node = kBoardNode + i;
     begin += sizes[i].vertices;
   }
+  CHECK_EQ(begin, kMovingSize.vertices);
+  CHECK_LE(first_vertex + begin, scene->positions.count);
   meshes[2].skin = 0;
   Array<SkinWeight> weights = arena_array<SkinWeight>(arena, kWormSize.vertices);
   for (std::uint32_t v = 0; v < kWormSize.vertices; ++v) weights[v] = skin_weight(rest[meshes[2].rest_begin + v].y);
@@ -181,6 +185,8 @@ void pose_at_rest(Arena* arena, MeshWriter* mesh, const Scene& scene) {
   std::size_t mark = arena_mark(*arena);
   Pose pose = make_pose(scene, arena);
   pose_at(scene, 0, 0, &pose);
+  CHECK_EQ(pose.positions.count, kSize.vertices);
+  CHECK_EQ(pose.normals.count, kSize.vertices);
   for (std::uint32_t v = 0; v < kSize.vertices; ++v) {
     mesh->positions[v] = pose.positions[v];
     mesh->normals[v] = pose.normals[v];

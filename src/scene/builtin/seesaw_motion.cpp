@@ -1,5 +1,6 @@
 #include "scene/builtin/seesaw_motion.h"
 
+#include "base/check.h"
 #include "base/fmath.h"
 
 namespace pocketray {
@@ -40,6 +41,8 @@ Events find_events() {
   double above = seat_height(kTilt, kSeat) + (kStandHeight - 0.04) * det_cos(kTilt) - kStandHeight;
   e.landing[0] = e.launch + (kLaunchSpeed + std::sqrt(kLaunchSpeed * kLaunchSpeed + 2 * kGravity * above)) / kGravity;
   for (int i = 0; i < 2; ++i) e.landing[i + 1] = e.landing[i] + 2 * kBounceSpeed[i] / kGravity;
+  CHECK(kRelease < e.impact && e.impact < e.launch);
+  CHECK(e.launch < e.landing[0] && e.landing[0] < e.landing[1] && e.landing[1] < e.landing[2]);
   return e;
 }
 
@@ -112,6 +115,7 @@ void move_body(const Events& e, double t, SeesawState* s) {
   squash -= 0.18 * ease(e.launch - 0.02, e.launch + 0.08, t) * ease(e.launch + 0.9, e.launch + 0.3, t);
   double breath = 0.012 * det_sin(2.6 * t);
   double tall = 1 - squash + breath, wide = 1 / std::sqrt(tall);
+  CHECK_GT(tall, 0);
   s->body_scale = to_float(wide, tall, wide);
   // On the ground the tail stays down while the body is squashed.
   double lowered = t <= e.launch || t >= e.landing[0] ? (1 - tall) * kStandHeight : 0;
