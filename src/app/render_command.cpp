@@ -163,7 +163,7 @@ void pack_page(Renderer* renderer, const Job& job) {
 
 // Renders a single frame until its settings settle, a frame of a sequence once.
 Status render_budgeted(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
-  constexpr int kSettleFrames = 12;
+  constexpr int kSettleFrames = 12;  // derived: as many as the ladder of builtin_front() has steps up
   RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
   for (int i = 0; i < kSettleFrames; ++i) {
     std::uint32_t chosen = job.budget->governor.current;

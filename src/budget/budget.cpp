@@ -16,6 +16,8 @@
 namespace pocketray {
 namespace {
 
+// Factors by which prices may be wrong. Chosen: twice what builtin_front() claims for the ladder's guesses; for prices
+// measured on another machine and on this one, so that a trial corrects them.
 constexpr double kGuessDoubt = 4, kElsewhereDoubt = 1.5, kMeasuredDoubt = 1.25;
 constexpr double kPriceTolerance = 1.2;
 

@@ -10,6 +10,7 @@
 namespace pocketray {
 namespace {
 
+// Chosen: a candidate that takes longer suits no budget.
 constexpr double kFrameNsMax = 2e9;
 constexpr std::uint32_t kFramesBetweenRounds = 5;  // samples several times of an animation
 

@@ -13,6 +13,7 @@ namespace pocketray {
 namespace {
 
 constexpr std::uint64_t kMillisecond = 1000000;
+// Chosen: 40 looks at the buttons a second feel immediate; idle, a few per display frame.
 constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two polls of the buttons
 constexpr std::uint64_t kIdleNs = 8 * kMillisecond;
 

@@ -12,6 +12,7 @@
 namespace pocketray {
 namespace {
 
+// Chosen: a thirtieth of the shortest frame time of interest, and as little work as cannot delay a look by long.
 constexpr std::uint64_t kWaitNs = 500'000;  // between polls while waiting for rows
 constexpr std::uint32_t kFirstPixels = 8;   // first part of a row while the cost of pixels is unknown
 

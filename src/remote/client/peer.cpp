@@ -10,6 +10,8 @@
 namespace pocketray {
 namespace {
 
+// Chosen: seldom enough to cost nothing, often enough that a server returns within a second. `make faults` tests that a
+// flapping server is retried ever less often.
 constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server without rows
 constexpr std::uint64_t kLastingWaits =
     10;  // a connection useful for this many times the wait before it was sound, so the next attempt comes soon

@@ -8,6 +8,7 @@
 namespace pocketray {
 namespace {
 
+// Measured by `make split-table` unless said otherwise: with less, noise of single frames moves the split.
 constexpr double kGapsMin = 4;       // polls in which rows must arrive for their time to count
 constexpr double kDisproved = 1.25;  // a link faster than estimated by more than this is not noise
 constexpr double kLinkBound = 1.15;  // rows that take this much longer than on the servers are bound by the link

@@ -7,6 +7,7 @@
 namespace pocketray {
 namespace {
 
+// Chosen; ClientOptions::connect_timeout_ns is 3 s.
 constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows; longer than connecting may take
 // A server silent for the time of kSilentChunks of its chunks counts as stopped, but not before kSilentNsMin, longer
 // than the pauses of a busy system.

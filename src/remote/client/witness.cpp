@@ -10,6 +10,7 @@ namespace pocketray {
 namespace {
 
 // The device stops waiting for an answer after kLateAnswers times the usual time, but not before kAnswerNsMin.
+// Chosen: answers within one display frame or two are never late, however fast the usual ones.
 constexpr double kLateAnswers = 4;
 constexpr double kAnswerNsMin = 50e6;
 

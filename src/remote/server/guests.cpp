@@ -11,6 +11,7 @@ namespace {
 
 using platform::LinkResult;
 
+// Chosen: a few round trips of a slow link; longer than a person pauses between two frames; a pause that logs no flood.
 constexpr std::uint64_t kLingerNs = 2'000'000'000;    // for a leaving peer to read the reason
 constexpr std::uint64_t kMakeWayNs = 10'000'000'000;  // of silence after which a client makes way for another
 constexpr std::uint64_t kAcceptRestNs =

@@ -13,6 +13,7 @@ namespace {
 
 using platform::LinkResult;
 
+// Chosen: a few round trips of a slow link.
 constexpr std::uint64_t kLingerNs = 2'000'000'000;  // for a leaving client to read the reason
 constexpr std::uint64_t kFarewellNs = 500'000'000;  // for telling all clients that the server shuts down
 

@@ -11,6 +11,8 @@
 
 namespace pocketray {
 
+// Chosen as stated; tests/remote/neighbours_test.cpp measures the result: a light client loses at most half its frame
+// rate to twenty heavy ones.
 constexpr std::uint64_t kLightNs = 250'000'000;   // later pictures are too late for interactive steering
 constexpr std::uint64_t kCreditNs = 100'000'000;  // one frame at ten per second
 constexpr std::uint64_t kHeavyPart = 4;           // the heavy lane gets one of this many parts under contention
