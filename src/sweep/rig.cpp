@@ -141,7 +141,6 @@ bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows
                 const std::function<void(std::uint32_t, Vec3d*)>& trace_row,
                 const std::function<void(std::uint32_t)>& row_done, Vec3* picture) {
   CHECK(trace_row && picture != nullptr);
-  CHECK_GE(settings.threads, 1u);
   struct Context {
     const std::vector<std::uint32_t>& rows;
     const std::function<void(std::uint32_t, Vec3d*)>& trace_row;

@@ -9,6 +9,7 @@
 #include "reference/light.h"
 #include "reference/reference_helpers.h"
 #include "reference/rendered.h"
+#include "shade/camera.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 

@@ -31,7 +31,7 @@ try() {  # KIND SUITE[:CASES]...
 for kind in ${@:-setting lobe accelerator indirect device}; do
   rm -rf "$copy/tree"
   mkdir "$copy/tree"
-  git -C "$root" ls-files -z | (cd "$root" && xargs -0 cp --parents -t "$copy/tree")
+  git -C "$root" ls-files -z --deduplicate | (cd "$root" && xargs -0 cp --parents -t "$copy/tree")
   cd "$copy/tree"
   suites=
   case $kind in

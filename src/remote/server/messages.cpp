@@ -187,7 +187,6 @@ int take_messages(Server* server, Session* session) {
     if (!take_message(server, session, message)) return count;
     if (count == kMessagesAtOnce || now_ns(server) > start + kMessagesNs) break;
   }
-  CHECK_LE(begin, session->input_count);
   if (session->messages.ended && !wants_messages(*session) && session->phase == SessionPhase::serving &&
       !session->more_to_take)
     end_session(server, session, "it closed the connection");

@@ -194,7 +194,7 @@ void leave(Server* server, Session* session, const WireError* code, const char* 
 
 void end_session(Server* server, Session* session, const char* reason) {
   CHECK(session->phase != SessionPhase::unused);
-  CHECK_GE(session->stream, 0);
+  CHECK_GE(session->messages.stream, 0);
   close_message_stream(&session->messages);
   if (session->phase == SessionPhase::leaving && session->reason[0]) reason = session->reason;
   session->phase = SessionPhase::unused;
