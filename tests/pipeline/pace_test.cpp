@@ -91,7 +91,7 @@ TEST_CASE("pace_slows_a_frame_by_its_factor") {
     MESSAGE("at 1/" << slowdown << " of the speed: " << trace_ms << " ms, rows " << rows_ms() << " ms, processor "
                     << used_ms << " ms");
     CHECK(rows_ms() >= 0.6 * slowdown * used_ms);  // the rest is preparing the frame, sleeping and waking
-    CHECK(trace_ms >= rows_ms() - 0.2);  // waits are exact to 0.2 ms
+    CHECK(trace_ms >= rows_ms() - 0.2);            // waits are exact to 0.2 ms
   }
 }
 
