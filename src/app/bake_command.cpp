@@ -1,4 +1,4 @@
-// pocketray bake: converts a model into one .pray file, accelerator included, which a device maps as it is.
+// pocketray bake: converts a model into one .pray file, accelerator included, which a device loads as it is.
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -77,7 +77,8 @@ Status bake(const BakeOptions& o) {
 
 void add_bake_command(CLI::App* program, int* exit_status) {
   auto options = std::make_shared<BakeOptions>();
-  CLI::App* command = program->add_subcommand("bake", "convert a model into one .pray file, ready for a device to map");
+  CLI::App* command =
+      program->add_subcommand("bake", "convert a model into one .pray file, ready for a device to load");
   command->add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene")->required();
   command->add_option("-o,--output", options->output, "the .pray file to write")->required();
   command

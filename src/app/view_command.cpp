@@ -193,12 +193,19 @@ void add_view_command(CLI::App* program, const OptionalParts& parts, int* exit_s
   command->add_option("--frames", o->view.frame_count, "exit after N frames; 0: run until quit")->capture_default_str();
   command->add_option("--screenshots", o->view.screenshot_folder, "folder for screenshots; created if missing")
       ->capture_default_str();
-  command->footer(std::string("Keys: arrows turn, A/B (X, Z) move closer and away, L/R (Q, W) sideways, select "
-                              "switches between orbit and fly,\n"
-                              "start restores the scene's camera, page up/down step through the settings of "
-                              "--budget-ms (start: automatic),\n") +
-                  (parts.side_by_side ? "V toggles the reference of --side-by-side, " : "") +
-                  "X pauses, Y or F1 toggles the overlay,\nF12 saves a screenshot, F5 reloads, Esc quits.");
+  command->footer(std::string("Keys, with a device's buttons in brackets:\n"
+                              "  arrows [pad]          turn the camera\n"
+                              "  X, Z [A, B]           closer, away\n"
+                              "  Q, W [L, R]           sideways\n"
+                              "  right shift [select]  switch between orbit and fly\n"
+                              "  return [start]        restore the scene's camera, and let --budget-ms choose again\n"
+                              "  page up, page down    step through the settings of --budget-ms\n"
+                              "  S [X]                 pause\n"
+                              "  F1, A [Y]             toggle the overlay\n") +
+                  (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
+                  "  F12                   save a screenshot\n"
+                  "  F5                    reload the scene\n"
+                  "  Esc                   quit");
   command->callback([=] { *exit_status = run(*o); });
 }
 

@@ -1,4 +1,4 @@
-// A view of `count` elements owned elsewhere (an arena, a mapped file).
+// A view of `count` elements owned elsewhere (an arena, a loaded file).
 #pragma once
 #include <cstddef>
 #include <cstdint>

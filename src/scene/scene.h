@@ -1,5 +1,5 @@
 // The scene: plain arrays of structs, fields used together stored together [Aranha07] sec. 3.1.
-// A Scene owns nothing: its arrays lie in a mapped .pray file or in the scene arena. Everything in it has been checked:
+// A Scene owns nothing: its arrays lie in a loaded .pray file or in the scene arena. Everything in it has been checked:
 // indices are in range, floats are finite, nodes come after their parents.
 // Units: distances in scene units, angles in radians, colours linear with sRGB primaries, +Y up, right-handed.
 #pragma once
