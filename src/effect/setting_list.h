@@ -6,8 +6,8 @@
 
 namespace pocketray {
 
-constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear"};
-constexpr const char* kNormalNames[] = {"scene", "flat"};
+inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear"};
+inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 
 constexpr EffectMask kReflecting = bit(Effect::mirror) | bit(Effect::refraction);
 constexpr EffectMask kSpawning = kReflecting | bit(Effect::alpha_blend);
