@@ -137,8 +137,9 @@ constexpr bool setting_rows_valid() {
     if (field.kind == SettingKind::choice && (row.wire_bytes != 1 || row.sweep.count != field.name_count)) return false;
     if (row.sweep.count < 2) return false;
     for (int i = 0; i < row.sweep.count; ++i) {
-      double low = field.names ? 0 : limit_of(field.quantity).low;
-      double high = field.names ? field.name_count - 1 : limit_of(field.quantity).high;
+      bool is_choice = field.kind == SettingKind::choice;
+      double low = is_choice ? 0 : limit_of(field.quantity).low;
+      double high = is_choice ? field.name_count - 1 : limit_of(field.quantity).high;
       if (!(row.sweep.values[i] >= low && row.sweep.values[i] <= high)) return false;
     }
   }
