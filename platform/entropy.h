@@ -1,4 +1,4 @@
-// Unpredictable random numbers. Standard types only. null/null_entropy.h has predictable ones for tests.
+// Unpredictable random numbers. Standard types only. tests/support/test_entropy.h has predictable ones.
 #pragma once
 #include <cstddef>
 

@@ -85,7 +85,10 @@ void clear_costs(pocketray_instance* instance) {
 
 // Bands of rows, with a call of the progress function after each, which may end the frame.
 Status render_bands(pocketray_instance* instance, double seconds) {
-  CHECK(instance->progress != nullptr);
+  // The function may set another one, or none, for the next frame.
+  const pocketray_progress progress = instance->progress;
+  void* const user = instance->progress_user;
+  CHECK(progress != nullptr);
   Renderer* renderer = &instance->renderer;
   RETURN_IF_ERROR(prepare_frame(renderer, seconds));
   SpanList bands = row_bands(renderer);
@@ -97,7 +100,7 @@ Status render_bands(pocketray_instance* instance, double seconds) {
     ended = trace_frame(renderer, source);
     instance->rows_done = bands.done_count;
     if (!ended && instance->stop.load(std::memory_order_relaxed)) break;
-    ended |= instance->progress(instance->progress_user, bands.done_count, renderer->settings.height) != 0;
+    ended |= progress(user, bands.done_count, renderer->settings.height) != 0;
   }
   renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   return success();

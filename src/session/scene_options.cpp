@@ -75,11 +75,10 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   bool measured;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // checked even by commands that show nothing
-  if (o.threads > kThreadCountMax) return failure("--threads is %u: it must lie in 0 … %u", o.threads, kThreadCountMax);
   unsigned cores = std::thread::hardware_concurrency();
   CHECK(o.emulate.empty() || device != nullptr);
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
-  settings->threads = choose_thread_count(o.threads, cores);
+  RETURN_IF_ERROR(choose_thread_count(o.threads, cores, &settings->threads));
   return validate_settings(*settings);
 }
 
@@ -112,10 +111,10 @@ Status picture_size(const CommonOptions& o, std::uint32_t* width, std::uint32_t*
   return success();
 }
 
-std::uint32_t choose_thread_count(std::uint32_t asked, unsigned core_count) {
-  CHECK_LE(asked, kThreadCountMax);
-  if (asked > 0) return asked;
-  return core_count < 1 ? 1 : core_count > kThreadCountMax ? kThreadCountMax : core_count;
+Status choose_thread_count(std::uint32_t asked, unsigned core_count, std::uint32_t* count) {
+  if (asked > kThreadCountMax) return failure("--threads is %u: it must lie in 0 … %u", asked, kThreadCountMax);
+  *count = asked > 0 ? asked : core_count < 1 ? 1 : core_count > kThreadCountMax ? kThreadCountMax : core_count;
+  return success();
 }
 
 Status parse_isa(const std::string& text, Isa* isa) {

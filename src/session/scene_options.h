@@ -37,8 +37,8 @@ Status picture_size(const CommonOptions& options, std::uint32_t* width, std::uin
 // Finds the profile named by --device or --emulate; succeeds with null if neither is given.
 Status find_device(const CommonOptions& options, const platform::Device** device);
 
-// Number of tracing threads: `asked`, or one per core if that is 0.
-std::uint32_t choose_thread_count(std::uint32_t asked, unsigned core_count);
+// Number of tracing threads: `asked`, or one per core if that is 0. Fails if more are asked for than kThreadCountMax.
+Status choose_thread_count(std::uint32_t asked, unsigned core_count, std::uint32_t* count);
 
 // Parses --isa; empty: the best of this CPU.
 Status parse_isa(const std::string& text, Isa* isa);

@@ -122,6 +122,23 @@ static void progress_is_told_and_stops(void) {
   pocketray_close(instance);
 }
 
+/* The function may be replaced by none from within a call: that holds from the next frame on. */
+static int clear_progress(void* user, uint32_t rows_done, uint32_t row_count) {
+  EXPECT(rows_done <= row_count);
+  EXPECT_OK(pocketray_set_progress((pocketray_instance*)user, NULL, NULL));
+  return 0;
+}
+
+static void progress_may_be_cleared_while_it_is_told(void) {
+  static api_picture whole, part;
+  pocketray_instance* instance = api_open("cornell", NULL, 0);
+  api_render(instance, 0, &whole);
+  EXPECT_OK(pocketray_set_progress(instance, clear_progress, instance));
+  api_render(instance, 0, &part);
+  EXPECT(api_same(&whole, &part));
+  pocketray_close(instance);
+}
+
 static void* stop_soon(void* user) {
   pocketray_set_stop((pocketray_instance*)user, 1);
   return NULL;
@@ -242,6 +259,7 @@ const api_case api_frame_cases[] = {
     {"formats_show_the_same_picture", formats_show_the_same_picture},
     {"pictures_turn_and_stay_within_their_rows", pictures_turn_and_stay_within_their_rows},
     {"progress_is_told_and_stops", progress_is_told_and_stops},
+    {"progress_may_be_cleared_while_it_is_told", progress_may_be_cleared_while_it_is_told},
     {"stop_holds_until_it_is_cleared", stop_holds_until_it_is_cleared},
     {"refined_frames_are_whole_ones", refined_frames_are_whole_ones},
     {"changes_end_a_frame", changes_end_a_frame},

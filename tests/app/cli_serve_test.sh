@@ -12,6 +12,7 @@ if "${run[@]}" --help | grep -q '^ *serve '; then
   expect serve_memory 1 'memory' serve --listen :0 --memory 1M
   expect serve_scene_memory 1 '--scene-memory is' serve --listen :0 --scene-memory much
   expect serve_clients 2 'clients' serve --clients 0
+  expect serve_threads 1 '--threads is 4000000000: it must lie in 0 … 64' serve --listen :0 --threads 4000000000
 fi
 if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under an emulated CPU
   "${run[@]}" render cornell --size 32x24 --threads 1 -o one.ppm >/dev/null

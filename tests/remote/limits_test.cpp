@@ -80,7 +80,7 @@ bool option_accepts(Quantity quantity, double x) {
       return change_exposure(static_cast<float>(x), &exposure).ok;
     }
     default:
-      return within(quantity, x);  // tests/app/cli_test.sh types them
+      return within(quantity, x);  // tests/app/numbers_test.sh types them
   }
 }
 

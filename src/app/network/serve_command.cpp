@@ -76,7 +76,7 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
 
 Status read_options(const ServeOptions& o, ServerOptions* options) {
   RETURN_IF_ERROR(parse_bytes(o.memory, &options->client_memory_bytes));
-  options->thread_count = choose_thread_count(o.threads, std::thread::hardware_concurrency());
+  RETURN_IF_ERROR(choose_thread_count(o.threads, std::thread::hardware_concurrency(), &options->thread_count));
   options->client_count_max = o.clients;
   options->image_side_max = o.image_side_max;
   if (!(o.idle_seconds >= 1 && o.idle_seconds <= 1e6))
