@@ -58,7 +58,7 @@ setup-tests:
 	@$(if $(CLASS),:,toolchains/setup.sh tests)
 
 test: setup-tests configure
-	cmake --build $(BUILD) -j$(JOBS)
+	targets=$$(bash tests/targets.sh $(BUILD) '$(TESTS)') && cmake --build $(BUILD) -j$(JOBS) --target $$targets
 	cd $(BUILD) && ctest --output-on-failure -j$(JOBS) -R '$(TESTS)'
 
 hardcases: setup-tests configure

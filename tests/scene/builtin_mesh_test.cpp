@@ -49,7 +49,7 @@ TEST_CASE("builtin_triangle_counts_are_the_papers") {
   for (int i = 0; i < count; ++i) {
     CAPTURE(std::string(list[i].name));
     REQUIRE(expected.count(list[i].name) == 1);
-    CHECK(build_builtin(list[i])->scene.triangles.count == expected.at(list[i].name));
+    CHECK(shared_builtin(list[i])->scene.triangles.count == expected.at(list[i].name));
     CHECK(find_builtin(list[i].name) == &list[i]);
   }
   CHECK(find_builtin("cornel") == nullptr);
@@ -61,7 +61,7 @@ TEST_CASE("builtin_need_is_exact_and_the_scene_is_valid") {
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
     CAPTURE(std::string(list[i].name));
-    auto built = build_builtin(list[i]);
+    const BuiltScene* built = shared_builtin(list[i]);
     CHECK(built->arena.used_max == list[i].need());
     CHECK(built->arena.used <= list[i].need());
     Status status = validate_scene(built->scene);
@@ -74,9 +74,9 @@ TEST_CASE("builtin_need_is_exact_and_the_scene_is_valid") {
 TEST_CASE("builtin_surfaces_are_closed_but_for_the_front_of_the_cornell_box") {
   for (const char* name : {"cube", "furnace"}) {
     CAPTURE(std::string(name));
-    CHECK(open_edges(build_builtin(name)->scene).empty());
+    CHECK(open_edges(shared_builtin(name)->scene).empty());
   }
-  auto cornell = build_builtin("cornell");
+  const BuiltScene* cornell = shared_builtin("cornell");
   auto edges = open_edges(cornell->scene);
   CHECK(edges.size() == 5);  // the floor's front edge is halved
   for (const auto& edge : edges) {
@@ -93,7 +93,7 @@ TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
     CAPTURE(std::string(list[i].name));
-    auto built = build_builtin(list[i]);
+    const BuiltScene* built = shared_builtin(list[i]);
     const Scene& scene = built->scene;
     int not_unit = 0, behind = 0, degenerate = 0;
     for (const Vec3& n : scene.normals) not_unit += !is_zero(n) && std::fabs(length(n) - 1) > 1e-6f;
@@ -116,7 +116,7 @@ TEST_CASE("builtin_normals_are_unit_and_on_the_front") {
 // Goal: cornell's sphere takes any number of columns within the stated memory, and cornell itself is one of them.
 // Method: count triangles; the sphere's facets are mirrors, and the finer they are, the closer they lie to the sphere.
 TEST_CASE("builtin_cornell_is_tessellated_as_asked") {
-  auto cornell = build_builtin("cornell");
+  const BuiltScene* cornell = shared_builtin("cornell");
   double sag_before = 1e9;
   for (std::uint32_t columns : {8u, 16u, kCornellSphereColumns, 128u}) {
     CAPTURE(columns);

@@ -83,7 +83,7 @@ TEST_CASE("hard_63_builtin_scenes_are_the_same_bits_everywhere") {
 // Goal: the picture is the familiar one: red left, green right, light above, statue left of the mirror sphere.
 // Method: one ray each, recognised by the material.
 TEST_CASE("builtin_cornell_looks_like_the_photograph") {
-  auto built = build_builtin("cornell");
+  const BuiltScene* built = shared_builtin("cornell");
   const Scene& scene = built->scene;
   auto seen = [&](double x, double y) {
     std::uint32_t material = material_seen(scene, x, y);
@@ -106,7 +106,7 @@ TEST_CASE("builtin_cameras_see_the_scene") {
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
     CAPTURE(std::string(list[i].name));
-    auto built = build_builtin(list[i]);
+    const BuiltScene* built = shared_builtin(list[i]);
     int hits = 0;
     for (int y = -2; y <= 2; ++y)
       for (int x = -2; x <= 2; ++x) hits += material_seen(built->scene, .43 * x, .43 * y + .01) != kNone;
@@ -120,7 +120,7 @@ TEST_CASE("builtin_materials_are_all_used_and_something_shines") {
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
     CAPTURE(std::string(list[i].name));
-    auto built = build_builtin(list[i]);
+    const BuiltScene* built = shared_builtin(list[i]);
     const Scene& scene = built->scene;
     std::vector<int> uses(scene.materials.count);
     for (const Triangle& t : scene.triangles) ++uses[t.material()];
@@ -137,7 +137,7 @@ TEST_CASE("builtin_materials_are_all_used_and_something_shines") {
 // Goal: the furnace's closed form applies: one material, emission Le and albedo ρ with Le/(1 − ρ) = 1. Method: read
 // them.
 TEST_CASE("builtin_furnace_has_radiance_1_after_full_interreflection") {
-  auto built = build_builtin("furnace");
+  const BuiltScene* built = shared_builtin("furnace");
   REQUIRE(built->scene.materials.count == 1);
   const Material& wall = built->scene.materials[0];
   for (int c = 0; c < 3; ++c) CHECK(wall.emission[c] / (1 - wall.diffuse[c]) == 1.0f);

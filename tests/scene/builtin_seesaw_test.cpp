@@ -11,7 +11,7 @@ using namespace pocketray;
 namespace {
 
 struct Posed {
-  std::unique_ptr<BuiltScene> built = build_builtin("seesaw");
+  const BuiltScene* built = shared_builtin("seesaw");
   std::vector<std::uint8_t> block;
   Arena arena;
   Pose pose;
@@ -36,7 +36,7 @@ enum { kBoard, kWeight, kWorm };
 
 // Goal: the sequence has the numbers of [Jevans92] sec. 5. Method: read them.
 TEST_CASE("builtin_seesaw_has_351_frames_4_lights_and_a_static_camera") {
-  auto built = build_builtin("seesaw");
+  const BuiltScene* built = shared_builtin("seesaw");
   const Scene& scene = built->scene;
   CHECK(scene.info.frame_count == 351);
   CHECK(scene.lights.count == 4);
