@@ -1,5 +1,4 @@
 // pocketray bake: converts a model into one .pray file, accelerator included, which a device loads as it is.
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -75,22 +74,21 @@ Status bake(const BakeOptions& o) {
 
 }  // namespace
 
-void add_bake_command(CLI::App* program, int* exit_status) {
+void add_bake_command(Command program, int* exit_status) {
   auto options = std::make_shared<BakeOptions>();
-  CLI::App* command =
-      program->add_subcommand("bake", "convert a model into one .pray file, ready for a device to load");
-  command->add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene")->required();
-  command->add_option("-o,--output", options->output, "the .pray file to write")->required();
+  Command command = program.add_subcommand("bake", "convert a model into one .pray file, ready for a device to load");
+  command.add_option("IN", options->input, "glTF, OBJ, PLY, STL, … or a built-in scene").required();
+  command.add_option("-o,--output", options->output, "the .pray file to write").required();
   command
-      ->add_option("--texture-max", options->model.texture_side_max,
-                   "longest texture side in texels; larger textures are halved until they fit")
-      ->capture_default_str()
-      ->check(CLI::Range(1u, kTextureSideMax));
+      .add_option("--texture-max", options->model.texture_side_max,
+                  "longest texture side in texels; larger textures are halved until they fit")
+      .capture_default_str()
+      .range(1u, kTextureSideMax);
   command
-      ->add_option("--crease-angle", options->model.crease_angle,
-                   "for models without normals: shade edges below this angle smooth, in degrees (glTF: always flat)")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0f, 180.0f));
+      .add_option("--crease-angle", options->model.crease_angle,
+                  "for models without normals: shade edges below this angle smooth, in degrees (glTF: always flat)")
+      .capture_default_str()
+      .range(0.0f, 180.0f);
   std::vector<std::string> names;
   std::string help;
   for (const AccelInfo* info : kAccelList) {
@@ -99,11 +97,11 @@ void add_bake_command(CLI::App* program, int* exit_status) {
     help += std::string(help.empty() ? "" : ", or ") + info->name +
             (*info->help ? std::string(" (") + info->help + ")" : "");
   }
-  command->add_option("--accel", options->accel, "accelerator to store in the file: " + help)
-      ->check(CLI::IsMember(names))
-      ->capture_default_str();
+  command.add_option("--accel", options->accel, "accelerator to store in the file: " + help)
+      .one_of(names)
+      .capture_default_str();
   add_json_option(command, &options->json);
-  command->callback([=] { *exit_status = report(bake(*options)); });
+  command.callback([=] { *exit_status = report(bake(*options)); });
 }
 
 }  // namespace pocketray

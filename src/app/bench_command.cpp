@@ -1,5 +1,4 @@
 // pocketray bench: measures the cost per pixel, scanline, ray and effect.
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -189,29 +188,29 @@ int run_front(const CommonOptions& options, const std::string& file, std::uint32
 
 }  // namespace
 
-void add_bench_command(CLI::App* program, int* exit_status) {
+void add_bench_command(Command program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto frames = std::make_shared<std::uint32_t>(9);
   auto no_prices = std::make_shared<bool>(false);
   auto sparse = std::make_shared<bool>(false);
   auto front = std::make_shared<std::string>();
-  CLI::App* command = program->add_subcommand("bench", "measure the cost per pixel, scanline, ray and effect");
+  Command command = program.add_subcommand("bench", "measure the cost per pixel, scanline, ray and effect");
   add_scene_options(command, options.get());
-  command->add_option("--frames", *frames, "frames to measure, after one warm-up frame")->capture_default_str();
-  command->add_flag("--no-prices", *no_prices, "skip pricing each effect");
-  command->add_flag(
+  command.add_option("--frames", *frames, "frames to measure, after one warm-up frame").capture_default_str();
+  command.add_flag("--no-prices", *no_prices, "skip pricing each effect");
+  command.add_flag(
       "--sparse", *sparse,
       "also measure the cost per pixel when only 2, 10, 50 or 100 % of pixels are traced, scattered or in patches");
   add_json_option(command, &options->json);
-  CLI::Option* priced = command->add_option(
+  Option priced = command.add_option(
       "--front", *front,
       "instead measure the settings that --budget-ms chooses from, and save their prices in FILE or the cache");
-  priced->expected(0, 1);
+  priced.expected(0, 1);
   for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
-    priced->excludes(command->get_option(chosen));
-  command->callback([=] {
+    priced.excludes(command.get_option(chosen));
+  command.callback([=] {
     *exit_status =
-        priced->count() > 0 ? run_front(*options, *front, *frames) : run(*options, *frames, !*no_prices, *sparse);
+        priced.count() > 0 ? run_front(*options, *front, *frames) : run(*options, *frames, !*no_prices, *sparse);
   });
 }
 

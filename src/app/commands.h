@@ -1,11 +1,8 @@
 // Each adds its command to the program; when that command runs, it stores its exit status.
 #pragma once
+#include "app/command_line.h"
 #include "session/servers.h"
 #include "viewer/side_by_side.h"
-
-namespace CLI {
-class App;
-}
 
 namespace pocketray {
 
@@ -20,10 +17,10 @@ inline Status open_servers(const OptionalParts& parts, const ServersOptions& opt
   return parts.servers ? parts.servers->open(options, emulated, servers) : success();
 }
 
-void add_render_command(CLI::App* program, const OptionalParts& parts, int* exit_status);
-void add_view_command(CLI::App* program, const OptionalParts& parts, int* exit_status);
-void add_bake_command(CLI::App* program, int* exit_status);
-void add_plan_command(CLI::App* program, int* exit_status);
-void add_bench_command(CLI::App* program, int* exit_status);
+void add_render_command(Command program, const OptionalParts& parts, int* exit_status);
+void add_view_command(Command program, const OptionalParts& parts, int* exit_status);
+void add_bake_command(Command program, int* exit_status);
+void add_plan_command(Command program, int* exit_status);
+void add_bench_command(Command program, int* exit_status);
 
 }  // namespace pocketray

@@ -1,7 +1,6 @@
 // pocketray: the program. The only place that exits.
-#include <CLI/CLI.hpp>
-#include <cmath>
-#include <cstdlib>
+#include <cstdio>
+#include <exception>
 
 #include "app/commands.h"
 #include "platform/standard_streams.h"
@@ -20,35 +19,15 @@
 namespace pocketray {
 namespace {
 
-// No option accepts an empty value, NaN or infinity. CLI11's range checks accept a NaN, which is neither below nor
-// above.
-std::string refuse_meaningless(const std::string& text, bool is_real) {
-  if (text.empty()) return "must not be empty";
-  return is_real && !std::isfinite(std::strtod(text.c_str(), nullptr)) ? "must be a finite number" : "";
-}
-
-void check_values(CLI::App* program) {
-  for (CLI::App* command : program->get_subcommands({}))
-    for (CLI::Option* option : command->get_options()) {
-      if (option->get_items_expected_min() == 0) continue;  // a flag, or an optional value
-      bool is_real = option->get_type_name().compare(0, 5, "FLOAT") == 0;
-      option->check([is_real](const std::string& text) { return refuse_meaningless(text, is_real); });
-    }
-}
-
-std::string one_line(const CLI::App*, const CLI::Error& error) {
-  return std::string("pocketray: ") + error.what() + " (see --help)\n";
-}
-
 int run(int argument_count, char** arguments) {
   int exit_status = kExitDone;
-  CLI::App program{
-      "pocketray ray-traces scenes for handheld screens in a block of memory sized once at start.\n"
-      "Try:  pocketray render cornell -o cornell.png\n"
-      "      pocketray view statue\n"};
-  program.name("pocketray");
-  program.set_version_flag("--version", POCKETRAY_VERSION);
-  program.require_subcommand(1);
+  CommandLine line("pocketray",
+                   "pocketray ray-traces scenes for handheld screens in a block of memory sized once at start.\n"
+                   "Try:  pocketray render cornell -o cornell.png\n"
+                   "      pocketray view statue\n");
+  line.set_version_flag("--version", POCKETRAY_VERSION);
+  line.require_subcommand(1);
+  Command program = line.program();
   program.footer("Exit status: 0 done, 1 bad input or environment, 2 wrong usage, 3 interrupted.");
   OptionalParts parts;
 #ifdef POCKETRAY_HAVE_NETWORK
@@ -57,29 +36,30 @@ int run(int argument_count, char** arguments) {
 #ifdef POCKETRAY_HAVE_ACCURACY
   parts.side_by_side = &kReferenceView;
 #endif
-  add_render_command(&program, parts, &exit_status);
-  add_view_command(&program, parts, &exit_status);
-  add_bake_command(&program, &exit_status);
-  add_plan_command(&program, &exit_status);
-  add_bench_command(&program, &exit_status);
+  add_render_command(program, parts, &exit_status);
+  add_view_command(program, parts, &exit_status);
+  add_bake_command(program, &exit_status);
+  add_plan_command(program, &exit_status);
+  add_bench_command(program, &exit_status);
 #ifdef POCKETRAY_HAVE_ACCURACY
-  add_accuracy_command(&program, &exit_status);
+  add_accuracy_command(program, &exit_status);
 #endif
 #ifdef POCKETRAY_HAVE_NETWORK
-  add_serve_command(&program, &exit_status);
-  add_scenes_command(&program, &exit_status);
-  add_split_report_command(&program, &exit_status);
+  add_serve_command(program, &exit_status);
+  add_scenes_command(program, &exit_status);
+  add_split_report_command(program, &exit_status);
 #endif
-  check_values(&program);
-  program.failure_message(one_line);
+  line.refuse_meaningless_values();
   catch_interrupts();
   Status given = check_arguments(argument_count, arguments);
   if (!given.ok) return report(given), kExitUsage;
   try {
-    program.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    int status = program.exit(error);
-    return status == 0 ? kExitDone : kExitUsage;
+    ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
+    if (!parsed.error.empty()) {
+      std::fprintf(stderr, "pocketray: %s (see --help)\n", parsed.error.c_str());
+      return kExitUsage;
+    }
+    std::fputs(parsed.help.c_str(), stdout);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "pocketray: %s\n", error.what());
     return kExitInput;

@@ -1,6 +1,5 @@
 #include "app/options.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 
 #include "accel/accel_list.h"
@@ -28,51 +27,50 @@ std::string device_names() {
   return names;
 }
 
-CLI::Option* add_setting_option(CLI::App* command, const SettingRow& row, SettingOption* option) {
+Option add_setting_option(Command command, const SettingRow& row, SettingOption* option) {
   char range[128];
   describe_range(row, range, sizeof range);
   std::string name = std::string("--") + row.name;
   std::string help = row.what + std::string(row.field.kind == SettingKind::choice ? ": " : ", ") + range;
   if (*row.note) help += std::string("; ") + row.note;
-  if (row.field.kind == SettingKind::count) return command->add_option(name, option->count, help);
-  if (row.field.kind == SettingKind::real) return command->add_option(name, option->real, help);
-  return command->add_option(name, option->choice, help);
+  if (row.field.kind == SettingKind::count) return command.add_option(name, option->count, help);
+  if (row.field.kind == SettingKind::real) return command.add_option(name, option->real, help);
+  return command.add_option(name, option->choice, help);
 }
 
 }  // namespace
 
-CLI::Option* add_json_option(CLI::App* command, std::string* path) {
-  return command->add_option("--json", *path, "also write the results as JSON to FILE, or - for standard output");
+Option add_json_option(Command command, std::string* path) {
+  return command.add_option("--json", *path, "also write the results as JSON to FILE, or - for standard output");
 }
 
-CLI::Option* add_isa_option(CLI::App* command, std::string* isa) {
-  return command->add_option("--isa", *isa, "instruction set for tracing: baseline, avx2 or avx512")
-      ->default_str("the best of this CPU");
+Option add_isa_option(Command command, std::string* isa) {
+  return command.add_option("--isa", *isa, "instruction set for tracing: baseline, avx2 or avx512")
+      .default_str("the best of this CPU");
 }
 
-CLI::Option* add_server_option(CLI::App* command, std::vector<std::string>* addresses) {
-  return command->add_option("--server", *addresses, "HOST:PORT of a `pocketray serve`; repeat it for several servers")
-      ->allow_extra_args(false);
+Option add_server_option(Command command, std::vector<std::string>* addresses) {
+  return command.add_option("--server", *addresses, "HOST:PORT of a `pocketray serve`; repeat it for several servers")
+      .allow_extra_args(false);
 }
 
-void add_scene_options(CLI::App* command, CommonOptions* o) {
-  command->add_option("SCENE", o->scene, scene_help())->required();
-  command->add_option("--size", o->size, "picture size, WIDTHxHEIGHT in pixels")
-      ->default_str("320x240, or the emulated device's");
+void add_scene_options(Command command, CommonOptions* o) {
+  command.add_option("SCENE", o->scene, scene_help()).required();
+  command.add_option("--size", o->size, "picture size, WIDTHxHEIGHT in pixels")
+      .default_str("320x240, or the emulated device's");
   for (int i = 0; i < kSettingCount; ++i)
-    add_setting_option(command, kSettingList[i], &o->settings.options[i])->capture_default_str();
+    add_setting_option(command, kSettingList[i], &o->settings.options[i]).capture_default_str();
   command
-      ->add_option(
-          "--effects", o->effects,
-          "effects to simulate: auto (those the scene needs), all, or names; \"auto,-shadow\" switches one off")
-      ->capture_default_str();
-  command->add_option("--memory", o->memory, "size of the one memory block that holds everything, e.g. 24M")
-      ->default_str("64M, or the device's");
-  command->add_option("--device", o->device,
-                      "use a device's memory size and, in view, its rotation and buttons: " + device_names());
-  command->add_option("--emulate", o->emulate,
-                      "run at a device's speed, with its memory, cores and screen size; names as for --device");
-  command->add_option("--threads", o->threads, "tracing threads; 0: one per core")->capture_default_str();
+      .add_option("--effects", o->effects,
+                  "effects to simulate: auto (those the scene needs), all, or names; \"auto,-shadow\" switches one off")
+      .capture_default_str();
+  command.add_option("--memory", o->memory, "size of the one memory block that holds everything, e.g. 24M")
+      .default_str("64M, or the device's");
+  command.add_option("--device", o->device,
+                     "use a device's memory size and, in view, its rotation and buttons: " + device_names());
+  command.add_option("--emulate", o->emulate,
+                     "run at a device's speed, with its memory, cores and screen size; names as for --device");
+  command.add_option("--threads", o->threads, "tracing threads; 0: one per core").capture_default_str();
   add_isa_option(command, &o->isa);
   std::vector<std::string> accels = {"auto"};
   std::string known, automatic;
@@ -84,64 +82,64 @@ void add_scene_options(CLI::App* command, CommonOptions* o) {
       automatic += std::string(automatic.empty() ? ", else " : ", or if that does not fit, ") + info->name;
   }
   command
-      ->add_option("--accel", o->accel,
-                   "ray-tracing accelerator: " + known + ", or auto: the one the scene was baked with" + automatic)
-      ->check(CLI::IsMember(accels))
-      ->capture_default_str();
-  command->add_option("--camera", o->camera,
-                      "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up vector, vertical field of view in degrees");
-  command->add_option("--camera-index", o->camera_index, "which of the scene's cameras to use, counting from 0")
-      ->capture_default_str();
-  command->add_option("--exposure", o->exposure, "stops to add to the scene's own exposure, or auto");
+      .add_option("--accel", o->accel,
+                  "ray-tracing accelerator: " + known + ", or auto: the one the scene was baked with" + automatic)
+      .one_of(accels)
+      .capture_default_str();
+  command.add_option("--camera", o->camera,
+                     "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up vector, vertical field of view in degrees");
+  command.add_option("--camera-index", o->camera_index, "which of the scene's cameras to use, counting from 0")
+      .capture_default_str();
+  command.add_option("--exposure", o->exposure, "stops to add to the scene's own exposure, or auto");
 }
 
-void add_budget_options(CLI::App* command, BudgetOptions* o) {
+void add_budget_options(Command command, BudgetOptions* o) {
   std::string names;
   for (const SettingRow& row : kSettingList) names += std::string(names.empty() ? "" : ", ") + row.name;
-  CLI::Option* budget = command->add_option("--budget-ms", o->ms,
-                                            "frame time to aim for in milliseconds: chooses " + names +
-                                                " for the least error, adapting to measured frame times; prices are "
-                                                "saved per scene and machine (see `bench --front`)");
-  budget->check([](const std::string& text) {
+  Option budget = command.add_option("--budget-ms", o->ms,
+                                     "frame time to aim for in milliseconds: chooses " + names +
+                                         " for the least error, adapting to measured frame times; prices are "
+                                         "saved per scene and machine (see `bench --front`)");
+  budget.check([](const std::string& text) {
     double ms = std::strtod(text.c_str(), nullptr);
     return ms >= kBudgetMsMin && ms <= kBudgetMsMax ? "" : "must lie in 0.001 … 10000000 milliseconds";
   });
-  for (const SettingRow& row : kSettingList) budget->excludes(command->get_option(std::string("--") + row.name));
-  command->add_option("--front", o->front, "file of settings to choose from")
-      ->default_str("the scene's file in the cache")
-      ->needs(budget);
+  for (const SettingRow& row : kSettingList) budget.excludes(command.get_option(std::string("--") + row.name));
+  command.add_option("--front", o->front, "file of settings to choose from")
+      .default_str("the scene's file in the cache")
+      .needs(budget);
 }
 
-void add_servers_options(CLI::App* command, ServersOptions* o) {
+void add_servers_options(Command command, ServersOptions* o) {
   const char* group = "Render servers";
-  add_server_option(command, &o->addresses)->group(group);
-  command->add_option("--share", o->device_share, "the device's share of the rows, 0 … 1, instead of the fastest")
-      ->group(group);
+  add_server_option(command, &o->addresses).group(group);
+  command.add_option("--share", o->device_share, "the device's share of the rows, 0 … 1, instead of the fastest")
+      .group(group);
   command
-      ->add_option("--verify", o->verify,
-                   "random pixels per frame that the device renders itself to spot-check the servers, 0 … 1024; "
-                   "default: as many as 1 % of the time allows. A server caught with a wrong pixel is dropped. N "
-                   "pixels catch one wrong row of R in a frame with a probability of at least 1 - (1 - 1/R)^N")
-      ->group(group);
-  command->add_option("--price", o->price, "price of 10^6 bytes from a server, in any unit")->group(group);
-  command->add_option("--energy-pixel", o->energy_pixel, "cost of rendering a pixel on the device, in that unit")
-      ->group(group);
-  command->add_option("--energy-byte", o->energy_byte, "cost of receiving a byte on the device, in that unit")
-      ->group(group);
+      .add_option("--verify", o->verify,
+                  "random pixels per frame that the device renders itself to spot-check the servers, 0 … 1024; "
+                  "default: as many as 1 % of the time allows. A server caught with a wrong pixel is dropped. N "
+                  "pixels catch one wrong row of R in a frame with a probability of at least 1 - (1 - 1/R)^N")
+      .group(group);
+  command.add_option("--price", o->price, "price of 10^6 bytes from a server, in any unit").group(group);
+  command.add_option("--energy-pixel", o->energy_pixel, "cost of rendering a pixel on the device, in that unit")
+      .group(group);
+  command.add_option("--energy-byte", o->energy_byte, "cost of receiving a byte on the device, in that unit")
+      .group(group);
   command
-      ->add_option("--cost-weight", o->cost_weight_ms,
-                   "milliseconds that a unit of cost is worth: minimises time plus weighted cost")
-      ->group(group);
-  command->add_option("--cost-cap", o->cost_cap, "largest cost per frame: takes the fastest split within it")
-      ->group(group);
+      .add_option("--cost-weight", o->cost_weight_ms,
+                  "milliseconds that a unit of cost is worth: minimises time plus weighted cost")
+      .group(group);
+  command.add_option("--cost-cap", o->cost_cap, "largest cost per frame: takes the fastest split within it")
+      .group(group);
 }
 
-void add_side_by_side_option(CLI::App* command, SideBySideOptions* o) {
+void add_side_by_side_option(Command command, SideBySideOptions* o) {
   command
-      ->add_option("--side-by-side", o->reference,
-                   "show the reference on the right half: model (the same lighting model, converged) or physical (full "
-                   "light transport). It is refined while nothing moves; animation is paused meanwhile")
-      ->check(CLI::IsMember({"model", "physical"}));
+      .add_option("--side-by-side", o->reference,
+                  "show the reference on the right half: model (the same lighting model, converged) or physical (full "
+                  "light transport). It is refined while nothing moves; animation is paused meanwhile")
+      .one_of({"model", "physical"});
 }
 
 }  // namespace pocketray

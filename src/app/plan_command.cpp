@@ -1,5 +1,4 @@
 // pocketray plan: shows the effects a scene needs, why, and its memory map.
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -58,14 +57,14 @@ int run(const CommonOptions& options, bool prices) {
 
 }  // namespace
 
-void add_plan_command(CLI::App* program, int* exit_status) {
+void add_plan_command(Command program, int* exit_status) {
   auto options = std::make_shared<CommonOptions>();
   auto prices = std::make_shared<bool>(false);
-  CLI::App* command = program->add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
+  Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
   add_scene_options(command, options.get());
   add_json_option(command, &options->json);
-  command->add_flag("--prices", *prices, "also render it and print the cost of each effect on this machine");
-  command->callback([=] { *exit_status = run(*options, *prices); });
+  command.add_flag("--prices", *prices, "also render it and print the cost of each effect on this machine");
+  command.callback([=] { *exit_status = run(*options, *prices); });
 }
 
 }  // namespace pocketray

@@ -1,5 +1,4 @@
 // pocketray render: renders a frame or a sequence into files.
-#include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -395,34 +394,33 @@ int run(const RenderOptions& options) {
 
 }  // namespace
 
-void add_render_command(CLI::App* program, const OptionalParts& parts, int* exit_status) {
+void add_render_command(Command program, const OptionalParts& parts, int* exit_status) {
   auto o = std::make_shared<RenderOptions>();
   o->parts = parts;
-  CLI::App* command = program->add_subcommand("render", "render a frame or a sequence to files");
+  Command command = program.add_subcommand("render", "render a frame or a sequence to files");
   add_scene_options(command, &o->common);
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
   command
-      ->add_option("-o,--output", o->output,
-                   "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")
-      ->capture_default_str();
-  command->add_option("--frames", o->frames, "render a sequence, FIRST:LAST, into numbered files: out-0000.png …");
-  command->add_option("--time", o->seconds, "animation time in seconds, for a single frame")->capture_default_str();
-  command->add_option("--orbit", o->orbit_degrees, "degrees that the camera orbits its target per frame")
-      ->capture_default_str();
+      .add_option("-o,--output", o->output,
+                  "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")
+      .capture_default_str();
+  command.add_option("--frames", o->frames, "render a sequence, FIRST:LAST, into numbered files: out-0000.png …");
+  command.add_option("--time", o->seconds, "animation time in seconds, for a single frame").capture_default_str();
+  command.add_option("--orbit", o->orbit_degrees, "degrees that the camera orbits its target per frame")
+      .capture_default_str();
+  command.add_option("--aov", o->aov, "write depth, normal, triangle or cost instead of colour (.pfm keeps the values)")
+      .capture_default_str();
+  command.add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")
+      .capture_default_str();
+  command.add_flag("--dither", o->dither, "apply ordered dithering to .raw pictures");
   command
-      ->add_option("--aov", o->aov, "write depth, normal, triangle or cost instead of colour (.pfm keeps the values)")
-      ->capture_default_str();
-  command->add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")
-      ->capture_default_str();
-  command->add_flag("--dither", o->dither, "apply ordered dithering to .raw pictures");
-  command
-      ->add_option("--raw-format", o->raw_format,
-                   "pixel format of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")
-      ->capture_default_str();
-  command->add_flag("--plan", o->plan, "also print the effect plan and the memory map");
+      .add_option("--raw-format", o->raw_format,
+                  "pixel format of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")
+      .capture_default_str();
+  command.add_flag("--plan", o->plan, "also print the effect plan and the memory map");
   add_json_option(command, &o->common.json);
-  command->callback([=] { *exit_status = run(*o); });
+  command.callback([=] { *exit_status = run(*o); });
 }
 
 }  // namespace pocketray

@@ -1,5 +1,4 @@
 // pocketray view: shows a scene on a screen, moved by buttons: coarse first, then refined. Input never waits.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <thread>
 
@@ -169,44 +168,44 @@ int run(ViewCommand o) {
 
 }  // namespace
 
-void add_view_command(CLI::App* program, const OptionalParts& parts, int* exit_status) {
+void add_view_command(Command program, const OptionalParts& parts, int* exit_status) {
   auto o = std::make_shared<ViewCommand>();
   o->parts = parts;
   o->view.has_reference = parts.side_by_side != nullptr;
-  CLI::App* command =
-      program->add_subcommand("view", "show a scene in the emulator's window or on a device's framebuffer");
+  Command command =
+      program.add_subcommand("view", "show a scene in the emulator's window or on a device's framebuffer");
   add_scene_options(command, &o->common);
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
   if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);
   command
-      ->add_option("--screen", o->view.backend,
-                   "sdl2 (window), linux (framebuffer), null (none, for tests) or auto (a window or the framebuffer, "
-                   "whichever is available)")
-      ->capture_default_str();
-  command->add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the default");
-  command->add_option("--rotate", o->view.rotation, "rotate the picture clockwise: 0, 90, 180 or 270")
-      ->default_str("0, or the device's");
-  command->add_option("--scale", o->view.scale, "window pixels per picture pixel; 0: the most that fit")
-      ->capture_default_str();
-  command->add_flag("--dither", o->view.dither, "apply ordered dithering on 16-bit screens");
-  command->add_option("--frames", o->view.frame_count, "exit after N frames; 0: run until quit")->capture_default_str();
-  command->add_option("--screenshots", o->view.screenshot_folder, "folder for screenshots; created if missing")
-      ->capture_default_str();
-  command->footer(std::string("Keys, with a device's buttons in brackets:\n"
-                              "  arrows [pad]          turn the camera\n"
-                              "  X, Z [A, B]           closer, away\n"
-                              "  Q, W [L, R]           sideways\n"
-                              "  right shift [select]  switch between orbit and fly\n"
-                              "  return [start]        restore the scene's camera, and let --budget-ms choose again\n"
-                              "  page up, page down    step through the settings of --budget-ms\n"
-                              "  S [X]                 pause\n"
-                              "  F1, A [Y]             toggle the overlay\n") +
-                  (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
-                  "  F12                   save a screenshot\n"
-                  "  F5                    reload the scene\n"
-                  "  Esc                   quit");
-  command->callback([=] { *exit_status = run(*o); });
+      .add_option("--screen", o->view.backend,
+                  "sdl2 (window), linux (framebuffer), null (none, for tests) or auto (a window or the framebuffer, "
+                  "whichever is available)")
+      .capture_default_str();
+  command.add_option("--framebuffer", o->view.device, "the framebuffer's device file, if not the default");
+  command.add_option("--rotate", o->view.rotation, "rotate the picture clockwise: 0, 90, 180 or 270")
+      .default_str("0, or the device's");
+  command.add_option("--scale", o->view.scale, "window pixels per picture pixel; 0: the most that fit")
+      .capture_default_str();
+  command.add_flag("--dither", o->view.dither, "apply ordered dithering on 16-bit screens");
+  command.add_option("--frames", o->view.frame_count, "exit after N frames; 0: run until quit").capture_default_str();
+  command.add_option("--screenshots", o->view.screenshot_folder, "folder for screenshots; created if missing")
+      .capture_default_str();
+  command.footer(std::string("Keys, with a device's buttons in brackets:\n"
+                             "  arrows [pad]          turn the camera\n"
+                             "  X, Z [A, B]           closer, away\n"
+                             "  Q, W [L, R]           sideways\n"
+                             "  right shift [select]  switch between orbit and fly\n"
+                             "  return [start]        restore the scene's camera, and let --budget-ms choose again\n"
+                             "  page up, page down    step through the settings of --budget-ms\n"
+                             "  S [X]                 pause\n"
+                             "  F1, A [Y]             toggle the overlay\n") +
+                 (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
+                 "  F12                   save a screenshot\n"
+                 "  F5                    reload the scene\n"
+                 "  Esc                   quit");
+  command.callback([=] { *exit_status = run(*o); });
 }
 
 }  // namespace pocketray

@@ -3,22 +3,22 @@
 
 #include <doctest/doctest.h>
 
-#include <CLI/CLI.hpp>
+#include "support/help_entry.h"
 
 using namespace pocketray;
 
 // Goal: help lists every valid name. Method: every device, and every accelerator with its description, in the help of
 // its option; the automatic ones in order, the default first.
 TEST_CASE("options_list_devices_and_accelerators") {
-  CLI::App app;
+  CommandLine line("program", "");
   CommonOptions options;
-  add_scene_options(&app, &options);
-  const std::string devices = app.get_option("--device")->get_description();
+  add_scene_options(line.program(), &options);
+  const std::string devices = help_entry(&line, "--device");
   for (const platform::Device& device : platform::kDevices) {
     CAPTURE(device.name);
     CHECK(devices.find(device.name) != std::string::npos);
   }
-  const std::string accels = app.get_option("--accel")->get_description();
+  const std::string accels = help_entry(&line, "--accel");
   std::size_t place = accels.find("auto:");
   REQUIRE(place != std::string::npos);
   for (const AccelInfo* info : kAccelList) {

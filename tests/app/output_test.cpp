@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -33,23 +32,24 @@ struct Folder {
 // Runs a command line with output to `out`; returns its exit status.
 int run(const std::vector<std::string>& words, const char* out = "/dev/null") {
   int exit_status = kExitDone;
-  CLI::App program;
-  add_render_command(&program, OptionalParts(), &exit_status);
-  add_bake_command(&program, &exit_status);
-  add_plan_command(&program, &exit_status);
-  add_bench_command(&program, &exit_status);
+  CommandLine line("pocketray", "");
+  Command program = line.program();
+  add_render_command(program, OptionalParts(), &exit_status);
+  add_bake_command(program, &exit_status);
+  add_plan_command(program, &exit_status);
+  add_bench_command(program, &exit_status);
 #ifdef POCKETRAY_HAVE_NETWORK
-  add_split_report_command(&program, &exit_status);
+  add_split_report_command(program, &exit_status);
 #endif
-  std::vector<std::string> reversed(words.rbegin(), words.rend());
   std::fflush(stdout);
   int kept = dup(STDOUT_FILENO), other = open(out, O_WRONLY);
   REQUIRE(dup2(other, STDOUT_FILENO) >= 0);
-  program.parse(reversed);
+  std::string error = line.parse(words).error;
   exit_status = finish_printing(exit_status);
   dup2(kept, STDOUT_FILENO);
   std::clearerr(stdout);
   close(kept), close(other);
+  REQUIRE(error == "");
   return exit_status;
 }
 

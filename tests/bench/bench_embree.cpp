@@ -1,5 +1,4 @@
 // bench_embree: the tracing core against Embree.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 
@@ -121,28 +120,28 @@ int run(const BenchOptions& options) {
   return status.ok && interrupted ? kExitInterrupted : report(status);
 }
 
-void add_options(CLI::App* program, BenchOptions* o) {
+void add_options(Command program, BenchOptions* o) {
   std::vector<std::string> accels;
   for (const AccelInfo* info : kAccelList) accels.push_back(info->name);
-  program->add_option("--scene", o->scenes,
-                      "buddha, bunny, dragon, conference, a built-in scene or a file; may list several. Default: these "
-                      "four, cornell and statue");
-  program->add_option("--rays", o->kinds, "kinds of rays to trace: primary, shadow, bounce; default: all")
-      ->check(CLI::IsMember({"primary", "shadow", "bounce"}));
-  program->add_option("--size", o->sizes, "picture sizes, multiples of 8; default: 320x240 1280x960");
-  program->add_option("--isa", o->isas, "sse2: limit both sides to SSE2; native: everything the CPU has; default: both")
-      ->check(CLI::IsMember({"sse2", "native"}));
-  program->add_option("--accel", o->accel, "our accelerator")->check(CLI::IsMember(accels))->capture_default_str();
-  program->add_option("--rounds", o->rounds, "rounds in which both trace them in turn")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  program->add_option("--build-rounds", o->build_rounds, "the same for building and refitting; 0: skip them")
-      ->check(CLI::Range(0, 10000))
-      ->capture_default_str();
-  program->add_option("--models", o->models, "folder of the models")->capture_default_str();
-  program->add_option("--cache", o->cache, "folder to unpack archives into")->capture_default_str();
-  program->add_option("--json", o->json, "write the table as JSON to FILE, or - for standard output");
-  program->add_option("--build-json", o->build_json, "write the table of acceleration structures as JSON to FILE");
+  program.add_option("--scene", o->scenes,
+                     "buddha, bunny, dragon, conference, a built-in scene or a file; may list several. Default: these "
+                     "four, cornell and statue");
+  program.add_option("--rays", o->kinds, "kinds of rays to trace: primary, shadow, bounce; default: all")
+      .one_of({"primary", "shadow", "bounce"});
+  program.add_option("--size", o->sizes, "picture sizes, multiples of 8; default: 320x240 1280x960");
+  program.add_option("--isa", o->isas, "sse2: limit both sides to SSE2; native: everything the CPU has; default: both")
+      .one_of({"sse2", "native"});
+  program.add_option("--accel", o->accel, "our accelerator").one_of(accels).capture_default_str();
+  program.add_option("--rounds", o->rounds, "rounds in which both trace them in turn")
+      .range(1, 10000)
+      .capture_default_str();
+  program.add_option("--build-rounds", o->build_rounds, "the same for building and refitting; 0: skip them")
+      .range(0, 10000)
+      .capture_default_str();
+  program.add_option("--models", o->models, "folder of the models").capture_default_str();
+  program.add_option("--cache", o->cache, "folder to unpack archives into").capture_default_str();
+  program.add_option("--json", o->json, "write the table as JSON to FILE, or - for standard output");
+  program.add_option("--build-json", o->build_json, "write the table of acceleration structures as JSON to FILE");
 }
 
 }  // namespace
@@ -150,20 +149,22 @@ void add_options(CLI::App* program, BenchOptions* o) {
 
 int main(int argument_count, char** arguments) {
   using namespace pocketray;
-  CLI::App program{
+  CommandLine line(
+      "bench_embree",
       "bench_embree traces the same rays through pocketray's accelerator and through Embree, in turn, on one thread,\n"
       "checks that both hit the same, and prints the rays per second of each.\n"
       "Try:  bench_embree --scene bunny --size 320x240 --isa sse2\n"
-      "      bench_embree --scene cornell --rays shadow bounce --json -\n"};
-  program.name("bench_embree");
+      "      bench_embree --scene cornell --rays shadow bounce --json -\n");
+  Command program = line.program();
   BenchOptions options;
-  add_options(&program, &options);
+  add_options(program, &options);
   program.footer("A full run takes about twenty minutes; Ctrl-C keeps finished results.");
   catch_interrupts();
-  try {
-    program.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? kExitDone : kExitUsage;
+  ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
+  if (!parsed.error.empty()) {
+    std::fprintf(stderr, "%s\nRun with --help for more information.\n", parsed.error.c_str());
+    return kExitUsage;
   }
+  if (!parsed.help.empty()) return std::fputs(parsed.help.c_str(), stdout), kExitDone;
   return run(options);
 }

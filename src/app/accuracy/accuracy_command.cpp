@@ -1,10 +1,8 @@
 // pocketray accuracy: measures what accuracy costs in time.
-#include <CLI/CLI.hpp>
-
+#include "app/accuracy/accuracy_command.h"
 #include "accuracy/csv.h"
 #include "accuracy/gnuplot.h"
 #include "accuracy/report.h"
-#include "app/accuracy/accuracy_command.h"
 #include "app/options.h"
 #include "budget/front_file.h"
 #include "session/gnuplot.h"
@@ -56,11 +54,11 @@ int run(const AccuracyOptions& options) {
 
 }  // namespace
 
-void add_accuracy_command(CLI::App* program, int* exit_status) {
+void add_accuracy_command(Command program, int* exit_status) {
   auto o = std::make_shared<AccuracyOptions>();
   o->starts_valgrind = true;
-  CLI::App* command = program->add_subcommand("accuracy", "measure what accuracy costs in time: sweep every setting");
-  command->footer(
+  Command command = program.add_subcommand("accuracy", "measure what accuracy costs in time: sweep every setting");
+  command.footer(
       "Varies one setting at a time (samples, depth, points per area light, …), then several at once. Times each\n"
       "configuration in rounds of random order and compares its picture with a reference, by ꟻLIP and other metrics.\n"
       "The scene's options set the baseline. The output folder gets index.html with all results, its plots and "
@@ -71,28 +69,28 @@ void add_accuracy_command(CLI::App* program, int* exit_status) {
       "with the same settings; \"arithmetic double\" is timed with the reference's own tracer.\n"
       "Confidence intervals are 95 %, given at least six rounds.");
   add_scene_options(command, &o->common);
-  command->add_option("-o,--output-folder", o->folder, "folder to write to; created if missing")->required();
-  command->add_option("--output", o->output, "pixel format of the baseline's screen: rgb565, rgb565-dithered or rgb888")
-      ->capture_default_str();
+  command.add_option("-o,--output-folder", o->folder, "folder to write to; created if missing").required();
+  command.add_option("--output", o->output, "pixel format of the baseline's screen: rgb565, rgb565-dithered or rgb888")
+      .capture_default_str();
   command
-      ->add_option(
+      .add_option(
           "--reference", o->reference,
           "reference to compare with: model (the same lighting model, converged) or physical (full light transport)")
-      ->capture_default_str();
-  command->add_option("--reference-samples", o->reference_samples, "samples per pixel of the reference")
-      ->default_str("2048 for model, 256 for physical");
-  command->add_option("--rounds", o->rounds, "how often to time each configuration")->capture_default_str();
-  command->add_option("--ppd", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
-      ->capture_default_str();
-  command->add_option("--time", o->seconds, "seconds into the animation")->capture_default_str();
+      .capture_default_str();
+  command.add_option("--reference-samples", o->reference_samples, "samples per pixel of the reference")
+      .default_str("2048 for model, 256 for physical");
+  command.add_option("--rounds", o->rounds, "how often to time each configuration").capture_default_str();
+  command.add_option("--ppd", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
+      .capture_default_str();
+  command.add_option("--time", o->seconds, "seconds into the animation").capture_default_str();
   command
-      ->add_option("--price-limit", o->price_limit,
-                   "slowest combination of settings to try, as a multiple of the baseline's time")
-      ->capture_default_str();
-  command->add_flag("--restart", o->restart, "discard the measurements in the folder and start over");
+      .add_option("--price-limit", o->price_limit,
+                  "slowest combination of settings to try, as a multiple of the baseline's time")
+      .capture_default_str();
+  command.add_flag("--restart", o->restart, "discard the measurements in the folder and start over");
   add_json_option(command, &o->common.json);
-  command->add_option("--counting-folder", o->counting_folder)->group("");  // for the run under valgrind
-  command->callback([=] { *exit_status = run(*o); });
+  command.add_option("--counting-folder", o->counting_folder, "").group("");  // for the run under valgrind
+  command.callback([=] { *exit_status = run(*o); });
 }
 
 }  // namespace pocketray

@@ -1,12 +1,9 @@
 // The accuracy command, in builds with the reference; see app/commands.h.
 #pragma once
-
-namespace CLI {
-class App;
-}
+#include "app/command_line.h"
 
 namespace pocketray {
 
-void add_accuracy_command(CLI::App* program, int* exit_status);
+void add_accuracy_command(Command program, int* exit_status);
 
 }  // namespace pocketray

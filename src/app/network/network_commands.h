@@ -1,14 +1,11 @@
 // The commands of builds with a network; see app/commands.h.
 #pragma once
-
-namespace CLI {
-class App;
-}
+#include "app/command_line.h"
 
 namespace pocketray {
 
-void add_serve_command(CLI::App* program, int* exit_status);
-void add_scenes_command(CLI::App* program, int* exit_status);
-void add_split_report_command(CLI::App* program, int* exit_status);
+void add_serve_command(Command program, int* exit_status);
+void add_scenes_command(Command program, int* exit_status);
+void add_split_report_command(Command program, int* exit_status);
 
 }  // namespace pocketray

@@ -1,10 +1,8 @@
 // pocketray scenes: lists the scenes that render servers offer.
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/network/network_commands.h"
 #include "app/options.h"
-
 #include "remote/client/servers.h"
 #include "session/output.h"
 #include "session/report.h"
@@ -55,15 +53,15 @@ int run(const ScenesOptions& o) {
 
 }  // namespace
 
-void add_scenes_command(CLI::App* program, int* exit_status) {
+void add_scenes_command(Command program, int* exit_status) {
   auto o = std::make_shared<ScenesOptions>();
-  CLI::App* command = program->add_subcommand("scenes", "list the scenes that render servers offer");
-  add_server_option(command, &o->servers.addresses)->required();
+  Command command = program.add_subcommand("scenes", "list the scenes that render servers offer");
+  add_server_option(command, &o->servers.addresses).required();
   add_json_option(command, &o->json);
-  command->footer(
+  command.footer(
       "Pass any of these names to `render` or `view` with the same --server. They fetch the scene, or leave it to the\n"
       "server if it does not fit in --memory.");
-  command->callback([=] { *exit_status = run(*o); });
+  command.callback([=] { *exit_status = run(*o); });
 }
 
 }  // namespace pocketray

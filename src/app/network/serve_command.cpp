@@ -1,5 +1,4 @@
 // pocketray serve: the render server.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cinttypes>
 #include <thread>
@@ -151,36 +150,35 @@ int run(const ServeOptions& o) {
 
 }  // namespace
 
-void add_serve_command(CLI::App* program, int* exit_status) {
+void add_serve_command(Command program, int* exit_status) {
   auto o = std::make_shared<ServeOptions>();
-  CLI::App* command =
-      program->add_subcommand("serve", "run a render server that traces part of each frame for devices");
+  Command command = program.add_subcommand("serve", "run a render server that traces part of each frame for devices");
   command
-      ->add_option("--listen", o->listen,
-                   "HOST:PORT to listen at; port 0 takes any free one; addresses that other machines can reach need "
-                   "--insecure-lan")
-      ->capture_default_str();
-  command->add_flag("--insecure-lan", o->insecure_lan,
-                    "allow addresses that other machines can reach; there is no authentication");
-  command->add_option("--scenes", o->scenes,
-                      "folder of scenes to offer besides the built-in ones: .pray files and, on a desktop, models");
-  command->add_option("--threads", o->threads, "tracing threads, shared by all clients; 0: one per core")
-      ->capture_default_str();
+      .add_option("--listen", o->listen,
+                  "HOST:PORT to listen at; port 0 takes any free one; addresses that other machines can reach need "
+                  "--insecure-lan")
+      .capture_default_str();
+  command.add_flag("--insecure-lan", o->insecure_lan,
+                   "allow addresses that other machines can reach; there is no authentication");
+  command.add_option("--scenes", o->scenes,
+                     "folder of scenes to offer besides the built-in ones: .pray files and, on a desktop, models");
+  command.add_option("--threads", o->threads, "tracing threads, shared by all clients; 0: one per core")
+      .capture_default_str();
   command
-      ->add_option("--clients", o->clients, "maximum number of clients; further ones are told that the server is busy")
-      ->check(CLI::Range(1, kServerClientsMax))
-      ->capture_default_str();
-  command->add_option("--memory", o->memory, "memory per client, for its picture and for rendering, e.g. 64M")
-      ->capture_default_str();
-  command->add_option("--scene-memory", o->scene_memory, "memory for all scenes together, e.g. 1G")
-      ->capture_default_str();
-  command->add_option("--size-max", o->image_side_max, "longest picture side in pixels")
-      ->check(CLI::Range(1u, kImageSideMax))
-      ->capture_default_str();
-  command->add_option("--idle", o->idle_seconds, "seconds of silence before a client is disconnected")
-      ->capture_default_str();
+      .add_option("--clients", o->clients, "maximum number of clients; further ones are told that the server is busy")
+      .range(1, kServerClientsMax)
+      .capture_default_str();
+  command.add_option("--memory", o->memory, "memory per client, for its picture and for rendering, e.g. 64M")
+      .capture_default_str();
+  command.add_option("--scene-memory", o->scene_memory, "memory for all scenes together, e.g. 1G")
+      .capture_default_str();
+  command.add_option("--size-max", o->image_side_max, "longest picture side in pixels")
+      .range(1u, kImageSideMax)
+      .capture_default_str();
+  command.add_option("--idle", o->idle_seconds, "seconds of silence before a client is disconnected")
+      .capture_default_str();
   add_isa_option(command, &o->isa);
-  command->callback([=] { *exit_status = run(*o); });
+  command.callback([=] { *exit_status = run(*o); });
 }
 
 }  // namespace pocketray

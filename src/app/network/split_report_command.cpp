@@ -1,6 +1,5 @@
 // pocketray split-report: measures what render servers gain a device, for each share of rows, next to the paper's
 // table.
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "accuracy/gnuplot.h"
@@ -216,46 +215,46 @@ int run(const ReportOptions& o) {
 
 }  // namespace
 
-void add_split_report_command(CLI::App* program, int* exit_status) {
+void add_split_report_command(Command program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
   o->common.emulate = "tablet";
-  CLI::App* command = program->add_subcommand(
+  Command command = program.add_subcommand(
       "split-report", "measure the speed-up by render servers over the device's share of the rows");
-  command->footer(
+  command.footer(
       "Device, link and servers are simulated on a virtual clock, so you need not start any. A busy machine affects "
       "only\n"
       "the measured cost per pixel; fix that with --device-ns and --server-ns.\n"
       "Try:  pocketray split-report cornell --emulate pi-zero -o .\n"
       "      pocketray split-report statue --emulate tablet --servers 3 --json -");
   add_scene_options(command, &o->common);
-  command->add_option("--servers", o->server_count, "number of servers")
-      ->check(CLI::Range(1u, kServerCountMax))
-      ->capture_default_str();
-  command->add_option("-o,--output", o->folder,
-                      "folder for split.csv and, if gnuplot is installed, split.png; created if missing");
+  command.add_option("--servers", o->server_count, "number of servers")
+      .range(1u, kServerCountMax)
+      .capture_default_str();
+  command.add_option("-o,--output", o->folder,
+                     "folder for split.csv and, if gnuplot is installed, split.png; created if missing");
   command
-      ->add_option("--steps", o->step_count,
-                   "number of shares to measure, from 0 to 1; a few more are added around the fastest")
-      ->check(CLI::Range(2u, 1000u))
-      ->capture_default_str();
-  command->add_option("--frames", o->frame_count, "frames per share; the median is used")
-      ->check(CLI::Range(2u, 1000u))
-      ->capture_default_str();
+      .add_option("--steps", o->step_count,
+                  "number of shares to measure, from 0 to 1; a few more are added around the fastest")
+      .range(2u, 1000u)
+      .capture_default_str();
+  command.add_option("--frames", o->frame_count, "frames per share; the median is used")
+      .range(2u, 1000u)
+      .capture_default_str();
   command
-      ->add_option(
+      .add_option(
           "--orbit", o->orbit_degrees,
           "degrees that the camera orbits per frame; 0: it stands still and only rows changed by animation are sent")
-      ->check(CLI::Range(-90.0f, 90.0f))
-      ->capture_default_str();
+      .range(-90.0f, 90.0f)
+      .capture_default_str();
   command
-      ->add_option("--device-ns", o->device_ns,
-                   "the device's time per pixel in ns, instead of this machine's times the device's slowdown")
-      ->check(CLI::Range(1.0, 1e9));
-  command->add_option("--server-ns", o->server_ns, "a server's time per pixel in ns, instead of one core's here")
-      ->check(CLI::Range(1.0, 1e9));
-  command->add_flag("--no-paper", o->no_paper, "skip the paper's table");
+      .add_option("--device-ns", o->device_ns,
+                  "the device's time per pixel in ns, instead of this machine's times the device's slowdown")
+      .range(1.0, 1e9);
+  command.add_option("--server-ns", o->server_ns, "a server's time per pixel in ns, instead of one core's here")
+      .range(1.0, 1e9);
+  command.add_flag("--no-paper", o->no_paper, "skip the paper's table");
   add_json_option(command, &o->common.json);
-  command->callback([=] { *exit_status = run(*o); });
+  command.callback([=] { *exit_status = run(*o); });
 }
 
 }  // namespace pocketray

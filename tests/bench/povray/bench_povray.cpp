@@ -1,5 +1,4 @@
 // bench_povray: whole frames against POV-Ray.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -145,22 +144,24 @@ int run(const PovrayOptions& options) {
 int main(int argument_count, char** arguments) {
   using namespace pocketray;
   PovrayOptions options;
-  CLI::App program{
+  CommandLine line(
+      "bench_povray",
       "bench_povray renders the statue under one point light with hard shadows with POV-Ray and pocketray, in turn,\n"
       "on one thread, compares the pictures, and prints the tracing time per pixel of each.\n"
-      "Try:  bench_povray --size 320x240\n"};
-  program.name("bench_povray");
+      "Try:  bench_povray --size 320x240\n");
+  Command program = line.program();
   program.add_option("--size", options.sizes, "picture sizes; default: 320x240 1280x960");
   program.add_option("--rounds", options.rounds, "rounds in which both render in turn")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  program.add_option("--povray", options.program, "POV-Ray's command")->capture_default_str();
-  program.add_option("--folder", options.folder, "folder for the scene and the pictures")->capture_default_str();
+      .range(1, 1000)
+      .capture_default_str();
+  program.add_option("--povray", options.program, "POV-Ray's command").capture_default_str();
+  program.add_option("--folder", options.folder, "folder for the scene and the pictures").capture_default_str();
   program.add_option("--json", options.json, "write the table as JSON to FILE, or - for standard output");
-  try {
-    program.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? kExitDone : kExitUsage;
+  ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
+  if (!parsed.error.empty()) {
+    std::fprintf(stderr, "%s\nRun with --help for more information.\n", parsed.error.c_str());
+    return kExitUsage;
   }
+  if (!parsed.help.empty()) return std::fputs(parsed.help.c_str(), stdout), kExitDone;
   return run(options);
 }
