@@ -257,8 +257,8 @@ TEST_CASE("shaped_link_delivers_by_a_clock_that_stands_still") {
   CHECK(rig.read_all(device, 5000, &result) == counted_bytes(5000));
 }
 
-// Goal: the line takes its time over sockets, too. Method: the wall clock, with a generous upper bound since this
-// machine is shared.
+// Goal: the line takes its time over sockets, too. Method: the wall clock; how much more a busy machine takes is not
+// the link's, so only a link that hangs exceeds the upper bound. The simulated clock tests the time exactly.
 TEST_CASE("shaped_link_takes_its_time_over_sockets") {
   LinkRig rig(kShapedTcp, 4, NullLinkSettings(), radio(4'000'000, 5 * kMs, 2 * kMs));
   int device = -1, server = -1;
@@ -270,7 +270,7 @@ TEST_CASE("shaped_link_takes_its_time_over_sockets") {
     carry(&rig, to_device ? server : device, to_device ? device : server, 800'000, &passed_ns);
     MESSAGE("800 kB at 4 MB/s took " << static_cast<double>(passed_ns) * 1e-6 << " ms");
     CHECK(passed_ns >= 205 * kMs);
-    CHECK(passed_ns < 600 * kMs);
+    CHECK(passed_ns < 10'000 * kMs);
   }
 }
 
