@@ -1,5 +1,5 @@
-// How much a test does: everything natively, a share in unoptimised builds, under a sanitizer and under an emulated CPU;
-// the least where that CPU emulates floats, too.
+// How much a test does: everything natively, a share in unoptimised builds, under sanitizers and under an emulated CPU,
+// the least where floats are emulated.
 #pragma once
 
 namespace pocketray {
