@@ -1,15 +1,13 @@
-// How much a test does: everything natively, a share in unoptimised builds, under sanitizers and under an emulated CPU,
-// the least where floats are emulated.
+// How much a test does: everything natively, a share under CPU or float emulation and in unoptimised builds, a larger
+// share under a sanitizer.
 #pragma once
 
 namespace pocketray {
 
-#if defined(__SOFTFP__)
-constexpr int kEffortDivisor = 120;
-#elif defined(POCKETRAY_EMULATED) || !defined(__OPTIMIZE__)
+#if defined(POCKETRAY_EMULATED) || !defined(__OPTIMIZE__)
 constexpr int kEffortDivisor = 40;
 #elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kEffortDivisor = 12;
+constexpr int kEffortDivisor = 6;
 #else
 constexpr int kEffortDivisor = 1;
 #endif
