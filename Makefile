@@ -1,7 +1,7 @@
 # A thin front end for CMake: installs what is missing, configures, builds, runs. `make help` lists the targets.
 #   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
 #   PREFIX=   where `make install` goes
-#   TESTS=    run only the tests that match this regular expression
+#   TESTS=    build and run only the tests that match this regular expression
 #   JSON=     also write the table of `make hardcases` or `make mutants` to this file
 DEVICE ?=
 PREFIX ?= /usr/local
@@ -58,8 +58,8 @@ setup-tests:
 	@$(if $(CLASS),:,toolchains/setup.sh tests)
 
 test: setup-tests configure
-	targets=$$(bash tests/targets.sh $(BUILD) '$(TESTS)') && cmake --build $(BUILD) -j$(JOBS) --target $$targets
-	cd $(BUILD) && ctest --output-on-failure -j$(JOBS) -R '$(TESTS)'
+	targets=$$(tests/targets.sh $(BUILD) '$(TESTS)') && cmake --build $(BUILD) -j$(JOBS) --target $$targets
+	cd $(BUILD) && ctest --output-on-failure --timeout 1500 -j$(JOBS) -R '$(TESTS)'
 
 hardcases: setup-tests configure
 	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases

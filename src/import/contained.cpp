@@ -1,6 +1,7 @@
 #include "import/contained.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -41,6 +43,7 @@ struct FreeBlock {
   void operator()(std::uint8_t* block) const { std::free(block); }
 };
 using Block = std::unique_ptr<std::uint8_t, FreeBlock>;
+using Clock = std::chrono::steady_clock;
 
 Block take_aligned(std::size_t bytes) {
   void* block = nullptr;
@@ -58,9 +61,19 @@ bool write_all(int pipe, const void* data, std::size_t count) {
   }
   return true;
 }
-bool read_all(int pipe, void* data, std::size_t count) {
+bool wait_for_data(int pipe, Clock::time_point deadline) {
+  pollfd waiting = {pipe, POLLIN, 0};
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    const int ready = poll(&waiting, 1, static_cast<int>(std::clamp<decltype(left)>(left, 0, 1000)));
+    if (ready > 0) return true;
+    if (left <= 0 || (ready < 0 && errno != EINTR)) return false;
+  }
+}
+bool read_all(int pipe, void* data, std::size_t count, Clock::time_point deadline) {
   char* at = static_cast<char*>(data);
   while (count > 0) {
+    if (!wait_for_data(pipe, deadline)) return false;
     ssize_t got = read(pipe, at, count);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return false;
@@ -128,21 +141,24 @@ bool read_and_send(int pipe, const std::function<void(ImportedScene*)>& read) {
 
 // False if the child did not finish.
 bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* header, std::string* text, Block* block) {
-  if (!read_all(pipe, header, sizeof *header) || header->text_bytes > kTextBytesMax) return false;
+  const Clock::time_point deadline = Clock::now() + std::chrono::seconds(limits.elapsed_seconds);
+  if (!read_all(pipe, header, sizeof *header, deadline) || header->text_bytes > kTextBytesMax) return false;
   text->resize(header->text_bytes);
-  if (!read_all(pipe, &(*text)[0], text->size())) return false;
+  if (!read_all(pipe, &(*text)[0], text->size(), deadline)) return false;
   if (header->scene_bytes > limits.result_bytes_max)
     fail_import("the scene would take %llu MiB; use a smaller model",
                 static_cast<unsigned long long>(header->scene_bytes >> 20));
   *block = take_aligned(static_cast<std::size_t>(header->scene_bytes));
-  return read_all(pipe, block->get(), static_cast<std::size_t>(header->scene_bytes));
+  return read_all(pipe, block->get(), static_cast<std::size_t>(header->scene_bytes), deadline);
 }
 
 [[noreturn]] void fail_as_ended(int status, const ContainerLimits& limits) {
   int signal_number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal_number == SIGXCPU || signal_number == SIGKILL)
-    fail_import("reading it took more than %u seconds or too much memory; export the file again, or a smaller one",
-                limits.cpu_seconds);
+    fail_import(
+        "reading it took more than %u seconds of processor time, %u seconds in all, or too much memory; export "
+        "the file again, or a smaller one",
+        limits.cpu_seconds, limits.elapsed_seconds);
   if (signal_number == SIGINT || signal_number == SIGTERM || signal_number == SIGHUP)
     fail_import("reading was interrupted; start again");
   fail_import("its reader crashed (signal %d), so it is damaged or of an unknown kind; export the file again",
@@ -163,9 +179,12 @@ struct Child {
     }
     id = -1;
   }
+  void end() {
+    if (id > 0) kill(id, SIGKILL);  // no effect on one that has ended
+  }
   ~Child() {
     close_pipe();
-    if (id > 0) kill(id, SIGKILL);
+    end();
     wait_for_end();
   }
 };
@@ -193,6 +212,7 @@ void import_contained(const ContainerLimits& limits, const std::function<void(Im
   Block block;
   bool complete = receive_result(child.pipe, limits, &header, &text, &block);
   child.close_pipe();
+  if (!complete) child.end();
   child.wait_for_end();
   if (!complete) fail_as_ended(child.status, limits);
   if (!header.read) fail_import("%s", text.c_str());

@@ -11,6 +11,7 @@ namespace pocketray {
 struct ContainerLimits {
   std::uint64_t memory_bytes;      // address space beyond current use; 0: no limit
   std::uint32_t cpu_seconds;       // of processor time
+  std::uint32_t elapsed_seconds;   // of the clock: a reader that waits forever takes no processor time
   std::uint64_t result_bytes_max;  // of the scene
 };
 

@@ -29,7 +29,9 @@ void import_by_assimp(const std::string& path, const std::string& ending, const 
   // Assimp needs up to about 30 times the size of a point or text file; a compressed one may first grow tenfold.
   std::uint64_t memory_bytes = (std::uint64_t(512) << 20) + 256 * static_cast<std::uint64_t>(bytes.size());
   memory_bytes = std::min(memory_bytes, 8 * options.byte_count_max + (std::uint64_t(256) << 20));
-  ContainerLimits limits = {memory_bytes, options.cpu_seconds_max, 2 * options.byte_count_max};
+  // A machine busy with other work may take ten times as long.
+  const ContainerLimits limits = {memory_bytes, options.cpu_seconds_max, 10 * options.cpu_seconds_max,
+                                  2 * options.byte_count_max};
   import_contained(
       limits,
       [&](ImportedScene* imported) {
