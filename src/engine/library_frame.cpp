@@ -85,7 +85,7 @@ void clear_costs(pocketray_instance* instance) {
 
 // Bands of rows, with a call of the progress function after each, which may end the frame.
 Status render_bands(pocketray_instance* instance, double seconds) {
-  // The function may set another one, or none, for the next frame.
+  // From within a call, another function may be set for the next frame.
   const pocketray_progress progress = instance->progress;
   void* const user = instance->progress_user;
   CHECK(progress != nullptr);

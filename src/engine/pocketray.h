@@ -305,8 +305,9 @@ POCKETRAY_API pocketray_result pocketray_refine(pocketray_instance* instance, do
  * or signal handler. A null instance is allowed. */
 POCKETRAY_API void pocketray_set_stop(pocketray_instance* instance, int stop);
 
-/* Called by pocketray_render() after every few rows, on its thread; any result but 0 stops the frame. The only call it
- * may make on the instance is pocketray_set_stop(). `user` is passed on. Null: none. */
+/* Called by pocketray_render() after every few rows, on its thread; any result but 0 stops the frame. The only calls it
+ * may make on the instance are pocketray_set_stop() and pocketray_set_progress(), which takes effect with the next
+ * frame. `user` is passed on. Null: none. */
 typedef int (*pocketray_progress)(void* user, uint32_t rows_done, uint32_t row_count);
 POCKETRAY_API pocketray_result pocketray_set_progress(pocketray_instance* instance, pocketray_progress progress,
                                                       void* user);

@@ -123,8 +123,10 @@ static void progress_is_told_and_stops(void) {
 }
 
 /* The function may be replaced by none from within a call: that holds from the next frame on. */
+static int clear_count;
 static int clear_progress(void* user, uint32_t rows_done, uint32_t row_count) {
   EXPECT(rows_done <= row_count);
+  ++clear_count;
   EXPECT_OK(pocketray_set_progress((pocketray_instance*)user, NULL, NULL));
   return 0;
 }
@@ -136,6 +138,10 @@ static void progress_may_be_cleared_while_it_is_told(void) {
   EXPECT_OK(pocketray_set_progress(instance, clear_progress, instance));
   api_render(instance, 0, &part);
   EXPECT(api_same(&whole, &part));
+  EXPECT(clear_count > 1); /* all of that frame's calls */
+  const int count = clear_count;
+  api_render(instance, 0, &part);
+  EXPECT(clear_count == count);
   pocketray_close(instance);
 }
 
