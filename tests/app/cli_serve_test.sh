@@ -171,8 +171,9 @@ assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])'
   expect split_report_many_servers 2 'servers' "${report[@]}" --servers 9
   "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
   reporting=$!
-  # SIGINT, signal 2, is caught: the program is running.
-  until grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status || ! kill -0 $reporting; do sleep 0.05; done
+  # The process is no longer the shell, and SIGINT, signal 2, is caught: the program is running.
+  until { grep -q split-report /proc/$reporting/cmdline && grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status; } ||
+    ! kill -0 $reporting; do sleep 0.05; done
   sleep 0.2
   kill -INT $reporting
   wait $reporting
