@@ -59,7 +59,7 @@ setup-tests:
 
 test: setup-tests configure
 	targets=$$(tests/targets.sh $(BUILD) '$(TESTS)') && cmake --build $(BUILD) -j$(JOBS) --target $$targets
-	cd $(BUILD) && ctest --output-on-failure --timeout 1500 -j$(JOBS) -R '$(TESTS)'
+	cd $(BUILD) && ctest --output-on-failure -j$(JOBS) -R '$(TESTS)'
 
 hardcases: setup-tests configure
 	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases

@@ -43,7 +43,7 @@ struct FreeBlock {
   void operator()(std::uint8_t* block) const { std::free(block); }
 };
 using Block = std::unique_ptr<std::uint8_t, FreeBlock>;
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 Block take_aligned(std::size_t bytes) {
   void* block = nullptr;
@@ -61,16 +61,18 @@ bool write_all(int pipe, const void* data, std::size_t count) {
   }
   return true;
 }
-bool wait_for_data(int pipe, Clock::time_point deadline) {
+
+// False once the deadline has passed.
+bool wait_for_data(int pipe, SteadyClock::time_point deadline) {
   pollfd waiting = {pipe, POLLIN, 0};
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - SteadyClock::now()).count();
     const int ready = poll(&waiting, 1, static_cast<int>(std::clamp<decltype(left)>(left, 0, 1000)));
     if (ready > 0) return true;
     if (left <= 0 || (ready < 0 && errno != EINTR)) return false;
   }
 }
-bool read_all(int pipe, void* data, std::size_t count, Clock::time_point deadline) {
+bool read_all(int pipe, void* data, std::size_t count, SteadyClock::time_point deadline) {
   char* at = static_cast<char*>(data);
   while (count > 0) {
     if (!wait_for_data(pipe, deadline)) return false;
@@ -141,7 +143,7 @@ bool read_and_send(int pipe, const std::function<void(ImportedScene*)>& read) {
 
 // False if the child did not finish.
 bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* header, std::string* text, Block* block) {
-  const Clock::time_point deadline = Clock::now() + std::chrono::seconds(limits.elapsed_seconds);
+  const SteadyClock::time_point deadline = SteadyClock::now() + std::chrono::seconds(limits.elapsed_seconds);
   if (!read_all(pipe, header, sizeof *header, deadline) || header->text_bytes > kTextBytesMax) return false;
   text->resize(header->text_bytes);
   if (!read_all(pipe, &(*text)[0], text->size(), deadline)) return false;
