@@ -7,9 +7,9 @@
 
 namespace pocketray {
 
-extern const AccelInfo kBvhAccel, kCompactAccel, kBruteAccel;
+extern const AccelInfo kBvhAccel, kCompactAccel, kGridAccel, kBruteAccel;
 
-inline const AccelInfo* const kAccelList[] = {&kBvhAccel, &kCompactAccel, &kBruteAccel};
+inline const AccelInfo* const kAccelList[] = {&kBvhAccel, &kCompactAccel, &kGridAccel, &kBruteAccel};
 
 // The accelerator that baked the data, or null.
 inline const AccelInfo* accel_of(Array<const std::uint8_t> data) {

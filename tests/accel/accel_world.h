@@ -35,6 +35,12 @@ inline std::unique_ptr<World> make_world(const Mesh& mesh, const AccelInfo* info
   return world;
 }
 
+// Builds again in the same memory, for moved positions, as a renderer does without refit().
+inline void rebuild(World* world) {
+  arena_release(&world->keep, 0);
+  world->info->build(&world->accel, &world->keep, &world->scratch);
+}
+
 inline Hit closest(const World& world, const Ray& ray, TraceStats* stats = nullptr, const HitFilter* filter = nullptr) {
   Hit hit = {-1, -1, -1, 0};
   world.info->closest(world.accel, ray, filter, &hit, stats);

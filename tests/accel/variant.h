@@ -17,12 +17,22 @@ inline std::string name_of(const Variant& variant) {
   return std::string(variant.accel->name) + ", " + isa_name(variant.isa) + (variant.in_packets ? ", in packets" : "");
 }
 
-// All but brute force, the reference for comparisons.
+// Whether it is a BVH, which has kernels for every instruction set and for packets.
+inline bool is_hierarchy(const AccelInfo* info) { return info == &kBvhAccel || info == &kCompactAccel; }
+
+// All but brute force, the reference for comparisons. Those that trace the rays of a packet one by one, with one code
+// for all instruction sets, are one variant.
 inline std::vector<Variant> all_variants() {
   std::vector<Variant> list;
-  for (const AccelInfo* info : kAccelList)
-    for (int isa = 0; info != &kBruteAccel && isa <= static_cast<int>(best_isa()); ++isa)
+  for (const AccelInfo* info : kAccelList) {
+    if (info == &kBruteAccel) continue;
+    if (!is_hierarchy(info)) {
+      list.push_back({info, best_isa(), true});
+      continue;
+    }
+    for (int isa = 0; isa <= static_cast<int>(best_isa()); ++isa)
       for (bool in_packets : {false, true}) list.push_back({info, static_cast<Isa>(isa), in_packets});
+  }
   return list;
 }
 

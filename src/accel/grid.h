@@ -1,0 +1,116 @@
+// The adaptive voxel grid of [Jevans 1992, Object Space Temporal Coherence for Ray Tracing] sec. 3.1: a uniform grid of
+// voxels, each with a list of the triangles that it touches; a voxel with many triangles is itself divided by a grid
+// when a ray first enters it, so that nothing is spent on space that no ray sees. Its data is one block without
+// pointers; places in it are counted in words of 32 bits:
+//
+//   GridHeader | root grid | pool of the grids that rays have called for
+//
+// A grid is a GridNode | GridCell[cells + 1] | triangle ids. The pool has a fixed size. When it is full, grids that
+// rays have not entered for longest are given up, as in sec. 6.1; while none can be, voxels stay undivided and all
+// their triangles are tested. Neither changes a hit.
+//
+// Data that rays change (our deviation from Accel): queries take a `const Accel&`, but divide voxels. So the data must
+// lie in writable memory, is used by one Accel and its copies, and is not baked. Any number of threads may query at
+// once: one at a time divides a voxel, the others do without meanwhile; a finished grid is published by storing its
+// place in the voxel. To give up grids, a thread waits until it alone is within a query: grid_pool.h.
+#pragma once
+#include <atomic>
+#include <cstring>
+
+#include "accel/accel.h"
+
+namespace pocketray {
+
+// Granularity, "based on the number of objects in a voxel" (sec. 3.1): about this many cells per triangle.
+// A voxel of up to kVoxelTriangleMax triangles is not divided. All three measured with `pocketray bench`: see
+// grid_shape.cpp.
+constexpr std::uint32_t kRootCellsPerTriangle = 1, kCellsPerTriangle = 2, kVoxelTriangleMax = 8;
+// A triangle lies in several cells. Where the lists would be longer than this many ids per triangle, cells are larger.
+constexpr std::uint32_t kRootIdsPerTriangle = 2, kIdsPerTriangle = 3;
+constexpr std::uint32_t kCellsPerAxisMax = 1024;
+// Bounds the recursion of a walk. Eight levels reach a 10^-8th of a scene: below that float has no detail.
+constexpr std::uint32_t kGridDepthMax = 8;
+// What the pool takes, in words; with the root grid, 52 bytes per triangle, as much as a BVH.
+constexpr std::uint32_t kPoolWordsPerTriangle = 9, kPoolWordsMin = 1024;
+
+// What a voxel's `child` says other than the place of its grid. The paper's *not subdivided* and *subdivided*, the
+// latter without a grid because there is nothing to gain.
+constexpr std::uint32_t kNotSubdivided = 0, kSubdividedWithoutGrid = 1;
+
+struct GridCell {
+  std::uint32_t begin;  // of its ids in the grid's list; they end where the next cell's begin
+  std::atomic<std::uint32_t> child;
+};
+static_assert(sizeof(GridCell) == 8 && sizeof(std::atomic<std::uint32_t>) == 4, "two words");
+
+// How a grid divides its box: per axis the number of cells, where the first begins, their size, and its inverse.
+struct GridShape {
+  std::uint16_t cells[3];
+  float low[3], size[3], inverse[3];
+};
+
+struct GridNode {
+  std::uint32_t block;               // words that it takes from the pool; kBlockInUse if it does
+  std::uint32_t parent, cell;        // the grid whose voxel it divides, 0: it is the root; and which voxel
+  std::atomic<std::uint32_t> stamp;  // header.clock when a ray last entered it
+  GridShape shape;
+  std::uint16_t depth;
+};
+static_assert(sizeof(GridNode) % 4 == 0, "whole words");
+constexpr std::uint32_t kBlockInUse = 1u << 31;
+
+struct alignas(64) GridHeader {
+  std::uint32_t magic, triangle_count, pool_begin, pool_end;
+  // Under the lock.
+  std::uint32_t next;                        // where to look for room first
+  std::uint32_t words_since_tick;            // taken since the clock last advanced
+  std::uint32_t rest;                        // requests to turn away before the pool is searched again
+  std::uint32_t grid_count, given_up_count;  // ever made, ever given up
+  std::atomic<std::uint32_t> lock, clock;
+  alignas(64) std::atomic<std::uint32_t> walks;  // queries under way; kGivingUp holds further ones back
+};
+constexpr std::uint32_t kGridMagic = 0x44495247;  // "GRID"
+constexpr std::uint32_t kRootPlace = sizeof(GridHeader) / 4;
+
+constexpr std::uint64_t grid_words(std::uint64_t cell_count, std::uint64_t id_count) {
+  return sizeof(GridNode) / 4 + 2 * (cell_count + 1) + id_count;
+}
+
+// Typed access. The one place where const is cast away: see above.
+struct Grid {
+  std::uint32_t* words;
+  explicit Grid(const Accel& accel)
+      : words(reinterpret_cast<std::uint32_t*>(const_cast<std::uint8_t*>(accel.data.data))) {}
+  GridHeader& header() const { return *reinterpret_cast<GridHeader*>(words); }
+  GridNode& node(std::uint32_t place) const { return *reinterpret_cast<GridNode*>(words + place); }
+};
+inline GridCell* cells_of(GridNode& node) { return reinterpret_cast<GridCell*>(&node + 1); }
+inline std::uint32_t cell_count_of(const GridShape& shape) {
+  return std::uint32_t(shape.cells[0]) * shape.cells[1] * shape.cells[2];
+}
+inline std::uint32_t* ids_of(GridNode& node) {
+  return reinterpret_cast<std::uint32_t*>(cells_of(node) + cell_count_of(node.shape) + 1);
+}
+inline std::uint32_t cell_number(const GridShape& shape, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return (z * shape.cells[1] + y) * shape.cells[0] + x;
+}
+
+// The cell of a coordinate, the outermost one beyond the box. Never decreases as x grows, so a range of coordinates
+// that holds x has a range of cells that holds the cell of x. No NaN and no overflow arises.
+inline std::uint32_t cell_of(const GridShape& shape, int axis, double x) {
+  double place = (x - double(shape.low[axis])) * double(shape.inverse[axis]);
+  if (!(place > 0)) return 0;
+  std::uint32_t last = shape.cells[axis] - 1u;
+  return place < last ? static_cast<std::uint32_t>(place) : last;
+}
+// Where cell i begins and cell i - 1 ends, within 2^-22 of the grid's extent; whoever uses it pads it by more.
+inline double cell_begin(const GridShape& shape, int axis, std::uint32_t i) {
+  return double(shape.low[axis]) + i * double(shape.size[axis]);
+}
+
+std::size_t grid_need(std::uint32_t triangle_count, std::uint64_t pool_words);
+// build() of AccelInfo with a pool of that size; tests make it small.
+void grid_build(Accel* accel, Arena* keep, Arena* scratch, std::uint64_t pool_words);
+float grid_nearest_distance(const Accel& accel, const Vec3& point);
+
+}  // namespace pocketray
