@@ -24,14 +24,14 @@ namespace pocketray {
 // Granularity, "based on the number of objects in a voxel" (sec. 3.1): about this many cells per triangle.
 // A voxel of up to kVoxelTriangleMax triangles is not divided. All three measured with `pocketray bench`: see
 // grid_shape.cpp.
-constexpr std::uint32_t kRootCellsPerTriangle = 1, kCellsPerTriangle = 2, kVoxelTriangleMax = 8;
+constexpr std::uint32_t kRootCellsPerTriangle = 1, kCellsPerTriangle = 4, kVoxelTriangleMax = 8;
 // A triangle lies in several cells. Where the lists would be longer than this many ids per triangle, cells are larger.
-constexpr std::uint32_t kRootIdsPerTriangle = 2, kIdsPerTriangle = 3;
+constexpr std::uint32_t kRootIdsPerTriangle = 3, kIdsPerTriangle = 4;
 constexpr std::uint32_t kCellsPerAxisMax = 1024;
 // Bounds the recursion of a walk. Eight levels reach a 10^-8th of a scene: below that float has no detail.
 constexpr std::uint32_t kGridDepthMax = 8;
 // What the pool takes, in words; with the root grid, 52 bytes per triangle, as much as a BVH.
-constexpr std::uint32_t kPoolWordsPerTriangle = 9, kPoolWordsMin = 1024;
+constexpr std::uint32_t kPoolWordsPerTriangle = 8, kPoolWordsMin = 4096;
 
 // What a voxel's `child` says other than the place of its grid. The paper's *not subdivided* and *subdivided*, the
 // latter without a grid because there is nothing to gain.

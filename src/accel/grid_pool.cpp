@@ -119,9 +119,15 @@ void make_pool(const Grid& grid, std::uint32_t begin, std::uint32_t end) {
   grid.node(begin).block = end - begin;
 }
 
+bool is_resting(GridHeader* header) {
+  if (header->rest == 0) return false;
+  --header->rest;
+  return true;
+}
+
 std::uint32_t take_block(const Grid& grid, std::uint32_t parent, std::uint64_t words) {
   GridHeader& h = grid.header();
-  if (h.rest > 0) return --h.rest, 0;
+  CHECK_EQ(h.rest, 0u);
   std::uint32_t size = static_cast<std::uint32_t>(words);
   std::uint32_t place = words <= pool_words(h) ? find_block(grid, size) : 0;
   if (!place && words <= pool_words(h)) {

@@ -19,27 +19,54 @@ CellRange cells_of_box(const GridShape& shape, const Box& box) {
   for (int axis = 0; axis < 3; ++axis) {
     range.first[axis] = cell_of(shape, axis, double(box.low[axis]));
     range.last[axis] = cell_of(shape, axis, double(box.high[axis]));
-    CHECK_LE(range.first[axis], range.last[axis]);
   }
   return range;
 }
 
+Vec3d absolute(const Vec3d& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
+double sum_of(const Vec3d& a) { return a.x + a.y + a.z; }
+
+// The plane of a triangle against cells of a grid, all of one size.
+struct PlaneTest {
+  Vec3d corner, normal, half;  // half of a cell, with room for the errors of cell_begin() and cell_of()
+  double reach, error;         // the plane's distance within which it meets a cell; relative error of a distance
+
+  PlaneTest(const GridShape& shape, const Vec3& a, const Vec3& b, const Vec3& c) : corner(to_double(a)) {
+    Vec3d ab = to_double(b) - corner, ac = to_double(c) - corner;
+    normal = cross(ab, ac);
+    for (int axis = 0; axis < 3; ++axis) half[axis] = double(shape.size[axis]) * (0.5 + shape.cells[axis] * 0x1p-20);
+    reach = dot(absolute(normal), half);
+    error = sum_of(absolute(ab)) * sum_of(absolute(ac)) * 0x1p-48;
+  }
+  bool meets(const GridShape& shape, std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    Vec3d middle = {(x + 0.5) * shape.size[0] + shape.low[0], (y + 0.5) * shape.size[1] + shape.low[1],
+                    (z + 0.5) * shape.size[2] + shape.low[2]};
+    Vec3d offset = middle - corner;
+    return std::fabs(dot(normal, offset)) <= reach + error * (sum_of(absolute(offset)) + sum_of(half));
+  }
+};
+
+// The cells whose list a triangle belongs in: those that its box touches and, of many, its plane too.
 template <class Visit>
-void for_each_cell(const GridShape& shape, const Box& box, Visit visit) {
-  CellRange range = cells_of_box(shape, box);
-  for (std::uint32_t z = range.first[2]; z <= range.last[2]; ++z)
-    for (std::uint32_t y = range.first[1]; y <= range.last[1]; ++y)
-      for (std::uint32_t x = range.first[0]; x <= range.last[0]; ++x) visit(cell_number(shape, x, y, z));
+void for_each_cell(const Accel& accel, const GridShape& shape, std::uint32_t triangle, Visit visit) {
+  CellRange r = cells_of_box(shape, triangle_box(accel, triangle));
+  std::uint32_t nx = r.last[0] - r.first[0] + 1, ny = r.last[1] - r.first[1] + 1, nz = r.last[2] - r.first[2] + 1;
+  if (nx == 1 && ny == 1 && nz == 1) return visit(cell_number(shape, r.first[0], r.first[1], r.first[2]));
+  const Triangle& t = accel.triangles[triangle];
+  PlaneTest plane(shape, accel.positions[t.vertex(0)], accel.positions[t.vertex(1)], accel.positions[t.vertex(2)]);
+  bool is_flat = nx == 1 || ny == 1 || nz == 1;
+  for (std::uint32_t z = r.first[2]; z <= r.last[2]; ++z)
+    for (std::uint32_t y = r.first[1]; y <= r.last[1]; ++y)
+      for (std::uint32_t x = r.first[0]; x <= r.last[0]; ++x)
+        if (is_flat || plane.meets(shape, x, y, z)) visit(cell_number(shape, x, y, z));
 }
 
+// Stops counting beyond the limit, between triangles.
 std::uint64_t count_ids(const Accel& accel, Array<const std::uint32_t> ids, const GridShape& shape,
                         std::uint64_t limit) {
   std::uint64_t count = 0;
   for (std::uint32_t id : ids) {
-    CellRange range = cells_of_box(shape, triangle_box(accel, id));
-    std::uint64_t cells = 1;
-    for (int axis = 0; axis < 3; ++axis) cells *= range.last[axis] - range.first[axis] + 1;
-    count += cells;
+    for_each_cell(accel, shape, id, [&](std::uint32_t) { ++count; });
     if (count > limit) break;
   }
   return count;
@@ -122,15 +149,14 @@ void fill_cells(const Accel& accel, Array<const std::uint32_t> ids, GridNode* no
   GridCell* cells = cells_of(*node);
   std::uint32_t* list = ids_of(*node);
   for (std::uint32_t i = 0; i <= cell_count; ++i) new (&cells[i]) GridCell{0, {kNotSubdivided}};
-  for (std::uint32_t id : ids)
-    for_each_cell(shape, triangle_box(accel, id), [&](std::uint32_t cell) { ++cells[cell].begin; });
+  for (std::uint32_t id : ids) for_each_cell(accel, shape, id, [&](std::uint32_t cell) { ++cells[cell].begin; });
   for (std::uint32_t i = 0; i <= cell_count; ++i) {
     std::uint32_t count = cells[i].begin;
     cells[i].begin = sum, sum += count;
   }
   // Filling moves every cell's begin to its end, which is where the next one begins.
   for (std::uint32_t id : ids)
-    for_each_cell(shape, triangle_box(accel, id), [&](std::uint32_t cell) { list[cells[cell].begin++] = id; });
+    for_each_cell(accel, shape, id, [&](std::uint32_t cell) { list[cells[cell].begin++] = id; });
   for (std::uint32_t i = cell_count; i > 0; --i) cells[i].begin = cells[i - 1].begin;
   cells[0].begin = 0;
 }

@@ -20,6 +20,14 @@ Box content_box(const Accel& accel, const GridShape& shape, std::uint32_t cell, 
   return box;
 }
 
+// Whether a ray is expected to have less to do in the grid than with the voxel's triangles. A ray along a random line
+// crosses about half as many cells as there are slices along all axes, and to visit one costs half a triangle's test
+// (`perf record pocketray render seesaw`).
+bool is_worth_it(const GridShape& shape, std::uint64_t id_count, std::uint32_t triangle_count) {
+  double cells = cell_count_of(shape), slices = shape.cells[0] + shape.cells[1] + shape.cells[2];
+  return cells > 1 && slices / 2 * (static_cast<double>(id_count) / cells + 0.5) < triangle_count;
+}
+
 std::uint32_t make_grid(const Accel& accel, std::uint32_t parent, std::uint32_t cell) {
   Grid grid(accel);
   GridNode& above = grid.node(parent);
@@ -31,7 +39,7 @@ std::uint32_t make_grid(const Accel& accel, std::uint32_t parent, std::uint32_t 
   GridShape shape;
   std::uint64_t id_count = choose_shape(accel, ids, content_box(accel, above.shape, cell, ids), limits, &shape);
   std::uint32_t cell_count = cell_count_of(shape);
-  if (cell_count < 2) return kSubdividedWithoutGrid;
+  if (!is_worth_it(shape, id_count, ids.count)) return kSubdividedWithoutGrid;
   std::uint32_t place = take_block(grid, parent, grid_words(cell_count, id_count));
   if (!place) return kNotSubdivided;
   std::uint32_t block = grid.node(place).block;
@@ -51,7 +59,7 @@ std::uint32_t subdivide(const Accel& accel, std::uint32_t parent, std::uint32_t 
   if (!try_lock(&grid.header())) return kNotSubdivided;
   std::atomic<std::uint32_t>& child = cells_of(grid.node(parent))[cell].child;
   std::uint32_t place = child.load(std::memory_order_relaxed);
-  if (place == kNotSubdivided) {
+  if (place == kNotSubdivided && !is_resting(&grid.header())) {
     place = make_grid(accel, parent, cell);
     child.store(place, std::memory_order_release);
   }

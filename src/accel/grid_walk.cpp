@@ -36,14 +36,24 @@ bool test_triangles(GridWalk* w, const std::uint32_t* ids, std::uint32_t count) 
   return false;
 }
 
-// Cells along an axis that the ray touches between two distances. False if it is beside the grid.
-bool touched_cells(const GridWalk& w, const GridShape& shape, int axis, double from, double to, std::uint32_t* first,
-                   std::uint32_t* last) {
+// Shortens a range of distances to where the ray is beside the grid along a minor axis, by the padding twice: what the
+// division loses by cancellation is less. False if nowhere.
+bool clip_to_grid(const GridWalk& w, const GridShape& shape, int axis, double* from, double* to) {
+  double low = double(shape.low[axis]) - 2 * w.padding - w.origin[axis];
+  double high = cell_begin(shape, axis, shape.cells[axis]) + 2 * w.padding - w.origin[axis];
+  // Within the scene, a ray that is nearly parallel strays by less than its padding.
+  if (w.inverse_slope[axis] == 0) return low <= 0 && high >= 0;
+  double a = low * w.inverse_slope[axis], b = high * w.inverse_slope[axis];
+  *from = std::max(*from, std::min(a, b)), *to = std::min(*to, std::max(a, b));
+  return *from <= *to;
+}
+
+// Cells along an axis that the ray touches between two distances.
+inline void touched_cells(const GridWalk& w, const GridShape& shape, int axis, double from, double to,
+                          std::uint32_t* first, std::uint32_t* last) {
   double a = w.origin[axis] + from * w.slope[axis], b = w.origin[axis] + to * w.slope[axis];
   double low = std::min(a, b) - w.padding, high = std::max(a, b) + w.padding;
-  if (high < double(shape.low[axis]) || low > cell_begin(shape, axis, shape.cells[axis])) return false;
   *first = cell_of(shape, axis, low), *last = cell_of(shape, axis, high);
-  return true;
 }
 
 template <bool kAny>
@@ -73,7 +83,7 @@ bool walk_grid(GridWalk* w, std::uint32_t place, double from, double to) {
   auto distance_of = [&](double x) { return (x - w->origin[m]) * w->sign; };
   double low = distance_of(double(shape.low[m])), high = distance_of(cell_begin(shape, m, shape.cells[m]));
   from = std::max(from, std::min(low, high) - w->padding), to = std::min(to, std::max(low, high) + w->padding);
-  if (!(from <= to)) return false;
+  if (!(from <= to) || !clip_to_grid(*w, shape, u, &from, &to) || !clip_to_grid(*w, shape, v, &from, &to)) return false;
   const int step = w->sign > 0 ? 1 : -1;
   const std::uint32_t near_face = w->sign > 0 ? 0 : 1;
   std::uint32_t first = cell_of(shape, m, w->origin[m] + from * w->sign);
@@ -85,10 +95,11 @@ bool walk_grid(GridWalk* w, std::uint32_t place, double from, double to) {
     if (at[m] != last) b = std::min(to, distance_of(cell_begin(shape, m, at[m] + 1 - near_face)) + w->padding);
     if (a > w->limit) return false;  // so are all further slices; a hit of equal t may lie in this one
     std::uint32_t u_first, u_last, v_first, v_last;
-    if (touched_cells(*w, shape, u, a, b, &u_first, &u_last) && touched_cells(*w, shape, v, a, b, &v_first, &v_last))
-      for (at[v] = v_first; at[v] <= v_last; ++at[v])
-        for (at[u] = u_first; at[u] <= u_last; ++at[u])
-          if (visit_cell<kAny>(w, place, node, cell_number(shape, at[0], at[1], at[2]), a, b)) return true;
+    touched_cells(*w, shape, u, a, b, &u_first, &u_last);
+    touched_cells(*w, shape, v, a, b, &v_first, &v_last);
+    for (at[v] = v_first; at[v] <= v_last; ++at[v])
+      for (at[u] = u_first; at[u] <= u_last; ++at[u])
+        if (visit_cell<kAny>(w, place, node, cell_number(shape, at[0], at[1], at[2]), a, b)) return true;
     if (at[m] == last) return false;
   }
 }
@@ -116,6 +127,7 @@ bool start_walk(const Ray& ray, const HitFilter* filter, TraceStats* stats, Grid
   double farthest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     w->origin[axis] = double(ray.origin[axis]), w->slope[axis] = double(ray.direction[axis]) / w->speed;
+    w->inverse_slope[axis] = std::fabs(w->slope[axis]) > 0x1p-60 ? 1 / w->slope[axis] : 0;
     farthest = std::max(farthest, std::fabs(w->origin[axis]));
   }
   double reach = reach_of(accel.bounds, w->origin);

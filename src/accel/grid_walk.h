@@ -16,7 +16,7 @@ namespace pocketray {
 
 // Triangles lie in several voxels: the last ones tested are remembered, in a table by their lowest bits ("mailbox"
 // [Amanatides & Woo 1987], here of the ray, since several threads share the triangles). Measured.
-constexpr std::uint32_t kMailboxSize = 16;
+constexpr std::uint32_t kMailboxSize = 64;
 
 struct GridWalk {
   const Accel& accel;
@@ -27,6 +27,7 @@ struct GridWalk {
   ShearedRay ray;
   int main, minor[2];          // axes
   double sign, speed;          // of the direction along the main axis
+  double inverse_slope[3];     // 0 where the ray is nearly parallel
   double origin[3], slope[3];  // per unit of distance; |slope| <= 1
   double padding, limit;       // farther hits do not matter
   float t_max;
