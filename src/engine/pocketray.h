@@ -132,7 +132,7 @@ typedef struct pocketray_options {
   uint32_t camera_index;
   uint32_t light_count_max;    /* reserve memory for pocketray_set_lights(); 0: lights are fixed */
   const char* effects;         /* "auto" plus or minus some: "auto,-shadow"; null: auto, what the scene needs */
-  const char* accelerator;     /* "bvh", "compact", …; null: the file's, else the fastest that fits */
+  const char* accelerator;     /* "bvh", "compact", "grid", …; null: the file's, else the fastest that fits */
   const pocketray_part* parts; /* of a scene without animation: each becomes a node, in this order */
   uint32_t part_count;
   int movable; /* 1: reserve memory for pocketray_set_node() on the nodes of an animated scene */

@@ -29,7 +29,7 @@ expect render_baked 0 'ns per pixel' render c.pray --size 32x24 -o baked.ppm
 check baked_gives_the_same_picture cmp -s one.ppm baked.ppm
 "${run[@]}" render "$subject" --size 32x24 --effects all -o all.ppm >/dev/null
 check all_effects_give_the_same_picture cmp -s one.ppm all.ppm
-for accel in compact brute; do
+for accel in compact grid brute; do
   "${run[@]}" render "$subject" --size 32x24 --accel $accel -o $accel.ppm >/dev/null
   check "accel_${accel}_gives_the_same_picture" cmp -s one.ppm $accel.ppm
 done
