@@ -15,8 +15,8 @@ constexpr std::uint32_t kTicksPerPool = 16;
 constexpr std::uint32_t kAgeMax = kTicksPerPool;
 // What is given up at once: a quarter of the pool, so that waiting for the other threads is rare.
 constexpr std::uint32_t kGivenUpPart = 4;
-// After a search in vain, the next so many requests are turned away at once. Measured: a search costs about as much as
-// 1000 of those.
+// After a search in vain, the next so many requests are turned away at once: as many as a pool has blocks, in order of
+// magnitude, so that searching takes little of the time.
 constexpr std::uint32_t kRestAfterFailure = 4096;
 
 std::uint32_t pool_words(const GridHeader& h) { return h.pool_end - h.pool_begin; }

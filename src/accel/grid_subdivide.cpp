@@ -21,8 +21,7 @@ Box content_box(const Accel& accel, const GridShape& shape, std::uint32_t cell, 
 }
 
 // Whether a ray is expected to have less to do in the grid than with the voxel's triangles. A ray along a random line
-// crosses about half as many cells as there are slices along all axes, and to visit one costs half a triangle's test
-// (`perf record pocketray render seesaw`).
+// crosses about half as many cells as there are slices along all axes, and a visit counts as half a triangle's test.
 bool is_worth_it(const GridShape& shape, std::uint64_t id_count, std::uint32_t triangle_count) {
   double cells = cell_count_of(shape), slices = shape.cells[0] + shape.cells[1] + shape.cells[2];
   return cells > 1 && slices / 2 * (static_cast<double>(id_count) / cells + 0.5) < triangle_count;

@@ -15,7 +15,8 @@
 namespace pocketray {
 
 // Triangles lie in several voxels: the last ones tested are remembered, in a table by their lowest bits ("mailbox"
-// [Amanatides & Woo 1987], here of the ray, since several threads share the triangles). Measured.
+// [Amanatides & Woo 1987], here of the ray, since several threads share the triangles).
+// Measured: with 16, seesaw takes 1.2 times as long.
 constexpr std::uint32_t kMailboxSize = 64;
 
 struct GridWalk {
