@@ -48,13 +48,23 @@ bool clip_to_grid(const GridWalk& w, const GridShape& shape, int axis, double* f
   return *from <= *to;
 }
 
-// Cells along an axis that the ray touches between two distances.
-inline void touched_cells(const GridWalk& w, const GridShape& shape, int axis, double from, double to,
-                          std::uint32_t* first, std::uint32_t* last) {
-  double a = w.origin[axis] + from * w.slope[axis], b = w.origin[axis] + to * w.slope[axis];
-  double low = std::min(a, b) - w.padding, high = std::max(a, b) + w.padding;
-  *first = cell_of(shape, axis, low), *last = cell_of(shape, axis, high);
-}
+// A minor axis of a grid, in cells instead of coordinates: where the ray is at a distance.
+struct CellTrack {
+  double start, rate, padding;
+  std::uint32_t last;
+
+  CellTrack(const GridWalk& w, const GridShape& shape, int axis) : last(shape.cells[axis] - 1u) {
+    double inverse = double(shape.inverse[axis]);
+    start = (w.origin[axis] - double(shape.low[axis])) * inverse, rate = w.slope[axis] * inverse;
+    padding = 2 * w.padding * inverse;  // aside, and before and after the distance, where the ray strays by no more
+  }
+  double at(double distance) const { return start + distance * rate; }
+  std::uint32_t cell(double place) const {
+    return place > 0 ? place < last ? static_cast<std::uint32_t>(place) : last : 0;
+  }
+  std::uint32_t first_of(double a, double b) const { return cell(std::min(a, b) - padding); }
+  std::uint32_t last_of(double a, double b) const { return cell(std::max(a, b) + padding); }
+};
 
 template <bool kAny>
 bool walk_grid(GridWalk* w, std::uint32_t place, double from, double to);
@@ -85,22 +95,26 @@ bool walk_grid(GridWalk* w, std::uint32_t place, double from, double to) {
   from = std::max(from, std::min(low, high) - w->padding), to = std::min(to, std::max(low, high) + w->padding);
   if (!(from <= to) || !clip_to_grid(*w, shape, u, &from, &to) || !clip_to_grid(*w, shape, v, &from, &to)) return false;
   const int step = w->sign > 0 ? 1 : -1;
-  const std::uint32_t near_face = w->sign > 0 ? 0 : 1;
+  const std::uint32_t far_face = w->sign > 0 ? 1 : 0;
   std::uint32_t first = cell_of(shape, m, w->origin[m] + from * w->sign);
   std::uint32_t last = cell_of(shape, m, w->origin[m] + to * w->sign);
+  const CellTrack u_track(*w, shape, u), v_track(*w, shape, v);
   std::uint32_t at[3];
+  double near = from, u_near = u_track.at(near), v_near = v_track.at(near);
   for (at[m] = first;; at[m] += static_cast<std::uint32_t>(step)) {
-    double a = from, b = to;
-    if (at[m] != first) a = std::max(from, distance_of(cell_begin(shape, m, at[m] + near_face)) - w->padding);
-    if (at[m] != last) b = std::min(to, distance_of(cell_begin(shape, m, at[m] + 1 - near_face)) + w->padding);
-    if (a > w->limit) return false;  // so are all further slices; a hit of equal t may lie in this one
-    std::uint32_t u_first, u_last, v_first, v_last;
-    touched_cells(*w, shape, u, a, b, &u_first, &u_last);
-    touched_cells(*w, shape, v, a, b, &v_first, &v_last);
+    if (near - w->padding > w->limit) return false;  // so are all further slices; a hit of equal t may lie in this one
+    double far = to;
+    if (at[m] != last) far = std::min(to, distance_of(cell_begin(shape, m, at[m] + far_face)));
+    double u_far = u_track.at(far), v_far = v_track.at(far);
+    std::uint32_t u_first = u_track.first_of(u_near, u_far), u_last = u_track.last_of(u_near, u_far);
+    std::uint32_t v_first = v_track.first_of(v_near, v_far), v_last = v_track.last_of(v_near, v_far);
     for (at[v] = v_first; at[v] <= v_last; ++at[v])
       for (at[u] = u_first; at[u] <= u_last; ++at[u])
-        if (visit_cell<kAny>(w, place, node, cell_number(shape, at[0], at[1], at[2]), a, b)) return true;
+        if (visit_cell<kAny>(w, place, node, cell_number(shape, at[0], at[1], at[2]), near - w->padding,
+                             far + w->padding))
+          return true;
     if (at[m] == last) return false;
+    near = far, u_near = u_far, v_near = v_far;
   }
 }
 
