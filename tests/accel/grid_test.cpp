@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include "accel/accel_world.h"
@@ -214,6 +216,47 @@ TEST_CASE("grid_is_divided_by_several_threads_at_once_with_the_same_answers") {
       CHECK(is_consistent(*world, &reached));
       CHECK(header_of(*world).walks == 0);
     }
+}
+
+namespace {
+
+// A query that stays under way until another thread waits for its end, or has not had to.
+struct Pause {
+  GridHeader& header;
+  std::atomic<bool>& other_done;
+  mutable std::uint32_t given_up_count = 0;
+  static bool accept(const void* context, std::uint32_t, float, float) {
+    const Pause& pause = *static_cast<const Pause*>(context);
+    while (pause.header.walks < 1u << 31 && !pause.other_done) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    pause.given_up_count = pause.header.given_up_count;
+    return true;
+  }
+};
+
+}  // namespace
+
+// Goal: no grid is given up while another thread's query may be in it. Method: a query whose filter waits; the other
+// thread fills the pool meanwhile, and gives up grids only after the query has ended.
+TEST_CASE("grid_is_not_given_up_while_a_query_is_under_way") {
+  Mesh mesh = clusters(60, 163);
+  mesh.positions.push_back({-2, -2, 0}), mesh.positions.push_back({2, -2, 0}), mesh.positions.push_back({0, 3, 0});
+  mesh.triangles.emplace_back(10800, 10801, 10802, 0);
+  auto world = make_grid_world(mesh, 6000);
+  std::atomic<bool> done{false};
+  Pause pause = {Grid(world->accel).header(), done};
+  HitFilter filter = {Pause::accept, &pause};
+  std::thread other([&] {
+    while (pause.header.walks == 0) std::this_thread::yield();
+    Rng rng = make_rng(164);
+    for (int i = 0; i < 3000; ++i) closest(*world, ray_across(&rng, static_cast<float>(i % 1000) / 1000));
+    done = true;
+  });
+  Hit hit = closest(*world, {{0.3f, 0.2f, -2}, {0, 0, 1}, kInfinity}, nullptr, &filter);
+  CHECK(hit.triangle != kNoTriangle);
+  other.join();
+  CHECK(pause.given_up_count == 0);
+  CHECK(header_of(*world).given_up_count > 0);
 }
 
 // Goal: a grid is not taken from a file. Method: its own data, and none.
