@@ -15,7 +15,7 @@ struct Accel {
   Array<const Vec3> positions;
   Array<const Triangle> triangles;
   Box bounds = empty_box();
-  Array<const std::uint8_t> data;  // the structure itself
+  Array<const std::uint8_t> data;  // the structure itself; of `grid`, queries change it: grid.h
 };
 
 // How rays traverse it.

@@ -59,7 +59,7 @@ std::uint64_t occluded_packet(const Accel& accel, const SegmentPacket& rays, con
 const AccelInfo kGridAccel = {
     {closest, closest_packet, occluded, occluded_packet},
     "grid",
-    "voxels divided where rays pass",
+    "voxels divided where rays pass, at about a sixth of the speed",
     false,
     0,
     need,
