@@ -187,6 +187,14 @@ float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect k
   return most < kRadianceMax ? most : kRadianceMax;
 }
 
+// To a sixteenth of the next power of two: frames of an animation, whose lights and surfaces move a little, have the
+// same bound and so leave out the same rays.
+float round_up(float bound) {
+  int exponent;
+  float mantissa = std::frexp(bound, &exponent);
+  return std::isfinite(bound) ? std::ldexp(std::ceil(mantissa * 16) / 16, exponent) : bound;
+}
+
 }  // namespace
 
 Status light_point_count(const Scene& scene, const Settings& settings, EffectMask mask, std::uint32_t* count) {
@@ -255,8 +263,8 @@ float radiance_bound(const FrameData& frame) {
     float next = leaves + (reflectance > 0 ? reflectance * bound : 0);
     bound = next > background ? next : background;
   }
-  CHECK_GE(bound, background);  // fails for NaN, too
-  return bound * 1.0001f;       // covers rounding of the sums
+  CHECK_GE(bound, background);       // fails for NaN, too
+  return round_up(bound * 1.0001f);  // covers rounding of the sums
 }
 
 }  // namespace pocketray

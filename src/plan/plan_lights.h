@@ -13,8 +13,8 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
 void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame);
 
 // Upper bound of the radiance along any ray, for the cut-off: emission, direct light at the smallest distance of every
-// light from the geometry, and the most that ray_depth interreflections at the strongest mirror can add. Infinite if
-// unbounded.
+// light from the geometry, and the most that ray_depth interreflections at the strongest mirror can add; rounded up by
+// at most an eighth. Infinite if unbounded.
 float radiance_bound(const FrameData& frame);
 
 }  // namespace pocketray

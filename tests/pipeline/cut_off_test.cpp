@@ -139,6 +139,6 @@ TEST_CASE("radiance_bound_is_reached_by_a_mirror_before_an_emitter") {
   float seen = trace_ray(test->renderer, {0, 0, 0}, {0, 0, -1}).x;
   CHECK(seen <= test->renderer.frame.radiance_bound);
   CHECK(test->renderer.frame.radiance_bound <=
-        4 * 1.01f);  // 2/(1 − ½), all surfaces assumed as strong as the strongest
+        4 * 1.13f);  // 2/(1 − ½), all surfaces assumed as strong as the strongest, rounded up by at most an eighth
   CHECK(seen == doctest::Approx(2 / 0.75).epsilon(1e-4));  // Σ (ρ²)ᵏ · 2
 }
