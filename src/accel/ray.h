@@ -53,9 +53,15 @@ struct Hit {
   std::uint32_t triangle = kNoTriangle;
 };
 
-// Work counters for --aov cost and bench; one per thread.
+// Told which pixel is traced, for the rays that an accelerator hands on to it; see temporal/ray_observer.h.
+struct RayObserver {
+  std::uint16_t column = 0, row = 0;
+};
+
+// Work counters for --aov cost and bench, and who observes the rays; one per thread.
 struct TraceStats {
   std::uint64_t nodes = 0, triangles = 0;  // nodes of four boxes visited, triangles tested
+  RayObserver* observer = nullptr;         // null: none
 };
 
 // Decides whether a candidate hit counts; null accepts all. Must depend on its arguments alone.

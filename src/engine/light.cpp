@@ -25,6 +25,9 @@ bool is_lit(const Renderer& renderer) {
 void choose_kernels(Renderer* renderer) {
   renderer->frame.scene = &renderer->scene;
   renderer->frame.accel_info = renderer->accel_info;
+  renderer->frame.first_rays = renderer->accel_info;
+  renderer->frame.first_hits = nullptr;
+  renderer->frame.ray_by_ray = false;
   renderer->frame.settings = renderer->settings;
   renderer->frame.mask = renderer->effects.mask;
   renderer->frame.surface = find_surface_function(renderer->effects.mask);

@@ -54,7 +54,7 @@ inline float optical_depth(float begin, float end, float open, float distance) {
 // Transmittance of the transparent surfaces between the point and the light, without refraction, in order along the
 // ray: products of floats do not commute in the last bit, and every accelerator must give the same.
 template <EffectMask mask>
-Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) {
+Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, bool at_first_hit) {
   const FrameData& frame = *tracer->frame;
   HitFilter filter = {frame.accept_clear, &context};
   Vec3 result = {1, 1, 1};
@@ -66,7 +66,8 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context) 
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     Hit hit;
     ++tracer->rays[static_cast<int>(RayKind::shadow)];
-    frame.accel_info->closest(frame.accel, ray, &filter, &hit, &tracer->stats);
+    const AccelTraversal& rays = at_first_hit && layer == 0 ? *frame.first_rays : *frame.accel_info;
+    rays.closest(frame.accel, ray, &filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) {
       if constexpr (has(mask, Effect::absorption)) {
         float end = (passed + ray.t_max) * unit;
@@ -126,11 +127,13 @@ Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t light, bool at_first_h
   bool filtered = frame.filter_every_shadow || emitter != kNone;
   ++tracer->rays[static_cast<int>(RayKind::shadow)];
   bool blocked;
-  if (!at_first_hit || !is_known(*tracer, light, &blocked))
-    blocked = frame.accel_info->occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
+  if (!at_first_hit || !is_known(*tracer, light, &blocked)) {
+    const AccelTraversal& rays = at_first_hit ? *frame.first_rays : *frame.accel_info;
+    blocked = rays.occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
+  }
   if (blocked) return {0, 0, 0};
   if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend))
-    return clear_transmittance<mask>(tracer, ray, context);
+    return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
   return {1, 1, 1};
 }
 
@@ -142,6 +145,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
   const Material& m = *s.material;
   Vec3 diffuse = s.diffuse * (1 / kPiF);
   Vec3 sum = {0, 0, 0};
+  const bool at_first_hit = tracer->first_surface && same_surface(*tracer->first_surface, s);
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
@@ -164,8 +168,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
       if constexpr (has(mask, Effect::shadow)) {
         if (leave_out(tracer, bound)) continue;
         Vec3 origin = below ? curved_origin(frame, s) : safe_origin(s, 1);
-        light_out *= shadow<mask>(tracer, {origin, sample.to_light, sample.t_max}, i,
-                                  starts_at_first_hit(*tracer, s.point, origin));
+        light_out *= shadow<mask>(tracer, {origin, sample.to_light, sample.t_max}, i, at_first_hit);
       }
       sum += light_out;
     }

@@ -63,6 +63,7 @@ struct FrameData {
   const Scene* scene = nullptr;
   Array<const Vec3> positions, normals;  // posed
   const AccelInfo* accel_info = nullptr;
+  const AccelTraversal* first_rays = nullptr;  // for camera rays, and shadow rays from their first hits
   Accel accel;
   CameraRays camera;
   MediumStack eye_media;  // bodies that contain the camera
@@ -80,6 +81,8 @@ struct FrameData {
   float radiance_bound = 0;          // upper bound for any ray
   float left_out_max = 0;            // radiance that may be skipped of one sample
   IndirectData indirect;
+  Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept
+  bool ray_by_ray = false;    // no packets
 };
 
 // The filter for camera and secondary rays: null if nothing is cut out.
@@ -97,6 +100,7 @@ struct alignas(64) Tracer {
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0;
   TraceStats stats;
+  const Surface* first_surface = nullptr;     // of the sample being shaded, or null: not known
   const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
   std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded
   float budget = 0;                           // radiance that may still be skipped of the current sample

@@ -22,6 +22,11 @@ struct Surface {
 // a one-sided surface casts its shadow whichever side the light is on.
 inline bool is_culled(const Material& m, bool front) { return !front && !m.double_sided && is_zero(m.transmission); }
 
+// Whether two surfaces of the same frame are the same in every respect.
+inline bool same_surface(const Surface& a, const Surface& b) {
+  return a.hit.triangle == b.hit.triangle && a.hit.u == b.hit.u && a.hit.v == b.hit.v && a.front == b.front;
+}
+
 // Selects the instantiation for the plan's mask.
 SurfaceFunction find_surface_function(EffectMask mask);
 

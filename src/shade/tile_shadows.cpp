@@ -18,13 +18,13 @@ bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& 
 
 // The pixels whose first hits receive light.
 std::uint32_t find_receivers(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
-                             std::uint8_t* receivers) {
+                             std::uint8_t* receivers, Vec3* origins) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits[i].triangle == kNoTriangle) continue;
     Surface& s = shadows->surface[i];
     frame.surface(frame, ray_of(rays, i), hits[i], &s);
-    shadows->origin[i] = safe_origin(s, 1);
+    origins[i] = safe_origin(s, 1);
     if (receives(s)) receivers[count++] = static_cast<std::uint8_t>(i);
   }
   return count;
@@ -35,7 +35,8 @@ std::uint32_t find_receivers(const FrameData& frame, const RayPacket& rays, cons
 void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                        TraceStats* stats) {
   std::uint8_t receivers[kPacketMax], pixel[kPacketMax];
-  std::uint32_t receiver_count = find_receivers(frame, rays, hits, shadows, receivers);
+  Vec3 origins[kPacketMax];  // of the shadow rays, by pixel
+  std::uint32_t receiver_count = find_receivers(frame, rays, hits, shadows, receivers, origins);
   SegmentPacket packet;
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
@@ -49,14 +50,14 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
         if (!lights_up(frame, s, run, light, &sample) || !(dot(s.geometric, sample.direction) > 0)) continue;
         if (cannot_matter(frame, s, sample)) continue;
         pixel[packet.count] = receivers[k];
-        set_ray(&packet, packet.count++, {shadows->origin[receivers[k]], sample.to_light, sample.t_max});
+        set_ray(&packet, packet.count++, {origins[receivers[k]], sample.to_light, sample.t_max});
       }
       if (packet.count == 0) continue;
       ShadowContext context = {&frame, light.material};
       HitFilter opaque = {frame.accept_opaque, &context};
       bool filtered = frame.filter_every_shadow || light.material != kNone;
       std::uint64_t blocked =
-          frame.accel_info->occluded_packet(frame.accel, packet, filtered ? &opaque : nullptr, stats);
+          frame.first_rays->occluded_packet(frame.accel, packet, filtered ? &opaque : nullptr, stats);
       for (std::uint32_t k = 0; k < packet.count; ++k) {
         shadows->traced[i] |= std::uint64_t(1) << pixel[k];
         shadows->blocked[i] |= (blocked >> k & 1) << pixel[k];

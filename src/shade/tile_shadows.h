@@ -10,7 +10,6 @@ constexpr std::uint32_t kTileLightMax = 64;  // further lights are tested ray by
 // traced and which of these are blocked by something opaque: bit i for pixel i.
 struct TileShadows {
   Surface surface[kPacketMax];
-  Vec3 origin[kPacketMax];  // of the shadow rays
   std::uint64_t traced[kTileLightMax], blocked[kTileLightMax];
 };
 
@@ -18,14 +17,11 @@ struct TileShadows {
 void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                        TraceStats* stats);
 
-// Whether a shadow ray starts at the first hit of the tracer's pixel, so that its result may be known.
-inline bool starts_at_first_hit(const Tracer& tracer, const Vec3& point, const Vec3& origin) {
-  const TileShadows* shadows = tracer.tile_shadows;
-  return shadows && shadows->surface[tracer.tile_pixel].point == point && shadows->origin[tracer.tile_pixel] == origin;
-}
-// Whether the result for a light is known, and the result.
+// Whether the result of a shadow ray from the first hit is known, and the result. (The packet holds no ray that starts
+// below the surface.)
 inline bool is_known(const Tracer& tracer, std::uint32_t light, bool* blocked) {
-  if (light >= kTileLightMax || !(tracer.tile_shadows->traced[light] >> tracer.tile_pixel & 1)) return false;
+  if (!tracer.tile_shadows || light >= kTileLightMax) return false;
+  if (!(tracer.tile_shadows->traced[light] >> tracer.tile_pixel & 1)) return false;
   *blocked = tracer.tile_shadows->blocked[light] >> tracer.tile_pixel & 1;
   return true;
 }

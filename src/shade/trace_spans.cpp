@@ -29,16 +29,37 @@ Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surfa
   return radiance;
 }
 
+void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
+  if (RayObserver* observer = tracer->stats.observer)
+    observer->column = static_cast<std::uint16_t>(column), observer->row = static_cast<std::uint16_t>(row);
+}
+
+void keep_first_hit(const FrameData& frame, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
+                    const Hit& hit) {
+  std::size_t width = frame.settings.width;
+  frame.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
+}
+
 Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
   const FrameData& frame = *tracer->frame;
   std::uint32_t sample_count = frame.settings.samples_per_pixel;
   if (sample_count > 1) effect_entered<Effect::supersampling>();
   Vec3 sum = {0, 0, 0};
+  observe_pixel(tracer, column, row);
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
     Ray ray = pixel_ray(frame, column, row, sample_offset(sample, sample_count));
     Hit hit;
-    frame.accel_info->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
-    sum += sample_radiance(tracer, ray, hit, nullptr);
+    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+    Surface first;
+    if (frame.first_hits) {
+      keep_first_hit(frame, sample, column, row, hit);
+      if (hit.triangle != kNoTriangle) {
+        frame.surface(frame, ray, hit, &first);
+        tracer->first_surface = &first;
+      }
+    }
+    sum += sample_radiance(tracer, ray, hit, tracer->first_surface);
+    tracer->first_surface = nullptr;
   }
   return sum * (1.0f / static_cast<float>(sample_count));
 }
@@ -103,16 +124,22 @@ void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
       for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
     }
     Hit hits[kPacketMax];
-    frame.accel_info->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
+    frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
+    if (frame.first_hits)
+      for (std::uint32_t i = 0; i < tile.count; ++i)
+        keep_first_hit(frame, sample, tile.column[i], tile.row[i], hits[i]);
     if (frame.find_shadows) {
       frame.find_shadows(frame, packet, hits, &shadows, &tracer->stats);
       tracer->tile_shadows = &shadows;
     }
     for (std::uint32_t i = 0; i < tile.count; ++i) {
       tracer->tile_pixel = i;
-      sum[i] += sample_radiance(tracer, ray_of(packet, i), hits[i], frame.find_shadows ? &shadows.surface[i] : nullptr);
+      tracer->first_surface = frame.find_shadows && hits[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
+      observe_pixel(tracer, tile.column[i], tile.row[i]);
+      sum[i] += sample_radiance(tracer, ray_of(packet, i), hits[i], tracer->first_surface);
     }
   }
+  tracer->first_surface = nullptr;
   tracer->tile_shadows = nullptr;
   for (std::uint32_t i = 0; i < tile.count; ++i)
     image[static_cast<std::size_t>(tile.row[i]) * frame.settings.width + tile.column[i]] =
@@ -134,7 +161,7 @@ void add_pixels(const TileStrip& strip, std::uint32_t index, Tile* tile) {
 constexpr std::uint32_t kPacketRaysMin = kPacketMax / 2 + 1;
 
 void trace_pixels(Tracer* tracer, const Tile& tile, Vec3* image) {
-  if (tile.count >= kPacketRaysMin) return trace_tile(tracer, tile, image);
+  if (tile.count >= kPacketRaysMin && !tracer->frame->ray_by_ray) return trace_tile(tracer, tile, image);
   const std::size_t width = tracer->frame->settings.width;
   for (std::uint32_t i = 0; i < tile.count; ++i)
     image[tile.row[i] * width + tile.column[i]] = pixel_radiance(tracer, tile.column[i], tile.row[i]);
@@ -168,7 +195,7 @@ Vec2 sample_offset(std::uint32_t sample, std::uint32_t sample_count) { return ro
 
 Tracer make_tracer(const FrameData& frame) {
   CHECK(frame.scene != nullptr && frame.accel_info != nullptr);
-  CHECK(frame.surface != nullptr && frame.radiance != nullptr);
+  CHECK(frame.surface != nullptr && frame.radiance != nullptr && frame.first_rays != nullptr);
   Tracer tracer;
   tracer.frame = &frame;
   return tracer;

@@ -55,21 +55,24 @@ TEST_CASE("tile_shadows_change_no_pixel") {
   }
 }
 
-// Goal: a tile's results are used for its first hits only. Method: one pixel's results, requested for its point, for
-// another point, and for lights beyond those known.
+// Goal: a tile's results are used for its first hits only. Method: one pixel's results, requested for its light and for
+// others, beyond those known, too; surfaces that differ in one respect.
 TEST_CASE("tile_shadows_are_known_at_first_hits_alone") {
   TileShadows shadows = {};
-  shadows.surface[5].point = {1, 2, 3}, shadows.origin[5] = {1, 2, 4};
   shadows.traced[2] = shadows.blocked[2] = 1u << 5, shadows.traced[3] = 1u << 5;
   Tracer tracer;
-  CHECK_FALSE(starts_at_first_hit(tracer, {1, 2, 3}, {1, 2, 4}));
-  tracer.tile_shadows = &shadows, tracer.tile_pixel = 5;
-  CHECK(starts_at_first_hit(tracer, {1, 2, 3}, {1, 2, 4}));
-  CHECK_FALSE(starts_at_first_hit(tracer, {1, 2, 3}, {1, 2, 2}));
-  CHECK_FALSE(starts_at_first_hit(tracer, {1, 2, 2}, {1, 2, 4}));
   bool blocked = false;
+  CHECK_FALSE(is_known(tracer, 2, &blocked));
+  tracer.tile_shadows = &shadows, tracer.tile_pixel = 5;
   CHECK((is_known(tracer, 2, &blocked) && blocked));
   CHECK((is_known(tracer, 3, &blocked) && !blocked));
   CHECK_FALSE(is_known(tracer, 1, &blocked));
   CHECK_FALSE(is_known(tracer, kTileLightMax, &blocked));
+  Surface first = {};
+  first.hit = {1, 0.25f, 0.5f, 7}, first.front = true;
+  Surface same = first, other_u = first, other_v = first, other_triangle = first, other_side = first;
+  same.hit.t = 2;  // met by another ray
+  other_u.hit.u = 0.5f, other_v.hit.v = 0.25f, other_triangle.hit.triangle = 8, other_side.front = false;
+  CHECK(same_surface(first, same));
+  for (const Surface* s : {&other_u, &other_v, &other_triangle, &other_side}) CHECK_FALSE(same_surface(first, *s));
 }
