@@ -31,8 +31,9 @@ constexpr std::uint32_t kRayDepthMax = 16;          // reflections and refractio
 constexpr std::uint32_t kMediumDepthMax = 8;        // nested transparent bodies
 constexpr std::uint32_t kTransparentLayerMax = 64;  // alpha or glass surfaces that one ray passes in a straight line
 constexpr std::uint32_t kThreadCountMax = 64;
-constexpr std::uint32_t kBvhDepthMax = 64;  // bounds the traversal stack
-constexpr float kCoordinateMax = 1e18f;     // its square is finite; HARDCASES row 8
+constexpr std::uint32_t kCoherenceTableSideMax = 1024;  // blocks of pixels along each side, a bit of each voxel's table
+constexpr std::uint32_t kBvhDepthMax = 64;              // bounds the traversal stack
+constexpr float kCoordinateMax = 1e18f;                 // its square is finite; HARDCASES row 8
 // Largest radiance, intensity and absorption in a scene, and largest irradiance close to a light. Everything that a
 // frame computes from them stays finite: no ∞ · 0 arises.
 constexpr float kRadianceMax = 1e18f;

@@ -21,11 +21,17 @@ struct Quality {
   NormalMode normals = NormalMode::as_scene;
 };
 
+// Whether frames trace only what can have changed. automatic: where that pays.
+enum class CoherenceMode : std::uint8_t { off, automatic, on };
+
 struct Settings : Quality {
   std::uint32_t width = 320, height = 240;  // pixels
   std::uint32_t threads = 1;
   EffectMask forced_on = 0, forced_off = 0;  // --effects
   std::size_t memory_bytes = 64u << 20;      // the fixed block
+  CoherenceMode coherence = CoherenceMode::off;
+  std::uint32_t coherence_table = 16;  // blocks of pixels along each side, a bit of each voxel's table [Jevans92]
+  bool coherence_by_tables = false;    // the paper's way, for comparison: all rays in tables
 };
 
 }  // namespace pocketray

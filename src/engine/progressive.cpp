@@ -87,6 +87,7 @@ bool advance_progressive(Renderer* renderer, Array<Span> row_spans, std::uint64_
   Refinement refinement = {renderer, row_spans, progressive};
   SpanSource source = {&refinement, next_row, finish_row, fill_cells};
   source.deadline_ns = deadline_ns;
+  source.is_coherent = progressive->is_coherent;
   return trace_frame(renderer, source);
 }
 

@@ -11,6 +11,7 @@ struct Progressive {
   bool shown_coarse = false;
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_dirty_rows()
   std::uint64_t pixels_traced = 0, trace_ns = 0;
+  bool is_coherent = false;  // it completes a frame begun by begin_coherent()
 };
 
 constexpr std::uint32_t kCoarsestStep = 8;

@@ -6,6 +6,7 @@
 #include "base/fmath.h"
 #include "base/limit_list.h"
 #include "brdf/brdf_list.h"
+#include "engine/coherent.h"
 #include "engine/exposure.h"
 #include "engine/frame.h"
 #include "plan/plan_effects.h"
@@ -71,8 +72,12 @@ Status adopt_or_build(Renderer* renderer) {
 
 Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, std::size_t output_bytes) {
   renderer->accel_info = &accel;
-  return plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, storage,
-                     renderer->light_points.count, output_bytes, &renderer->memory);
+  CoherenceState* coherence = &renderer->coherence_state;
+  Status status =
+      plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, storage, renderer->light_points.count,
+                  output_bytes, &renderer->memory, &coherence->unplanned_because);
+  coherence->planned = !coherence->unplanned_because;
+  return status;
 }
 
 // Chooses the accelerator and plans the memory with it: the requested one, else the one the scene was baked with, else
@@ -151,7 +156,9 @@ Status build_renderer_unexposed(Renderer* renderer) {
   for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
     renderer->spans[row] = {static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(renderer->settings.width)};
   renderer->exposure = renderer->scene.info.exposure;
-  return prepare_frame(renderer, 0);
+  RETURN_IF_ERROR(prepare_frame(renderer, 0));
+  make_coherent(renderer);
+  return success();
 }
 
 bool wants_exposure(const Renderer& renderer) { return renderer.scene.info.auto_exposure != 0; }
@@ -216,6 +223,7 @@ Tracer total_counts(const Renderer& renderer) {
 bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_count_max, std::uint32_t* pixel_count,
                     float* exposure) {
   CHECK(pixel_count != nullptr && exposure != nullptr);
+  forget_frame(&renderer->coherence);  // the probe leaves its pixels in the image
   constexpr float kGrey = 0.18f;
   constexpr std::uint32_t kStep = 10;
   auto places = [](std::uint32_t side) { return (side + kStep / 2 - 1) / kStep; };

@@ -4,11 +4,26 @@
 #include "plan/plan_memory.h"
 #include "scene/animate.h"
 #include "shade/trace_spans.h"
+#include "temporal/coherence.h"
 
 namespace pocketray {
 
 struct Timings {
   double build_ms = 0, pose_ms = 0, refit_ms = 0, trace_ms = 0;
+};
+
+// How the last coherent frame went.
+struct CoherenceState {
+  bool planned = false;
+  const char* unplanned_because = "coherence is off";
+  const char* whole_because = nullptr;  // all pixels were traced, and why; null: only those that can have changed
+  std::uint64_t pixels_traced = 0;
+  ChangeCounts search;  // rays traced to find them
+  double follow_ms = 0, find_ms = 0, keep_ms = 0;
+  // Of CoherenceMode::automatic: time of a whole frame, and frames to trace whole before the next try.
+  double whole_ns = 0;
+  bool was_whole = false;  // and recorded, for the next frame
+  std::uint32_t rest = 0, rest_next = 1;
 };
 
 struct Renderer {
@@ -37,6 +52,8 @@ struct Renderer {
   std::uint32_t camera_index = 0;
   float exposure = 1;
   Timings timings;
+  Coherence coherence;  // made if planned
+  CoherenceState coherence_state;
   Pace pace;                   // of an emulated device; default: none
   Workers* workers = nullptr;  // null: only the caller's thread
   Light default_lights[2];

@@ -39,6 +39,7 @@ void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch)
 bool trace_frame(Renderer* renderer, const SpanSource& source) {
   CHECK(!source.pace == !source.now_ns);
   CHECK(source.next != nullptr && source.finished != nullptr);
+  if (!source.is_coherent) forget_frame(&renderer->coherence);
   do {
     if (source.stop && source.stop->load(std::memory_order_relaxed)) return false;
     SpanBatch batch;

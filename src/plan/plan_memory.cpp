@@ -38,9 +38,19 @@ double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 
 
 }  // namespace
 
-Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
-                   MemoryPlan* plan) {
+CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count) {
+  CoherencePlan plan;
+  plan.width = settings.width, plan.height = settings.height;
+  plan.samples = settings.samples_per_pixel, plan.threads = settings.threads, plan.light_points = light_point_count;
+  plan.table_side = settings.coherence_table, plan.tables_only = settings.coherence_by_tables;
+  return plan;
+}
+
+namespace {
+
+Status plan_memory_with(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
+                        const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
+                        bool with_coherence, MemoryPlan* plan) {
   CHECK(plan != nullptr);
   CHECK(settings.threads >= 1 && settings.threads <= kThreadCountMax);
   CHECK(settings.width <= kImageSideMax && settings.height <= kImageSideMax);
@@ -67,6 +77,11 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
+  if (with_coherence) {
+    add_part(plan, "coherence", ArenaKind::persistent,
+             coherence_need(scene, effects.mask, coherence_plan(settings, light_point_count)));
+    scratch = std::max(scratch, coherence_scratch_need(scene, effects.mask));
+  }
   // The scratch of a single build is free again when the first frame is shown, so output shares its part of the frame
   // arena.
   if (rebuilds) add_part(plan, "build scratch", ArenaKind::frame, std::exchange(scratch, 0));
@@ -84,6 +99,25 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
       "%zu MiB would do",
       megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
       scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
+}
+
+}  // namespace
+
+Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
+                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
+                   MemoryPlan* plan, const char** without_coherence) {
+  const bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
+  bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
+  const char* why = settings.coherence == CoherenceMode::off ? "coherence is off" : wanted ? nullptr : "nothing moves";
+  Status status =
+      plan_memory_with(scene, settings, effects, accel, storage, light_point_count, output_bytes, wanted, plan);
+  if (wanted && !status.ok) {
+    wanted = false;
+    why = "coherence does not fit into memory";
+    status = plan_memory_with(scene, settings, effects, accel, storage, light_point_count, output_bytes, wanted, plan);
+  }
+  if (without_coherence) *without_coherence = why;
+  return status;
 }
 
 Status plan_output_memory(const Settings& settings, std::size_t output_bytes, MemoryPlan* plan) {

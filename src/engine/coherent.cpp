@@ -1,0 +1,167 @@
+#include "engine/coherent.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "plan/plan_memory.h"
+
+namespace pocketray {
+namespace {
+
+// Of CoherenceMode::automatic. Derived: a frame that saves less than a thirtieth does not pay; after it, the next
+// frames are traced whole, twice as many each time, so that what the tries cost stays below 3 %.
+constexpr double kLeastGain = 0.97;
+constexpr std::uint32_t kRestMax = 31;
+
+struct Rows {
+  Renderer* renderer;
+  bool all;
+};
+
+bool find_row(void* context, std::uint32_t thread, std::uint32_t row) {
+  Renderer* renderer = static_cast<Rows*>(context)->renderer;
+  find_changes(&renderer->coherence, row, thread, &renderer->tracers[thread].stats);
+  return true;
+}
+
+bool measure_row(void* context, std::uint32_t, std::uint32_t row) {
+  Rows* rows = static_cast<Rows*>(context);
+  measure_tiles(&rows->renderer->coherence, rows->renderer->frame, row, rows->all);
+  return true;
+}
+
+double ms_since(std::uint64_t start) { return static_cast<double>(clock_ns() - start) * 1e-6; }
+
+void list_rows(Coherence* c, CoherentFrame* frame) {
+  const std::uint32_t row_max = row_spans_max(c->plan.width);
+  frame->list.spans = c->spans.data;
+  frame->list.span_count = frame->list.done_count = 0;
+  while (frame->tile_row < c->tile_rows && frame->list.span_count + row_max <= c->spans.count)
+    frame->list.span_count += list_changes(*c, frame->tile_row++, c->spans.data + frame->list.span_count);
+}
+
+// Whether coherence rests for this frame, because it did not pay.
+bool rests(Renderer* renderer) {
+  CoherenceState* state = &renderer->coherence_state;
+  if (renderer->settings.coherence != CoherenceMode::automatic || state->rest == 0) return false;
+  --state->rest;
+  return true;
+}
+
+// Weighs a frame that took `ns`.
+void weigh(const CoherentFrame& frame, double ns, Renderer* renderer) {
+  CoherenceState* state = &renderer->coherence_state;
+  const bool in_vain = frame.all && frame.records && state->was_whole;
+  state->was_whole = frame.all && frame.records;
+  if (frame.all) state->whole_ns = ns;
+  if (!frame.all && ns < kLeastGain * state->whole_ns) state->rest_next = 1;
+  if (frame.all ? !in_vain : ns < kLeastGain * state->whole_ns) return;
+  state->rest = state->rest_next;
+  state->rest_next = std::min(2 * state->rest_next + 1, kRestMax);
+}
+
+}  // namespace
+
+void make_coherent(Renderer* renderer) {
+  if (!renderer->coherence_state.planned) return;
+  make_coherence(renderer->frame, coherence_plan(renderer->settings, renderer->light_point_count_max),
+                 &renderer->persistent_arena, &renderer->frame_arena, &renderer->coherence);
+}
+
+void begin_coherent(Renderer* renderer, CoherentFrame* frame) {
+  CoherenceState* state = &renderer->coherence_state;
+  Coherence* c = &renderer->coherence;
+  *frame = CoherentFrame();
+  state->search = ChangeCounts();
+  state->pixels_traced = 0;
+  state->follow_ms = state->find_ms = state->keep_ms = 0;
+  std::uint64_t start = clock_ns(), paced_start = renderer->pace.clock->now_ns();
+  if (!state->planned) {
+    state->whole_because = state->unplanned_because;
+  } else if (!fits(*c, renderer->frame)) {
+    state->whole_because = "more samples, lights or effects than memory was planned for";
+  } else if (rests(renderer)) {
+    state->whole_because = "tracing only what changed did not pay";
+  } else {
+    frame->records = true;
+    frame->all = !follow_frame(c, renderer->frame, &state->whole_because);
+    state->follow_ms = ms_since(start);
+    if (!frame->all && !is_unchanged(*c)) {
+      std::uint64_t found = clock_ns();
+      Rows rows = {renderer, false};
+      share_items(renderer->workers, 0, c->tile_rows, find_row, &rows);
+      clear_changes(c);
+      for (const ChangeCounts& counts : c->counts) {
+        state->search.moving_rays += counts.moving_rays;
+        state->search.static_rays += counts.static_rays;
+      }
+      state->find_ms = ms_since(found);
+    } else if (!frame->all) {
+      std::fill(c->changed.begin(), c->changed.end(), 0);
+    }
+    start_recording(c, &renderer->frame, renderer->tracers);
+  }
+  if (!frame->records) {
+    frame->all = true;
+    forget_frame(c);
+  }
+  wait_for_pace(&renderer->pace, 0, paced_start);
+  frame->spent_ns = clock_ns() - start;
+  if (frame->all) frame->list = whole_frame(renderer);
+}
+
+void finish_coherent(Renderer* renderer, CoherentFrame* frame) {
+  Coherence* c = &renderer->coherence;
+  std::uint64_t start = clock_ns(), paced_start = renderer->pace.clock->now_ns();
+  stop_recording(*renderer->accel_info, &renderer->frame, renderer->tracers);
+  if (frame->records) {
+    Rows rows = {renderer, frame->all};
+    share_items(renderer->workers, 0, c->tile_rows, measure_row, &rows);
+    keep_frame(c, renderer->frame);
+  }
+  wait_for_pace(&renderer->pace, 0, paced_start);
+  renderer->coherence_state.keep_ms = ms_since(start);
+  frame->spent_ns += clock_ns() - start;
+  weigh(*frame, static_cast<double>(frame->spent_ns), renderer);
+}
+
+bool advance_coherent(Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop,
+                      CoherentFrame* frame) {
+  CoherenceState* state = &renderer->coherence_state;
+  std::uint64_t start = clock_ns();
+  bool complete = false;
+  for (;;) {
+    if (!frame->all && frame->list.done_count == frame->list.span_count) list_rows(&renderer->coherence, frame);
+    const std::uint32_t before = frame->list.done_count;
+    if (deadline_ns != kNoDeadline) frame->list.batch_spans = 4 * kTileRows * renderer->settings.threads;
+    SpanSource source = list_source(&frame->list);
+    source.is_coherent = true;
+    source.deadline_ns = deadline_ns;
+    source.stop = stop;
+    if (frame->list.done_count < frame->list.span_count && !trace_frame(renderer, source)) {
+      state->pixels_traced += span_pixel_count(frame->list.spans + before, frame->list.done_count - before);
+      break;
+    }
+    state->pixels_traced += span_pixel_count(frame->list.spans + before, frame->list.done_count - before);
+    complete = frame->all || frame->tile_row == renderer->coherence.tile_rows;
+    if (complete) break;
+  }
+  frame->spent_ns += clock_ns() - start;
+  if (complete) finish_coherent(renderer, frame);
+  return complete;
+}
+
+Status render_coherent(Renderer* renderer, double seconds, const std::atomic<bool>* stop, bool* complete) {
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  const Clock& clock = *renderer->pace.clock;
+  std::uint64_t start = clock.now_ns();
+  CoherentFrame frame;
+  begin_coherent(renderer, &frame);
+  bool done = advance_coherent(renderer, kNoDeadline, stop, &frame);
+  if (!done) stop_recording(*renderer->accel_info, &renderer->frame, renderer->tracers);
+  renderer->timings.trace_ms = static_cast<double>(clock.now_ns() - start) * 1e-6;
+  if (complete) *complete = done;
+  return success();
+}
+
+}  // namespace pocketray

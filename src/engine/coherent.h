@@ -1,0 +1,31 @@
+// Frames that trace only what can have changed since the last one.
+#pragma once
+#include "engine/frame.h"
+
+namespace pocketray {
+
+// Makes the renderer's coherence, if it is planned; a step of build_renderer().
+void make_coherent(Renderer* renderer);
+
+// Renders the frame at a time as render_frame() does, bit for bit, but traces only the pixels that can differ from the
+// last frame rendered this way, as far as the settings and the memory plan allow. renderer->coherence_state tells what
+// was traced. `stop`, if given, ends it early; *complete (may be null) receives whether it did not.
+Status render_coherent(Renderer* renderer, double seconds, const std::atomic<bool>* stop = nullptr,
+                       bool* complete = nullptr);
+
+// The same in steps, after prepare_frame(): begins a frame; traces until about `deadline_ns` by the pace's clock, and
+// returns true when it is complete.
+struct CoherentFrame {
+  SpanList list;
+  std::uint32_t tile_row = 0;  // the next to list
+  bool all = false;            // pixels of the frame
+  bool records = false;
+  std::uint64_t spent_ns = 0;
+};
+void begin_coherent(Renderer* renderer, CoherentFrame* frame);
+// Of the whole frame, if another source traces each of its pixels once: ends it as advance_coherent() would.
+void finish_coherent(Renderer* renderer, CoherentFrame* frame);
+bool advance_coherent(Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop,
+                      CoherentFrame* frame);
+
+}  // namespace pocketray

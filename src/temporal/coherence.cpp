@@ -1,0 +1,227 @@
+#include "temporal/coherence.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+// Effects whose rays go on from the first hit.
+constexpr EffectMask kGoingOn =
+    bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
+
+constexpr std::uint32_t kSpanRows = 4;  // of tiles, however ragged; usually a whole frame's spans fit
+
+bool keeps_tables(EffectMask mask, const CoherencePlan& plan) {
+  return plan.tables_only || (mask & kEffectsBuilt & kGoingOn) != 0;
+}
+
+std::uint32_t tiles_along(std::uint32_t pixels) { return (pixels + kChangeTileSide - 1) / kChangeTileSide; }
+
+std::uint32_t known_lights(const CoherencePlan& plan) {
+  return plan.tables_only ? 0 : std::min(plan.light_points, kKnownLights);
+}
+
+std::uint64_t pixel_count(const CoherencePlan& plan) { return std::uint64_t(plan.width) * plan.height; }
+
+}  // namespace
+
+std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherencePlan& plan) {
+  std::uint64_t pixels = pixel_count(plan);
+  std::size_t tiles = std::size_t(tiles_along(plan.width)) * tiles_along(plan.height);
+  std::size_t bytes = moving_geometry_need(scene, mask);
+  bytes = size_sum(bytes, arena_need(pixels * plan.samples * sizeof(Hit)));
+  bytes = size_sum(bytes, arena_need<TileHits>(tiles) + arena_need<std::uint64_t>(tiles));
+  bytes = size_sum(bytes, arena_need<KnownShadows>(tiles * plan.samples * known_lights(plan)));
+  bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
+  bytes = size_sum(bytes, arena_need<Span>(kSpanRows * row_spans_max(plan.width)));
+  if (!keeps_tables(mask, plan)) return bytes;
+  bytes = size_sum(bytes, arena_need(pixels) + arena_need<MarkingObserver>(plan.threads));
+  return size_sum(bytes, ray_tables_need(plan.width, plan.height, plan.table_side));
+}
+
+std::size_t coherence_scratch_need(const Scene& scene, EffectMask mask) {
+  return moving_geometry_scratch_need(scene, mask);
+}
+
+void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* keep, Arena* scratch, Coherence* c) {
+  CHECK(plan.samples >= 1 && plan.threads >= 1);
+  *c = Coherence();
+  c->plan = plan;
+  c->moving = make_moving_geometry(frame, keep, scratch);
+  c->tile_columns = tiles_along(plan.width), c->tile_rows = tiles_along(plan.height);
+  const std::size_t tiles = std::size_t(c->tile_columns) * c->tile_rows;
+  c->first_hits = arena_array<Hit>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
+  c->tiles = arena_array<TileHits>(keep, tiles);
+  c->changed = arena_array_zeroed<std::uint64_t>(keep, tiles);
+  c->shadows = arena_array_zeroed<KnownShadows>(keep, tiles * plan.samples * known_lights(plan));
+  c->lights = arena_array<LightPoint>(keep, plan.light_points);
+  c->counts = arena_array_zeroed<ChangeCounts>(keep, plan.threads);
+  c->spans = arena_array<Span>(keep, kSpanRows * row_spans_max(plan.width));
+  if (!keeps_tables(frame.mask, plan)) return;
+  c->marked = arena_array_zeroed<std::uint8_t>(keep, static_cast<std::size_t>(pixel_count(plan)));
+  c->observers = arena_array<MarkingObserver>(keep, plan.threads);
+  c->tables = make_ray_tables(plan.width, plan.height, plan.table_side, keep);
+}
+
+bool fits(const Coherence& c, const FrameData& frame) {
+  bool has_tables = c.tables.words.count > 0;
+  return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.count <= c.plan.light_points &&
+         (has_tables || !keeps_tables(frame.mask, c.plan));
+}
+
+bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
+  CHECK(frame.settings.width == c->plan.width && frame.settings.height == c->plan.height);
+  CHECK(why != nullptr);
+  follow_geometry(frame, &c->moving);
+  *why = difference(c->signature, signature_of(frame));
+  if (!*why && frame.lights.count != c->light_count) *why = "lights were added or removed";
+  if (!*why && c->tables.words.count && !is_empty(frame.accel.bounds) &&
+      !contains(c->tables.bounds, frame.accel.bounds))
+    *why = "the scene outgrew the tables' grid";
+  for (ChangeCounts& counts : c->counts) counts = ChangeCounts();
+  if (*why) {
+    if (c->tables.words.count) reset_tables(frame.accel.bounds, &c->tables);
+    if (c->marked.count) std::memset(c->marked.data, 0, c->marked.bytes());
+    std::fill(c->shadows.begin(), c->shadows.end(), KnownShadows());
+    forget_frame(c);
+    return false;
+  }
+  bool lights_changed = frame.lights.count > 0 && std::memcmp(static_cast<const void*>(c->lights.data),
+                                                              frame.lights.data, frame.lights.bytes()) != 0;
+  c->search = {&frame,
+               &c->moving,
+               c->tables.words.count ? &c->tables : nullptr,
+               {c->first_hits.data, c->marked.data, c->lights},
+               c->tiles.data,
+               c->tile_columns,
+               lights_changed,
+               c->shadows,
+               known_lights(c->plan),
+               c->changed.count};
+  if (c->tables.words.count) {
+    begin_dirty(&c->tables);
+    for_each_changed_box(
+        c->moving, [](void* tables, const Box& box) { add_dirty(static_cast<RayTables*>(tables), box); }, &c->tables);
+  }
+  forget_frame(c);  // until the frame is complete
+  return true;
+}
+
+bool is_unchanged(const Coherence& c) { return !c.moving.changed && !c.search.lights_changed; }
+
+namespace {
+
+// Every pixel of the tile whose block is dirty, and after a change of lights every pixel.
+std::uint64_t find_blocks(const Coherence& c, std::uint32_t tile) {
+  const std::uint32_t column = tile % c.tile_columns * kChangeTileSide, row = tile / c.tile_columns * kChangeTileSide;
+  std::uint64_t found = 0;
+  for (std::uint32_t y = 0; y < kChangeTileSide && row + y < c.plan.height; ++y)
+    for (std::uint32_t x = 0; x < kChangeTileSide && column + x < c.plan.width; ++x)
+      if (c.search.lights_changed || is_dirty(c.tables, block_of(c.tables, column + x, row + y)))
+        found |= std::uint64_t(1) << (8 * y + x);
+  return found;
+}
+
+}  // namespace
+
+void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, TraceStats* stats) {
+  CHECK_LT(thread, c->counts.count);
+  CHECK_LT(tile_row, c->tile_rows);
+  for (std::uint32_t tile = tile_row * c->tile_columns; tile < (tile_row + 1) * c->tile_columns; ++tile)
+    c->changed[tile] =
+        c->plan.tables_only ? find_blocks(*c, tile) : find_changed_pixels(c->search, tile, &c->counts[thread], stats);
+}
+
+void clear_changes(Coherence* c) {
+  if (!c->tables.words.count) return;
+  if (c->search.lights_changed) {  // every pixel with records is traced again
+    reset_tables(c->search.frame->accel.bounds, &c->tables);
+  } else {
+    clear_dirty(&c->tables);
+  }
+  for (std::uint32_t tile = 0; tile < c->changed.count; ++tile) {
+    const std::uint32_t column = tile % c->tile_columns * kChangeTileSide,
+                        row = tile / c->tile_columns * kChangeTileSide;
+    for (std::uint64_t rest = c->changed[tile]; rest; rest &= rest - 1) {
+      std::uint32_t i = static_cast<std::uint32_t>(__builtin_ctzll(rest));
+      c->marked[std::size_t(row + i / 8) * c->plan.width + column + i % 8] = 0;
+    }
+  }
+}
+
+std::uint32_t list_changes(const Coherence& c, std::uint32_t tile_row, Span* spans) {
+  CHECK_LT(tile_row, c.tile_rows);
+  const std::uint64_t* tiles = c.changed.data + std::size_t(tile_row) * c.tile_columns;
+  std::uint32_t count = 0;
+  for (std::uint32_t y = 0; y < kChangeTileSide; ++y) {
+    bool open = false;
+    for (std::uint32_t i = 0; i < c.tile_columns; ++i) {
+      std::uint32_t bits = tiles[i] >> (8 * y) & 0xFF;
+      if (bits == 0) {
+        open = false;
+        continue;
+      }
+      for (std::uint32_t x = 0; x < kChangeTileSide; ++x) {
+        const std::uint32_t column = i * kChangeTileSide + x;
+        if (!(bits >> x & 1)) {
+          open = false;
+        } else if (open) {
+          ++spans[count - 1].column_end;
+        } else {
+          spans[count++] = {static_cast<std::uint16_t>(tile_row * kChangeTileSide + y),
+                            static_cast<std::uint16_t>(column), static_cast<std::uint16_t>(column + 1)};
+          open = true;
+        }
+      }
+    }
+  }
+  return count;
+}
+
+void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers) {
+  CHECK_LE(tracers.count, c->plan.threads);
+  CHECK_LE(frame->settings.samples_per_pixel, c->plan.samples);
+  CHECK(frame->accel_info != &c->observed);  // it would ask itself
+  if (!c->plan.tables_only) frame->first_hits = c->first_hits.data;
+  if (c->tables.words.empty()) return;
+  for (std::uint32_t i = 0; i < tracers.count; ++i) {
+    c->observers[i] = MarkingObserver();
+    c->observers[i].accel_info = frame->accel_info;
+    c->observers[i].tables = &c->tables;
+    c->observers[i].marked = c->marked.data;
+    tracers[i].stats.observer = &c->observers[i];
+  }
+  c->observed = observed(*frame->accel_info);
+  frame->accel_info = &c->observed;
+  if (c->plan.tables_only) frame->first_rays = &c->observed, frame->ray_by_ray = true;
+}
+
+void stop_recording(const AccelInfo& accel_info, FrameData* frame, Array<Tracer> tracers) {
+  frame->first_hits = nullptr;
+  frame->accel_info = &accel_info;
+  frame->first_rays = &accel_info;
+  frame->ray_by_ray = false;
+  for (Tracer& tracer : tracers) tracer.stats.observer = nullptr;
+}
+
+void measure_tiles(Coherence* c, const FrameData& frame, std::uint32_t tile_row, bool all) {
+  CHECK_LT(tile_row, c->tile_rows);
+  if (c->plan.tables_only) return;
+  for (std::uint32_t i = 0; i < c->tile_columns; ++i) {
+    const std::uint32_t tile = tile_row * c->tile_columns + i;
+    if (all || c->changed[tile])
+      c->tiles[tile] = measure_tile(frame, c->first_hits.data, i * kChangeTileSide, tile_row * kChangeTileSide);
+  }
+}
+
+void keep_frame(Coherence* c, const FrameData& frame) {
+  CHECK_LE(frame.lights.count, c->lights.count);
+  c->light_count = frame.lights.count;
+  std::copy(frame.lights.begin(), frame.lights.end(), c->lights.begin());
+  c->signature = signature_of(frame);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,77 @@
+// Temporal coherence: a frame by tracing only the pixels that can differ from the last one [Jevans92]. Every frame
+// equals the frame traced whole, bit for bit.
+//
+// The paper's tables tell for every ray which voxels it passed. Here they are for the rays behind mirrors and
+// transparent surfaces alone. Camera rays, and the shadow rays from their first hits, need no tables: the first hits
+// are kept, so these rays are known and can be tested against what moved.
+#pragma once
+#include "base/span.h"
+#include "temporal/frame_signature.h"
+#include "temporal/ray_observer.h"
+#include "temporal/tile_changes.h"
+
+namespace pocketray {
+
+// What it is made for.
+struct CoherencePlan {
+  std::uint32_t width, height, samples, threads, light_points;  // at most
+  std::uint32_t table_side;
+  bool tables_only;  // the paper's way: every ray in tables, whole blocks traced again
+};
+
+struct Coherence {
+  CoherencePlan plan = {};
+  MovingGeometry moving;
+  RayTables tables;  // no words: none are kept
+  Array<Hit> first_hits;
+  Array<std::uint8_t> marked;  // a byte for each pixel: 1 if it has rays in the tables
+  Array<TileHits> tiles;
+  Array<KnownShadows> shadows;   // as in ChangeSearch
+  Array<std::uint64_t> changed;  // pixels of each tile to trace, bit 8·y + x
+  Array<LightPoint> lights;      // of the last frame
+  Array<MarkingObserver> observers;
+  Array<ChangeCounts> counts;  // for each thread
+  Array<Span> spans;           // some rows of tiles as spans
+  AccelInfo observed;
+  std::uint32_t tile_columns = 0, tile_rows = 0;
+  FrameSignature signature;  // of the last frame; not known: the next is traced whole
+  std::uint32_t light_count = 0;
+  ChangeSearch search = {};
+};
+
+// Bytes from the arena that keeps it, and from scratch memory that is released.
+std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherencePlan& plan);
+std::size_t coherence_scratch_need(const Scene& scene, EffectMask mask);
+// The frame must be posed, with kernels chosen.
+void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* keep, Arena* scratch, Coherence* c);
+
+// Whether the frame can be followed: it has no more samples and effects than were planned for.
+bool fits(const Coherence& c, const FrameData& frame);
+
+// Forgets the last frame.
+inline void forget_frame(Coherence* c) { c->signature.known = false; }
+
+// Follows the frame's geometry and compares it with the last frame. True: find_changes() tells which pixels to trace.
+// False: all of them, and *why tells why, for people.
+bool follow_frame(Coherence* c, const FrameData& frame, const char** why);
+// Whether the frame is the same as the last one; after follow_frame() was true.
+bool is_unchanged(const Coherence& c);
+
+// Finds the pixels to trace in a row of tiles; threads may share the rows.
+void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, TraceStats* stats);
+// After all rows: deletes the records of what is traced again.
+void clear_changes(Coherence* c);
+// Lists the pixels to trace of a row of tiles as spans, at most row_spans_max(width); returns their number.
+constexpr std::uint32_t row_spans_max(std::uint32_t width) { return kChangeTileSide * (width / 2 + 1); }
+std::uint32_t list_changes(const Coherence& c, std::uint32_t tile_row, Span* spans);
+
+// Has the frame's tracers record what the next frame needs, until stop_recording().
+void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers);
+void stop_recording(const AccelInfo& accel_info, FrameData* frame, Array<Tracer> tracers);
+
+// Once all of them are traced: measures a row of tiles, those that changed or all of them ...
+void measure_tiles(Coherence* c, const FrameData& frame, std::uint32_t tile_row, bool all);
+// ... and keeps the frame as the last one.
+void keep_frame(Coherence* c, const FrameData& frame);
+
+}  // namespace pocketray

@@ -1,0 +1,25 @@
+// What every pixel of a frame depends on, besides the geometry and its lights' values. If it differs from the last
+// frame's, every pixel may.
+#pragma once
+#include "shade/frame_data.h"
+
+namespace pocketray {
+
+struct FrameSignature {
+  bool known = false;
+  Quality quality;
+  EffectMask mask = 0;
+  CameraRays camera;
+  MediumStack eye_media;
+  Vec3 background, ambient;
+  float radiance_bound = 0, left_out_max = 0;
+  IndirectData indirect;
+  LightRun runs[4];
+  int run_count = 0;
+};
+
+FrameSignature signature_of(const FrameData& frame);
+// Why two frames differ as a whole, for people: "the camera moved". Null if they do not.
+const char* difference(const FrameSignature& a, const FrameSignature& b);
+
+}  // namespace pocketray

@@ -1,0 +1,40 @@
+// The triangles that can move, where they were in the last frame and where they are now.
+#pragma once
+#include "accel/accel.h"
+#include "shade/frame_data.h"
+#include "temporal/beam.h"
+
+namespace pocketray {
+
+struct MovingGeometry {
+  Array<Triangle> triangles;
+  Array<std::uint32_t> ids;                 // in the scene, ascending
+  Array<std::uint32_t> run_begin, run_end;  // vertices of moving meshes
+  Array<Vec3> positions, normals;           // copies of these vertices; no normals if the scene has none
+  Array<std::uint32_t> vertex_changed;      // a bit for each vertex of the scene
+  Array<std::uint8_t> triangle_changed;
+  Array<std::uint8_t> node_changed;  // for each node of the BVHs, bit i: a triangle below child i has changed
+  Array<std::uint8_t> data[2];
+  Accel last, now;  // BVHs of the triangles with the same nodes; their ids are indices of `ids`
+  bool changed = false;
+};
+
+// Bytes from the arena that keeps it and from scratch memory that is released; 0 if nothing can move.
+std::size_t moving_geometry_need(const Scene& scene, EffectMask mask);
+std::size_t moving_geometry_scratch_need(const Scene& scene, EffectMask mask);
+// Made for the frame's geometry, in which nothing has changed.
+MovingGeometry make_moving_geometry(const FrameData& frame, Arena* keep, Arena* scratch);
+
+// Follows the frame: what is now becomes last.
+void follow_geometry(const FrameData& frame, MovingGeometry* moving);
+
+// Index of a triangle of the scene among the moving ones, or kNoTriangle.
+std::uint32_t moving_index(const MovingGeometry& moving, std::uint32_t triangle);
+
+// Whether a ray of the beam can meet a changed triangle, where it was or where it is.
+bool meets_change(const MovingGeometry& moving, const Beam& beam);
+
+// Calls visit(context, box) for boxes that together contain every changed triangle where it was and where it is.
+void for_each_changed_box(const MovingGeometry& moving, void (*visit)(void* context, const Box& box), void* context);
+
+}  // namespace pocketray

@@ -1,0 +1,393 @@
+#include "temporal/tile_changes.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "accel/accel_list.h"
+#include "base/check.h"
+#include "shade/camera.h"
+#include "shade/filters.h"
+#include "shade/lights.h"
+#include "shade/trace_spans.h"
+
+namespace pocketray {
+namespace {
+
+constexpr float kInfinity = __builtin_inff();
+
+// The point of a hit.
+Vec3 point_of(const FrameData& frame, const Hit& hit) {
+  const Triangle& t = frame.scene->triangles[hit.triangle];
+  return frame.positions[t.vertex(0)] * (1 - hit.u - hit.v) + frame.positions[t.vertex(1)] * hit.u +
+         frame.positions[t.vertex(2)] * hit.v;
+}
+
+// The pixels of a tile, in Morton order: neighbours adjacent.
+struct TilePixels {
+  std::uint32_t column, row;  // of the first
+  std::uint32_t count = 0;
+  std::uint8_t x[kPacketMax], y[kPacketMax];
+};
+
+TilePixels pixels_of(const Settings& settings, std::uint32_t column, std::uint32_t row) {
+  TilePixels p;
+  p.column = column, p.row = row;
+  for (std::uint32_t m = 0; m < kPacketMax; ++m) {
+    std::uint32_t x = (m & 1) | (m >> 1 & 2) | (m >> 2 & 4), y = (m >> 1 & 1) | (m >> 2 & 2) | (m >> 3 & 4);
+    if (p.column + x >= settings.width || p.row + y >= settings.height) continue;
+    p.x[p.count] = static_cast<std::uint8_t>(x), p.y[p.count++] = static_cast<std::uint8_t>(y);
+  }
+  return p;
+}
+
+std::uint64_t bit_of(const TilePixels& p, std::uint32_t i) { return std::uint64_t(1) << (8 * p.y[i] + p.x[i]); }
+
+std::size_t index_of(const Settings& settings, const TilePixels& p, std::uint32_t i) {
+  return std::size_t(p.row + p.y[i]) * settings.width + p.column + p.x[i];
+}
+
+Ray sample_ray(const FrameData& frame, const TilePixels& p, std::uint32_t i, const Vec2& offset) {
+  return camera_ray(frame.camera, static_cast<float>(p.column + p.x[i]) + offset.x,
+                    static_cast<float>(p.row + p.y[i]) + offset.y);
+}
+
+// A shadow ray's filter, for triangles of the moving geometry.
+struct MovingFilter {
+  const MovingGeometry* moving;
+  HitFilter inner;
+};
+bool accept_moving(const void* context, std::uint32_t triangle, float u, float v) {
+  const auto& f = *static_cast<const MovingFilter*>(context);
+  return f.inner.accept(f.inner.context, f.moving->ids[triangle], u, v);
+}
+// The same for all other triangles of the scene.
+bool accept_static(const void* context, std::uint32_t triangle, float u, float v) {
+  const auto& f = *static_cast<const MovingFilter*>(context);
+  if (moving_index(*f.moving, triangle) != kNoTriangle) return false;
+  return !f.inner.accept || f.inner.accept(f.inner.context, triangle, u, v);
+}
+
+struct TileSearch {
+  const ChangeSearch& search;
+  const FrameData& frame;
+  const TilePixels& pixels;
+  std::uint64_t changed;
+  ChangeCounts* counts;
+  TraceStats* stats;
+  const Hit* hits = nullptr;  // of the sample
+  Vec2 offset = {0, 0};
+  std::uint32_t receiver_count = 0;   // first hits that may receive light
+  std::uint8_t receiver[kPacketMax];  // their pixels
+  Vec3 point[kPacketMax];             // of each receiver
+  std::uint64_t has_surface = 0;      // of each receiver
+  Surface surface[kPacketMax];        // of each receiver
+};
+
+// The beam of all camera rays of the tile, up to its farthest hit.
+Beam camera_beam(const CameraRays& c, std::uint32_t column, std::uint32_t row, const TileHits& hits) {
+  Box origins = empty_box(), directions = empty_box();
+  for (int corner = 0; corner < 4; ++corner) {
+    float x = static_cast<float>(column + (corner & 1 ? kChangeTileSide : 0));
+    float y = static_cast<float>(row + (corner & 2 ? kChangeTileSide : 0));
+    float sx = 2 * x / c.width - 1, sy = 1 - 2 * y / c.height;
+    Vec3 aside = c.right * sx + c.up * sy;
+    origins = merge(origins, c.orthographic ? c.eye + aside : c.eye);
+    directions = merge(directions, c.orthographic ? c.forward : c.forward + aside);
+  }
+  // These directions are as long as camera_ray()'s, or longer.
+  return beam_along(origins, directions, hits.t_max);
+}
+
+// Whether the ray's first hit, which was `last`, is another one now that its nearest moving triangle is `moving`.
+bool hits_otherwise(const MovingGeometry& m, const Hit& last, const Hit& moving) {
+  std::uint32_t id = moving.triangle == kNoTriangle ? kNoTriangle : m.ids[moving.triangle];
+  std::uint32_t was = last.triangle == kNoTriangle ? kNoTriangle : moving_index(m, last.triangle);
+  if (was != kNoTriangle)
+    return m.triangle_changed[was] || id != last.triangle || moving.t != last.t || moving.u != last.u ||
+           moving.v != last.v;
+  if (id == kNoTriangle) return false;
+  return last.triangle == kNoTriangle || moving.t < last.t || (moving.t == last.t && id < last.triangle);
+}
+
+void find_changed_hits(TileSearch* t) {
+  const TilePixels& p = t->pixels;
+  Hit found[kPacketMax];
+  if (t->frame.camera.orthographic) {
+    for (std::uint32_t i = 0; i < p.count; ++i)
+      kBvhAccel.closest(t->search.moving->now, sample_ray(t->frame, p, i, t->offset), nullptr, &found[i], t->stats);
+  } else {
+    RayPacket packet;
+    packet.origin = t->frame.camera.eye, packet.t_max = kInfinity, packet.count = p.count;
+    for (std::uint32_t i = 0; i < p.count; ++i) {
+      Vec3 direction = sample_ray(t->frame, p, i, t->offset).direction;
+      for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
+    }
+    kBvhAccel.closest_packet(t->search.moving->now, packet, nullptr, found, t->stats);
+  }
+  t->counts->moving_rays += p.count;
+  for (std::uint32_t i = 0; i < p.count; ++i)
+    if (hits_otherwise(*t->search.moving, t->hits[index_of(t->frame.settings, p, i)], found[i]))
+      t->changed |= bit_of(p, i);
+}
+
+bool scatters(const Material& m) { return !is_zero(m.diffuse) || !is_zero(m.specular); }
+
+// The pixels whose first hits are the last frame's and may receive light.
+void find_receivers(TileSearch* t) {
+  t->receiver_count = 0;
+  t->has_surface = 0;
+  for (std::uint32_t i = 0; i < t->pixels.count; ++i) {
+    const Hit& hit = t->hits[index_of(t->frame.settings, t->pixels, i)];
+    if (hit.triangle == kNoTriangle || t->changed & bit_of(t->pixels, i)) continue;
+    if (!scatters(t->frame.scene->materials[t->frame.scene->triangles[hit.triangle].material()])) continue;
+    t->point[t->receiver_count] = point_of(t->frame, hit);
+    t->receiver[t->receiver_count++] = static_cast<std::uint8_t>(i);
+  }
+}
+
+const Surface& surface_of(TileSearch* t, std::uint32_t k) {
+  if (t->has_surface >> k & 1) return t->surface[k];
+  t->has_surface |= std::uint64_t(1) << k;
+  const std::uint32_t i = t->receiver[k];
+  t->frame.surface(t->frame, sample_ray(t->frame, t->pixels, i, t->offset),
+                   t->hits[index_of(t->frame.settings, t->pixels, i)], &t->surface[k]);
+  return t->surface[k];
+}
+
+// Pixels that the light reached, or would reach, if nothing were in the way, before or after it changed.
+void find_lit_by(TileSearch* t, const LightRun& run, std::uint32_t light) {
+  const LightPoint &is = t->frame.lights[light], &was = t->search.last.lights[light];
+  for (std::uint32_t k = 0; k < t->receiver_count; ++k) {
+    if (t->changed & bit_of(t->pixels, t->receiver[k])) continue;
+    const Surface& s = surface_of(t, k);
+    LightSample sample;
+    if (lights_up(t->frame, s, run, was, &sample) || lights_up(t->frame, s, run, is, &sample))
+      t->changed |= bit_of(t->pixels, t->receiver[k]);
+  }
+}
+
+// All shadow rays from the points to the light.
+Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points, float room) {
+  const Box from = {points.low - Vec3{room, room, room}, points.high + Vec3{room, room, room}};
+  if (run.sample == find_light_sampler(Effect::directional_light))
+    return beam_along(from, {-light.direction, -light.direction}, kInfinity);
+  // A ray that starts beside its point ends as far beside the light.
+  return {from.low, from.high, light.position - points.low, light.position - points.high, 1};
+}
+
+// The receivers whose shadow ray to the light may meet a change, found in groups; without those that need no look.
+std::uint64_t find_suspects(const TileSearch& t, const LightRun& run, const LightPoint& light, float room,
+                            std::uint64_t idle) {
+  constexpr std::uint32_t kGroup = 16;  // a quarter of a whole tile; smaller groups cost more than they save
+  std::uint64_t suspects = 0;
+  for (std::uint32_t begin = 0; begin < t.receiver_count; begin += kGroup) {
+    const std::uint32_t end = std::min(begin + kGroup, t.receiver_count);
+    Box points = empty_box();
+    std::uint64_t group = 0;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      if ((t.changed | idle) & bit_of(t.pixels, t.receiver[k])) continue;
+      group |= std::uint64_t(1) << k;
+      points = merge(points, t.point[k]);
+    }
+    if (group && meets_change(*t.search.moving, shadow_beam(run, light, points, room))) suspects |= group;
+  }
+  return suspects;
+}
+
+// Which rays the moving geometry blocked in the last frame; `known` may have the answers for pixels[i].
+std::uint64_t find_blocked_before(const TileSearch& t, const SegmentPacket& rays, const HitFilter* filter,
+                                  const std::uint64_t* pixels, const KnownShadows& known) {
+  SegmentPacket rest;
+  std::uint8_t place[kPacketMax];
+  std::uint64_t blocked = 0;
+  rest.count = 0;
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    if (known.known & pixels[i]) {
+      blocked |= std::uint64_t((known.blocked & pixels[i]) != 0) << i;
+      continue;
+    }
+    place[rest.count] = static_cast<std::uint8_t>(i);
+    set_ray(&rest, rest.count++, ray_of(rays, i));
+  }
+  if (rest.count == 0) return blocked;
+  t.counts->moving_rays += rest.count;
+  std::uint64_t found = kBvhAccel.occluded_packet(t.search.moving->last, rest, filter, t.stats);
+  for (std::uint32_t i = 0; i < rest.count; ++i) blocked |= (found >> i & 1) << place[i];
+  return blocked;
+}
+
+// Pixels whose shadow ray to the light is blocked where it was not, or no longer.
+void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t light, float room, KnownShadows* known) {
+  const FrameData& frame = t->frame;
+  std::uint64_t pixel[kPacketMax];  // their bits
+  SegmentPacket packet;
+  packet.count = 0;
+  for (std::uint64_t rest = find_suspects(*t, run, frame.lights[light], room, known->idle); rest; rest &= rest - 1) {
+    const std::uint32_t k = static_cast<std::uint32_t>(__builtin_ctzll(rest));
+    const Surface& s = surface_of(t, k);
+    const std::uint64_t bit = bit_of(t->pixels, t->receiver[k]);
+    LightSample sample;
+    if (!lights_up(frame, s, run, frame.lights[light], &sample)) {
+      known->idle |= bit;
+      continue;
+    }
+    bool below = !(dot(s.geometric, sample.direction) > 0);  // as in direct_light()
+    pixel[packet.count] = bit;
+    set_ray(&packet, packet.count++,
+            {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max});
+  }
+  if (packet.count == 0) return;
+  const MovingGeometry& m = *t->search.moving;
+  ShadowContext shadow = {&frame, frame.lights[light].material};
+  bool filtered = frame.filter_every_shadow || shadow.emitter != kNone;
+  bool clear = frame.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
+  MovingFilter context = {&m, {filtered ? frame.accept_opaque : nullptr, &shadow}};
+  HitFilter opaque = {accept_moving, &context}, other = {accept_static, &context};
+  const HitFilter* filter = filtered && !clear ? &opaque : nullptr;
+  std::uint64_t was = find_blocked_before(*t, packet, filter, pixel, *known);
+  std::uint64_t is = kBvhAccel.occluded_packet(m.now, packet, filter, t->stats);
+  t->counts->moving_rays += packet.count;
+  for (std::uint32_t i = 0; i < packet.count; ++i) {
+    known->known |= pixel[i];
+    known->blocked = (is >> i & 1) ? known->blocked | pixel[i] : known->blocked & ~pixel[i];
+  }
+  for (std::uint64_t rest = clear ? was | is : was ^ is; rest; rest &= rest - 1) {
+    std::uint32_t i = static_cast<std::uint32_t>(__builtin_ctzll(rest));
+    ++t->counts->static_rays;
+    if (frame.first_rays->occluded(frame.accel, ray_of(packet, i), &other, t->stats))
+      known->idle |= pixel[i];
+    else
+      t->changed |= pixel[i];
+  }
+}
+
+// Calls visit(run, light, has_changed) for each light that has changed, or to which the tile has a ray that can meet a
+// change. Stops when it returns false.
+template <class Visit>
+void for_each_suspect(const ChangeSearch& search, const TileHits& hits, Visit visit) {
+  const FrameData& frame = *search.frame;
+  if (is_empty(hits.points)) return;
+  const bool casts = has(frame.mask, Effect::shadow) && search.moving->changed;
+  for (int r = 0; r < frame.light_run_count; ++r) {
+    const LightRun& run = frame.light_runs[r];
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const LightPoint& light = frame.lights[i];
+      bool has_changed = search.lights_changed && std::memcmp(&search.last.lights[i], &light, sizeof light) != 0;
+      if (!has_changed) {
+        if (!casts) continue;
+        if (!meets_change(*search.moving, shadow_beam(run, light, hits.points, hits.room))) continue;
+      }
+      if (!visit(run, i, has_changed)) return;
+    }
+  }
+}
+
+// Pixels with rays in the tables that may have met a change.
+std::uint64_t find_marked(const ChangeSearch& search, std::uint32_t column, std::uint32_t row) {
+  std::uint64_t found = 0;
+  if (!search.tables) return 0;
+  const Settings& settings = search.frame->settings;
+  for (std::uint32_t y = 0; y < kChangeTileSide && row + y < settings.height; ++y) {
+    for (std::uint32_t x = 0; x < kChangeTileSide && column + x < settings.width; ++x) {
+      if (!search.last.marked[std::size_t(row + y) * settings.width + column + x]) continue;
+      if (search.lights_changed || is_dirty(*search.tables, block_of(*search.tables, column + x, row + y)))
+        found |= std::uint64_t(1) << (8 * y + x);
+    }
+  }
+  return found;
+}
+
+// What is known of shadows does not hold for pixels that are traced again.
+std::uint64_t forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed) {
+  if (!changed) return 0;
+  for (std::uint32_t sample = 0; sample < search.frame->settings.samples_per_pixel; ++sample) {
+    KnownShadows* known = known_shadows(search, sample, tile);
+    for (std::uint32_t light = 0; light < search.known_lights; ++light)
+      known[light].known &= ~changed, known[light].idle &= ~changed;
+  }
+  return changed;
+}
+
+}  // namespace
+
+std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, ChangeCounts* counts,
+                                  TraceStats* stats) {
+  const FrameData& frame = *search.frame;
+  const TileHits& hits = search.tiles[tile];
+  const std::uint32_t column = tile % search.tile_columns * kChangeTileSide,
+                      row = tile / search.tile_columns * kChangeTileSide;
+  const std::uint64_t marked = find_marked(search, column, row);
+  const bool seen =
+      search.moving->changed && meets_change(*search.moving, camera_beam(frame.camera, column, row, hits));
+  bool any = seen;
+  if (!any) for_each_suspect(search, hits, [&](const LightRun&, std::uint32_t, bool) { return !(any = true); });
+  if (!any) return forget_shadows(search, tile, marked);
+  const TilePixels pixels = pixels_of(frame.settings, column, row);
+  TileSearch t = {search, frame, pixels, marked, counts, stats};
+  for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
+    t.hits = search.last.first_hits + std::size_t(sample) * frame.settings.width * frame.settings.height;
+    t.offset = sample_offset(sample, frame.settings.samples_per_pixel);
+    if (seen) find_changed_hits(&t);
+    find_receivers(&t);
+    KnownShadows* known = known_shadows(search, sample, tile);
+    for_each_suspect(search, hits, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
+      KnownShadows none, *of_light = light < search.known_lights ? &known[light] : &none;
+      if (has_changed) {
+        *of_light = none;
+        find_lit_by(&t, run, light);
+      } else {
+        find_changed_shadows(&t, run, light, hits.room, of_light);
+      }
+      return true;
+    });
+  }
+  return forget_shadows(search, tile, t.changed);
+}
+
+namespace {
+
+// How far curved_origin() may lift a point of the triangle, at most.
+float lift_bound(const FrameData& frame, const Triangle& t, const Vec3& point, const float* weight) {
+  float lift = 0;
+  for (std::uint32_t i = 0; i < 3; ++i)
+    lift += std::fabs(weight[i] * dot(point - frame.positions[t.vertex(i)], frame.normals[t.vertex(i)]));
+  return lift * 1.02f;  // normals may be 1 % too long (scene/validate.cpp)
+}
+
+}  // namespace
+
+TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32_t column, std::uint32_t row) {
+  const Settings& settings = frame.settings;
+  TileHits tile;
+  float reach = 0;  // largest coordinate of the triangles
+  const std::uint32_t right = std::min(column + kChangeTileSide, settings.width),
+                      bottom = std::min(row + kChangeTileSide, settings.height);
+  for (std::uint32_t sample = 0; sample < settings.samples_per_pixel; ++sample) {
+    for (std::uint32_t y = row; y < bottom; ++y) {
+      const Hit* line = first_hits + (std::size_t(sample) * settings.height + y) * settings.width;
+      for (std::uint32_t x = column; x < right; ++x) {
+        const Hit& hit = line[x];
+        if (hit.triangle == kNoTriangle) {
+          tile.t_max = kInfinity;
+          continue;
+        }
+        const Triangle& t = frame.scene->triangles[hit.triangle];
+        const float weight[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+        Vec3 point = {0, 0, 0};
+        for (std::uint32_t i = 0; i < 3; ++i) {
+          point += frame.positions[t.vertex(i)] * weight[i];
+          reach = std::max(reach, max_component(abs(frame.positions[t.vertex(i)])));
+        }
+        tile.t_max = std::max(tile.t_max, hit.t);
+        tile.points = merge(tile.points, point);
+        if (frame.normals.count) tile.room = std::max(tile.room, lift_bound(frame, t, point, weight));
+      }
+    }
+  }
+  // Shadow rays start off their point by at most 9 times origin_offset(), which is at most 36 · 2^-24 of the largest
+  // coordinate of the triangle (keep_off_edges()), or above the curved surface (curved_origin()).
+  tile.room += reach * 0x1p-15f;
+  return tile;
+}
+
+}  // namespace pocketray

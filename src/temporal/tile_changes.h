@@ -1,0 +1,64 @@
+// The pixels of a tile whose value can differ from the last frame: rays that may be affected are found by beams around
+// the tile's rays, then tested one by one against the moving geometry alone, where it was and where it is.
+#pragma once
+#include "shade/tile_shadows.h"
+#include "temporal/moving_geometry.h"
+#include "temporal/ray_tables.h"
+
+namespace pocketray {
+
+constexpr std::uint32_t kChangeTileSide = 8;
+static_assert(kChangeTileSide * kChangeTileSide == kPacketMax, "a packet for each tile");
+
+// All first hits of a tile.
+struct TileHits {
+  Box points = empty_box();
+  float room = 0;   // how far from its point a shadow ray may start, in each coordinate
+  float t_max = 0;  // of the farthest; infinite if a ray misses
+};
+
+// What the last frame left: per pixel and sample the first hit, per pixel whether it has rays in the tables.
+struct LastFrame {
+  const Hit* first_hits = nullptr;  // width × height for each sample
+  const std::uint8_t* marked = nullptr;
+  Array<const LightPoint> lights;
+};
+
+// Of a tile, a sample and a light, bit 8·y + x for each pixel: whether it is known that the moving geometry as it is
+// now blocks the first hit's shadow ray, and whether it does; whether the pixel needs no look while its first hit
+// stays, since it casts no ray or something that cannot move always blocks it.
+struct KnownShadows {
+  std::uint64_t known = 0, blocked = 0, idle = 0;
+};
+constexpr std::uint32_t kKnownLights = 8;  // further lights are looked at anew in each frame
+
+struct ChangeSearch {
+  const FrameData* frame;
+  const MovingGeometry* moving;
+  const RayTables* tables;  // null: no rays in tables; otherwise with dirty blocks
+  LastFrame last;
+  const TileHits* tiles;  // by row
+  std::uint32_t tile_columns;
+  bool lights_changed;          // any of them
+  Array<KnownShadows> shadows;  // for each sample, tile and light of the first `known_lights`
+  std::uint32_t known_lights, tile_count;
+};
+
+inline KnownShadows* known_shadows(const ChangeSearch& s, std::uint32_t sample, std::uint32_t tile) {
+  return s.shadows.data + (std::size_t(sample) * s.tile_count + tile) * s.known_lights;
+}
+
+// Rays traced to find out.
+struct ChangeCounts {
+  std::uint64_t moving_rays = 0;  // against the moving geometry alone
+  std::uint64_t static_rays = 0;  // shadow rays against everything else
+};
+
+// Bit 8·y + x for each pixel of the tile that must be traced again.
+std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, ChangeCounts* counts,
+                                  TraceStats* stats);
+
+// Measures a tile of the current frame.
+TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32_t column, std::uint32_t row);
+
+}  // namespace pocketray

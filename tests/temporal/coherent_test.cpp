@@ -1,0 +1,145 @@
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <cstring>
+
+#include "scene/builtin_helpers.h"
+#include "support/feature_sets.h"
+#include "support/hard_case.h"
+#include "temporal/edit_script.h"
+
+using namespace pocketray;
+
+namespace {
+
+std::uint64_t seed_of_scripts() {
+  const char* seed = std::getenv("POCKETRAY_SEED");
+  return seed ? std::strtoull(seed, nullptr, 10) : 1;
+}
+
+int script_count() {
+  const char* count = std::getenv("POCKETRAY_SCRIPTS");
+  return count ? std::atoi(count) : gate_share(60, 1000);
+}
+
+struct Pair {
+  std::unique_ptr<TestRenderer> whole, coherent;
+};
+
+Pair make_pair(const char* scene, Settings settings) {
+  Pair pair;
+  pair.whole = make_renderer(shared_builtin(scene)->scene, settings);
+  settings.coherence = CoherenceMode::on;
+  pair.coherent = make_renderer(shared_builtin(scene)->scene, settings);
+  return pair;
+}
+
+bool same_frames(const Pair& pair, double seconds) {
+  REQUIRE(render_frame(&pair.whole->renderer, seconds).ok);
+  REQUIRE(render_coherent(&pair.coherent->renderer, seconds).ok);
+  const Array<Vec3>&a = pair.whole->renderer.image, &b = pair.coherent->renderer.image;
+  return std::memcmp(a.data, b.data, a.bytes()) == 0;
+}
+
+}  // namespace
+
+// Goal: HARDCASES 58 and 59. Method: differential, whole frames against coherent ones after random edits: moves down to
+// fractions of an ulp, deformations, deletions, additions, objects that leave the grid, lights, camera, settings, with
+// all effects, tables of all sizes, 1 to 3 threads and every accelerator; frames that were cut short or rendered
+// otherwise in between. Seeds and their number may be set: POCKETRAY_SEED, POCKETRAY_SCRIPTS.
+TEST_CASE("hard_58_edited_frames_equal_whole_ones") {
+  constexpr int kFrames = 20;
+  const std::uint64_t first = seed_of_scripts();
+  const int count = script_count();
+  std::uint64_t frames = 0, wrong = 0, partial = 0;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
+    Rng rng = make_rng(seed, 5);
+    std::uint32_t features = next_u32(&rng) & kAllFeatures;
+    if (next_u32(&rng) % 4 == 0) features &= next_u32(&rng);
+    CAPTURE(seed);
+    EditScript script = begin_script(features, seed);
+    for (int frame = 0; frame < kFrames; ++frame, ++frames) {
+      CAPTURE(frame);
+      bool same = follow_script(&script);
+      CHECK(same);
+      wrong += !same;
+    }
+    partial += script.partial_frames;
+    show_gate_progress(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(count));
+  }
+  CHECK(partial > frames / 4);  // the comparison is not one of whole frames with themselves
+  count_hard(frames, wrong, "every bit of every frame equal");
+}
+
+// Goal: the promise on the paper's sequence. Method: differential, over stretches of it.
+TEST_CASE("seesaw_frames_equal_whole_ones") {
+  Settings settings;
+  settings.width = effort_side(160), settings.height = effort_side(120);
+  settings.threads = 2;
+  Pair pair = make_pair("seesaw", settings);
+  std::uint64_t traced = 0, pixels = 0;
+  for (int begin : {0, 60, 300}) {
+    for (int frame = begin; frame < begin + effort(12); ++frame) {
+      CAPTURE(frame);
+      REQUIRE(same_frames(pair, frame / 30.0));
+      const CoherenceState& state = pair.coherent->renderer.coherence_state;
+      if (frame > begin) traced += state.pixels_traced, pixels += settings.width * settings.height;
+    }
+  }
+  CHECK(traced * 2 <= pixels);
+}
+
+// Goal: a frame in which nothing changed costs no ray. Method: the same time twice.
+TEST_CASE("unchanged_frame_traces_nothing") {
+  for (const char* scene : {"seesaw", "cornell", "cube"}) {
+    CAPTURE(std::string(scene));
+    Settings settings;
+    settings.width = 64, settings.height = 48;
+    Pair pair = make_pair(scene, settings);
+    REQUIRE(same_frames(pair, 0.5));
+    CHECK(pair.coherent->renderer.coherence_state.pixels_traced == 64 * 48);
+    REQUIRE(same_frames(pair, 0.5));
+    const CoherenceState& state = pair.coherent->renderer.coherence_state;
+    CHECK(state.whole_because == nullptr);
+    CHECK(state.pixels_traced == 0);
+    CHECK(state.search.moving_rays + state.search.static_rays == 0);
+    std::uint64_t rays = 0;
+    for (std::uint64_t n : total_counts(pair.coherent->renderer).rays) rays += n;
+    CHECK(rays == 0);
+  }
+}
+
+// Goal: sliced frames are the same. Method: a deadline that has passed, so that each call traces one batch.
+TEST_CASE("coherent_frame_in_slices_equals_whole_one") {
+  Settings settings;
+  settings.width = 64, settings.height = 48;
+  Pair pair = make_pair("seesaw", settings);
+  Renderer* r = &pair.coherent->renderer;
+  for (int frame = 0; frame < 3; ++frame) {
+    REQUIRE(prepare_frame(r, frame / 30.0).ok);
+    CoherentFrame slices;
+    begin_coherent(r, &slices);
+    int calls = 1;
+    while (!advance_coherent(r, 0, nullptr, &slices)) ++calls;
+    CHECK((frame > 0 || calls > 1));
+    REQUIRE(render_frame(&pair.whole->renderer, frame / 30.0).ok);
+    CHECK(std::memcmp(r->image.data, pair.whole->renderer.image.data, r->image.bytes()) == 0);
+  }
+}
+
+// Goal: what memory does not allow is left out, with a reason. Method: a block in which only the plain frame fits.
+TEST_CASE("coherence_without_room_is_left_out") {
+  Settings settings;
+  settings.width = 160, settings.height = 120;
+  auto plain = make_renderer(shared_builtin("seesaw")->scene, settings);
+  settings.memory_bytes = plain->renderer.memory.total_bytes + 1024;
+  settings.coherence = CoherenceMode::on;
+  auto tight = make_renderer(shared_builtin("seesaw")->scene, settings);
+  CHECK(!tight->renderer.coherence_state.planned);
+  REQUIRE(render_coherent(&tight->renderer, 0).ok);
+  REQUIRE(render_coherent(&tight->renderer, 0).ok);
+  REQUIRE(tight->renderer.coherence_state.whole_because != nullptr);
+  CHECK(std::string(tight->renderer.coherence_state.whole_because) == "coherence does not fit into memory");
+  CHECK(tight->renderer.coherence_state.pixels_traced == 160 * 120);
+}
