@@ -93,6 +93,20 @@ void add_scene_options(Command command, CommonOptions* o) {
   command.add_option("--exposure", o->exposure, "stops to add to the scene's own exposure, or auto");
 }
 
+void add_coherence_options(Command command, CommonOptions* o) {
+  o->coherence = "auto";
+  command
+      .add_option("--coherence", o->coherence,
+                  "trace only what can have changed since the last frame; the pictures stay the same: on, off, or "
+                  "auto, where it pays")
+      .capture_default_str();
+  command
+      .add_option("--coherence-table", o->coherence_table,
+                  "N: rays behind mirrors and glass are kept in tables of NxN blocks of pixels; more blocks take "
+                  "memory and save rays")
+      .capture_default_str();
+}
+
 void add_budget_options(Command command, BudgetOptions* o) {
   std::string names;
   for (const SettingRow& row : kSettingList) names += std::string(names.empty() ? "" : ", ") + row.name;

@@ -39,12 +39,16 @@ int run(const CommonOptions& options, bool prices) {
                   renderer.scene.textures.count, renderer.scene.lights.count, renderer.accel_info->name);
       print_effects(renderer.effects);
       print_memory(renderer.memory);
+      const char* without = renderer.coherence_state.unplanned_because;
+      std::printf("coherence: %s%s\n", without ? "every frame is traced whole: " : "only what changes is traced",
+                  without ? without : "");
     }
     if (!options.json.empty()) {
       Json json = {{"scene", options.scene},
                    {"triangles", renderer.scene.triangles.count},
                    {"fits", status.ok},
                    {"accelerator", renderer.accel_info->name},
+                   {"coherence", renderer.coherence_state.planned},
                    {"effects", effects_json(renderer.effects)},
                    {"memory", memory_json(renderer.memory)}};
       Status written = write_json(options.json, json);
@@ -62,6 +66,7 @@ void add_plan_command(Command program, int* exit_status) {
   auto prices = std::make_shared<bool>(false);
   Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
   add_scene_options(command, options.get());
+  add_coherence_options(command, options.get());
   add_json_option(command, &options->json);
   command.add_flag("--prices", *prices, "also render it and print the cost of each effect on this machine");
   command.callback([=] { *exit_status = run(*options, *prices); });

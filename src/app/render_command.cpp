@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/coherent_sequence.h"
 #include "app/commands.h"
 #include "app/options.h"
 #include "base/limit_list.h"
@@ -15,6 +16,7 @@
 #include "session/picture.h"
 #include "session/progress.h"
 #include "session/report.h"
+#include "session/sequence.h"
 #include "session/servers.h"
 
 namespace pocketray {
@@ -31,22 +33,6 @@ struct RenderOptions {
   OptionalParts parts;
   BudgetOptions budget;
 };
-
-struct Sequence {
-  std::uint32_t first = 0, last = 0;
-  bool numbered = false;
-};
-
-Status parse_frames(const std::string& text, Sequence* sequence) {
-  if (text.empty()) return success();
-  int used = 0;
-  sequence->numbered = true;
-  bool plain = text.find_first_not_of("0123456789:") == std::string::npos;  // a sign would wrap around
-  if (!plain || std::sscanf(text.c_str(), "%6u:%6u%n", &sequence->first, &sequence->last, &used) != 2 ||
-      static_cast<std::size_t>(used) != text.size() || sequence->last < sequence->first)
-    return failure("--frames is '%s': write first:last, as 0:350", text.c_str());
-  return success();
-}
 
 Status parse_aov(const std::string& text, Aov* aov) {
   constexpr struct {
@@ -98,14 +84,15 @@ void fit_for_levels(Aov aov, const std::string& path, Renderer* renderer) {
 
 struct Job {
   RenderOptions options;
-  Sequence sequence;
+  FrameRange sequence;
   std::vector<std::string> paths;  // one per picture
   Aov aov;
   PictureOptions picture;
   Servers* servers = nullptr;
   Budget* budget = nullptr;
-  std::uint8_t* page = nullptr;  // the packed frame, for --budget-ms: packing is part of the frame time
-  CameraControl camera;          // for --orbit
+  CoherentSequence* coherent = nullptr;  // null: frames are traced whole
+  std::uint8_t* page = nullptr;          // the packed frame, for --budget-ms: packing is part of the frame time
+  CameraControl camera;                  // for --orbit
 };
 
 constexpr std::uint64_t kProgressNs = 100'000'000;
@@ -128,13 +115,18 @@ Status render_with_servers(Renderer* renderer, const Job& job, double seconds, s
   return success();
 }
 
-// Renders in bands of rows, to show progress and to lose at most a frame when interrupted.
+// Renders in bands of rows, or what has changed, to show progress and to lose at most a frame when interrupted.
 Status render_with_progress(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress,
                             bool* complete) {
   double seconds =
-      job.sequence.numbered ? frame / static_cast<double>(renderer->scene.info.frames_per_second) : job.options.seconds;
+      job.sequence.given ? frame / static_cast<double>(renderer->scene.info.frames_per_second) : job.options.seconds;
   std::uint64_t rows_before = std::uint64_t(frame - job.sequence.first) * renderer->settings.height;
   if (job.servers) return render_with_servers(renderer, job, seconds, rows_before, progress, complete);
+  if (job.coherent) {
+    RETURN_IF_ERROR(render_next(renderer, seconds, job.coherent, complete));
+    show_progress(progress, rows_before + renderer->settings.height);
+    return success();
+  }
   struct Shown {
     Progress* progress;
     std::uint64_t rows_before;
@@ -171,7 +163,7 @@ Status render_budgeted(Renderer* renderer, const Job& job, std::uint32_t frame, 
     if (!*complete) break;
     pack_page(renderer, job);
     end_budget_frame(job.budget, clock_ns() - start);
-    if (job.sequence.numbered || i + 1 == kSettleFrames) break;
+    if (job.sequence.given || i + 1 == kSettleFrames) break;
     RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
     if (job.budget->governor.current == chosen) break;
   }
@@ -206,6 +198,7 @@ Json to_json(const Job& job, const Renderer& renderer, const std::vector<std::st
           {"exposure", renderer.exposure},
           {"memory", memory_json(renderer.memory)},
           {"effects", effects_json(renderer.effects)},
+          {"coherence", job.coherent ? coherence_json(*job.coherent) : Json()},
           {"budget", job.budget ? budget_json(*job.budget) : Json()}};
 }
 
@@ -222,6 +215,7 @@ void print_summary(const Job& job, const Renderer& renderer, std::size_t file_co
               trace_ms / static_cast<double>(file_count), file_count > 1 ? " per frame" : "", trace_ms * 1e6 / pixels,
               renderer.settings.threads, renderer.settings.threads == 1 ? "" : "s",
               emulation_text(renderer.pace).c_str());
+  if (job.coherent) print_coherence(*job.coherent);
   Tracer counts = total_counts(renderer);
   if (counts.rays_left_out)
     std::printf("  %s rays skipped, which could change a sample by at most %.2g of a display level in total\n",
@@ -283,6 +277,13 @@ Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
   return success();
 }
 
+// Coherence is for sequences that this program renders itself, in colour.
+const char* incoherent_because(const RenderOptions& o, Aov aov) {
+  if (o.frames.empty()) return "a single frame: add --frames 0:99, or drop --coherence";
+  if (!o.servers.addresses.empty()) return "render servers: drop --server or --coherence";
+  return aov != Aov::none ? "--aov: drop --aov or --coherence" : nullptr;
+}
+
 // Opens the scene with a budget, without servers.
 Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget* budget) {
   OpenFront front;
@@ -306,9 +307,9 @@ Status open_budgeted(const RenderOptions& o, Job* job, OpenScene* opened, Budget
 // Checks that each picture can be written, before rendering the first.
 Status check_paths(const RenderOptions& o, Job* job) {
   RETURN_IF_ERROR(check_picture_path(o.output));
-  const Sequence& s = job->sequence;
+  const FrameRange& s = job->sequence;
   for (std::uint32_t frame = s.first; frame <= s.last; ++frame) {
-    job->paths.push_back(s.numbered ? numbered_path(o.output, frame) : o.output);
+    job->paths.push_back(s.given ? numbered_path(o.output, frame) : o.output);
     RETURN_IF_ERROR(check_outputs({{"SCENE", o.common.scene}, {"--front", o.budget.front}},
                                   {{"-o", job->paths.back()}, {"--json", o.common.json}}));
   }
@@ -317,7 +318,7 @@ Status check_paths(const RenderOptions& o, Job* job) {
 
 Status render_files(Renderer* renderer, const Job& job, std::vector<std::string>* files, double* trace_ms,
                     bool* stopped) {
-  const Sequence& s = job.sequence;
+  const FrameRange& s = job.sequence;
   Progress progress = start_progress("rendering", std::uint64_t(s.last - s.first + 1) * renderer->settings.height);
   Status status;
   seal_memory();
@@ -341,9 +342,8 @@ Status render_files(Renderer* renderer, const Job& job, std::vector<std::string>
   return status;
 }
 
-int run(const RenderOptions& options) {
+int run(RenderOptions options) {
   Job job;
-  job.options = options;
   Status status = parse_frames(options.frames, &job.sequence);
   if (status.ok) status = parse_aov(options.aov, &job.aov);
   if (status.ok) status = parse_raw_format(options.raw_format, &job.picture.raw_format);
@@ -356,6 +356,8 @@ int run(const RenderOptions& options) {
   job.picture.dither = options.dither;
   if (status.ok) status = check_shareable(options, job.aov);
   if (status.ok) status = check_budget_and_orbit(options, job.aov);
+  if (status.ok) status = check_coherence(incoherent_because(options, job.aov), &options.common);
+  job.options = options;
   const platform::Device* device = nullptr;
   if (status.ok) status = find_device(options.common, &device);
   if (status.ok)
@@ -376,11 +378,13 @@ int run(const RenderOptions& options) {
   std::vector<std::string> files;
   double trace_ms = 0;
   bool stopped = false;
+  CoherentSequence coherent;
+  if (opened.renderer.coherence_state.planned) job.coherent = &coherent;
   status = render_files(&opened.renderer, job, &files, &trace_ms, &stopped);
   if (!files.empty() && options.common.json != "-")
     print_summary(job, opened.renderer, files.size(), files.back(), trace_ms);
   if (!files.empty() && options.common.json != "-" && job.servers) print_share(*job.servers);
-  if (!files.empty() && options.common.json != "-" && job.budget) print_budget(budget, !job.sequence.numbered);
+  if (!files.empty() && options.common.json != "-" && job.budget) print_budget(budget, !job.sequence.given);
   if (status.ok && job.budget) status = finish_budget(budget);
   if (status.ok && !options.common.json.empty())
     status = write_json(options.common.json, to_json(job, opened.renderer, files, trace_ms));
@@ -401,6 +405,7 @@ void add_render_command(Command program, const OptionalParts& parts, int* exit_s
   add_scene_options(command, &o->common);
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
+  add_coherence_options(command, &o->common);
   command
       .add_option("-o,--output", o->output,
                   "picture to write: .png, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes)")

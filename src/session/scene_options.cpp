@@ -60,6 +60,20 @@ SettingOption& SettingOptions::operator[](const char* name) {
   return options[row - kSettingList];
 }
 
+namespace {
+
+Status read_coherence(const CommonOptions& o, Settings* settings) {
+  constexpr const char* kNames[] = {"off", "auto", "on"};  // in the order of CoherenceMode
+  if (o.coherence_table < 1 || o.coherence_table > kCoherenceTableSideMax)
+    return failure("--coherence-table is %u: it must lie in 1 … %u", o.coherence_table, kCoherenceTableSideMax);
+  settings->coherence_table = o.coherence_table;
+  for (int i = 0; i < 3; ++i)
+    if (o.coherence == kNames[i]) return settings->coherence = static_cast<CoherenceMode>(i), success();
+  return failure("--coherence is '%s': it must be on, off or auto", o.coherence.c_str());
+}
+
+}  // namespace
+
 Status read_settings(const CommonOptions& o, Settings* settings) {
   RETURN_IF_ERROR(picture_size(o, &settings->width, &settings->height));
   const platform::Device* device;
@@ -72,6 +86,7 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   RETURN_IF_ERROR(check_limit(Quantity::camera_index, double(o.camera_index), "--camera-index"));
   for (int i = 0; i < kSettingCount; ++i)
     RETURN_IF_ERROR(read_setting(kSettingList[i], o.settings.options[i], settings));
+  RETURN_IF_ERROR(read_coherence(o, settings));
   bool measured;
   float factor;
   RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // checked even by commands that show nothing

@@ -28,6 +28,8 @@ struct CommonOptions {
   std::string size, memory, effects = "auto", camera, exposure, json, device, emulate, isa, accel = "auto";
   std::uint32_t threads = 0, camera_index = 0;
   SettingOptions settings;
+  std::string coherence = "off";
+  std::uint32_t coherence_table = Settings().coherence_table;
 };
 
 // Parses the options into settings.

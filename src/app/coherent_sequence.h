@@ -1,0 +1,23 @@
+// What coherence saves over a sequence of frames.
+#pragma once
+#include "engine/coherent.h"
+#include "session/report.h"
+#include "session/scene_options.h"
+
+namespace pocketray {
+
+struct CoherentSequence {
+  std::uint64_t frames = 0, whole_frames = 0, pixels = 0, pixels_traced = 0;
+  const char* whole_because = nullptr;  // why the last frame after the first was traced whole; null: none was
+};
+
+// Where coherence has no effect, for the reason `because` (null: it has): refuses "on", and makes "auto" "off".
+Status check_coherence(const char* because, CommonOptions* options);
+
+// render_coherent() for the next frame; an interrupt ends it early.
+Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequence, bool* complete);
+
+void print_coherence(const CoherentSequence& sequence);
+Json coherence_json(const CoherentSequence& sequence);
+
+}  // namespace pocketray
