@@ -39,6 +39,7 @@ constexpr KeyButton kMoreKeys[] = {
     {KEY_PAGEUP, Button::finer},
     {KEY_PAGEDOWN, Button::faster},
     {KEY_V, Button::side_by_side},
+    {KEY_T, Button::traced},
 };
 
 constexpr std::uint16_t kAxisCodes[4] = {ABS_X, ABS_Y, ABS_HAT0X, ABS_HAT0Y};

@@ -39,6 +39,7 @@ constexpr KeyButton kKeys[] = {
     {SDL_SCANCODE_PAGEUP, Button::finer},
     {SDL_SCANCODE_PAGEDOWN, Button::faster},
     {SDL_SCANCODE_V, Button::side_by_side},
+    {SDL_SCANCODE_T, Button::traced},
 };
 
 struct ControllerButton {

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <thread>
 
+#include "app/coherent_sequence.h"
 #include "app/commands.h"
 #include "app/options.h"
 #include "base/seal.h"
@@ -153,6 +154,8 @@ int run(ViewCommand o) {
   if (device) o.view.keys = device->keys;
   if (!o.common.emulate.empty()) o.view.emulated = device;
   if (status.ok) status = check_options(o);
+  if (status.ok && !o.servers.addresses.empty())
+    status = check_coherence("render servers: drop --server or --coherence", &o.common);
   if (status.ok) status = picture_size(o.common, &size.width, &size.height);
   if (status.ok)
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),
@@ -177,6 +180,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   add_scene_options(command, &o->common);
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
+  add_coherence_options(command, &o->common);
   if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);
   command
       .add_option("--screen", o->view.backend,
@@ -202,6 +206,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
                              "  S [X]                 pause\n"
                              "  F1, A [Y]             toggle the overlay\n") +
                  (parts.side_by_side ? "  V                     toggle the reference of --side-by-side\n" : "") +
+                 "  T                     dim the pixels that the last frame did not trace again\n"
                  "  F12                   save a screenshot\n"
                  "  F5                    reload the scene\n"
                  "  Esc                   quit");

@@ -26,14 +26,8 @@ Rectangle clipped(const Canvas& canvas, int column, int row, int width, int heig
 }
 
 void dim(const Canvas& canvas, const Rectangle& box) {
-  for (int row = box.row_begin; row < box.row_end; ++row) {
-    for (int column = box.column_begin; column < box.column_end; ++column) {
-      void* pixel = pixel_at(canvas, column, row);
-      int levels[3];
-      unpack_levels(canvas.format, read_pixel(canvas.format, pixel), levels);
-      write_pixel(canvas.format, pixel, pack_levels(canvas.format, levels[0] / 4, levels[1] / 4, levels[2] / 4));
-    }
-  }
+  for (int row = box.row_begin; row < box.row_end; ++row)
+    for (int column = box.column_begin; column < box.column_end; ++column) dim_pixel(canvas, column, row, 4);
 }
 
 void draw_glyph(const Canvas& canvas, int column, int row, int scale, char character, std::uint32_t ink) {
@@ -47,6 +41,16 @@ void draw_glyph(const Canvas& canvas, int column, int row, int scale, char chara
 }
 
 }  // namespace
+
+void dim_pixel(const Canvas& canvas, int column, int row, int divisor) {
+  CHECK_LE(1, divisor);
+  CHECK(column >= 0 && column < canvas.width && row >= 0 && row < canvas.height);
+  void* pixel = pixel_at(canvas, column, row);
+  int levels[3];
+  unpack_levels(canvas.format, read_pixel(canvas.format, pixel), levels);
+  for (int& level : levels) level /= divisor;
+  write_pixel(canvas.format, pixel, pack_levels(canvas.format, levels[0], levels[1], levels[2]));
+}
 
 int text_box_width(int characters, int scale) { return (characters * kCellWidth - 1 + 2 * kMargin) * scale; }
 int text_box_height(int lines, int scale) { return (lines * kCellHeight - 1 + 2 * kMargin) * scale; }

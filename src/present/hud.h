@@ -14,6 +14,9 @@ struct Canvas {
   Rotation rotation = Rotation::none;
 };
 
+// Divides the levels of a pixel of the picture.
+void dim_pixel(const Canvas& canvas, int column, int row, int divisor);
+
 // Picture pixels covered by a box of that much text, including its margin. `scale`: pixels per font pixel, at least 1.
 int text_box_width(int characters, int scale);
 int text_box_height(int lines, int scale);

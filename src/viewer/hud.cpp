@@ -24,13 +24,30 @@ void add_effects(const EffectPlan& plan, HudText* text) {
   if (line[0]) add_hud_line(text, "%s", line);
 }
 
+// How much of the last frame was traced.
+void add_coherence(const Renderer& renderer, HudText* text) {
+  const CoherenceState& state = renderer.coherence_state;
+  if (!state.planned) return;
+  if (state.whole_because) {
+    char line[200];
+    std::snprintf(line, sizeof line, "coherence: whole frame: %s", state.whole_because);
+    add_hud_text(text, line);
+    return;
+  }
+  CHECK_GE(renderer.image.count, 1u);
+  add_hud_line(text, "coherence: %.1f %% traced, %.0fk rays to find them",
+               100 * static_cast<double>(state.pixels_traced) / static_cast<double>(renderer.image.count),
+               static_cast<double>(state.search.moving_rays + state.search.static_rays) * 1e-3);
+}
+
 }  // namespace
 
 void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text) {
   text->line_count = 0;
   CHECK_GE(renderer.settings.threads, 1u);
   Tracer counts = total_counts(renderer);
-  std::uint64_t rays = 0;
+  const ChangeCounts& search = renderer.coherence_state.search;
+  std::uint64_t rays = search.moving_rays + search.static_rays;
   for (std::uint64_t n : counts.rays) rays += n;
   double ns_per_pixel = progressive.pixels_traced
                             ? static_cast<double>(progressive.trace_ns) / static_cast<double>(progressive.pixels_traced)
@@ -49,6 +66,7 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
   add_hud_line(text, "%.1f of %.0f MiB  %s camera%s", static_cast<double>(renderer.memory.total_bytes) / (1 << 20),
                static_cast<double>(renderer.memory.limit_bytes) / (1 << 20),
                mode == CameraMode::orbit ? "orbit" : "fly", progressive.step > 0 ? "  refining" : "");
+  add_coherence(renderer, text);
   add_effects(renderer.effects, text);
 }
 

@@ -13,7 +13,7 @@ struct HudNote {
   std::uint32_t number = 0;    // count of notes so far
 };
 
-// Milliseconds per frame, nanoseconds per pixel, rays, memory, effects on.
+// Milliseconds per frame, nanoseconds per pixel of the picture, rays, memory, what coherence saved, effects on.
 void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text);
 void write_waiting(const char* what, double seconds, HudText* text);
 }  // namespace pocketray

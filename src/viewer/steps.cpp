@@ -8,14 +8,21 @@
 #include "engine/frame.h"
 #include "present/repack.h"
 #include "session/interrupt.h"
+#include "viewer/traced_overlay.h"
 
 namespace pocketray {
 namespace {
 
 constexpr std::uint64_t kMillisecond = 1000000;
-// Chosen: 40 looks at the buttons a second feel immediate; idle, a few per display frame.
+// Chosen: 40 looks at the buttons a second feel immediate; idle, a few per display frame, or two display frames apart
+// if no button was used for a while.
 constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two polls of the buttons
-constexpr std::uint64_t kIdleNs = 8 * kMillisecond;
+constexpr std::uint64_t kIdleNs = 8 * kMillisecond, kLongIdleNs = 33 * kMillisecond;
+constexpr std::uint64_t kLongIdleAfterNs = 1000 * kMillisecond;
+
+bool dims_kept_pixels(const Viewer& viewer) {
+  return viewer.traced && !viewer.picture_merged && !shows_side_by_side(viewer);
+}
 
 // Packs and shows the changed rows.
 void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
@@ -32,6 +39,8 @@ void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, st
   std::uint32_t covered = std::min(hud_rows(shown), renderer.settings.height);
   if (covered > 0 || viewer->hud_rows_shown > 0)
     row_begin = 0, row_end = std::max(row_end, std::max(covered, viewer->hud_rows_shown));
+  // Which pixels are dim can change in any row.
+  if (viewer->traced || viewer->traced_shown) row_begin = 0, row_end = renderer.settings.height;
   const Vec3* radiance = renderer.image.data;
   if (shows_side_by_side(*viewer))
     radiance = viewer->side_by_side->backend->picture(viewer->side_by_side, renderer), row_begin = 0,
@@ -39,6 +48,10 @@ void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, st
   std::uint64_t start = clock_ns();
   pack_picture(*viewer, renderer, radiance, static_cast<int>(row_begin), static_cast<int>(row_end), page);
   viewer->pack_ns = clock_ns() - start;
+  if (dims_kept_pixels(*viewer))
+    dim_kept_pixels(renderer,
+                    {page.pixels, page.line_bytes, viewer->format, viewer->width, viewer->height, viewer->rotation});
+  viewer->traced_shown = viewer->traced;
   draw_hud_text(shown, viewer->format, viewer->rotation, viewer->width, viewer->height, page.pixels, page.line_bytes);
   viewer->hud_shown = viewer->hud, viewer->note_shown = note, viewer->hud_rows_shown = covered;
   bool whole = quarter_turned(*viewer) || page.age != 1;
@@ -52,9 +65,10 @@ void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, st
   }
 }
 
-// True if the overlay on the screen is up to date.
-bool is_text_shown(const Viewer& viewer) {
-  return viewer.hud == viewer.hud_shown && note_now(viewer) == viewer.note_shown;
+// True if the overlays on the screen are up to date.
+bool is_overlay_shown(const Viewer& viewer) {
+  return viewer.hud == viewer.hud_shown && note_now(viewer) == viewer.note_shown &&
+         viewer.traced == viewer.traced_shown;
 }
 
 // With a frame count, even a still is rendered again to reach it; with a reference, only once that has
@@ -73,7 +87,8 @@ Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (viewer->options.frame_count > 0 && !shows_side_by_side(*viewer)) loop->passed = true;  // hidden meanwhile
   bool refines = shows_side_by_side(*viewer) && !viewer->side_by_side->backend->is_full(*viewer->side_by_side);
   if (!refines && !viewer->side_by_side_changed) {
-    viewer->backend->sleep_ns(kIdleNs);
+    bool rests = viewer->backend->now_ns() - viewer->event_ns > kLongIdleAfterNs;
+    viewer->backend->sleep_ns(rests ? kLongIdleNs : kIdleNs);
     return success();
   }
   viewer->side_by_side_changed = false;
@@ -90,25 +105,53 @@ Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
+// Traces a slice of the picture: all of it, coarse first, or what has changed.
+bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
+  Progressive* progressive = &loop->progressive;
+  if (!loop->coherent.all) {
+    bool complete = advance_coherent(renderer, clock_ns() + kSliceNs, nullptr, &loop->coherent);
+    progressive->pixels_traced = renderer->image.count;  // the picture has all of them
+    progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;
+    progressive->shown_coarse = true;
+    if (renderer->coherence_state.pixels_traced > 0)
+      progressive->dirty_begin = 0, progressive->dirty_end = renderer->settings.height;
+    if (complete) progressive->step = 0;
+    return complete;
+  }
+  std::uint64_t before = progressive->trace_ns;
+  bool complete = advance_progressive(renderer, loop->row_spans, clock_ns() + kSliceNs, progressive);
+  loop->coherent.spent_ns += progressive->trace_ns - before;
+  if (complete) {
+    renderer->coherence_state.pixels_traced = progressive->pixels_traced;
+    finish_coherent(renderer, &loop->coherent);
+    progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;  // all that the frame took
+  }
+  return complete;
+}
+
 // Begins the next picture once the current one is visible, traces a slice of it and shows it.
 Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   // A moving camera is followed as soon as a coarse picture is visible. Time waits for the finished picture; so does
   // the camera when finished frames are counted.
   bool follow = loop->moved && loop->progressive.shown_coarse && viewer->options.frame_count == 0;
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
+    std::uint64_t start = clock_ns();
     RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
+    loop->prepare_ns = clock_ns() - start;
     loop->progressive = Progressive();
+    begin_coherent(renderer, &loop->coherent);
+    loop->progressive.is_coherent = true;
     loop->moved = loop->passed = loop->finished = false;
   }
-  if (loop->finished && is_text_shown(*viewer)) return idle(viewer, renderer, loop);
+  if (loop->finished && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
   bool was_finished = loop->finished;
-  if (!was_finished)
-    loop->finished = advance_progressive(renderer, loop->row_spans, clock_ns() + kSliceNs, &loop->progressive);
+  if (!was_finished) loop->finished = advance_picture(renderer, loop);
   if (loop->finished && !was_finished) {
     ++viewer->frames_finished;
     if (goes_on(*viewer)) loop->passed = true;
   }
-  write_picture_lines(*viewer, *renderer, loop);
+  // What a frame of changes takes is known when it is finished; until then the display tells of the one before.
+  if (loop->finished || loop->coherent.all) write_picture_lines(*viewer, *renderer, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);
   show_rows(viewer, *renderer, loop->hud, begin, end);
@@ -130,12 +173,12 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   }
   if (loop->moved || loop->passed) loop->still_frames = loop->steady_frames = 0;
   bool due = loop->moved || loop->passed || (!loop->settled && viewer->options.frame_count == 0);
-  if (!due && is_text_shown(*viewer)) return idle(viewer, renderer, loop);
+  if (!due && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
   std::uint32_t before = budget->last;
   std::uint64_t start = clock_ns(), traced = start;
   if (due) {
     RETURN_IF_ERROR(begin_budget_frame(budget, renderer));
-    RETURN_IF_ERROR(render_frame(renderer, loop->seconds, Aov::none, &interrupted));
+    RETURN_IF_ERROR(render_coherent(renderer, loop->seconds, &interrupted));
     traced = clock_ns();
     loop->progressive = {};
     loop->progressive.step = 0;
@@ -162,7 +205,7 @@ Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     RETURN_IF_ERROR(servers.begin_frame(viewer->servers, renderer, loop->seconds));
     loop->moved = loop->passed = loop->finished = false;
   }
-  if (loop->finished && is_text_shown(*viewer)) return idle(viewer, renderer, loop);
+  if (loop->finished && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
   if (!loop->finished && servers.advance_frame(viewer->servers, renderer, clock_ns() + kSliceNs, nullptr)) {
     loop->finished = true;
     ++viewer->frames_finished;

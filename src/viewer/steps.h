@@ -1,6 +1,7 @@
 // One step of the viewer between two polls of the buttons: renders the next part of a picture, locally or with servers,
 // and shows it.
 #pragma once
+#include "engine/coherent.h"
 #include "viewer/hud.h"
 #include "viewer/viewer.h"
 
@@ -9,12 +10,14 @@ namespace pocketray {
 struct ViewerLoop {
   CameraControl control;
   Progressive progressive;
+  CoherentFrame coherent;
   Array<Span> row_spans;
   HudText hud;
   double seconds = 0;                 // of the animation
   bool camera_moved = false;          // by the user, since the scene's own camera was shown
   bool moved = false, passed = true;  // the camera has moved, time has passed: a new picture is due
   bool finished = false;
+  std::uint64_t prepare_ns = 0;  // of the current picture
   // With a budget: frames since camera or time moved, and how many of the latest had the same settings.
   std::uint32_t still_frames = 0, steady_frames = 0;
   bool settled = true;

@@ -39,6 +39,7 @@ void take_events(Viewer* viewer) {
     if (!down && event.type != platform::EventType::button_up) continue;
     CHECK_LT(static_cast<int>(event.button), platform::kButtonCount);
     viewer->held[static_cast<int>(event.button)] = down;
+    viewer->event_ns = viewer->backend->now_ns();
     if (!down) continue;
     if (event.button == Button::hud || event.button == Button::y) viewer->hud = !viewer->hud;
     if (event.button == Button::x) viewer->paused = !viewer->paused;
@@ -48,6 +49,7 @@ void take_events(Viewer* viewer) {
     if (event.button == Button::finer) ++viewer->front_steps;
     if (event.button == Button::faster) --viewer->front_steps;
     if (event.button == Button::side_by_side) ++viewer->side_by_side_presses;
+    if (event.button == Button::traced) ++viewer->traced_presses;
     if (event.button == Button::select) viewer->change_mode = true;
   }
   if (interrupted) viewer->quit = true;
@@ -85,6 +87,24 @@ void save_screenshot(Viewer* viewer, Renderer* renderer) {
   tell(viewer, status.ok ? told : status.message);
 }
 
+// Toggles the overlay of traced pixels, or tells why there is none.
+void answer_traced(Viewer* viewer, const Renderer& renderer) {
+  const CoherenceState& coherence = renderer.coherence_state;
+  char told[200];
+  if (!coherence.planned) {
+    viewer->traced = false;
+    bool can_be_on = renderer.settings.coherence != CoherenceMode::on && !viewer->servers;
+    std::snprintf(told, sizeof told, "T dims what was not traced again, but all of it was, as %.80s%s",
+                  coherence.unplanned_because, can_be_on ? ": start with --coherence on to use it" : "");
+    tell(viewer, told);
+  } else if (shows_side_by_side(*viewer)) {
+    tell(viewer, "T dims what was not traced again: hide the reference with V to see it");
+  } else if (viewer->traced_presses % 2 != 0) {
+    viewer->traced = !viewer->traced;
+  }
+  viewer->traced_presses = 0;
+}
+
 // Responds to buttons that do nothing in this run.
 void answer_buttons(Viewer* viewer, Renderer* renderer) {
   if (viewer->screenshot) save_screenshot(viewer, renderer);
@@ -97,6 +117,7 @@ void answer_buttons(Viewer* viewer, Renderer* renderer) {
                      ? "V shows the reference beside the picture: start with --side-by-side model to use it"
                      : "V shows the reference, which this build does not have: use a desktop build");
   viewer->side_by_side_presses = 0;
+  if (viewer->traced_presses > 0) answer_traced(viewer, *renderer);
   if (!viewer->budget && viewer->front_steps != 0)
     tell(viewer, "page up/down change settings within a budget: start with --budget-ms to use them");
   if (!viewer->budget) viewer->front_steps = 0, viewer->front_home = false;

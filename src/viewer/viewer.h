@@ -66,7 +66,10 @@ struct Viewer {
   int side_by_side_presses = 0;                                                              // asked for
   bool side_by_side_changed = false;  // side_by_side_shown changed and the screen does not show it yet
   bool front_home = false;            //   as the budget has it
+  int traced_presses = 0;             // asked for
   bool hud = true, hud_shown = false, paused = false;
+  bool traced = false, traced_shown = false;  // dims the pixels kept from the last frame; the screen does
+  std::uint64_t event_ns = 0;                 // of the last button
   std::uint32_t note_shown = 0,
                 hud_rows_shown = 0;  // on the screen: the note's number, and the rows the overlay covers
   std::uint64_t waiting_since_ns = 0;

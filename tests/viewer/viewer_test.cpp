@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include "platform/file.h"
 #include "platform/null/null.h"
 #include "session/open_scene.h"
+#include "viewer/stage.h"
 
 using namespace pocketray;
 
@@ -64,51 +66,6 @@ TEST_CASE("viewer_settles_a_still_within_a_budget") {
 }
 
 namespace {
-
-// A viewer on an in-memory screen, with scripted buttons.
-struct Stage {
-  std::vector<platform::Event> script;
-  std::vector<std::uint32_t> screen = std::vector<std::uint32_t>(kWidth * kHeight);
-  Viewer viewer;
-  static constexpr int kWidth = 320, kHeight = 60;
-
-  void press(double seconds, platform::Button button, bool down = true) {
-    platform::Event event;
-    event.type = down ? platform::EventType::button_down : platform::EventType::button_up;
-    event.button = button, event.time_ns = static_cast<std::uint64_t>(seconds * 1e9);
-    script.push_back(event);
-  }
-  void leave(double seconds) {
-    platform::Event event;
-    event.time_ns = static_cast<std::uint64_t>(seconds * 1e9);
-    script.push_back(event);
-  }
-  void open(const std::string& scene, const std::string& screenshots = ".") {
-    platform::NullSettings settings;
-    settings.screen = screen.data(), settings.screen_bytes = screen.size() * 4;
-    settings.script = script.data(), settings.script_count = static_cast<int>(script.size());
-    platform::null_configure(settings);
-    ViewOptions options;
-    options.backend = "null", options.rotation = 0, options.screenshot_folder = screenshots;
-    REQUIRE(open_viewer(options, scene.c_str(), kWidth, kHeight, &viewer).ok);
-  }
-  // Shows a built-in scene; true if a reload is due.
-  bool show(const char* scene, OpenScene* opened) {
-    CommonOptions common;
-    common.scene = scene, common.size = "320x60", common.threads = 1;
-    OpenHooks hooks;
-    hooks.output_bytes = viewer_bytes;
-    REQUIRE(open_scene(common, hooks, opened).ok);
-    REQUIRE(start_scene(opened, common).ok);
-    bool again;
-    REQUIRE(run_viewer(&viewer, &opened->renderer, &again).ok);
-    return again;
-  }
-  ~Stage() {
-    close_viewer(&viewer);
-    platform::null_configure(platform::NullSettings());
-  }
-};
 
 bool is_equal(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
@@ -252,4 +209,42 @@ TEST_CASE("viewer_wants_a_screen") {
   close_viewer(&viewer);
   for (int i = 0; i < 3; ++i)
     if (!kept[i].empty()) setenv(names[i], kept[i].c_str(), 1);
+}
+
+namespace {
+
+std::uint64_t sleep_count, sleep_ns_max;
+
+void count_sleep(std::uint64_t duration) {
+  ++sleep_count;
+  sleep_ns_max = std::max(sleep_ns_max, duration);
+  platform::kNullBackend.sleep_ns(duration);
+}
+
+}  // namespace
+
+// Goal: a viewer that nobody touches wakes rarely, shows nothing, and answers soon all the same. Method: count the
+// sleeps of a minute; a key at its end, and the time of the answer. Stills, and a paused animation.
+TEST_CASE("viewer_rests_while_idle") {
+  for (const char* scene : {"cube", "seesaw"}) {
+    CAPTURE(scene);
+    Stage stage;
+    stage.press(0.5, platform::Button::hud);
+    stage.press(0.6, platform::Button::x);
+    stage.press(61, platform::Button::finer);
+    stage.leave(62);
+    stage.open(scene);
+    platform::Backend counting = *stage.viewer.backend;
+    counting.sleep_ns = count_sleep;
+    stage.viewer.backend = &counting;
+    sleep_count = sleep_ns_max = 0;
+    OpenScene opened;
+    stage.show(scene, &opened, "on");
+    CHECK(sleep_count > 60 * 25);
+    CHECK(sleep_count < 62 * 33 + 2 * 125);
+    CHECK(sleep_ns_max <= 40'000'000);
+    REQUIRE(stage.viewer.note.number == 1);
+    CHECK(stage.viewer.note.until_ns <= 65 * kSecond + 40'000'000);
+    CHECK(platform::null_record().frames_shown < 100);
+  }
 }
