@@ -6,13 +6,6 @@
 namespace pocketray {
 namespace {
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
-
 std::string number(double value) {
   if (std::isnan(value)) return "";
   char text[32];
@@ -21,6 +14,13 @@ std::string number(double value) {
 }
 
 }  // namespace
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string result = "\"";
+  for (char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
 
 std::string sweep_csv(const Sweep& sweep) {
   std::string csv =
@@ -31,13 +31,13 @@ std::string sweep_csv(const Sweep& sweep) {
     const double figures[] = {m.ns_per_pixel.value, m.ns_per_pixel.low, m.ns_per_pixel.high, m.flip,
                               m.errors.rmse,        m.errors.rel_mse,   m.errors.p99,        m.errors.max,
                               m.errors.bias,        m.errors.psnr};
-    csv += quoted(m.knob) + ',' + quoted(m.value);
+    csv += csv_field(m.knob) + ',' + csv_field(m.value);
     for (double figure : figures) csv += ',' + (there ? number(figure) : "");
     csv += there ? m.pareto ? ",1" : ",0" : ",";
     const double further[] = {m.flip_before, m.time_ratio.value, m.time_ratio.low, m.time_ratio.high,
                               m.instructions_per_pixel};
     for (double figure : further) csv += ',' + (there ? number(figure) : "");
-    csv += std::string(m.is_default ? ",1," : ",0,") + quoted(m.missing) + ',' + quoted(m.note) + '\n';
+    csv += std::string(m.is_default ? ",1," : ",0,") + csv_field(m.missing) + ',' + csv_field(m.note) + '\n';
   }
   return csv;
 }

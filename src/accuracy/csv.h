@@ -1,4 +1,4 @@
-// A sweep as CSV.
+// CSV (RFC 4180, with line feeds).
 #pragma once
 #include <string>
 
@@ -6,8 +6,10 @@
 
 namespace pocketray {
 
-// A header line, then one line per configuration, the baseline first. Missing measurements stay empty. RFC 4180, with
-// line feeds.
+// Text as a field, quoted if needed.
+std::string csv_field(const std::string& text);
+
+// A sweep: a header line, then one line per configuration, the baseline first. Missing measurements stay empty.
 std::string sweep_csv(const Sweep& sweep);
 
 }  // namespace pocketray

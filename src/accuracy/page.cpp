@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "accuracy/findings.h"
-#include "accuracy/page_style.h"
+#include "accuracy/page_parts.h"
 #include "accuracy/page_tables.h"
 #include "accuracy/strip.h"
 #include "accuracy/text.h"
@@ -11,37 +11,10 @@
 namespace pocketray {
 namespace {
 
-void replace_all(std::string* text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text->find(from); at != std::string::npos; at = text->find(from, at + to.size()))
-    text->replace(at, from.size(), to);
-}
-
-// Makes gnuplot's SVG an element of the page: drops the file header and makes ids unique.
-std::string inline_svg(const std::string& name, const std::string& file) {
-  std::size_t begin = file.find("<svg");
-  if (begin == std::string::npos) return "";
-  std::string svg = file.substr(begin);
-  std::string prefix = file_word(name) + "_";
-  for (const char* mark : {"id=\"", "id='", "href='#", "href=\"#", "url(#"}) replace_all(&svg, mark, mark + prefix);
-  std::size_t title = svg.find("<title>"), title_end = svg.find("</title>");
-  if (title != std::string::npos && title_end != std::string::npos)
-    svg.replace(title, title_end - title, "<title>" + escaped(name));
-  return svg;
-}
-
 std::string plot_figure(const PagePictures& pictures, const std::string& name) {
   auto found = pictures.plots.find(name);
   if (found == pictures.plots.end()) return "";
-  return "<figure class=\"plot\">" + inline_svg(name, found->second) + "</figure>\n";
-}
-
-// Side by side if there is room.
-std::string pair(const std::string& one, const std::string& other) {
-  return "<div class=\"pair\">\n" + one + other + "</div>\n";
-}
-
-std::string image(const std::string& png, const std::string& alternative) {
-  return "<img alt=\"" + escaped(alternative) + "\" src=\"data:image/png;base64," + base64(png) + "\" />";
+  return svg_figure(name, found->second);
 }
 
 std::string flip_scale() {
@@ -69,13 +42,11 @@ std::string strip_figure(const Sweep& sweep, const PagePictures& pictures, const
 
 std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
   std::string title = "What accuracy costs in time: " + escaped(sweep.scene.substr(sweep.scene.rfind('/') + 1));
-  std::string text =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
-      title + "</title>\n<style>" + kPageStyle + "</style>\n</head>\n<body>\n<header>\n<div>\n<h1>" + title +
-      "</h1>\n<p class=\"soft\">" + (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
-      format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
-      std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) + ".</p>\n";
+  std::string text = page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" +
+                     (sweep.scene.find('/') == std::string::npos ? "" : escaped(sweep.scene) + ", ") +
+                     format("%u × %u pixels", sweep.width, sweep.height) + ", " + escaped(sweep.machine) + ", " +
+                     std::to_string(sweep.rounds) + " rounds; the baseline’s output is " + escaped(sweep.output) +
+                     ".</p>\n";
   text += "<p>Errors are relative to <b>" + escaped(sweep.reference) + "</b>, ";
   text += sweep.reference == "physical" ? "full light transport, path traced in double precision"
                                         : "the converged lighting model, in double precision";
@@ -185,7 +156,7 @@ std::string page_of(const Sweep& sweep, const PagePictures& pictures) {
         "<h2>Several at once</h2>\n<details><summary>Configurations that cover pairs of values of two "
         "knobs</summary>\n" +
         value_table(sweep, "several") + "</details>\n";
-  return text + method_of(sweep) + "</body>\n</html>\n";
+  return text + method_of(sweep) + kPageEnd;
 }
 
 }  // namespace pocketray

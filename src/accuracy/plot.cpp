@@ -6,47 +6,21 @@
 #include "accuracy/findings.h"
 #include "accuracy/gnuplot.h"
 #include "accuracy/plot_axis.h"
+#include "accuracy/plot_script.h"
 #include "accuracy/text.h"
 
 namespace pocketray {
 namespace {
 
-// Also distinct to the colour-blind [Okabe & Ito 2008, "Color Universal Design"], legible on black and on white.
-constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                   "#56b4e9", "#e69f00", "#8c6bb1", "#b0a000"};
-constexpr int kColorCount = 8, kSymbols[] = {7, 5, 9, 11, 13};
+constexpr int kSymbols[] = {7, 5, 9, 11, 13};
 constexpr const char* kInk = "#777777";
+constexpr double kCharacter = 0.56 * kPlotFont, kLine = 1.25 * kPlotFont;  // pixels, of a label's text
 
-// Plots are drawn in SVG at this size, in PNG at twice it, so that they are legible at a phone's width.
-constexpr int kWidth = 620, kFont = 17;
-constexpr double kCharacter = 0.56 * kFont, kLine = 1.25 * kFont;  // pixels, of a label's text
-
-struct Frame {
-  double left, right, bottom, top;  // edges of the plot area, as fractions of the whole
-  int height;
-};
-
-// A script that runs `body` for both kinds of file.
-std::string script_of(const std::string& name, int height, const std::string& data, const std::string& body) {
-  return "# gnuplot " + name + ".gnuplot draws " + name + ".png and " + name + ".svg.\nreset\nset encoding utf8\n" +
-         data + "do for [kind in 'png svg'] {\nif (kind eq 'png') {\n" +
-         format("set terminal pngcairo size %d,%d font 'sans,%.1f' fontscale 2 linewidth 2 pointscale 2 noenhanced\n",
-                2 * kWidth, 2 * height, 0.75 * kFont) +
-         "} else {\n" +
-         format("set terminal svg size %d,%d dynamic font 'sans-serif,%d' noenhanced\n", kWidth, height, kFont) +
-         "}\nset output '" + name + ".'.kind\nunset label\n" + body + "unset output\n}\n";
+PlotArea area_of(const PlotFrame& frame) {
+  return {(frame.right - frame.left) * kPlotWidth / kCharacter, (frame.top - frame.bottom) * frame.height / kLine};
 }
 
-std::string frame_commands(const Frame& frame) {
-  return format("set lmargin at screen %.4f\nset rmargin at screen %.4f\n", frame.left, frame.right) +
-         format("set bmargin at screen %.4f\nset tmargin at screen %.4f\n", frame.bottom, frame.top) +
-         "set border 3 lc rgb 'black'\nset tics nomirror out\nset grid lc rgb '#dddddd'\n";
-}
-PlotArea area_of(const Frame& frame) {
-  return {(frame.right - frame.left) * kWidth / kCharacter, (frame.top - frame.bottom) * frame.height / kLine};
-}
-
-std::string label_commands(const Frame& frame, const std::vector<PlotPoint>& points,
+std::string label_commands(const PlotFrame& frame, const std::vector<PlotPoint>& points,
                            const std::vector<std::string>& texts, const char* color) {
   constexpr const char* kAligns[] = {"left", "center", "right"};
   std::string commands;
@@ -94,10 +68,6 @@ std::string title_commands(const std::vector<std::string>& lines) {
   return "set title " + (title.empty() ? "''" : title) + "\n";
 }
 
-std::string data_block(const std::string& name, const std::string& lines) {
-  return "$" + name + " << EOD\n" + lines + "EOD\n";
-}
-
 std::string series_of(const std::vector<const Measured*>& points, const Sweep& sweep, const Axis& x, const Axis& y) {
   std::string lines;
   for (const Measured* m : points)
@@ -130,7 +100,7 @@ Plot front_plot(const Sweep& sweep) {
   names.push_back("baseline");
 
   int key_rows = (static_cast<int>(names.size()) + 2) / 2, height = 594 + 22 * key_rows;
-  Frame frame = {0.16, 0.97, (114.0 + 22 * key_rows) / height, 1 - 52.0 / height, height};
+  PlotFrame frame = {0.16, 0.97, (114.0 + 22 * key_rows) / height, 1 - 52.0 / height, height};
   std::string data, plots;
   std::vector<const Measured*> front = front_of(sweep);
   std::vector<PlotPoint> points;
@@ -154,7 +124,8 @@ Plot front_plot(const Sweep& sweep) {
     if (shown.empty()) continue;
     std::string block = "knob" + std::to_string(i);
     data += data_block(block, series_of(shown, sweep, x, y));
-    std::string style = format("pt %d ps 0.9 lc rgb '%s'", kSymbols[(i + 4) % 5], kColors[(i + 7) % kColorCount]);
+    std::string style =
+        format("pt %d ps 0.9 lc rgb '%s'", kSymbols[(i + 4) % 5], kPlotColors[(i + 7) % kPlotColorCount]);
     if (names[i] == "several") style = "pt 7 ps 0.45 lc rgb '#999999'";
     if (names[i] == "baseline") style = "pt 3 ps 1.3 lw 2 lc rgb '#d62728'";
     plots += (plots.empty() ? "$" : ", \\\n  $") + block + " using 1:2 title " + gnuplot_string(names[i]) +
@@ -181,8 +152,8 @@ Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
   double limit = kClaimFactor * sweep.reference_flip;
   Axis x = axis_of(times, 0, false), y = axis_of(errors, limit, true);
   std::vector<std::string> title = title_lines({knob.name + ": " + knob.what, slope_text(knob)});
-  double above = 38 + 1.35 * kFont * static_cast<double>(title.size()), height = 428 + above;
-  Frame frame = {0.16, 0.97, 120 / height, 1 - above / height, static_cast<int>(height)};
+  double above = 38 + 1.35 * kPlotFont * static_cast<double>(title.size()), height = 428 + above;
+  PlotFrame frame = {0.16, 0.97, 120 / height, 1 - above / height, static_cast<int>(height)};
   std::string flip, rmse;
   std::vector<PlotPoint> points, others;
   std::vector<std::string> labels;
@@ -226,8 +197,8 @@ Plot price_plot(const Sweep& sweep) {
   std::size_t width = 4;
   for (const KnobFigures* knob : knobs) width = std::max(width, knob->name.size());
   int height = 150 + 34 * static_cast<int>(std::max<std::size_t>(knobs.size(), 1));
-  double left = std::min(0.5, (static_cast<double>(width) + 2) * kCharacter / kWidth);
-  Frame frame = {left, 0.86, 92.0 / height, 1 - 52.0 / height, height};
+  double left = std::min(0.5, (static_cast<double>(width) + 2) * kCharacter / kPlotWidth);
+  PlotFrame frame = {left, 0.86, 92.0 / height, 1 - 52.0 / height, height};
   std::string bars, names, labels;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     double price = knobs[i]->ms_per_flip, end = 0;

@@ -1,15 +1,9 @@
 // Plots of a sweep as gnuplot scripts with inline data: each draws NAME.png and NAME.svg in the current folder.
 #pragma once
-#include <string>
-#include <vector>
-
+#include "accuracy/plot_script.h"
 #include "accuracy/result.h"
 
 namespace pocketray {
-
-struct Plot {
-  std::string name, script;  // "front"; the script's file is NAME.gnuplot
-};
 
 // ꟻLIP over time of all configurations, the Pareto front as a line with labels numbered from 1, and the area too small
 // to claim.

@@ -33,10 +33,10 @@ Status write_strips(const std::string& folder, const Sweep& sweep, const WriteFi
   return success();
 }
 
-Status write_plots(const std::string& folder, const Sweep& sweep, const WriteFile& write, const DrawScripts& draw,
-                   PagePictures* pictures, bool* drawn) {
-  std::vector<Plot> plots = {front_plot(sweep), price_plot(sweep)};
-  for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));
+}  // namespace
+
+Status draw_plots(const std::string& folder, const std::vector<Plot>& plots, const WriteFile& write,
+                  const DrawScripts& draw, std::map<std::string, std::string>* svgs, bool* drawn) {
   std::vector<std::string> scripts;
   for (const Plot& plot : plots) {
     scripts.push_back(plot.name + ".gnuplot");
@@ -44,18 +44,18 @@ Status write_plots(const std::string& folder, const Sweep& sweep, const WriteFil
   }
   *drawn = draw(folder, scripts);
   if (*drawn)
-    for (const Plot& plot : plots) pictures->plots[plot.name] = read_file(folder + "/" + plot.name + ".svg");
+    for (const Plot& plot : plots) (*svgs)[plot.name] = read_file(folder + "/" + plot.name + ".svg");
   return success();
 }
-
-}  // namespace
 
 Status write_report(const std::string& folder, const Sweep& sweep, const WriteFile& write, const DrawScripts& draw,
                     bool* drawn) {
   *drawn = false;
   PagePictures pictures;
   RETURN_IF_ERROR(write_strips(folder, sweep, write, &pictures));
-  RETURN_IF_ERROR(write_plots(folder, sweep, write, draw, &pictures, drawn));
+  std::vector<Plot> plots = {front_plot(sweep), price_plot(sweep)};
+  for (const KnobFigures& knob : sweep.knobs) plots.push_back(knob_plot(sweep, knob));
+  RETURN_IF_ERROR(draw_plots(folder, plots, write, draw, &pictures.plots, drawn));
   return write(folder + "/index.html", page_of(sweep, pictures));
 }
 

@@ -1,9 +1,11 @@
 // The visual report of a sweep: strips, plots and a page.
 #pragma once
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "accuracy/plot_script.h"
 #include "accuracy/result.h"
 #include "base/status.h"
 
@@ -14,6 +16,11 @@ using DrawScripts = std::function<bool(const std::string& folder, const std::vec
 
 // Replaces a file atomically.
 using WriteFile = std::function<Status(const std::string& path, const std::string& bytes)>;
+
+// Writes NAME.gnuplot for each plot and draws NAME.png and NAME.svg. *drawn: whether gnuplot drew them; then *svgs
+// receives the text of each SVG by name.
+Status draw_plots(const std::string& folder, const std::vector<Plot>& plots, const WriteFile& write,
+                  const DrawScripts& draw, std::map<std::string, std::string>* svgs, bool* drawn);
 
 // Writes the self-contained index.html, and beside it strip_KNOB.png and for each plot NAME.gnuplot, NAME.png and
 // NAME.svg. The folder must exist. *drawn: whether gnuplot drew the plots; without them, the page has only tables.

@@ -53,6 +53,7 @@ printing=("--help" "--version" "plan cube" "plan cube --json -" "render cube --s
   "bench cube --size 8x6 --frames 1 --no-prices --json -" "bake cube -o -")
 ! has split-report || printing+=("split-report cube --size 64x48 --steps 2 --frames 2 --device-ns 5000 --server-ns 500 --no-paper")
 [ $# -gt 0 ] || ! has accuracy || printing+=("accuracy cube --size 8x6 --threads 1 --reference-samples 2 --rounds 1 -o swept")
+! has coherence-report || printing+=("coherence-report seesaw --size 8x6 --threads 1 --frames 0:1 --no-paper")
 for line in "${printing[@]}"; do
   read -ra command <<<"$line"
   told=$("${run[@]}" "${command[@]}" 2>&1 >/dev/full)
@@ -107,6 +108,7 @@ expect sequence_over_the_front 1 'flight-0001.ppm would overwrite the input the.
 check sequence_has_not_begun test ! -e flight-0000.ppm
 ! has split-report || expect split_report_over 1 'would overwrite' split-report seen.pray "${quick[@]}" --json within/soft.json
 ! has accuracy || expect accuracy_over 1 'would overwrite' accuracy seen.pray "${quick[@]}" -o swept_other --json within/soft.json
+! has coherence-report || expect coherence_over 1 'would overwrite' coherence-report seen.pray "${quick[@]}" --json within/soft.json
 expect one_file_of_two 1 '-o and --json name the same file' render cube "${quick[@]}" -o one.ppm --json ./one.ppm
 expect one_output_of_two 1 '-o and --json name the same file' bake cube -o - --json -
 expect bake_ending 1 'must end in .pray' bake cube -o cube.glb
@@ -145,7 +147,7 @@ expect bake_told 1 'no/such/a.pray' bake cube -o no/such/a.pray
 mkdir "$folder/blocked" && : >"$folder/blocked/flight-0003.ppm" && mkdir "$folder/blocked/flight-0004.ppm"
 expect sequence_told 1 'flight-0004.ppm is a folder' render seesaw "${tiny[@]}" --frames 0:5 -o blocked/flight.ppm
 check sequence_told_before_the_first test ! -e blocked/flight-0000.ppm
-for command in split-report accuracy; do
+for command in split-report accuracy coherence-report; do
   has $command || continue
   expect "${command}_file_as_folder" 1 'file ' $command statue "${ages[@]}" -o file
   expect "${command}_folder_in_none" 1 'no/such' $command statue "${ages[@]}" -o no/such

@@ -9,7 +9,7 @@ root=$1
 usual=10 overall=15
 # Rooms that are arithmetic in innermost loops, or input that is refused by messages, have fewer.
 floors='accel=10 accuracy=12 app=0 base=6 brdf=0 import=1 indirect=0 reference=8 remote=21 scene=20 engine=22 plan=28 present=35
-  session=19 split=22 wire=18 budget=24 effect=14 shade=11 split_report=21 sweep=15 viewer=12 platform=14'
+  session=19 split=22 wire=18 budget=24 effect=14 shade=11 split_report=21 coherence_report=16 sweep=15 viewer=12 platform=14'
 
 count_checks() {  # ROOT FLOORS OVERALL : a line for each folder, and whether all have enough
   (cd "$1" && find src platform -name '*.h' -o -name '*.cpp' | sort | tr '\n' '\0' | xargs -0 -r awk -v floors="$2" -v usual=$usual -v overall="$3" '

@@ -1,0 +1,32 @@
+// The parts of gnuplot scripts that all plots share.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace pocketray {
+
+struct Plot {
+  std::string name, script;  // "front"; the script's file is NAME.gnuplot
+};
+
+// Also distinct to the colour-blind [Okabe & Ito 2008, "Color Universal Design"], legible on black and on white.
+constexpr const char* kPlotColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                       "#56b4e9", "#e69f00", "#8c6bb1", "#b0a000"};
+constexpr int kPlotColorCount = 8;
+
+// Plots are drawn in SVG at this size, in PNG at twice it, so that they are legible at a phone's width.
+constexpr int kPlotWidth = 620, kPlotFont = 17;
+
+struct PlotFrame {
+  double left, right, bottom, top;  // edges of the plot area, as fractions of the whole
+  int height;
+};
+std::string frame_commands(const PlotFrame& frame);
+
+// A script that runs `body` for both kinds of file.
+std::string script_of(const std::string& name, int height, const std::string& data, const std::string& body);
+
+// Lines of figures as inline data $name.
+std::string data_block(const std::string& name, const std::string& lines);
+
+}  // namespace pocketray

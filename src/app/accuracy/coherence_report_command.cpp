@@ -1,0 +1,157 @@
+// pocketray coherence-report: measures what retracing only what changed saves, next to the paper's table.
+#include <nlohmann/json.hpp>
+
+#include "accuracy/gnuplot.h"
+#include "app/accuracy/accuracy_command.h"
+#include "app/options.h"
+#include "base/isa.h"
+#include "base/limits.h"
+#include "coherence_report/page.h"
+#include "session/interrupt.h"
+#include "session/output.h"
+
+namespace pocketray {
+namespace {
+
+constexpr char kPapersScene[] = "seesaw";
+
+struct ReportOptions {
+  CommonOptions common;
+  std::string folder, frames;
+  std::uint32_t table = 16;
+  bool no_paper = false;
+};
+
+enum class Way { frame_by_frame, coherent, by_tables };
+
+Status plan_way(Way way, const ReportOptions& o, Renderer* renderer, const SceneStorage& storage,
+                std::size_t output_bytes) {
+  Settings* settings = &renderer->settings;
+  settings->coherence = way == Way::frame_by_frame ? CoherenceMode::off : CoherenceMode::on;
+  settings->coherence_table = o.table;
+  settings->coherence_by_tables = way == Way::by_tables;
+  RETURN_IF_ERROR(plan_renderer(renderer, storage, output_bytes));
+  if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene))
+    return failure("%s does not move, so every frame would be the first again: choose a scene with an animation, as %s",
+                   o.common.scene.c_str(), kPapersScene);
+  if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
+  const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max);
+  std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
+                      coherence_scratch_need(renderer->scene, renderer->effects.mask);
+  return failure("coherence does not fit in --memory: --memory %zuM", (bytes >> 20) + 1);
+}
+
+Status open_way(Way way, const ReportOptions& o, OpenScene* opened) {
+  OpenHooks hooks;
+  hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
+  hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
+    return plan_way(way, o, renderer, storage, output_bytes);
+  };
+  RETURN_IF_ERROR(open_scene(o.common, hooks, opened));
+  return start_scene(opened, o.common);
+}
+
+FrameRange whole_animation(const Scene& scene) {
+  FrameRange range;
+  range.last = scene.info.frame_count > 0 ? scene.info.frame_count - 1 : 0;
+  return range;
+}
+
+void describe(const ReportOptions& o, const Renderer& renderer, CoherenceReport* report) {
+  const std::uint32_t threads = renderer.settings.threads;
+  report->scene = o.common.scene;
+  report->machine = std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ") + isa_name(active_isa()) +
+                    emulation_text(renderer.pace);
+  report->settings = renderer.settings;
+  report->is_papers_scene = o.common.scene == kPapersScene;
+}
+
+Status measure(const ReportOptions& o, CoherenceReport* report) {
+  FrameRange range;
+  RETURN_IF_ERROR(parse_frames(o.frames, &range));
+  Progress progress;
+  std::uint64_t done = 0;
+  for (Way way : {Way::coherent, Way::by_tables}) {
+    if (interrupted || (way == Way::by_tables && o.no_paper)) break;
+    OpenScene whole, coherent;
+    RETURN_IF_ERROR(open_way(Way::frame_by_frame, o, &whole));
+    RETURN_IF_ERROR(open_way(way, o, &coherent));
+    if (way == Way::coherent) {
+      print_notes(coherent);
+      if (!range.given) range = whole_animation(whole.renderer.scene);
+      describe(o, coherent.renderer, report);
+      progress = start_progress("coherence", rendering_count(range) * (o.no_paper ? 1 : 2));
+    }
+    SequenceRun* run = way == Way::coherent ? &report->ours : &report->papers_way;
+    Status status = run_sequence({&whole.renderer, &coherent.renderer}, range, &progress, done, run);
+    end_progress(&progress);
+    RETURN_IF_ERROR(status);
+    done += rendering_count(range);
+  }
+  return success();
+}
+
+Status write_folder(const ReportOptions& o, const CoherenceReport& report) {
+  if (o.folder.empty()) return success();
+  bool drawn;
+  RETURN_IF_ERROR(write_coherence_report(o.folder, report, &drawn));
+  if (!drawn)
+    std::fprintf(stderr,
+                 "pocketray: no plots: gnuplot is missing or failed; install it (Debian: gnuplot), then: cd -- %s && "
+                 "gnuplot *.gnuplot\n",
+                 shell_word(o.folder).c_str());
+  return success();
+}
+
+int run(const ReportOptions& o) {
+  Status status = check_outputs({{"SCENE", o.common.scene}}, {{"--json", o.common.json}});
+  if (status.ok && !o.folder.empty()) status = make_output_folder(o.folder);
+  CoherenceReport coherence;
+  if (status.ok) status = measure(o, &coherence);
+  if (!status.ok) return report(status);
+  const std::size_t finished = coherence.ours.frames.size() + coherence.papers_way.frames.size();
+  if (coherence.ours.frames.empty()) return kExitInterrupted;
+  if (o.common.json != "-") print_report(coherence);
+  status = write_folder(o, coherence);
+  if (status.ok && !o.common.json.empty()) status = write_json(o.common.json, report_json(coherence));
+  if (status.ok && o.common.json != "-" && !o.folder.empty())
+    std::printf("open %s/index.html for plots and pictures; %s/frames.csv has every frame\n", o.folder.c_str(),
+                o.folder.c_str());
+  if (status.ok && interrupted) {
+    std::fprintf(stderr, "pocketray: interrupted; %zu finished frame%s kept\n", finished,
+                 finished == 1 ? " is" : "s are");
+    return kExitInterrupted;
+  }
+  return report(status);
+}
+
+}  // namespace
+
+void add_coherence_report_command(Command program, int* exit_status) {
+  auto o = std::make_shared<ReportOptions>();
+  Command command = program.add_subcommand("coherence-report", "measure what retracing only what changed saves");
+  command.footer(
+      "Renders a sequence twice, frame by frame and by tracing only the pixels that can differ from the last frame, "
+      "and\n"
+      "compares every bit of every frame: a difference is an error. Prints rays and time of both, next to Table 2 of\n"
+      "Jevans 1992 if the scene is seesaw, which follows its sequence. Then does the same the paper's way, with a "
+      "table\n"
+      "of rays in every voxel. If interrupted, keeps the finished frames.\n"
+      "Try:  pocketray coherence-report seesaw -o report\n"
+      "      pocketray coherence-report seesaw --frames 0:40 --size 640x480 --no-paper --json -");
+  add_scene_options(command, &o->common);
+  command.add_option("-o,--output", o->folder,
+                     "folder for index.html with plots and pictures, report.json and frames.csv; created if missing");
+  command.add_option("--frames", o->frames, "frames to render, FIRST:LAST; the first is traced whole")
+      .default_str("the whole animation");
+  command
+      .add_option("--table", o->table,
+                  "blocks of pixels along each side of the picture, a bit of each in every voxel's table of rays")
+      .range(1u, kCoherenceTableSideMax)
+      .capture_default_str();
+  command.add_flag("--no-paper", o->no_paper, "skip the sequence in the paper's way");
+  add_json_option(command, &o->common.json);
+  command.callback([=] { *exit_status = run(*o); });
+}
+
+}  // namespace pocketray
