@@ -105,6 +105,17 @@ Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
+// The rows from the first to the last that the frame has traced are to be shown.
+void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
+  const Coherence& c = renderer.coherence;
+  for (std::uint32_t row = 0; row < c.tile_rows; ++row) {
+    const std::uint64_t* tiles = c.changed.data + std::size_t(row) * c.tile_columns;
+    if (std::all_of(tiles, tiles + c.tile_columns, [](std::uint64_t tile) { return tile == 0; })) continue;
+    if (progressive->dirty_end == 0) progressive->dirty_begin = row * kChangeTileSide;
+    progressive->dirty_end = std::min((row + 1) * kChangeTileSide, renderer.settings.height);
+  }
+}
+
 // Traces a slice of the picture: all of it, coarse first, or what has changed.
 bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
   Progressive* progressive = &loop->progressive;
@@ -113,8 +124,7 @@ bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
     progressive->pixels_traced = renderer->image.count;  // the picture has all of them
     progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;
     progressive->shown_coarse = true;
-    if (renderer->coherence_state.pixels_traced > 0)
-      progressive->dirty_begin = 0, progressive->dirty_end = renderer->settings.height;
+    if (complete) mark_changed_rows(*renderer, progressive);
     if (complete) progressive->step = 0;
     return complete;
   }
