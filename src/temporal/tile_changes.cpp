@@ -194,70 +194,88 @@ std::uint64_t find_suspects(const TileSearch& t, const LightRun& run, const Ligh
   return suspects;
 }
 
-// Which rays the moving geometry blocked in the last frame; `known` may have the answers for pixels[i].
-std::uint64_t find_blocked_before(const TileSearch& t, const SegmentPacket& rays, const HitFilter* filter,
-                                  const std::uint64_t* pixels, const KnownShadows& known) {
-  SegmentPacket rest;
+struct ShadowRays {
+  SegmentPacket rays;
+  std::uint64_t pixel[kPacketMax];  // of each, as a bit of the tile
+};
+
+// Which of the rays `which` something blocks; bit i is ray i.
+std::uint64_t blocked_among(const AccelTraversal& traversal, const Accel& accel, const ShadowRays& s,
+                            std::uint64_t which, const HitFilter* filter, TraceStats* stats) {
+  if (which == 0) return 0;
+  SegmentPacket some;
   std::uint8_t place[kPacketMax];
-  std::uint64_t blocked = 0;
-  rest.count = 0;
-  for (std::uint32_t i = 0; i < rays.count; ++i) {
-    if (known.known & pixels[i]) {
-      blocked |= std::uint64_t((known.blocked & pixels[i]) != 0) << i;
-      continue;
-    }
-    place[rest.count] = static_cast<std::uint8_t>(i);
-    set_ray(&rest, rest.count++, ray_of(rays, i));
+  some.count = 0;
+  for (std::uint64_t rest = which; rest; rest &= rest - 1) {
+    place[some.count] = static_cast<std::uint8_t>(__builtin_ctzll(rest));
+    set_ray(&some, some.count, ray_of(s.rays, place[some.count]));
+    ++some.count;
   }
-  if (rest.count == 0) return blocked;
-  t.counts->moving_rays += rest.count;
-  std::uint64_t found = kBvhAccel.occluded_packet(t.search.moving->last, rest, filter, t.stats);
-  for (std::uint32_t i = 0; i < rest.count; ++i) blocked |= (found >> i & 1) << place[i];
+  std::uint64_t found = traversal.occluded_packet(accel, some, filter, stats), blocked = 0;
+  for (std::uint32_t i = 0; i < some.count; ++i) blocked |= (found >> i & 1) << place[i];
   return blocked;
 }
 
-// Pixels whose shadow ray to the light is blocked where it was not, or no longer.
-void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t light, float room, KnownShadows* known) {
-  const FrameData& frame = t->frame;
-  std::uint64_t pixel[kPacketMax];  // their bits
-  SegmentPacket packet;
-  packet.count = 0;
-  for (std::uint64_t rest = find_suspects(*t, run, frame.lights[light], room, known->idle); rest; rest &= rest - 1) {
+// The shadow rays of the receivers to the light; those that cast none are idle.
+void list_shadow_rays(TileSearch* t, const LightRun& run, const LightPoint& light, float room, KnownShadows* known,
+                      ShadowRays* s) {
+  s->rays.count = 0;
+  for (std::uint64_t rest = find_suspects(*t, run, light, room, known->idle); rest; rest &= rest - 1) {
     const std::uint32_t k = static_cast<std::uint32_t>(__builtin_ctzll(rest));
-    const Surface& s = surface_of(t, k);
+    const Surface& surface = surface_of(t, k);
     const std::uint64_t bit = bit_of(t->pixels, t->receiver[k]);
     LightSample sample;
-    if (!lights_up(frame, s, run, frame.lights[light], &sample)) {
+    if (!lights_up(t->frame, surface, run, light, &sample)) {
       known->idle |= bit;
       continue;
     }
-    bool below = !(dot(s.geometric, sample.direction) > 0);  // as in direct_light()
-    pixel[packet.count] = bit;
-    set_ray(&packet, packet.count++,
-            {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max});
+    bool below = !(dot(surface.geometric, sample.direction) > 0);  // as in direct_light()
+    s->pixel[s->rays.count] = bit;
+    set_ray(&s->rays, s->rays.count++,
+            {below ? curved_origin(t->frame, surface) : safe_origin(surface, 1), sample.to_light, sample.t_max});
   }
-  if (packet.count == 0) return;
+}
+
+// Pixels whose shadow ray to the light is blocked where it was not, or no longer. If what is found is kept, whether
+// something static blocks a ray is found at the first look, otherwise only where it matters.
+void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t light, float room, bool is_kept,
+                          KnownShadows* known) {
+  const FrameData& frame = t->frame;
   const MovingGeometry& m = *t->search.moving;
+  ShadowRays s;
+  list_shadow_rays(t, run, frame.lights[light], room, known, &s);
+  if (s.rays.count == 0) return;
   ShadowContext shadow = {&frame, frame.lights[light].material};
   bool filtered = frame.filter_every_shadow || shadow.emitter != kNone;
   bool clear = frame.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
   MovingFilter context = {&m, {filtered ? frame.accept_opaque : nullptr, &shadow}};
   HitFilter opaque = {accept_moving, &context}, other = {accept_static, &context};
   const HitFilter* filter = filtered && !clear ? &opaque : nullptr;
-  std::uint64_t was = find_blocked_before(*t, packet, filter, pixel, *known);
-  std::uint64_t is = kBvhAccel.occluded_packet(m.now, packet, filter, t->stats);
-  t->counts->moving_rays += packet.count;
-  for (std::uint32_t i = 0; i < packet.count; ++i) {
-    known->known |= pixel[i];
-    known->blocked = (is >> i & 1) ? known->blocked | pixel[i] : known->blocked & ~pixel[i];
-  }
-  for (std::uint64_t rest = clear ? was | is : was ^ is; rest; rest &= rest - 1) {
-    std::uint32_t i = static_cast<std::uint32_t>(__builtin_ctzll(rest));
-    ++t->counts->static_rays;
-    if (frame.first_rays->occluded(frame.accel, ray_of(packet, i), &other, t->stats))
-      known->idle |= pixel[i];
+
+  std::uint64_t fresh = 0, was = 0;
+  for (std::uint32_t i = 0; i < s.rays.count; ++i) {
+    if (known->known & s.pixel[i])
+      was |= std::uint64_t((known->blocked & s.pixel[i]) != 0) << i;
     else
-      t->changed |= pixel[i];
+      fresh |= std::uint64_t(1) << i;
+  }
+  auto idle_of = [&](std::uint64_t which) {
+    t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(which));
+    return blocked_among(*frame.first_rays, frame.accel, s, which, &other, t->stats);
+  };
+  const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s.rays.count);
+  std::uint64_t idle = is_kept ? idle_of(fresh) : 0;
+  was |= blocked_among(kBvhAccel, m.last, s, fresh & ~idle, filter, t->stats);
+  const std::uint64_t is = blocked_among(kBvhAccel, m.now, s, all & ~idle, filter, t->stats);
+  t->counts->moving_rays += static_cast<std::uint64_t>(__builtin_popcountll(fresh & ~idle)) +
+                            static_cast<std::uint64_t>(__builtin_popcountll(all & ~idle));
+  std::uint64_t changed = clear ? was | is : was ^ is;
+  if (!is_kept) changed &= ~idle_of(changed);
+  for (std::uint32_t i = 0; i < s.rays.count; ++i) {
+    if (idle >> i & 1) known->idle |= s.pixel[i];
+    known->known |= s.pixel[i];
+    known->blocked = (is >> i & 1) ? known->blocked | s.pixel[i] : known->blocked & ~s.pixel[i];
+    if (changed >> i & 1) t->changed |= s.pixel[i];
   }
 }
 
@@ -331,12 +349,13 @@ std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile
     find_receivers(&t);
     KnownShadows* known = known_shadows(search, sample, tile);
     for_each_suspect(search, hits, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
-      KnownShadows none, *of_light = light < search.known_lights ? &known[light] : &none;
+      const bool is_kept = light < search.known_lights;
+      KnownShadows none, *of_light = is_kept ? &known[light] : &none;
       if (has_changed) {
         *of_light = none;
         find_lit_by(&t, run, light);
       } else {
-        find_changed_shadows(&t, run, light, hits.room, of_light);
+        find_changed_shadows(&t, run, light, hits.room, is_kept, of_light);
       }
       return true;
     });
