@@ -58,7 +58,7 @@ int wrong_frames(GeneratedScene* s, std::uint32_t side, int frames, Move move) {
     if (!same) forget_frame(&coherent->renderer.coherence);
     wrong += !same, partial += !coherent->renderer.coherence_state.whole_because;
   }
-  CHECK(partial * 2 > frames);
+  CHECK(partial >= frames / 2);
   return wrong;
 }
 
