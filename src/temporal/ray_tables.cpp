@@ -11,7 +11,6 @@
 namespace pocketray {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 std::uint32_t words_for(std::uint32_t side) { return (side * side + 31) / 32; }
 
 // A place in voxels, and how far rounding may put it off.
