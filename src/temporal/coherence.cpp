@@ -53,7 +53,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   c->moving = make_moving_geometry(frame, keep, scratch);
   c->tile_columns = tiles_along(plan.width), c->tile_rows = tiles_along(plan.height);
   const std::size_t tiles = std::size_t(c->tile_columns) * c->tile_rows;
-  c->first_hits = arena_array<Hit>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
+  c->first_hits = arena_array_zeroed<Hit>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
   c->tiles = arena_array<TileHits>(keep, tiles);
   c->changed = arena_array_zeroed<std::uint64_t>(keep, tiles);
   c->shadows = arena_array_zeroed<KnownShadows>(keep, tiles * plan.samples * known_lights(plan));

@@ -1,0 +1,162 @@
+// What a pixel depends on besides the geometry in front of it: each case changes one thing.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+
+#include "engine/coherent.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+struct Pair {
+  std::unique_ptr<GeneratedScene> scene;
+  std::unique_ptr<TestRenderer> whole, coherent;
+};
+
+Pair make_pair(std::unique_ptr<GeneratedScene> scene, Settings settings) {
+  Pair pair;
+  pair.scene = std::move(scene);
+  pair.whole = make_renderer(pair.scene->scene, settings);
+  settings.coherence = CoherenceMode::on;
+  pair.coherent = make_renderer(pair.scene->scene, settings);
+  return pair;
+}
+
+bool same_frames(const Pair& pair) {
+  for (TestRenderer* each : {pair.whole.get(), pair.coherent.get()}) each->renderer.lit_mask = ~EffectMask(0);
+  REQUIRE(render_frame(&pair.whole->renderer, 0).ok);
+  REQUIRE(render_coherent(&pair.coherent->renderer, 0).ok);
+  const Array<Vec3>&a = pair.whole->renderer.image, &b = pair.coherent->renderer.image;
+  return std::memcmp(a.data, b.data, a.bytes()) == 0;
+}
+
+std::string whole_because(const Pair& pair) {
+  const char* why = pair.coherent->renderer.coherence_state.whole_because;
+  return why ? why : "";
+}
+
+Material matte(float albedo) {
+  Material m;
+  m.diffuse = {albedo, albedo, albedo};
+  return m;
+}
+
+// The vertices from `first` on can move.
+void let_move(GeneratedScene* s, std::uint32_t first) {
+  s->nodes.resize(1);
+  s->key_times = {0, 1};
+  s->key_values = {0, 0, 0, 0, 0, 0};
+  s->channels = {{0, 0, 2, 0, ChannelPath::translation, Interpolation::linear}};
+  s->animations = {{0, 1, 1}};
+  MovingMesh mesh = {};
+  mesh.vertex_begin = first, mesh.vertex_count = static_cast<std::uint32_t>(s->positions.size()) - first;
+  mesh.skin = kNone, mesh.instance = Transform();
+  s->moving_meshes = {mesh};
+  s->rest_positions.assign(s->positions.begin() + first, s->positions.end());
+  s->rest_normals.assign(s->normals.begin() + first, s->normals.end());
+}
+
+void move_by(GeneratedScene* s, const Vec3& by) {
+  for (Vec3& p : s->rest_positions) p += by;
+}
+
+}  // namespace
+
+// Goal: what every pixel depends on makes a whole frame, with its reason. Method: one change at a time, with all
+// effects.
+TEST_CASE("dependence_on_camera_settings_and_surroundings_makes_whole_frames") {
+  const std::uint32_t features = kAllFeatures & ~bit(Feature::supersampling);
+  Pair pair = make_pair(generate_scene(features, 3), settings_for(features, 40, 30));
+  struct Change {
+    const char* because;
+    void (*apply)(Renderer* r);
+  };
+  const Change changes[] = {
+      {"no frame before", [](Renderer*) {}},
+      {"the camera moved",
+       [](Renderer* r) {
+         Camera camera = r->camera;
+         camera.eye.x += 0.1f;
+         REQUIRE(set_camera(r, camera).ok);
+       }},
+      {"the settings changed",
+       [](Renderer* r) {
+         Settings settings = r->settings;
+         settings.ray_depth = 2;
+         REQUIRE(change_settings(r, settings).ok);
+       }},
+      {"the exposure changed", [](Renderer* r) { r->exposure = 4; }},
+      {"the surroundings changed",
+       [](Renderer* r) {
+         r->scene.info.background = {0.4f, 0.3f, 0.2f};
+       }},
+      {"the surroundings changed",
+       [](Renderer* r) {
+         r->scene.info.ambient = {0.3f, 0.1f, 0.2f};
+       }},
+  };
+  for (const Change& change : changes) {
+    CAPTURE(std::string(change.because));
+    change.apply(&pair.whole->renderer);
+    change.apply(&pair.coherent->renderer);
+    CHECK(same_frames(pair));
+    CHECK(whole_because(pair) == change.because);
+    CHECK(same_frames(pair));
+    CHECK(whole_because(pair) == "");
+  }
+}
+
+// Goal: rays that were too dim to matter are traced once they may matter. Method: a faint mirror, and a box that comes
+// close to a lamp far away from it: the bound on what the mirror may show rises.
+TEST_CASE("dependence_on_the_radiance_bound_makes_a_whole_frame") {
+  auto s = std::make_unique<GeneratedScene>();
+  Material mirror = matte(0.5f);
+  mirror.mirror = {1e-6f, 1e-6f, 1e-6f};
+  add_quad(s.get(), {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, add_material(s.get(), mirror));
+  const std::uint32_t first = static_cast<std::uint32_t>(s->positions.size());
+  add_box(s.get(), {50, 0, 0}, {51, 1, 1}, add_material(s.get(), matte(0.5f)));
+  let_move(s.get(), first);
+  Light light;
+  light.position = {50.5f, 10, 0.5f}, light.intensity = {5, 5, 5};
+  s->lights.push_back(light);
+  s->scene.info.background = {1, 1, 1};
+  aim(s.get(), {0, 3, 3}, {0, 0, 0}, 30);
+  s->bind();
+  Pair pair = make_pair(std::move(s), settings_for(0, 40, 30));
+  CHECK(same_frames(pair));
+  CHECK(same_frames(pair));
+  CHECK(whole_because(pair) == "");
+  move_by(pair.scene.get(), {0, 8.99f, 0});  // 0.01 below the lamp
+  CHECK(same_frames(pair));
+  CHECK(whole_because(pair) == "the brightest light on a surface changed");
+}
+
+// Goal: a mirror shows shadows that move. Method: it shows a wall; what casts the shadow is seen neither directly nor
+// in the mirror.
+TEST_CASE("dependence_on_shadows_in_a_mirror") {
+  auto s = std::make_unique<GeneratedScene>();
+  Material mirror = matte(0);
+  mirror.mirror = {0.9f, 0.9f, 0.9f};
+  add_quad(s.get(), {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, add_material(s.get(), mirror));
+  add_quad(s.get(), {-9, -9, 8}, {-9, 9, 8}, {9, 9, 8}, {9, -9, 8}, add_material(s.get(), matte(0.7f)));
+  const std::uint32_t first = static_cast<std::uint32_t>(s->positions.size());
+  add_box(s.get(), {-6, 5, 5}, {-5.2f, 5.8f, 5.8f}, 1);
+  let_move(s.get(), first);
+  Light light;
+  light.position = {-12, 12, 2}, light.intensity = {200, 200, 200};
+  s->lights.push_back(light);
+  aim(s.get(), {0, 0, 3}, {0, 0, 0}, 30);
+  s->bind();
+  Pair pair = make_pair(std::move(s), settings_for(0, 48, 36));
+  std::uint64_t traced = 0;
+  for (int frame = 0; frame < 24; ++frame) {
+    CHECK(same_frames(pair));
+    if (frame > 0) CHECK(whole_because(pair) == "");
+    if (frame > 0) traced += pair.coherent->renderer.coherence_state.pixels_traced;
+    move_by(pair.scene.get(), {0.05f, -0.25f, 0});
+  }
+  CHECK(traced > 0);
+}
