@@ -351,12 +351,8 @@ std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile
     for_each_suspect(search, hits, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
       const bool is_kept = light < search.known_lights;
       KnownShadows none, *of_light = is_kept ? &known[light] : &none;
-      if (has_changed) {
-        *of_light = none;
-        find_lit_by(&t, run, light);
-      } else {
-        find_changed_shadows(&t, run, light, hits.room, is_kept, of_light);
-      }
+      // A light that changed: what is known holds for the pixels that it did not reach, and does not now.
+      has_changed ? find_lit_by(&t, run, light) : find_changed_shadows(&t, run, light, hits.room, is_kept, of_light);
       return true;
     });
   }
