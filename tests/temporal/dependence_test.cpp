@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/coherent.h"
-#include "support/generated_scene.h"
+#include "temporal/moving_scene.h"
 
 using namespace pocketray;
 
@@ -42,21 +42,6 @@ Material matte(float albedo) {
   Material m;
   m.diffuse = {albedo, albedo, albedo};
   return m;
-}
-
-// The vertices from `first` on can move.
-void let_move(GeneratedScene* s, std::uint32_t first) {
-  s->nodes.resize(1);
-  s->key_times = {0, 1};
-  s->key_values = {0, 0, 0, 0, 0, 0};
-  s->channels = {{0, 0, 2, 0, ChannelPath::translation, Interpolation::linear}};
-  s->animations = {{0, 1, 1}};
-  MovingMesh mesh = {};
-  mesh.vertex_begin = first, mesh.vertex_count = static_cast<std::uint32_t>(s->positions.size()) - first;
-  mesh.skin = kNone, mesh.instance = Transform();
-  s->moving_meshes = {mesh};
-  s->rest_positions.assign(s->positions.begin() + first, s->positions.end());
-  s->rest_normals.assign(s->normals.begin() + first, s->normals.end());
 }
 
 void move_by(GeneratedScene* s, const Vec3& by) {
@@ -116,7 +101,7 @@ TEST_CASE("dependence_on_the_radiance_bound_makes_a_whole_frame") {
   Material mirror = matte(0.5f);
   mirror.mirror = {1e-6f, 1e-6f, 1e-6f};
   add_quad(s.get(), {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, add_material(s.get(), mirror));
-  const std::uint32_t first = static_cast<std::uint32_t>(s->positions.size());
+  const std::uint32_t first = vertex_count(*s);
   add_box(s.get(), {50, 0, 0}, {51, 1, 1}, add_material(s.get(), matte(0.5f)));
   let_move(s.get(), first);
   Light light;
@@ -142,7 +127,7 @@ TEST_CASE("dependence_on_shadows_in_a_mirror") {
   mirror.mirror = {0.9f, 0.9f, 0.9f};
   add_quad(s.get(), {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, add_material(s.get(), mirror));
   add_quad(s.get(), {-9, -9, 8}, {-9, 9, 8}, {9, 9, 8}, {9, -9, 8}, add_material(s.get(), matte(0.7f)));
-  const std::uint32_t first = static_cast<std::uint32_t>(s->positions.size());
+  const std::uint32_t first = vertex_count(*s);
   add_box(s.get(), {-6, 5, 5}, {-5.2f, 5.8f, 5.8f}, 1);
   let_move(s.get(), first);
   Light light;

@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "engine/coherent.h"
 #include "support/effort.h"
-#include "support/generated_scene.h"
+#include "temporal/moving_scene.h"
 
 using namespace pocketray;
 
@@ -19,23 +19,6 @@ Material grey() {
   m.diffuse = {0.5f, 0.5f, 0.5f};
   return m;
 }
-
-// The vertices from `first` on can move: the tests change their positions at rest.
-void let_move(GeneratedScene* s, std::uint32_t first) {
-  const std::uint32_t count = static_cast<std::uint32_t>(s->positions.size()) - first;
-  s->nodes.resize(1);
-  s->key_times = {0, 1};
-  s->key_values = {0, 0, 0, 0, 0, 0};
-  s->channels = {{0, 0, 2, 0, ChannelPath::translation, Interpolation::linear}};
-  s->animations = {{0, 1, 1}};
-  MovingMesh mesh = {};
-  mesh.vertex_begin = first, mesh.vertex_count = count, mesh.skin = kNone, mesh.instance = Transform();
-  s->moving_meshes = {mesh};
-  s->rest_positions.assign(s->positions.begin() + first, s->positions.end());
-  s->rest_normals.assign(s->normals.begin() + first, s->normals.end());
-}
-
-std::uint32_t vertex_count(const GeneratedScene& s) { return static_cast<std::uint32_t>(s.positions.size()); }
 
 // Moves the moving vertices by move(frame), and counts the frames that are not as if traced whole.
 template <class Move>
