@@ -23,9 +23,9 @@ struct CoherentFrame {
   std::uint64_t spent_ns = 0;
 };
 void begin_coherent(Renderer* renderer, CoherentFrame* frame);
-// Of the whole frame, if another source traces each of its pixels once: ends it as advance_coherent() would.
-void finish_coherent(Renderer* renderer, CoherentFrame* frame);
 bool advance_coherent(Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop,
                       CoherentFrame* frame);
+// Where another source traces each pixel of the whole frame once: ends the frame as advance_coherent() would.
+void finish_coherent(Renderer* renderer, CoherentFrame* frame);
 
 }  // namespace pocketray

@@ -83,11 +83,11 @@ void reset_tables(const Box& scene_bounds, RayTables* t) {
   const Box b = is_empty(scene_bounds) ? Box{{0, 0, 0}, {0, 0, 0}} : scene_bounds;
   const bool is_placed = !is_empty(t->bounds) && contains(t->bounds, b);
   // Room for motion: an eighth on each side. A grid that has grown shrinks once it is 8 times as large as the scene.
-  if (!is_placed || max_component(extent(t->bounds)) > 8 * max_component(extent(b))) {
-    const bool grows = !is_placed && max_component(extent(t->bounds)) <= 8 * max_component(extent(b));
-    Vec3 room = extent(b) * 0.125f;
-    Box place = {b.low - room, b.high + room};
-    t->bounds = grows ? merge(t->bounds, place) : place;
+  const bool is_far_larger = max_component(extent(t->bounds)) > 8 * max_component(extent(b));
+  if (!is_placed || is_far_larger) {
+    const Vec3 room = extent(b) * 0.125f;
+    const Box place = {b.low - room, b.high + room};
+    t->bounds = is_far_larger ? place : merge(t->bounds, place);
   }
   for (int axis = 0; axis < 3; ++axis) {
     float size = t->bounds.high[axis] - t->bounds.low[axis];
