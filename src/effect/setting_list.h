@@ -2,12 +2,36 @@
 // wire, the server's reuse of a renderer, sweeps and the budget's choice are all derived from the rows: a new setting
 // is a member of Quality and a row here. The member holds the default, base/limit_list.h the limits.
 #pragma once
+#include "effect/effect_list.h"
 #include "effect/setting.h"
 
 namespace pocketray {
 
 inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
+
+// "auto", "none", then the effects that are methods of indirect light.
+constexpr int kIndirectChoiceCount = 2 + __builtin_popcount(kIndirectEffects);
+struct IndirectNames {
+  const char* names[kIndirectChoiceCount] = {"auto", "none"};
+  constexpr IndirectNames() {
+    int count = 2;
+    for (const EffectRow& row : kEffectList)
+      if (kIndirectEffects & bit(row.effect)) names[count++] = row.name;
+  }
+};
+inline constexpr IndirectNames kIndirectNames;
+// None first, the scene's own last.
+constexpr SweepValues indirect_sweep() {
+  SweepValues sweep = {};
+  for (int i = 0; i < kIndirectChoiceCount; ++i) sweep.values[sweep.count++] = (i + 1) % kIndirectChoiceCount;
+  return sweep;
+}
+// The choice of a method by its effect, one of kIndirectEffects.
+constexpr IndirectChoice indirect_choice(Effect effect) {
+  const EffectMask before = kIndirectEffects & (bit(effect) - 1);
+  return static_cast<IndirectChoice>(static_cast<int>(IndirectChoice::first) + __builtin_popcount(before));
+}
 
 constexpr EffectMask kReflecting = bit(Effect::mirror) | bit(Effect::refraction);
 constexpr EffectMask kSpawning = kReflecting | bit(Effect::alpha_blend);
@@ -95,6 +119,9 @@ inline constexpr SettingRow kSettingList[] = {
      {double(NormalMode::flat), double(NormalMode::as_scene)},
      nullptr,
      ""},
+    {"indirect", "light from other surfaces", "auto: what the scene states", nullptr,
+     choice_field<&Quality::indirect>(kIndirectNames.names), 1, kIndirectEffects, kIndirectEffects, true, kAsAsked,
+     indirect_sweep(), nullptr, ""},
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];
 

@@ -11,6 +11,9 @@ namespace pocketray {
 enum class TextureFilter : std::uint8_t { as_scene, nearest, bilinear };
 enum class NormalMode : std::uint8_t { as_scene, flat };
 
+// Indirect light: the scene's own, none, or the effect of kIndirectEffects with that index, counted from `first`.
+enum class IndirectChoice : std::uint8_t { automatic, none, first };
+
 // The settings that trade accuracy for time, a row of setting_list.h each. They may change from frame to frame.
 struct Quality {
   std::uint32_t samples_per_pixel = 1;
@@ -19,6 +22,7 @@ struct Quality {
   float cut_off_levels = 0.5f;  // largest error per sample from skipped rays, in display levels; 0: skip none
   TextureFilter texture_filter = TextureFilter::as_scene;
   NormalMode normals = NormalMode::as_scene;
+  IndirectChoice indirect = IndirectChoice::automatic;
 };
 
 // Whether frames trace only what can have changed. automatic: where that pays.

@@ -9,6 +9,10 @@ struct AmbientIndirect {
   static constexpr const char* kName = "ambient";
   static constexpr EffectMask kEffects = bit(Effect::ambient);
   static constexpr IndirectReference kReference = IndirectReference::model;
+  static constexpr const char *kPresent = "constant indirect light", *kAbsent = "no constant indirect light";
+  static IndirectUse use(const Scene& scene) {
+    return is_zero(scene.info.ambient) ? IndirectUse::nothing : IndirectUse::automatic;
+  }
   static std::size_t need(const Scene&) { return 0; }
   static const void* prepare(const Scene&, Arena*) { return nullptr; }
   static Vec3 radiance(const IndirectPoint& at) {

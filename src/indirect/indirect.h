@@ -1,9 +1,13 @@
 // Indirect light: light that reaches a surface from other surfaces rather than from lights. A method is a struct in a
 // file of its own and a line of indirect_list.h:
 //
-//   kName           on the command line and in plans
-//   kEffects        its effect, one bit; compiled into the kernels of plans that have it. 0: it adds nothing
+//   kName           on the command line and in plans: its effect's name, or "none"
+//   kEffects        its effect, one bit of kIndirectEffects; compiled into the kernels of plans that have it. 0: it
+//   adds
+//                   nothing
 //   kReference      how the reference treats it
+//   kPresent, kAbsent       reasons in plans: what the scene has for it, or lacks
+//   use(scene)      whether the scene has what it takes
 //   need(scene)     upper bound of the bytes that prepare() takes
 //   prepare(scene, keep)    once, before the first frame; returns the data that radiance() reads, or null
 //   radiance(point)         leaving a diffuse surface, the same in all directions; inlined into surface evaluation
@@ -13,7 +17,7 @@
 #include <cstddef>
 
 #include "base/arena.h"
-#include "effect/effect.h"
+#include "effect/effect_list.h"
 #include "scene/scene.h"
 
 namespace pocketray {
@@ -30,11 +34,16 @@ struct IndirectPoint {
 // transport; always, because the light comes from outside the scene.
 enum class IndirectReference { nothing, model, always };
 
+// Whether a method has anything to show in a scene: nothing; on request; also by default.
+enum class IndirectUse { nothing, requested, automatic };
+
 // A method as data, for loops over the list.
 struct IndirectInfo {
   const char* name;
   EffectMask effects;
   IndirectReference reference;
+  const char *present, *absent;
+  IndirectUse (*use)(const Scene& scene);
   std::size_t (*need)(const Scene& scene);
   const void* (*prepare)(const Scene& scene, Arena* keep);
   Vec3 (*radiance)(const IndirectPoint& point);
@@ -45,8 +54,9 @@ struct IndirectInfo {
 template <class... Methods>
 struct IndirectMethods {
   static constexpr int kCount = sizeof...(Methods);
-  static constexpr IndirectInfo kInfos[] = {{Methods::kName, Methods::kEffects, Methods::kReference, Methods::need,
-                                             Methods::prepare, Methods::radiance, Methods::exact, Methods::bound}...};
+  static constexpr IndirectInfo kInfos[] = {{Methods::kName, Methods::kEffects, Methods::kReference, Methods::kPresent,
+                                             Methods::kAbsent, Methods::use, Methods::need, Methods::prepare,
+                                             Methods::radiance, Methods::exact, Methods::bound}...};
   static constexpr EffectMask kEffects = (Methods::kEffects | ...);
 
   // Adds the radiance of the methods in the mask; the others are not compiled. `prepared` comes from

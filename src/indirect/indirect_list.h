@@ -1,4 +1,4 @@
-// One line per method of indirect light.
+// One line per method of indirect light. --indirect auto takes the last one that the scene has by default.
 #pragma once
 #include "indirect/ambient.h"
 #include "indirect/none.h"
@@ -9,6 +9,8 @@ using IndirectList = IndirectMethods<  //
     NoIndirect,                        //
     AmbientIndirect                    //
     >;
+
+static_assert(IndirectList::kEffects == kIndirectEffects, "each method of kIndirectEffects is in the list");
 
 // Data that the methods read, in list order; null where a method is off or has none.
 struct IndirectData {
@@ -30,10 +32,19 @@ inline IndirectData prepare_indirect(const Scene& scene, EffectMask mask, Arena*
   return data;
 }
 
-inline float indirect_bound(const Scene& scene, const Material& material) {
+inline float indirect_bound(const Scene& scene, const Material& material, EffectMask mask) {
   float bound = 0;
-  for (const IndirectInfo& info : IndirectList::kInfos) bound += info.bound(scene, material);
+  for (const IndirectInfo& info : IndirectList::kInfos)
+    if (mask & info.effects) bound += info.bound(scene, material);
   return bound;
+}
+
+// For the renderer's own lighting in double precision.
+inline Vec3d exact_indirect_of(const Scene& scene, const Vec3d& diffuse, EffectMask mask) {
+  Vec3d sum = {0, 0, 0};
+  for (const IndirectInfo& info : IndirectList::kInfos)
+    if (mask & info.effects) sum += info.exact(scene, diffuse);
+  return sum;
 }
 
 // For the reference. `is_model`: for the lighting model, otherwise for light transport.

@@ -8,6 +8,8 @@ struct NoIndirect {
   static constexpr const char* kName = "none";
   static constexpr EffectMask kEffects = 0;
   static constexpr IndirectReference kReference = IndirectReference::nothing;
+  static constexpr const char *kPresent = "", *kAbsent = "";
+  static IndirectUse use(const Scene&) { return IndirectUse::nothing; }
   static std::size_t need(const Scene&) { return 0; }
   static const void* prepare(const Scene&, Arena*) { return nullptr; }
   static Vec3 radiance(const IndirectPoint&) { return {0, 0, 0}; }

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
+#include "indirect/indirect_list.h"
 
 namespace pocketray {
 namespace {
@@ -70,6 +71,36 @@ struct PlanWriter {
   }
 };
 
+bool is_asked_for(const IndirectInfo& info, const Settings& settings) {
+  return settings.indirect == indirect_choice(static_cast<Effect>(__builtin_ctz(info.effects)));
+}
+
+// The method that --indirect asks for, or else the last one that the scene has by default; null: none. Without what the
+// method takes, the choice is as for auto.
+const IndirectInfo* choose_indirect(const Scene& scene, const Settings& settings) {
+  if (settings.indirect == IndirectChoice::none) return nullptr;
+  const IndirectInfo* chosen = nullptr;
+  for (const IndirectInfo& info : IndirectList::kInfos) {
+    if (!info.effects || (settings.forced_off & info.effects) || info.use(scene) == IndirectUse::nothing) continue;
+    if (is_asked_for(info, settings)) return &info;
+    if (info.use(scene) == IndirectUse::automatic) chosen = &info;
+  }
+  return chosen;
+}
+
+// Methods stand in for the same light, so a plan has only one of them. --effects cannot force another.
+void decide_indirect(const IndirectInfo& info, const IndirectInfo* chosen, const Scene& scene, const Settings& settings,
+                     PlanWriter* w) {
+  Effect effect = static_cast<Effect>(__builtin_ctz(info.effects));
+  const bool has_any = info.use(scene) != IndirectUse::nothing;
+  if (&info == chosen || !has_any || (settings.forced_off & info.effects))
+    w->set(effect, has_any, "%s", has_any ? info.present : info.absent);
+  else if (settings.indirect == IndirectChoice::none)
+    w->set(effect, false, "no indirect light requested");
+  else
+    w->set(effect, false, chosen ? "%s instead" : "%s", chosen ? chosen->name : info.present);
+}
+
 }  // namespace
 
 EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
@@ -100,8 +131,12 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
         smooth                ? "vertices have normals"
         : scene.normals.count ? "flat normals requested"
                               : "no vertex has a normal");
-  bool ambient = !is_zero(scene.info.ambient);
-  w.set(Effect::ambient, ambient, ambient ? "constant indirect light" : "no constant indirect light");
+  const IndirectInfo* indirect = choose_indirect(scene, settings);
+  for (const IndirectInfo& info : IndirectList::kInfos)
+    if (info.effects) decide_indirect(info, indirect, scene, settings, &w);
+  const EffectMask excluded_indirect = indirect ? kIndirectEffects & ~indirect->effects
+                                       : settings.indirect == IndirectChoice::none ? kIndirectEffects
+                                                                                   : 0;
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
   bool animated = is_animated(scene);
@@ -112,7 +147,8 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     Effect effect = static_cast<Effect>(i);
     EffectDecision& d = plan.decisions[i];
     CHECK(d.reason[0] != 0);  // every effect has been decided
-    bool on = (d.on || has(settings.forced_on, effect)) && !has(settings.forced_off, effect);
+    EffectMask forced_on = settings.forced_on & ~excluded_indirect;
+    bool on = (d.on || has(forced_on, effect)) && !has(settings.forced_off, effect);
     if (on != d.on) {
       char reason[sizeof d.reason];
       std::snprintf(reason, sizeof reason, "%s (%.60s)", on ? "forced on" : "forced off", d.reason);

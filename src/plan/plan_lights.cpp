@@ -237,7 +237,7 @@ float radiance_bound(const FrameData& frame) {
   float glow = 0, reflectance = 0, scattering = 0;
   for (const Material& m : scene.materials) {
     bool shines = m.unlit && has(frame.mask, Effect::emission);
-    float own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m));
+    float own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
     if (own > glow) glow = own;
     float passes =
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));

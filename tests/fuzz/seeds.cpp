@@ -124,7 +124,7 @@ std::vector<FuzzSeed> front_seeds() {
   return {{"builtin", text_of(front)},
           {"with_prices", both},
           {"comments", bytes_of("pocketray-front 1\r\n\n# what follows\nsamples=4 depth=8 area-lights=16 cut-off=5e-1 "
-                                "texture-filter=nearest normals=flat flip=1 ns=1e9\n")},
+                                "texture-filter=nearest normals=flat indirect=auto flip=1 ns=1e9\n")},
           {"another_version", bytes_of("pocketray-front 2\nsamples=4\n")}};
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/limits.h"
 #include "effect/effect_list.h"
+#include "effect/setting_list.h"
 #include "plan/plan_effects.h"
 #include "support/generated_scene.h"
 
@@ -87,6 +88,34 @@ TEST_CASE("plan_effects_give_reasons") {
   CHECK(reason(plan, Effect::animation) == "nothing moves");  // was off anyway
   CHECK(has(plan.mask, Effect::absorption));
   CHECK_FALSE(has(plan.mask, Effect::mirror));
+}
+
+// Goal: --indirect chooses the method, --effects cannot add another to it. Method: an ambient scene and a scene without
+// indirect light, every choice, with effects forced on and off.
+TEST_CASE("plan_effects_have_the_chosen_indirect_light") {
+  auto lit = generate_scene(bit(Feature::ambient), 1), dark = generate_scene(0, 1);
+  Settings settings = settings_for(0, 8, 6);
+  auto mask_of = [&](const Scene& scene, IndirectChoice choice) {
+    settings.indirect = choice;
+    return plan_effects(scene, settings).mask & kIndirectEffects;
+  };
+  const IndirectChoice ambient = indirect_choice(Effect::ambient);
+  for (EffectMask forced_on : {EffectMask(0), kAllEffects}) {
+    settings.forced_on = forced_on;
+    CHECK(mask_of(lit->scene, IndirectChoice::none) == 0);
+    CHECK(mask_of(lit->scene, ambient) == bit(Effect::ambient));
+    CHECK(mask_of(lit->scene, IndirectChoice::automatic) == bit(Effect::ambient));
+    CHECK(mask_of(dark->scene, IndirectChoice::none) == 0);
+  }
+  settings.forced_on = 0;
+  for (int i = 0; i < kIndirectChoiceCount; ++i) CHECK(mask_of(dark->scene, static_cast<IndirectChoice>(i)) == 0);
+  settings.indirect = IndirectChoice::none;
+  CHECK(reason(plan_effects(lit->scene, settings), Effect::ambient) == "no indirect light requested");
+  CHECK(reason(plan_effects(dark->scene, settings), Effect::ambient) == "no constant indirect light");
+  settings.indirect = ambient, settings.forced_off = bit(Effect::ambient);
+  EffectPlan off = plan_effects(lit->scene, settings);
+  CHECK(reason(off, Effect::ambient) == "forced off (constant indirect light)");
+  CHECK(off.mask == 0);
 }
 
 // Goal: unused materials need no effects. Method: a mirror material that no triangle uses.

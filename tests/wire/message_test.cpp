@@ -210,6 +210,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
     std::vector<std::uint8_t> bytes;
   };
   const std::vector<std::uint8_t> nan = {0, 0, 0xC0, 0x7F}, infinite = {0, 0, 0x80, 0xFF};
+  const std::size_t more = setting_wire_bytes() - 10;  // settings after normals
   const Edit edits[] = {
       {MessageType::hello, 8, {'p'}},
       {MessageType::scene_entry, 8 + 95, {'x'}},
@@ -229,20 +230,21 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 84, {17}},    // depth
       {MessageType::frame_request, 8 + 85, {0, 0}},  // points
       {MessageType::frame_request, 8 + 85, {1, 1}},
-      {MessageType::frame_request, 8 + 87, nan},                 // cut-off
-      {MessageType::frame_request, 8 + 87, {0, 0, 0x82, 0x42}},  // 65 levels
-      {MessageType::frame_request, 8 + 87, {0, 0, 0x80, 0xBF}},  // −1
-      {MessageType::frame_request, 8 + 91, {3}},                 // filter
-      {MessageType::frame_request, 8 + 92, {2}},                 // normals
-      {MessageType::frame_request, 8 + 96, {0xFF}},              // effects
-      {MessageType::frame_request, 8 + 100, {0xFF}},
-      {MessageType::frame_request, 8 + 101, {0, 0, 0x80, 0xBF}},           // exposure −1
-      {MessageType::frame_request, 8 + 105, {2}},                          // dither
-      {MessageType::frame_request, 8 + 106, {2}},                          // format
-      {MessageType::frame_request, 8 + 107, {5, 0, 5, 0}},                 // no rows
-      {MessageType::frame_request, 8 + 109, {0xFF, 0xFF}},                 // rows beyond the picture
-      {MessageType::frame_request, 8 + 111, {0, 0}},                       // chunk rows
-      {MessageType::frame_request, 8 + 116, {10}},                         // level
+      {MessageType::frame_request, 8 + 87, nan},                     // cut-off
+      {MessageType::frame_request, 8 + 87, {0, 0, 0x82, 0x42}},      // 65 levels
+      {MessageType::frame_request, 8 + 87, {0, 0, 0x80, 0xBF}},      // −1
+      {MessageType::frame_request, 8 + 91, {3}},                     // filter
+      {MessageType::frame_request, 8 + 92, {2}},                     // normals
+      {MessageType::frame_request, 8 + 93, {kIndirectChoiceCount}},  // indirect
+      {MessageType::frame_request, 8 + more + 96, {0xFF}},           // effects
+      {MessageType::frame_request, 8 + more + 100, {0xFF}},
+      {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1
+      {MessageType::frame_request, 8 + more + 105, {2}},                   // dither
+      {MessageType::frame_request, 8 + more + 106, {2}},                   // format
+      {MessageType::frame_request, 8 + more + 107, {5, 0, 5, 0}},          // no rows
+      {MessageType::frame_request, 8 + more + 109, {0xFF, 0xFF}},          // rows beyond the picture
+      {MessageType::frame_request, 8 + more + 111, {0, 0}},                // chunk rows
+      {MessageType::frame_request, 8 + more + 116, {10}},                  // level
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 60, {5, 0, 5, 0}},                   // no rows
@@ -257,7 +259,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::view_query, 8 + 16, {2}},              // camera stated
       {MessageType::view_query, 8 + 19, nan},              // eye.x
       {MessageType::view_query, 8 + 67, {0, 0}},           // width
-      {MessageType::view_query, 8 + 89, {2}},              // exposure measured
+      {MessageType::view_query, 8 + more + 89, {2}},       // exposure measured
       {MessageType::view_entry, 8 + 16, infinite},         // eye.x
       {MessageType::view_entry, 8 + 64, {0, 0, 0, 0}},     // exposure
       {MessageType::view_entry, 8 + 68, nan},              // frames a second
