@@ -24,7 +24,7 @@ override CLASS := $(filter-out desktop,$(CLASS))
 BUILD := build$(CLASS:%=-%)
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -60,6 +60,14 @@ setup-tests:
 test: setup-tests configure
 	targets=$$(tests/targets.sh $(BUILD) '$(TESTS)') && cmake --build $(BUILD) -j$(JOBS) --target $$targets
 	cd $(BUILD) && ctest --output-on-failure -j$(JOBS) -R '$(TESTS)'
+
+# Boots emulated handhelds with the static program. MACHINES= names some of arm926 cortex-a7 aarch64. The first run builds a
+# kernel.
+MACHINES ?= arm926 cortex-a7 aarch64
+test-box: configure
+	@toolchains/setup.sh box armel
+	@cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	@tests/box/run.sh $(POCKETRAY) $(MACHINES) || [ $$? = 77 ]
 
 hardcases: setup-tests configure
 	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases
@@ -174,6 +182,7 @@ help:
 	@echo "make              build for this machine into build/"
 	@echo "make run          build, then plan, render and time SCENE=$(SCENE); open the viewer if there is a display"
 	@echo "make test         build and run all tests (TESTS=regex: only matching ones)"
+	@echo "make test-box     boot emulated handhelds and use the program there (MACHINES='cortex-a7 aarch64': some)"
 	@echo "make hardcases    run every hard case in full: inputs, wrong answers, bounds (JSON=FILE: also write JSON)"
 	@echo "make mutants      apply deliberate faults, one at a time: do the tests notice? (MUTANTS=--list: names,"
 	@echo "                  MUTANTS='--only x': just that one, JSON=FILE: also write JSON)"

@@ -8,4 +8,7 @@ namespace platform {
 // CPU a translation. Only a hint; it never changes the content.
 void wish_large_pages(void* block, std::size_t byte_count);
 
+// Bytes that the system can still give to this program without ending another; 0: unknown.
+std::size_t free_memory();
+
 }  // namespace platform

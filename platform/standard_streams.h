@@ -1,7 +1,7 @@
 // Standard input, output and error of a program whose parent may have closed them, or may close them later. Standard
 // types only.
 #pragma once
-#include <cstddef>
+#include "platform/file.h"
 
 namespace platform {
 
@@ -11,6 +11,9 @@ void open_standard_streams();
 
 // From here on, a write to a pipe without a reader fails instead of ending the program.
 void survive_closed_pipes();
+
+// From here on, standard output and error go to the end of that file, which is created if missing.
+bool log_to_file(const char* path, FileError* error);
 
 // Writes a line with its terminator to standard output. Never waits and never fails: false means that the reader is
 // gone or currently takes nothing, and that the line is lost.

@@ -7,11 +7,6 @@ install(TARGETS pocketray RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS pocketray_core EXPORT pocketray ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES src/engine/pocketray.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pocketray)
 
-# The library needs libpng if it was built with it.
-if(PNG_FOUND)
-  set(POCKETRAY_FIND_PNG "find_dependency(PNG)")
-  set(POCKETRAY_PC_PNG libpng)
-endif()
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pocketray)
 configure_package_config_file(toolchains/pocketrayConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/package/pocketrayConfig.cmake
   INSTALL_DESTINATION ${package_folder})

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs the packages that a build needs and this machine lacks. Silent if none is missing.
-# Groups: desktop tests bench-embree bench-povray clang format tidy armhf armel aarch64 x86-32. Run by the Makefile and by .ci/run.
+# Groups: desktop tests box bench-embree bench-povray clang format tidy armhf armel aarch64 x86-32. Run by the Makefile and by .ci/run.
 set -eu
 
 # Required packages of each group. "command=package" is installed if the command exists; a plain name is a Debian package.
@@ -9,6 +9,8 @@ required() {
   case $1 in
     desktop) echo $common c++=g++ pkg-config=pkg-config zlib1g-dev ;;
     tests) ;;
+    # The kernel for an ARM926 is built, as Debian has none for a machine that qemu emulates.
+    box) echo qemu-system-arm=qemu-system-arm python3=python3 fdtput=device-tree-compiler bc=bc flex=flex bison=bison linux-source ;;
     bench-embree) echo libembree-dev unzip=unzip ;;
     bench-povray) echo povray=povray ;;
     clang) echo clang++=clang ;;
@@ -22,12 +24,12 @@ required() {
     *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
 }
-# Optional packages: PNG, the emulator window, model formats, a faster build.
+# Optional packages: the emulator window, model formats, a faster build.
 optional() {
   case $1 in
     armhf | armel | aarch64) echo ninja=ninja-build ;;
-    tests) echo libembree-dev valgrind=valgrind ;; # Embree for comparing depth; valgrind for counting instructions
-    desktop) echo ninja=ninja-build libpng-dev libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
+    tests) echo libembree-dev valgrind=valgrind libpng-dev ;; # to compare depth, count instructions, read pictures
+    desktop) echo ninja=ninja-build libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }
 

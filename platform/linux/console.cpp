@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "platform/linux/console_keeper.h"
+
 namespace platform {
 namespace {
 
@@ -31,6 +33,11 @@ volatile sig_atomic_t quit_requested = 0;
 alignas(16) unsigned char signal_stack[16384];  // after a stack overflow the handler cannot run on the stack
 
 void* number(int value) { return reinterpret_cast<void*>(static_cast<std::intptr_t>(value)); }
+
+void set_modes() {
+  console.driver->ioctl(console.file, KDSKBMODE, number(console.keyboard));
+  console.driver->ioctl(console.file, KDSETMODE, number(console.mode));
+}
 
 void on_signal(int signal, siginfo_t* info, void* context) {
   int saved_errno = errno;
@@ -98,6 +105,7 @@ bool console_open(const Driver& driver) {
   if (console.mode == KD_GRAPHICS) console.mode = KD_TEXT;
   if (driver.ioctl(file, KDGKBMODE, &console.keyboard) != 0 || console.keyboard == K_OFF) console.keyboard = K_UNICODE;
   if (!console.exit_registered) console.exit_registered = atexit(console_restore) == 0;
+  keeper_start(file, set_modes);
   catch_signals();
   armed = 1;
   bool graphics = driver.ioctl(file, KDSETMODE, number(KD_GRAPHICS)) == 0;
@@ -110,8 +118,8 @@ bool console_open(const Driver& driver) {
 void console_restore() {
   if (!armed) return;
   armed = 0;
-  console.driver->ioctl(console.file, KDSKBMODE, number(console.keyboard));
-  console.driver->ioctl(console.file, KDSETMODE, number(console.mode));
+  set_modes();
+  keeper_dismiss();
 }
 
 bool console_quit_requested() { return quit_requested != 0; }
@@ -119,6 +127,7 @@ bool console_quit_requested() { return quit_requested != 0; }
 void console_close() {
   if (console.file < 0) return;
   console_restore();
+  keeper_stop();
   for (int i = 0; i < kSignalCount; ++i)
     if (console.caught[i]) sigaction(kSignals[i], &console.previous[i], nullptr);
   console.driver->close(console.file);

@@ -1,6 +1,6 @@
 // Puts the text console aside while we draw: KD_GRAPHICS, so that it does not write over the picture, and its keyboard
 // off, so that key presses do not reach a shell. Both are restored on close, on exit(), on a signal that ends the
-// program and on a crash. (Not on SIGKILL, when nothing can run.)
+// program, on a crash and, by a helper process, if the program is killed.
 #pragma once
 #include "platform/linux/driver.h"
 

@@ -4,8 +4,11 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "platform/check.h"
 
 namespace platform {
 namespace {
@@ -27,6 +30,16 @@ void open_standard_streams() {
 }
 
 void survive_closed_pipes() { signal(SIGPIPE, SIG_IGN); }
+
+bool log_to_file(const char* path, FileError* error) {
+  PLATFORM_CHECK(path != nullptr && error != nullptr);
+  int file = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY, 0666);
+  fflush(nullptr);
+  bool ok = file >= 0 && dup2(file, STDOUT_FILENO) >= 0 && dup2(file, STDERR_FILENO) >= 0;
+  if (!ok) snprintf(error->text, sizeof error->text, "cannot be written: %s", strerror(errno));
+  if (file > STDERR_FILENO) close(file);
+  return ok;
+}
 
 bool print_line_at_once(const char* line) {
   char bytes[kLineBytesMax];

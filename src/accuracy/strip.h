@@ -27,7 +27,7 @@ StripLayout strip_layout(const Levels& reference, const Strip& strip);
 // pictures must have the reference's size.
 Levels draw_strip(const Levels& reference, const Strip& strip);
 
-// Encodes a picture as PNG. Fails in a build without libpng.
+// Encodes a picture as PNG.
 Status encode_png(const Levels& picture, std::string* bytes);
 
 }  // namespace pocketray

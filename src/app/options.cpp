@@ -65,7 +65,7 @@ void add_scene_options(Command command, CommonOptions* o) {
                   "effects to simulate: auto (those the scene needs), all, or names; \"auto,-shadow\" switches one off")
       .capture_default_str();
   command.add_option("--memory", o->memory, "size of the one memory block that holds everything, e.g. 24M")
-      .default_str("64M, or the device's");
+      .default_str("64M, or the device's; less if the system has less");
   command.add_option("--device", o->device,
                      "use a device's memory size and, in view, its rotation and buttons: " + device_names());
   command.add_option("--emulate", o->emulate,

@@ -7,6 +7,7 @@
 #include "app/options.h"
 #include "base/seal.h"
 #include "budget/budget.h"
+#include "platform/standard_streams.h"
 #include "session/interrupt.h"
 #include "session/output.h"
 #include "session/report.h"
@@ -52,6 +53,8 @@ struct ViewCommand {
   BudgetOptions budget;
   SideBySideOptions side_by_side;
   OptionalParts parts;
+  bool no_hud = false;
+  std::string log;
 };
 
 // Shows the loaded scene until the user quits or a reload is due.
@@ -146,6 +149,10 @@ Status check_options(const ViewCommand& o) {
 }
 
 int run(ViewCommand o) {
+  platform::FileError error;
+  if (!o.log.empty() && !platform::log_to_file(o.log.c_str(), &error))
+    return report(failure("--log: %.300s %s", o.log.c_str(), error.text));
+  o.view.hud = !o.no_hud;
   Viewer viewer;
   Settings size;
   const platform::Device* device;
@@ -192,6 +199,8 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
       .default_str("0, or the device's");
   command.add_option("--scale", o->view.scale, "window pixels per picture pixel; 0: the most that fit")
       .capture_default_str();
+  command.add_flag("--no-hud", o->no_hud, "start without the overlay");
+  command.add_option("--log", o->log, "append all messages to this file instead of printing them");
   command.add_flag("--dither", o->view.dither, "apply ordered dithering on 16-bit screens");
   command.add_option("--frames", o->view.frame_count, "exit after N frames; 0: run until quit").capture_default_str();
   command.add_option("--screenshots", o->view.screenshot_folder, "folder for screenshots; created if missing")
@@ -209,7 +218,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
                  "  T                     dim the pixels that the last frame did not trace again\n"
                  "  F12                   save a screenshot\n"
                  "  F5                    reload the scene\n"
-                 "  Esc                   quit");
+                 "  Esc [start + select]  quit");
   command.callback([=] { *exit_status = run(*o); });
 }
 

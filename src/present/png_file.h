@@ -1,4 +1,4 @@
-// PNG by libpng, which takes all its memory, including zlib's, from an arena.
+// PNG, compressed by zlib, which takes its memory from an arena.
 #pragma once
 #include "base/arena.h"
 #include "base/status.h"
@@ -6,11 +6,11 @@
 
 namespace pocketray {
 
-// Bytes of arena that encode_png() takes; 0 in a build without libpng.
+// Bytes of arena that encode_png() takes.
 std::size_t encode_png_need(int width);
 
 // width × height pixels of bytes R, G, B, row 0 on top, 8 bits per channel, marked as sRGB. Releases the arena to its
-// previous mark. Fails in a build without libpng or if the arena is too small.
+// previous mark. Fails if the arena is too small.
 Status encode_png(const std::uint8_t* rgb, int width, int height, Arena* arena, const ByteSink& sink);
 
 }  // namespace pocketray

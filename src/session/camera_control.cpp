@@ -34,7 +34,7 @@ bool is_within_limits(const Camera& c) {
 
 CameraControl make_camera_control(const Camera& camera, const Box& bounds) {
   CameraControl control;
-  control.home = control.camera = camera;
+  control.scene = control.home = control.camera = camera;
   float size = is_empty(bounds) ? 0 : length(extent(bounds));
   control.size = size > 0 ? size : length(camera.target - camera.eye);
   // A file's camera has only a direction, but orbiting needs a target: the point as far away as the scene's centre.

@@ -16,7 +16,8 @@ enum class CameraMode { orbit, fly };
 
 struct CameraControl {
   CameraMode mode = CameraMode::orbit;
-  Camera home;     // the scene's own
+  Camera scene;    // the scene's own, to the bit
+  Camera home;     // the same view, its target where orbiting turns about
   Camera camera;   // now
   float size = 1;  // of the scene; speeds scale with it
 };

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/limit_list.h"
+#include "platform/memory.h"
 #include "session/interrupt.h"
 #include "session/note.h"
 
@@ -24,6 +25,14 @@ Status set_pace(const CommonOptions& o, Renderer* renderer) {
 
 }  // namespace
 
+Status check_memory(std::size_t wanted, std::size_t free_bytes) {
+  if (free_bytes == 0 || wanted <= free_bytes) return success();
+  constexpr double kMebibyte = 1 << 20;
+  return failure("--memory is %.1f MiB but the system has only %.1f MiB free: try --memory %zuK",
+                 static_cast<double>(wanted) / kMebibyte, static_cast<double>(free_bytes) / kMebibyte,
+                 memory_to_take(free_bytes) >> 10);
+}
+
 Status change_exposure(float factor, float* exposure) {
   CHECK(exposure != nullptr);
   *exposure *= factor;
@@ -43,6 +52,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   Isa isa;
   RETURN_IF_ERROR(parse_isa(o.isa, &isa));
   select_isa(isa);
+  RETURN_IF_ERROR(check_memory(settings.memory_bytes, platform::free_memory()));
   opened->block = take_block(settings.memory_bytes);
   if (!opened->block) return failure("cannot get %zu bytes of memory: lower --memory", settings.memory_bytes);
   Renderer* renderer = &opened->renderer;

@@ -27,6 +27,9 @@ struct OpenHooks {
   std::function<Status(Renderer*, const SceneStorage&, std::size_t output_bytes)> plan = plan_renderer;
 };
 
+// Fails if the system cannot give a block of `wanted` bytes: it would end the program as soon as it uses them.
+// `free_bytes`: as platform::free_memory() has it.
+Status check_memory(std::size_t wanted, std::size_t free_bytes);
 // Reads the options, loads the scene and plans it. If memory is short, fails with opened->source.bytes_wanted set.
 Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScene* opened);
 // Builds the accelerator and starts the threads, ready for render_frame().

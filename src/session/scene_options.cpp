@@ -1,5 +1,6 @@
 #include "session/scene_options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <thread>
@@ -8,6 +9,7 @@
 #include "base/check.h"
 #include "base/fmath.h"
 #include "plan/plan_effects.h"
+#include "platform/memory.h"
 
 namespace pocketray {
 namespace {
@@ -60,6 +62,12 @@ SettingOption& SettingOptions::operator[](const char* name) {
   return options[row - kSettingList];
 }
 
+std::size_t memory_to_take(std::size_t free_bytes) {
+  if (free_bytes == 0) return static_cast<std::size_t>(kMemoryBytesMax);
+  std::size_t bytes = (free_bytes - free_bytes / 8) >> 20 << 20;
+  return std::max(bytes, static_cast<std::size_t>(kMemoryBytesMin));
+}
+
 namespace {
 
 Status read_coherence(const CommonOptions& o, Settings* settings) {
@@ -79,6 +87,7 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   const platform::Device* device;
   RETURN_IF_ERROR(find_device(o, &device));
   if (device) settings->memory_bytes = device->memory_bytes;
+  settings->memory_bytes = std::min(settings->memory_bytes, memory_to_take(platform::free_memory()));
   if (!o.memory.empty()) RETURN_IF_ERROR(parse_bytes(o.memory, &settings->memory_bytes));
   RETURN_IF_ERROR(parse_effects(o.effects.c_str(), settings));
   RETURN_IF_ERROR(check_limit(Quantity::width, double(settings->width), "the width of --size"));

@@ -32,7 +32,9 @@ struct CommonOptions {
   std::uint32_t coherence_table = Settings().coherence_table;
 };
 
-// Parses the options into settings.
+// The largest block to take from a system with that many free bytes, which leaves it an eighth; 0: unknown.
+std::size_t memory_to_take(std::size_t free_bytes);
+// Parses the options into settings. The memory is what --memory says, else the device's or 64 MiB if the system has it.
 Status read_settings(const CommonOptions& options, Settings* settings);
 // Picture size: from --size, else the emulated device's screen as held, else 320 × 240.
 Status picture_size(const CommonOptions& options, std::uint32_t* width, std::uint32_t* height);

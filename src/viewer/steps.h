@@ -21,7 +21,7 @@ struct ViewerLoop {
   // With a budget: frames since camera or time moved, and how many of the latest had the same settings.
   std::uint32_t still_frames = 0, steady_frames = 0;
   bool settled = true;
-  std::uint64_t last_ns = 0;
+  std::uint64_t last_ns = 0;  // when camera and time last advanced; 0: not yet
 };
 
 inline bool quarter_turned(const Viewer& viewer) {

@@ -8,7 +8,6 @@
 #include "base/printable.h"
 #include "base/seal.h"
 #include "platform/file.h"
-#include "present/png_file.h"
 #include "session/interrupt.h"
 #include "session/picture.h"
 #include "viewer/steps.h"
@@ -69,10 +68,9 @@ CameraInput read_input(const Viewer& viewer) {
 
 void save_screenshot(Viewer* viewer, Renderer* renderer) {
   char path[600], told[640];
-  const char* ending = encode_png_need(1) > 0 ? "png" : "ppm";  // built without libpng
   do {
-    std::snprintf(path, sizeof path, "%.500s/pocketray-%04u.%s", viewer->options.screenshot_folder.c_str(),
-                  ++viewer->screenshot_count, ending);
+    std::snprintf(path, sizeof path, "%.500s/pocketray-%04u.png", viewer->options.screenshot_folder.c_str(),
+                  ++viewer->screenshot_count);
   } while (platform::file_stamp(path) != 0 && viewer->screenshot_count < 9999);
   PictureOptions picture;
   if (shows_side_by_side(*viewer))
@@ -217,18 +215,20 @@ Status open_screen(const platform::ScreenOptions& options, Viewer* viewer, platf
 // Advances camera and time; marks the picture as changed.
 Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   std::uint64_t now = viewer->backend->now_ns();
+  if (loop->last_ns == 0) loop->last_ns = now;  // the first picture shows the begin of the animation
   float elapsed = static_cast<float>(std::min<std::uint64_t>(now - loop->last_ns, 250 * kMillisecond)) * 1e-9f;
   loop->last_ns = now;
   bool moved = move_camera(&loop->control, read_input(*viewer), elapsed);
   if (viewer->change_mode)
     loop->control.mode = loop->control.mode == CameraMode::orbit ? CameraMode::fly : CameraMode::orbit;
   loop->camera_moved = (loop->camera_moved || moved) && !viewer->home;
-  if (viewer->home) reset_camera(&loop->control), moved = true;
-  viewer->change_mode = viewer->home = false;
-  if (moved) {
-    RETURN_IF_ERROR(set_camera(renderer, loop->control.camera));
-    loop->moved = true;
+  if (viewer->home) reset_camera(&loop->control);
+  if (moved || viewer->home) {
+    // A shifted target rounds the view differently; the scene's own view must give its own pixels.
+    RETURN_IF_ERROR(set_camera(renderer, viewer->home ? loop->control.scene : loop->control.camera));
+    moved = loop->moved = true;
   }
+  viewer->change_mode = viewer->home = false;
   bool passes = has(renderer->effects.mask, Effect::animation) && !viewer->paused && !shows_side_by_side(*viewer);
   if (passes) {
     loop->seconds += static_cast<double>(elapsed);
@@ -279,6 +279,7 @@ std::size_t viewer_bytes(const Settings& settings) { return picture_bytes(settin
 Status open_viewer(const ViewOptions& options, const char* scene, int width, int height, Viewer* viewer) {
   CHECK(scene != nullptr && viewer->backend == nullptr);  // opened once
   viewer->options = options;
+  viewer->hud = options.hud;
   viewer->scene_path = scene;
   viewer->width = width;
   viewer->height = height;
@@ -333,7 +334,6 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
   loop.row_spans = arena_array<Span>(&renderer->frame_arena, renderer->settings.width);
   loop.control = make_camera_control(renderer->camera, renderer->accel.bounds);
   take_kept_view(*viewer, renderer, &loop);
-  loop.last_ns = viewer->backend->now_ns();
   loop.finished = true;  // no picture in progress
   viewer->picture_merged = false;
   *again = false;

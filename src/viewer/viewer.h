@@ -23,6 +23,7 @@ struct ViewOptions {
   bool dither = false;
   const platform::Device* emulated = nullptr;  // device whose screen to show, upright; null: the screen's own pixels
   std::uint32_t frame_count = 0;
+  bool hud = true;             // shown from the start
   bool has_reference = false;  // the build has --side-by-side
 };
 

@@ -11,7 +11,6 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 export XDG_CACHE_HOME=$folder/cache/of_its_own
 passed=0 failed=0
-has_png=$("${run[@]}" render cube --size 8x8 -o probe.png >/dev/null 2>&1 && echo 1 || echo 0)
 
 # expect NAME STATUS PATTERN COMMAND...: checks the exit status, and a pattern in the output.
 expect() {

@@ -27,6 +27,16 @@ expect view_screenshots_nowhere 1 'no/such' view cube "${small[@]}" --screen nul
 expect view_screenshots_new 0 '' view cube "${small[@]}" --screen null --frames 1 --screenshots shots
 check view_makes_its_folder test -d shots
 
+# Goal: with --log the console stays empty, and the file has every message, those of failures and of earlier runs included.
+expect view_logs 0 '' view cube "${small[@]}" --screen null --frames 1 --log view.log
+"${run[@]}" view no-such-scene "${small[@]}" --screen null --log view.log >said 2>&1
+check view_logs_failures test $? -eq 1
+check view_prints_nothing test ! -s said
+check view_log_has_the_failure grep -q 'no-such-scene is neither a file' view.log
+"${run[@]}" view still-none "${small[@]}" --screen null --log view.log >/dev/null 2>&1
+check view_log_keeps_earlier_runs test "$(grep -c 'is neither a file' view.log)" -eq 2
+expect view_log_nowhere 1 'no/such/log cannot be written' view cube "${small[@]}" --screen null --frames 1 --log no/such/log
+
 # Goal: the viewer survives a scene being rewritten and reports each state. Method: touch the file until it is reloaded;
 # truncate it; replace it; remove and restore it.
 if [ $# -eq 0 ]; then

@@ -25,7 +25,7 @@ const recorded::Geometry kPanel = {"panel", 320, 240, 240, 16, 640, {11, 5}, {5,
 struct Seen {
   volatile int mode, keyboard;
   volatile int mode_while_running, keyboard_while_running;
-  volatile int handler_calls, quit_events;
+  volatile int handler_calls, quit_events, restores;
 };
 Seen* seen = nullptr;
 
@@ -33,6 +33,7 @@ recorded::Machine child_machine;
 int (*recorded_ioctl)(int, unsigned long, void*) = nullptr;
 int shared_ioctl(int file, unsigned long request, void* argument) {
   int result = recorded_ioctl(file, request, argument);
+  if (request == KDSETMODE && child_machine.console_mode == KD_TEXT) seen->restores = seen->restores + 1;
   seen->mode = child_machine.console_mode;
   seen->keyboard = child_machine.keyboard_mode;
   return result;
@@ -84,6 +85,7 @@ void check_restored() {
   CHECK(seen->keyboard_while_running == K_OFF);
   CHECK(seen->mode == KD_TEXT);
   CHECK(seen->keyboard == K_UNICODE);
+  CHECK(seen->restores == 1);
   munmap(const_cast<Seen*>(seen), sizeof(Seen));
 }
 
@@ -123,6 +125,14 @@ TEST_CASE("console_is_restored_on_a_crash") {
   check_restored();
   status = run_child([] { std::_Exit(overflow_stack(1)); });
   CHECK(WTERMSIG(status) == SIGSEGV);
+  check_restored();
+}
+
+// Goal: a program that is killed leaves a usable console behind. Method: the helper outlives the child, so wait for it.
+TEST_CASE("console_is_restored_after_a_kill") {
+  int status = run_child([] { kill(getpid(), SIGKILL); });
+  CHECK(WTERMSIG(status) == SIGKILL);
+  for (int i = 0; i < 1000 && seen->mode != KD_TEXT; ++i) usleep(10'000);
   check_restored();
 }
 

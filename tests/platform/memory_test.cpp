@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <sys/mman.h>
+#include <sys/sysinfo.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -32,6 +33,18 @@ std::string flags_at(const void* address) {
 }
 
 }  // namespace
+
+// Goal: the free memory is the system's own estimate. Method: its other record of the same, sysinfo(2), which counts no
+// caches, below it, and all memory above.
+TEST_CASE("memory_knows_what_is_free") {
+  struct sysinfo info;
+  REQUIRE(sysinfo(&info) == 0);
+  double all = (static_cast<double>(info.totalram) + static_cast<double>(info.totalswap)) * info.mem_unit;
+  double unused = (static_cast<double>(info.freeram) + static_cast<double>(info.freeswap)) * info.mem_unit;
+  double bytes = static_cast<double>(free_memory());
+  CHECK(bytes > unused / 4);  // the system keeps a reserve, and others take memory meanwhile
+  CHECK(bytes <= all);
+}
 
 // Goal: large pages can be requested for a block, affecting all its whole pages and nothing else, without changing its
 // content. Method: request them for the middle of a mapping, with ends within pages, and read Linux's record of it;

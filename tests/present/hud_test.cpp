@@ -124,7 +124,6 @@ TEST_CASE("hud_cuts_what_lies_outside_of_the_picture") {
   CHECK(unknown.memory == question.memory);
 }
 
-#if defined(POCKETRAY_HAVE_PNG)
 // Goal: pictures for inspection. Method: with POCKETRAY_PICTURES=FOLDER set, the HUD on RGB8, and a screen for a panel
 // rotated by 90 degrees, RGB565 dithered; both must at least be written.
 TEST_CASE("hud_pictures_can_be_written_to_look_at") {
@@ -162,4 +161,3 @@ TEST_CASE("hud_pictures_can_be_written_to_look_at") {
     std::fclose(file);
   }
 }
-#endif

@@ -21,13 +21,11 @@ const ByteSink kSink = {
     [](void*, const void* bytes, std::size_t count) { written.append(static_cast<const char*>(bytes), count); },
     nullptr};
 
-#if defined(POCKETRAY_HAVE_PNG)
 std::vector<std::uint8_t> noise(int width, int height, std::uint32_t seed) {
   std::vector<std::uint8_t> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (std::uint8_t& level : rgb) level = static_cast<std::uint8_t>((seed = seed * 1664525 + 1013904223) >> 24);
   return rgb;
 }
-#endif
 
 }  // namespace
 
@@ -59,9 +57,8 @@ TEST_CASE("encode_pfm_writes_little_endian_rows_from_the_bottom") {
   CHECK(written.size() == 15 + 4000);
 }
 
-#if defined(POCKETRAY_HAVE_PNG)
 // Goal: a PNG holds the picture, takes no more arena than announced and returns it. Method: noise and a gradient at
-// several sizes, read back with libpng's simplified interface.
+// several sizes, read back with libpng's simplified interface if there is libpng.
 TEST_CASE("encode_png_round_trips_within_the_memory_announced") {
   for (int width : {1, 3, 320, 1920, 8192}) {
     CAPTURE(width);
@@ -76,6 +73,8 @@ TEST_CASE("encode_png_round_trips_within_the_memory_announced") {
     MESSAGE("width " << width << ": " << arena.used_max << " of " << encode_png_need(width) << " bytes of arena");
     CHECK(arena.used_max <= encode_png_need(width));
 
+    CHECK(written.find("sRGB") != std::string::npos);
+#if defined(POCKETRAY_HAVE_PNG)
     png_image image = {};
     image.version = PNG_IMAGE_VERSION;
     REQUIRE(png_image_begin_read_from_memory(&image, written.data(), written.size()));
@@ -85,7 +84,7 @@ TEST_CASE("encode_png_round_trips_within_the_memory_announced") {
     std::vector<std::uint8_t> read(PNG_IMAGE_SIZE(image));
     REQUIRE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr));
     CHECK(read == rgb);
-    CHECK(written.find("sRGB") != std::string::npos);
+#endif
   }
 }
 
@@ -105,12 +104,3 @@ TEST_CASE("encode_png_says_how_much_memory_is_missing") {
   }
   CHECK(failed > 90);
 }
-#else
-TEST_CASE("encode_png_without_libpng_names_the_other_formats") {
-  Arena arena;
-  const std::uint8_t rgb[3] = {};
-  Status status = encode_png(rgb, 1, 1, &arena, kSink);
-  CHECK_FALSE(status.ok);
-  CHECK(std::strstr(status.message, ".ppm or .pfm") != nullptr);
-}
-#endif

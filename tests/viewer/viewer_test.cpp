@@ -189,6 +189,28 @@ TEST_CASE("viewer_keeps_the_picture_without_a_scene") {
   std::remove(path);
 }
 
+// Goal: start goes back to the scene's own view, to the bit, so that the picture is the one that render writes. Method:
+// turn, then press start, in scenes whose cameras do not look at their centres.
+TEST_CASE("viewer_goes_back_to_the_scenes_own_view") {
+  for (const char* scene : {"cube", "cornell", "statue"}) {
+    CAPTURE(scene);
+    Stage stage;
+    stage.press(0.5, platform::Button::right);
+    stage.press(0.8, platform::Button::right, false);
+    stage.press(1.5, platform::Button::start);
+    stage.leave(2);
+    stage.open(scene);
+    OpenScene opened;
+    Stage::load(scene, "off", &opened);
+    const Camera own = opened.renderer.camera;
+    bool again;
+    REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
+    CHECK(is_equal(opened.renderer.camera.eye, own.eye));
+    CHECK(is_equal(opened.renderer.camera.target, own.target));
+    CHECK(opened.renderer.camera_overridden);  // it was turned at all
+  }
+}
+
 // Goal: the null screen is used only on request. Method: no display and no framebuffer.
 TEST_CASE("viewer_wants_a_screen") {
   if (access("/dev/fb0", F_OK) == 0) return;
