@@ -1,5 +1,6 @@
 # A thin front end for CMake: installs what is missing, configures, builds, runs. `make help` lists the targets.
-#   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64); empty: this machine
+#   DEVICE=   a device of platform/devices or a CPU class (armhf, armel, aarch64, armv4t, armv6, armv7, mips32); empty: this
+#             machine
 #   PREFIX=   where `make install` goes
 #   TESTS=    build and run only the tests that match this regular expression
 #   JSON=     also write the table of `make hardcases` or `make mutants` to this file
@@ -21,14 +22,28 @@ ifneq ($(DEVICE),)
   endif
 endif
 override CLASS := $(filter-out desktop,$(CLASS))
-BUILD := build$(CLASS:%=-%)
+# CROSS_PREFIX=arm-linux-: a vendor's compiler, for the class of DEVICE= or, without it, for the CPU that the compiler or
+# CROSS_FLAGS= chooses. SYSROOT= its C library if not its own; ZLIB= folder with include/zlib.h, zconf.h and lib/libz.a.
+CROSS_PREFIX ?=
+CROSS_FLAGS ?=
+SYSROOT ?=
+ZLIB ?=
+ifneq ($(CROSS_PREFIX),)
+  override CLASS := $(or $(CLASS),cross)
+endif
+ifneq ($(CLASS),)
+  ifneq ($(shell toolchains/compiler.sh $(CLASS) $(CROSS_PREFIX) >&2 || echo bad),)
+    $(error no compiler for $(CLASS): see above)
+  endif
+endif
+BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
-	@echo "$(POCKETRAY): $$(stat -c %s $(POCKETRAY)) bytes, static, for $(DEVICE)"
+	@echo "$(POCKETRAY): $$(stat -c %s $(POCKETRAY)) bytes, static, for $(or $(DEVICE),$(CROSS_PREFIX))"
 endif
 
 setup:
@@ -36,11 +51,12 @@ setup:
 
 # Ninja and a compiler cache where installed, and the device's toolchain.
 configure: setup
-	@mkdir -p $(BUILD) && sysroot=$(if $(CLASS),$$(toolchains/sysroot.sh $(CLASS))) && \
+	@mkdir -p $(BUILD) && sysroot=$(if $(CLASS),$$(toolchains/sysroot.sh $(CLASS) $(ZLIB))) && \
 	cmake -S . -B $(BUILD) -DCMAKE_INSTALL_PREFIX=$(PREFIX) \
 	  $$([ -f $(BUILD)/CMakeCache.txt ] || ! command -v ninja >/dev/null || echo -G Ninja) \
 	  $$(! command -v ccache >/dev/null || echo -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) \
 	  $(if $(CLASS),-DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/toolchains/$(CLASS).cmake -DPOCKETRAY_SYSROOT=$$sysroot) \
+	  $(if $(CROSS_PREFIX),-DPOCKETRAY_CROSS_PREFIX=$(CROSS_PREFIX) -DPOCKETRAY_CROSS_SYSROOT=$(SYSROOT) "-DPOCKETRAY_CROSS_FLAGS=$(CROSS_FLAGS)") \
 	  >$(BUILD)/configure.log || { cat $(BUILD)/configure.log; exit 1; }
 
 run: configure
@@ -163,6 +179,12 @@ bench-povray: setup-bench-povray configure
 	@cmake --build $(BUILD) -j$(JOBS) --target bench_povray >&2
 	@$(BUILD)/bench_povray $(JSON:%=--json %) $(BENCH_OPTIONS)
 
+# The packages of a device's launchers: DEVICE=miyoo-mini (OnionUI, MinUI), rg350 (.opk), portmaster. This machine's program
+# bakes their scenes.
+package: all
+	@toolchains/setup.sh desktop package && $(MAKE) -s DEVICE= CROSS_PREFIX=
+	@toolchains/package.sh "$(DEVICE)" $(POCKETRAY) build/pocketray build/packages
+
 install: configure
 	cmake --build $(BUILD) -j$(JOBS)
 	cmake --build $(BUILD) --target install
@@ -198,6 +220,7 @@ help:
 	@echo "make bench-povray compare whole frames with POV-Ray (JSON=FILE: write the table)"
 	@echo "make format       run clang-format on all sources"
 	@echo "make tidy         run clang-tidy on all sources"
+	@echo "make package      write the packages of launchers for DEVICE=miyoo-mini, rg350 or portmaster to build/packages"
 	@echo "make install      install into PREFIX=$(PREFIX) (and DESTDIR)"
 	@echo "make clean        remove build/ and build-*/"
 	@echo "DEVICE=x          build for a device or CPU class; tests then run under qemu-user"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs the packages that a build needs and this machine lacks. Silent if none is missing.
-# Groups: desktop tests box bench-embree bench-povray clang format tidy armhf armel aarch64 x86-32. Run by the Makefile and by .ci/run.
+# Groups: desktop tests box bench-embree bench-povray clang format tidy package x86-32, and the CPU classes. Run by the Makefile and by .ci/run.
 set -eu
 
 # Required packages of each group. "command=package" is installed if the command exists; a plain name is a Debian package.
@@ -16,8 +16,11 @@ required() {
     clang) echo clang++=clang ;;
     format) echo clang-format=clang-format ;;
     tidy) echo clang-tidy=clang-tidy ;;
-    armhf) echo $common arm-linux-gnueabihf-g++=g++-arm-linux-gnueabihf qemu-arm=qemu-user ;;
-    armel) echo $common arm-linux-gnueabi-g++=g++-arm-linux-gnueabi qemu-arm=qemu-user ;;
+    armhf | armv7) echo $common arm-linux-gnueabihf-g++=g++-arm-linux-gnueabihf qemu-arm=qemu-user ;;
+    armel | armv6) echo $common arm-linux-gnueabi-g++=g++-arm-linux-gnueabi qemu-arm=qemu-user ;;
+    mips32) echo $common mipsel-linux-gnu-g++=g++-mipsel-linux-gnu qemu-mipsel=qemu-user ;;
+    armv4t | cross) echo $common ;; # the compiler is the user's
+    package) echo zip=zip mksquashfs=squashfs-tools ;;
     # Not g++-multilib: that package and the cross compilers exclude each other.
     x86-32) echo $common c++=g++ "g++-$(c++ -dumpversion 2>/dev/null | cut -d. -f1 || echo 12)-multilib" lib32z1-dev ;;
     aarch64) echo $common aarch64-linux-gnu-g++=g++-aarch64-linux-gnu qemu-aarch64=qemu-user ;;
@@ -27,8 +30,8 @@ required() {
 # Optional packages: the emulator window, model formats, a faster build.
 optional() {
   case $1 in
-    armhf | armel | aarch64) echo ninja=ninja-build ;;
-    tests) echo libembree-dev valgrind=valgrind libpng-dev ;; # to compare depth, count instructions, read pictures
+    armhf | armel | aarch64 | armv6 | armv7 | mips32 | armv4t | cross) echo ninja=ninja-build ;;
+    tests) echo libembree-dev valgrind=valgrind libpng-dev zip=zip unzip=unzip mksquashfs=squashfs-tools ;; # to compare depth, count instructions, read pictures
     desktop) echo ninja=ninja-build libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }

@@ -12,7 +12,7 @@ namespace platform {
 // with the same Linux driver in 0.98 ms (gp32x.com, topic 50468, 2009).
 constexpr Device kGp2x = {"gp2x",
                           "GamePark GP2X: ARM920T 200 MHz, no FPU",
-                          "armel",
+                          "armv4t",
                           320,
                           240,
                           16,

@@ -54,8 +54,9 @@ Option add_server_option(Command command, std::vector<std::string>* addresses) {
       .allow_extra_args(false);
 }
 
-void add_scene_options(Command command, CommonOptions* o) {
-  command.add_option("SCENE", o->scene, scene_help()).required();
+void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
+  auto scene = command.add_option("SCENE", o->scene, scene_help());
+  if (scene_required) scene.required();
   command.add_option("--size", o->size, "picture size, WIDTHxHEIGHT in pixels")
       .default_str("320x240, or the emulated device's");
   for (int i = 0; i < kSettingCount; ++i)

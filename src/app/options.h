@@ -9,7 +9,7 @@
 namespace pocketray {
 
 // SCENE and the options for opening and rendering it, every setting included.
-void add_scene_options(Command command, CommonOptions* options);
+void add_scene_options(Command command, CommonOptions* options, bool scene_required = true);
 // --coherence, initially auto, and --coherence-table.
 void add_coherence_options(Command command, CommonOptions* options);
 // --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().

@@ -12,6 +12,7 @@
 #include "session/output.h"
 #include "session/report.h"
 #include "session/servers.h"
+#include "viewer/picker.h"
 #include "viewer/viewer.h"
 
 namespace pocketray {
@@ -54,7 +55,7 @@ struct ViewCommand {
   SideBySideOptions side_by_side;
   OptionalParts parts;
   bool no_hud = false;
-  std::string log;
+  std::string log, scenes = ".";
 };
 
 // Shows the loaded scene until the user quits or a reload is due.
@@ -148,6 +149,16 @@ Status check_options(const ViewCommand& o) {
   return asked ? make_output_folder(o.view.screenshot_folder) : success();
 }
 
+// Lets the user choose the scene, or quit.
+Status let_pick(ViewCommand* o, Viewer* viewer) {
+  std::vector<PickerEntry> entries;
+  RETURN_IF_ERROR(list_scenes_to_pick(o->scenes, &entries));
+  int chosen;
+  pick_scene(viewer, entries, &chosen);
+  if (chosen >= 0) o->common.scene = viewer->scene_path = entries[static_cast<std::size_t>(chosen)].scene;
+  return success();
+}
+
 int run(ViewCommand o) {
   platform::FileError error;
   if (!o.log.empty() && !platform::log_to_file(o.log.c_str(), &error))
@@ -167,10 +178,11 @@ int run(ViewCommand o) {
   if (status.ok)
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),
                          &viewer);
+  if (status.ok && o.common.scene.empty()) status = let_pick(&o, &viewer);
   if (status.ok) status = open_servers(o.parts, o.servers, o.view.emulated, &viewer.servers);
   std::unique_ptr<Viewer, void (*)(Viewer*)> closing_screen(&viewer, close_viewer);
   ServersHandle closing_servers(viewer.servers);
-  if (status.ok) status = view_scenes(&o, &viewer);
+  if (status.ok && !viewer.quit) status = view_scenes(&o, &viewer);
   closing_screen.reset();
   if (!status.ok) return report(status);
   return interrupted ? kExitInterrupted : kExitDone;
@@ -184,7 +196,9 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   o->view.has_reference = parts.side_by_side != nullptr;
   Command command =
       program.add_subcommand("view", "show a scene in the emulator's window or on a device's framebuffer");
-  add_scene_options(command, &o->common);
+  add_scene_options(command, &o->common, false);
+  command.add_option("--scenes", o->scenes, "without SCENE: folder of .pray files to choose from")
+      .capture_default_str();
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
   add_coherence_options(command, &o->common);
