@@ -57,7 +57,7 @@ configure: setup
 	  $$(! command -v ccache >/dev/null || echo -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) \
 	  $(if $(CLASS),-DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/toolchains/$(CLASS).cmake -DPOCKETRAY_SYSROOT=$$sysroot) \
 	  $(if $(CROSS_PREFIX),-DPOCKETRAY_CROSS_PREFIX=$(CROSS_PREFIX) -DPOCKETRAY_CROSS_SYSROOT=$(SYSROOT) "-DPOCKETRAY_CROSS_FLAGS=$(CROSS_FLAGS)") \
-	  >$(BUILD)/configure.log || { cat $(BUILD)/configure.log; exit 1; }
+	  >$(BUILD)/configure.log || { cat $(BUILD)/configure.log 2>/dev/null; exit 1; }
 
 run: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
