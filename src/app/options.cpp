@@ -94,8 +94,8 @@ void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
   command.add_option("--exposure", o->exposure, "stops to add to the scene's own exposure, or auto");
 }
 
-void add_coherence_options(Command command, CommonOptions* o) {
-  o->coherence = "auto";
+void add_coherence_options(Command command, CommonOptions* o, const char* usual) {
+  o->coherence = usual;
   command
       .add_option("--coherence", o->coherence,
                   "trace only what can have changed since the last frame; the pictures stay the same: on, off, or "

@@ -11,7 +11,7 @@ namespace pocketray {
 // SCENE and the options for opening and rendering it, every setting included.
 void add_scene_options(Command command, CommonOptions* options, bool scene_required = true);
 // --coherence, initially auto, and --coherence-table.
-void add_coherence_options(Command command, CommonOptions* options);
+void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");
 // --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().
 void add_budget_options(Command command, BudgetOptions* options);
 // --json, --isa and --server, each a single option. The variable must outlive the parsing of the command line.

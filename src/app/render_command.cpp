@@ -223,12 +223,17 @@ void print_summary(const Job& job, const Renderer& renderer, std::size_t file_co
                 static_cast<double>(counts.left_out_max * renderer.exposure) * 255 * 12.92);
 }
 
-void print_share(const Servers& servers) {
+void print_share(const Servers& servers, std::uint32_t width) {
   ServersTotals t = servers.backend->totals(servers);
   if (t.frames == 0) return;
   double rows = static_cast<double>(t.device_rows + t.server_rows), frames = static_cast<double>(t.frames);
   std::printf("  render servers: the device rendered %.0f %% of the rows, servers sent %.1f kB per frame",
               100 * static_cast<double>(t.device_rows) / rows, static_cast<double>(t.bytes_in) * 1e-3 / frames);
+  if (t.device_rows > 0)
+    std::printf("; the device traced %.1f %% of its pixels",
+                100 * static_cast<double>(t.device_pixels) / (static_cast<double>(t.device_rows) * width));
+  if (t.unchanged_frames > 0)
+    std::printf("; %.0f frames equal the one before", static_cast<double>(t.unchanged_frames));
   if (t.local_ns > 0) std::printf("; predicted %.2f times as fast as the device alone", t.local_ns / t.known_ns);
   if (t.checked > 0)
     std::printf(
@@ -277,10 +282,9 @@ Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
   return success();
 }
 
-// Coherence is for sequences that this program renders itself, in colour.
+// Coherence is for sequences in colour.
 const char* incoherent_because(const RenderOptions& o, Aov aov) {
   if (o.frames.empty()) return "a single frame: add --frames 0:99, or drop --coherence";
-  if (!o.servers.addresses.empty()) return "render servers: drop --server or --coherence";
   return aov != Aov::none ? "--aov: drop --aov or --coherence" : nullptr;
 }
 
@@ -379,11 +383,12 @@ int run(RenderOptions options) {
   double trace_ms = 0;
   bool stopped = false;
   CoherentSequence coherent;
-  if (opened.renderer.coherence_state.planned) job.coherent = &coherent;
+  if (opened.renderer.coherence_state.planned && !job.servers) job.coherent = &coherent;  // or the client uses it
   status = render_files(&opened.renderer, job, &files, &trace_ms, &stopped);
   if (!files.empty() && options.common.json != "-")
     print_summary(job, opened.renderer, files.size(), files.back(), trace_ms);
-  if (!files.empty() && options.common.json != "-" && job.servers) print_share(*job.servers);
+  if (!files.empty() && options.common.json != "-" && job.servers)
+    print_share(*job.servers, opened.renderer.settings.width);
   if (!files.empty() && options.common.json != "-" && job.budget) print_budget(budget, !job.sequence.given);
   if (status.ok && job.budget) status = finish_budget(budget);
   if (status.ok && !options.common.json.empty())

@@ -172,8 +172,6 @@ int run(ViewCommand o) {
   if (device) o.view.keys = device->keys;
   if (!o.common.emulate.empty()) o.view.emulated = device;
   if (status.ok) status = check_options(o);
-  if (status.ok && !o.servers.addresses.empty())
-    status = check_coherence("render servers: drop --server or --coherence", &o.common);
   if (status.ok) status = picture_size(o.common, &size.width, &size.height);
   if (status.ok)
     status = open_viewer(o.view, o.common.scene.c_str(), static_cast<int>(size.width), static_cast<int>(size.height),

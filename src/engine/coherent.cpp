@@ -30,6 +30,10 @@ bool measure_row(void* context, std::uint32_t, std::uint32_t row) {
   return true;
 }
 
+bool are_all_rows_known(const Coherence& c) {
+  return std::all_of(c.row_known.begin(), c.row_known.end(), [](std::uint8_t known) { return known != 0; });
+}
+
 double ms_since(std::uint64_t start) { return static_cast<double>(clock_ns() - start) * 1e-6; }
 
 void list_rows(Coherence* c, CoherentFrame* frame) {
@@ -54,10 +58,8 @@ void weigh(const CoherentFrame& frame, double ns, Renderer* renderer) {
   const bool in_vain = frame.all && frame.records && state->was_whole;
   state->was_whole = frame.all && frame.records;
   if (frame.all) state->whole_ns = ns;
-  if (!frame.all && ns < kLeastGain * state->whole_ns) state->rest_next = 1;
-  if (frame.all ? !in_vain : ns < kLeastGain * state->whole_ns) return;
-  state->rest = state->rest_next;
-  state->rest_next = std::min(2 * state->rest_next + 1, kRestMax);
+  const bool saves = !frame.all && ns < kLeastGain * state->whole_ns;
+  if (saves || in_vain || !frame.all) rest_after(renderer, saves);
 }
 
 }  // namespace
@@ -68,6 +70,29 @@ void make_coherent(Renderer* renderer) {
                  &renderer->persistent_arena, &renderer->frame_arena, &renderer->coherence);
 }
 
+void rest_after(Renderer* renderer, bool did_pay) {
+  CoherenceState* state = &renderer->coherence_state;
+  state->rest = did_pay ? 0 : state->rest_next;
+  state->rest_next = did_pay ? 1 : std::min(2 * state->rest_next + 1, kRestMax);
+}
+
+bool begin_following(Renderer* renderer) {
+  CoherenceState* state = &renderer->coherence_state;
+  Coherence* c = &renderer->coherence;
+  if (!state->planned) {
+    state->whole_because = state->unplanned_because;
+  } else if (!fits(*c, renderer->frame)) {
+    state->whole_because = "more samples, lights or effects than memory was planned for";
+  } else if (rests(renderer)) {
+    state->whole_because = "tracing only what changed did not pay";
+  } else {
+    follow_frame(c, renderer->frame, &state->whole_because);
+    return true;
+  }
+  forget_frame(c);
+  return false;
+}
+
 void begin_coherent(Renderer* renderer, CoherentFrame* frame) {
   CoherenceState* state = &renderer->coherence_state;
   Coherence* c = &renderer->coherence;
@@ -76,17 +101,11 @@ void begin_coherent(Renderer* renderer, CoherentFrame* frame) {
   state->pixels_traced = 0;
   state->follow_ms = state->find_ms = state->keep_ms = 0;
   std::uint64_t start = clock_ns(), paced_start = renderer->pace.clock->now_ns();
-  if (!state->planned) {
-    state->whole_because = state->unplanned_because;
-  } else if (!fits(*c, renderer->frame)) {
-    state->whole_because = "more samples, lights or effects than memory was planned for";
-  } else if (rests(renderer)) {
-    state->whole_because = "tracing only what changed did not pay";
-  } else {
-    frame->records = true;
-    frame->all = !follow_frame(c, renderer->frame, &state->whole_because);
+  frame->records = begin_following(renderer);
+  frame->all = state->whole_because != nullptr;
+  if (frame->records) {
     state->follow_ms = ms_since(start);
-    if (!frame->all && !is_unchanged(*c)) {
+    if (!frame->all && !(is_unchanged(*c) && are_all_rows_known(*c))) {
       std::uint64_t found = clock_ns();
       Rows rows = {renderer, false};
       share_items(renderer->workers, 0, c->tile_rows, find_row, &rows);
@@ -101,10 +120,6 @@ void begin_coherent(Renderer* renderer, CoherentFrame* frame) {
     }
     start_recording(c, &renderer->frame, renderer->tracers);
   }
-  if (!frame->records) {
-    frame->all = true;
-    forget_frame(c);
-  }
   wait_for_pace(&renderer->pace, 0, paced_start);
   frame->spent_ns = clock_ns() - start;
   if (frame->all) frame->list = whole_frame(renderer);
@@ -116,8 +131,8 @@ void finish_coherent(Renderer* renderer, CoherentFrame* frame) {
   stop_recording(*renderer->accel_info, &renderer->frame, renderer->tracers);
   if (frame->records) {
     Rows rows = {renderer, frame->all};
-    share_items(renderer->workers, 0, c->tile_rows, measure_row, &rows);
     keep_frame(c, renderer->frame);
+    share_items(renderer->workers, 0, c->tile_rows, measure_row, &rows);
   }
   wait_for_pace(&renderer->pace, 0, paced_start);
   renderer->coherence_state.keep_ms = ms_since(start);

@@ -12,6 +12,7 @@ Status prepare_frame(Renderer* renderer, double seconds) {
   CHECK(renderer->accel_info != nullptr && renderer->image.data != nullptr);  // it has been built
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   renderer->pace.owed_ns = 0;
+  renderer->coherence.following = renderer->shared_rows.records = false;  // the geometry is about to move
   pose_scene(renderer, seconds);
   accelerate(renderer);
   choose_kernels(renderer);

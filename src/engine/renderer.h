@@ -26,6 +26,17 @@ struct CoherenceState {
   std::uint32_t rest = 0, rest_next = 1;
 };
 
+// The rows of a frame that this renderer may trace; shared_rows.h.
+struct SharedRows {
+  std::uint32_t begin = 0, end = 0;
+  bool records = false;             // the frame is followed
+  bool searched = false;            // for what can have changed
+  std::uint32_t tile_row = 0;       // the next to search
+  std::uint32_t known_rows = 0;     // of the last frame ...
+  std::uint64_t known_changes = 0;  // ... and pixels to trace in these
+  Span parts[kThreadCountMax];      // of a row
+};
+
 struct Renderer {
   Settings settings;
   Arena scene_arena, persistent_arena, frame_arena;
@@ -54,6 +65,7 @@ struct Renderer {
   Timings timings;
   Coherence coherence;  // made if planned
   CoherenceState coherence_state;
+  SharedRows shared_rows;
   Pace pace;                   // of an emulated device; default: none
   Workers* workers = nullptr;  // null: only the caller's thread
   Light default_lights[2];

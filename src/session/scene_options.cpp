@@ -68,16 +68,20 @@ std::size_t memory_to_take(std::size_t free_bytes) {
   return std::max(bytes, static_cast<std::size_t>(kMemoryBytesMin));
 }
 
+Status parse_coherence(const std::string& text, CoherenceMode* mode) {
+  constexpr const char* kNames[] = {"off", "auto", "on"};  // in the order of CoherenceMode
+  for (int i = 0; i < 3; ++i)
+    if (text == kNames[i]) return *mode = static_cast<CoherenceMode>(i), success();
+  return failure("--coherence is '%s': it must be on, off or auto", text.c_str());
+}
+
 namespace {
 
 Status read_coherence(const CommonOptions& o, Settings* settings) {
-  constexpr const char* kNames[] = {"off", "auto", "on"};  // in the order of CoherenceMode
   if (o.coherence_table < 1 || o.coherence_table > kCoherenceTableSideMax)
     return failure("--coherence-table is %u: it must lie in 1 … %u", o.coherence_table, kCoherenceTableSideMax);
   settings->coherence_table = o.coherence_table;
-  for (int i = 0; i < 3; ++i)
-    if (o.coherence == kNames[i]) return settings->coherence = static_cast<CoherenceMode>(i), success();
-  return failure("--coherence is '%s': it must be on, off or auto", o.coherence.c_str());
+  return parse_coherence(o.coherence, &settings->coherence);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ Status find_device(const CommonOptions& options, const platform::Device** device
 Status choose_thread_count(std::uint32_t asked, unsigned core_count, std::uint32_t* count);
 
 // Parses --isa; empty: the best of this CPU.
+Status parse_coherence(const std::string& text, CoherenceMode* mode);  // on, off or auto
 Status parse_isa(const std::string& text, Isa* isa);
 // Finds an accelerator by name; null for "auto".
 const AccelInfo* find_accel(const std::string& name);

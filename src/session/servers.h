@@ -47,6 +47,8 @@ struct MergedPicture {
 
 struct ServersTotals {
   std::uint64_t frames = 0, device_rows = 0, server_rows = 0, bytes_in = 0, bytes_out = 0;
+  std::uint64_t device_pixels = 0;     // traced in the device's rows
+  std::uint64_t unchanged_frames = 0;  // equal to the frame before: nothing was requested
   std::uint64_t checked = 0;  // servers' pixels checked, or rows if the device has no scene
   std::uint32_t lies = 0;     // servers caught with wrong pixels
   bool checks_rows = false;

@@ -7,6 +7,7 @@
 namespace pocketray {
 namespace {
 
+constexpr double kPartMin = 0.25;       // of a row's pixels: single pixels cost up to twice as much as packets of them
 constexpr double kUnitsOfCap = 0x1p30;  // the cap as an integer; costs of rows are rounded up
 
 double value_of(const Smoothed& s, double unknown) { return is_known(s) ? static_cast<double>(s.value) : unknown; }
@@ -137,20 +138,22 @@ void observe_overture(CostModel* model, std::uint32_t server, const PixelTimes& 
   smooth(&s->start_ns, start_ns);
 }
 
-void observe_device_row(CostModel* model, std::uint32_t row, double ns) {
+void observe_device_row(CostModel* model, std::uint32_t row, double ns, double part) {
   CHECK_LT(row, model->rows.count);
-  model->rows[row].device_ns_seen = is_amount(ns) ? static_cast<float>(ns) : 0;
+  model->rows[row].device_ns_seen = is_amount(ns) && part >= kPartMin ? static_cast<float>(ns / part) : 0;
 }
 
 void observe_server_rows(CostModel* model, std::uint32_t server, std::uint32_t row_begin, std::uint32_t row_end,
-                         double render_ns, double bytes) {
+                         double render_ns, double bytes, double part) {
   CHECK_LT(server, model->server_count);
   CHECK_LE(row_begin, row_end);
   CHECK_LE(row_end, model->rows.count);
   double row_count = row_end - row_begin;
   for (std::uint32_t r = row_begin; r < row_end; ++r) {
     RowModel* row = &model->rows[r];
-    row->server_ns_seen = is_amount(render_ns) ? static_cast<float>(render_ns / row_count) : 0;
+    row->server_ns_seen =
+        is_amount(render_ns) && part >= kPartMin ? static_cast<float>(render_ns / row_count / part) : 0;
+    row->part_seen = static_cast<float>(part);
     row->server_seen = static_cast<std::uint8_t>(server);
     // An unchanged row takes no bytes, which is as good a measurement as any.
     if (is_amount(bytes)) smooth(&row->bytes, std::fmax(1, bytes / row_count));
@@ -187,7 +190,10 @@ void end_frame(CostModel* model) {
   }
   fold_times(&model->unpack_seen, &model->unpack_ns_per_byte);
   fold_times(&model->link_seen, &model->link_ns_per_byte);
-  for (RowModel& row : model->rows) row.device_ns_seen = row.server_ns_seen = 0;
+  for (RowModel& row : model->rows) {
+    row.holder = row.server_seen, row.holder_part = row.part_seen;
+    row.device_ns_seen = row.server_ns_seen = 0, row.server_seen = kNoHolder;
+  }
 }
 
 SplitProblem make_problem(CostModel* model, const SplitWish& wish) {
@@ -201,7 +207,9 @@ SplitProblem make_problem(CostModel* model, const SplitWish& wish) {
   double per_cost = cost_scale(wish);
   bool cost_is_bytes = wish.goal == SplitGoal::time;
   std::uint32_t tables = 0;
-  p.device_ns = add_table(model, &tables, device_ns);
+  p.device_ns = add_table(model, &tables, [&](std::uint32_t row) {
+    return device_ns(row) * static_cast<double>(model->rows[row].device_part);
+  });
   p.unpack_ns = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * unpack; });
   p.link_ns = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * link; });
   double device_pixel = cost_is_bytes ? 0 : model->cost_per_device_pixel * per_cost;
@@ -217,12 +225,16 @@ SplitProblem make_problem(CostModel* model, const SplitWish& wish) {
     double byte_cost = cost_is_bytes ? 1 : (model->cost_per_byte + server.cost_per_megabyte * 1e-6) * per_cost;
     ServerTables* t = &p.servers[i];
     t->usable = true;
-    t->render_ns = add_table(model, &tables, [&](std::uint32_t row) { return device_ns(row) * speed; });
+    t->render_ns = add_table(model, &tables, [&](std::uint32_t row) {
+      const RowModel& r = model->rows[row];
+      return device_ns(row) * speed * (r.holder == i ? static_cast<double>(r.holder_part) : 1);
+    });
     t->transfer_ns = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * per_byte; });
     t->cost = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * byte_cost; });
     t->start_ns = table_entry(value_of(server.start_ns, 0));
     t->chunk_rows = server.chunk_rows > 0 ? server.chunk_rows : 1;
-    t->chunk_row_ns = table_entry(std::fmin(mean_ns * speed, mean_row_bytes * per_byte));
+    const double row_ns = static_cast<double>(t->render_ns[p.row_count]) / p.row_count;
+    t->chunk_row_ns = table_entry(std::fmin(row_ns, mean_row_bytes * per_byte));
     if (t->start_ns < least_start) least_start = t->start_ns;
   }
   p.link_start_ns = least_start;

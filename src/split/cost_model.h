@@ -28,13 +28,19 @@ struct ServerModel {
   ByteTimes transfer_seen;        // in the current frame
 };
 
+constexpr std::uint8_t kNoHolder = 0xFF;
+
 struct RowModel {
-  Smoothed device_ns;    // wall time of the device for the row, whether it rendered it or not
-  Smoothed bytes;        // as sent
+  Smoothed device_ns;  // wall time of the device for the whole row, whether it rendered it or not
+  Smoothed bytes;      // as sent
+  // Of a row's pixels, the part to trace: on the device in the coming frame; on the server that rendered the row in the
+  // last one, then. The others trace the whole row.
+  float device_part = 1, holder_part = 1;
+  std::uint8_t holder = kNoHolder;
   bool guessed = false;  // device_ns is derived from other rows: the device has never rendered this one
   // Of the current frame; 0: not observed.
-  float device_ns_seen = 0, server_ns_seen = 0;
-  std::uint8_t server_seen = 0;
+  float device_ns_seen = 0, server_ns_seen = 0, part_seen = 1;
+  std::uint8_t server_seen = kNoHolder;
 };
 
 struct CostModel {
@@ -71,11 +77,17 @@ CostModel make_cost_model(std::uint32_t width, std::uint32_t row_count, std::uin
 void observe_overture(CostModel* model, std::uint32_t server, const PixelTimes& times, double bytes_per_pixel,
                       double start_ns);
 
-// Wall time of a row on the device: with k threads at work, a k-th of its time on one of them.
-void observe_device_row(CostModel* model, std::uint32_t row, double ns);
-// Rows received from a server: its reported rendering time, and their bytes on the wire.
+// Wall time of a row on the device, which traced `part` of its pixels: with k threads at work, a k-th of its time on
+// one of them. A small part tells nothing of the row's price.
+void observe_device_row(CostModel* model, std::uint32_t row, double ns, double part = 1);
+// Rows received from a server: its reported rendering time, their bytes on the wire, and the part of their pixels that
+// it traced.
 void observe_server_rows(CostModel* model, std::uint32_t server, std::uint32_t row_begin, std::uint32_t row_end,
-                         double render_ns, double bytes);
+                         double render_ns, double bytes, double part = 1);
+// Time of the device for the row in the coming frame.
+inline double device_row_ns(const RowModel& row) {
+  return static_cast<double>(row.device_ns.value) * static_cast<double>(row.device_part);
+}
 // Bytes received from the server and the time from the first to the last of them, while it had them ready.
 void observe_transfer(CostModel* model, std::uint32_t server, double bytes, double ns);
 // The price of a server that has no rows, known from a ping or from another client's load: its cost per pixel, as a

@@ -59,6 +59,7 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   RETURN_IF_ERROR(open_world(setup.line, *setup.store, setup.server_count, &e->world));
   ServerOptions server;
   server.thread_count = renderer->settings.threads;
+  server.coherence = renderer->settings.coherence;
   server.pace.ns_per_pixel = setup.server_ns;
   for (std::uint32_t i = 0; i < setup.server_count; ++i) RETURN_IF_ERROR(start_server(&e->world, i, server));
   ClientOptions options;

@@ -37,6 +37,7 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   bytes = size_sum(bytes, arena_need<KnownShadows>(tiles * plan.samples * known_lights(plan)));
   bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
   bytes = size_sum(bytes, arena_need<Span>(kSpanRows * row_spans_max(plan.width)));
+  bytes = size_sum(bytes, 2 * arena_need<std::uint8_t>(plan.height));
   if (!keeps_tables(mask, plan)) return bytes;
   bytes = size_sum(bytes, arena_need(pixels) + arena_need<MarkingObserver>(plan.threads));
   return size_sum(bytes, ray_tables_need(plan.width, plan.height, plan.table_side));
@@ -60,6 +61,8 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   c->lights = arena_array<LightPoint>(keep, plan.light_points);
   c->counts = arena_array_zeroed<ChangeCounts>(keep, plan.threads);
   c->spans = arena_array<Span>(keep, kSpanRows * row_spans_max(plan.width));
+  c->row_known = arena_array_zeroed<std::uint8_t>(keep, plan.height);
+  c->row_traced = arena_array_zeroed<std::uint8_t>(keep, plan.height);
   if (!keeps_tables(frame.mask, plan)) return;
   c->marked = arena_array_zeroed<std::uint8_t>(keep, static_cast<std::size_t>(pixel_count(plan)));
   c->observers = arena_array<MarkingObserver>(keep, plan.threads);
@@ -76,21 +79,17 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   CHECK(frame.settings.width == c->plan.width && frame.settings.height == c->plan.height);
   CHECK(why != nullptr);
   follow_geometry(frame, &c->moving);
-  *why = difference(c->signature, signature_of(frame));
+  c->followed = signature_of(frame);
+  *why = difference(c->signature, c->followed);
   if (!*why && frame.lights.count != c->light_count) *why = "lights were added or removed";
   if (!*why && c->tables.words.count && !is_empty(frame.accel.bounds) &&
       !contains(c->tables.bounds, frame.accel.bounds))
     *why = "the scene outgrew the tables' grid";
   for (ChangeCounts& counts : c->counts) counts = ChangeCounts();
-  if (*why) {
-    if (c->tables.words.count) reset_tables(frame.accel.bounds, &c->tables);
-    if (c->marked.count) std::memset(c->marked.data, 0, c->marked.bytes());
-    std::fill(c->shadows.begin(), c->shadows.end(), KnownShadows());
-    forget_frame(c);
-    return false;
-  }
-  bool lights_changed = frame.lights.count > 0 && std::memcmp(static_cast<const void*>(c->lights.data),
-                                                              frame.lights.data, frame.lights.bytes()) != 0;
+  std::fill(c->row_traced.begin(), c->row_traced.end(), std::uint8_t(0));
+  bool lights_changed =
+      !*why && frame.lights.count > 0 &&
+      std::memcmp(static_cast<const void*>(c->lights.data), frame.lights.data, frame.lights.bytes()) != 0;
   c->search = {&frame,
                &c->moving,
                c->tables.words.count ? &c->tables : nullptr,
@@ -101,12 +100,22 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
                c->shadows,
                known_lights(c->plan),
                c->changed.count};
+  if (*why) {
+    std::fill(c->row_known.begin(), c->row_known.end(), std::uint8_t(0));
+    if (c->tables.words.count) reset_tables(frame.accel.bounds, &c->tables);
+    if (c->marked.count) std::memset(c->marked.data, 0, c->marked.bytes());
+    std::fill(c->shadows.begin(), c->shadows.end(), KnownShadows());
+    forget_frame(c);
+    c->following = true;
+    return false;
+  }
   if (c->tables.words.count) {
     begin_dirty(&c->tables);
     for_each_changed_box(
         c->moving, [](void* tables, const Box& box) { add_dirty(static_cast<RayTables*>(tables), box); }, &c->tables);
   }
   forget_frame(c);  // until the frame is complete
+  c->following = true;
   return true;
 }
 
@@ -125,14 +134,35 @@ std::uint64_t find_blocks(const Coherence& c, std::uint32_t tile) {
   return found;
 }
 
+// Of a tile, bit 8·y + x for each pixel of a known row, with bits for rows below the picture.
+std::uint64_t known_pixels(const Coherence& c, std::uint32_t tile_row) {
+  std::uint64_t known = ~std::uint64_t(0);
+  for (std::uint32_t y = 0, row = tile_row * kChangeTileSide; y < kChangeTileSide && row < c.plan.height; ++y, ++row)
+    if (!c.row_known[row]) known &= ~(std::uint64_t(0xFF) << (8 * y));
+  return known;
+}
+
+// The columns of the tile that lie in the picture, in each row.
+std::uint64_t pixels_in_picture(const Coherence& c, std::uint32_t tile) {
+  const std::uint32_t columns = c.plan.width - tile % c.tile_columns * kChangeTileSide;
+  return 0x0101010101010101 * (columns < kChangeTileSide ? 0xFFu >> (kChangeTileSide - columns) : 0xFFu);
+}
+
 }  // namespace
 
 void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, TraceStats* stats) {
   CHECK_LT(thread, c->counts.count);
   CHECK_LT(tile_row, c->tile_rows);
-  for (std::uint32_t tile = tile_row * c->tile_columns; tile < (tile_row + 1) * c->tile_columns; ++tile)
-    c->changed[tile] =
-        c->plan.tables_only ? find_blocks(*c, tile) : find_changed_pixels(c->search, tile, &c->counts[thread], stats);
+  const std::uint64_t known = known_pixels(*c, tile_row);
+  for (std::uint32_t tile = tile_row * c->tile_columns; tile < (tile_row + 1) * c->tile_columns; ++tile) {
+    std::uint64_t found = 0;
+    if (known != 0)
+      found = c->plan.tables_only ? find_blocks(*c, tile) & known
+                                  : find_changed_pixels(c->search, tile, known, &c->counts[thread], stats);
+    const std::uint64_t unknown = ~known & pixels_in_picture(*c, tile);
+    if (!c->plan.tables_only) forget_shadows(c->search, tile, unknown);
+    c->changed[tile] = found | unknown;
+  }
 }
 
 void clear_changes(Coherence* c) {
@@ -150,35 +180,6 @@ void clear_changes(Coherence* c) {
       c->marked[std::size_t(row + i / 8) * c->plan.width + column + i % 8] = 0;
     }
   }
-}
-
-std::uint32_t list_changes(const Coherence& c, std::uint32_t tile_row, Span* spans) {
-  CHECK_LT(tile_row, c.tile_rows);
-  const std::uint64_t* tiles = c.changed.data + std::size_t(tile_row) * c.tile_columns;
-  std::uint32_t count = 0;
-  for (std::uint32_t y = 0; y < kChangeTileSide; ++y) {
-    bool open = false;
-    for (std::uint32_t i = 0; i < c.tile_columns; ++i) {
-      std::uint32_t bits = tiles[i] >> (8 * y) & 0xFF;
-      if (bits == 0) {
-        open = false;
-        continue;
-      }
-      for (std::uint32_t x = 0; x < kChangeTileSide; ++x) {
-        const std::uint32_t column = i * kChangeTileSide + x;
-        if (!(bits >> x & 1)) {
-          open = false;
-        } else if (open) {
-          ++spans[count - 1].column_end;
-        } else {
-          spans[count++] = {static_cast<std::uint16_t>(tile_row * kChangeTileSide + y),
-                            static_cast<std::uint16_t>(column), static_cast<std::uint16_t>(column + 1)};
-          open = true;
-        }
-      }
-    }
-  }
-  return count;
 }
 
 void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers) {
@@ -207,21 +208,40 @@ void stop_recording(const AccelInfo& accel_info, FrameData* frame, Array<Tracer>
   for (Tracer& tracer : tracers) tracer.stats.observer = nullptr;
 }
 
-void measure_tiles(Coherence* c, const FrameData& frame, std::uint32_t tile_row, bool all) {
-  CHECK_LT(tile_row, c->tile_rows);
-  if (c->plan.tables_only) return;
-  for (std::uint32_t i = 0; i < c->tile_columns; ++i) {
-    const std::uint32_t tile = tile_row * c->tile_columns + i;
-    if (all || c->changed[tile])
-      c->tiles[tile] = measure_tile(frame, c->first_hits.data, i * kChangeTileSide, tile_row * kChangeTileSide);
-  }
-}
+namespace {
 
-void keep_frame(Coherence* c, const FrameData& frame) {
+void keep(Coherence* c, const FrameData& frame) {
   CHECK_LE(frame.lights.count, c->lights.count);
   c->light_count = frame.lights.count;
   std::copy(frame.lights.begin(), frame.lights.end(), c->lights.begin());
-  c->signature = signature_of(frame);
+  c->signature = c->followed;
+  c->following = false;
+  ++c->kept_count;
+}
+
+}  // namespace
+
+void keep_frame(Coherence* c, const FrameData& frame) {
+  std::fill(c->row_known.begin(), c->row_known.end(), std::uint8_t(1));
+  keep(c, frame);
+}
+
+void keep_rows(Coherence* c, const FrameData& frame) {
+  CHECK(c->following);
+  for (std::uint32_t row = 0; row < c->plan.height; ++row)
+    c->row_known[row] = c->row_traced[row] || (c->row_known[row] && count_changes(*c, row) == 0);
+  keep(c, frame);
+}
+
+void measure_tiles(Coherence* c, const FrameData& frame, std::uint32_t tile_row, bool all) {
+  CHECK_LT(tile_row, c->tile_rows);
+  const std::uint64_t known = known_pixels(*c, tile_row);
+  if (c->plan.tables_only || known == 0) return;
+  for (std::uint32_t i = 0; i < c->tile_columns; ++i) {
+    const std::uint32_t tile = tile_row * c->tile_columns + i;
+    if (all || c->changed[tile])
+      c->tiles[tile] = measure_tile(frame, c->first_hits.data, i * kChangeTileSide, tile_row * kChangeTileSide, known);
+  }
 }
 
 }  // namespace pocketray

@@ -34,7 +34,12 @@ struct Coherence {
   Array<Span> spans;           // some rows of tiles as spans
   AccelInfo observed;
   std::uint32_t tile_columns = 0, tile_rows = 0;
-  FrameSignature signature;  // of the last frame; not known: the next is traced whole
+  FrameSignature signature;        // of the last frame; not known: the next is traced whole
+  FrameSignature followed;         // of the frame that is followed
+  Array<std::uint8_t> row_known;   // 1: what is kept of the row is of the last frame; other rows are traced whole
+  Array<std::uint8_t> row_traced;  // 1: this frame has traced all of the row that it must; for keep_rows()
+  std::uint64_t kept_count = 0;    // frames kept
+  bool following = false;          // a frame has been followed and is not kept yet
   std::uint32_t light_count = 0;
   ChangeSearch search = {};
 };
@@ -49,7 +54,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
 bool fits(const Coherence& c, const FrameData& frame);
 
 // Forgets the last frame.
-inline void forget_frame(Coherence* c) { c->signature.known = false; }
+inline void forget_frame(Coherence* c) { c->signature.known = c->following = false; }
 
 // Follows the frame's geometry and compares it with the last frame. True: find_changes() tells which pixels to trace.
 // False: all of them, and *why tells why, for people.
@@ -62,16 +67,27 @@ void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, Tr
 // After all rows: deletes the records of what is traced again.
 void clear_changes(Coherence* c);
 // Lists the pixels to trace of a row of tiles as spans, at most row_spans_max(width); returns their number.
-constexpr std::uint32_t row_spans_max(std::uint32_t width) { return kChangeTileSide * (width / 2 + 1); }
+constexpr std::uint32_t line_spans_max(std::uint32_t width) { return width / 2 + 1; }
+constexpr std::uint32_t row_spans_max(std::uint32_t width) { return kChangeTileSide * line_spans_max(width); }
 std::uint32_t list_changes(const Coherence& c, std::uint32_t tile_row, Span* spans);
+// The same for the columns [begin, end) of one row of pixels, at most line_spans_max(end - begin).
+std::uint32_t list_changes(const Coherence& c, std::uint32_t row, std::uint32_t begin, std::uint32_t end, Span* spans);
+inline bool is_changed(const Coherence& c, std::uint32_t row, std::uint32_t column) {
+  const std::size_t tile = std::size_t(row / kChangeTileSide) * c.tile_columns + column / kChangeTileSide;
+  return c.changed[tile] >> (row % kChangeTileSide * kChangeTileSide + column % kChangeTileSide) & 1;
+}
+// How many pixels of the row are to be traced.
+std::uint32_t count_changes(const Coherence& c, std::uint32_t row);
 
 // Has the frame's tracers record what the next frame needs, until stop_recording().
 void start_recording(Coherence* c, FrameData* frame, Array<Tracer> tracers);
 void stop_recording(const AccelInfo& accel_info, FrameData* frame, Array<Tracer> tracers);
 
-// Once all of them are traced: measures a row of tiles, those that changed or all of them ...
-void measure_tiles(Coherence* c, const FrameData& frame, std::uint32_t tile_row, bool all);
-// ... and keeps the frame as the last one.
+// Once all of them are traced: keeps the frame as the last one ...
 void keep_frame(Coherence* c, const FrameData& frame);
+// ... or those of its rows that are traced or did not change ...
+void keep_rows(Coherence* c, const FrameData& frame);
+// ... and measures a row of tiles, those that changed or all of them.
+void measure_tiles(Coherence* c, const FrameData& frame, std::uint32_t tile_row, bool all);
 
 }  // namespace pocketray

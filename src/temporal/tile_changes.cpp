@@ -29,12 +29,12 @@ struct TilePixels {
   std::uint8_t x[kPacketMax], y[kPacketMax];
 };
 
-TilePixels pixels_of(const Settings& settings, std::uint32_t column, std::uint32_t row) {
+TilePixels pixels_of(const Settings& settings, std::uint32_t column, std::uint32_t row, std::uint64_t known) {
   TilePixels p;
   p.column = column, p.row = row;
   for (std::uint32_t m = 0; m < kPacketMax; ++m) {
     std::uint32_t x = (m & 1) | (m >> 1 & 2) | (m >> 2 & 4), y = (m >> 1 & 1) | (m >> 2 & 2) | (m >> 3 & 4);
-    if (p.column + x >= settings.width || p.row + y >= settings.height) continue;
+    if (p.column + x >= settings.width || p.row + y >= settings.height || !(known >> (8 * y + x) & 1)) continue;
     p.x[p.count] = static_cast<std::uint8_t>(x), p.y[p.count++] = static_cast<std::uint8_t>(y);
   }
   return p;
@@ -315,32 +315,20 @@ std::uint64_t find_marked(const ChangeSearch& search, std::uint32_t column, std:
   return found;
 }
 
-// What is known of shadows does not hold for pixels that are traced again.
-std::uint64_t forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed) {
-  if (!changed) return 0;
-  for (std::uint32_t sample = 0; sample < search.frame->settings.samples_per_pixel; ++sample) {
-    KnownShadows* known = known_shadows(search, sample, tile);
-    for (std::uint32_t light = 0; light < search.known_lights; ++light)
-      known[light].known &= ~changed, known[light].idle &= ~changed;
-  }
-  return changed;
-}
-
-}  // namespace
-
-std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, ChangeCounts* counts,
-                                  TraceStats* stats) {
+std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known_pixels,
+                              ChangeCounts* counts, TraceStats* stats) {
   const FrameData& frame = *search.frame;
   const TileHits& hits = search.tiles[tile];
   const std::uint32_t column = tile % search.tile_columns * kChangeTileSide,
                       row = tile / search.tile_columns * kChangeTileSide;
-  const std::uint64_t marked = find_marked(search, column, row);
+  const std::uint64_t marked = find_marked(search, column, row) & known_pixels;
   const bool seen =
       search.moving->changed && meets_change(*search.moving, camera_beam(frame.camera, column, row, hits));
   bool any = seen;
   if (!any) for_each_suspect(search, hits, [&](const LightRun&, std::uint32_t, bool) { return !(any = true); });
-  if (!any) return forget_shadows(search, tile, marked);
-  const TilePixels pixels = pixels_of(frame.settings, column, row);
+  if (!any) return marked;
+  const TilePixels pixels = pixels_of(frame.settings, column, row, known_pixels);
+  if (pixels.count == 0) return 0;
   TileSearch t = {search, frame, pixels, marked, counts, stats};
   for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
     t.hits = search.last.first_hits + std::size_t(sample) * frame.settings.width * frame.settings.height;
@@ -356,7 +344,25 @@ std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile
       return true;
     });
   }
-  return forget_shadows(search, tile, t.changed);
+  return t.changed;
+}
+
+}  // namespace
+
+void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed) {
+  if (!changed) return;
+  for (std::uint32_t sample = 0; sample < search.frame->settings.samples_per_pixel; ++sample) {
+    KnownShadows* known = known_shadows(search, sample, tile);
+    for (std::uint32_t light = 0; light < search.known_lights; ++light)
+      known[light].known &= ~changed, known[light].idle &= ~changed;
+  }
+}
+
+std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
+                                  ChangeCounts* counts, TraceStats* stats) {
+  const std::uint64_t changed = find_changes_of(search, tile, known, counts, stats);
+  forget_shadows(search, tile, changed);
+  return changed;
 }
 
 namespace {
@@ -371,7 +377,8 @@ float lift_bound(const FrameData& frame, const Triangle& t, const Vec3& point, c
 
 }  // namespace
 
-TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32_t column, std::uint32_t row) {
+TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32_t column, std::uint32_t row,
+                      std::uint64_t known) {
   const Settings& settings = frame.settings;
   TileHits tile;
   float reach = 0;  // largest coordinate of the triangles
@@ -379,6 +386,7 @@ TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32
                       bottom = std::min(row + kChangeTileSide, settings.height);
   for (std::uint32_t sample = 0; sample < settings.samples_per_pixel; ++sample) {
     for (std::uint32_t y = row; y < bottom; ++y) {
+      if (!(known >> (8 * (y - row)) & 1)) continue;
       const Hit* line = first_hits + (std::size_t(sample) * settings.height + y) * settings.width;
       for (std::uint32_t x = column; x < right; ++x) {
         const Hit& hit = line[x];

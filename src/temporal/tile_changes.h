@@ -54,11 +54,14 @@ struct ChangeCounts {
   std::uint64_t static_rays = 0;  // shadow rays against everything else
 };
 
-// Bit 8·y + x for each pixel of the tile that must be traced again.
-std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, ChangeCounts* counts,
-                                  TraceStats* stats);
+// Of the tile's pixels `known`, whose last frame is kept, bit 8·y + x for each that must be traced again.
+std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
+                                  ChangeCounts* counts, TraceStats* stats);
+// What is known of the shadows of pixels that are traced again no longer holds.
+void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed);
 
-// Measures a tile of the current frame.
-TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32_t column, std::uint32_t row);
+// Measures the pixels `known` of a tile of the current frame.
+TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32_t column, std::uint32_t row,
+                      std::uint64_t known);
 
 }  // namespace pocketray

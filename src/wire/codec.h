@@ -35,10 +35,12 @@ struct CodecShape {
 // Whether a codec can be made for the shape: sides within kImageSideMax, chunks of at least one row that fit a message.
 bool codec_shape_valid(const CodecShape& shape);
 
-// Both ends start with a black picture and change it alike, so that they always hold the same.
+// Both ends start with a black picture and change it alike, so that they always hold the same. A row that is sent for
+// the first time is sent whole.
 struct CodecState {
   CodecShape shape;
   Array<std::uint8_t> picture;  // height × width × pixel_bytes(format), unpadded: rows as last sent
+  Array<std::uint8_t> sent;     // 1 for each row that was sent
   Array<std::uint8_t> runs;     // scratch: runs of changed pixels
   Array<std::uint8_t> body;     // scratch: a chunk before deflation
   Arena zlib_arena;

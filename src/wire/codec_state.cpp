@@ -37,7 +37,8 @@ std::uint32_t encoded_bytes_max(const CodecShape& shape, std::uint32_t row_count
 
 std::size_t codec_state_need(const CodecShape& shape, std::size_t zlib_bytes) {
   // One byte more than a body may have, to detect bodies that are too long.
-  return arena_need(picture_bytes(shape)) + arena_need(run_bytes_max(chunk_pixels(shape, shape.chunk_rows_max))) +
+  return arena_need(picture_bytes(shape)) + arena_need<std::uint8_t>(shape.height) +
+         arena_need(run_bytes_max(chunk_pixels(shape, shape.chunk_rows_max))) +
          arena_need(body_bytes_max(shape, shape.chunk_rows_max) + 1) + arena_need(zlib_bytes);
 }
 
@@ -54,6 +55,7 @@ void make_codec_state(const CodecShape& shape, std::size_t zlib_bytes, Arena* ar
   *state = CodecState();
   state->shape = shape;
   state->picture = arena_array<std::uint8_t>(arena, picture_bytes(shape));
+  state->sent = arena_array<std::uint8_t>(arena, shape.height);
   state->runs = arena_array<std::uint8_t>(arena, run_bytes_max(chunk_pixels(shape, shape.chunk_rows_max)));
   state->body = arena_array<std::uint8_t>(arena, body_bytes_max(shape, shape.chunk_rows_max) + 1);
   state->zlib_arena = make_arena("zlib", arena_allocate(arena, zlib_bytes), arena_need(zlib_bytes));
@@ -65,6 +67,7 @@ void make_codec_state(const CodecShape& shape, std::size_t zlib_bytes, Arena* ar
 void restart_codec_state(CodecState* state) {
   CHECK(state->picture.data != nullptr);
   std::memset(state->picture.data, 0, state->picture.bytes());
+  std::memset(state->sent.data, 0, state->sent.bytes());
   state->broken = false;
 }
 

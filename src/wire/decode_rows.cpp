@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cstring>
+
 #include "base/check.h"
 #include "wire/codec_state.h"
 #include "wire/pixel_runs.h"
@@ -24,10 +27,16 @@ std::uint32_t inflate_body(CodecState* s, const RowChunk& chunk) {
   return capacity - z->avail_out;
 }
 
-// Writes the values to the pixels of the runs. False if runs or values do not fit.
+// Whether all pixels [begin, end) may be left as they are: their rows were sent before.
+bool may_leave(const std::uint8_t* sent, std::uint32_t width, std::uint32_t begin, std::uint32_t end) {
+  return begin == end ||
+         std::all_of(sent + begin / width, sent + (end - 1) / width + 1, [](std::uint8_t row) { return row != 0; });
+}
+
+// Writes the values to the pixels of the runs. False if runs or values do not fit, or pixels of new rows are missing.
 template <class Pixel>
 bool apply_body(const std::uint8_t* body, std::uint32_t byte_count, bool predicted, std::uint32_t width,
-                std::uint32_t pixel_count, std::uint8_t* pixels) {
+                std::uint32_t pixel_count, const std::uint8_t* sent, std::uint8_t* pixels) {
   const std::uint8_t* end = body + byte_count;
   std::uint32_t run_bytes;
   const std::uint8_t* runs = get_number(body, end, &run_bytes);
@@ -40,6 +49,7 @@ bool apply_body(const std::uint8_t* body, std::uint32_t byte_count, bool predict
     if (!(runs = get_number(runs, runs_end, &skip)) || !(runs = get_number(runs, runs_end, &give))) return false;
     if (skip > pixel_count - at || give > pixel_count - at - skip || give == 0) return false;
     if (give > static_cast<std::size_t>(end - values) / Pixel::kBytes) return false;
+    if (!may_leave(sent, width, at, at + skip)) return false;
     at += skip;
     std::uint32_t column = at % width;
     for (std::uint32_t run_end = at + give; at < run_end; ++at, values += Pixel::kBytes) {
@@ -49,7 +59,7 @@ bool apply_body(const std::uint8_t* body, std::uint32_t byte_count, bool predict
       if (++column == width) column = 0;
     }
   }
-  return values == end;
+  return values == end && may_leave(sent, width, at, pixel_count);
 }
 
 bool decode_chunk(CodecState* s, const RowChunk& chunk) {
@@ -68,9 +78,13 @@ bool decode_chunk(CodecState* s, const RowChunk& chunk) {
   std::uint32_t width = s->shape.width, pixel_count = width * chunk.row_count;
   CHECK_LE(std::uint64_t(chunk.row_begin) * width + pixel_count, std::uint64_t(s->shape.height) * width);
   std::uint8_t* pixels = picture_row(*s, chunk.row_begin);
-  return s->shape.format == WireFormat::rgb565
-             ? apply_body<Pixel565>(body, byte_count, predicted, width, pixel_count, pixels)
-             : apply_body<Pixel888>(body, byte_count, predicted, width, pixel_count, pixels);
+  std::uint8_t* sent = s->sent.data + chunk.row_begin;
+  if (!(s->shape.format == WireFormat::rgb565
+            ? apply_body<Pixel565>(body, byte_count, predicted, width, pixel_count, sent, pixels)
+            : apply_body<Pixel888>(body, byte_count, predicted, width, pixel_count, sent, pixels)))
+    return false;
+  std::memset(sent, 1, chunk.row_count);
+  return true;
 }
 
 }  // namespace

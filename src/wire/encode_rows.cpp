@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 
 #include "base/check.h"
@@ -14,12 +15,15 @@ namespace {
 constexpr std::size_t kDeflateBytes = (1u << (15 + 2)) + (1u << (kMemoryLevel + 9)) + (12u << 10);
 constexpr std::uint32_t kRawBytesMax = 8;  // deflation does not shrink so few bytes
 
-// Writes the runs of pixels that differ from the picture; returns the end.
+// Writes the runs of pixels that differ from the picture, or whose row has not been sent; returns the end.
 template <class Pixel>
-std::uint8_t* find_runs(const std::uint8_t* pixels, const std::uint8_t* before, std::uint32_t pixel_count,
-                        std::uint8_t* runs) {
+std::uint8_t* find_runs(const std::uint8_t* pixels, const std::uint8_t* before, const std::uint8_t* sent,
+                        std::uint32_t width, std::uint32_t row_count, std::uint8_t* runs) {
+  const bool all_sent = std::all_of(sent, sent + row_count, [](std::uint8_t row) { return row != 0; });
+  const std::uint32_t pixel_count = width * row_count;
   auto changed = [&](std::uint32_t i) {
-    return Pixel::load(pixels + i * Pixel::kBytes) != Pixel::load(before + i * Pixel::kBytes);
+    if (Pixel::load(pixels + i * Pixel::kBytes) != Pixel::load(before + i * Pixel::kBytes)) return true;
+    return !all_sent && !sent[i / width];
   };
   std::uint32_t given = 0;  // end of the last run
   for (std::uint32_t i = 0; i < pixel_count; ++i) {
@@ -104,10 +108,11 @@ struct Body {
 };
 
 template <class Pixel>
-Body make_body(CodecState* s, const std::uint8_t* pixels, const std::uint8_t* before, std::uint32_t row_count) {
+Body make_body(CodecState* s, const std::uint8_t* pixels, const std::uint8_t* before, const std::uint8_t* sent,
+               std::uint32_t row_count) {
   std::uint32_t width = s->shape.width;
   std::uint8_t* runs = s->runs.data;
-  std::uint8_t* runs_end = find_runs<Pixel>(pixels, before, width * row_count, runs);
+  std::uint8_t* runs_end = find_runs<Pixel>(pixels, before, sent, width, row_count, runs);
   CHECK_LE(static_cast<std::size_t>(runs_end - runs), s->runs.count);
   Choice choice = choose_encoding<Pixel>(pixels, width, runs, runs_end);
   std::uint8_t* at = put_number(s->body.data, static_cast<std::uint32_t>(runs_end - runs));
@@ -175,8 +180,10 @@ std::uint32_t encode_rows(RowEncoder* encoder, std::uint32_t row_begin, std::uin
   CHECK_LE(row_begin, s->shape.height - row_count);
   CHECK(level >= 0 && level <= 9);
   std::uint8_t* before = picture_row(*s, row_begin);
-  Body body = s->shape.format == WireFormat::rgb565 ? make_body<Pixel565>(s, pixels, before, row_count)
-                                                    : make_body<Pixel888>(s, pixels, before, row_count);
+  std::uint8_t* sent = s->sent.data + row_begin;
+  Body body = s->shape.format == WireFormat::rgb565 ? make_body<Pixel565>(s, pixels, before, sent, row_count)
+                                                    : make_body<Pixel888>(s, pixels, before, sent, row_count);
+  std::memset(sent, 1, row_count);
   std::memcpy(before, pixels, std::size_t(row_count) * s->shape.width * pixel_bytes(s->shape.format));
   *encoding = body.choice.predict ? kEncodingPredicted : 0;
   if (level == 0 || !body.choice.deflate) {

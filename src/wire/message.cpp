@@ -229,8 +229,8 @@ template <class Io>
 void fields(Io& io, RowChunk* m) {
   number(io, &m->frame), number(io, &m->row_begin), number(io, &m->row_count);
   io.require(m->row_count >= 1 && m->row_count <= kImageSideMax && m->row_begin <= kImageSideMax - m->row_count);
-  number(io, &m->pixel_ps), number(io, &m->encoding);
-  io.tail(&m->bytes);
+  number(io, &m->pixel_ps), number(io, &m->pixels_traced), number(io, &m->encoding);
+  io.require(m->pixels_traced <= m->row_count * kImageSideMax), io.tail(&m->bytes);
 }
 template <class Io>
 void fields(Io& io, Cancel* m) {
@@ -321,7 +321,7 @@ constexpr PayloadSize kPayloadSizes[] = {
     {28, 0},                   // scene_fetch
     {24, kPieceBytesMax},      // scene_piece
     {95 + kSettingsBytes, 0},  // frame_request
-    {13, kChunkBytesMax},      // row_chunk
+    {17, kChunkBytesMax},      // row_chunk
     {4, 0},                    // cancel
     {6, 0},                    // error
     {8, 0},                    // ping

@@ -13,7 +13,7 @@
 namespace pocketray {
 
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 4 + (kSettingCount - 6);
+constexpr std::uint16_t kWireVersion = 5 + (kSettingCount - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -94,8 +94,9 @@ struct FrameRequest {
 struct RowChunk {
   std::uint32_t frame = 0;
   std::uint16_t row_begin = 0, row_count = 0;
-  std::uint32_t pixel_ps = 0;  // server's cost of a pixel of these rows, picoseconds; ~0u: that or more
-  std::uint8_t encoding = 0;   // see codec.h
+  std::uint32_t pixel_ps = 0;       // server's cost of a pixel of these rows, picoseconds; ~0u: that or more
+  std::uint32_t pixels_traced = 0;  // of these rows; the server kept the others from its last frame
+  std::uint8_t encoding = 0;        // see codec.h
   Array<const std::uint8_t> bytes;
 };
 

@@ -85,6 +85,11 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
   if (w->stuck) return fail(*w, "a server holds the device", ratio);
   std::string failure = check_lies(*w, result);
   if (!failure.empty()) return failure;
+  const CoherenceState& state = device_renderer(plan)->coherence_state;
+  auto keeps = [](const RowModel& row) { return row.holder != kNoHolder && row.holder_part < 1; };
+  result->unchanged += w->client.share.unchanged;
+  result->device_kept += !state.whole_because && state.pixels_traced < plan.width * w->client.share.device_rows;
+  result->server_kept += std::any_of(w->client.model.rows.begin(), w->client.model.rows.end(), keeps);
   bool lies = w->client.share.lies > 0;
   double* worst = calm ? &result->worst_calm : &result->worst_disturbed;
   if (!lies) *worst = std::max(*worst, ratio);
@@ -206,7 +211,7 @@ std::string run_settled(FaultWorld* w, SessionResult* result) {
   for (int i = 0; i < kSettleFrames + kJudgedFrames; ++i, ++w->frame) {
     std::string failure = run_any_frame(w, result);
     if (!failure.empty()) return failure;
-    times.push_back(static_cast<double>(w->elapsed() - w->frame_begin_ns));
+    if (!w->client.share.unchanged) times.push_back(static_cast<double>(w->elapsed() - w->frame_begin_ns));
     let_client_rest(w, kSettlePauseNs);
   }
   double ns = *std::min_element(times.end() - kJudgedFrames, times.end());

@@ -11,8 +11,10 @@ namespace pocketray {
 struct SessionResult {
   std::string failure;  // empty: none
   int frames = 0, frames_disturbed = 0, faults_struck = 0, losses = 0;
-  int frames_late = 0;                         // over 1.05 times the device's time alone
-  int lies = 0;                                // found
+  int frames_late = 0;  // over 1.05 times the device's time alone
+  int lies = 0;         // found
+  // Frames that equal the last one, of which nothing is requested; in which the device kept pixels, or a server did.
+  int unchanged = 0, device_kept = 0, server_kept = 0;
   bool far_from_best = false;                  // at the end, frames take far longer than with the best split
   int struck[platform::kLinkFaultCount] = {};  // faults drawn, in sessions where all struck
   double worst_calm = 0, worst_disturbed = 0;  // frame time relative to the device's alone

@@ -22,7 +22,7 @@ constexpr int kStuckReads = 1000;   // or reads between two waits: enough to tes
 // The device's renderer and reference pictures, shared by all sessions.
 struct Device {
   std::unique_ptr<BuiltScene> built;
-  std::unique_ptr<TestRenderer> renderer;
+  std::unique_ptr<TestRenderer> renderer, whole;  // coherent, and for the reference pictures
   std::map<int, std::vector<std::uint8_t>> pictures;
 };
 
@@ -34,7 +34,10 @@ Device& device_of(const FaultPlan& plan) {
     Settings settings;
     settings.width = plan.width, settings.height = plan.height;
     settings.memory_bytes = 8u << 20;
+    device.whole = make_renderer(device.built->scene, settings);
+    settings.coherence = CoherenceMode::automatic;
     device.renderer = make_renderer(device.built->scene, settings);
+    REQUIRE(device.renderer->renderer.coherence_state.planned);
   }
   return device;
 }
@@ -46,7 +49,7 @@ const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int secon
   bool small = plan.format == WireFormat::rgb565;
   std::vector<std::uint8_t>& pixels = device.pictures[second * 4 + small * 2 + plan.dither];
   if (!pixels.empty()) return pixels;
-  Renderer* r = &device.renderer->renderer;
+  Renderer* r = &device.whole->renderer;
   REQUIRE(render_frame(r, kFaultSeconds[second]).ok);
   int width = static_cast<int>(plan.width), height = static_cast<int>(plan.height);
   int line_bytes = width * static_cast<int>(pixel_bytes(plan.format));

@@ -14,11 +14,12 @@
 
 namespace pocketray {
 
-constexpr const char* kFaultScene = "cube";
+constexpr const char* kFaultScene = "seesaw";
 constexpr std::uint64_t kSilenceNs = 2'000 * kMs, kConnectNs = 500 * kMs;
 constexpr std::uint64_t kRetryMinNs = 100 * kMs, kRetryMaxNs = 1'000 * kMs;
 constexpr std::uint64_t kServerIdleNs = 4'000 * kMs;
-constexpr double kFaultSeconds[] = {0, 0.3, 0.7, 1.1};  // animation times of successive frames
+// Animation times of successive frames; some stand still.
+constexpr double kFaultSeconds[] = {0, 0.3, 0.3, 0.7, 1.1, 1.1, 1.1};
 
 // The place of a server, which may be empty.
 struct Place {

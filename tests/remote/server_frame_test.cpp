@@ -1,6 +1,8 @@
 // Frames from a server: the pixels of local rendering, in fair turns.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "platform/net/tcp.h"
 #include "remote/server/session.h"
 #include "scene/baked.h"
@@ -364,4 +366,54 @@ TEST_CASE("server_shares_its_time_fairly") {
   CHECK(second.chunks.back().pixel_ps == doctest::Approx(4e7).epsilon(0.25));
   run_for(3000 * kMs, 3);
   for (std::uint64_t count : pixels) CHECK(static_cast<double>(count) == doctest::Approx(50'000).epsilon(0.1));
+}
+
+// Goal: a server traces of a client's frames what can have changed since it traced these rows for the last frame, as
+// the chunks tell; pixels are those of whole frames. Method: seesaw: the same frame again, the next frame, rows it did
+// not have, a frame cancelled half-way; with coherence off, all of it.
+TEST_CASE("server_traces_what_changes_for_a_client") {
+  for (CoherenceMode mode : {CoherenceMode::automatic, CoherenceMode::off}) {
+    ServerOptions options;
+    options.coherence = mode;
+    ServerRig rig(options);
+    ScriptedClient client(&rig);
+    FrameRequest request = frame_request("seesaw", 0);
+    request.seconds = 7;
+    auto traced = [&](std::uint16_t row_begin, std::uint16_t row_end) {
+      ++request.frame;
+      request.row_begin = row_begin, request.row_end = row_end;
+      client.request(request);
+      client.wait_for_rows(row_end - row_begin);
+      std::vector<std::uint8_t> picture = client.picture(), right = rendered_here(request);
+      const std::size_t line = right.size() / 48;
+      CHECK(std::equal(right.begin() + static_cast<std::ptrdiff_t>(row_begin * line),
+                       right.begin() + static_cast<std::ptrdiff_t>(row_end * line),
+                       picture.begin() + static_cast<std::ptrdiff_t>(row_begin * line)));
+      std::uint32_t count = 0;
+      for (const RowChunk& chunk : client.chunks) count += chunk.pixels_traced;
+      return count;
+    };
+    const bool coherent = mode != CoherenceMode::off;
+    CHECK(traced(16, 48) == 32 * 64);
+    CHECK(traced(16, 48) == (coherent ? 0 : 32 * 64));
+    CHECK(traced(0, 16) == 16 * 64);                   // of the same time: new rows alone ...
+    CHECK(traced(0, 48) == (coherent ? 0 : 48 * 64));  // ... and then all are known
+    request.seconds += 1 / 30.0;
+    const std::uint32_t next = traced(24, 48);
+    CHECK((coherent ? next > 0 && next < 24 * 64 / 4 : next == 24 * 64));
+    request.seconds += 1 / 30.0;
+    const std::uint32_t more = traced(20, 48);  // rows 20 to 23 were not traced for the last frame
+    CHECK((coherent ? more >= 4 * 64 && more < 4 * 64 + 24 * 64 / 4 : more == 28 * 64));
+    request.seconds += 1 / 30.0, ++request.frame;
+    request.row_begin = 0, request.row_end = 48;
+    client.request(request);
+    rig.run_until([&] { return client.poll(), client.rows_come >= 16; });
+    Message cancel;
+    cancel.type = MessageType::cancel;
+    cancel.cancel.frame = request.frame;
+    client.send(cancel);
+    request.seconds += 1 / 30.0;
+    const std::uint32_t after = traced(0, 48);
+    CHECK((coherent ? after < 48 * 64 : after == 48 * 64));
+  }
 }

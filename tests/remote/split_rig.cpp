@@ -16,6 +16,8 @@ SplitRig::SplitRig(const SplitRigOptions& given) : options(given) {
   built = build_builtin(options.scene);
   Settings settings;
   settings.width = options.width, settings.height = options.height;
+  whole = make_renderer(built->scene, settings);
+  settings.coherence = options.coherence;
   device = make_renderer(built->scene, settings);
   ClientOptions o = options.client;
   o.pace.ns_per_pixel = options.device_ns;
@@ -34,6 +36,7 @@ void SplitRig::start_server(std::uint32_t i) {
   ServerOptions o;
   o.client_memory_bytes = 16u << 20;
   o.client_count_max = 4;
+  o.coherence = options.coherence;
   o.pace.ns_per_pixel = options.server_ns.empty()      ? 100
                         : i < options.server_ns.size() ? options.server_ns[i]
                                                        : options.server_ns.back();
@@ -43,8 +46,11 @@ void SplitRig::start_server(std::uint32_t i) {
 
 void SplitRig::stop_server(std::uint32_t i) { pocketray::stop_server(&world, i); }
 
-std::vector<std::uint8_t> SplitRig::local_pixels() {
-  const Renderer& r = device->renderer;
+std::vector<std::uint8_t> SplitRig::local_pixels(double seconds) {
+  Renderer& r = whole->renderer;
+  r.camera = device->renderer.camera, r.camera_overridden = device->renderer.camera_overridden;
+  r.camera_index = device->renderer.camera_index, r.exposure = device->renderer.exposure;
+  REQUIRE(render_frame(&r, seconds).ok);
   std::vector<std::uint8_t> pixels(client.pixels.count);
   int width = static_cast<int>(options.width), height = static_cast<int>(options.height);
   bool small = options.client.format == WireFormat::rgb565;
@@ -57,8 +63,7 @@ const FrameShare& SplitRig::frame(double seconds) {
   REQUIRE(render_frame(&device->renderer, &client, seconds).ok);
   if (!options.compares) return client.share;
   std::vector<std::uint8_t> merged(client.pixels.begin(), client.pixels.end());
-  REQUIRE(render_frame(&device->renderer, seconds).ok);
-  CHECK(merged == local_pixels());
+  CHECK(merged == local_pixels(seconds));
   return client.share;
 }
 

@@ -27,7 +27,8 @@ struct SplitRigOptions {
   double device_ns = 1000;             // per pixel
   std::vector<double> server_ns = {};  // per pixel; missing entries repeat the last; empty: 100
   platform::NullLinkSettings line = fine_clock();
-  bool compares = true;  // compares every frame with the device's own
+  CoherenceMode coherence = CoherenceMode::automatic;  // of device and servers
+  bool compares = true;                                // compares every frame with the device's own
   ClientOptions client;
 };
 
@@ -37,6 +38,7 @@ struct SplitRig {
   std::vector<unsigned char> client_memory;
   std::unique_ptr<BuiltScene> built;
   std::unique_ptr<TestRenderer> device;
+  std::unique_ptr<TestRenderer> whole;  // renders the device's frames whole, for comparison
   Client client;
   std::vector<std::string> log;
 
@@ -53,8 +55,8 @@ struct SplitRig {
   // Lets time pass without a frame.
   void idle(std::uint64_t ns);
   bool logged(const std::string& text) const;
-  // The frame rendered by the device alone.
-  std::vector<std::uint8_t> local_pixels();
+  // The device's frame rendered whole and alone.
+  std::vector<std::uint8_t> local_pixels(double seconds);
 };
 
 }  // namespace pocketray

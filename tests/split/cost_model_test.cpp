@@ -236,3 +236,35 @@ TEST_CASE("cost_model_need_is_what_it_takes") {
       CHECK(arena.used == cost_model_need(rows, servers));
     }
 }
+
+// Goal: a row costs its holder the part that can have changed, and anyone else all of it; small parts do not change
+// what a whole row is known to cost. Method: a server as fast as the device; shares by hand.
+TEST_CASE("cost_model_prices_what_can_have_changed") {
+  OwnModel own(100, 40, 1);
+  own.model.servers[0].connected = true;
+  own.model.servers[0].chunk_rows = 1;
+  observe_overture(&own.model, 0, {1000, 1000, 1}, 1, 0);
+  auto follow = [&](std::uint32_t device_rows, double part) {
+    for (std::uint32_t r = 0; r < device_rows; ++r) observe_device_row(&own.model, r, 1e5 * part * 1.7, part);
+    observe_server_rows(&own.model, 0, device_rows, 40, 1e5 * part * 1.7 * (40 - device_rows), 100, part);
+    end_frame(&own.model);
+  };
+  for (std::uint32_t r = 0; r < 40; ++r) observe_device_row(&own.model, r, 1e5);
+  observe_server_rows(&own.model, 0, 20, 40, 20e5, 100);
+  end_frame(&own.model);
+  CHECK(own.plan().boundary[0] == 20);
+  for (std::uint32_t held : {4u, 20u, 36u}) {
+    CAPTURE(held);
+    for (int i = 0; i < 3; ++i) follow(held, 0.01);
+    for (std::uint32_t r = 0; r < 40; ++r) own.model.rows[r].device_part = r < held ? 0.01f : 1;
+    const SplitProblem p = make_problem(&own.model, SplitWish());
+    CHECK(p.device_ns[held] == doctest::Approx(held * 1e3).epsilon(0.01));
+    CHECK(p.device_ns[40] - p.device_ns[held] == doctest::Approx((40 - held) * 1e5).epsilon(0.01));
+    CHECK(p.servers[0].render_ns[held] == doctest::Approx(held * 1e5).epsilon(0.01));
+    CHECK(p.servers[0].render_ns[40] - p.servers[0].render_ns[held] ==
+          doctest::Approx((40 - held) * 1e3).epsilon(0.01));
+    CHECK(find_split(p, &own.workspace).boundary[0] == held);
+  }
+  end_frame(&own.model);  // the server had no rows: it holds none
+  CHECK(make_problem(&own.model, SplitWish()).servers[0].render_ns[40] == doctest::Approx(40e5).epsilon(0.01));
+}

@@ -160,6 +160,8 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
   settings.coherence_table = sides[next_u32(&s.rng) % 5];
   settings.coherence_by_tables = next_u32(&s.rng) % 8 == 0;
   settings.threads = 1 + next_u32(&s.rng) % 3;
+  s.shares = next_u32(&s.rng) % 3 == 0;
+  if (s.shares && next_u32(&s.rng) % 2) settings.coherence = CoherenceMode::automatic;
   s.coherent = make_renderer(s.generated->scene, settings, accel);
   return s;
 }
@@ -172,6 +174,8 @@ bool follow_script(EditScript* s) {
   if (disturbance == 0 && !is_stopped(coherent, s->seconds + 0.3)) return false;
   if (disturbance == 1 && !render_frame(coherent, s->seconds + 0.5).ok) return false;
   if (disturbance == 2 && !prepare_frame(coherent, s->seconds + 0.7).ok) return false;
+  if (s->shares && next_u32(&s->rng) % 8 != 0)
+    return render_frame(whole, s->seconds).ok && follow_shared(coherent, *whole, s->seconds, &s->rng, &s->shared);
   if (!render_frame(whole, s->seconds).ok || !render_coherent(coherent, s->seconds).ok) return false;
   if (!coherent->coherence_state.whole_because) {
     ++s->partial_frames;

@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "engine/coherent.h"
 #include "support/generated_scene.h"
+#include "temporal/shared_script.h"
 
 namespace pocketray {
 
@@ -15,7 +16,9 @@ struct EditScript {
   std::unique_ptr<TestRenderer> whole, coherent;
   std::vector<Vec3> rest;  // positions at rest before any edit
   double seconds = 0;
-  float scale = 1;                                      // of the scene
+  float scale = 1;      // of the scene
+  bool shares = false;  // mostly traces a part of the rows
+  SharedScript shared;
   std::uint64_t partial_frames = 0, pixels_traced = 0;  // of the frames that were not traced whole
 };
 

@@ -54,7 +54,7 @@ Bytes deflated(const Bytes& body, bool finish) {
 }
 
 RowChunk chunk_of(const Bytes& bytes, std::uint8_t encoding, std::uint16_t row_begin = 0, std::uint16_t row_count = 1) {
-  return {0, row_begin, row_count, 0, encoding, {bytes.data(), static_cast<std::uint32_t>(bytes.size())}};
+  return {0, row_begin, row_count, 0, 0, encoding, {bytes.data(), static_cast<std::uint32_t>(bytes.size())}};
 }
 
 }  // namespace
@@ -191,15 +191,49 @@ TEST_CASE("codec_bodies_that_do_not_fit_are_refused") {
       {"an empty body, deflated", deflated({}, false), kEncodingDeflated, 0, 1},
   };
   CodecEnds ends(shape);
+  Bytes two_rows = {2, 0, 16};  // all 16 pixels given
+  two_rows.resize(3 + 2 * 16);
+  auto restart = [&] {
+    restart_row_decoder(ends.decoder);
+    for (std::uint16_t row : {0, 2}) REQUIRE(decode_rows(ends.decoder, chunk_of(two_rows, 0, row, 2)));
+  };
   for (const Fault& fault : faults) {
     CAPTURE(fault.what);
-    restart_row_decoder(ends.decoder);
+    restart();
     CHECK(!decode_rows(ends.decoder, chunk_of(fault.body, fault.encoding, fault.row_begin, fault.row_count)));
-    restart_row_decoder(ends.decoder);
+    restart();
     CHECK(decode_rows(ends.decoder, chunk_of(good, 0, 3, 1)));
     CHECK(picture_row(ends.decoder->state, 3)[6] == 0xAA);
     CHECK(decode_rows(ends.decoder, chunk_of(deflated(good, false), kEncodingDeflated, 0, 1)));
   }
+}
+
+// Goal: a row that was never sent cannot be claimed unchanged, in whole or in part; once sent, it can. Method: handmade
+// bodies for a picture of 8 × 4 that leave the first, a middle or the last pixel of a new row, or all of it; an encoder
+// whose picture is as black as the receiver's.
+TEST_CASE("codec_rows_that_were_never_sent_are_not_left") {
+  CodecShape shape = {8, 4, 2, WireFormat::rgb565};
+  CodecEnds ends(shape);
+  auto given = [](Bytes runs, std::size_t count) {
+    runs.resize(runs.size() + 2 * count);
+    return runs;
+  };
+  const Bytes nothing = {0}, first = given({2, 1, 7}, 7), middle = given({4, 0, 4, 1, 3}, 7),
+              last = given({2, 0, 7}, 7), row = given({2, 0, 8}, 8);
+  for (const Bytes* body : {&nothing, &first, &middle, &last}) {
+    restart_row_decoder(ends.decoder);
+    CHECK(!decode_rows(ends.decoder, chunk_of(*body, 0, 1)));
+    restart_row_decoder(ends.decoder);
+    REQUIRE(decode_rows(ends.decoder, chunk_of(row, 0, 1)));
+    CHECK(decode_rows(ends.decoder, chunk_of(*body, 0, 1)));
+    CHECK(decode_rows(ends.decoder, chunk_of(given({2, 8, 8}, 8), 0, 1, 2)));  // leaves row 1, gives row 2
+    CHECK(decode_rows(ends.decoder, chunk_of(nothing, 0, 1, 2)));
+    CHECK(!decode_rows(ends.decoder, chunk_of(nothing, 0, 2, 2)));  // row 3 is new
+  }
+  const Bytes black(2 * 8);
+  std::uint8_t bytes[200], encoding;
+  CHECK(encode_rows(ends.encoder, 0, 1, black.data(), 0, bytes, &encoding) > 2 * 8);
+  CHECK(encode_rows(ends.encoder, 0, 1, black.data(), 0, bytes, &encoding) == 1);
 }
 
 // Goal: chunks truncated at any byte or with any byte flipped do no harm: they are refused or give other pixels.

@@ -97,6 +97,11 @@ def test_frames(program, folder, device, scenes):
         frame += 1
         picture = device.frame(b"", FRAME_CHANGE, frame=frame, time=time, format=RGB565, level=6)
         check(picture.compare(rendered(program, folder, "seesaw", "--time", str(time))), "a change to %g s" % time)
+    # The same time again: nothing is traced, nothing is given.
+    traced = device.traced
+    frame += 1
+    device.frame(b"", FRAME_CHANGE, frame=frame, time=1.0, format=RGB565, level=6)
+    check(device.traced == traced and traced > 0, "an unchanged frame is not traced")
     # Settings.
     for changes, words in ((dict(samples=4), ["--samples", "4"]), (dict(depth=0), ["--depth", "0"]),
                            (dict(points=9, cut_off=0), ["--area-lights", "9", "--cut-off", "0"]),
@@ -202,8 +207,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\6\0"), WRONG_VERSION), (hello(9, bytes(236)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\6\0" + bytes(251)), MALFORMED), (hello(5, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\7\0"), WRONG_VERSION), (hello(9, bytes(236)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\7\0" + bytes(251)), MALFORMED), (hello(6, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(16)), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])

@@ -69,6 +69,7 @@ class Picture:
         self.width, self.height, self.format = width, height, pixel_format
         self.levels = (32, 64, 32) if pixel_format == RGB565 else (256, 256, 256)
         self.pixels = [(0, 0, 0)] * (width * height)
+        self.sent = [False] * height
         self.inflater = zlib.decompressobj(-15)
 
     def load(self, body, at):
@@ -99,8 +100,15 @@ class Picture:
         size = 3 if self.format == RGB888 else 2
         chunk = self.pixels[row * self.width:(row + row_count) * self.width]
         place = 0
+
+        def leave(end):
+            left = self.sent[row + place // self.width:row + (end - 1) // self.width + 1] if end > place else []
+            check(all(left), "pixels are left only in rows that were sent before")
+
         while at < runs_end:
-            place += number()
+            skipped = number()
+            leave(place + skipped)
+            place += skipped
             given = number()
             assert given >= 1 and place + given <= count
             for i in range(place, place + given):
@@ -108,7 +116,9 @@ class Picture:
                 values += size
                 chunk[i] = self.undo(pixel, chunk, i) if encoding & 1 else pixel
             place += given
+        leave(count)
         assert at == runs_end and values == len(data), "the body has the length that its runs call for"
+        self.sent[row:row + row_count] = [True] * row_count
         self.pixels[row * self.width:(row + row_count) * self.width] = chunk
 
     def undo(self, difference, chunk, i):
@@ -146,7 +156,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=5, more=b""):
+def hello(version=6, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
 
 
@@ -184,12 +194,13 @@ class Device:
         self.socket = socket.create_connection((host, int(port)), 60)
         self.bytes = b""
         self.chunk_count = 0
+        self.traced = 0
         self.encodings = set()
         self.picture = None
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\5\0", "the server says hello first, of version 5")
+            check(kind == HELLO and fields[:6] == b"PRAY\6\0", "the server says hello first, of version 6")
             self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
 
     def send(self, data):
@@ -252,8 +263,10 @@ class Device:
         return dict(hash=fields[:16], size=size, index=index, count=count, triangles=triangles, name=name[0].decode())
 
     def take_chunk(self, fields, frame, r, due, before):
-        number, row, rows, _, encoding = struct.unpack("<IHHIB", fields[:13])
-        data = fields[13:]
+        number, row, rows, _, traced, encoding = struct.unpack("<IHHIIB", fields[:17])
+        data = fields[17:]
+        self.traced += traced
+        check(traced <= rows * r["width"], "no more pixels are traced than the rows have")
         check(number == frame, "a chunk is of the frame")
         check(encoding >> 2 == self.chunk_count % 64, "chunks are counted")
         check(row + rows == due and row >= r["first"], "the lowest rows come first")

@@ -80,8 +80,8 @@ TEST_CASE("message_bytes_are_the_protocol_s") {
                               0x40, 0x01, 0x78, 0x56, 0x34, 0x12, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11}));
   m.type = MessageType::row_chunk;
   const std::uint8_t data[] = {0xAB, 0xCD};
-  m.row_chunk = {7, 258, 3, 0x00010000, 2, {data, 2}};
-  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 2, 1, 3, 0, 0, 0, 1, 0, 2, 0xAB, 0xCD}));
+  m.row_chunk = {7, 258, 3, 0x00010000, 0x0201, 2, {data, 2}};
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 2, 1, 3, 0, 0, 0, 1, 0, 1, 2, 0, 0, 2, 0xAB, 0xCD}));
   CHECK(row_chunk_prefix_bytes() == encoded(m).size() - 2);
 }
 
@@ -134,6 +134,7 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_change, [](Message* m) { m->frame_request.camera.eye.z += 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.chunk_growth ^= 1; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1; }},
+      {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixels_traced ^= 1; }},
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
   };
@@ -299,10 +300,10 @@ TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
     if (known) CHECK(refused(header(type, 1)));
   }
   CHECK(refused(header(9, 5)));
-  CHECK(refused(header(8, 13 + kChunkBytesMax + 1)));
-  CHECK(!refused(header(8, 13 + kChunkBytesMax)));
-  CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 999).state == DecodeState::malformed);
-  CHECK(decode(header(8, 13 + 1000), &message, 8 + 13 + 1000).state == DecodeState::need_more);
+  CHECK(refused(header(8, 17 + kChunkBytesMax + 1)));
+  CHECK(!refused(header(8, 17 + kChunkBytesMax)));
+  CHECK(decode(header(8, 17 + 1000), &message, 8 + 17 + 999).state == DecodeState::malformed);
+  CHECK(decode(header(8, 17 + 1000), &message, 8 + 17 + 1000).state == DecodeState::need_more);
 }
 
 // Goal: a request that a change can express is recognised, and the change reproduces it; other requests are not.
@@ -400,7 +401,7 @@ TEST_CASE("message_tail_may_lie_in_place") {
   for (std::uint8_t i = 0; i < 5; ++i) buffer[row_chunk_prefix_bytes() + i] = i;
   Message m;
   m.type = MessageType::row_chunk;
-  m.row_chunk = {1, 2, 3, 4, 0, {buffer.data() + row_chunk_prefix_bytes(), 5}};
+  m.row_chunk = {1, 2, 3, 4, 5, 0, {buffer.data() + row_chunk_prefix_bytes(), 5}};
   std::vector<std::uint8_t> apart = encoded(m);
   encode_message(m, buffer.data());
   CHECK(buffer == apart);

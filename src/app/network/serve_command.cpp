@@ -19,7 +19,7 @@ namespace pocketray {
 namespace {
 
 struct ServeOptions {
-  std::string listen = "127.0.0.1:7411", scenes, memory = "64M", scene_memory = "1G", isa;
+  std::string listen = "127.0.0.1:7411", scenes, memory = "64M", scene_memory = "1G", coherence = "auto", isa;
   int clients = 8;
   std::uint32_t threads = 0, image_side_max = 2048;
   double idle_seconds = 300;
@@ -76,6 +76,7 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
 Status read_options(const ServeOptions& o, ServerOptions* options) {
   RETURN_IF_ERROR(parse_bytes(o.memory, &options->client_memory_bytes));
   RETURN_IF_ERROR(choose_thread_count(o.threads, std::thread::hardware_concurrency(), &options->thread_count));
+  RETURN_IF_ERROR(parse_coherence(o.coherence, &options->coherence));
   options->client_count_max = o.clients;
   options->image_side_max = o.image_side_max;
   if (!(o.idle_seconds >= 1 && o.idle_seconds <= 1e6))
@@ -176,6 +177,11 @@ void add_serve_command(Command program, int* exit_status) {
       .range(1u, kImageSideMax)
       .capture_default_str();
   command.add_option("--idle", o->idle_seconds, "seconds of silence before a client is disconnected")
+      .capture_default_str();
+  command
+      .add_option("--coherence", o->coherence,
+                  "trace only what can have changed since a client's last frame: on, off, or auto, where it pays and "
+                  "its memory allows it")
       .capture_default_str();
   add_isa_option(command, &o->isa);
   command.callback([=] { *exit_status = run(*o); });

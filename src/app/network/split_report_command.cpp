@@ -227,6 +227,7 @@ void add_split_report_command(Command program, int* exit_status) {
       "Try:  pocketray split-report cornell --emulate pi-zero -o .\n"
       "      pocketray split-report statue --emulate tablet --servers 3 --json -");
   add_scene_options(command, &o->common);
+  add_coherence_options(command, &o->common, "off");
   command.add_option("--servers", o->server_count, "number of servers")
       .range(1u, kServerCountMax)
       .capture_default_str();

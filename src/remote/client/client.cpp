@@ -1,6 +1,7 @@
 #include "remote/client/client.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "base/check.h"
@@ -60,9 +61,9 @@ double time_to_spare(const Client& client, double come_share) {
       if (!(row.device_ns_seen > 0)) ++unknown;
       continue;
     }
-    double before = static_cast<double>(row.device_ns.value);
+    double before = device_row_ns(row);
     if (row.device_ns_seen > 0)
-      seen += static_cast<double>(row.device_ns_seen), seen_before += before;
+      seen += static_cast<double>(row.device_ns_seen * row.device_part), seen_before += before;
     else
       others += before, come += client.merge.rows[r].state == RowState::server ? before : 0;
   }
@@ -77,11 +78,13 @@ double time_to_spare(const Client& client, double come_share) {
 // Time the device would need for the missing rows, estimated from this frame and from earlier ones, whichever is
 // longer.
 double rows_left_ns(const Client& client) {
-  double known = 0, count = client.merge.rows.count - client.merge.row_count_done;
-  for (std::uint32_t r = 0; r < client.model.rows.count; ++r)
-    if (client.merge.rows[r].state == RowState::missing)
-      known += static_cast<double>(client.model.rows[r].device_ns.value);
-  return std::max(known, device_pixel_ns(client) * client.settings.width * count);
+  double known = 0, rows = 0;
+  for (std::uint32_t r = 0; r < client.model.rows.count; ++r) {
+    const RowModel& row = client.model.rows[r];
+    if (client.merge.rows[r].state == RowState::missing) known += device_row_ns(row);
+    if (!is_done(client.merge.rows[r])) rows += static_cast<double>(row.device_part);
+  }
+  return std::max(known, device_pixel_ns(client) * client.settings.width * rows);
 }
 
 // True if the servers' rows are due before the device could render one, or late by less than that, and the device would
@@ -108,8 +111,10 @@ std::uint32_t rows_between_looks(const Client& client) {
   if (!any) return client.settings.height;
   // By this frame's rows so far and by earlier frames, as rows below the sky cost more.
   std::uint32_t count = 0;
-  for (double ns = 0; ns < look_ns && client.merge.next_row + count < client.model.rows.count; ++count)
-    ns += std::max(row_ns, static_cast<double>(client.model.rows[client.merge.next_row + count].device_ns.value));
+  for (double ns = 0; ns < look_ns && client.merge.next_row + count < client.model.rows.count; ++count) {
+    const RowModel& row = client.model.rows[client.merge.next_row + count];
+    ns += std::max(row_ns * static_cast<double>(row.device_part), device_row_ns(row));
+  }
   return std::max(1u, count);
 }
 
@@ -260,7 +265,8 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
     a->first_ns = a->last_ns;
   else
     a->bytes += byte_count;
-  observe_server_rows(&client->model, server, begin, end, render_ns, byte_count);
+  const double part = static_cast<double>(chunk.pixels_traced) / (client->settings.width * chunk.row_count);
+  observe_server_rows(&client->model, server, begin, end, render_ns, byte_count, std::fmin(1, part));
   if (!agrees_with_device(client, s, begin, end)) return;
   if (!client->options.has_scene) compare_with_others(client, s, begin, end);
   if (s->useful_ns == 0 || s->told) server_is_useful(client, s);
@@ -274,7 +280,9 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   mark_dirty(client, begin, end);
 }
 
-void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns) {
+void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns,
+                        bool unchanged) {
+  CHECK(!unchanged || client->complete);
   if (!client->complete) {
     cancel_rest(client);
     end_frame(&client->model);
@@ -286,7 +294,8 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
   client->share = FrameShare();
   client->share.measured_ns = last.measured_ns;
   client->complete = client->joined = false;
-  client->waited_ns = 0, client->device_ns = 0, client->device_rows = 0;
+  client->waited_ns = 0, client->device_ns = 0, client->device_pixels = 0;
+  client->unchanged = client->share.unchanged = unchanged;
   client->device_row = DeviceRow();
   client->begin_ns = client_now_ns(*client);
   client->prepare_ns = prepare_ns;
@@ -303,20 +312,20 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
   q->exposure = renderer.exposure;
   q->dither = client->options.dither;
   q->format = client->options.format;
-  begin_merge(&client->merge, q->frame);
+  unchanged ? void(client->merge.frame = q->frame) : begin_merge(&client->merge, q->frame);
   begin_checks(client);
   client->share.frame = q->frame;
   client->bytes_in_before = client->bytes_out_before = 0;
   bool any = false;
-  measure_anew(client);
+  if (!unchanged) measure_anew(client);
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
     server->frame = ServerFrame();
     client->bytes_in_before += server->messages.bytes_in, client->bytes_out_before += server->messages.bytes_out;
     any = any || server->phase == ServerPhase::ready;
   }
-  client->held = any && wants_quiet(*client);
-  if (any && client->options.has_scene && !client->held) share_rows(client, 0);
+  client->held = !unchanged && any && wants_quiet(*client);
+  if (any && client->options.has_scene && !client->held && !unchanged) share_rows(client, 0);
   advance_client(client, 0);
 }
 
@@ -338,12 +347,14 @@ bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t
   return take_rows(&client->merge, row_count_max, row_begin, row_end);
 }
 
-void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns) {
+void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns,
+                        std::uint64_t pixel_count) {
   CHECK_LT(row_begin, row_end);
-  std::uint32_t count = row_end - row_begin;
+  const double count = row_end - row_begin, pixels = static_cast<double>(pixel_count);
+  CHECK_LE(pixel_count, std::uint64_t(row_end - row_begin) * client->settings.width);
   for (std::uint32_t row = row_begin; row < row_end; ++row)
-    observe_device_row(&client->model, row, static_cast<double>(ns) / count);
-  client->device_ns += static_cast<double>(ns), client->device_rows += count;
+    observe_device_row(&client->model, row, static_cast<double>(ns) / count, pixels / (count * client->settings.width));
+  client->device_ns += static_cast<double>(ns), client->device_pixels += pixel_count;
   finish_rows(&client->merge, row_begin, row_end);
   mark_dirty(client, row_begin, row_end);
 }
@@ -355,6 +366,7 @@ void end_client_frame(Client* client) {
   FrameShare* share = &client->share;
   share->measured_ns = static_cast<double>(client_elapsed_ns(*client));
   share->device_rows = count_rows(client->merge, kDeviceRows);
+  share->device_pixels = client->device_pixels;
   share->bytes_in = share->bytes_out = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     share->server_rows[i] = count_rows(client->merge, i);
@@ -373,7 +385,7 @@ void end_client_frame(Client* client) {
   if (!client->options.has_scene) learn_row_times(client);
   if (client->joined) ++client->frames_with_servers;
   cancel_rest(client);
-  end_frame(&client->model);
+  if (!client->unchanged) end_frame(&client->model);
 }
 
 bool is_settled(const Client& client) {

@@ -108,9 +108,11 @@ struct RemoteServer {
 struct FrameShare {
   std::uint32_t frame = 0;
   double predicted_ns = 0;                          // by the chosen split; 0: unknown
+  bool unchanged = false;                           // equals the last frame, whose rows it keeps
   double measured_ns = 0;                           // from its preparation to its completion
   double local_ns = 0;                              // predicted for the device alone; 0: unknown
   std::uint32_t device_rows = 0;                    // rendered by the device
+  std::uint64_t device_pixels = 0;                  // traced for them
   std::uint32_t server_rows[kServerCountMax] = {};  // rendered by each server
   std::uint32_t row_begin[kServerCountMax] = {}, row_end[kServerCountMax] = {};  // requested from each
   std::uint64_t server_bytes[kServerCountMax] = {};                              // received from each
@@ -157,8 +159,10 @@ struct Client {
   std::uint64_t unwatched_ns = 0;  // time before the latest poll: input may have arrived that much earlier
   Arrivals arrivals;
   DeviceRow device_row;
-  double device_ns = 0;  // spent on its own rows in this frame
-  std::uint32_t device_rows = 0;
+  double device_ns = 0;                          // spent on its own rows in this frame
+  std::uint64_t device_pixels = 0;               // traced in it
+  std::uint64_t kept_count = 0;                  // of the device's coherence: the frame that `pixels` show; 0: unknown
+  bool unchanged = false;                        // the frame equals the last one: nothing is requested
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_merged_rows()
   std::uint64_t frames_with_servers = 0;         // since a server came into use
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
@@ -184,11 +188,13 @@ void advance_client(Client* client, std::uint64_t timeout_ns);
 // Begins a frame: plans the split and requests the servers' rows. The renderer must be prepared or, without the scene,
 // have the camera and exposure; `prepare_ns` is the time that took. `seconds` is the animation time. Abandons an
 // unfinished frame.
-void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns);
+void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns,
+                        bool unchanged = false);
 // The rows for the device to render next, at most `row_count_max`; false if none are left.
 bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
 // Call when the device has rendered them in `ns` of wall-clock time into client->pixels.
-void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns);
+void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns,
+                        std::uint64_t pixel_count);
 // Learns from the frame's measurements and lets servers drop the rest of it. Call once, when all rows are complete.
 void end_client_frame(Client* client);
 

@@ -4,8 +4,8 @@
 
 #include "base/check.h"
 #include "base/limit_list.h"
-#include "engine/frame.h"
 #include "engine/row_costs.h"
+#include "engine/shared_rows.h"
 #include "present/pack.h"
 #include "remote/client/parts.h"
 
@@ -46,8 +46,13 @@ struct ClientRows {
   Client* client;
   std::uint32_t row_begin = 0, row_end = 0;  // of the batch, or the row rendered in parts
   std::uint32_t column_end = 0;              // of the part
-  Span parts[kThreadCountMax];
+  std::uint64_t pixel_count = 0;             // to trace, of the batch
 };
+
+void hand_out(ClientRows* s, const SharedSpans& spans, SpanBatch* batch) {
+  batch->spans = spans.spans, batch->span_count = spans.count;
+  s->pixel_count = span_pixel_count(spans.spans, spans.count);
+}
 
 // The next part of a row that takes longer than the time between polls. Polls the servers between parts, so that
 // neither side takes the other for lost.
@@ -59,10 +64,25 @@ void next_part(ClientRows* s, SpanBatch* batch) {
   double pixels = row.pixel_ns > 0 ? work_ns_max(client) / row.pixel_ns : kFirstPixels;
   std::uint32_t count = pixels < width ? std::max(1u, static_cast<std::uint32_t>(pixels)) : width;
   s->row_begin = row.row, s->row_end = row.row + 1;
-  s->column_end = row.columns_done + std::min(count, width - row.columns_done);
-  batch->span_count = std::min(s->renderer->settings.threads, s->column_end - row.columns_done);
-  divide_row(row.row, row.columns_done, s->column_end, batch->span_count, s->parts);
-  batch->spans = s->parts;
+  s->column_end = end_of_part(*s->renderer, row.row, row.columns_done, count);
+  hand_out(s, list_part(s->renderer, row.row, row.columns_done, s->column_end), batch);
+}
+
+// Takes the device's next rows. Those of which nothing must be traced are finished at once.
+bool take_changed_rows(ClientRows* s, bool one_by_one) {
+  const Renderer& renderer = *s->renderer;
+  std::uint32_t rows_max = kTileRows * renderer.settings.threads;
+  if (renderer.shared_rows.records) rows_max = std::min(4 * rows_max, listed_rows_max(renderer));
+  if (one_by_one) rows_max = 1;
+  while (take_device_rows(s->client, rows_max, &s->row_begin, &s->row_end)) {
+    std::uint64_t pixel_count = 0;
+    for (std::uint32_t row = s->row_begin; row < s->row_end; ++row) pixel_count += count_pixels(renderer, row);
+    if (pixel_count > 0) return true;
+    pack_device_rows(renderer, s->client, s->row_begin, s->row_end);
+    finish_shared_rows(s->renderer, s->row_begin, s->row_end);
+    finish_device_rows(s->client, s->row_begin, s->row_end, 0, 0);
+  }
+  return false;
 }
 
 void next_rows(void* context, SpanBatch* batch) {
@@ -76,14 +96,12 @@ void next_rows(void* context, SpanBatch* batch) {
   if (has_all_rows(*client)) return;
   double pixel_ns = device_pixel_ns(*client), row_ns = pixel_ns * renderer.settings.width;
   bool is_long = row_ns == 0 || row_ns > work_ns_max(*client);
-  if (!take_device_rows(client, is_long ? 1 : kTileRows * renderer.settings.threads, &s->row_begin, &s->row_end))
-    return;
+  if (!take_changed_rows(s, is_long)) return;
   if (is_long) {
     *row = {true, s->row_begin, 0, pixel_ns, 0};
     return next_part(s, batch);
   }
-  batch->spans = renderer.spans.data + s->row_begin;
-  batch->span_count = s->row_end - s->row_begin;
+  hand_out(s, list_rows(s->renderer, s->row_begin, s->row_end), batch);
 }
 
 void pack_batch(void* context, const SpanBatch&) {
@@ -101,15 +119,17 @@ std::uint64_t pace_batch(void* context, const SpanBatch& batch, std::uint64_t be
 bool finish_batch(const ClientRows& s, const SpanBatch& batch) {
   Client* client = s.client;
   DeviceRow* row = &client->device_row;
-  std::uint64_t rows_ns = batch.took_ns;
+  std::uint64_t rows_ns = batch.took_ns, pixel_count = s.pixel_count;
   if (row->in_parts) {
     rows_ns = row->took_ns += batch.took_ns;
-    row->pixel_ns = static_cast<double>(batch.took_ns + 1) / (s.column_end - row->columns_done);
+    row->pixel_ns = static_cast<double>(batch.took_ns + 1) / static_cast<double>(s.pixel_count);
     row->columns_done = s.column_end;
     row->in_parts = s.column_end < client->settings.width;
     if (row->in_parts) return false;
+    pixel_count = count_pixels(*s.renderer, s.row_begin);
   }
-  finish_device_rows(client, s.row_begin, s.row_end, rows_ns);
+  finish_shared_rows(s.renderer, s.row_begin, s.row_end);
+  finish_device_rows(client, s.row_begin, s.row_end, rows_ns, pixel_count);
   return true;
 }
 
@@ -119,11 +139,31 @@ bool merge_rows(void* context, const SpanBatch& batch) {
   Client* client = s.client;
   bool busy = batch.span_count > 0;
   if ((!busy || finish_batch(s, batch)) && has_all_rows(*client) && is_verified(s.renderer, client)) {
+    if (client->options.has_scene) {
+      end_shared_rows(s.renderer);
+      client->kept_count = s.renderer->coherence.signature.known ? s.renderer->coherence.kept_count : 0;
+    }
     end_client_frame(client);
     return true;
   }
   advance_client(client, busy ? 0 : kWaitNs);
   return false;
+}
+
+// Prepares the frame and finds what the device must trace of each row. *unchanged: the picture is the last frame's.
+Status prepare_rows(Renderer* renderer, Client* client, double seconds, bool* unchanged) {
+  end_shared_rows(renderer);  // of a frame that was given up
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  std::uint64_t start = renderer->pace.clock->now_ns();
+  begin_shared_rows(renderer, 0, renderer->settings.height);
+  *unchanged = client->complete && client->kept_count > 0 && client->kept_count == renderer->coherence.kept_count &&
+               is_shared_frame_unchanged(*renderer) && renderer->exposure == client->request.exposure;
+  search_shared_rows(renderer, ~0u);
+  const float width = static_cast<float>(renderer->settings.width);
+  for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
+    client->model.rows[row].device_part = static_cast<float>(count_pixels(*renderer, row)) / width;
+  wait_for_pace(&renderer->pace, 0, start);
+  return success();
 }
 
 }  // namespace
@@ -135,11 +175,12 @@ std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t
 Status begin_frame(Renderer* renderer, Client* client, double seconds) {
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
   std::uint64_t begin_ns = client_now_ns(*client);
-  if (client->options.has_scene) RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  bool unchanged = false;
+  if (client->options.has_scene) RETURN_IF_ERROR(prepare_rows(renderer, client, seconds, &unchanged));
   // With an emulated CPU, its pace has already covered this time.
   std::uint64_t prepare_ns =
       is_paced(renderer->pace) ? client_now_ns(*client) - begin_ns : take_time(client, 0, begin_ns);
-  begin_client_frame(client, *renderer, seconds, prepare_ns);
+  begin_client_frame(client, *renderer, seconds, prepare_ns, unchanged);
   return success();
 }
 
@@ -150,6 +191,7 @@ bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns
   ClientRows rows;
   rows.renderer = renderer, rows.client = client;
   SpanSource source = {&rows, next_rows, merge_rows, pack_batch};
+  source.is_coherent = true;
   source.deadline_ns = deadline_ns;
   source.stop = stop;
   source.now_ns = [](void* context) { return client_now_ns(*static_cast<ClientRows*>(context)->client); };

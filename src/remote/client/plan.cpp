@@ -127,7 +127,7 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
 
 double device_pixel_ns(const Client& client) {
   double width = client.settings.width;
-  if (client.device_rows > 0) return client.device_ns / (width * client.device_rows);
+  if (client.device_pixels > 0) return client.device_ns / static_cast<double>(client.device_pixels);
   double sum = 0;
   std::uint32_t count = 0;
   for (const RowModel& row : client.model.rows)
@@ -165,7 +165,7 @@ void share_rows(Client* client, std::uint64_t elapsed_ns) {
 
 void let_join(Client* client) {
   if (!client->options.has_scene) return ask_idle_servers(client);
-  if (client->complete) return;
+  if (client->complete || client->unchanged) return;
   bool any = false;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     if (client->servers[i].phase == ServerPhase::probing) finish_probe(client, &client->servers[i]);

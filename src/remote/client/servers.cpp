@@ -138,7 +138,8 @@ bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t deadline_
   ServersTotals* t = &s->totals;
   s->last = share;
   ++t->frames;
-  t->device_rows += share.device_rows;
+  t->device_rows += share.device_rows, t->device_pixels += share.device_pixels;
+  t->unchanged_frames += share.unchanged;
   for (std::uint32_t rows : share.server_rows) t->server_rows += rows;
   t->bytes_in += share.bytes_in, t->bytes_out += share.bytes_out;
   for (std::uint32_t checked : share.checked) t->checked += checked;

@@ -4,13 +4,14 @@
 
 #include "base/check.h"
 #include "effect/setting_list.h"
-#include "engine/frame.h"
+#include "engine/shared_rows.h"
 #include "plan/plan_effects.h"
 #include "remote/server/session.h"
 
 namespace pocketray {
 namespace {
 
+constexpr std::uint32_t kSearchPixels = 1u << 17;       // searched at once: well within a slice of time
 constexpr std::uint32_t kFirstPixels = 8;               // first pixels of an exposure, while their cost is unknown
 constexpr std::uint32_t kServerChunkPixels = 1u << 15;  // a chunk is packed and deflated at once
 
@@ -76,6 +77,7 @@ Status build(Session* session, const JobTools& tools, WireError* code) {
   *renderer = Renderer();
   Settings settings = session->job.request.settings;
   settings.threads = tools.thread_count;
+  settings.coherence = tools.coherence;
   *code = WireError::bad_request;
   RETURN_IF_ERROR(validate_settings(settings));
   const Scene& scene = session->job.scene->scene;
@@ -100,6 +102,7 @@ Status plan(Session* session, const JobTools& tools, WireError* code) {
   *code = WireError::too_large;
   if (!session->job.is_view_query) RETURN_IF_ERROR(plan_chunks(session));
   bool built = is_built_for(*session);
+  if (built) end_shared_rows(&session->renderer);  // while it has the last frame's geometry
   if (!built) RETURN_IF_ERROR(build(session, tools, code));
   session->job.stage = session->own_exposure > 0 ? JobStage::aim : JobStage::own_exposure;
   if (session->own_exposure > 0 || !built) return success();
@@ -128,7 +131,10 @@ Status aim(Session* session) {
     return job->measure_exposure || wants_exposure(*renderer) ? success() : answer_view_query(session);
   }
   renderer->exposure = job->request.exposure > 0 ? job->request.exposure : session->own_exposure;
-  return prepare_frame(renderer, job->request.seconds);
+  RETURN_IF_ERROR(prepare_frame(renderer, job->request.seconds));
+  begin_shared_rows(renderer, job->request.row_begin, job->request.row_end);
+  job->stage = JobStage::search;
+  return success();
 }
 
 // Traces the next pixels of an exposure, for about `slice_ns`.
@@ -137,9 +143,10 @@ Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
   const Renderer& renderer = session->renderer;
   std::uint32_t count = slice_pixels(renderer.settings, renderer.light_points.count, session->probe_ns, slice_ns);
   if (session->probe_ns == 0) count = std::min(count, kFirstPixels);
-  *slice = {0, 0, 0, true};
+  *slice = {0, 0, 0, 0, true};
   float exposure = 0;
   bool done = probe_exposure(&session->renderer, &session->job.probe, count, &slice->pixel_count, &exposure);
+  slice->traced_count = slice->pixel_count;
   if (!done) return success();
   if (session->job.stage == JobStage::own_exposure) {
     session->own_exposure = exposure;
@@ -165,6 +172,9 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
     case JobStage::own_exposure:
     case JobStage::view_exposure:
       return probe(session, slice_ns, slice);
+    case JobStage::search:
+      if (search_shared_rows(&session->renderer, kSearchPixels)) session->job.stage = JobStage::rows;
+      break;
     case JobStage::rows:
       CHECK(session->encoder != nullptr && session->built_scene == session->job.scene);
       *slice = trace_slice(session, slice_ns);

@@ -19,6 +19,7 @@ struct ServerOptions {
   std::size_t client_memory_bytes = 64u << 20;             // per client: buffers, encoder, renderer; without the scene
   std::uint32_t image_side_max = 2048;                     // pixels; larger pictures are refused
   std::uint32_t thread_count = 1;                          // for tracing, shared by all clients
+  CoherenceMode coherence = CoherenceMode::automatic;      // as far as a client's memory allows
   Pace pace;                                               // the CPU to emulate: cost of pixels,
   std::uint64_t message_ns = 0, byte_ps = 0;               // of a message and a byte of its answer (0: none),
   const float* row_costs = nullptr;                        // and relative cost of rows; see row_costs.h

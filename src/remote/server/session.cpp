@@ -3,8 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "engine/span_list.h"
-#include "engine/trace_frame.h"
+#include "engine/shared_rows.h"
 #include "present/pack.h"
 
 namespace pocketray {
@@ -13,7 +12,6 @@ namespace {
 constexpr std::uint32_t kFirstPixels = 8;  // per thread, while the cost of pixels is unknown
 constexpr double kLightPointNs =
     80;  // per light point and sample; measured: 512 points, 16 samples, 0.65 ms per pixel of cornell
-constexpr std::uint32_t kPartPixels = 8;  // pixels of a row per thread, unless even those exceed the slice
 
 PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 
@@ -42,6 +40,7 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   chunk->row_begin = static_cast<std::uint16_t>(row_begin);
   chunk->row_count = static_cast<std::uint16_t>(row_count);
   chunk->pixel_ps = session->pixel_ps = picoseconds(session->job.wall_ns, session->job.pixel_count);
+  for (std::uint32_t row = row_begin; row < row_end; ++row) chunk->pixels_traced += count_pixels(renderer, row);
   std::uint32_t byte_count =
       encode_rows(session->encoder, row_begin, row_count,
                   session->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes),
@@ -64,7 +63,6 @@ struct SliceSource {
   Session* session;
   std::uint64_t slice_ns;
   Slice slice = {};
-  Span parts[kThreadCountMax];
 };
 
 // The next pixels of a row, divided evenly among threads.
@@ -73,14 +71,14 @@ void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) 
   const Settings& settings = source->session->renderer.settings;
   CHECK_LT(job.traced_columns, settings.width);
   CHECK_LT(job.request.row_begin, job.traced_begin);
-  std::uint32_t begin = job.traced_columns, left = settings.width - begin;
-  std::uint32_t part_pixels = pixels_max < kPartPixels ? 1 : kPartPixels;
-  std::uint32_t count = std::min(std::max(pixels_max, part_pixels), left);
-  batch->span_count = std::min(settings.threads, (count + part_pixels - 1) / part_pixels);
-  divide_row(job.traced_begin - 1, begin, begin + count, batch->span_count, source->parts);
-  batch->spans = source->parts;
-  source->slice = {0, begin + count, count, false};
-  if (count == left) source->slice = {1, 0, count, false};
+  Renderer* renderer = &source->session->renderer;
+  const std::uint32_t row = job.traced_begin - 1, begin = job.traced_columns;
+  const std::uint32_t end = end_of_part(*renderer, row, begin, pixels_max);
+  const SharedSpans part = list_part(renderer, row, begin, end);
+  batch->spans = part.spans, batch->span_count = part.count;
+  const std::uint32_t traced = static_cast<std::uint32_t>(span_pixel_count(part.spans, part.count));
+  source->slice = {0, end, end - begin, traced, false};
+  if (end == settings.width) source->slice = {1, 0, end - begin, traced, false};
 }
 
 void next_slice(void* context, SpanBatch* batch) {
@@ -93,15 +91,24 @@ void next_slice(void* context, SpanBatch* batch) {
   if (session.trace_ns > 0)
     pixels_max = slice_pixels(settings, session.renderer.light_points.count, session.trace_ns * settings.threads,
                               source->slice_ns * settings.threads);
-  if (job.traced_columns > 0 || pixels_max < settings.width) return next_part(source, pixels_max, batch);
+  Renderer* renderer = &source->session->renderer;
+  if (job.traced_columns > 0 || pixels_max < count_pixels(*renderer, job.traced_begin - 1))
+    return next_part(source, pixels_max, batch);
   // The rest of the chunk, but enough rows to keep all threads busy to the end.
   std::uint32_t rest = next_chunk_rows(session) - (job.sent_begin - job.traced_begin);
   std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
-  std::uint32_t rows = std::min({wanted, pixels_max / settings.width, job.traced_begin - job.request.row_begin});
+  const std::uint32_t rows_max =
+      std::min({wanted, listed_rows_max(*renderer), job.traced_begin - job.request.row_begin});
+  std::uint32_t rows = 0, traced = 0;
+  for (; rows < rows_max; ++rows) {
+    const std::uint32_t count = count_pixels(*renderer, job.traced_begin - rows - 1);
+    if (traced + count > pixels_max) break;
+    traced += count;
+  }
   CHECK(rows > 0 && rows <= job.traced_begin);
-  batch->spans = session.renderer.spans.data + job.traced_begin - rows;
-  batch->span_count = rows;
-  source->slice = {rows, 0, rows * settings.width, false};
+  const SharedSpans spans = list_rows(renderer, job.traced_begin - rows, job.traced_begin);
+  batch->spans = spans.spans, batch->span_count = spans.count;
+  source->slice = {rows, 0, rows * settings.width, traced, false};
 }
 
 }  // namespace
@@ -176,7 +183,9 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns) {
   CHECK(has_job(*session) && session->job.stage == JobStage::rows);
   SliceSource source;
   source.session = session, source.slice_ns = slice_ns;
-  trace_frame(&session->renderer, {&source, next_slice, [](void*, const SpanBatch&) { return true; }});
+  SpanSource spans = {&source, next_slice, [](void*, const SpanBatch&) { return true; }};
+  spans.is_coherent = true;
+  trace_frame(&session->renderer, spans);
   return source.slice;
 }
 
@@ -188,11 +197,13 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std:
     return;
   }
   CHECK_LE(slice.row_count, job->traced_begin - job->request.row_begin);
+  finish_shared_rows(&session->renderer, job->traced_begin - slice.row_count, job->traced_begin);
   job->traced_begin -= slice.row_count;
   job->traced_columns = slice.column_end;
   job->wall_ns += wall_ns;
   job->pixel_count += slice.pixel_count;
-  session->trace_ns = dear_pixel_ns(session->trace_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
+  if (slice.traced_count > 0)
+    session->trace_ns = dear_pixel_ns(session->trace_ns, static_cast<double>(took_ns + 1) / slice.traced_count);
 }
 
 void send_chunks(Session* session) {

@@ -31,6 +31,7 @@ enum class JobStage : std::uint8_t {
   plan,           // codec and renderer
   own_exposure,   // of the scene, if it must be measured
   aim,            // camera, time, lights
+  search,         // for what can have changed since the last frame
   view_exposure,  // of a view_query, answered afterwards
   rows,
 };
@@ -52,6 +53,7 @@ struct FrameJob {
 // Work traced at once: whole rows, or pixels of a slow row, or pixels of an exposure.
 struct Slice {
   std::uint32_t row_count, column_end, pixel_count;  // column_end: the job's next traced_columns
+  std::uint32_t traced_count;                        // of the pixels; the others are the last frame's
   bool is_probe;
 };
 
@@ -59,6 +61,7 @@ struct Slice {
 struct JobTools {
   std::uint32_t thread_count;
   Workers* workers;
+  CoherenceMode coherence;
 };
 
 struct Session {

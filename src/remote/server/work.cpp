@@ -83,7 +83,7 @@ Pace pace_of(const Server& server, const Session& session, const Slice& slice) {
 std::uint64_t work_ns(const Server& server, const Session& session, const Work& work, std::uint64_t took) {
   const ServerOptions& o = server.options;
   if (!is_paced(o.pace)) return took;
-  if (work.message_count == 0) return paced_ns(pace_of(server, session, work.slice), work.slice.pixel_count, took);
+  if (work.message_count == 0) return paced_ns(pace_of(server, session, work.slice), work.slice.traced_count, took);
   return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
 }
 
@@ -107,7 +107,7 @@ void begin_work(Server* server, int index) {
     send_chunks(session);
   } else {
     WireError code;
-    JobTools tools = {server->options.thread_count, server->workers};
+    JobTools tools = {server->options.thread_count, server->workers, server->options.coherence};
     Status status = step_job(session, tools, kSliceNs, &work->slice, &code);
     if (!status.ok) {
       std::uint32_t frame = session->job.request.frame;

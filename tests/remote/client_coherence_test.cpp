@@ -1,0 +1,76 @@
+// Shared frames of which device and servers trace only what can have changed.
+#include <doctest/doctest.h>
+
+#include "split_rig.h"
+
+using namespace pocketray;
+
+namespace {
+
+SplitRigOptions moving_scene(std::uint32_t server_count) {
+  SplitRigOptions options;
+  options.scene = "seesaw";
+  options.server_count = server_count;
+  options.width = 64, options.height = 48;
+  return options;
+}
+
+}  // namespace
+
+// Goal: a frame that equals the last one costs nothing: no pixel, no byte on the wire; the next change is followed.
+// Method: the same time again and again; another time; another exposure, which changes every displayed pixel.
+TEST_CASE("client_sends_nothing_while_nothing_changes") {
+  SplitRigOptions options = moving_scene(2);
+  options.client.check_count = 0;
+  SplitRig rig(options);
+  for (int i = 0; i < 10; ++i) rig.frame(0.1 * i);
+  REQUIRE(is_settled(rig.client));
+  for (int round = 0; round < 3; ++round) {
+    CAPTURE(round);
+    const double seconds = 2 + 0.1 * round;
+    CHECK(!rig.frame(seconds).unchanged);
+    for (int i = 0; i < 5; ++i) {
+      const FrameShare& share = rig.frame(seconds);
+      CHECK(share.unchanged);
+      CHECK(share.bytes_in + share.bytes_out == 0);
+      CHECK(share.device_pixels == 0);
+      rig.idle(30 * kMs);
+    }
+  }
+  CHECK(rig.frame(2.2).unchanged);
+  rig.device->renderer.exposure *= 1.5f;
+  CHECK(!rig.frame(2.2).unchanged);
+  CHECK(rig.frame(2.2).unchanged);
+  // The device alone has rendered in between: the servers' rows of its picture are stale.
+  REQUIRE(render_frame(&rig.device->renderer, 3).ok);
+  CHECK(!rig.frame(2.2).unchanged);
+  CHECK(rig.log.empty());
+}
+
+// Goal: device and servers trace a small part of their rows, whatever the share. Method: fixed shares; without
+// coherence all of them are traced.
+TEST_CASE("client_and_servers_trace_what_changes") {
+  for (CoherenceMode mode : {CoherenceMode::on, CoherenceMode::off}) {
+    SplitRigOptions options = moving_scene(1);
+    options.coherence = mode;
+    options.client.device_share = 0.5;
+    SplitRig rig(options);
+    for (int i = 0; i < 4; ++i) rig.frame(7 + i / 30.0);
+    REQUIRE(is_settled(rig.client));
+    std::uint64_t device_pixels = 0, rows = 0;
+    double server_part = 0;
+    for (int i = 4; i < 12; ++i) {
+      const FrameShare& share = rig.frame(7 + i / 30.0);
+      device_pixels += share.device_pixels, rows += share.device_rows;
+      for (const RowModel& row : rig.client.model.rows)
+        if (row.holder == 0) server_part += static_cast<double>(row.holder_part) / share.server_rows[0] / 8;
+    }
+    REQUIRE(rows > 0);
+    const double device_part = static_cast<double>(device_pixels) / (static_cast<double>(rows) * options.width);
+    CAPTURE(device_part);
+    CAPTURE(server_part);
+    const bool coherent = mode == CoherenceMode::on;
+    CHECK((coherent ? device_part < 0.25 : device_part == 1));
+    CHECK((coherent ? server_part < 0.25 : server_part == doctest::Approx(1)));
+  }
+}
