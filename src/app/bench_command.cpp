@@ -37,7 +37,8 @@ Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement
           {"emulated", renderer.pace.device ? Json(renderer.pace.device) : Json()},
           {"frames", m->frame_count},
           {"ns_per_pixel", {{"min", pixel.min}, {"median", pixel.median}, {"max", pixel.max}}},
-          {"scanline_ns_per_pixel", rows},
+          {"scanline_ns_per_pixel", m->coherent ? Json() : rows},
+          {"pixels_traced", static_cast<double>(m->pixels_traced) / m->frame_count},
           {"rays", rays},
           {"rays_left_out", m->counts.rays_left_out},
           {"left_out_radiance_max", m->counts.left_out_max},
@@ -60,6 +61,9 @@ void print_table(const CommonOptions& options, const Renderer& renderer, Measure
   std::printf("  %-22s %10.0f ns   (%.0f … %.0f)\n", "per pixel", pixel.median, pixel.min, pixel.max);
   std::printf("  %-22s %10.1f ms   (%.1f frames per second)\n", "per frame",
               pixel.median * pixel_count(renderer) * 1e-6, 1e9 / (pixel.median * pixel_count(renderer)));
+  if (m->coherent)
+    std::printf("  %-22s %10.1f %%   (those that can have changed since the last frame)\n", "pixels traced",
+                100 * static_cast<double>(m->pixels_traced) / (pixel_count(renderer) * m->frame_count));
   std::printf("  %-22s %10.2f million\n", "rays per second", rays_per_second(*m) * 1e-6);
   for (int kind = 0; kind < kRayKindCount; ++kind)
     if (m->counts.rays[kind])
@@ -196,6 +200,7 @@ void add_bench_command(Command program, int* exit_status) {
   auto front = std::make_shared<std::string>();
   Command command = program.add_subcommand("bench", "measure the cost per pixel, scanline, ray and effect");
   add_scene_options(command, options.get());
+  add_coherence_options(command, options.get(), "off");
   command.add_option("--frames", *frames, "frames to measure, after one warm-up frame").capture_default_str();
   command.add_flag("--no-prices", *no_prices, "skip pricing each effect");
   command.add_flag(
@@ -206,6 +211,7 @@ void add_bench_command(Command program, int* exit_status) {
       "--front", *front,
       "instead measure the settings that --budget-ms chooses from, and save their prices in FILE or the cache");
   priced.expected(0, 1);
+  priced.excludes(command.get_option("--coherence"));
   for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
     priced.excludes(command.get_option(chosen));
   command.callback([=] {

@@ -1,6 +1,7 @@
 // Shared by the library's files. Its callers only see pocketray.h.
 #pragma once
 #include <atomic>
+#include <cstddef>
 
 #include "engine/pocketray.h"
 #include "engine/progressive.h"
@@ -35,16 +36,16 @@ Status check_struct(const char* name, const void* structure, std::size_t first_s
 
 // Copies a caller's structure over the defaults in *result.
 template <class T>
-Status read_struct(const char* name, const T* given, T* result) {
-  RETURN_IF_ERROR(check_struct(name, given, sizeof(T), sizeof(T)));
+Status read_struct(const char* name, const T* given, T* result, std::size_t first_size = sizeof(T)) {
+  RETURN_IF_ERROR(check_struct(name, given, first_size, sizeof(T)));
   __builtin_memcpy(static_cast<void*>(result), given, given->struct_size);
   result->struct_size = sizeof(T);
   return success();
 }
 // Copies a structure to a caller's, up to that one's size.
 template <class T>
-Status write_struct(const char* name, T value, T* given) {
-  RETURN_IF_ERROR(check_struct(name, given, sizeof(T), sizeof(T)));
+Status write_struct(const char* name, T value, T* given, std::size_t first_size = sizeof(T)) {
+  RETURN_IF_ERROR(check_struct(name, given, first_size, sizeof(T)));
   value.struct_size = given->struct_size;
   __builtin_memcpy(static_cast<void*>(given), &value, given->struct_size);
   return success();

@@ -1,10 +1,11 @@
 // Frames for the library's caller: whole or refined, packed into the caller's pixels.
+#include <algorithm>
 #include <climits>
 #include <cstring>
 
 #include "base/check.h"
 #include "base/limit_list.h"
-#include "engine/frame.h"
+#include "engine/coherent.h"
 #include "engine/library.h"
 #include "present/pack.h"
 
@@ -106,6 +107,31 @@ Status render_bands(pocketray_instance* instance, double seconds) {
   return success();
 }
 
+// Rows of the frame that are complete, from the top.
+std::uint32_t rows_done(const Renderer& renderer, const CoherentFrame& frame) {
+  if (frame.list.done_count < frame.list.span_count) return frame.list.spans[frame.list.done_count].row;
+  return frame.all ? renderer.settings.height : std::min(frame.tile_row * kChangeTileSide, renderer.settings.height);
+}
+
+// What can have changed since the last frame.
+Status render_changes(pocketray_instance* instance, double seconds) {
+  const pocketray_progress progress = instance->progress;
+  void* const user = instance->progress_user;
+  Renderer* renderer = &instance->renderer;
+  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
+  std::uint64_t start = clock_ns();
+  CoherentFrame frame;
+  begin_coherent(renderer, &frame);
+  for (bool ended = false; !ended;) {
+    ended = advance_coherent(renderer, progress ? 0 : kNoDeadline, &instance->stop, &frame);
+    instance->rows_done = ended ? renderer->settings.height : rows_done(*renderer, frame);
+    if (!ended && instance->stop.load(std::memory_order_relaxed)) break;
+    if (progress) ended |= progress(user, instance->rows_done, renderer->settings.height) != 0;
+  }
+  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  return success();
+}
+
 }  // namespace
 }  // namespace pocketray
 
@@ -118,8 +144,9 @@ pocketray_result pocketray_render(pocketray_instance* instance, double seconds, 
   if (!status.ok) return refuse(POCKETRAY_ERROR_ARGUMENT, status);
   Renderer* renderer = &instance->renderer;
   clear_costs(instance);
-  status = instance->progress ? render_bands(instance, seconds)
-                              : render_frame(renderer, seconds, Aov::none, &instance->stop, &instance->rows_done);
+  status = renderer->coherence_state.planned ? render_changes(instance, seconds)
+           : instance->progress              ? render_bands(instance, seconds)
+                                : render_frame(renderer, seconds, Aov::none, &instance->stop, &instance->rows_done);
   if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
   CHECK_LE(instance->rows_done, renderer->settings.height);
   write_pixels(*renderer, 0, instance->rows_done, target);
@@ -199,7 +226,12 @@ pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketr
   result.rays_skipped = counts.rays_left_out;
   result.rows_done = instance->rows_done;
   result.row_count = renderer.settings.height;
-  return to_result(write_struct("the frame", result, frame), POCKETRAY_ERROR_ARGUMENT);
+  const CoherenceState& coherence = renderer.coherence_state;
+  result.pixels_traced =
+      coherence.planned ? coherence.pixels_traced : std::uint64_t(instance->rows_done) * renderer.settings.width;
+  result.whole_because = coherence.planned ? coherence.whole_because : coherence.unplanned_because;
+  return to_result(write_struct("the frame", result, frame, offsetof(pocketray_frame, pixels_traced)),
+                   POCKETRAY_ERROR_ARGUMENT);
 }
 
 pocketray_result pocketray_get_row_costs(const pocketray_instance* instance, std::uint64_t* nanoseconds,

@@ -61,7 +61,7 @@ Status read_accelerator(const char* name, const AccelInfo** accel) {
 }
 
 Status read_options(const pocketray_options* given, Request* q) {
-  RETURN_IF_ERROR(read_struct("the options", given, &q->options));
+  RETURN_IF_ERROR(read_struct("the options", given, &q->options, offsetof(pocketray_options, coherence)));
   const pocketray_options& o = q->options;
   Settings* s = &q->settings;
   RETURN_IF_ERROR(check_limit(Quantity::width, o.width));
@@ -73,6 +73,11 @@ Status read_options(const pocketray_options* given, Request* q) {
   s->threads = static_cast<std::uint32_t>(o.threads);
   RETURN_IF_ERROR(check_choice("measure_exposure", o.measure_exposure, 2));
   RETURN_IF_ERROR(check_choice("movable", o.movable, 2));
+  RETURN_IF_ERROR(check_choice("coherence", o.coherence, 3));
+  s->coherence = static_cast<CoherenceMode>(o.coherence);
+  if (o.coherence_table < 1 || o.coherence_table > static_cast<int>(kCoherenceTableSideMax))
+    return failure("coherence_table is %d: it must lie in 1 … %u", o.coherence_table, kCoherenceTableSideMax);
+  s->coherence_table = static_cast<std::uint32_t>(o.coherence_table);
   RETURN_IF_ERROR(check_limit(Quantity::camera_index, o.camera_index));
   if (o.light_count_max > kLightCountMax)
     return failure("light_count_max is %u: at most %u lights are supported", o.light_count_max, kLightCountMax);

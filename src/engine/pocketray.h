@@ -36,7 +36,7 @@
 
 #define POCKETRAY_VERSION_MAJOR 0
 #define POCKETRAY_VERSION_MINOR 2
-#define POCKETRAY_VERSION_PATCH 0
+#define POCKETRAY_VERSION_PATCH 1
 #define POCKETRAY_VERSION_NUMBER \
   (POCKETRAY_VERSION_MAJOR * 65536u + POCKETRAY_VERSION_MINOR * 256u + POCKETRAY_VERSION_PATCH)
 
@@ -121,6 +121,10 @@ typedef struct pocketray_part {
   uint32_t material;                   /* which no other material may use */
 } pocketray_part;
 
+/* Whether pocketray_render() traces only what can have changed since the last frame it rendered; the pictures stay the
+ * same. AUTO: where the scene moves, memory allows it and it pays. */
+enum { POCKETRAY_COHERENCE_OFF = 0, POCKETRAY_COHERENCE_AUTO = 1, POCKETRAY_COHERENCE_ON = 2 };
+
 /* Fixed from pocketray_open() on. */
 typedef struct pocketray_options {
   size_t struct_size;
@@ -136,9 +140,12 @@ typedef struct pocketray_options {
   const pocketray_part* parts; /* of a scene without animation: each becomes a node, in this order */
   uint32_t part_count;
   int movable; /* 1: reserve memory for pocketray_set_node() on the nodes of an animated scene */
+  /* Since 0.2.1 */
+  int coherence;       /* POCKETRAY_COHERENCE_… */
+  int coherence_table; /* side of the tables of rays behind mirrors and glass, in blocks of pixels, 1 … 1024 */
 } pocketray_options;
 #define POCKETRAY_OPTIONS_INIT \
-  { sizeof(pocketray_options), 320, 240, 1, 0, NULL, NULL, 0, 0, NULL, NULL, NULL, 0, 0 }
+  { sizeof(pocketray_options), 320, 240, 1, 0, NULL, NULL, 0, 0, NULL, NULL, NULL, 0, 0, 0, 16 }
 
 typedef struct pocketray_effect {
   const char* name;          /* as in options.effects; never freed */
@@ -319,9 +326,12 @@ typedef struct pocketray_frame {
   double pose_ms, refit_ms, trace_ms;
   uint64_t ray_count, rays_skipped; /* rays_skipped: could not have changed a display level */
   uint32_t rows_done, row_count;    /* of a frame being refined: rows of its finest grid */
+  /* Since 0.2.1. Of the last frame of pocketray_render(): */
+  uint64_t pixels_traced;
+  const char* whole_because; /* why it was traced whole, never freed; null: only what can have changed was traced */
 } pocketray_frame;
 #define POCKETRAY_FRAME_INIT \
-  { sizeof(pocketray_frame), 0, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(pocketray_frame), 0, 0, 0, 0, 0, 0, 0, 0, 0, NULL }
 POCKETRAY_API pocketray_result pocketray_get_frame(const pocketray_instance* instance, pocketray_frame* frame);
 /* Cost of each row of the last frame, in nanoseconds of one thread; 0 if it was not traced. Rows traced together count
  * the same. `row_count` must be the picture's height. */

@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 #include "base/rng.h"
-#include "engine/frame.h"
+#include "engine/coherent.h"
 #include "session/interrupt.h"
 
 namespace pocketray {
@@ -16,6 +16,14 @@ Status render_once(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel
   CHECK_GT(renderer->scene.info.frames_per_second, 0);
   double seconds = frame / static_cast<double>(renderer->scene.info.frames_per_second);
   RETURN_IF_ERROR(render_frame(renderer, seconds, Aov::none, &interrupted));
+  *ns_per_pixel = renderer->timings.trace_ms * 1e6 / pixel_count(*renderer);
+  return success();
+}
+
+// The same, tracing what can have changed since the last frame.
+Status render_next(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel) {
+  double seconds = frame / static_cast<double>(renderer->scene.info.frames_per_second);
+  RETURN_IF_ERROR(render_coherent(renderer, seconds, &interrupted));
   *ns_per_pixel = renderer->timings.trace_ms * 1e6 / pixel_count(*renderer);
   return success();
 }
@@ -85,10 +93,13 @@ Status measure_frames(Renderer* renderer, Measurement* m) {
   CHECK_EQ(m->ns_per_pixel.size(), m->frame_count_max);
   CHECK_EQ(m->row_ns.size(), std::size_t(renderer->settings.height) * m->frame_count_max);
   double warm_up;
-  RETURN_IF_ERROR(render_once(renderer, 0, &warm_up));
+  m->coherent = renderer->coherence_state.planned;
+  const auto render = m->coherent ? render_next : render_once;
+  RETURN_IF_ERROR(render(renderer, 0, &warm_up));
   for (std::uint32_t frame = 0; frame < m->frame_count_max && !interrupted; ++frame) {
-    RETURN_IF_ERROR(render_once(renderer, frame, &m->ns_per_pixel[frame]));
+    RETURN_IF_ERROR(render(renderer, frame + m->coherent, &m->ns_per_pixel[frame]));
     if (interrupted) break;
+    m->pixels_traced += m->coherent ? renderer->coherence_state.pixels_traced : renderer->image.count;
     for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
       m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max + frame] =
           static_cast<double>(renderer->row_ns[row]);

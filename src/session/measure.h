@@ -19,13 +19,16 @@ struct Measurement {
   std::uint32_t frame_count_max;                                // capacity of row_ns
   std::vector<double> ns_per_pixel, pose_ms, refit_ms, row_ns;  // row_ns: frames of row 0, of row 1, …
   Tracer counts;                                                // of the last frame
-  double trace_ns = 0;                                          // of all frames
-  double effect_price[kEffectCount];                            // ns per pixel; NaN: not measured
+  bool coherent = false;              // only what can have changed is traced: times of rows are unknown
+  std::uint64_t pixels_traced = 0;    // of all frames
+  double trace_ns = 0;                // of all frames
+  double effect_price[kEffectCount];  // ns per pixel; NaN: not measured
 };
 
 // Reserves room for `frame_count_max` frames; measuring allocates nothing.
 Measurement make_measurement(const Renderer& renderer, std::uint32_t frame_count_max);
-// Renders frames from time 0 on, after one warm-up frame. After an interrupt, finished frames remain.
+// Renders frames from time 0 on, or from the next if coherence is planned, after one warm-up frame. After an interrupt,
+// finished frames remain.
 Status measure_frames(Renderer* renderer, Measurement* measurement);
 // Prices every effect that is on: the median of frames with it minus the median of frames without it, interleaved.
 Status measure_prices(Renderer* renderer, Measurement* measurement);

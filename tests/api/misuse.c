@@ -67,6 +67,10 @@ static void options_out_of_range(void) {
   WRONG(o.height = 8193, "height is 8193");
   WRONG(o.threads = 0, "threads is 0");
   WRONG(o.threads = 65, "threads is 65");
+  WRONG(o.coherence = 3, "coherence");
+  WRONG(o.coherence = -1, "coherence");
+  WRONG(o.coherence_table = 0, "coherence_table is 0");
+  WRONG(o.coherence_table = 1025, "coherence_table is 1025");
   WRONG(o.measure_exposure = -1, "measure_exposure");
   WRONG(o.movable = 7, "movable");
   WRONG(o.camera_index = 1, "no camera 1");

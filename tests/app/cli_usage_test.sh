@@ -48,6 +48,8 @@ expect plan 0 'shadow +on' plan "$subject"
 expect plan_map 0 'persistent +accelerator' plan "$subject"
 expect plan_json 0 '"total_bytes"' plan "$subject" --json -
 expect bench 0 'per pixel' bench cube "${small[@]}" --frames 2
+expect bench_coherence 0 "pixels traced" bench seesaw "${small[@]}" --frames 2 --no-prices --coherence on
+expect bench_coherence_or_front 2 "excludes|--front" bench seesaw "${small[@]}" --coherence on --front
 expect bench_json 0 '"scanline_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --json -
 expect bench_sparse 0 ' 10 % of pixels' bench cube "${small[@]}" --frames 2 --no-prices --sparse
 expect bench_sparse_json 0 '"patch_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --no-prices --sparse --json -
