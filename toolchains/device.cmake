@@ -31,4 +31,5 @@ set(ENV{PKG_CONFIG_LIBDIR} ${POCKETRAY_SYSROOT}/lib/pkgconfig)
 
 set(POCKETRAY_STATIC ON CACHE BOOL "one static binary")
 set(POCKETRAY_IMPORT OFF CACHE BOOL "read glTF, OBJ and other formats (desktop)")
+set(POCKETRAY_RADIOSITY OFF CACHE BOOL "solve radiosity (desktop)")
 set(POCKETRAY_ACCURACY OFF CACHE BOOL "measure what accuracy costs in time (desktop)")

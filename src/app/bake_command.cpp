@@ -1,5 +1,6 @@
 // pocketray bake: converts a model into one .pray file, accelerator included, which a device loads as it is.
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <vector>
 
 #include "app/commands.h"
@@ -9,6 +10,7 @@
 #include "session/heap_scene.h"
 #include "session/note.h"
 #include "session/output.h"
+#include "session/radiosity.h"
 #include "session/report.h"
 
 namespace pocketray {
@@ -17,6 +19,7 @@ namespace {
 struct BakeOptions {
   std::string input, output, json, accel = kBvhAccel.name;
   ModelOptions model;
+  bool radiosity = false;
 };
 
 Status write_scene(const std::string& path, const Scene& scene, std::size_t* byte_count) {
@@ -44,6 +47,10 @@ Status bake(const BakeOptions& o) {
   Scene& scene = heap.scene;
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
+  SolvedRadiosity solved;
+  if (o.radiosity) RETURN_IF_ERROR(solve_scene(o.input, std::thread::hardware_concurrency(), &scene, &solved));
+  double solve_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  start = clock_ns();
   void* accel_block = build_heap_accel(*find_accel(o.accel), scene, &scene.accel);
   if (!accel_block) return failure("not enough memory to build the accelerator: bake a smaller model");
   double build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
@@ -59,6 +66,9 @@ Status bake(const BakeOptions& o) {
         "ms\n",
         o.output.c_str(), grouped(scene.triangles.count).c_str(), scene.materials.count, scene.textures.count,
         static_cast<double>(byte_count) / (1 << 20), static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);
+  if (o.radiosity && o.json != "-" && o.output != "-")
+    std::printf("radiosity: %s, %.2f MiB, solved in %.1f s\n", solved.summary.c_str(),
+                static_cast<double>(solved.memory.size()) / (1 << 20), solve_ms * 1e-3);
   if (o.json.empty()) return success();
   return write_json(o.json, {{"output", o.output},
                              {"triangles", scene.triangles.count},
@@ -69,6 +79,8 @@ Status bake(const BakeOptions& o) {
                              {"accel_bytes", accel_bytes},
                              {"read_ms", read_ms},
                              {"build_ms", build_ms},
+                             {"radiosity_bytes", solved.memory.size()},
+                             {"radiosity_ms", o.radiosity ? solve_ms : 0},
                              {"warning", heap.warning}});
 }
 
@@ -89,6 +101,9 @@ void add_bake_command(Command program, int* exit_status) {
                   "for models without normals: shade edges below this angle smooth, in degrees (glTF: always flat)")
       .capture_default_str()
       .range(0.0f, 180.0f);
+  command.add_flag("--radiosity", options->radiosity,
+                   "solve the light between diffuse surfaces and store it; costs seconds to minutes here and little on "
+                   "the device. It is solved for the pose at time 0");
   std::vector<std::string> names;
   std::string help;
   for (const AccelInfo* info : kAccelList) {

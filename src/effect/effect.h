@@ -24,14 +24,15 @@ enum class Effect : std::uint8_t {
   supersampling,
   animation,
   back_face_culling,
+  radiosity,
 };
-constexpr int kEffectCount = 19;
+constexpr int kEffectCount = 20;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }
 constexpr EffectMask kAllEffects = (1u << kEffectCount) - 1;
 // Methods of indirect light: a plan has one of them or none; --indirect chooses.
-constexpr EffectMask kIndirectEffects = bit(Effect::ambient);
+constexpr EffectMask kIndirectEffects = bit(Effect::ambient) | bit(Effect::radiosity);
 
 // The effects compiled into this build. tests/absence builds the core without those that a scene does not need, to
 // prove that an absent effect costs nothing in a full build.

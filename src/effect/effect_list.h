@@ -30,6 +30,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::supersampling, "supersampling", "more than one sample per pixel"},
     {Effect::animation, "animation", "moving geometry, lights or cameras"},
     {Effect::back_face_culling, "back-face-culling", "a material visible from the front only"},
+    {Effect::radiosity, "radiosity", "a stored solution of the light between surfaces"},
 };
 
 constexpr bool effects_in_order() {

@@ -9,6 +9,7 @@ namespace pocketray {
 
 inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
+inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
 
 // "auto", "none", then the effects that are methods of indirect light.
 constexpr int kIndirectChoiceCount = 2 + __builtin_popcount(kIndirectEffects);
@@ -119,9 +120,22 @@ inline constexpr SettingRow kSettingList[] = {
      {double(NormalMode::flat), double(NormalMode::as_scene)},
      nullptr,
      ""},
-    {"indirect", "light from other surfaces", "auto: what the scene states", nullptr,
+    {"indirect", "light from other surfaces", "auto: radiosity if the scene stores it, otherwise ambient", nullptr,
      choice_field<&Quality::indirect>(kIndirectNames.names), 1, kIndirectEffects, kIndirectEffects, true, kAsAsked,
      indirect_sweep(), nullptr, ""},
+    {"reconstruction",
+     "stored light between the nodes of its grids",
+     "",
+     nullptr,
+     choice_field<&Quality::reconstruction>(kReconstructionNames),
+     1,
+     bit(Effect::radiosity),
+     bit(Effect::radiosity),
+     false,
+     double(Reconstruction::bicubic),
+     {double(Reconstruction::constant), double(Reconstruction::bilinear), double(Reconstruction::bicubic)},
+     nullptr,
+     ""},
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];
 

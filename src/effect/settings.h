@@ -13,6 +13,8 @@ enum class NormalMode : std::uint8_t { as_scene, flat };
 
 // Indirect light: the scene's own, none, or the effect of kIndirectEffects with that index, counted from `first`.
 enum class IndirectChoice : std::uint8_t { automatic, none, first };
+// Of stored light, between the places where it is stored.
+enum class Reconstruction : std::uint8_t { constant, bilinear, bicubic };
 
 // The settings that trade accuracy for time, a row of setting_list.h each. They may change from frame to frame.
 struct Quality {
@@ -23,6 +25,7 @@ struct Quality {
   TextureFilter texture_filter = TextureFilter::as_scene;
   NormalMode normals = NormalMode::as_scene;
   IndirectChoice indirect = IndirectChoice::automatic;
+  Reconstruction reconstruction = Reconstruction::bicubic;
 };
 
 // Whether frames trace only what can have changed. automatic: where that pays.

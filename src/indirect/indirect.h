@@ -18,6 +18,7 @@
 
 #include "base/arena.h"
 #include "effect/effect_list.h"
+#include "effect/settings.h"
 #include "scene/scene.h"
 
 namespace pocketray {
@@ -28,6 +29,10 @@ struct IndirectPoint {
   const Vec3& point;
   const Vec3& normal;   // unit, on the viewer's side
   const Vec3& diffuse;  // albedo there
+  std::uint32_t triangle = 0;
+  float u = 0, v = 0;  // in the triangle
+  bool front = true;   // the viewer's side is the triangle's front
+  Reconstruction reconstruction = Reconstruction::bicubic;
 };
 
 // When the reference includes a method's light: never; in its lighting model only, where the method stands in for light
@@ -62,16 +67,18 @@ struct IndirectMethods {
   // Adds the radiance of the methods in the mask; the others are not compiled. `prepared` comes from
   // prepare_indirect().
   template <EffectMask mask>
-  static void add_radiance(const Scene& scene, const void* const* prepared, const Vec3& point, const Vec3& normal,
-                           const Vec3& diffuse, Vec3* sum) {
+  static void add_radiance(const void* const* prepared, IndirectPoint point, Vec3* sum) {
     int index = 0;
-    (add<mask, Methods>({scene, prepared[index++], point, normal, diffuse}, sum), ...);
+    (add<mask, Methods>(prepared[index++], &point, sum), ...);
   }
 
  private:
   template <EffectMask mask, class Method>
-  static void add(const IndirectPoint& point, Vec3* sum) {
-    if constexpr ((mask & Method::kEffects) != 0) *sum += Method::radiance(point);
+  static void add(const void* prepared, IndirectPoint* point, Vec3* sum) {
+    if constexpr ((mask & Method::kEffects) != 0) {
+      point->prepared = prepared;
+      *sum += Method::radiance(*point);
+    }
   }
 };
 

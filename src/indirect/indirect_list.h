@@ -2,12 +2,14 @@
 #pragma once
 #include "indirect/ambient.h"
 #include "indirect/none.h"
+#include "indirect/radiosity.h"
 
 namespace pocketray {
 
 using IndirectList = IndirectMethods<  //
     NoIndirect,                        //
-    AmbientIndirect                    //
+    AmbientIndirect,                   //
+    RadiosityIndirect                  //
     >;
 
 static_assert(IndirectList::kEffects == kIndirectEffects, "each method of kIndirectEffects is in the list");

@@ -22,6 +22,8 @@ static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 1
 static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "no padding");
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
 static_assert(sizeof(SkinWeight) == 8 + 16 && sizeof(MovingMesh) == 8 * 4 + 48, "no padding");
+static_assert(sizeof(RadiosityInfo) == 12 && sizeof(RadiosityGrid) == 3 * 12 + 3 * 4, "no padding");
+static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12, "no padding");
 
 constexpr std::uint64_t kSectionAlignment = 64;
 constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'R', 'A', 'Y', '\r', '\n', 0x1A};  // as PNG: text-mode copies damage it
@@ -73,8 +75,14 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("morph_positions", scene.morph_positions);
   visit("morph_normals", scene.morph_normals);
   visit("accel", scene.accel);
+  visit("radiosity_info", scene.radiosity_info);
+  visit("radiosity_triangles", scene.radiosity_triangles);
+  visit("radiosity_grids", scene.radiosity_grids);
+  visit("radiosity_nodes", scene.radiosity_nodes);
+  visit("radiosity_corners", scene.radiosity_corners);
+  visit("radiosity_values", scene.radiosity_values);
 }
-constexpr std::uint32_t kArrayCount = 25;
+constexpr std::uint32_t kArrayCount = 31;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {

@@ -11,6 +11,7 @@
 #include "base/limits.h"
 #include "base/transform.h"
 #include "base/vec3.h"
+#include "scene/radiosity.h"
 
 namespace pocketray {
 
@@ -196,6 +197,12 @@ struct Scene {
   Array<const Vec3> rest_positions, rest_normals;
   Array<const SkinWeight> skin_weights;
   Array<const Vec3> morph_positions, morph_normals;
+  Array<const RadiosityInfo> radiosity_info;       // one, or empty like all that follow: no solution is stored
+  Array<const std::uint32_t> radiosity_triangles;  // for each triangle's front, then, if stored, for each one's back
+  Array<const RadiosityGrid> radiosity_grids;
+  Array<const RadiosityNode> radiosity_nodes;
+  Array<const RadiosityCorners> radiosity_corners;
+  Array<const Vec3> radiosity_values;
   Array<const std::uint8_t> accel;  // baked accelerator in the layout of accel/; may be empty
 };
 

@@ -196,7 +196,8 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
   RETURN_IF_ERROR(validate_nodes(scene));
   RETURN_IF_ERROR(validate_animations(scene));
-  return validate_moving_meshes(scene);
+  RETURN_IF_ERROR(validate_moving_meshes(scene));
+  return validate_radiosity(scene);
 }
 
 }  // namespace pocketray

@@ -70,5 +70,6 @@ Status validate_lights_and_cameras(const Scene& scene);
 Status validate_nodes(const Scene& scene);
 Status validate_animations(const Scene& scene);
 Status validate_moving_meshes(const Scene& scene);
+Status validate_radiosity(const Scene& scene);
 
 }  // namespace pocketray

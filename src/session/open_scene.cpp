@@ -7,6 +7,7 @@
 #include "platform/memory.h"
 #include "session/interrupt.h"
 #include "session/note.h"
+#include "session/radiosity.h"
 
 namespace pocketray {
 namespace {
@@ -62,6 +63,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   renderer->accel_info = find_accel(o.accel);
   SceneStorage storage;
   RETURN_IF_ERROR(hooks.load(o.scene, renderer, &opened->source, &storage));
+  RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, renderer));
   Status planned = hooks.plan(renderer, storage, hooks.output_bytes(settings));
   if (!planned.ok && renderer->memory.total_bytes > renderer->memory.limit_bytes)

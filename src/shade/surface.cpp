@@ -83,7 +83,9 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
     }
   }
   if constexpr ((mask & kEffectsBuilt & IndirectList::kEffects) != 0) {
-    IndirectList::add_radiance<mask>(scene, frame.indirect.prepared, s->point, s->normal, s->diffuse, &s->glow);
+    const IndirectPoint point = {scene,        nullptr, s->point, s->normal, s->diffuse,
+                                 hit.triangle, u,       v,        s->front,  frame.settings.reconstruction};
+    IndirectList::add_radiance<mask>(frame.indirect.prepared, point, &s->glow);
   }
   if constexpr (has(mask, Effect::emission)) {
     if (!is_zero(m.emission) && (s->front || m.double_sided)) {

@@ -63,8 +63,8 @@ TEST_CASE("indirect_light_follows_the_plan") {
   const Vec3 point = {0, 0, 0}, normal = {0, 1, 0}, white = {1, 1, 1};
   IndirectData data = prepare_indirect(scene, kAllEffects, nullptr);
   Vec3 with = {0, 0, 0}, without = {0, 0, 0};
-  IndirectList::add_radiance<bit(Effect::ambient)>(scene, data.prepared, point, normal, white, &with);
-  IndirectList::add_radiance<bit(Effect::texture)>(scene, data.prepared, point, normal, white, &without);
+  IndirectList::add_radiance<bit(Effect::ambient)>(data.prepared, {scene, nullptr, point, normal, white}, &with);
+  IndirectList::add_radiance<bit(Effect::texture)>(data.prepared, {scene, nullptr, point, normal, white}, &without);
   CHECK(with == scene.info.ambient);
   CHECK(is_zero(without));
   CHECK(indirect_need(scene, 0) == 0);
@@ -111,9 +111,10 @@ TEST_CASE("indirect_method_more_is_a_line_more") {
   CHECK(Longer::kEffects == (bit(Effect::ambient) | bit(Effect::animation)));
   const Vec3 point = {0, 0, 0}, normal = {0, 1, 0}, white = {1, 1, 1};
   Vec3 both = {0, 0, 0}, ambient = both, stored = both;
-  Longer::add_radiance<bit(Effect::ambient) | bit(Effect::animation)>(scene, prepared, point, normal, white, &both);
-  Longer::add_radiance<bit(Effect::ambient)>(scene, prepared, point, normal, white, &ambient);
-  Longer::add_radiance<bit(Effect::animation)>(scene, prepared, point, normal, white, &stored);
+  Longer::add_radiance<bit(Effect::ambient) | bit(Effect::animation)>(prepared, {scene, nullptr, point, normal, white},
+                                                                      &both);
+  Longer::add_radiance<bit(Effect::ambient)>(prepared, {scene, nullptr, point, normal, white}, &ambient);
+  Longer::add_radiance<bit(Effect::animation)>(prepared, {scene, nullptr, point, normal, white}, &stored);
   CHECK(both == Vec3{1.5f, 2.5f, 3.5f});
   CHECK(ambient == scene.info.ambient);
   CHECK(stored == Vec3{1, 2, 3});

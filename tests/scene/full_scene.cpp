@@ -73,6 +73,9 @@ void FullScene::bind() {
   scene.joints = view(joints), scene.moving_meshes = view(moving_meshes), scene.rest_positions = view(rest_positions);
   scene.rest_normals = view(rest_normals), scene.skin_weights = view(skin_weights);
   scene.morph_positions = view(morph_positions), scene.morph_normals = view(morph_normals), scene.accel = view(accel);
+  scene.radiosity_info = view(radiosity_info), scene.radiosity_triangles = view(radiosity_triangles);
+  scene.radiosity_grids = view(radiosity_grids), scene.radiosity_nodes = view(radiosity_nodes);
+  scene.radiosity_corners = view(radiosity_corners), scene.radiosity_values = view(radiosity_values);
 }
 
 void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {
@@ -88,6 +91,13 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   Camera still, flying;
   flying.node = 1, flying.projection = Projection::orthographic;
   full->cameras = {still, flying};
+  full->radiosity_info = {{{3, 3, 3}}};
+  full->radiosity_triangles.assign(full->triangles.size(), kRadiosityGridBit);
+  full->radiosity_triangles[1] = 0;
+  full->radiosity_grids = {{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 2, 2, 0}};
+  full->radiosity_nodes.assign(4, {{1, 2, 3}, {.5f, .25f, 0}, {0, .5f, .25f}, {.125f, 0, 0}});
+  full->radiosity_corners = {{{0, 1, 2}}};
+  full->radiosity_values.assign(3, {1, 2, .5f});
   for (int i = 0; i < 37; ++i) full->accel.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
   full->bind();
 }

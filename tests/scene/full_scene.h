@@ -25,6 +25,12 @@ struct FullScene {
   std::vector<pocketray::MovingMesh> moving_meshes;
   std::vector<pocketray::SkinWeight> skin_weights;
   std::vector<std::uint8_t> accel;
+  std::vector<pocketray::RadiosityInfo> radiosity_info;
+  std::vector<std::uint32_t> radiosity_triangles;
+  std::vector<pocketray::RadiosityGrid> radiosity_grids;
+  std::vector<pocketray::RadiosityNode> radiosity_nodes;
+  std::vector<pocketray::RadiosityCorners> radiosity_corners;
+  std::vector<pocketray::Vec3> radiosity_values;
 
   FullScene() = default;
   FullScene(const FullScene&) = delete;  // `scene` points into the vectors

@@ -5,12 +5,12 @@ set -eu
 cd "$1"
 
 # Ranks of DESIGN.md: a folder of src/ includes only folders of strictly lower rank, or itself.
-ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 split=5 present=5 wire=5 reference=5 plan=6 import=6 accuracy=6
+ranks="base=0 scene=1 effect=1 brdf=2 accel=2 indirect=3 shade=4 temporal=5 split=5 present=5 wire=5 reference=5 radiosity=5 plan=6 import=6 accuracy=6
   engine=7 session=8 remote=9 budget=9 viewer=10 sweep=10 split_report=10 coherence_report=10 app=11"
 line_count_max=450
 
 # heap_rooms may use the heap; all others, and platform/, are the core. platform_rooms may include the platform.
-heap_rooms='reference|accuracy|import|session|remote|budget|viewer|sweep|split_report|coherence_report|app'
+heap_rooms='reference|radiosity|accuracy|import|session|remote|budget|viewer|sweep|split_report|coherence_report|app'
 # The C++ library allocates for each thread, before the seal.
 heap_files='src/engine/workers\.cpp'
 platform_rooms='session|remote|budget|viewer|sweep|split_report|coherence_report|app'

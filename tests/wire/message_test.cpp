@@ -237,6 +237,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 91, {3}},                     // filter
       {MessageType::frame_request, 8 + 92, {2}},                     // normals
       {MessageType::frame_request, 8 + 93, {kIndirectChoiceCount}},  // indirect
+      {MessageType::frame_request, 8 + 94, {3}},                     // reconstruction
       {MessageType::frame_request, 8 + more + 96, {0xFF}},           // effects
       {MessageType::frame_request, 8 + more + 100, {0xFF}},
       {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1

@@ -1,0 +1,73 @@
+// Radiosity: light between diffuse surfaces, solved when the scene was baked and stored with it [Shirley 1990]. Direct
+// light is not in it; that is traced for each pixel [Jansen92].
+#pragma once
+#include "effect/effect_probe.h"
+#include "indirect/indirect.h"
+#include "indirect/reconstruct/hermite.h"
+
+namespace pocketray {
+
+// Stored value on a grid, at a point in the pose at time 0.
+inline Vec3 radiosity_of_grid(const Scene& scene, const RadiosityGrid& grid, const Vec3& point, Reconstruction how) {
+  auto place = [](float at, std::uint32_t count, std::uint32_t* cell) {  // in [0, 1] of the cell
+    const float last = static_cast<float>(count - 1);
+    at = at > 0 ? at < last ? at : last : 0;
+    *cell = static_cast<std::uint32_t>(at);
+    if (*cell == count - 1) --*cell;
+    return at - static_cast<float>(*cell);
+  };
+  const Vec3 way = point - grid.origin;
+  std::uint32_t column, row;
+  const float s = place(dot(way, grid.along_s), grid.columns, &column);
+  const float t = place(dot(way, grid.along_t), grid.rows, &row);
+  const RadiosityNode* node = &scene.radiosity_nodes[grid.node_begin + row * grid.columns + column];
+  const PatchCorners corners = {node, node + 1, node + grid.columns, node + grid.columns + 1};
+  if (how == Reconstruction::bicubic) return bicubic_patch(corners, s, t);
+  return how == Reconstruction::bilinear ? bilinear_patch(corners, s, t) : constant_patch(corners);
+}
+
+struct RadiosityIndirect {
+  static constexpr const char* kName = "radiosity";
+  static constexpr EffectMask kEffects = bit(Effect::radiosity);
+  static constexpr IndirectReference kReference = IndirectReference::nothing;  // its paths carry this light
+  static constexpr const char *kPresent = "a stored solution", *kAbsent = "no stored solution";
+  static IndirectUse use(const Scene& scene) {
+    return scene.radiosity_triangles.count ? IndirectUse::automatic : IndirectUse::nothing;
+  }
+  static std::size_t need(const Scene&) { return 0; }
+  static const void* prepare(const Scene&, Arena*) { return nullptr; }
+  static Vec3 radiance(const IndirectPoint& at) {
+    const Scene& scene = at.scene;
+    if (scene.radiosity_triangles.empty() || is_zero(at.diffuse)) return {0, 0, 0};  // --effects all
+    effect_entered<Effect::radiosity>();
+    const std::uint32_t side = at.front ? at.triangle : at.triangle + scene.triangles.count;
+    if (side >= scene.radiosity_triangles.count) return {0, 0, 0};
+    const std::uint32_t place = scene.radiosity_triangles[side];
+    if (place == kNone) return {0, 0, 0};
+    const float w = 1 - at.u - at.v;
+    const Triangle& t = scene.triangles[at.triangle];
+    if (place & kRadiosityGridBit) {
+      const Vec3 point =
+          scene.positions[t.vertex(0)] * w + scene.positions[t.vertex(1)] * at.u + scene.positions[t.vertex(2)] * at.v;
+      const RadiosityGrid& grid = scene.radiosity_grids[place & ~kRadiosityGridBit];
+      const Vec3 value = radiosity_of_grid(scene, grid, point, at.reconstruction);
+      // Rounding may leave the range of the limited patches.
+      return at.diffuse * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
+    }
+    const RadiosityCorners corners = place == kRadiosityAtVertices
+                                         ? RadiosityCorners{t.vertex(0), t.vertex(1), t.vertex(2)}
+                                         : scene.radiosity_corners[place];
+    const Vec3 &a = scene.radiosity_values[corners.value[0]], &b = scene.radiosity_values[corners.value[1]],
+               &c = scene.radiosity_values[corners.value[2]];
+    const bool constant = at.reconstruction == Reconstruction::constant;
+    const Vec3 value = constant ? (a + b + c) * (1.0f / 3) : a * w + b * at.u + c * at.v;
+    return at.diffuse * min(max(value, Vec3{0, 0, 0}), scene.radiosity_info[0].value_max);
+  }
+  static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }
+  static float bound(const Scene& scene, const Material& material) {
+    if (scene.radiosity_info.empty()) return 0;
+    return max_component(material.diffuse * scene.radiosity_info[0].value_max);
+  }
+};
+
+}  // namespace pocketray

@@ -1,0 +1,37 @@
+// Patches: the pieces between which light is exchanged.
+#pragma once
+#include "radiosity/surfaces.h"
+
+namespace pocketray {
+
+constexpr int kPatchSamples = 4;
+constexpr double kAlbedoMax = 0.99;
+
+struct PatchSample {
+  Vec3d point, normal;  // unit
+  std::uint32_t triangle;
+};
+
+struct Patch {
+  // Mean over the samples; gloss and mirrors count as diffuse surfaces of their reflectance. At most kAlbedoMax, so
+  // that a white room has a solution.
+  Vec3d albedo;
+  Vec3d emission;  // radiance
+  Vec3d centre, normal;
+  double area, radius;
+  double lift;                           // rays start and end this far above it
+  std::vector<std::uint32_t> triangles;  // that it is part of, or consists of
+  std::vector<Polygon> pieces;           // empty: a cluster of small triangles
+  PatchSample samples[kPatchSamples];
+  bool is_back, double_sided;
+};
+
+// The front patches of all surfaces: cells of flat surfaces, and clusters of the other triangles by place and
+// orientation.
+std::vector<Patch> make_patches(const Scene& scene, const Surfaces& surfaces);
+Patch back_of(const Patch& front);
+
+// Unoccluded, from a point.
+double patch_form_factor(const Vec3d& point, const Vec3d& normal, const Patch& patch);
+
+}  // namespace pocketray

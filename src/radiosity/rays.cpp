@@ -1,0 +1,108 @@
+#include "radiosity/rays.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "base/check.h"
+#include "base/fmath.h"
+#include "base/rng.h"
+#include "shade/lights.h"
+
+namespace pocketray {
+namespace {
+
+Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+Vec3 origin_of(const Receiver& from) { return to_float(from.point + from.normal * from.lift); }
+
+}  // namespace
+
+bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to) {
+  const Vec3 origin = origin_of(from);
+  TraceStats stats;
+  const Ray ray = {origin, to_float(to) - origin, 1};
+  return !rays.frame.accel_info->occluded(rays.frame.accel, ray, rays.filter(), &stats);
+}
+
+Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t count, std::uint32_t seed) {
+  const std::uint32_t side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)) + 0.5);
+  CHECK_EQ(side * side, count);
+  Rng rng = make_rng(seed);
+  Vec3 tangent, bitangent;
+  const Vec3 normal = to_float(from.normal), origin = origin_of(from);
+  make_basis(normal, &tangent, &bitangent);
+  Outlook outlook;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double square = (i / side + static_cast<double>(next_float(&rng))) / side;
+    const double angle = 2 * kPi * (i % side + static_cast<double>(next_float(&rng))) / side;
+    const double out = std::sqrt(square);
+    const Vec3 direction = tangent * static_cast<float>(out * det_cos(angle)) +
+                           bitangent * static_cast<float>(out * det_sin(angle)) +
+                           normal * static_cast<float>(std::sqrt(1 - square));
+    TraceStats stats;
+    Hit hit;
+    rays.frame.accel_info->closest(rays.frame.accel, {origin, direction, __builtin_inff()}, rays.filter(), &hit,
+                                   &stats);
+    if (hit.triangle == kNoTriangle) {
+      outlook.open += 1.0 / count;
+      continue;
+    }
+    const Triangle& t = rays.frame.scene->triangles[hit.triangle];
+    const Vec3& a = rays.frame.positions[t.vertex(0)];
+    const Vec3 outward = cross(rays.frame.positions[t.vertex(1)] - a, rays.frame.positions[t.vertex(2)] - a);
+    (dot(outward, direction) <= 0 ? outlook.front : outlook.back) += 1.0 / count;
+  }
+  return outlook;
+}
+
+double visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor,
+                     std::uint32_t seed) {
+  CHECK(factor > 0);
+  const bool all = factor > 0.01;
+  int seen = 0, tried = 0;
+  for (int i = 0; i < (all ? kPatchSamples : 1); ++i) {
+    const PatchSample& sample = patch.samples[all ? i : static_cast<int>(seed % kPatchSamples)];
+    const Vec3d to = sample.point + sample.normal * patch.lift;
+    ++tried;
+    seen += is_visible(rays, from, to);
+  }
+  return static_cast<double>(seen) / tried;
+}
+
+Vec3d light_irradiance(const SceneRays& rays, const Receiver& at) {
+  Vec3d sum = {0, 0, 0};
+  const FrameData& frame = rays.frame;
+  const Vec3 origin = origin_of(at), normal = to_float(at.normal);
+  for (int r = 0; r < frame.light_run_count; ++r) {
+    const LightRun& run = frame.light_runs[r];
+    if (run.sample == find_light_sampler(Effect::area_light)) continue;  // emitting patches
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      LightSample sample;
+      if (!run.sample(frame.lights[i], origin, &sample)) continue;
+      const float cosine = dot(normal, sample.direction);
+      TraceStats stats;
+      if (!(cosine > 0) ||
+          frame.accel_info->occluded(frame.accel, {origin, sample.to_light, sample.t_max}, rays.filter(), &stats))
+        continue;
+      sum += to_double(sample.irradiance) * static_cast<double>(cosine);
+    }
+  }
+  return sum;
+}
+
+void for_each_on_threads(std::uint32_t count, std::uint32_t threads, void (*work)(void* user, std::uint32_t i),
+                         void* user) {
+  CHECK_GE(threads, 1u);
+  std::atomic<std::uint32_t> next{0};
+  auto run = [&] {
+    for (std::uint32_t i = next++; i < count; i = next++) work(user, i);
+  };
+  std::vector<std::thread> others;
+  for (std::uint32_t i = 1; i < threads; ++i) others.emplace_back(run);
+  run();
+  for (std::thread& thread : others) thread.join();
+}
+
+}  // namespace pocketray

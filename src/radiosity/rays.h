@@ -1,0 +1,48 @@
+// Rays for the solver: what a point sees.
+#pragma once
+#include "radiosity/patches.h"
+#include "shade/filters.h"
+
+namespace pocketray {
+
+// Rays through what lets light through, from points lifted off their surfaces.
+struct SceneRays {
+  const FrameData& frame;
+  ShadowContext context = {&frame, kNone};
+  HitFilter opaque = {frame.accept_opaque, &context};
+  const HitFilter* filter() const { return frame.filter_every_shadow ? &opaque : nullptr; }
+};
+
+struct Receiver {
+  Vec3d point, normal;
+  double lift;
+};
+
+bool is_visible(const SceneRays& rays, const Receiver& from, const Vec3d& to);
+
+// Shares of the cosine-weighted hemisphere over a receiver: no surface; a surface's front; the back of one.
+struct Outlook {
+  double open = 0, front = 0, back = 0;
+};
+// `seed` turns the pattern of `count` rays, a square number.
+Outlook look_around(const SceneRays& rays, const Receiver& from, std::uint32_t count, std::uint32_t seed);
+
+// The share of a patch that a receiver sees, by up to kPatchSamples rays: all where it fills more than a hundredth of
+// the hemisphere, otherwise one.
+double visible_share(const SceneRays& rays, const Receiver& from, const Patch& patch, double factor,
+                     std::uint32_t seed);
+
+// The irradiance of point, spot and directional lights.
+Vec3d light_irradiance(const SceneRays& rays, const Receiver& at);
+
+// Calls work(i) for every i below count, on `threads` threads.
+void for_each_on_threads(std::uint32_t count, std::uint32_t threads, void (*work)(void* user, std::uint32_t i),
+                         void* user);
+template <class Work>
+void parallel_for(std::uint32_t count, std::uint32_t threads, const Work& work) {
+  for_each_on_threads(
+      count, threads, [](void* user, std::uint32_t i) { (*static_cast<const Work*>(user))(i); },
+      const_cast<Work*>(&work));
+}
+
+}  // namespace pocketray

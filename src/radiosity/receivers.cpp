@@ -1,0 +1,175 @@
+#include "radiosity/receivers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kInset = 0.05;        // of a cell: nodes keep off borders
+constexpr double kCornerInset = 0.02;  // of the way to a triangle's centre
+constexpr double kLift = 1e-3;         // of a cell, or of the way to a triangle's centre
+
+Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+// The nearest point of a triangle [Ericson 2005, sec. 5.1.5], by clamping barycentric coordinates edge by edge.
+Vec3d nearest_on_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
+  const Vec3d way = b - a;
+  const double square = dot(way, way), t = square > 0 ? dot(p - a, way) / square : 0;
+  return a + way * std::min(1.0, std::max(0.0, t));
+}
+Vec3d nearest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d n = cross(b - a, c - a);
+  const bool inside =
+      dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
+  if (inside) return p;
+  Vec3d best = nearest_on_segment(p, a, b);
+  for (const Vec3d& q : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)})
+    if (length(q - p) < length(best - p)) best = q;
+  return best;
+}
+
+// A point of the plane moved onto the surface; from a border towards the middle of the triangle it lies on.
+Vec3d onto_surface(const Scene& scene, const FlatSurface& flat, const Vec3d& point) {
+  Vec3d best = point;
+  double least = 1e300;
+  for (std::uint32_t t : flat.triangles) {
+    const Vec3d a = corner_of(scene, t, 0), b = corner_of(scene, t, 1), c = corner_of(scene, t, 2);
+    const Vec3d near = nearest_on_triangle(point, a, b, c);
+    const double distance = length(near - point);
+    if (distance < least) least = distance, best = near;
+    if (least == 0) break;
+  }
+  return best;
+}
+
+void place_grid(const Scene& scene, const FlatSurface& flat, double spacing, bool back, Places* places,
+                RadiositySolution* solution) {
+  auto count_of = [&](double size) {
+    return std::min<std::uint32_t>(kRadiositySideMax,
+                                   1 + std::max(1u, static_cast<std::uint32_t>(size / spacing + 0.75)));
+  };
+  const std::uint32_t columns = count_of(flat.width), rows = count_of(flat.height);
+  const double step_s = flat.width / (columns - 1), step_t = flat.height / (rows - 1);
+  RadiosityGrid grid;
+  grid.origin = to_float(flat.origin);
+  grid.along_s = to_float(flat.s / step_s), grid.along_t = to_float(flat.t / step_t);
+  grid.columns = columns, grid.rows = rows;
+  grid.node_begin = static_cast<std::uint32_t>(solution->nodes.size());
+  const Vec3d normal = back ? -flat.normal : flat.normal;
+  for (std::uint32_t row = 0; row < rows; ++row)
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      auto inset = [](std::uint32_t i, std::uint32_t count) {
+        return i == 0 ? kInset : i == count - 1 ? i - kInset : static_cast<double>(i);
+      };
+      const Vec3d wanted =
+          flat.origin + flat.s * (inset(column, columns) * step_s) + flat.t * (inset(row, rows) * step_t);
+      Vec3d on = onto_surface(scene, flat, wanted);
+      if (on != wanted) {  // a little beyond the border, inside
+        const Vec3d inward = on - wanted;
+        on += inward * (kInset * std::min(step_s, step_t) / length(inward));
+        on = onto_surface(scene, flat, on);
+      }
+      places->nodes.push_back(
+          {static_cast<std::uint32_t>(solution->nodes.size()), {on, normal, kLift * std::min(step_s, step_t)}});
+      solution->nodes.push_back({});
+    }
+  const std::uint32_t index = static_cast<std::uint32_t>(solution->grids.size());
+  for (std::uint32_t t : flat.triangles)
+    solution->triangles[back ? scene.triangles.count + t : t] = kRadiosityGridBit | index;
+  solution->grids.push_back(grid);
+}
+
+// Corners share a value where position and normal agree: continuity of the normal decides [Bastos92].
+struct CornerKey {
+  float position[3];
+  int normal[3];
+  bool operator<(const CornerKey& o) const {
+    return std::tie(position[0], position[1], position[2], normal[0], normal[1], normal[2]) <
+           std::tie(o.position[0], o.position[1], o.position[2], o.normal[0], o.normal[1], o.normal[2]);
+  }
+};
+
+void place_corners(const Scene& scene, const Surfaces& surfaces, bool back, const std::vector<char>& sees,
+                   Places* places, RadiositySolution* solution) {
+  std::map<CornerKey, std::uint32_t> shared;
+  std::vector<char> at_vertex(scene.positions.count, 0);  // it has its value
+  if (!back && scene.normals.count && !surfaces.others.empty())
+    solution->values.resize(scene.positions.count, Vec3{0, 0, 0});  // before those that corners share
+  for (std::uint32_t t : surfaces.others) {
+    if (!sees[t]) continue;
+    const Material& m = scene.materials[scene.triangles[t].material()];
+    if (m.unlit || is_zero(m.diffuse)) continue;
+    const Vec3d centre = (corner_of(scene, t, 0) + corner_of(scene, t, 1) + corner_of(scene, t, 2)) / 3.0;
+    Vec3d normals[3];
+    bool all_smooth = !back;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t v = scene.triangles[t].vertex(static_cast<std::uint32_t>(c));
+      const Vec3d n = scene.normals.count ? to_double(scene.normals[v]) : Vec3d{0, 0, 0};
+      all_smooth &= !is_zero(n);
+      normals[c] = is_zero(n) ? surfaces.normal[t] : normalize(n);
+      if (dot(normals[c], surfaces.normal[t]) <= 0) normals[c] = surfaces.normal[t], all_smooth = false;
+    }
+    auto receiver = [&](int c) {
+      const Vec3d p = corner_of(scene, t, c), way = centre - p;
+      const Vec3d n = back ? -normals[c] : normals[c];
+      return Receiver{p + way * kCornerInset, n, kLift * length(way)};
+    };
+    if (all_smooth) {
+      for (int c = 0; c < 3; ++c) {
+        const std::uint32_t v = scene.triangles[t].vertex(static_cast<std::uint32_t>(c));
+        if (at_vertex[v]) continue;
+        at_vertex[v] = 1;
+        places->values.push_back({v, receiver(c)});
+      }
+      solution->triangles[t] = kRadiosityAtVertices;
+      continue;
+    }
+    RadiosityCorners corners;
+    for (int c = 0; c < 3; ++c) {
+      const Vec3& p = scene.positions[scene.triangles[t].vertex(static_cast<std::uint32_t>(c))];
+      CornerKey key = {{p.x, p.y, p.z}, {}};
+      for (int axis = 0; axis < 3; ++axis)
+        key.normal[axis] = static_cast<int>(std::floor(normals[c][axis] * 500 + 0.5));
+      auto found = shared.emplace(key, static_cast<std::uint32_t>(solution->values.size()));
+      corners.value[c] = found.first->second;
+      if (!found.second) continue;
+      places->values.push_back({corners.value[c], receiver(c)});
+      solution->values.push_back({0, 0, 0});
+    }
+    solution->triangles[back ? scene.triangles.count + t : t] = static_cast<std::uint32_t>(solution->corners.size());
+    solution->corners.push_back(corners);
+  }
+}
+
+}  // namespace
+
+Places place_receivers(const Scene& scene, const Surfaces& surfaces, const RadiosityOptions& options,
+                       const std::vector<char>& front_sees, const std::vector<char>& back_sees,
+                       RadiositySolution* solution) {
+  CHECK(solution != nullptr);
+  CHECK_EQ(front_sees.size(), scene.triangles.count);
+  CHECK_EQ(back_sees.size(), scene.triangles.count);
+  const bool any_back = std::find(back_sees.begin(), back_sees.end(), 1) != back_sees.end();
+  solution->triangles.assign(std::size_t(scene.triangles.count) * (any_back ? 2 : 1), kNone);
+  Places places;
+  for (int side = 0; side <= (any_back ? 1 : 0); ++side) {
+    const std::vector<char>& sees = side ? back_sees : front_sees;
+    // Values that lie at the scene's vertices come first.
+    place_corners(scene, surfaces, side != 0, sees, &places, solution);
+    for (const FlatSurface& flat : surfaces.flat) {
+      const Material& m = scene.materials[flat.material];
+      if (m.unlit || is_zero(m.diffuse)) continue;
+      bool any = false;
+      for (std::uint32_t t : flat.triangles) any |= sees[t] != 0;
+      if (any) place_grid(scene, flat, surfaces.patch_side / options.nodes_per_patch, side != 0, &places, solution);
+    }
+  }
+  return places;
+}
+
+}  // namespace pocketray

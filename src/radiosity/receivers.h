@@ -1,0 +1,27 @@
+// Where light is stored: the nodes of grids on flat surfaces, and the corners of other triangles.
+#pragma once
+#include "radiosity/solve.h"
+
+namespace pocketray {
+
+struct NodePlace {
+  std::uint32_t node;
+  Receiver at;
+};
+struct ValuePlace {
+  std::uint32_t value;
+  Receiver at;
+};
+
+struct Places {
+  std::vector<NodePlace> nodes;
+  std::vector<ValuePlace> values;
+};
+
+// Fills the solution's triangles, grids and corners, makes its nodes and values, and lists where they lie. Nodes at or
+// beyond a border are moved inward. Sides for which `sees_light` is false store nothing.
+Places place_receivers(const Scene& scene, const Surfaces& surfaces, const RadiosityOptions& options,
+                       const std::vector<char>& front_sees, const std::vector<char>& back_sees,
+                       RadiositySolution* solution);
+
+}  // namespace pocketray

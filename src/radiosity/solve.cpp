@@ -1,0 +1,186 @@
+#include "radiosity/solve.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/fmath.h"
+#include "radiosity/receivers.h"
+#include "radiosity/tangents.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kPatchRays = 36, kNodeRays = 64;
+constexpr double kBackSees = 0.05;  // share of fronts around a back that is worth light of its own
+constexpr double kCovered = 0.9;    // share of back faces around a node that lies inside a body
+
+Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32_t seed) {
+  Outlook mean;
+  for (int k = 0; k < kPatchSamples; ++k) {
+    const Receiver at = {patch.samples[k].point, patch.samples[k].normal, patch.lift};
+    const Outlook one = look_around(rays, at, kPatchRays, seed * kPatchSamples + static_cast<std::uint32_t>(k));
+    mean.open += one.open / kPatchSamples;
+    mean.front += one.front / kPatchSamples, mean.back += one.back / kPatchSamples;
+  }
+  return mean;
+}
+
+// Adds the backs of double-sided surfaces that see the front of anything, and how closed the surroundings of all are.
+void add_backs(const SceneRays& rays, std::uint32_t threads, std::vector<Patch>* patches, std::vector<Outlook>* looks) {
+  const std::size_t fronts = patches->size();
+  std::vector<Patch> all = *patches;
+  for (std::size_t i = 0; i < fronts; ++i)
+    if ((*patches)[i].double_sided) all.push_back(back_of((*patches)[i]));
+  std::vector<Outlook> seen(all.size());
+  parallel_for(static_cast<std::uint32_t>(all.size()), threads,
+               [&](std::uint32_t i) { seen[i] = look_around_patch(rays, all[i], i); });
+  looks->clear(), patches->clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i >= fronts && (seen[i].front < kBackSees || seen[i].back > seen[i].front)) continue;  // or inside a body
+    patches->push_back(all[i]), looks->push_back(seen[i]);
+  }
+}
+
+// What arrives at a receiver from all patches and from outside, as irradiance / π. Negative x: it lies inside a body.
+Vec3d gather(const SceneRays& rays, const std::vector<Patch>& patches, const std::vector<Vec3d>& radiance,
+             const Receiver& at, std::uint32_t seed) {
+  const Outlook outlook = look_around(rays, at, kNodeRays, seed);
+  if (outlook.back > kCovered) return {-1, 0, 0};
+  Vec3d sum = {0, 0, 0};
+  double seen = 0;
+  for (const Patch& patch : patches) {
+    const double factor = patch_form_factor(at.point, at.normal, patch);
+    if (!(factor > 0)) continue;
+    const double share = factor * visible_share(rays, at, patch, factor, seed);
+    const std::size_t i = static_cast<std::size_t>(&patch - patches.data());
+    sum += radiance[i] * share, seen += share;
+  }
+  // Surfaces fill what is not open: this takes the error of approximate factors and of visibility by few rays out.
+  const double closed = 1 - outlook.open;
+  if (seen > 0) sum = sum * std::min(2.0, closed / seen);
+  return sum + to_double(rays.frame.scene->info.background) * outlook.open;
+}
+
+// Nodes inside bodies take the mean of their neighbours, from the outside in.
+void fill_covered(const RadiosityGrid& grid, std::vector<char>* known, RadiosityNode* nodes) {
+  const int columns = static_cast<int>(grid.columns), rows = static_cast<int>(grid.rows);
+  for (bool changed = true; changed;) {
+    changed = false;
+    std::vector<char> next = *known;
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        if ((*known)[static_cast<std::size_t>(row * columns + column)]) continue;
+        Vec3 sum = {0, 0, 0};
+        float count = 0;
+        for (int y = std::max(0, row - 1); y <= std::min(rows - 1, row + 1); ++y)
+          for (int x = std::max(0, column - 1); x <= std::min(columns - 1, column + 1); ++x)
+            if ((*known)[static_cast<std::size_t>(y * columns + x)]) sum += nodes[y * columns + x].value, ++count;
+        if (count == 0) continue;
+        nodes[row * columns + column].value = sum / count;
+        next[static_cast<std::size_t>(row * columns + column)] = changed = true;
+      }
+    *known = next;
+  }
+}
+
+Vec3 largest_value(const RadiositySolution& s) {
+  Vec3 most = {0, 0, 0};
+  for (const RadiosityNode& node : s.nodes) most = max(most, node.value);
+  for (const Vec3& value : s.values) most = max(most, value);
+  return most;
+}
+
+}  // namespace
+
+std::size_t RadiositySolution::bytes() const {
+  return info.size() * sizeof info[0] + triangles.size() * sizeof triangles[0] + grids.size() * sizeof grids[0] +
+         nodes.size() * sizeof nodes[0] + corners.size() * sizeof corners[0] + values.size() * sizeof values[0];
+}
+
+void RadiositySolution::view(Scene* scene) const {
+  auto array = [](const auto& v) {
+    return Array<const std::decay_t<decltype(v[0])>>{v.data(), static_cast<std::uint32_t>(v.size())};
+  };
+  scene->radiosity_info = array(info), scene->radiosity_triangles = array(triangles);
+  scene->radiosity_grids = array(grids), scene->radiosity_nodes = array(nodes);
+  scene->radiosity_corners = array(corners), scene->radiosity_values = array(values);
+}
+
+Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, const SolverProgress& progress,
+                       RadiositySolution* solution) {
+  CHECK(frame.scene != nullptr && frame.accel_info != nullptr && solution != nullptr);
+  CHECK_GE(options.threads, 1u);
+  const Scene& scene = *frame.scene;
+  const SceneRays rays = {frame};
+  *solution = RadiositySolution();
+  const Surfaces surfaces = find_surfaces(scene, options.patch_count);
+  if (!(surfaces.total_area > 0)) return failure("the scene has no surface that could reflect light");
+  std::vector<Patch> patches = make_patches(scene, surfaces);
+  std::vector<Outlook> looks;
+  add_backs(rays, options.threads, &patches, &looks);
+  std::vector<double> closed, area;
+  std::vector<Vec3d> albedo, first(patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    closed.push_back(1 - looks[i].open), area.push_back(patches[i].area), albedo.push_back(patches[i].albedo);
+  }
+  parallel_for(static_cast<std::uint32_t>(patches.size()), options.threads, [&](std::uint32_t i) {
+    Vec3d irradiance = {0, 0, 0};
+    for (const PatchSample& s : patches[i].samples)
+      irradiance += light_irradiance(rays, {s.point, s.normal, patches[i].lift}) * (1.0 / kPatchSamples);
+    const bool shines = !patches[i].is_back || patches[i].double_sided;
+    first[i] = (shines ? patches[i].emission : Vec3d{0, 0, 0}) +
+               patches[i].albedo * (irradiance * (1 / kPi) + to_double(scene.info.background) * looks[i].open);
+  });
+  constexpr double kFactorsShare = 0.3;
+  const FormFactors factors = find_form_factors(rays, patches, closed, options.threads,
+                                                [&](double share) { return progress(kFactorsShare * share); });
+  if (factors.count != patches.size()) return failure("interrupted");
+  Exchange exchange = start_exchange(area, albedo, first);
+  if (!(exchange.emitted > 0)) return failure("no light reaches a surface: there is none to solve for");
+  settle(factors, options.converged, 100 * factors.count, &exchange);
+  solution->patch_count = factors.count, solution->shots = exchange.shots;
+  solution->unshot = unshot_magnitude(exchange) / exchange.emitted;
+  std::vector<Vec3d> reflected = exchange.radiance;  // emission reaches pixels as direct light
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    if (!patches[i].is_back || patches[i].double_sided) reflected[i] = reflected[i] - patches[i].emission;
+
+  std::vector<char> front(scene.triangles.count, 1), back(scene.triangles.count, 0);
+  for (const Patch& patch : patches)
+    if (patch.is_back)
+      for (std::uint32_t t : patch.triangles) back[t] = 1;
+  Places places = place_receivers(scene, surfaces, options, front, back, solution);
+  std::vector<char> known(solution->nodes.size(), 1);
+  const std::uint32_t node_count = static_cast<std::uint32_t>(places.nodes.size());
+  const std::uint32_t count = node_count + static_cast<std::uint32_t>(places.values.size());
+  std::atomic<std::uint32_t> done{0};
+  std::atomic<bool> stop{false};
+  parallel_for(count, options.threads, [&](std::uint32_t i) {
+    if (stop) return;
+    const Receiver& at = i < node_count ? places.nodes[i].at : places.values[i - node_count].at;
+    const Vec3d light = gather(rays, patches, reflected, at, i);
+    const bool covered = light.x < 0;
+    if (i < node_count) {
+      known[places.nodes[i].node] = !covered;
+      if (!covered) solution->nodes[places.nodes[i].node].value = to_float(light);
+    } else if (!covered) {
+      solution->values[places.values[i - node_count].value] = to_float(light);
+    }
+    if (!progress(kFactorsShare + (1 - kFactorsShare) * ++done / count)) stop = true;
+  });
+  if (stop) return failure("interrupted");
+  for (const RadiosityGrid& grid : solution->grids) {
+    RadiosityNode* nodes = &solution->nodes[grid.node_begin];
+    const auto begin = known.begin() + grid.node_begin;
+    std::vector<char> of_grid(begin, begin + grid.columns * grid.rows);
+    fill_covered(grid, &of_grid, nodes);
+    set_tangents(nodes, grid.columns, grid.rows, true);
+  }
+  solution->info.push_back({largest_value(*solution)});
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,130 @@
+#include "session/radiosity.h"
+
+#include <atomic>
+#include <cstring>
+
+#include "base/check.h"
+#include "effect/setting_list.h"
+#include "engine/frame.h"
+#include "plan/plan_effects.h"
+#include "plan/plan_scene.h"
+#include "session/interrupt.h"
+#include "session/progress.h"
+#ifdef POCKETRAY_HAVE_RADIOSITY
+#include "radiosity/solve.h"
+#endif
+
+namespace pocketray {
+namespace {
+
+template <class Visit>
+void visit_radiosity(Scene* s, const Visit& visit) {
+  visit(s->radiosity_info), visit(s->radiosity_triangles), visit(s->radiosity_grids);
+  visit(s->radiosity_nodes), visit(s->radiosity_corners), visit(s->radiosity_values);
+}
+
+}  // namespace
+
+#ifdef POCKETRAY_HAVE_RADIOSITY
+namespace {
+
+struct Block {
+  void* bytes = nullptr;
+  ~Block() { give_block_back(bytes); }
+};
+
+// A renderer of the scene with a picture of one pixel, for its lights and its accelerator.
+Status prepare(const Scene& scene, Renderer* renderer, Block* block) {
+  Settings settings;
+  settings.width = settings.height = 1, settings.threads = 1;
+  settings.indirect = IndirectChoice::none;
+  for (std::size_t bytes = std::size_t(64) << 20;; bytes *= 2) {
+    block->bytes = take_block(bytes);
+    if (!block->bytes) return failure("not enough memory to solve radiosity: bake a smaller model");
+    *renderer = Renderer();
+    start_renderer(block->bytes, bytes, settings, renderer);
+    renderer->scene = scene;
+    Status planned = plan_renderer(renderer, SceneStorage(), 0);
+    if (planned.ok) return build_renderer(renderer);
+    if (renderer->memory.total_bytes <= renderer->memory.limit_bytes || bytes > SIZE_MAX / 4) return planned;
+    give_block_back(block->bytes);
+    block->bytes = nullptr;
+  }
+}
+
+}  // namespace
+
+Status solve_scene(const std::string& name, std::uint32_t threads, Scene* scene, SolvedRadiosity* solved) {
+  CHECK(scene != nullptr && solved != nullptr);
+  if (!has_light(*scene) || scene->info.default_lights != 0)
+    return failure("%.300s has no light of its own to solve radiosity for: add one to the model", name.c_str());
+  Block block;
+  Renderer renderer;
+  RETURN_IF_ERROR(prepare(*scene, &renderer, &block));
+  RadiosityOptions options;
+  options.threads = threads;
+  constexpr std::uint64_t kSteps = 1000;
+  Progress progress = start_progress("solving radiosity", kSteps);
+  std::atomic<bool> showing{false};
+  RadiositySolution solution;
+  Status status = solve_radiosity(
+      renderer.frame, options,
+      [&](double share) {
+        if (!showing.exchange(true)) {
+          show_progress(&progress, static_cast<std::uint64_t>(share * kSteps));
+          showing = false;
+        }
+        return !interrupted;
+      },
+      &solution);
+  end_progress(&progress);
+  if (!status.ok) return failure("%.300s: %s", name.c_str(), status.message);
+  std::size_t bytes = 0;
+  auto place = [&](auto& array) { bytes += arena_need(array.bytes()); };
+  solution.view(scene);
+  visit_radiosity(scene, place);
+  solved->memory.resize(bytes + kArenaAlignment);
+  Arena arena = make_arena("radiosity", solved->memory.data(), solved->memory.size());
+  visit_radiosity(scene, [&](auto& array) {
+    if (array.empty()) return;
+    void* copy = arena_allocate(&arena, array.bytes());
+    std::memcpy(copy, array.data, array.bytes());
+    array.data = static_cast<decltype(array.data)>(copy);
+  });
+  char text[128];
+  std::snprintf(text, sizeof text, "%u patches, %u shots, %.2g %% of the light unshot", solution.patch_count,
+                solution.shots, 100 * solution.unshot);
+  solved->summary = text;
+  return success();
+}
+#else
+Status solve_scene(const std::string& name, std::uint32_t, Scene*, SolvedRadiosity*) {
+  return failure("%.300s stores no radiosity: bake it on a desktop with pocketray bake --radiosity", name.c_str());
+}
+#endif
+
+Status solve_if_requested(const std::string& name, Renderer* renderer, SceneSource* source, SceneStorage* storage) {
+  CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
+  Scene* scene = &renderer->scene;
+  if (renderer->settings.indirect != indirect_choice(Effect::radiosity) || !scene->radiosity_triangles.empty())
+    return success();
+  SolvedRadiosity solved;
+  RETURN_IF_ERROR(solve_scene(name, renderer->settings.threads, scene, &solved));
+  auto* copy =
+      static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, solved.memory.size() + kArenaAlignment));
+  if (!copy)
+    return scene_too_large(name, renderer->scene_arena.used + solved.memory.size(), renderer->settings.memory_bytes,
+                           source);
+  // The arrays keep their places relative to the block.
+  std::memcpy(copy, solved.memory.data(), solved.memory.size());
+  visit_radiosity(scene, [&](auto& array) {
+    if (array.empty()) return;
+    auto* bytes = reinterpret_cast<const std::uint8_t*>(array.data);
+    array.data = reinterpret_cast<decltype(array.data)>(copy + (bytes - solved.memory.data()));
+  });
+  source->baked = nullptr, source->baked_bytes = 0;  // it is no longer the file's scene
+  storage->arena_bytes = renderer->scene_arena.used;
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,71 @@
+// Stored radiosity: where it is looked up, and what the plan makes of it.
+#include "indirect/radiosity.h"
+
+#include <doctest/doctest.h>
+
+#include "indirect/indirect_list.h"
+
+using namespace pocketray;
+
+namespace {
+
+// A unit square of two triangles with a grid in front, values of its own at the back of the first.
+struct Stored {
+  Vec3 positions[4] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  Triangle triangles[2] = {Triangle(0, 1, 2, 0), Triangle(0, 2, 3, 0)};
+  RadiosityInfo info = {{4, 4, 4}};
+  std::uint32_t places[4] = {kRadiosityGridBit, kRadiosityAtVertices, 0, kNone};
+  RadiosityGrid grid = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2, 0};
+  RadiosityNode nodes[4] = {};
+  RadiosityCorners corners = {{0, 1, 1}};
+  Vec3 values[4] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
+  Scene scene;
+  Stored() {
+    for (int i = 0; i < 4; ++i) nodes[i].value = Vec3{1, 1, 1} * static_cast<float>(i);  // s + 2t, and flat tangents
+    scene.positions = {positions, 4}, scene.triangles = {triangles, 2};
+    scene.radiosity_info = {&info, 1}, scene.radiosity_triangles = {places, 4};
+    scene.radiosity_grids = {&grid, 1}, scene.radiosity_nodes = {nodes, 4};
+    scene.radiosity_corners = {&corners, 1}, scene.radiosity_values = {values, 4};
+  }
+  float at(std::uint32_t triangle, float u, float v, bool front, Reconstruction how) const {
+    const Vec3 any = {0, 0, 0}, half = {.5f, .5f, .5f};
+    return RadiosityIndirect::radiance({scene, nullptr, any, any, half, triangle, u, v, front, how}).x;
+  }
+};
+
+}  // namespace
+
+// Goal: a hit finds the light of its triangle, side and place. Method: a grid, vertices, corners and nothing, each with
+// every reconstruction.
+TEST_CASE("radiosity_is_looked_up_by_triangle_side_and_place") {
+  const Stored s;
+  using R = Reconstruction;
+  CHECK(s.at(0, .25f, .5f, true, R::bilinear) == doctest::Approx(.5 * (.75 + 2 * .5)));
+  CHECK(s.at(0, .25f, .5f, true, R::constant) == doctest::Approx(.5 * 1.5));
+  // Flat tangents make 3t² − 2t³ of each coordinate.
+  const double x = 3 * .75 * .75 - 2 * .75 * .75 * .75;
+  CHECK(s.at(0, .25f, .5f, true, R::bicubic) == doctest::Approx(.5 * (x + 2 * .5)));
+  CHECK(s.at(1, .25f, .5f, true, R::bilinear) == doctest::Approx(.5 * (.25 * 2 + .5 * 3)));
+  CHECK(s.at(1, .25f, .5f, true, R::constant) == doctest::Approx(.5 * 5 / 3));
+  CHECK(s.at(0, .25f, .5f, false, R::bilinear) == doctest::Approx(.5 * .75));
+  CHECK(s.at(1, .25f, .5f, false, R::bilinear) == 0);
+  Stored fronts;
+  fronts.scene.radiosity_triangles.count = 2;
+  CHECK(fronts.at(0, .25f, .5f, false, R::bilinear) == 0);
+}
+
+// Goal: no value leaves [0, the stored maximum], which the cut-off relies on. Method: tangents that overshoot both
+// ways.
+TEST_CASE("radiosity_stays_within_its_bound") {
+  Stored s;
+  Material material;
+  material.diffuse = {.5f, .25f, .5f};
+  CHECK(RadiosityIndirect::bound(s.scene, material) == 2);
+  for (RadiosityNode& n : s.nodes) n.ds = {40, -40, 0};
+  const Vec3 any = {0, 0, 0};
+  for (float u = 0; u <= 1; u += .125f) {
+    const Vec3 value = RadiosityIndirect::radiance({s.scene, nullptr, any, any, material.diffuse, 0, u, (1 - u) / 2});
+    for (int axis = 0; axis < 3; ++axis) CHECK((value[axis] >= 0 && value[axis] <= 2));
+  }
+  CHECK(RadiosityIndirect::bound(Scene(), material) == 0);
+}
