@@ -8,6 +8,7 @@
 #include "budget/front_file.h"
 #include "budget/front_prices.h"
 #include "effect/effect_list.h"
+#include "session/cache.h"
 #include "session/interrupt.h"
 #include "session/measure.h"
 #include "session/output.h"
@@ -170,7 +171,7 @@ int run_front(const CommonOptions& options, const std::string& file, std::uint32
   OpenFront front;
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--front", file}, {"--json", options.json}});
   if (status.ok) status = open_scene_with_front(options, {file, true}, front_prices_bytes, &opened, &front);
-  if (status.ok && file.empty() && !front.path.empty()) status = make_cache(front.path);
+  if (status.ok && file.empty() && !front.path.empty()) status = make_cache(front.path, "--front");
   if (!status.ok) return report(status);
   print_notes(opened);
   print_notes(front);

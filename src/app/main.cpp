@@ -43,6 +43,7 @@ int run(int argument_count, char** arguments) {
   add_bench_command(program, &exit_status);
 #ifdef POCKETRAY_HAVE_ACCURACY
   add_accuracy_command(program, &exit_status);
+  add_reference_command(program, &exit_status);
   add_coherence_report_command(program, &exit_status);
 #endif
 #ifdef POCKETRAY_HAVE_NETWORK

@@ -38,6 +38,32 @@ Option add_setting_option(Command command, const SettingRow& row, SettingOption*
   return command.add_option(name, option->choice, help);
 }
 
+void add_scene(Command command, CommonOptions* o, bool required) {
+  auto scene = command.add_option("SCENE", o->scene, scene_help());
+  if (required) scene.required();
+  command.add_option("--size", o->size, "picture size, WIDTHxHEIGHT in pixels")
+      .default_str("320x240, or the emulated device's");
+}
+
+void add_effects(Command command, CommonOptions* o) {
+  command
+      .add_option("--effects", o->effects,
+                  "effects to simulate: auto (those the scene needs), all, or names; \"auto,-shadow\" switches one off")
+      .capture_default_str();
+}
+
+void add_threads(Command command, CommonOptions* o) {
+  command.add_option("--threads", o->threads, "tracing threads; 0: one per core").capture_default_str();
+}
+
+void add_camera(Command command, CommonOptions* o) {
+  command.add_option("--camera", o->camera,
+                     "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up vector, vertical field of view in degrees");
+  command.add_option("--camera-index", o->camera_index, "which of the scene's cameras to use, counting from 0")
+      .capture_default_str();
+  command.add_option("--exposure", o->exposure, "stops to add to the scene's own exposure, or auto");
+}
+
 }  // namespace
 
 Option add_json_option(Command command, std::string* path) {
@@ -55,23 +81,17 @@ Option add_server_option(Command command, std::vector<std::string>* addresses) {
 }
 
 void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
-  auto scene = command.add_option("SCENE", o->scene, scene_help());
-  if (scene_required) scene.required();
-  command.add_option("--size", o->size, "picture size, WIDTHxHEIGHT in pixels")
-      .default_str("320x240, or the emulated device's");
+  add_scene(command, o, scene_required);
   for (int i = 0; i < kSettingCount; ++i)
     add_setting_option(command, kSettingList[i], &o->settings.options[i]).capture_default_str();
-  command
-      .add_option("--effects", o->effects,
-                  "effects to simulate: auto (those the scene needs), all, or names; \"auto,-shadow\" switches one off")
-      .capture_default_str();
+  add_effects(command, o);
   command.add_option("--memory", o->memory, "size of the one memory block that holds everything, e.g. 24M")
       .default_str("64M, or the device's; less if the system has less");
   command.add_option("--device", o->device,
                      "use a device's memory size and, in view, its rotation and buttons: " + device_names());
   command.add_option("--emulate", o->emulate,
                      "run at a device's speed, with its memory, cores and screen size; names as for --device");
-  command.add_option("--threads", o->threads, "tracing threads; 0: one per core").capture_default_str();
+  add_threads(command, o);
   add_isa_option(command, &o->isa);
   std::vector<std::string> accels = {"auto"};
   std::string known, automatic;
@@ -87,11 +107,14 @@ void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
                   "ray-tracing accelerator: " + known + ", or auto: the one the scene was baked with" + automatic)
       .one_of(accels)
       .capture_default_str();
-  command.add_option("--camera", o->camera,
-                     "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up vector, vertical field of view in degrees");
-  command.add_option("--camera-index", o->camera_index, "which of the scene's cameras to use, counting from 0")
-      .capture_default_str();
-  command.add_option("--exposure", o->exposure, "stops to add to the scene's own exposure, or auto");
+  add_camera(command, o);
+}
+
+void add_view_options(Command command, CommonOptions* o) {
+  add_scene(command, o, true);
+  add_effects(command, o);
+  add_threads(command, o);
+  add_camera(command, o);
 }
 
 void add_coherence_options(Command command, CommonOptions* o, const char* usual) {

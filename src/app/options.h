@@ -10,6 +10,8 @@ namespace pocketray {
 
 // SCENE and the options for opening and rendering it, every setting included.
 void add_scene_options(Command command, CommonOptions* options, bool scene_required = true);
+// SCENE and the options for what a picture of it shows, for commands without settings.
+void add_view_options(Command command, CommonOptions* options);
 // --coherence, initially auto, and --coherence-table.
 void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");
 // --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().

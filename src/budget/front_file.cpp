@@ -1,32 +1,17 @@
 #include "budget/front_file.h"
 
 #include <cinttypes>
-#include <cstdlib>
 
 #include "base/check.h"
 #include "base/isa.h"
 #include "platform/file.h"
-#include "scene/builtin/builtin.h"
+#include "session/cache.h"
 #include "session/output.h"
 
 namespace pocketray {
 namespace {
 
 constexpr std::size_t kFileBytesMax = 1 << 20;  // comments included
-
-std::string folder_of(const std::string& path) {
-  std::size_t slash = path.rfind('/');
-  return slash == std::string::npos ? "." : path.substr(0, slash);
-}
-
-std::string cache_folder(const std::string& scene) {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache && *cache == '/')
-    return std::string(cache) + "/pocketray";  // the XDG specification says to ignore relative paths
-  const char* home = std::getenv("HOME");
-  if (home && *home == '/') return std::string(home) + "/.cache/pocketray";
-  return find_builtin(scene.c_str()) ? "" : folder_of(scene);
-}
 
 }  // namespace
 
@@ -63,17 +48,8 @@ Status write_front(const std::string& path, const Front& front) {
   return write_file(path, text);
 }
 
-Status make_cache(const std::string& path) {
-  platform::FileError error;
-  std::string folder = folder_of(path) + "/";
-  for (std::size_t at = folder.find('/', 1); at != std::string::npos; at = folder.find('/', at + 1))
-    if (platform::file_stamp(folder.substr(0, at).c_str()) == 0)
-      (void)platform::make_folder(folder.substr(0, at).c_str(), &error);
-  return check_outputs({}, {{"--front", path}});
-}
-
 Status cache_front(const std::string& path, const Front& front) {
-  RETURN_IF_ERROR(make_cache(path));
+  RETURN_IF_ERROR(make_cache(path, "--front"));
   return write_front(path, front);
 }
 

@@ -8,9 +8,8 @@
 
 namespace pocketray {
 
-// Path of a scene's front or, if a machine is named, of the scene's prices on it: in $XDG_CACHE_HOME/pocketray, else in
-// ~/.cache/pocketray, else beside the scene's file; empty for a built-in scene without a cache. `scene` as on the
-// command line.
+// Path of a scene's front or, if a machine is named, of the scene's prices on it, in its cache_folder(); empty without
+// one. `scene` as on the command line.
 std::string front_path(const std::string& scene, const ContentHash& identity, const std::string& machine = "");
 // Name of the machine in price files: device and threads if emulated ("tablet-1"), else instruction set and threads
 // ("avx512-2").
@@ -20,9 +19,7 @@ std::string machine_name(const char* emulated, std::uint32_t thread_count);
 Status read_front(const std::string& path, Front* front, bool* there);
 // Replaces the file atomically.
 Status write_front(const std::string& path, const Front& front);
-// Creates the folder of a front_path() if missing; fails if the file cannot be written.
-Status make_cache(const std::string& path);
-// make_cache(), then write_front().
+// Creates the folder of a front_path() if missing, then write_front().
 Status cache_front(const std::string& path, const Front& front);
 
 }  // namespace pocketray

@@ -1,5 +1,6 @@
 #include "reference/reference.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "base/check.h"
@@ -164,24 +165,45 @@ Vec3d sample_radiance(const Reference& reference, const ReferenceOptions& option
   return radiance;
 }
 
+namespace {
+
+// Calls add(column, radiance) with every sample of a row.
+template <class Add>
+void for_samples(const Reference& reference, const ReferenceOptions& options, std::uint32_t row, Add add) {
+  const CameraRays& camera = reference.world.frame->camera;
+  std::uint32_t width = static_cast<std::uint32_t>(camera.width);
+  CHECK_GT(options.samples_per_pixel, 0u);
+  CHECK_LT(row, static_cast<std::uint32_t>(camera.height));
+  for (std::uint32_t x = 0; x < width; ++x) {
+    ReferenceSamples samples(options.seed, std::uint64_t(row) * width + x);
+    for (std::uint32_t i = 0; i < options.samples_per_pixel; ++i) {
+      samples.begin_path(options.first_sample + i);
+      Pair at = samples.pixel();
+      add(x, trace_path(reference, options, reference_camera_ray(camera, x + at.u, row + at.v), &samples));
+    }
+  }
+}
+
+}  // namespace
+
 void trace_reference(const Reference& reference, const ReferenceOptions& options, std::uint32_t row_begin,
                      std::uint32_t row_end, Vec3d* means) {
   const CameraRays& camera = reference.world.frame->camera;
-  std::uint32_t width = static_cast<std::uint32_t>(camera.width), n = options.samples_per_pixel;
-  CHECK_GT(n, 0u);
   CHECK(row_begin <= row_end && row_end <= static_cast<std::uint32_t>(camera.height));
   CHECK(means != nullptr);
-  for (std::uint32_t y = row_begin; y < row_end; ++y)
-    for (std::uint32_t x = 0; x < width; ++x) {
-      ReferenceSamples samples(options.seed, std::uint64_t(y) * width + x);
-      Vec3d sum = {0, 0, 0};
-      for (std::uint32_t i = 0; i < n; ++i) {
-        samples.begin_path(options.first_sample + i);
-        Pair at = samples.pixel();
-        sum += trace_path(reference, options, reference_camera_ray(camera, x + at.u, y + at.v), &samples);
-      }
-      means[std::size_t(y - row_begin) * width + x] = sum / static_cast<double>(n);
-    }
+  std::uint32_t width = static_cast<std::uint32_t>(camera.width);
+  for (std::uint32_t row = row_begin; row < row_end; ++row, means += width) {
+    std::fill_n(means, width, Vec3d{0, 0, 0});
+    for_samples(reference, options, row, [&](std::uint32_t x, const Vec3d& radiance) { means[x] += radiance; });
+    for (std::uint32_t x = 0; x < width; ++x) means[x] = means[x] / static_cast<double>(options.samples_per_pixel);
+  }
+}
+
+void add_reference(const Reference& reference, const ReferenceOptions& options, std::uint32_t row, ExactSum* sums) {
+  CHECK(sums != nullptr);
+  for_samples(reference, options, row, [&](std::uint32_t x, const Vec3d& radiance) {
+    for (int c = 0; c < 3; ++c) add(exact_term(radiance[c]), sums + 3 * x + c);
+  });
 }
 
 }  // namespace pocketray

@@ -3,6 +3,7 @@
 // renderer, but no arithmetic. For desktops: it takes its time.
 #pragma once
 #include "base/rng.h"
+#include "reference/exact_sum.h"
 #include "reference/world.h"
 
 namespace pocketray {
@@ -16,6 +17,9 @@ enum class Transport {
   // could find them otherwise; light of area lights is refracted.
   physical,
 };
+
+// Changes whenever samples change, so that those of different programs are not added up.
+constexpr int kReferenceSampler = 1;
 
 struct ReferenceOptions {
   Transport transport = Transport::physical;
@@ -74,5 +78,8 @@ Vec3d sample_radiance(const Reference& reference, const ReferenceOptions& option
 // position.
 void trace_reference(const Reference& reference, const ReferenceOptions& options, std::uint32_t row_begin,
                      std::uint32_t row_end, Vec3d* means);
+
+// Adds the samples of a row to its sums: R, G, B of each pixel.
+void add_reference(const Reference& reference, const ReferenceOptions& options, std::uint32_t row, ExactSum* sums);
 
 }  // namespace pocketray

@@ -1,45 +1,53 @@
 #include "sweep/references.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cinttypes>
 
-#include "accuracy/display.h"
 #include "base/check.h"
-#include "effect/setting_list.h"
-#include "engine/frame.h"
+#include "platform/file.h"
+#include "scene/content_hash.h"
+#include "session/cache.h"
 
 namespace pocketray {
 namespace {
 
-// FLIP of half a difference to that of the whole: its exponent for colours [Andersson20, sec. 4.1, q_c].
-constexpr double kFlipExponent = 0.7;
-
 constexpr std::uint32_t kModelSamples = 2048, kPhysicalSamples = 256;
 
-const char* name_of(Transport transport) { return transport == Transport::model ? "model" : "physical"; }
-
-Status prepare(const AccuracyOptions& options, Rig* rig) {
-  RETURN_IF_ERROR(change_settings(&rig->opened.renderer, reference_settings(rig->baseline.settings)));
-  return prepare_frame(&rig->opened.renderer, options.seconds);
+// Where samples are kept for all sweeps of the same scene and camera; empty: nowhere.
+std::string cached_path(const std::string& scene, const std::string& key) {
+  std::string folder = cache_folder(scene);
+  if (folder.empty()) return "";
+  ContentHash hash = content_hash(key.data(), key.size());
+  char name[48];
+  std::snprintf(name, sizeof name, "/%016" PRIx64 "%016" PRIx64 ".pfm", hash.high, hash.low);
+  std::string path = folder + name;
+  Status status = make_cache(path, "the cache");
+  if (status.ok) return path;
+  std::fprintf(stderr, "pocketray: %s; the reference is kept with the sweep alone\n", status.message);
+  return "";
 }
 
-void compare(const Rig& rig, double pixels_per_degree, const std::vector<Vec3>& one, const std::vector<Vec3>& other,
-             ReferencePictures* p) {
-  const Renderer& renderer = rig.opened.renderer;
-  std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
-  CHECK_EQ(one.size(), std::size_t(width) * height);
-  CHECK_EQ(other.size(), one.size());
-  std::vector<Vec3> mean(one.size());
-  for (std::size_t i = 0; i < one.size(); ++i) mean[i] = one[i] * 0.5f + other[i] * 0.5f;
-  p->one = exposed_light(one.data(), one.size(), renderer.exposure);
-  p->other = exposed_light(other.data(), other.size(), renderer.exposure);
-  p->mean = exposed_light(mean.data(), mean.size(), renderer.exposure);
-  p->encoded = encoded_light(p->mean);
-  p->levels =
-      displayed_levels(mean.data(), width, height, renderer.exposure, kOutputFormats[find_output_format("rgb888")]);
-  p->rmse = reference_error(p->one, p->other);
-  p->flip = std::pow(0.5, kFlipExponent) *
-            mean_of(flip_errors(encoded_light(p->one), encoded_light(p->other), width, height, pixels_per_degree));
+// Adopts the samples of a file if it is there and fits; otherwise they are taken again.
+void continue_from(const std::string& path, Accumulation* accumulation) {
+  if (platform::file_stamp(path.c_str()) == 0) return;
+  Accumulation there;
+  Transport kind;
+  Status status = load_accumulation(path, &there, &kind);
+  if (status.ok) status = check_same_reference(path, there, *accumulation);
+  if (status.ok)
+    *accumulation = there;
+  else
+    std::fprintf(stderr, "pocketray: %s; its samples are taken again\n", status.message);
+}
+
+// A file that must fit.
+Status adopt(const std::string& path, Accumulation* accumulation) {
+  Accumulation there;
+  Transport kind;
+  RETURN_IF_ERROR(load_accumulation(path, &there, &kind));
+  RETURN_IF_ERROR(check_same_reference(path, there, *accumulation));
+  *accumulation = there;
+  return success();
 }
 
 }  // namespace
@@ -51,88 +59,57 @@ std::uint32_t reference_samples(const AccuracyOptions& options, Transport transp
                                                  : std::min(usual, options.reference_samples);
 }
 
-namespace {
-
-// Saves the finished rows of an unfinished picture to its file. The file may hold rows the state does not list yet.
-Status save_begun(const AccuracyOptions& options, const Settings& settings, const std::vector<Vec3>& picture,
-                  const AccuracyState& state) {
-  CHECK_EQ(state.begun_rows.size(), settings.height);
-  CHECK_EQ(picture.size(), std::size_t(settings.width) * settings.height);
-  std::vector<Vec3> there(picture.size(), Vec3{0, 0, 0});  // without rows that other threads are writing
-  std::ptrdiff_t width = settings.width;
-  for (std::ptrdiff_t row = 0; row < static_cast<std::ptrdiff_t>(settings.height); ++row)
-    if (state.begun_rows[static_cast<std::size_t>(row)] == '1')
-      std::copy_n(picture.begin() + row * width, width, there.begin() + row * width);
-  RETURN_IF_ERROR(save_radiance(options.folder, state.begun, settings.width, settings.height, there));
-  return save_state(options.folder, state);
-}
-
-// Lists the rows of a picture still to be traced and reads the others.
-Status resume(const AccuracyOptions& options, const Settings& settings, const std::string& name, AccuracyState* state,
-              std::vector<Vec3>* picture, std::vector<std::uint32_t>* rows) {
-  picture->assign(std::size_t(settings.width) * settings.height, Vec3{0, 0, 0});
-  bool ours = state->begun == name && state->begun_rows.size() == settings.height;
-  if (ours && state->begun_rows.find('1') != std::string::npos)
-    RETURN_IF_ERROR(load_radiance(options.folder, name, settings.width, settings.height, picture));
-  if (!ours) state->begun = name, state->begun_rows.assign(settings.height, '0');
-  for (std::uint32_t row = 0; row < settings.height; ++row)
-    if (state->begun_rows[row] != '1') rows->push_back(row);
+Status name_reference(AccuracyOptions* options) {
+  CHECK(options != nullptr);
+  if (options->reference == "model" || options->reference == "physical") return success();
+  if (!options->reference_file.empty() || platform::file_stamp(options->reference.c_str()) == 0)
+    return failure("--reference is '%.200s': it must be model, physical or a file of `pocketray reference`",
+                   options->reference.c_str());
+  options->reference_file = options->reference;
+  Accumulation accumulation;
+  Transport transport;
+  RETURN_IF_ERROR(load_accumulation(options->reference_file, &accumulation, &transport));
+  if (samples_of(accumulation) == 0)
+    return failure("%.300s has no samples of some rows yet: continue it with `pocketray reference`",
+                   options->reference_file.c_str());
+  options->reference = name_of(transport);
+  options->reference_samples = static_cast<std::uint32_t>(samples_of(accumulation));
   return success();
 }
 
-// Renders a picture, or the rest of it, saving it now and then. Each path depends only on seed, pixel and index, so
-// rows come out the same whenever they are traced.
-Status render_seed(const AccuracyOptions& options, const ReferenceOptions& o, const std::string& stage,
-                   const std::string& name, const Rig& rig, AccuracyState* state, std::vector<Vec3>* picture,
-                   bool* whole) {
-  const Settings& settings = rig.opened.renderer.settings;
-  std::vector<std::uint32_t> rows;
-  RETURN_IF_ERROR(resume(options, settings, name, state, picture, &rows));
-  Progress progress = start_progress(stage.c_str(), rows.size());
-  std::uint64_t done = 0, saved_ns = clock_ns();
-  auto row_done = [&](std::uint32_t row) {
-    state->begun_rows[row] = '1';
-    show_progress(&progress, ++done);
-    if (options.row_done) options.row_done(row);
-    if (static_cast<double>(clock_ns() - saved_ns) < options.save_seconds * 1e9) return;
-    // If saving fails, the next save tries again, at the latest the final one.
-    if (save_begun(options, settings, *picture, *state).ok) saved_ns = clock_ns();
-  };
-  auto trace_row = [&](std::uint32_t row, Vec3d* means) { trace_reference(rig.reference, o, row, row + 1, means); };
-  *whole = trace_rows(rig.opened.renderer, rows, trace_row, row_done, picture->data());
-  end_progress(&progress);
-  if (!*whole) return save_begun(options, settings, *picture, *state);
-  RETURN_IF_ERROR(save_radiance(options.folder, name, settings.width, settings.height, *picture));
-  state->references.push_back(name);
-  state->begun.clear(), state->begun_rows.clear();
-  return save_state(options.folder, *state);
-}
-
-}  // namespace
-
 Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
                         ReferencePictures* pictures, bool* whole) {
+  CHECK(rig != nullptr && state != nullptr && pictures != nullptr && whole != nullptr);
   const Settings& settings = rig->opened.renderer.settings;
-  CHECK(state != nullptr && pictures != nullptr);
-  std::vector<Vec3> seeds[2];
+  std::string name = std::string("reference-") + name_of(transport), path = options.folder + "/" + name + ".pfm";
   *whole = true;
-  for (int i = 0; i < 2; ++i) {
-    std::string name = std::string("reference-") + name_of(transport) + "-" + std::to_string(i + 1);
-    if (std::find(state->references.begin(), state->references.end(), name) != state->references.end()) {
-      RETURN_IF_ERROR(load_radiance(options.folder, name, settings.width, settings.height, &seeds[i]));
-      continue;
+  RETURN_IF_ERROR(prepare_for_reference(options.seconds, rig));
+  Accumulation accumulation =
+      empty_accumulation(reference_key(*rig, options, transport), settings.width, settings.height);
+  if (std::find(state->references.begin(), state->references.end(), name) != state->references.end()) {
+    Status status = adopt(path, &accumulation);
+    if (!status.ok) return failure("%.400s, or use --restart to start over", status.message);
+  } else {
+    if (!options.reference_file.empty() && options.reference == name_of(transport)) {
+      RETURN_IF_ERROR(adopt(options.reference_file, &accumulation));
+    } else {
+      ReferenceGoal goal;
+      goal.transport = transport;
+      goal.samples = std::max(2u, reference_samples(options, transport) / 2 * 2);
+      goal.pixels_per_degree = options.pixels_per_degree;
+      goal.save_seconds = options.save_seconds;
+      goal.row_done = options.row_done;
+      goal.path = cached_path(options.common.scene, accumulation.key);
+      if (goal.path.empty()) goal.path = path;
+      continue_from(goal.path, &accumulation);
+      if (samples_of(accumulation) < goal.samples) RETURN_IF_ERROR(run_reference(goal, rig, &accumulation, whole));
+      if (!*whole) return success();
     }
-    RETURN_IF_ERROR(prepare(options, rig));
-    make_rig_reference(rig);
-    ReferenceOptions o;
-    o.transport = transport;
-    o.samples_per_pixel = std::max(1u, reference_samples(options, transport) / 2);
-    o.seed = static_cast<std::uint64_t>(i) + 1;
-    std::string stage = std::string(name_of(transport)) + " reference, " + std::to_string(i + 1) + " of 2";
-    RETURN_IF_ERROR(render_seed(options, o, stage, name, *rig, state, &seeds[i], whole));
-    if (!*whole) return success();
+    RETURN_IF_ERROR(save_accumulation(path, accumulation));
+    state->references.push_back(name);
+    RETURN_IF_ERROR(save_state(options.folder, *state));
   }
-  compare(*rig, options.pixels_per_degree, seeds[0], seeds[1], pictures);
+  develop(accumulation, static_cast<double>(rig->opened.renderer.exposure), options.pixels_per_degree, pictures);
   return success();
 }
 

@@ -1,23 +1,19 @@
-// Reference pictures of a sweep: two with independent seeds, by the path tracer in double precision.
+// Reference pictures of a sweep, by the path tracer in double precision.
 #pragma once
-#include "reference/reference.h"
-#include "sweep/sweep.h"
+#include "sweep/reference_run.h"
 
 namespace pocketray {
 
-// Samples per pixel, both seeds together. Full transport takes an order of magnitude longer for the same error; where
+// Samples per pixel, both halves together. Full transport takes an order of magnitude longer for the same error; where
 // it only measures what the model omits, few samples suffice.
 std::uint32_t reference_samples(const AccuracyOptions& options, Transport transport);
 
-struct ReferencePictures {
-  std::vector<double> one, other, mean;  // exposed light, clamped to the display range [0, 1]
-  std::vector<float> encoded;            // of the mean
-  Levels levels;                         // of the mean, 8 bits per channel
-  double rmse = 0, flip = 0;             // the mean's own error
-};
+// If --reference names a file, finds its kind and samples; otherwise checks that it names a kind.
+Status name_reference(AccuracyOptions* options);
 
-// Renders both seeds with all threads, reusing rows in the folder. After an interrupt *whole is false and finished rows
-// are kept; the next call continues.
+// Takes the reference's samples with all threads: those in the sweep's folder, else in the file of the options, else in
+// the scene's file in the cache and as many more as the options ask for. After an interrupt *whole is false; the next
+// call continues.
 Status render_reference(const AccuracyOptions& options, Transport transport, Rig* rig, AccuracyState* state,
                         ReferencePictures* pictures, bool* whole);
 

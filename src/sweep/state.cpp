@@ -1,6 +1,5 @@
 #include "sweep/state.h"
 
-#include <cstring>
 #include <limits>
 
 #include "base/check.h"
@@ -64,8 +63,6 @@ Status read_state(const std::string& text, const std::string& path, AccuracyStat
     state->rounds = json.at("rounds").get<std::uint32_t>();
     state->counted = json.value("counted", std::string());
     state->references = json.at("references").get<std::vector<std::string>>();
-    state->begun = json.value("begun", std::string());
-    state->begun_rows = json.value("begun-rows", std::string());
     for (const auto& item : json.at("points").items()) {
       PointFigures f = figures_from(item.value());
       if (f.ns_per_pixel.size() != state->rounds)
@@ -119,45 +116,16 @@ Status open_state(const std::string& folder, const Json& wanted, bool restart, A
 Status save_state(const std::string& folder, const AccuracyState& state) {
   Json points = Json::object();
   for (const auto& point : state.points) points[point.first] = to_json(point.second);
-  Json json = {{"key", state.key},         {"rounds", state.rounds},
-               {"counted", state.counted}, {"references", state.references},
-               {"begun", state.begun},     {"begun-rows", state.begun_rows},
+  Json json = {{"key", state.key},
+               {"rounds", state.rounds},
+               {"counted", state.counted},
+               {"references", state.references},
                {"points", points}};
   return save_text(folder, kStateName, written(json));
 }
 
 Status save_text(const std::string& folder, const std::string& name, const std::string& text) {
   return write_file(folder + "/" + name, text);
-}
-
-Status save_radiance(const std::string& folder, const std::string& name, std::uint32_t width, std::uint32_t height,
-                     const std::vector<Vec3>& radiance) {
-  std::string path = folder + "/" + name + ".pfm";
-  CHECK_EQ(radiance.size(), std::size_t(width) * height);
-  CHECK(!radiance.empty());
-  return write_encoded(path.c_str(), [&](const ByteSink& sink) {
-    encode_pfm(&radiance[0].x, 3, static_cast<int>(width), static_cast<int>(height), sink);
-    return success();
-  });
-}
-
-Status load_radiance(const std::string& folder, const std::string& name, std::uint32_t width, std::uint32_t height,
-                     std::vector<Vec3>* radiance) {
-  std::string path = folder + "/" + name + ".pfm";
-  CHECK(radiance != nullptr);
-  platform::LoadedFile file;
-  platform::FileError error;
-  if (!platform::load_file(path.c_str(), &file, &error))
-    return failure("%s %s, or use --restart to start over", path.c_str(), error.text);
-  char header[48];
-  int header_bytes = std::snprintf(header, sizeof header, "PF\n%u %u\n-1.0\n", width, height);
-  std::size_t start = static_cast<std::size_t>(header_bytes), row_bytes = std::size_t(width) * sizeof(Vec3);
-  bool ours = file.byte_count == start + row_bytes * height && std::memcmp(file.bytes, header, start) == 0;
-  radiance->assign(std::size_t(width) * height, Vec3{0, 0, 0});
-  for (std::uint32_t row = 0; ours && row < height; ++row)  // the bottom row is first
-    std::memcpy(&(*radiance)[std::size_t(height - 1 - row) * width].x, file.bytes + start + row * row_bytes, row_bytes);
-  platform::unload_file(&file);
-  return ours ? success() : failure("%s is damaged: use --restart to start over", path.c_str());
 }
 
 }  // namespace pocketray

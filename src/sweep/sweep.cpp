@@ -67,6 +67,7 @@ Json key_of(const Run& run, const Rig& rig) {
               {"effects", c.effects},
               {"output", o.output},
               {"reference", o.reference},
+              {"reference-file", o.reference_file},
               {"reference-samples", reference_samples(o, chosen(o))},
               {"other-reference-samples", reference_samples(o, other_than(chosen(o)))},
               {"ppd", o.pixels_per_degree},
@@ -214,6 +215,7 @@ Status render_references(Run* run, Sweep* sweep, bool* whole) {
   RETURN_IF_ERROR(render_reference(run->options, other_kind, rig, &run->state, &other, whole));
   if (!*whole) return success();
   const ReferencePictures& reference = run->reference;
+  sweep->reference_samples = static_cast<std::uint32_t>(reference.samples);
   sweep->reference_rmse = reference.rmse, sweep->reference_flip = reference.flip;
   sweep->reference_picture = reference.levels;
   sweep->model_flip = mean_of(
@@ -229,14 +231,13 @@ Status render_references(Run* run, Sweep* sweep, bool* whole) {
 Status check_options(const AccuracyOptions& o) {
   if (find_output_format(o.output) < 0)
     return failure("--output is '%s': it must be rgb565, rgb565-dithered or rgb888", o.output.c_str());
-  if (o.reference != "model" && o.reference != "physical")
-    return failure("--reference is '%s': it must be model or physical", o.reference.c_str());
+  CHECK(o.reference == "model" || o.reference == "physical");  // named
   if (o.rounds < 1 || o.rounds > kRoundsMax)
     return failure("--rounds is %u: it must lie in 1 … %u", o.rounds, kRoundsMax);
   if (!(o.price_limit >= 1 && o.price_limit <= 1e6))
     return failure("--price-limit is %g: it must lie in 1 … 1000000", o.price_limit);
   RETURN_IF_ERROR(check_limit(Quantity::seconds, o.seconds, "--time"));
-  if (o.reference_samples == 1 || o.reference_samples > 1000000)
+  if (o.reference_file.empty() && (o.reference_samples == 1 || o.reference_samples > 1000000))
     return failure("--reference-samples is %u: it must lie in 2 … 1000000", o.reference_samples);
   if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))
     return failure("--ppd is %g: it must lie in 1 … 1000", o.pixels_per_degree);
@@ -251,7 +252,7 @@ void describe(const Run& run, const Rig& rig, Sweep* sweep) {
                    isa_name(active_isa()) + emulation_text(rig.opened.renderer.pace);
   sweep->width = settings.width, sweep->height = settings.height;
   sweep->pixels_per_degree = o.pixels_per_degree;
-  sweep->reference = o.reference, sweep->reference_samples = reference_samples(o, chosen(o)) / 2 * 2;
+  sweep->reference = o.reference;
   sweep->output = o.output;
   sweep->notes = run.plan.notes;
 }

@@ -15,14 +15,15 @@ namespace pocketray {
 struct AccuracyOptions {
   CommonOptions common;
   std::string folder, output = kOutputFormats[Configuration().output].name, reference = "model";
-  std::uint32_t reference_samples = 0;  // per pixel of the chosen reference, both seeds together; 0: the default
+  std::string reference_file;           // of the chosen reference; empty: it is rendered
+  std::uint32_t reference_samples = 0;  // per pixel of the chosen reference, both halves together; 0: the default
   std::uint32_t rounds = 15;
   double pixels_per_degree = kHandheldPixelsPerDegree, seconds = 0, price_limit = 16;
   bool restart = false;
   bool starts_valgrind =
       false;  // if the CPU counts no instructions; only for a program started as `pocketray accuracy …`
-  double save_seconds = 10;                     // between saves of a running reference
-  std::function<void(std::uint32_t)> row_done;  // called after each row of a reference, one at a time; may be null
+  double save_seconds = 60;                     // between saves of a running reference
+  std::function<void(std::uint32_t)> row_done;  // called after samples of a reference's row, one at a time; may be null
   std::string counting_folder;                  // in the program that valgrind runs: the job to render; else empty
 };
 

@@ -8,18 +8,20 @@
 #include "session/gnuplot.h"
 #include "session/output.h"
 #include "sweep/instructions.h"
+#include "sweep/references.h"
 #include "sweep/report.h"
 #include "sweep/sweep.h"
 
 namespace pocketray {
 namespace {
 
-int run(const AccuracyOptions& options) {
+int run(AccuracyOptions options) {
   Sweep sweep;
   bool whole;
   SweptFront front;
   if (!options.counting_folder.empty()) return report(render_for_valgrind(options));
   Status status = check_outputs({{"SCENE", options.common.scene}}, {{"--json", options.common.json}});
+  if (status.ok) status = name_reference(&options);
   if (status.ok) status = measure_sweep(options, &sweep, &whole, &front);
   if (!status.ok) return report(status);
   if (!whole) {
@@ -63,8 +65,10 @@ void add_accuracy_command(Command program, int* exit_status) {
       "configuration in rounds of random order and compares its picture with a reference, by ꟻLIP and other metrics.\n"
       "The scene's options set the baseline. The output folder gets index.html with all results, its plots and "
       "strips,\n"
-      "accuracy.csv and the references. If interrupted, finished reference rows and finished rounds are kept, and the\n"
-      "same command continues. Times are of whole frames (pose, refit, lights, tracing, packing) after a warm-up "
+      "accuracy.csv and the references, which are also kept per scene and camera in the cache. If interrupted, samples "
+      "of\n"
+      "references and finished rounds are kept, and the same command continues. Times are of whole frames (pose, "
+      "refit, lights, tracing, packing) after a warm-up "
       "frame\n"
       "with the same settings; \"arithmetic double\" is timed with the reference's own tracer.\n"
       "Confidence intervals are 95 %, given at least six rounds.");
@@ -75,7 +79,8 @@ void add_accuracy_command(Command program, int* exit_status) {
   command
       .add_option(
           "--reference", o->reference,
-          "reference to compare with: model (the same lighting model, converged) or physical (full light transport)")
+          "reference to compare with: model (the same lighting model, converged), physical (full light transport) or "
+          "a file of `pocketray reference`")
       .capture_default_str();
   command.add_option("--reference-samples", o->reference_samples, "samples per pixel of the reference")
       .default_str("2048 for model, 256 for physical");

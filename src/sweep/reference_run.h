@@ -1,0 +1,41 @@
+// Takes the samples of a reference until it is good enough, and keeps them in a file.
+#pragma once
+#include "sweep/reference_file.h"
+
+namespace pocketray {
+
+struct ReferencePictures {
+  std::vector<double> one, other, mean;  // exposed light, clamped to the display range [0, 1]
+  std::vector<float> encoded;            // of the mean
+  Levels levels;                         // of the mean, 8 bits per channel
+  double rmse = 0, flip = 0;             // the mean's own error
+  std::uint64_t samples = 0;             // per pixel, both halves together
+};
+
+// The pictures of an accumulation, at the rig's exposure.
+void develop(const Accumulation& accumulation, double exposure, double pixels_per_degree, ReferencePictures* pictures);
+
+// Own errors of a grid of regions, as even as whole pixels allow, row by row from the top.
+struct RegionError {
+  std::uint32_t column, row, column_end, row_end;  // pixels
+  double rmse, flip;
+};
+std::vector<RegionError> region_errors(const ReferencePictures& pictures, std::uint32_t width, std::uint32_t height,
+                                       double pixels_per_degree);
+
+struct ReferenceGoal {
+  Transport transport = Transport::physical;
+  std::uint32_t samples = 0;               // per pixel, both halves and all parts together; 0: no limit
+  double until = 0;                        // its own ꟻLIP error at which to stop; 0: only at `samples`
+  std::uint32_t part = 1, part_count = 1;  // takes the samples of this part
+  double pixels_per_degree = kHandheldPixelsPerDegree;
+  std::string path;                             // of its file
+  double save_seconds = 60;                     // between saves
+  std::function<void(std::uint32_t)> row_done;  // called after samples of a row, one at a time; may be null
+};
+
+// Adds the samples that the goal lacks, with the rig's prepared frame and all its threads, and saves them now and then
+// and at the end. After an interrupt *whole is false; the same call continues.
+Status run_reference(const ReferenceGoal& goal, Rig* rig, Accumulation* accumulation, bool* whole);
+
+}  // namespace pocketray
