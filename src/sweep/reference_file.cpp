@@ -29,6 +29,7 @@ std::string camera_text(const CameraRays& c) {
 const char* name_of(Transport transport) { return transport == Transport::model ? "model" : "physical"; }
 
 Status prepare_for_reference(double seconds, Rig* rig) {
+  CHECK(rig != nullptr && rig->opened.renderer.accel_info != nullptr);  // opened
   RETURN_IF_ERROR(change_settings(&rig->opened.renderer, reference_settings(rig->baseline.settings)));
   return prepare_frame(&rig->opened.renderer, seconds);
 }
@@ -76,6 +77,7 @@ Status check_same_reference(const std::string& path, const Accumulation& there, 
 }
 
 Status save_accumulation(const std::string& path, const Accumulation& accumulation) {
+  CHECK(!path.empty());
   std::vector<std::uint8_t> bytes = encode_accumulation(accumulation);
   return write_encoded(path.c_str(), [&](const ByteSink& sink) {
     sink.write(sink.user, bytes.data(), bytes.size());

@@ -54,6 +54,7 @@ done
 for value in 0x0 -1x5 nanxnan 1e3x5 99999999x1 8193x1 5x; do try 1 plan cube --size "$value"; done
 if "$program" --help | grep -q ' accuracy '; then
   sweep "--rounds --ppd --time --price-limit --reference-samples" accuracy cube "${small[@]}" -o /dev/null/a
+  sweep "--samples --until --part --ppd --time" reference cube "${small[@]}" -o /dev/null/a.pfm
   sweep "--table" coherence-report cube "${small[@]}" -o /dev/null/a
 fi
 
