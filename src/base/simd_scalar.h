@@ -2,6 +2,10 @@
 #pragma once
 #include <cstdint>
 
+// Out of line, a lane operation costs more than it computes: GCC does not inline them all by itself.
+#define POCKETRAY_INLINE __attribute__((always_inline)) inline
+#define POCKETRAY_INLINE_LAMBDA __attribute__((always_inline))
+
 namespace pocketray {
 
 struct Mask4 {
@@ -23,7 +27,7 @@ struct Double4 {
 };
 
 template <class Result, class A, class B, class Operation>
-inline Result map_lanes(const A& a, const B& b, Operation operation) {
+POCKETRAY_INLINE Result map_lanes(const A& a, const B& b, Operation operation) {
   Result r;
   for (int i = 0; i < 4; ++i) r.v[i] = operation(a.v[i], b.v[i]);
   return r;
@@ -31,8 +35,8 @@ inline Result map_lanes(const A& a, const B& b, Operation operation) {
 
 // clang-format off
 #define POCKETRAY_LANES(Result, A, name, expression) \
-  inline Result name(const A& a, const A& b) { \
-    return map_lanes<Result>(a, b, [](auto x, auto y) { return expression; }); \
+  POCKETRAY_INLINE Result name(const A& a, const A& b) { \
+    return map_lanes<Result>(a, b, [](auto x, auto y) POCKETRAY_INLINE_LAMBDA { return expression; }); \
   }
 POCKETRAY_LANES(Float4, Float4, operator+, x + y)
 POCKETRAY_LANES(Float4, Float4, operator-, x - y)
@@ -60,55 +64,55 @@ POCKETRAY_LANES(Mask4, Mask4, operator|, x || y)
 #undef POCKETRAY_LANES
 // clang-format on
 
-inline Float4 abs(const Float4& a) {
+POCKETRAY_INLINE Float4 abs(const Float4& a) {
   return map_lanes<Float4>(a, a, [](float x, float) { return __builtin_fabsf(x); });
 }
 template <class Value>
-inline Value select(const Mask4& m, const Value& a, const Value& b) {
+POCKETRAY_INLINE Value select(const Mask4& m, const Value& a, const Value& b) {
   Value r;
   for (int i = 0; i < 4; ++i) r.v[i] = m.v[i] ? a.v[i] : b.v[i];
   return r;
 }
-inline unsigned bits(const Mask4& m) {
+POCKETRAY_INLINE unsigned bits(const Mask4& m) {
   unsigned r = 0;
   for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
   return r;
 }
-inline Float4 product_less(const Float4& a, const Float4& b, const Float4& c) { return a * b - c; }
-inline unsigned signs(const Float4& a) {
+POCKETRAY_INLINE Float4 product_less(const Float4& a, const Float4& b, const Float4& c) { return a * b - c; }
+POCKETRAY_INLINE unsigned signs(const Float4& a) {
   unsigned r = 0;
   for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(__builtin_signbit(a.v[i]) != 0) << i;
   return r;
 }
-inline float first(const Float4& a) { return a.v[0]; }
+POCKETRAY_INLINE float first(const Float4& a) { return a.v[0]; }
 template <int kLane>
-inline Float4 lane(const Float4& a) {
+POCKETRAY_INLINE Float4 lane(const Float4& a) {
   return Float4::splat(a.v[kLane]);
 }
-inline std::uint32_t word_outside(const Mask4& m, const std::uint32_t* words) {
+POCKETRAY_INLINE std::uint32_t word_outside(const Mask4& m, const std::uint32_t* words) {
   int i = 0;
   while (i < 3 && m.v[i]) ++i;
   return words[i];
 }
-inline float lowest(const Float4& a) {
+POCKETRAY_INLINE float lowest(const Float4& a) {
   float r = a.v[0];
   for (int i = 1; i < 4; ++i) r = a.v[i] < r ? a.v[i] : r;
   return r;
 }
-inline float highest(const Float4& a) {
+POCKETRAY_INLINE float highest(const Float4& a) {
   float r = a.v[0];
   for (int i = 1; i < 4; ++i) r = a.v[i] > r ? a.v[i] : r;
   return r;
 }
-inline void load_points(const float* const (&p)[4], Float4 (&rows)[3]) {
+POCKETRAY_INLINE void load_points(const float* const (&p)[4], Float4 (&rows)[3]) {
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 4; ++i) rows[axis].v[i] = p[i][axis];
 }
-inline void store(float* p, const Float4& a) {
+POCKETRAY_INLINE void store(float* p, const Float4& a) {
   for (int i = 0; i < 4; ++i) p[i] = a.v[i];
 }
-inline Double4 widen(const Float4& a) { return {{a.v[0], a.v[1], a.v[2], a.v[3]}}; }
-inline Float4 narrow(const Double4& a) {
+POCKETRAY_INLINE Double4 widen(const Float4& a) { return {{a.v[0], a.v[1], a.v[2], a.v[3]}}; }
+POCKETRAY_INLINE Float4 narrow(const Double4& a) {
   Float4 r;
   for (int i = 0; i < 4; ++i) r.v[i] = static_cast<float>(a.v[i]);
   return r;
