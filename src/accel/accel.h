@@ -15,6 +15,7 @@ struct Accel {
   Array<const Vec3> positions;
   Array<const Triangle> triangles;
   Box bounds = empty_box();
+  float least_coordinate = 0;      // no coordinate but 0 is nearer to 0; 0: unknown
   Array<const std::uint8_t> data;  // the structure itself; of `grid`, queries change it: grid.h
 };
 

@@ -13,9 +13,12 @@ namespace {
 constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels, &kAvx2Kernels, &kAvx512Kernels};
 constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels, &kAvx2CompactKernels,
                                                               &kAvx512CompactKernels};
+#elif defined(POCKETRAY_HAVE_NEON32)
+constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels, &kNeonKernels};
+constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels, &kNeonCompactKernels};
 #else
-constexpr const AccelTraversal* kBlockKernels[] = {&kBaselineKernels};
-constexpr const AccelTraversal* kCompactKernels[] = {&kBaselineCompactKernels};
+constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels};
+constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels};
 #endif
 
 // The functions of AccelInfo for one kind of leaves, with the kernels of every instruction set.

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "accel/bvh.h"
+#include "accel/denormals.h"
 #include "base/check.h"
 
 namespace pocketray {
@@ -98,6 +99,7 @@ Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> d
     return failure("accelerator: nodes or leaves that nothing refers to; bake the scene again");
   accel->data = data;
   accel->bounds = node_box(walk.bvh.nodes[0]);
+  accel->least_coordinate = least_coordinate(accel->positions);
   return success();
 }
 

@@ -9,6 +9,7 @@
 
 #include "accel/bvh_divide.h"
 #include "accel/bvh_treelet.h"
+#include "accel/denormals.h"
 #include "base/check.h"
 
 namespace pocketray {
@@ -241,6 +242,7 @@ void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch) 
   arena_release(scratch, scratch_mark);
   accel->data = {data, static_cast<std::uint32_t>(bytes)};
   accel->bounds = node_box(*BvhView(data).nodes);
+  accel->least_coordinate = least_coordinate(accel->positions);
 }
 
 }  // namespace pocketray

@@ -2,6 +2,7 @@
 // bits.
 #pragma once
 #include "accel/accel.h"
+#include "base/isa.h"
 
 namespace pocketray {
 
@@ -9,6 +10,8 @@ namespace pocketray {
 extern const AccelTraversal kBaselineKernels, kBaselineCompactKernels;
 #if defined(__x86_64__)
 extern const AccelTraversal kAvx2Kernels, kAvx2CompactKernels, kAvx512Kernels, kAvx512CompactKernels;
+#elif defined(POCKETRAY_HAVE_NEON32)
+extern const AccelTraversal kNeonKernels, kNeonCompactKernels;
 #endif
 
 }  // namespace pocketray

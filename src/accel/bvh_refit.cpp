@@ -1,5 +1,6 @@
 // Adapts a BVH in place to vertices that have moved.
 #include "accel/bvh.h"
+#include "accel/denormals.h"
 #include "base/check.h"
 
 namespace pocketray {
@@ -29,6 +30,7 @@ void bvh_refit(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data) {
   }
   accel->data = data;
   accel->bounds = node_box(bvh.nodes[0]);
+  accel->least_coordinate = least_coordinate(accel->positions);
 }
 
 }  // namespace pocketray

@@ -31,7 +31,7 @@ inline Float4 edge_error(const Packet& p, const Float4 (&x)[3], const Float4 (&y
   Float4 aside = max(max(abs(x[0]) + abs(y[0]), abs(x[1]) + abs(y[1])), abs(x[2]) + abs(y[2]));
   Float4 along = max(max(abs(depth[0]), abs(depth[1])), abs(depth[2]));
   Float4 s = aside + along * (p.half4[0] + p.half4[1]), m = aside + along * Float4::splat(4);
-  return s * m * Float4::splat(0x1p-19f) + Float4::splat(0x1p-140f);
+  return s * m * Float4::splat(0x1p-19f) + Float4::splat(kUnderflow);
 }
 
 // Computes everything but the edges.
@@ -43,7 +43,7 @@ inline void project_leaf(const Packet& p, const TriangleBlock& block, LeafProjec
     Float4 x = Float4::load(block.vertex[i][p.kx]) - p.origin4[0];
     Float4 y = Float4::load(block.vertex[i][p.ky]) - p.origin4[1];
     store(leaf->x[i], x), store(leaf->y[i], y), store(leaf->depth[i], depth[i]);
-    Float4 inverse = Float4::splat(1) / max(depth[i], tiny);
+    Float4 inverse = reciprocal(max(depth[i], tiny));
     px[i] = x * inverse, py[i] = y * inverse;
   }
   Float4 near = min(min(depth[0], depth[1]), depth[2]), deepest = max(max(depth[0], depth[1]), depth[2]);

@@ -139,7 +139,7 @@ inline bool prepare_bundle(const Box& bounds, Bundle* b) {
     Float4 y = Float4::load(b->origin[1] + i) - Float4::splat(b->middle[1]);
     Float4 depth = (Float4::splat(b->middle[2]) - Float4::load(b->origin[2] + i)) * sign;
     if (b->converges) {
-      Float4 inverse = Float4::splat(1) / max(depth, Float4::splat(b->slack));
+      Float4 inverse = reciprocal(max(depth, Float4::splat(b->slack)));
       store(b->x + i, x * inverse), store(b->y + i, y * inverse);
     } else {
       store(b->x + i, x - depth * Float4::splat(b->slope[0])), store(b->y + i, y - depth * Float4::splat(b->slope[1]));
@@ -178,8 +178,8 @@ inline Rectangles4 project_children(const Bundle& b, const BvhNode& node) {
     return {x_low - max(x0, x1),     x_high - min(x0, x1), y_low - max(y0, y1), y_high - min(y0, y1), near,
             Float4::splat(kInfinity)};
   }
-  Float4 tiny = Float4::splat(std::numeric_limits<float>::min()), one = Float4::splat(1);
-  Float4 widen = Float4::splat(kPacketSlack), a = one / max(near, tiny), c = one / max(deepest, tiny);
+  Float4 tiny = Float4::splat(std::numeric_limits<float>::min());
+  Float4 widen = Float4::splat(kPacketSlack), a = reciprocal(max(near, tiny)), c = reciprocal(max(deepest, tiny));
   return {min(x_low * a, x_low * c) - widen,
           max(x_high * a, x_high * c) + widen,
           min(y_low * a, y_low * c) - widen,

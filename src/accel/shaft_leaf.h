@@ -42,7 +42,7 @@ inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
   // The vertices are displaced by less than the slack, so the edge functions err by its product with their terms.
   Float4 size = aside + along * (half_x + half_y) + slack;
   Float4 error = size * slack * Float4::splat(4) + size * (aside + along * Float4::splat(4)) * Float4::splat(0x1p-19f) +
-                 Float4::splat(0x1p-140f);
+                 Float4::splat(kUnderflow);
   Float4 low_max = Float4::splat(-kInfinity), high_min = Float4::splat(kInfinity), zero = Float4::splat(0);
   for (int i = 0; i < 3; ++i) {
     int j = i == 2 ? 0 : i + 1;
@@ -107,9 +107,9 @@ unsigned surely_behind(const EdgeValues<F>& e, F low, F high, const F (&x)[3], c
                        F nearest, F farthest, F sign) {
   F aside = max(max(abs(x[0]) + abs(y[0]), abs(x[1]) + abs(y[1])), abs(x[2]) + abs(y[2]));
   F along = max(abs(nearest), abs(farthest)), zero = F::splat(0);
-  F error = aside * (aside + along * F::splat(4)) * F::splat(0x1p-19f) + F::splat(0x1p-140f);
+  F error = aside * (aside + along * F::splat(4)) * F::splat(0x1p-19f) + F::splat(kUnderflow);
   F depth = (e.a * z[0] + e.b * z[1] + e.c * z[2]) * sign,
-    depth_error = error * along * F::splat(4) + F::splat(0x1p-140f);
+    depth_error = error * along * F::splat(4) + F::splat(kUnderflow);
   return bits(((error < high) & (depth < zero - depth_error)) | ((low < zero - error) & (depth_error < depth)));
 }
 

@@ -21,7 +21,7 @@ Isa best_isa() {
       __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
   return wide ? Isa::kAvx512 : Isa::kAvx2;
 #else
-  return Isa::kBaseline;
+  return static_cast<Isa>(kIsaCount - 1);
 #endif
 }
 
@@ -40,9 +40,14 @@ void select_isa(Isa isa) {
 }
 
 const char* isa_name(Isa isa) {
-  CHECK(isa >= Isa::kBaseline && isa <= Isa::kAvx512);
+#if defined(__x86_64__)
   static constexpr const char* kNames[kIsaCount] = {"baseline", "avx2", "avx512"};
-  return kNames[static_cast<int>(isa)];
+#else
+  static constexpr const char* kNames[] = {"baseline", "neon"};
+#endif
+  const int index = static_cast<int>(isa);
+  CHECK(index >= 0 && index < kIsaCount);
+  return kNames[index];
 }
 
 }  // namespace pocketray

@@ -10,11 +10,25 @@
 #define POCKETRAY_ISA baseline
 #endif
 
+// NEON of 32-bit ARM, whose arithmetic flushes denormals.
+#if defined(__ARM_NEON) && !defined(__aarch64__)
+#define POCKETRAY_HAVE_NEON32
+#endif
+
 namespace pocketray {
 
-// Each includes the ones before it. kBaseline is what the compiler options allow: SSE2 on x86-64.
+// Each includes the ones before it. kBaseline is what the compiler options allow, SSE2 on x86-64, but on 32-bit ARM
+// without NEON's arithmetic, which flushes denormals.
+#if defined(__x86_64__)
 enum class Isa { kBaseline, kAvx2, kAvx512 };
 constexpr int kIsaCount = 3;
+#elif defined(POCKETRAY_HAVE_NEON32)
+enum class Isa { kBaseline, kNeon };
+constexpr int kIsaCount = 2;
+#else
+enum class Isa { kBaseline };
+constexpr int kIsaCount = 1;
+#endif
 
 // The widest that this CPU supports and this build has kernels for.
 Isa best_isa();
@@ -22,6 +36,6 @@ Isa best_isa();
 Isa active_isa();
 // For tests and measurements, while nothing is traced; must not exceed best_isa().
 void select_isa(Isa isa);
-const char* isa_name(Isa isa);  // "baseline", "avx2", "avx512"
+const char* isa_name(Isa isa);  // "baseline", "avx2", "avx512", "neon"
 
 }  // namespace pocketray

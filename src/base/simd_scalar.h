@@ -1,16 +1,10 @@
 // Lanes one after the other, for CPUs without an IEEE vector unit. See simd.h.
 #pragma once
-#include <cstdint>
-
-// Out of line, a lane operation costs more than it computes: GCC does not inline them all by itself.
-#define POCKETRAY_INLINE __attribute__((always_inline)) inline
-#define POCKETRAY_INLINE_LAMBDA __attribute__((always_inline))
+#include "base/simd_scalar_doubles.h"
 
 namespace pocketray {
 
-struct Mask4 {
-  bool v[4];
-};
+using Mask4 = LaneMask4;
 struct Float4 {
   float v[4];
   static constexpr int kLanes = 4;
@@ -21,23 +15,8 @@ struct Float4 {
   static Float4 spread(const float* p) { return splat(*p); }
   static Mask4 mask_of(unsigned bits) { return {{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0}}; }
 };
-struct Double4 {
-  double v[4];
-  static Double4 splat(double x) { return {{x, x, x, x}}; }
-};
-
-template <class Result, class A, class B, class Operation>
-POCKETRAY_INLINE Result map_lanes(const A& a, const B& b, Operation operation) {
-  Result r;
-  for (int i = 0; i < 4; ++i) r.v[i] = operation(a.v[i], b.v[i]);
-  return r;
-}
 
 // clang-format off
-#define POCKETRAY_LANES(Result, A, name, expression) \
-  POCKETRAY_INLINE Result name(const A& a, const A& b) { \
-    return map_lanes<Result>(a, b, [](auto x, auto y) POCKETRAY_INLINE_LAMBDA { return expression; }); \
-  }
 POCKETRAY_LANES(Float4, Float4, operator+, x + y)
 POCKETRAY_LANES(Float4, Float4, operator-, x - y)
 POCKETRAY_LANES(Float4, Float4, operator*, x * y)
@@ -51,32 +30,11 @@ POCKETRAY_LANES(Mask4, Float4, is_later, x > y)
 POCKETRAY_LANES(Mask4, Float4, operator<=, x <= y)
 POCKETRAY_LANES(Mask4, Float4, operator<, x < y)
 POCKETRAY_LANES(Mask4, Float4, operator==, x == y)
-POCKETRAY_LANES(Double4, Double4, operator+, x + y)
-POCKETRAY_LANES(Double4, Double4, operator-, x - y)
-POCKETRAY_LANES(Double4, Double4, operator*, x * y)
-POCKETRAY_LANES(Double4, Double4, operator/, x / y)
-POCKETRAY_LANES(Double4, Double4, min, x < y ? x : y)
-POCKETRAY_LANES(Double4, Double4, max, x > y ? x : y)
-POCKETRAY_LANES(Mask4, Double4, operator<=, x <= y)
-POCKETRAY_LANES(Mask4, Double4, operator<, x < y)
-POCKETRAY_LANES(Mask4, Mask4, operator&, x && y)
-POCKETRAY_LANES(Mask4, Mask4, operator|, x || y)
 #undef POCKETRAY_LANES
 // clang-format on
 
 POCKETRAY_INLINE Float4 abs(const Float4& a) {
   return map_lanes<Float4>(a, a, [](float x, float) { return __builtin_fabsf(x); });
-}
-template <class Value>
-POCKETRAY_INLINE Value select(const Mask4& m, const Value& a, const Value& b) {
-  Value r;
-  for (int i = 0; i < 4; ++i) r.v[i] = m.v[i] ? a.v[i] : b.v[i];
-  return r;
-}
-POCKETRAY_INLINE unsigned bits(const Mask4& m) {
-  unsigned r = 0;
-  for (int i = 0; i < 4; ++i) r |= static_cast<unsigned>(m.v[i]) << i;
-  return r;
 }
 POCKETRAY_INLINE Float4 product_less(const Float4& a, const Float4& b, const Float4& c) { return a * b - c; }
 POCKETRAY_INLINE unsigned signs(const Float4& a) {

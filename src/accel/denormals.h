@@ -1,0 +1,104 @@
+// Which rays meet no denormals, so that NEON of 32-bit ARM, which flushes them, traces them exactly.
+//
+// If all coordinates of vertices and origin are 0 or at least 2^-62, a difference of two of them is a multiple of 2^-85,
+// an ulp of the smaller one. With shears that are 0 or at least 2^-40, the sheared coordinates of cross_triangle() are
+// then 0 or at least 2^-125: normal, so that NEON computes the same. Products of them in an edge function may be
+// flushed. Flushing keeps order: it makes an edge function 0 at worst and never changes its sign, and triangles with an
+// edge function of 0 are left to cross_triangle(), in the VFP. Bounds on errors include kUnderflow. With directions
+// below 2^30, a triangle all in front of the origin has t of 2^-115 or more; one that straddles it passes depth bounds
+// even if they are flushed to 0.
+//
+// All other rays are traced by the kernels of the baseline.
+#pragma once
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "accel/accel.h"
+#include "base/isa.h"
+
+namespace pocketray {
+
+constexpr float kCoordinateMin = 0x1p-62f;
+
+// The least magnitude of a coordinate that is not 0; infinity if all are 0. Where no kernel flushes denormals, nobody
+// asks: 0.
+inline float least_coordinate(Array<const Vec3> positions) {
+#if defined(POCKETRAY_HAVE_NEON32)
+  float least = std::numeric_limits<float>::infinity();
+  for (const Vec3& p : positions)
+    for (int axis = 0; axis < 3; ++axis) {
+      float magnitude = std::fabs(p[axis]);
+      if (magnitude < least && magnitude > 0) least = magnitude;
+    }
+  return least;
+#else
+  (void)positions;
+  return 0;
+#endif
+}
+
+// Magnitude of a float as an integer: sorts like the magnitude, and one less than 0 is the greatest of all.
+inline std::uint32_t magnitude_bits(float x) {
+  std::uint32_t word;
+  std::memcpy(&word, &x, sizeof word);
+  return word << 1;
+}
+
+// Judges rays one by one.
+class DenormalGuard {
+ public:
+  void add_origin(const Vec3& origin) {
+    for (int axis = 0; axis < 3; ++axis) keep_least(magnitude_bits(origin[axis]) - 1, &coordinate_);
+  }
+  void add_direction(float x, float y, float z) {
+    std::uint32_t a = magnitude_bits(x), b = magnitude_bits(y), c = magnitude_bits(z);
+    std::uint32_t most = a > b ? a : b, least = a - 1 < b - 1 ? a - 1 : b - 1;
+    if (c > most) most = c;
+    if (c - 1 < least) least = c - 1;
+    // The exponents of shears.
+    if (most - least > kShearSpan + 1 || most - kDirectionMin > kDirectionMax - kDirectionMin) safe_ = false;
+  }
+  void add_end(float t_max) {
+    if (t_max < kCoordinateMin && t_max > 0) safe_ = false;
+  }
+  bool is_safe() const { return safe_ && coordinate_ >= kCoordinateBits - 1; }
+
+ private:
+  static constexpr std::uint32_t kShearSpan = 40u << 24;
+  static constexpr std::uint32_t kDirectionMin = (127u - 60) << 24, kDirectionMax = (127u + 30) << 24;  // 2^-60, 2^30
+  static void keep_least(std::uint32_t value, std::uint32_t* least) {
+    if (value < *least) *least = value;
+  }
+  static constexpr std::uint32_t kCoordinateBits = (127u - 62) << 24;  // of kCoordinateMin
+  std::uint32_t coordinate_ = ~0u;
+  bool safe_ = true;
+};
+
+inline bool is_safe_to_flush(const Accel& accel, const Ray& ray) {
+  DenormalGuard guard;
+  guard.add_origin(ray.origin);
+  guard.add_direction(ray.direction.x, ray.direction.y, ray.direction.z);
+  guard.add_end(ray.t_max);
+  return guard.is_safe() && accel.least_coordinate >= kCoordinateMin;
+}
+inline bool is_safe_to_flush(const Accel& accel, const RayPacket& rays) {
+  if (!(accel.least_coordinate >= kCoordinateMin)) return false;
+  DenormalGuard guard;
+  guard.add_origin(rays.origin), guard.add_end(rays.t_max);
+  for (std::uint32_t i = 0; i < rays.count; ++i)
+    guard.add_direction(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
+  return guard.is_safe();
+}
+inline bool is_safe_to_flush(const Accel& accel, const SegmentPacket& rays) {
+  if (!(accel.least_coordinate >= kCoordinateMin)) return false;
+  DenormalGuard guard;
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    guard.add_origin({rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]});
+    guard.add_direction(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
+    guard.add_end(rays.t_max[i]);
+  }
+  return guard.is_safe();
+}
+
+}  // namespace pocketray
