@@ -3,7 +3,7 @@
 // is fused, so all give the same bits. NEON of 32-bit ARM flushes denormals: only kernels that never meet any, or bear
 // it, use it (kFlushesDenormals; accel/denormals.h).
 //
-// min and max return the second operand if the operands are equal or unordered. Comparisons give one bit per lane.
+// min and max take no NaN, and of 0 and −0 return either. Comparisons give one bit per lane.
 // load() and store() take pointers aligned to the size of the vector. repeat() fills the lanes with the same four
 // values over and over; spread() fills four lanes with each of lanes/4 values, from a pointer aligned to their size.
 //

@@ -36,9 +36,9 @@ inline Float4 operator+(Float4 a, Float4 b) { return {vaddq_f32(a.v, b.v)}; }
 inline Float4 operator-(Float4 a, Float4 b) { return {vsubq_f32(a.v, b.v)}; }
 inline Float4 operator*(Float4 a, Float4 b) { return {vmulq_f32(a.v, b.v)}; }
 inline Float4 operator/(Float4 a, Float4 b) { return {vdivq_f32(a.v, b.v)}; }
-inline Float4 min(Float4 a, Float4 b) { return {vbslq_f32(vcltq_f32(a.v, b.v), a.v, b.v)}; }
+inline Float4 min(Float4 a, Float4 b) { return {vminq_f32(a.v, b.v)}; }
 inline Float4 abs(Float4 a) { return {vabsq_f32(a.v)}; }
-inline Float4 max(Float4 a, Float4 b) { return {vbslq_f32(vcgtq_f32(a.v, b.v), a.v, b.v)}; }
+inline Float4 max(Float4 a, Float4 b) { return {vmaxq_f32(a.v, b.v)}; }
 
 inline Mask4 operator<=(Float4 a, Float4 b) { return {vcleq_f32(a.v, b.v)}; }
 inline Mask4 operator<(Float4 a, Float4 b) { return {vcltq_f32(a.v, b.v)}; }
@@ -85,10 +85,10 @@ inline Double4 operator*(Double4 a, Double4 b) { return {vmulq_f64(a.low, b.low)
 
 inline Double4 operator/(Double4 a, Double4 b) { return {vdivq_f64(a.low, b.low), vdivq_f64(a.high, b.high)}; }
 inline Double4 min(Double4 a, Double4 b) {
-  return {vbslq_f64(vcltq_f64(a.low, b.low), a.low, b.low), vbslq_f64(vcltq_f64(a.high, b.high), a.high, b.high)};
+  return {vminq_f64(a.low, b.low), vminq_f64(a.high, b.high)};
 }
 inline Double4 max(Double4 a, Double4 b) {
-  return {vbslq_f64(vcgtq_f64(a.low, b.low), a.low, b.low), vbslq_f64(vcgtq_f64(a.high, b.high), a.high, b.high)};
+  return {vmaxq_f64(a.low, b.low), vmaxq_f64(a.high, b.high)};
 }
 inline Float4 narrow(Double4 a) { return {vcvt_high_f32_f64(vcvt_f32_f64(a.low), a.high)}; }
 
