@@ -1,12 +1,12 @@
 // Which rays meet no denormals, so that NEON of 32-bit ARM, which flushes them, traces them exactly.
 //
-// If all coordinates of vertices and origin are 0 or at least 2^-62, a difference of two of them is a multiple of 2^-85,
-// an ulp of the smaller one. With shears that are 0 or at least 2^-40, the sheared coordinates of cross_triangle() are
-// then 0 or at least 2^-125: normal, so that NEON computes the same. Products of them in an edge function may be
-// flushed. Flushing keeps order: it makes an edge function 0 at worst and never changes its sign, and triangles with an
-// edge function of 0 are left to cross_triangle(), in the VFP. Bounds on errors include kUnderflow. With directions
-// below 2^30, a triangle all in front of the origin has t of 2^-115 or more; one that straddles it passes depth bounds
-// even if they are flushed to 0.
+// If all coordinates of vertices and origin are 0 or at least 2^-62, a difference of two of them is a multiple of
+// 2^-85, an ulp of the smaller one. With shears that are 0 or at least 2^-40, the sheared coordinates of
+// cross_triangle() are then 0 or at least 2^-125: normal, so that NEON computes the same. Products of them in an edge
+// function may be flushed. Flushing keeps order: it makes an edge function 0 at worst and never changes its sign, and
+// triangles with an edge function of 0 are left to cross_triangle(), in the VFP. Bounds on errors include kUnderflow.
+// With directions below 2^30, a triangle all in front of the origin has t of 2^-115 or more; one that straddles it
+// passes depth bounds even if they are flushed to 0.
 //
 // All other rays are traced by the kernels of the baseline.
 #pragma once

@@ -1,6 +1,8 @@
 // Transcendental functions in IEEE double arithmetic, without libm: the same bits everywhere. Each states its error
 // bound, measured against the C library by tests/base/fmath_test.cpp. Angles are in radians.
 #pragma once
+#include <cstdint>
+#include <cstring>
 
 namespace pocketray {
 
@@ -18,5 +20,21 @@ double det_log(double x);   // relative error ≤ 7e-16; -Inf at 0, NaN below
 // x^y for x ≥ 0, rounded to float: relative error ≤ 6e-8, exceeding half an ulp by less than 1 %. x^0 = 1, even for
 // NaN; x < 0 gives NaN.
 float det_pow(float x, float y);
+
+// The next float above x if `direction` is positive, below x if it is negative. NaN, and infinities at the end of that
+// direction, stay.
+inline float next_float_towards(float x, float direction) {
+  std::uint32_t word;
+  std::memcpy(&word, &x, sizeof word);
+  const std::uint32_t magnitude = word & 0x7FFFFFFFu, infinity = 0x7F800000u;
+  const bool up = direction > 0, positive = word == magnitude;
+  if (magnitude > infinity || (magnitude == infinity && up == positive)) return x;
+  if (magnitude == 0)
+    word = up ? 1 : 0x80000001u;
+  else
+    word += up == positive ? 1u : ~0u;
+  std::memcpy(&x, &word, sizeof x);
+  return x;
+}
 
 }  // namespace pocketray

@@ -116,24 +116,27 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
   return {0, 0, 0};
 }
 
-// The fraction of a light that arrives: zero or one, or between if something transparent is in the way.
-template <EffectMask mask>
-Vec3 shadow(Tracer* tracer, const Ray& ray, std::uint32_t light, bool at_first_hit) {
+// The fraction of a light that arrives: zero or one, or between if something transparent is in the way. find_ray()
+// returns the shadow ray.
+template <EffectMask mask, class FindRay>
+Vec3 shadow(Tracer* tracer, FindRay find_ray, std::uint32_t light, bool at_first_hit) {
   effect_entered<Effect::shadow>();
   const FrameData& frame = *tracer->frame;
+  ++tracer->rays[static_cast<int>(RayKind::shadow)];
+  bool blocked, known = at_first_hit && is_known(*tracer, light, &blocked);
+  constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
+  if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
+  const Ray ray = find_ray();
   std::uint32_t emitter = frame.lights[light].material;
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.accept_opaque, &context};
   bool filtered = frame.filter_every_shadow || emitter != kNone;
-  ++tracer->rays[static_cast<int>(RayKind::shadow)];
-  bool blocked;
-  if (!at_first_hit || !is_known(*tracer, light, &blocked)) {
+  if (!known) {
     const AccelTraversal& rays = at_first_hit ? *frame.first_rays : *frame.accel_info;
     blocked = rays.occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
   }
   if (blocked) return {0, 0, 0};
-  if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend))
-    return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
+  if constexpr (kClear) return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
   return {1, 1, 1};
 }
 
@@ -151,7 +154,13 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const LightPoint& light = frame.lights[i];
       LightSample sample;
-      if (!lights_up(frame, s, run, light, &sample)) continue;
+      const TileSample* kept = nullptr;
+      if (at_first_hit && is_sampled(*tracer, i, &kept)) {
+        if (!kept) continue;
+        sample.direction = kept->direction, sample.irradiance = kept->irradiance;
+      } else if (!lights_up(frame, s, run, light, &sample)) {
+        continue;
+      }
       float cosine = dot(s.normal, sample.direction);
       bool below = !(dot(s.geometric, sample.direction) > 0);
       if (below && !has(mask, Effect::shadow)) continue;
@@ -167,8 +176,11 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
       if (!(bound > 0)) continue;
       if constexpr (has(mask, Effect::shadow)) {
         if (leave_out(tracer, bound)) continue;
-        Vec3 origin = below ? curved_origin(frame, s) : safe_origin(s, 1);
-        light_out *= shadow<mask>(tracer, {origin, sample.to_light, sample.t_max}, i, at_first_hit);
+        auto shadow_ray = [&]() -> Ray {
+          if (kept) run.sample(light, s.point, &sample);
+          return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
+        };
+        light_out *= shadow<mask>(tracer, shadow_ray, i, at_first_hit);
       }
       sum += light_out;
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/fmath.h"
 #include "shade/frame_data.h"
 
 namespace pocketray {
@@ -42,11 +43,10 @@ inline float origin_offset(const Vec3& point_magnitude, float corner_distance, c
   // Twice: once for the point, once for rounding the moved origin.
   return dot(abs(geometric), point_magnitude) * (2 * gamma) + corner_distance * (4 * u);
 }
+// value + step, rounded away from the value.
 inline float away_from(float value, float step) {
   float moved = value + step;
-  if (step > 0) return std::nextafterf(moved, std::numeric_limits<float>::infinity());
-  if (step < 0) return std::nextafterf(moved, -std::numeric_limits<float>::infinity());
-  return moved;
+  return step == 0 ? moved : next_float_towards(moved, step);
 }
 // The point moved to its safe origin on one side (+1: the side the ray came from, -1: the other).
 inline Vec3 safe_origin(const Surface& s, float side) {

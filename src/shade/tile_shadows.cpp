@@ -42,12 +42,15 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
     const LightRun& run = frame.light_runs[r];
     for (std::uint32_t i = run.begin; i < run.end && i < kTileLightMax; ++i) {
       const LightPoint& light = frame.lights[i];
-      shadows->traced[i] = shadows->blocked[i] = 0;
+      shadows->lit[i] = shadows->traced[i] = shadows->blocked[i] = 0;
       packet.count = 0;
       for (std::uint32_t k = 0; k < receiver_count; ++k) {
         const Surface& s = shadows->surface[receivers[k]];
         LightSample sample;
-        if (!lights_up(frame, s, run, light, &sample) || !(dot(s.geometric, sample.direction) > 0)) continue;
+        if (!lights_up(frame, s, run, light, &sample)) continue;
+        shadows->lit[i] |= std::uint64_t(1) << receivers[k];
+        if (i < kTileSampleMax) shadows->sample[i][receivers[k]] = {sample.direction, sample.irradiance};
+        if (!(dot(s.geometric, sample.direction) > 0)) continue;
         if (cannot_matter(frame, s, sample)) continue;
         pixel[packet.count] = receivers[k];
         set_ray(&packet, packet.count++, {origins[receivers[k]], sample.to_light, sample.t_max});

@@ -5,17 +5,33 @@
 namespace pocketray {
 
 constexpr std::uint32_t kTileLightMax = 64;  // further lights are tested ray by ray
+constexpr std::uint32_t kTileSampleMax = 8;  // and the light from all but these is computed again: 12 KiB
 
-// For each pixel of a tile the surface at its first hit, if any. For each light, which of the pixels' shadow rays were
-// traced and which of these are blocked by something opaque: bit i for pixel i.
+// The light that arrives at a pixel's first hit unless it is blocked; see LightSample.
+struct TileSample {
+  Vec3 direction, irradiance;
+};
+
+// For each pixel of a tile the surface at its first hit, if any. For each light, which of the pixels it lights up,
+// whose shadow rays were traced, and which of these are blocked by something opaque: bit i for pixel i.
 struct TileShadows {
   Surface surface[kPacketMax];
-  std::uint64_t traced[kTileLightMax], blocked[kTileLightMax];
+  TileSample sample[kTileSampleMax][kPacketMax];  // of the pixels that are lit up
+  std::uint64_t lit[kTileLightMax], traced[kTileLightMax], blocked[kTileLightMax];
 };
 
 // Fills `shadows` for the rays of a packet and their first hits.
 void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                        TraceStats* stats);
+
+// The sample of a light at the first hit, if find_tile_shadows() has kept it. False: not known. Otherwise *sample is
+// null if the light does not light it up.
+inline bool is_sampled(const Tracer& tracer, std::uint32_t light, const TileSample** sample) {
+  if (!tracer.tile_shadows || light >= kTileSampleMax) return false;
+  const TileShadows& tile = *tracer.tile_shadows;
+  *sample = tile.lit[light] >> tracer.tile_pixel & 1 ? &tile.sample[light][tracer.tile_pixel] : nullptr;
+  return true;
+}
 
 // Whether the result of a shadow ray from the first hit is known, and the result. (The packet holds no ray that starts
 // below the surface.)

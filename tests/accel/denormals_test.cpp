@@ -17,7 +17,8 @@ float awkward(Rng* rng, int exponent_min) {
   float x = between(rng, -1, 1);
   if (kind == 0) return 0;
   if (kind < 4) return x;
-  return std::ldexp(std::copysign(1 + std::fabs(x), x), -static_cast<int>(next_u32(rng) % static_cast<std::uint32_t>(-exponent_min)));
+  return std::ldexp(std::copysign(1 + std::fabs(x), x),
+                    -static_cast<int>(next_u32(rng) % static_cast<std::uint32_t>(-exponent_min)));
 }
 Vec3 awkward3(Rng* rng, int exponent_min) {
   float x = awkward(rng, exponent_min), y = awkward(rng, exponent_min);
@@ -36,7 +37,8 @@ Mesh awkward_mesh(Rng* rng, int exponent_min) {
 }
 
 float signed_power(Rng* rng, int low, int high) {
-  float x = std::ldexp(1 + next_float(rng), low + static_cast<int>(next_u32(rng) % static_cast<std::uint32_t>(high - low)));
+  float x =
+      std::ldexp(1 + next_float(rng), low + static_cast<int>(next_u32(rng) % static_cast<std::uint32_t>(high - low)));
   return next_u32(rng) % 2 ? -x : x;
 }
 

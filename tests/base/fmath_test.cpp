@@ -157,3 +157,23 @@ TEST_CASE("hard_63_fmath_gives_the_same_bits_everywhere") {
   }
   CHECK(hash == 6964161225244906059u);
 }
+
+TEST_CASE("fmath_next_float_is_nextafter") {
+  Rng rng = make_rng(3);
+  int wrong = 0;
+  auto check = [&](float x) {
+    for (float end : {kInfinityF, -kInfinityF}) {
+      float expected = std::nextafter(x, end), got = next_float_towards(x, end > 0 ? 1e-30f : -2.0f);
+      wrong += std::isnan(x) ? !std::isnan(got) : std::memcmp(&got, &expected, sizeof got) != 0;
+    }
+  };
+  constexpr float kMax = std::numeric_limits<float>::max(), kTiny = std::numeric_limits<float>::denorm_min();
+  for (float x : {0.0f, -0.0f, kTiny, -kTiny, kMax, -kMax, kInfinityF, -kInfinityF, 1.0f, -1.0f, NAN}) check(x);
+  for (int n = 0; n < 100000; ++n) {
+    std::uint32_t word = next_u32(&rng);
+    float x;
+    std::memcpy(&x, &word, sizeof x);
+    check(x);
+  }
+  CHECK(wrong == 0);
+}
