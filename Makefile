@@ -39,7 +39,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -185,6 +185,13 @@ package: all
 	@toolchains/setup.sh desktop package && $(MAKE) -s DEVICE= CROSS_PREFIX=
 	@toolchains/package.sh "$(DEVICE)" $(POCKETRAY) build/pocketray build/packages
 
+# Counts instructions under emulation. JSON=FILE: also writes them; BENCH_OPTIONS='--effects --symbols 20 --scenes cornell'.
+bench-device: configure
+	@[ -n "$(CLASS)" ] || { echo "bench-device: for which device? make bench-device DEVICE=armhf" >&2; exit 1; }
+	@$(MAKE) --no-print-directory DEVICE= CROSS_PREFIX= all >&2
+	@cmake --build $(BUILD) -j$(JOBS) --target pocketray >&2
+	@python3 tests/bench/device/bench_device.py $(CLASS) $(POCKETRAY) build/pocketray $(JSON:%=--json %) $(BENCH_OPTIONS)
+
 install: configure
 	cmake --build $(BUILD) -j$(JOBS)
 	cmake --build $(BUILD) --target install
@@ -218,6 +225,8 @@ help:
 	@echo "make bench-embree compare rays per second with Embree (SCENE=x: one scene, JSON=FILE, BUILD_JSON=FILE: write tables,"
 	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31': see $(BUILD)/bench_embree --help)"
 	@echo "make bench-povray compare whole frames with POV-Ray (JSON=FILE: write the table)"
+	@echo "make bench-device count instructions and estimated cycles per pixel for DEVICE=, by part (BENCH_OPTIONS=--effects: and"
+	@echo "                  by effect; JSON=FILE: write the table)"
 	@echo "make format       run clang-format on all sources"
 	@echo "make tidy         run clang-tidy on all sources"
 	@echo "make package      write the packages of launchers for DEVICE=miyoo-mini, rg350 or portmaster to build/packages"

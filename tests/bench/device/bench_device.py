@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""Counts the instructions that a device spends per pixel, in all, by part of the program and by effect.
+
+Runs the device's program under QEMU's user mode, which repeats exactly, at two picture sizes; the difference leaves
+start-up out. Cycles are estimated from weights by class of instruction: no caches, no dual issue, not calibrated on
+hardware. `make bench-device DEVICE=armhf` calls it.
+"""
+import argparse
+import bisect
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SIZES = ((320, 240), (160, 120))
+PIXELS = SIZES[0][0] * SIZES[0][1] - SIZES[1][0] * SIZES[1][1]
+BUDDHA = "mesh/happy_vrip_res3.ply"
+SCENES = ("cornell", "statue", "seesaw", "buddha")
+TOLERANCE = 1.02
+
+# As in count.c; then registers moved by loads and by stores.
+CLASSES = ("integer", "branch", "load", "store", "multiply", "divide", "float", "float divide", "vector")
+MACHINES = {  # QEMU, CPU, tools, and cycles by class; loads and stores take their registers moved in addition
+    "armel": ("qemu-arm", "arm926", "arm-linux-gnueabi-", (1, 3, 1, 0, 3, 30, 1, 1, 1)),
+    "armhf": ("qemu-arm", "cortex-a7", "arm-linux-gnueabihf-", (1, 2, 1, 0, 2, 8, 2, 18, 2)),
+    "aarch64": ("qemu-aarch64", "cortex-a53", "aarch64-linux-gnu-", (1, 2, 1, 0, 3, 8, 2, 14, 2)),
+}
+PARTS = (  # the first that matches a symbol
+    ("soft float", r"^(__aeabi_[fdlui]|__(add|sub|mul|div|cmp|eq|ne|ge|gt|le|lt|unord|float|fix|extend|trunc|udiv|sqrt)|"
+                   r"_*aeabi|sqrt|__ieee754|.*soft)"),
+    ("triangles", r"(neon|baseline)::.*(leaf|leaves|triangle|segment|crossing|cross_|settle|locate|test_rays|list_|"
+                  r"meet_window|surely_behind|edge|place_)"),
+    ("traversal", r"(neon|baseline)::|Guarded|occluded|closest"),
+    ("lights", r"direct_light|_light\(|reach\(|tile_shadows|shadow|transmittance|accept_|LightPoint"),
+    ("pack", r"pack|tone|sRGB|srgb|dither|write_row"),
+    ("surface", r"surface|smooth_normal|texture|shade|radiance|contact|normalize|mirror|dielectric|fresnel|brdf|"
+                r"spawn|det_|origin"),
+    ("camera", r"trace_spans|camera|trace_frame|strip"),
+)
+
+
+def part_of(symbol):
+    for name, pattern in PARTS:
+        if re.search(pattern, symbol):
+            return name
+    return "other"
+
+
+def fail(text):
+    sys.exit("bench_device: " + text)
+
+
+def build_plugin(folder):
+    library = os.path.join(folder, "libcount.so")
+    command = ["cc", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", os.path.join(HERE, "count.c"), "-o", library]
+    if subprocess.run(command).returncode:
+        fail("cannot compile count.c")
+    return library
+
+
+def symbols_of(program, tools):
+    """Sorted addresses and names, from the symbols beside the program or in it."""
+    source = program + ".debug" if os.path.exists(program + ".debug") else program
+    listing = subprocess.run([tools + "nm", "-C", "-n", "--defined-only", source], capture_output=True, text=True).stdout
+    addresses, names = [], []
+    for line in listing.splitlines():
+        match = re.match(r"([0-9a-f]+) [tTwWiIuV] (.*)", line)
+        if match and not match[2].startswith("$"):
+            addresses.append(int(match[1], 16) & ~1)
+            names.append(match[2])
+    if not names:
+        fail(f"{source} has no symbols")
+    return addresses, names
+
+
+def compiler_of(tools):
+    return subprocess.run([tools + "g++", "-dumpfullversion"], capture_output=True, text=True).stdout.strip()
+
+
+class Count:
+    """Instructions and cycles, in all and by part."""
+
+    def __init__(self):
+        self.instructions, self.cycles, self.parts, self.symbols = 0, 0, {}, {}
+
+    def add_run(self, path, symbols, weights, sign):
+        addresses, names = symbols
+        with open(path) as lines:
+            for line in lines:
+                address, executions, *counts = line.split()
+                counts = [int(x) for x in counts]
+                times = int(executions) * sign
+                classes, moved = counts[:len(CLASSES)], sum(counts[len(CLASSES):])
+                instructions = sum(classes) * times
+                self.instructions += instructions
+                self.cycles += (sum(n * w for n, w in zip(classes, weights)) + moved) * times
+                index = bisect.bisect_right(addresses, int(address, 16)) - 1
+                name = names[index] if index >= 0 else "?"
+                self.symbols[name] = self.symbols.get(name, 0) + instructions
+                part = part_of(name)
+                self.parts[part] = self.parts.get(part, 0) + instructions
+
+
+def count_pixels(machine, program, scene, plugin, folder, symbols, effects="auto"):
+    qemu, cpu, _, weights = machine
+    count = Count()
+    for (width, height), sign in zip(SIZES, (1, -1)):
+        out = os.path.join(folder, "count.txt")
+        command = [qemu, "-cpu", cpu, "-plugin", f"{plugin},out={out}", "-d", "plugin", program, "render", scene,
+                   "--size", f"{width}x{height}", "--threads", "1", "--effects", effects,
+                   "-o", os.path.join(folder, "out.raw")]
+        run = subprocess.run(command, capture_output=True, text=True)
+        if run.returncode:
+            fail(f"{os.path.basename(program)} failed on {os.path.basename(scene)}: {run.stderr.strip()}")
+        count.add_run(out, symbols, weights, sign)
+    return count
+
+
+def bake(baker, scene, shared, folder):
+    """The scene as a .pray file, or None."""
+    source = scene
+    if scene == "buddha":
+        source = os.path.join(shared, "scenes", BUDDHA)
+        if not os.path.exists(source):
+            return None
+    target = os.path.join(folder, os.path.basename(scene) + ".pray")
+    run = subprocess.run([baker, "bake", source, "-o", target], capture_output=True, text=True)
+    if run.returncode:
+        fail(f"cannot bake {scene}: {run.stderr.strip()}")
+    return target
+
+
+def effects_in(baker, scene):
+    run = subprocess.run([baker, "plan", scene, "--json", "-"], capture_output=True, text=True)
+    plan = json.loads(run.stdout[run.stdout.index("{"):])
+    return [effect["name"] for effect in plan["effects"] if effect.get("on")]
+
+
+def measure(arguments):
+    machine = MACHINES[arguments.cpu_class]
+    results = []
+    with tempfile.TemporaryDirectory() as folder:
+        plugin = build_plugin(folder)
+        symbols = symbols_of(arguments.program, machine[2])
+        for scene in arguments.scenes:
+            baked = bake(arguments.baker, scene, arguments.shared, folder)
+            if not baked:
+                print(f"{scene}: skipped, since {arguments.shared}/scenes/{BUDDHA} is not there", file=sys.stderr)
+                continue
+            count = count_pixels(machine, arguments.program, baked, plugin, folder, symbols)
+            result = {"scene": scene, "class": arguments.cpu_class, "compiler": compiler_of(machine[2]),
+                      "instructions_per_pixel": round(count.instructions / PIXELS, 1),
+                      "cycles_per_pixel": round(count.cycles / PIXELS, 1),
+                      "parts": {part: round(n / PIXELS, 1) for part, n in
+                                sorted(count.parts.items(), key=lambda item: -item[1])}}
+            if arguments.effects:
+                result["effects"] = {}
+                for effect in effects_in(arguments.baker, baked):
+                    without = count_pixels(machine, arguments.program, baked, plugin, folder, symbols,
+                                           f"auto,-{effect}")
+                    result["effects"][effect] = round((count.instructions - without.instructions) / PIXELS, 1)
+            results.append(result)
+            print_result(result)
+            if arguments.symbols:
+                for name, n in sorted(count.symbols.items(), key=lambda item: -item[1])[:arguments.symbols]:
+                    print(f"  {n / PIXELS:9.1f}  {name[:110]}", file=sys.stderr)
+    return results
+
+
+def print_result(result):
+    def row(values):
+        return ", ".join(f"{name} {round(n):,}" for name, n in values.items())
+    print(f"{result['scene']}: {round(result['instructions_per_pixel']):,} instructions a pixel, about "
+          f"{round(result['cycles_per_pixel']):,} cycles\n  parts: {row(result['parts'])}", file=sys.stderr, flush=True)
+    if result.get("effects"):
+        print(f"  effects: {row(result['effects'])}", file=sys.stderr, flush=True)
+
+
+def check(results, path):
+    """Compares with committed counts. Returns the number of scenes that got worse."""
+    with open(path) as file:
+        expected = {(row["scene"], row["class"]): row for row in json.load(file)}
+    worse = 0
+    for result in results:
+        was = expected.get((result["scene"], result["class"]))
+        if was is None or was["compiler"] != result["compiler"]:
+            print(f"{result['scene']}: not compared, since {path} has no count of it with GCC {result['compiler']}",
+                  file=sys.stderr)
+            continue
+        ratio = result["instructions_per_pixel"] / was["instructions_per_pixel"]
+        if ratio > TOLERANCE:
+            worse += 1
+            print(f"{result['scene']} on {result['class']}: {ratio:.3f} times the instructions in {path}; make it faster, "
+                  f"or state the reason and update the file", file=sys.stderr)
+    return worse
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cpu_class", choices=sorted(MACHINES))
+    parser.add_argument("program", help="pocketray for the device, statically linked, its symbols in PROGRAM.debug")
+    parser.add_argument("baker", help="pocketray for this machine")
+    parser.add_argument("--scenes", nargs="+", default=SCENES, help="built-in scenes, files, or buddha")
+    parser.add_argument("--shared", default="../shared", help="where the Buddha's scenes/ is")
+    parser.add_argument("--effects", action="store_true", help="also price each effect: render without it")
+    parser.add_argument("--symbols", type=int, default=0, metavar="N", help="also list the N dearest functions")
+    parser.add_argument("--json", metavar="FILE", help="write the results; - for standard output")
+    parser.add_argument("--check", metavar="FILE", help="fail if a scene takes 2 %% more instructions than in FILE")
+    arguments = parser.parse_args()
+    results = measure(arguments)
+    text = json.dumps(results, indent=2) + "\n"
+    if arguments.json == "-":
+        print(text, end="")
+    elif arguments.json:
+        with open(arguments.json, "w") as file:
+            file.write(text)
+    if arguments.check and check(results, arguments.check):
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()
