@@ -16,6 +16,9 @@ constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactK
 #elif defined(POCKETRAY_HAVE_NEON32)
 constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels, &kNeonKernels};
 constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels, &kNeonCompactKernels};
+#elif defined(__SOFTFP__)
+constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kFixedKernels};
+constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kFixedCompactKernels};
 #else
 constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels};
 constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels};

@@ -8,6 +8,8 @@ namespace pocketray {
 
 // For `bvh` and for `compact`.
 extern const AccelTraversal kBaselineKernels, kBaselineCompactKernels;
+// In integers, for CPUs without floating point.
+extern const AccelTraversal kFixedKernels, kFixedCompactKernels;
 #if defined(__x86_64__)
 extern const AccelTraversal kAvx2Kernels, kAvx2CompactKernels, kAvx512Kernels, kAvx512CompactKernels;
 #elif defined(POCKETRAY_HAVE_NEON32)

@@ -21,11 +21,14 @@ constexpr Axes kAxesX = {1, 2, 0, 4, 8, 0}, kAxesY = {2, 0, 1, 8, 0, 4}, kAxesZ 
 // By the set of largest components; the last of them dominates, as in make_sheared_ray().
 constexpr Axes kAxesByGreatest[8] = {kAxesX, kAxesX, kAxesY, kAxesY, kAxesZ, kAxesZ, kAxesZ, kAxesZ};
 
-struct LeafRay {
-  Float4 origin_x, origin_y, origin_z, shear_x, shear_y;  // along those axes
-  Float4 depth_low, depth_high;                           // a triangle must overlap this to hold a hit that counts
-  float origin[3], direction[3];
+// Along those axes.
+struct ExactRay {
+  float origin[3], direction[3], shear[2];
   const Axes* axes;
+};
+struct LeafRay : ExactRay {
+  Float4 origin_x, origin_y, origin_z, shear_x, shear_y;
+  Float4 depth_low, depth_high;  // a triangle must overlap this to hold a hit that counts
 };
 
 // Hits at depths beyond those for t are farther than t. 2^-20 exceeds the rounding of depths, of t and of this bound.
@@ -36,15 +39,19 @@ inline void bound_depth(LeafRay* ray, float t) {
   ray->depth_low = min(end, zero), ray->depth_high = max(end, zero);
 }
 
-inline void make_leaf_ray(const Ray& ray, const Axes* axes, LeafRay* r) {
+inline void make_exact_ray(const Ray& ray, const Axes* axes, ExactRay* r) {
   const Vec3 &o = ray.origin, &d = ray.direction;
   r->axes = axes;
   r->origin[0] = o[axes->x], r->origin[1] = o[axes->y], r->origin[2] = o[axes->z];
   r->direction[0] = d[axes->x], r->direction[1] = d[axes->y], r->direction[2] = d[axes->z];
+  r->shear[0] = r->direction[0] / r->direction[2], r->shear[1] = r->direction[1] / r->direction[2];
+}
+
+inline void make_leaf_ray(const Ray& ray, const Axes* axes, LeafRay* r) {
+  make_exact_ray(ray, axes, r);
   r->origin_x = Float4::splat(r->origin[0]), r->origin_y = Float4::splat(r->origin[1]);
   r->origin_z = Float4::splat(r->origin[2]);
-  r->shear_x = Float4::splat(r->direction[0] / r->direction[2]);
-  r->shear_y = Float4::splat(r->direction[1] / r->direction[2]);
+  r->shear_x = Float4::splat(r->shear[0]), r->shear_y = Float4::splat(r->shear[1]);
   bound_depth(r, ray.t_max);
 }
 
@@ -100,7 +107,7 @@ inline LeafLanes test_leaf(const LeafRay& ray, const SureDepths* sure, const Tri
 }
 
 // exact_weights() and place_crossing() of a triangle of the leaf. False if the weights differ in sign.
-inline bool place_in_leaf(const LeafRay& ray, const TriangleBlock& block, int lane, Crossing* crossing) {
+inline bool place_in_leaf(const ExactRay& ray, const TriangleBlock& block, int lane, Crossing* crossing) {
   double ox = ray.origin[0], oy = ray.origin[1], oz = ray.origin[2];
   double dx = ray.direction[0], dy = ray.direction[1], dz = ray.direction[2];
   const float* vertex = block.vertex[0][0] + lane;
@@ -120,10 +127,10 @@ inline bool place_in_leaf(const LeafRay& ray, const TriangleBlock& block, int la
 }
 
 // Tests one triangle by itself, where an edge function is zero or rounding makes decision and weights disagree.
-__attribute__((noinline)) inline bool cross_alone(const LeafRay& ray, const TriangleBlock& block, int lane,
+__attribute__((noinline)) inline bool cross_alone(const ExactRay& ray, const TriangleBlock& block, int lane,
                                                   Crossing* crossing) {
   const Axes& k = *ray.axes;
-  ShearedRay sheared = {{}, {}, k.x, k.y, k.z, first(ray.shear_x), first(ray.shear_y)};
+  ShearedRay sheared = {{}, {}, k.x, k.y, k.z, ray.shear[0], ray.shear[1]};
   sheared.origin[k.x] = ray.origin[0], sheared.origin[k.y] = ray.origin[1], sheared.origin[k.z] = ray.origin[2];
   sheared.direction[k.x] = ray.direction[0], sheared.direction[k.y] = ray.direction[1];
   sheared.direction[k.z] = ray.direction[2];

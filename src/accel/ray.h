@@ -64,10 +64,12 @@ struct TraceStats {
   RayObserver* observer = nullptr;         // null: none
 };
 
-// Decides whether a candidate hit counts; null accepts all. Must depend on its arguments alone.
+// Decides whether a candidate hit counts; null accepts all. Must depend on its arguments alone, and on u and v only if
+// it reads the point.
 struct HitFilter {
   bool (*accept)(const void* context, std::uint32_t triangle, float u, float v) = nullptr;
   const void* context = nullptr;
+  bool reads_point = true;
 };
 
 }  // namespace pocketray

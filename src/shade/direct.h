@@ -56,7 +56,7 @@ inline float optical_depth(float begin, float end, float open, float distance) {
 template <EffectMask mask>
 Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, bool at_first_hit) {
   const FrameData& frame = *tracer->frame;
-  HitFilter filter = {frame.accept_clear, &context};
+  HitFilter filter = {frame.accept_clear, &context, frame.filters_read_point};
   Vec3 result = {1, 1, 1};
   Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and exits
   Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not yet left
@@ -129,7 +129,7 @@ Vec3 shadow(Tracer* tracer, FindRay find_ray, std::uint32_t light, bool at_first
   const Ray ray = find_ray();
   std::uint32_t emitter = frame.lights[light].material;
   ShadowContext context = {&frame, emitter};
-  HitFilter opaque = {frame.accept_opaque, &context};
+  HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   bool filtered = frame.filter_every_shadow || emitter != kNone;
   if (!known) {
     const AccelTraversal& rays = at_first_hit ? *frame.first_rays : *frame.accel_info;

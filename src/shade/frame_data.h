@@ -77,6 +77,7 @@ struct FrameData {
   ShadowsFunction find_shadows = nullptr;  // null if nothing casts a shadow
   HitFilter visible_filter;                // accept is null if nothing is cut out; see filters.h
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
+  bool filters_read_point = false;                                              // HitFilter::reads_point
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
   float radiance_bound = 0;          // upper bound for any ray
   float left_out_max = 0;            // radiance that may be skipped of one sample

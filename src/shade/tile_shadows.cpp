@@ -57,7 +57,7 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
       }
       if (packet.count == 0) continue;
       ShadowContext context = {&frame, light.material};
-      HitFilter opaque = {frame.accept_opaque, &context};
+      HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
       bool filtered = frame.filter_every_shadow || light.material != kNone;
       std::uint64_t blocked =
           frame.first_rays->occluded_packet(frame.accel, packet, filtered ? &opaque : nullptr, stats);

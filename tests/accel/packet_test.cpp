@@ -29,6 +29,7 @@ RayPacket packet_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spre
 }
 
 bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return triangle % 3 != 0 && u <= 0.7f - v; }
+bool accept_some_triangles(const void*, std::uint32_t triangle, float, float) { return triangle % 3 != 0; }
 
 }  // namespace
 
@@ -94,7 +95,7 @@ SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, floa
 // Goal: a packet of shadow rays is blocked where its rays are. Method: packets to a light and along a direction, near
 // and wide, with ends before, at and beyond the light, against occluded() of brute force.
 TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
-  HitFilter some = {accept_some, nullptr};
+  HitFilter some = {accept_some, nullptr}, some_triangles = {accept_some_triangles, nullptr, false};
   for (const Mesh& mesh : generated_meshes()) {
     auto oracle = make_world(mesh, &kBruteAccel);
     for (const Variant& variant : all_variants()) {
@@ -106,7 +107,7 @@ TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
       for (int n = 0; n < effort(120); ++n) {
         float spread[] = {0.02f, 0.2f, 2.0f};
         SegmentPacket packet = segments_about(&rng, mesh, oracle->accel.bounds, spread[n % 3]);
-        const HitFilter* filter = n % 4 == 0 ? &some : nullptr;
+        const HitFilter* filter = n % 4 == 0 ? &some : n % 4 == 1 ? &some_triangles : nullptr;
         std::uint64_t blocked = variant.accel->occluded_packet(world->accel, packet, filter, nullptr);
         for (std::uint32_t i = 0; i < packet.count; ++i) {
           bool expected = kBruteAccel.occluded(oracle->accel, ray_of(packet, i), filter, nullptr);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "accel/accel_world.h"
+#include "accel/bvh_kernels.h"
 #include "base/isa.h"
 
 namespace pocketray {
@@ -15,6 +16,18 @@ struct Variant {
 };
 inline std::string name_of(const Variant& variant) {
   return std::string(variant.accel->name) + ", " + isa_name(variant.isa) + (variant.in_packets ? ", in packets" : "");
+}
+
+// The hierarchies with the kernels for CPUs without floating point, whatever this CPU is.
+inline const AccelInfo* fixed_variant(const AccelInfo* info) {
+  auto with = [](const AccelInfo& hierarchy, const AccelTraversal& kernels) {
+    AccelInfo fixed = hierarchy;
+    static_cast<AccelTraversal&>(fixed) = kernels;
+    fixed.name = &hierarchy == &kBvhAccel ? "bvh in integers" : "compact in integers";
+    return fixed;
+  };
+  static const AccelInfo block = with(kBvhAccel, kFixedKernels), compact = with(kCompactAccel, kFixedCompactKernels);
+  return info == &kBvhAccel ? &block : &compact;
 }
 
 // Whether it is a BVH, which has kernels for every instruction set and for packets.
@@ -32,6 +45,7 @@ inline std::vector<Variant> all_variants() {
     }
     for (int isa = 0; isa <= static_cast<int>(best_isa()); ++isa)
       for (bool in_packets : {false, true}) list.push_back({info, static_cast<Isa>(isa), in_packets});
+    for (bool in_packets : {false, true}) list.push_back({fixed_variant(info), best_isa(), in_packets});
   }
   return list;
 }

@@ -1,0 +1,45 @@
+// Floats as integers with a common scale, for CPUs without floating point. A fixed-point number counts units of
+// 2^-28 of the power of two above all coordinates, so coordinates have magnitudes below 2^28, differences below 2^29.
+#pragma once
+#include <cstdint>
+#include <cstring>
+
+namespace pocketray {
+
+inline std::uint32_t float_bits(float value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+// Bits of |value|, which sort like magnitudes; above kInfinityBits for a NaN.
+inline std::uint32_t magnitude_bits(float value) { return float_bits(value) & 0x7FFFFFFFu; }
+constexpr std::uint32_t kInfinityBits = 0x7F800000u;
+
+// The exponent of a scale is the biased one of the largest coordinate. Below this, denormals would count.
+constexpr int kFixedExponentMin = 32;
+constexpr std::int32_t kFixedMax = (1 << 29) - 1;
+
+// value · 2^shift in units, cut towards zero, where shift makes 2^(exponent − 126) equal 2^28. Magnitudes from 2^29 on,
+// infinity and NaN become ±kFixedMax.
+inline std::int32_t to_fixed(float value, int exponent) {
+  std::uint32_t bits = float_bits(value), size = bits << 8 | 1u << 31;
+  int shift = exponent + 4 - static_cast<int>(bits >> 23 & 255);
+  size = shift > 31 ? 0 : shift < 3 ? static_cast<std::uint32_t>(kFixedMax) : size >> shift;
+  return bits >> 31 ? -static_cast<std::int32_t>(size) : static_cast<std::int32_t>(size);
+}
+
+// A number between −1 and 1 in units of 2^-31, cut towards zero; ±1 becomes ±(1 − 2^-31).
+inline std::int32_t to_fraction(float value) {
+  std::uint32_t bits = float_bits(value), size = bits << 8 | 1u << 31;
+  int shift = 127 - static_cast<int>(bits >> 23 & 255);
+  size = shift > 31 ? 0 : shift < 1 ? 0x7FFFFFFFu : size >> shift;
+  return bits >> 31 ? -static_cast<std::int32_t>(size) : static_cast<std::int32_t>(size);
+}
+
+inline std::int64_t product(std::int32_t a, std::int32_t b) { return static_cast<std::int64_t>(a) * b; }
+// value · fraction: low by less than 2.
+inline std::int32_t part(std::int32_t value, std::int32_t fraction) {
+  return 2 * static_cast<std::int32_t>(product(value, fraction) >> 32);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,184 @@
+// The fixed-point tests of accel/fixed_*.h decide as floats do, or leave the decision to them.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "accel/accel_world.h"
+#include "accel/fixed_leaf.h"
+#include "accel/fixed_node.h"
+#include "base/rng.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+double unit_of(int exponent) { return std::ldexp(1.0, exponent - 126 - 28); }
+
+std::uint32_t next_below(Rng* rng, std::uint32_t count) { return next_u32(rng) % count; }
+
+// A coordinate within ±scale, often with few bits, so that rays and vertices coincide.
+float coordinate(Rng* rng, float scale) {
+  float x = next_float(rng) * 2 - 1;
+  switch (next_below(rng, 4)) {
+    case 0:
+      return std::floor(x * 4) / 4 * scale;
+    case 1:
+      return x * 0x1p-12f * scale;
+    default:
+      return x * scale;
+  }
+}
+Vec3 point(Rng* rng, float scale) { return {coordinate(rng, scale), coordinate(rng, scale), coordinate(rng, scale)}; }
+
+// A ray near a triangle: through a point of it, of an edge or a vertex, or close by, from near or far, before or
+// behind.
+struct Case {
+  Vec3 corner[3];
+  Ray ray;
+};
+Case random_case(Rng* rng, float scale) {
+  Case c;
+  float size = next_below(rng, 2) ? scale : scale * 0x1p-9f;
+  Vec3 middle = point(rng, scale - size);
+  for (Vec3& corner : c.corner) corner = middle + point(rng, size);
+  if (next_below(rng, 8) == 0) c.corner[2] = c.corner[0] * 0.5f + c.corner[1] * 0.5f;  // a sliver
+  float u = next_float(rng), v = next_float(rng) * (1 - u);
+  if (next_below(rng, 4) == 0) v = 0;
+  if (next_below(rng, 8) == 0) u = 1, v = 0;
+  if (next_below(rng, 4) == 0) u += next_float(rng) - 0.5f;
+  Vec3 target = c.corner[0] * (1 - u - v) + c.corner[1] * u + c.corner[2] * v;
+  Vec3 direction = point(rng, 1);
+  float distance = scale * (next_below(rng, 2) ? 1.0f : std::ldexp(1.0f, -static_cast<int>(next_below(rng, 26))));
+  c.ray.direction = direction;
+  c.ray.origin = target - direction * (next_below(rng, 2) ? distance : -distance);
+  c.ray.t_max = next_below(rng, 2) ? kInf : scale * next_float(rng);
+  return c;
+}
+
+struct Prepared {
+  FixedFrame frame;
+  ExactRay exact;
+  FixedRay ray;
+  FixedLeaf leaf;
+  TriangleBlock block;
+};
+// False if the ray hits nothing.
+bool prepare(const Case& c, Prepared* p) {
+  if (!prepare_exact_ray(c.ray, &p->exact)) return false;
+  int exponent = greatest_exponent(c.ray.origin);
+  for (const Vec3& corner : c.corner) exponent = std::max(exponent, greatest_exponent(corner));
+  if (exponent < kFixedExponentMin) return false;
+  p->frame = {exponent, p->exact.axes, p->exact.direction[2] < 0 ? -1 : 0};
+  p->ray = fixed_ray(p->exact, p->frame);
+  for (int i = 0; i < 3; ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      for (float& lane : p->block.vertex[i][axis]) lane = c.corner[i][axis];
+  convert_leaf(p->block, 1, p->frame, &p->leaf);
+  return true;
+}
+
+}  // namespace
+
+// Goal: conversion cuts towards zero, over all exponents. Method: compare with double arithmetic.
+TEST_CASE("fixed_point_cuts_towards_zero") {
+  Rng rng = make_rng(501);
+  for (int i = 0; i < 200000; ++i) {
+    int exponent = kFixedExponentMin + static_cast<int>(next_below(&rng, 254 - kFixedExponentMin));
+    float value = std::ldexp(next_float(&rng) * 2 - 1, exponent - 126 - static_cast<int>(next_below(&rng, 40)));
+    double expected = std::trunc(value / unit_of(exponent));
+    REQUIRE(to_fixed(value, exponent) == expected);
+    float fraction = std::ldexp(next_float(&rng) * 2 - 1, -static_cast<int>(next_below(&rng, 40)));
+    REQUIRE(to_fraction(fraction) == std::trunc(fraction * 0x1p31));
+    std::int32_t a = static_cast<std::int32_t>(next_u32(&rng)) >> 1, b = to_fraction(fraction);
+    double low = a * 0x1p-31 * b - part(a, b);
+    REQUIRE(low >= 0);
+    REQUIRE(low < 2);
+  }
+  CHECK(to_fixed(0.0f, 127) == 0);
+  CHECK(to_fixed(std::numeric_limits<float>::denorm_min(), kFixedExponentMin) == 0);
+  CHECK(to_fixed(1.0f, 126) == 1 << 28);
+  CHECK(to_fixed(4.0f, 126) == kFixedMax);
+  CHECK(to_fixed(-kInf, 126) == -kFixedMax);
+  CHECK(to_fraction(1.0f) == 0x7FFFFFFF);
+  CHECK(to_fraction(-1.0f) == -0x7FFFFFFF);
+  CHECK(greatest_exponent({-4, 1, 3.9f}) == 129);
+}
+
+// Goal: where integers decide, cross_triangle() agrees; where a triangle is surely behind, t < 0; surely within the
+// depths, t is in (0, t_max). Method: random rays through, beside and on the edges of random triangles of all sizes, at
+// scales up to the largest; each decision must also be frequent.
+TEST_CASE("fixed_triangles_decide_as_floats") {
+  const int count = 1000000;
+  for (float scale : {1.0f, 0x1p-50f, 1000.0f, kCoordinateMax}) {
+    INFO("scale " << scale);
+    Rng rng = make_rng(502);
+    int missed = 0, crossed = 0, doubtful = 0, behind = 0, sure = 0, before = 0, wrong = 0;
+    for (int i = 0; i < count; ++i) {
+      Case c = random_case(&rng, scale);
+      Prepared p;
+      if (!prepare(c, &p)) continue;
+      const std::int32_t* v = p.leaf.vertex[0];
+      FixedRow z = depth_row(p.ray, v);
+      bool positive = false;
+      FixedVerdict verdict = cross_fixed(p.ray, v, z, &positive);
+      ShearedRay sheared;
+      Crossing crossing;
+      bool valid = make_sheared_ray(c.ray, &sheared);
+      bool crosses = valid && cross_triangle(sheared, c.corner[0], c.corner[1], c.corner[2], &crossing);
+      bool hits = crosses && crossing.t > 0 && crossing.t < c.ray.t_max;
+      before += hits;
+      if (z.high < -4 || z.low > depth_limit(c.ray.t_max, p.exact.direction[2], p.frame.exponent)) wrong += hits;
+      if (verdict == FixedVerdict::missed) ++missed, wrong += crosses;
+      if (verdict == FixedVerdict::doubtful) ++doubtful;
+      if (verdict != FixedVerdict::crossed) continue;
+      ++crossed, wrong += !crosses;
+      if (surely_behind(p.ray, v, z, positive)) ++behind, wrong += crossing.t > 0;
+      FixedDepths depths = fixed_sure_depths(c.ray.t_max, p.exact.direction[2], p.frame.exponent);
+      if (depths.low <= z.low && z.high <= depths.high) ++sure, wrong += !hits;
+    }
+    CHECK(wrong == 0);
+    CHECK(missed > count / 16);
+    CHECK(crossed > count / 8);
+    CHECK(doubtful > count / 100);
+    CHECK(doubtful < count / 2);
+    CHECK(behind > count / 50);
+    CHECK(sure > count / 50);
+    CHECK(before > count / 10);
+  }
+}
+
+// Goal: the box of a triangle is never missed by a ray that hits the triangle, and begins before the hit; most other
+// boxes are missed. Method: as above, with the triangle's bounds as the box of one child.
+TEST_CASE("fixed_boxes_hide_no_hit") {
+  const int count = 1000000;
+  Rng rng = make_rng(503);
+  int hit_count = 0, missed = 0, wrong = 0;
+  for (int i = 0; i < count; ++i) {
+    Case c = random_case(&rng, 1);
+    if (next_below(&rng, 2)) c.ray.direction = point(&rng, 1);
+    Prepared p;
+    ShearedRay sheared;
+    if (!prepare(c, &p) || !make_sheared_ray(c.ray, &sheared)) continue;
+    Box box = empty_box();
+    for (const Vec3& corner : c.corner) box = merge(box, corner);
+    BvhNode node = {};
+    for (int lane = 0; lane < 4; ++lane) node.child[lane] = kNoChild, set_child_box(&node, lane, no_child_box());
+    node.child[0] = 1;
+    set_child_box(&node, 0, box);
+    FixedNode fixed;
+    convert_node(node, p.frame, &fixed);
+    REQUIRE(fixed.count == 1);
+    Crossing crossing;
+    bool hits = cross_triangle(sheared, c.corner[0], c.corner[1], c.corner[2], &crossing) && crossing.t > 0 &&
+                crossing.t < c.ray.t_max;
+    float t = hits ? crossing.t : c.ray.t_max;  // as the best hit so far
+    std::int32_t near, limit = depth_limit(t, p.exact.direction[2], p.frame.exponent);
+    bool miss = misses(p.ray, fixed.box[0], limit, &near);
+    hit_count += hits, missed += miss, wrong += hits && (miss || near > limit);
+  }
+  CHECK(wrong == 0);
+  CHECK(hit_count > count / 20);
+  CHECK(missed > count / 4);
+}
