@@ -39,7 +39,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -87,6 +87,9 @@ test-box: configure
 
 hardcases: setup-tests configure
 	@JSON=$(if $(JSON),$(abspath $(JSON))) cmake --build $(BUILD) -j$(JOBS) --target hardcases
+
+softfloat: setup-tests configure
+	@cmake --build $(BUILD) -j$(JOBS) --target softfloat
 
 # Applies deliberate faults, one at a time: does a test fail? MUTANTS= takes the options of tests/mutation/mutate.sh.
 mutants: setup-tests
@@ -212,6 +215,7 @@ help:
 	@echo "make run          build, then plan, render and time SCENE=$(SCENE); open the viewer if there is a display"
 	@echo "make test         build and run all tests (TESTS=regex: only matching ones)"
 	@echo "make test-box     boot emulated handhelds and use the program there (MACHINES='cortex-a7 aarch64': some)"
+	@echo "make softfloat    compare the arithmetic for CPUs without FPU with this CPU's, 10^9 pairs of floats"
 	@echo "make hardcases    run every hard case in full: inputs, wrong answers, bounds (JSON=FILE: also write JSON)"
 	@echo "make mutants      apply deliberate faults, one at a time: do the tests notice? (MUTANTS=--list: names,"
 	@echo "                  MUTANTS='--only x': just that one, JSON=FILE: also write JSON)"
