@@ -35,6 +35,7 @@ Isa active_isa() {
 }
 
 void select_isa(Isa isa) {
+  CHECK_GE(static_cast<int>(isa), 0);
   CHECK_LE(static_cast<int>(isa), static_cast<int>(best_isa()));
   active.store(static_cast<int>(isa), std::memory_order_relaxed);
 }

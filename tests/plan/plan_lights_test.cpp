@@ -14,7 +14,6 @@ using namespace pocketray;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979;
 const std::uint32_t kCounts[] = {1, 2, 3, 4, 5, 7, 9, 16, 50, 64, 256};
 
 std::vector<LightPoint> points_of(const GeneratedScene& s, std::uint32_t n) {
