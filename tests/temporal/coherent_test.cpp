@@ -73,7 +73,7 @@ TEST_CASE("hard_58_edited_frames_equal_whole_ones") {
   }
   CHECK(partial > frames / 8);  // the comparison is not one of whole frames with themselves,
   CHECK(rows > frames);
-  CHECK(kept > pixels / 8);  // nor of rows with themselves
+  CHECK(kept > pixels / (8 * kEffortDivisor));  // nor of rows with themselves: of few scripts, few may keep any
   count_hard(frames, wrong, "every bit of every frame equal");
 }
 
