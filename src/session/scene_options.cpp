@@ -64,7 +64,9 @@ SettingOption& SettingOptions::operator[](const char* name) {
 
 std::size_t memory_to_take(std::size_t free_bytes) {
   if (free_bytes == 0) return static_cast<std::size_t>(kMemoryBytesMax);
-  std::size_t bytes = (free_bytes - free_bytes / 8) >> 20 << 20;
+  constexpr std::size_t kLeastLeft = 4 << 20;  // for the program's own heap, stacks and screen
+  std::size_t left = std::max(free_bytes / 8, kLeastLeft);
+  std::size_t bytes = free_bytes > left ? (free_bytes - left) >> 20 << 20 : 0;
   return std::max(bytes, static_cast<std::size_t>(kMemoryBytesMin));
 }
 

@@ -32,7 +32,8 @@ struct CommonOptions {
   std::uint32_t coherence_table = Settings().coherence_table;
 };
 
-// The largest block to take from a system with that many free bytes, which leaves it an eighth; 0: unknown.
+// The largest block to take from a system with that many free bytes, which leaves it an eighth
+// and at least 4 MiB; 0: unknown.
 std::size_t memory_to_take(std::size_t free_bytes);
 // Parses the options into settings. The memory is what --memory says, else the device's or 64 MiB if the system has it.
 Status read_settings(const CommonOptions& options, Settings* settings);

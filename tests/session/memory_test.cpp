@@ -13,6 +13,7 @@ constexpr std::size_t kMebibyte = 1 << 20;
 // Method: a handheld of 64 MB, and systems that tell nothing or have hardly anything.
 TEST_CASE("memory_default_leaves_the_system_an_eighth") {
   CHECK(memory_to_take(50 * kMebibyte + 12345) == 43 * kMebibyte);
+  CHECK(memory_to_take(10 * kMebibyte + 12345) == 6 * kMebibyte);
   CHECK(memory_to_take(0) == kMemoryBytesMax);
   CHECK(memory_to_take(1000) == kMemoryBytesMin);
 }
