@@ -39,6 +39,10 @@ std::string flags_at(const void* address) {
 // Goal: the free memory is the system's own estimate. Method: its other record of the same, sysinfo(2), which counts no
 // caches, below it, and all memory above.
 TEST_CASE("memory_knows_what_is_free") {
+#if defined(POCKETRAY_EMULATED) && UINTPTR_MAX <= 0xffffffff
+  MESSAGE("skipped: the emulator's sysinfo counts modulo 4 GiB");
+  return;
+#endif
   struct sysinfo info;
   REQUIRE(sysinfo(&info) == 0);
   double all = (static_cast<double>(info.totalram) + static_cast<double>(info.totalswap)) * info.mem_unit;

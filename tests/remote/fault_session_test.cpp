@@ -61,7 +61,7 @@ TEST_CASE("faults_simulated_sessions_end_well") {
               server_kept);
   CHECK(failures == 0);
   CHECK((single || (unchanged > frames / 10 && device_kept > frames / 10 && server_kept > frames / 10)));
-  CHECK((single || lies > 0));
+  CHECK((count < 100 || lies > 0));  // few sessions may have no liar
   CHECK(late <= 1 + frames / 5000);
   CHECK(far <= 1 + static_cast<int>(count / 1000));
 }
