@@ -54,7 +54,10 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
   return success();
 }
 
-// Plans with the most points per area light that fit; drops candidates that need more.
+constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_radiosity);
+
+// Plans with virtual lights, if a candidate has them, and the most points per area light that fit; drops candidates
+// that need more.
 Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
   renderer->settings.points_per_area_light = 1;
@@ -65,8 +68,10 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t o
   std::uint32_t left_out = 0;
   while (true) {
     std::uint32_t most = 0;
-    for (std::uint32_t i = 0; i < f->front.count; ++i)
+    for (std::uint32_t i = 0; i < f->front.count; ++i) {
       most = std::max(most, f->front.candidates[i].points_per_area_light);
+      if (f->front.candidates[i].indirect == kInstantRadiosity) renderer->settings.indirect = kInstantRadiosity;
+    }
     renderer->settings.points_per_area_light = most;
     Status status = plan_renderer(renderer, storage, output_bytes);
     Front rest;

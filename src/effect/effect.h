@@ -25,14 +25,15 @@ enum class Effect : std::uint8_t {
   animation,
   back_face_culling,
   radiosity,
+  instant_radiosity,
 };
-constexpr int kEffectCount = 20;
+constexpr int kEffectCount = 21;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }
 constexpr EffectMask kAllEffects = (1u << kEffectCount) - 1;
 // Methods of indirect light: a plan has one of them or none; --indirect chooses.
-constexpr EffectMask kIndirectEffects = bit(Effect::ambient) | bit(Effect::radiosity);
+constexpr EffectMask kIndirectEffects = bit(Effect::ambient) | bit(Effect::radiosity) | bit(Effect::instant_radiosity);
 
 // The effects compiled into this build. tests/absence builds the core without those that a scene does not need, to
 // prove that an absent effect costs nothing in a full build.

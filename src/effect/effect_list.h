@@ -31,6 +31,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::animation, "animation", "moving geometry, lights or cameras"},
     {Effect::back_face_culling, "back-face-culling", "a material visible from the front only"},
     {Effect::radiosity, "radiosity", "a stored solution of the light between surfaces"},
+    {Effect::instant_radiosity, "instant-radiosity", "--indirect instant-radiosity"},
 };
 
 constexpr bool effects_in_order() {

@@ -38,6 +38,8 @@ constexpr EffectMask kReflecting = bit(Effect::mirror) | bit(Effect::refraction)
 constexpr EffectMask kSpawning = kReflecting | bit(Effect::alpha_blend);
 
 inline double samples_price(double samples) { return samples; }
+// A pixel without them costs about as much as four rays.
+inline double virtual_lights_price(double lights) { return lights + 64; }
 // A pixel without lights costs about as much as one point.
 inline double points_price(double points) { return points + 1; }
 
@@ -135,6 +137,19 @@ inline constexpr SettingRow kSettingList[] = {
      double(Reconstruction::bicubic),
      {double(Reconstruction::constant), double(Reconstruction::bilinear), double(Reconstruction::bicubic)},
      nullptr,
+     ""},
+    {"virtual-lights",
+     "virtual lights of instant radiosity",
+     "a pixel traces rays to a sixteenth of them",
+     nullptr,
+     count_field<&Quality::virtual_lights>(Quantity::virtual_lights),
+     2,
+     bit(Effect::instant_radiosity),
+     bit(Effect::instant_radiosity),
+     true,
+     kAsAsked,
+     {16, 32, 64, 128, 256, 512},
+     virtual_lights_price,
      ""},
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];

@@ -26,6 +26,7 @@ struct Quality {
   NormalMode normals = NormalMode::as_scene;
   IndirectChoice indirect = IndirectChoice::automatic;
   Reconstruction reconstruction = Reconstruction::bicubic;
+  std::uint32_t virtual_lights = 64;  // of instant radiosity; a pixel traces a shadow ray to a sixteenth of them
 };
 
 // Whether frames trace only what can have changed. automatic: where that pays.

@@ -3,9 +3,11 @@
 #include "base/color.h"
 #include "effect/setting_list.h"
 #include "engine/prepare.h"
+#include "plan/place_virtual_lights.h"
 #include "plan/plan_lights.h"
 #include "shade/camera.h"
 #include "shade/filters.h"
+#include "shade/interleaved.h"
 #include "shade/media.h"
 #include "shade/shade.h"
 #include "shade/surface.h"
@@ -31,6 +33,9 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.settings = renderer->settings;
   renderer->frame.mask = renderer->effects.mask;
   renderer->frame.surface = find_surface_function(renderer->effects.mask);
+  const EffectMask virtual_lights = bit(Effect::instant_radiosity) & kEffectsBuilt;
+  renderer->frame.first_surface = find_surface_function(renderer->effects.mask & ~virtual_lights);
+  renderer->frame.trace_strip = has(renderer->effects.mask, Effect::instant_radiosity) ? trace_interleaved : nullptr;
   renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
   renderer->frame.find_shadows = has(renderer->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
   CHECK(renderer->frame.surface != nullptr && renderer->frame.radiance != nullptr);
@@ -44,6 +49,7 @@ void light_scene(Renderer* renderer) {
     place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
                  renderer->light_points, &renderer->frame);
     CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
+    if (has(renderer->effects.mask, Effect::instant_radiosity)) place_virtual_lights(&renderer->frame);
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
     renderer->frame.radiance_bound = spawns ? radiance_bound(renderer->frame) : 0;

@@ -192,6 +192,8 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   if (point_count > renderer->light_point_count_max)
     return failure("the lights need %u points, memory is planned for %u: plan for that many", point_count,
                    renderer->light_point_count_max);
+  if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
+    return failure("memory is planned without virtual lights: plan with --indirect instant-radiosity");
   std::size_t memory_bytes = now.memory_bytes;
   renderer->settings = settings;
   renderer->settings.memory_bytes = memory_bytes;

@@ -1,6 +1,7 @@
 // One line per method of indirect light. --indirect auto takes the last one that the scene has by default.
 #pragma once
 #include "indirect/ambient.h"
+#include "indirect/instant_radiosity.h"
 #include "indirect/none.h"
 #include "indirect/radiosity.h"
 
@@ -9,7 +10,8 @@ namespace pocketray {
 using IndirectList = IndirectMethods<  //
     NoIndirect,                        //
     AmbientIndirect,                   //
-    RadiosityIndirect                  //
+    RadiosityIndirect,                 //
+    InstantRadiosity                   //
     >;
 
 static_assert(IndirectList::kEffects == kIndirectEffects, "each method of kIndirectEffects is in the list");
@@ -32,6 +34,14 @@ inline IndirectData prepare_indirect(const Scene& scene, EffectMask mask, Arena*
   for (int i = 0; i < IndirectList::kCount; ++i)
     if (mask & IndirectList::kInfos[i].effects) data.prepared[i] = IndirectList::kInfos[i].prepare(scene, keep);
   return data;
+}
+
+// The lights of InstantRadiosity, which each frame places anew; null if it is not prepared.
+inline VirtualLights* virtual_lights_of(const IndirectData& data) {
+  for (int i = 0; i < IndirectList::kCount; ++i)
+    if (IndirectList::kInfos[i].effects == InstantRadiosity::kEffects)
+      return static_cast<VirtualLights*>(const_cast<void*>(data.prepared[i]));  // in the renderer's arena
+  return nullptr;
 }
 
 inline float indirect_bound(const Scene& scene, const Material& material, EffectMask mask) {

@@ -3,7 +3,8 @@
 // As a text file, it has one candidate per line below a line with the version:
 //
 //   pocketray-front 1
-//   samples=4 depth=8 area-lights=16 cut-off=0.5 texture-filter=scene normals=scene indirect=auto reconstruction=bicubic flip=0.0123 ns=812
+//   samples=4 depth=8 area-lights=16 cut-off=0.5 texture-filter=scene normals=scene indirect=auto
+//   reconstruction=bicubic virtual-lights=64 flip=0.0123 ns=812
 //
 // The names are those of the command line's options; an unmeasured error is omitted. Empty lines and lines that begin
 // with # are ignored.

@@ -136,7 +136,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     if (info.effects) decide_indirect(info, indirect, scene, settings, &w);
   const EffectMask excluded_indirect = indirect ? kIndirectEffects & ~indirect->effects
                                        : settings.indirect == IndirectChoice::none ? kIndirectEffects
-                                                                                   : 0;
+                                                                                   : bit(Effect::instant_radiosity);
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
   bool animated = is_animated(scene);

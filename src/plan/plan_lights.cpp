@@ -234,10 +234,13 @@ void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData
 
 float radiance_bound(const FrameData& frame) {
   const Scene& scene = *frame.scene;
-  float glow = 0, reflectance = 0, scattering = 0;
+  float glow = 0, reflectance = 0, scattering = 0, virtual_light = 0;
+  if (has(frame.mask, Effect::instant_radiosity))
+    virtual_light = virtual_lights_of(frame.indirect)->irradiance_max / kPiF;
   for (const Material& m : scene.materials) {
     bool shines = m.unlit && has(frame.mask, Effect::emission);
     float own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
+    if (!shines) own += max_component(m.diffuse) * virtual_light;
     if (own > glow) glow = own;
     float passes =
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));

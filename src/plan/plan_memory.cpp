@@ -108,7 +108,12 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                    MemoryPlan* plan, const char** without_coherence) {
   const bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
-  const char* why = settings.coherence == CoherenceMode::off ? "coherence is off" : wanted ? nullptr : "nothing moves";
+  const bool mixes = has(effects.mask, Effect::instant_radiosity);
+  wanted = wanted && !mixes;
+  const char* why = mixes ? "instant radiosity mixes the rays of neighbouring pixels"
+                    : settings.coherence == CoherenceMode::off ? "coherence is off"
+                    : wanted                                   ? nullptr
+                                                               : "nothing moves";
   Status status =
       plan_memory_with(scene, settings, effects, accel, storage, light_point_count, output_bytes, wanted, plan);
   if (wanted && !status.ok) {

@@ -50,6 +50,7 @@ struct MediumStack {
 struct FrameData;
 struct Surface;
 struct TileShadows;
+struct TileStrip;
 struct Tracer;
 
 // The instantiated parts of the kernel, selected once per frame for the plan.
@@ -58,6 +59,7 @@ using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const H
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
 using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                                  TraceStats* stats);
+using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, Vec3* image);
 
 struct FrameData {
   const Scene* scene = nullptr;
@@ -73,8 +75,10 @@ struct FrameData {
   Settings settings;
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;
+  SurfaceFunction first_surface = nullptr;  // at first hits: the same, but without light that trace_strip adds there
   RadianceFunction radiance = nullptr;
   ShadowsFunction find_shadows = nullptr;  // null if nothing casts a shadow
+  StripFunction trace_strip = nullptr;     // traces pixels in blocks; null: each by itself
   HitFilter visible_filter;                // accept is null if nothing is cut out; see filters.h
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
   bool filters_read_point = false;                                              // HitFilter::reads_point

@@ -23,7 +23,7 @@ std::uint32_t find_receivers(const FrameData& frame, const RayPacket& rays, cons
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits[i].triangle == kNoTriangle) continue;
     Surface& s = shadows->surface[i];
-    frame.surface(frame, ray_of(rays, i), hits[i], &s);
+    frame.first_surface(frame, ray_of(rays, i), hits[i], &s);
     origins[i] = safe_origin(s, 1);
     if (receives(s)) receivers[count++] = static_cast<std::uint8_t>(i);
   }

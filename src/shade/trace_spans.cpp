@@ -5,6 +5,7 @@
 #include "shade/camera.h"
 #include "shade/contact.h"
 #include "shade/even_points.h"
+#include "shade/pixel.h"
 #include "shade/strip.h"
 #include "shade/surface.h"
 #include "shade/tile_shadows.h"
@@ -13,21 +14,6 @@ namespace pocketray {
 namespace {
 
 Vec3 same(float value) { return {value, value, value}; }
-
-Ray pixel_ray(const FrameData& frame, std::uint32_t column, std::uint32_t row, const Vec2& offset) {
-  return camera_ray(frame.camera, static_cast<float>(column) + offset.x, static_cast<float>(row) + offset.y);
-}
-
-// One sample of a pixel, whose ray first hits `hit`; `surface` is there, or null.
-Vec3 sample_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
-  const FrameData& frame = *tracer->frame;
-  tracer->budget = frame.left_out_max;
-  ++tracer->rays[static_cast<int>(RayKind::primary)];
-  Vec3 radiance = frame.radiance(tracer, ray, hit, surface);
-  float left_out = frame.left_out_max - tracer->budget;
-  if (left_out > tracer->left_out_max) tracer->left_out_max = left_out;
-  return radiance;
-}
 
 void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
   if (RayObserver* observer = tracer->stats.observer)
@@ -218,7 +204,7 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
   }
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
   CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
-  if (aov != Aov::none || frame.camera.orthographic) {
+  if (aov != Aov::none || (frame.camera.orthographic && !frame.trace_strip)) {
     for (std::uint32_t i = 0; i < span_count; ++i) trace_span(tracer, spans[i], aov, image);
     return;
   }
@@ -227,7 +213,7 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
     count = strip_span_count(spans + i, span_count - i);
     CHECK_GT(count, 0u);
     make_strip(spans + i, count, &strip);
-    trace_strip(tracer, strip, image);
+    frame.trace_strip ? frame.trace_strip(tracer, strip, image) : trace_strip(tracer, strip, image);
   }
 }
 

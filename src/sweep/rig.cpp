@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/limits.h"
 #include "budget/front_file.h"
+#include "effect/setting_list.h"
 #include "engine/frame.h"
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
@@ -38,6 +39,7 @@ std::string hash_of(const SceneSource& source, const Scene& scene) {
 
 // The settings with the largest memory need of all that a sweep tries.
 Settings dearest(const Scene& scene, Settings settings) {
+  settings.indirect = indirect_choice(Effect::instant_radiosity);
   std::uint32_t own = settings.points_per_area_light;
   for (std::uint32_t points = kPointsPerAreaLightMax; points > own; --points) {
     settings.points_per_area_light = points;

@@ -61,7 +61,10 @@ TEST_CASE("indirect_light_follows_the_plan") {
   Scene scene;
   scene.info.ambient = {0.25f, 0.5f, 1};
   const Vec3 point = {0, 0, 0}, normal = {0, 1, 0}, white = {1, 1, 1};
-  IndirectData data = prepare_indirect(scene, kAllEffects, nullptr);
+  std::vector<std::uint8_t> memory(indirect_need(scene, kAllEffects) + kArenaAlignment);
+  Arena keep = make_arena("indirect light", memory.data(), memory.size());
+  IndirectData data = prepare_indirect(scene, kAllEffects, &keep);
+  CHECK(keep.used <= indirect_need(scene, kAllEffects));
   Vec3 with = {0, 0, 0}, without = {0, 0, 0};
   IndirectList::add_radiance<bit(Effect::ambient)>(data.prepared, {scene, nullptr, point, normal, white}, &with);
   IndirectList::add_radiance<bit(Effect::texture)>(data.prepared, {scene, nullptr, point, normal, white}, &without);

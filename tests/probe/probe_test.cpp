@@ -8,6 +8,7 @@
 
 #include "effect/effect_list.h"
 #include "effect/effect_probe.h"
+#include "effect/setting_list.h"
 #include "golden/golden_frames.h"
 #include "scene/builtin_helpers.h"
 #include "support/feature_sets.h"
@@ -101,10 +102,15 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   auto generated = generate_scene(kAllFeatures, 1);
   effect_probe.allowed = kAllEffects;
   auto test = make_renderer(generated->scene, settings_for(kAllFeatures, 24, 18));
-  REQUIRE(test->renderer.effects.mask == (kAllEffects & ~bit(Effect::radiosity)));  // nothing is stored
+  Settings settings = settings_for(kAllFeatures, 24, 18);
+  settings.indirect = indirect_choice(Effect::instant_radiosity);
+  auto with_virtual_lights = make_renderer(generated->scene, settings);
+  const EffectMask all = test->renderer.effects.mask | with_virtual_lights->renderer.effects.mask;
+  REQUIRE(all == (kAllEffects & ~bit(Effect::radiosity)));  // nothing is stored
   for (const EffectRow& row : kEffectList) {
-    if (!has(test->renderer.effects.mask, row.effect)) continue;
+    if (!has(all, row.effect)) continue;
     CAPTURE(std::string(row.name));
-    CHECK(signal_of_render_without(row.effect, &test->renderer) == SIGABRT);
+    Renderer* r = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer : &test->renderer;
+    CHECK(signal_of_render_without(row.effect, r) == SIGABRT);
   }
 }

@@ -106,9 +106,16 @@ TEST_CASE("server_frames_follow_every_setting") {
     CAPTURE(std::string(row.name));
     double usual = row.field.get(plain.settings);
     double coarse = row.sweep.values[row.sweep.values[0] == usual ? row.sweep.count / 2 : 0];
+    if (row.effects == bit(Effect::instant_radiosity)) continue;  // below
     const bool shows = std::string(row.name) != "reconstruction";  // the scene stores no radiosity
     check_and_back([&](FrameRequest* r) { row.field.set(&r->settings, coarse); }, shows);
   }
+  for (std::uint32_t count : {16u, 64u}) {
+    request = plain;
+    request.settings.indirect = indirect_choice(Effect::instant_radiosity), request.settings.virtual_lights = count;
+    check(request, true);
+  }
+  check(plain, true);
   check_and_back([](FrameRequest* r) { r->settings.forced_off = bit(Effect::shadow); });
   check_and_back([](FrameRequest* r) { r->camera_index = 1; });
   check_and_back([](FrameRequest* r) { r->camera_index = 2, r->seconds = 0.6; });

@@ -1,0 +1,49 @@
+// Instant radiosity [Keller 1997]: light between surfaces as that of virtual point lights, placed by walks from the
+// lights before each frame (plan/place_virtual_lights.h). First hits take them with shadows, interleaved over blocks of
+// pixels (shade/interleaved.h); surfaces in mirrors and behind glass take all of them without shadows, by radiance().
+#pragma once
+#include "effect/effect_probe.h"
+#include "indirect/indirect.h"
+
+namespace pocketray {
+
+// A point of a diffuse surface that sends intensity × cosine to the side of its normal.
+struct VirtualLight {
+  Vec3 position, normal, intensity;
+};
+struct VirtualLights {
+  VirtualLight light[kVirtualLightMax];
+  std::uint32_t count = 0;
+  // Bound of the geometry term, cos cos / distance²: without it, a light would be infinitely bright where it lies
+  // [Keller97, sec. 4]. It takes away light near edges, less the more lights there are: HARDCASES row 41.
+  float geometry_max = 0;
+  float irradiance_max = 0;  // of all lights together
+};
+
+// Irradiance of a light on a surface, without shadow; *to_light is set unless it is zero.
+inline Vec3 virtual_irradiance(const VirtualLights& lights, const VirtualLight& light, const Vec3& point,
+                               const Vec3& normal, Vec3* to_light) {
+  Vec3 way = light.position - point;
+  float square = dot(way, way), cos_surface = dot(normal, way), cos_light = -dot(light.normal, way);
+  if (!(square > 0) || !(cos_surface > 0) || !(cos_light > 0)) return {0, 0, 0};
+  float geometry = (cos_surface / square) * (cos_light / square);
+  *to_light = way;
+  return light.intensity * (geometry < lights.geometry_max ? geometry : lights.geometry_max);
+}
+// The sum over all lights.
+Vec3 virtual_irradiance(const VirtualLights& lights, const Vec3& point, const Vec3& normal);
+
+struct InstantRadiosity {
+  static constexpr const char* kName = "instant-radiosity";
+  static constexpr EffectMask kEffects = bit(Effect::instant_radiosity);
+  static constexpr IndirectReference kReference = IndirectReference::nothing;
+  static constexpr const char *kPresent = "light between surfaces", *kAbsent = "no light to send between surfaces";
+  static IndirectUse use(const Scene& scene);
+  static std::size_t need(const Scene&) { return arena_need<VirtualLights>(1); }
+  static const void* prepare(const Scene&, Arena* keep);
+  static Vec3 radiance(const IndirectPoint& at);
+  static Vec3d exact(const Scene&, const Vec3d&) { return {0, 0, 0}; }
+  static float bound(const Scene&, const Material&) { return 0; }  // in radiance_bound(), which knows the lights
+};
+
+}  // namespace pocketray

@@ -1,0 +1,231 @@
+#include "plan/place_virtual_lights.h"
+
+#include <cmath>
+
+#include "base/check.h"
+#include "base/fmath.h"
+#include "brdf/directions.h"
+#include "shade/filters.h"
+#include "shade/lights.h"
+#include "shade/surface.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kBounceMax = 8;
+constexpr std::uint32_t kNumbersPerBounce = 3;
+// Three numbers at the light, three per bounce: multiples of the square roots of primes, modulo one. Their fractions
+// are spread evenly [Weyl 1916], from the first on, which those of Halton's sequence in large bases are not.
+constexpr double kPrimes[kNumbersPerBounce * (kBounceMax + 1)] = {
+    2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103};
+
+struct Walk {
+  std::uint32_t index, used = 0;
+  double next() {
+    CHECK_LT(used, sizeof kPrimes / sizeof kPrimes[0]);
+    double multiple = index * std::sqrt(kPrimes[used++]);
+    return multiple - std::floor(multiple);
+  }
+};
+
+struct Particle {
+  Ray ray;
+  Vec3d flux;
+  float range = 0;  // of the light, on the way from it; 0: no limit
+};
+
+Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+Vec3d uniform_direction(const Vec3d& axis, double height, double u, double v) {  // height: 1 − cosine of the cone
+  double below = height * u, sine = std::sqrt(below * (2 - below)), phi = 2 * kPi * v;
+  Vec3d tangent, bitangent;
+  make_basis(axis, &tangent, &bitangent);
+  return tangent * (sine * det_cos(phi)) + bitangent * (sine * det_sin(phi)) + axis * (1 - below);
+}
+
+// Flux of a light point of a run, all directions together.
+Vec3d flux_of(const FrameData& frame, const LightRun& run, const LightPoint& light) {
+  Vec3d intensity = to_double(light.intensity);
+  if (light.material != kNone) return intensity * (kPi * (light.two_sided ? 2 : 1));
+  if (run.sample == find_light_sampler(Effect::directional_light)) {
+    Vec3d size = to_double(frame.accel.bounds.high) - to_double(frame.accel.bounds.low);
+    return intensity * (kPi * 0.25 * dot(size, size));
+  }
+  bool spot = run.sample == find_light_sampler(Effect::spot_light);
+  return intensity * (2 * kPi * (spot ? 1 - static_cast<double>(light.cos_outer) : 2));
+}
+
+// A particle that leaves a light with its flux.
+Particle emit(const FrameData& frame, const LightRun& run, const LightPoint& light, Walk* walk) {
+  Particle p = {{light.position, {0, 0, 0}, __builtin_inff()}, flux_of(frame, run, light), light.range};
+  double u = walk->next(), v = walk->next();
+  Vec3d axis = to_double(light.direction);
+  if (light.material != kNone) {
+    if (light.two_sided) {
+      if (u < 0.5) axis = -axis;
+      u = u < 0.5 ? 2 * u : 2 * u - 1;
+    }
+    p.ray.direction = to_float(power_cosine_direction(axis, 1, u, v));
+    // Off the emitter, by far more than rounding.
+    p.ray.origin += to_float(axis) * (max_component(abs(light.position)) * 0x1p-18f);
+  } else if (run.sample == find_light_sampler(Effect::directional_light)) {
+    Vec3d low = to_double(frame.accel.bounds.low), high = to_double(frame.accel.bounds.high), tangent, bitangent;
+    double radius = 0.5 * length(high - low), r = radius * std::sqrt(u), phi = 2 * kPi * v;
+    axis = normalize(axis);
+    make_basis(axis, &tangent, &bitangent);
+    p.ray.origin = to_float((low + high) * 0.5 - axis * (2 * radius) + tangent * (r * det_cos(phi)) +
+                            bitangent * (r * det_sin(phi)));
+    p.ray.direction = to_float(axis);
+  } else if (run.sample == find_light_sampler(Effect::spot_light)) {
+    double inner = static_cast<double>(light.cos_inner), outer = static_cast<double>(light.cos_outer);
+    double below = (1 - outer) * u, cosine = 1 - below;
+    double fade = cosine >= inner ? 1 : (cosine - outer) / (inner - outer);
+    p.flux = p.flux * (fade * fade);
+    p.ray.direction = to_float(uniform_direction(normalize(axis), 1 - outer, u, v));
+  } else {
+    p.ray.direction = to_float(uniform_direction({0, 0, 1}, 2, u, v));
+  }
+  return p;
+}
+
+// The falloff of a light with a range, as lights.cpp has it.
+double window_at(float range, float distance) {
+  if (!(range > 0)) return 1;
+  double q = static_cast<double>(distance) / static_cast<double>(range), window = 1 - q * q * q * q;
+  return window > 0 ? window : 0;
+}
+
+// Sends the particle on from a surface; false: it is absorbed.
+bool scatter(const Surface& s, Walk* walk, Particle* p) {
+  Vec3d diffuse = to_double(s.diffuse), mirror = to_double(s.material->mirror);
+  Vec3d glass = to_double(s.material->transmission);
+  double d = max_component(diffuse), r = max_component(mirror), g = max_component(glass), total = d + r + g;
+  double choice = walk->next() * (total > 1 ? total : 1), scale = total > 1 ? total : 1;
+  double u = walk->next(), v = walk->next();
+  if (!(choice < total)) return false;
+  if (choice < d) {
+    p->flux *= diffuse * (scale / d);
+    p->ray = {safe_origin(s, 1), to_float(power_cosine_direction(to_double(s.geometric), 1, u, v)), __builtin_inff()};
+  } else if (choice < d + r) {
+    p->flux *= mirror * (scale / r);
+    Vec3 way = p->ray.direction - s.normal * (2 * dot(p->ray.direction, s.normal));
+    if (!(dot(way, s.geometric) > 0)) return false;
+    p->ray = {safe_origin(s, 1), normalize(way), __builtin_inff()};
+  } else {  // straight on, like shadow rays
+    p->flux *= glass * (scale / g);
+    p->ray.origin = safe_origin(s, -1);
+  }
+  return true;
+}
+
+// Follows a particle and leaves a light at each diffuse surface. False if there is no room for all of them.
+bool follow(const FrameData& frame, Particle particle, std::uint32_t count_max, Walk* walk, VirtualLights* lights) {
+  TraceStats stats;
+  for (std::uint32_t bounce = 0; bounce < kBounceMax; ++bounce) {
+    Hit hit;
+    frame.accel_info->closest(frame.accel, particle.ray, visible_filter(frame), &hit, &stats);
+    if (hit.triangle == kNoTriangle) return true;
+    Surface s;
+    frame.first_surface(frame, particle.ray, hit, &s);
+    particle.flux = particle.flux * window_at(bounce == 0 ? particle.range : 0, hit.t);
+    if (!is_zero(s.diffuse)) {
+      if (lights->count == count_max) return false;
+      Vec3d intensity = particle.flux * to_double(s.diffuse) * (1 / kPi);
+      lights->light[lights->count++] = {safe_origin(s, 1), s.geometric, to_float(intensity)};
+    }
+    if (!scatter(s, walk, &particle)) return true;
+  }
+  return true;
+}
+
+// Bits of three coordinates in turn, ten of each.
+std::uint32_t morton_code(const Box& bounds, const Vec3& p) {
+  std::uint32_t code = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    float size = bounds.high[axis] - bounds.low[axis], at = (p[axis] - bounds.low[axis]) / size;
+    auto cell = static_cast<std::uint32_t>(at > 0 ? (at < 1 ? at * 1023 : 1023) : 0);
+    for (int b = 0; b < 10; ++b) code |= (cell >> b & 1) << (3 * b + axis);
+  }
+  return code;
+}
+
+// Puts lights that are close together next to each other, by insertion, which keeps the order of equal ones.
+void sort_lights(const FrameData& frame, VirtualLights* lights) {
+  std::uint32_t code[kVirtualLightMax];
+  for (std::uint32_t i = 0; i < lights->count; ++i) {
+    VirtualLight light = lights->light[i];
+    std::uint32_t own = morton_code(frame.accel.bounds, light.position), at = i;
+    for (; at > 0 && code[at - 1] > own; --at) code[at] = code[at - 1], lights->light[at] = lights->light[at - 1];
+    code[at] = own, lights->light[at] = light;
+  }
+}
+
+double surface_area(const FrameData& frame) {
+  double area = 0;
+  for (const Triangle& t : frame.scene->triangles) {
+    if (is_zero(frame.scene->materials[t.material()].diffuse)) continue;
+    Vec3d a = to_double(frame.positions[t.vertex(0)]);
+    area +=
+        0.5 * length(cross(to_double(frame.positions[t.vertex(1)]) - a, to_double(frame.positions[t.vertex(2)]) - a));
+  }
+  return area;
+}
+
+// Picks a light point by its share of the flux, u in [0, 1).
+bool pick(const FrameData& frame, double total, double u, const LightRun** run, const LightPoint** light,
+          double* probability) {
+  double left = u * total;
+  for (int r = 0; r < frame.light_run_count; ++r)
+    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
+      double share = max_component(flux_of(frame, frame.light_runs[r], frame.lights[i]));
+      if (!(share > 0)) continue;
+      *run = &frame.light_runs[r], *light = &frame.lights[i], *probability = share / total;
+      if (left < share) return true;
+      left -= share;
+    }
+  return total > 0;  // rounding: the last one
+}
+
+}  // namespace
+
+void place_virtual_lights(FrameData* frame) {
+  CHECK(frame != nullptr && frame->first_surface != nullptr);
+  VirtualLights* lights = virtual_lights_of(frame->indirect);
+  CHECK(lights != nullptr);
+  const std::uint32_t wanted = frame->settings.virtual_lights;
+  CHECK_LE(wanted, kVirtualLightMax);
+  lights->count = 0;
+  double total = 0, area = surface_area(*frame);
+  for (int r = 0; r < frame->light_run_count; ++r)
+    for (std::uint32_t i = frame->light_runs[r].begin; i < frame->light_runs[r].end; ++i)
+      total += max_component(flux_of(*frame, frame->light_runs[r], frame->lights[i]));
+  std::uint32_t walk_count = 0;
+  while (walk_count < 2 * wanted) {  // a walk that meets nothing leaves no light
+    Walk walk = {walk_count + 1};
+    const LightRun* run = nullptr;
+    const LightPoint* light = nullptr;
+    double probability = 1;
+    if (!pick(*frame, total, walk.next(), &run, &light, &probability) || !light) break;
+    Particle particle = emit(*frame, *run, *light, &walk);
+    particle.flux = particle.flux / probability;
+    std::uint32_t before = lights->count;
+    if (!follow(*frame, particle, wanted, &walk, lights)) {
+      lights->count = before;
+      break;
+    }
+    ++walk_count;
+  }
+  float scale = walk_count ? static_cast<float>(1.0 / walk_count) : 0;
+  // A light never gives more than a patch of its share of the surfaces would where it lies: π times its radiance.
+  lights->geometry_max = area > 0 ? static_cast<float>(kPi * lights->count / area) : 0;
+  float sum = 0;
+  for (std::uint32_t i = 0; i < lights->count; ++i) {
+    VirtualLight& light = lights->light[i];
+    light.intensity = light.intensity * scale;
+    sum += max_component(light.intensity);
+  }
+  lights->irradiance_max = sum * lights->geometry_max;
+  sort_lights(*frame, lights);
+}
+
+}  // namespace pocketray

@@ -1,0 +1,248 @@
+// Instant radiosity: its virtual lights, what they give, and that a picture does not depend on how it is divided.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "base/fmath.h"
+#include "effect/setting_list.h"
+#include "indirect/instant_radiosity.h"
+#include "shade/trace_spans.h"
+#include "support/generated_scene.h"
+
+using namespace pocketray;
+
+namespace {
+
+constexpr float kAlbedo = 0.5f;
+
+// A closed box of one albedo with a point light of intensity π in its middle; `things` adds a sphere and a wall.
+struct Room : GeneratedScene {
+  explicit Room(bool things) {
+    Material grey;
+    grey.diffuse = {kAlbedo, kAlbedo, kAlbedo};
+    std::uint32_t material = add_material(this, grey);
+    add_box(this, {-1, -1, -1}, {1, 1, 1}, material, true);
+    if (things) {
+      add_sphere(this, {0.3f, -0.6f, -0.2f}, 0.35f, 16, 8, material);
+      Material mirror;
+      mirror.diffuse = {0, 0, 0}, mirror.mirror = {0.8f, 0.8f, 0.8f};
+      add_sphere(this, {-0.5f, -0.6f, -0.5f}, 0.3f, 16, 8, add_material(this, mirror));
+      add_box(this, {-0.2f, -1, 0.2f}, {0, 0.2f, 0.4f}, material);
+    }
+    Light light = {};
+    light.kind = LightKind::point;
+    light.intensity = {kPiF, kPiF, kPiF};
+    lights.push_back(light);
+    aim(this, {0.1f, 0.05f, 0.9f}, {0, -0.2f, 0}, 70);
+    bind();
+  }
+};
+
+Settings instant(std::uint32_t lights, std::uint32_t width = 40, std::uint32_t height = 28) {
+  Settings settings;
+  settings.width = width, settings.height = height;
+  settings.indirect = indirect_choice(Effect::instant_radiosity), settings.virtual_lights = lights;
+  return settings;
+}
+
+std::unique_ptr<TestRenderer> rendered(const Scene& scene, const Settings& settings) {
+  std::unique_ptr<TestRenderer> t = make_renderer(scene, settings);
+  Status status = render_frame(&t->renderer, 0);
+  REQUIRE_MESSAGE(status.ok, status.message);
+  return t;
+}
+
+const VirtualLights& lights_of(const TestRenderer& t) { return *virtual_lights_of(t.renderer.frame.indirect); }
+
+double power_of(const VirtualLights& lights) {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < lights.count; ++i) sum += kPi * static_cast<double>(lights.light[i].intensity.y);
+  return sum;
+}
+
+bool same_pixel(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+}  // namespace
+
+// Goal: the stated bias of the bounded geometry term. Method: virtual lights on rings of a plane at height h; with the
+// term clamped at b, E / (πL) = 2s − s², s = h√b.
+TEST_CASE("hard_41_clamped_virtual_lights_of_a_plane") {
+  VirtualLights lights;
+  lights.geometry_max = 2;
+  constexpr double kHeight = 0.3, kStep = 1e-3;
+  double sum = 0;
+  Vec3 to_light;
+  for (double r = kStep / 2; r < 300; r += kStep * (r < 3 ? 1 : r / 3)) {
+    double ring = 2 * kPi * r * kStep * (r < 3 ? 1 : r / 3);
+    VirtualLight light = {{static_cast<float>(r), static_cast<float>(kHeight), 0}, {0, -1, 0}, {1, 1, 1}};
+    sum += ring * static_cast<double>(virtual_irradiance(lights, light, {0, 0, 0}, {0, 1, 0}, &to_light).y);
+  }
+  CHECK(sum / kPi == doctest::Approx(0.668528).epsilon(2e-3));
+}
+
+// Goal: degenerate and back-facing lights give nothing, and nothing infinite. Method: HARDCASES row 42, single lights.
+TEST_CASE("hard_42_virtual_lights_at_and_behind_a_point") {
+  VirtualLights lights;
+  lights.geometry_max = 5;
+  Vec3 to_light;
+  auto from = [&](const Vec3& position, const Vec3& normal) {
+    return virtual_irradiance(lights, {position, normal, {1, 1, 1}}, {0, 0, 0}, {0, 1, 0}, &to_light).y;
+  };
+  CHECK(from({0, 0, 0}, {0, -1, 0}) == 0);
+  CHECK(from({0, 1, 0}, {0, 1, 0}) == 0);
+  CHECK(from({0, -1, 0}, {0, 1, 0}) == 0);
+  CHECK(from({0, 1, 0}, {0, -1, 0}) == 1);
+  CHECK(from({0, 1e-20f, 0}, {0, -1, 0}) == 5);
+}
+
+// Goal: virtual lights have the power that surfaces reflect. Method: in a closed room of albedo ρ, Φ(ρ + ρ² + …), for
+// several numbers of lights; every one lies within the room.
+TEST_CASE("hard_42_virtual_lights_have_the_reflected_power") {
+  Room room(false);
+  for (std::uint32_t count : {32u, 64u, 128u, 256u, 512u}) {
+    CAPTURE(count);
+    std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(count));
+    const VirtualLights& lights = lights_of(*t);
+    CHECK(lights.count <= count);
+    CHECK(lights.count >= count - 9);
+    CHECK(power_of(lights) ==
+          doctest::Approx(4 * kPi * kPi * kAlbedo / (1 - kAlbedo)).epsilon(count < 128 ? 0.2 : 0.1));
+    for (std::uint32_t i = 0; i < lights.count; ++i) CHECK(max_component(abs(lights.light[i].position)) < 1);
+  }
+}
+
+// Goal: a room is as bright as it should be. Method: the mean light that arrives at a closed room's walls, direct and
+// reflected, is Φ / (A (1 − ρ)) whatever the room's shape; lights bounded in corners take some of it away.
+TEST_CASE("instant_radiosity_fills_a_room") {
+  Room room(false);
+  auto mean = [&](const Settings& settings) {
+    std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
+    double sum = 0;
+    for (const Vec3& p : t->renderer.image) sum += static_cast<double>(p.y);
+    return sum / t->renderer.image.count;
+  };
+  Settings without = instant(512);
+  without.indirect = IndirectChoice::none;
+  double direct = mean(without), all = mean(instant(512));
+  CAPTURE(direct);
+  // Reflected light is nearly even: (ρ / π) Φ / A × ρ / (1 − ρ).
+  double expected = kAlbedo / kPi * (4 * kPi * kPi / 24) * kAlbedo / (1 - kAlbedo);
+  CHECK(all - direct == doctest::Approx(expected).epsilon(0.12));
+}
+
+// Goal: a pixel is the same bits however the frame is divided. Method: a scene with edges, a curved surface and a
+// mirror; the whole frame against rows, single pixels, spans at odd places and rays one by one; with two samples, and
+// with an orthographic camera.
+TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
+  Room room(true);
+  for (std::uint32_t variant = 0; variant < 3; ++variant) {
+    CAPTURE(variant);
+    Settings settings = instant(64);
+    if (variant == 1) settings.samples_per_pixel = 2;
+    if (variant == 2) {
+      room.cameras[0].projection = Projection::orthographic, room.cameras[0].vertical_extent = 1.5f;
+      room.bind();
+    }
+    std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
+    Renderer& r = t->renderer;
+    std::vector<Vec3> whole(r.image.begin(), r.image.end()), again(whole.size());
+    auto trace = [&](const std::vector<Span>& spans, std::size_t group) {
+      std::fill(again.begin(), again.end(), Vec3{-1, -1, -1});
+      Tracer tracer = make_tracer(r.frame);
+      for (std::size_t i = 0; i < spans.size(); i += group)
+        trace_spans(&tracer, spans.data() + i, static_cast<std::uint32_t>(std::min(group, spans.size() - i)), Aov::none,
+                    again.data());
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < whole.size(); ++i) different += again[i].x >= 0 && !same_pixel(again[i], whole[i]);
+      return different;
+    };
+    std::vector<Span> rows, odd, pixels;
+    for (std::uint16_t y = 0; y < settings.height; ++y) {
+      rows.push_back({y, 0, 40});
+      odd.push_back({y, static_cast<std::uint16_t>(y % 7), static_cast<std::uint16_t>(23 + y % 5)});
+      for (std::uint16_t x = static_cast<std::uint16_t>(y % 3); x < 40; x = static_cast<std::uint16_t>(x + 5))
+        pixels.push_back({y, x, static_cast<std::uint16_t>(x + 1)});
+    }
+    CHECK(trace(rows, 1) == 0);
+    CHECK(trace(rows, 3) == 0);
+    CHECK(trace(rows, 28) == 0);
+    CHECK(trace(odd, 5) == 0);
+    CHECK(trace(pixels, 7) == 0);
+    r.frame.ray_by_ray = true;
+    CHECK(trace(rows, 28) == 0);
+    r.frame.ray_by_ray = false;
+    for (const AccelInfo* info : kAccelList) {
+      CAPTURE(info->name);
+      std::unique_ptr<TestRenderer> other = make_renderer(room.scene, settings, info);
+      REQUIRE(render_frame(&other->renderer, 0).ok);
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < whole.size(); ++i) different += !same_pixel(other->renderer.image[i], whole[i]);
+      CHECK(different == 0);
+    }
+  }
+}
+
+// Goal: no epsilon depends on the scene's size (HARDCASES row 29). Method: the same scene scaled by powers of two.
+TEST_CASE("instant_radiosity_of_scaled_scenes_is_the_same") {
+  Room room(true);
+  std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(64));
+  std::vector<Vec3> image(t->renderer.image.begin(), t->renderer.image.end());
+  for (float scale : {0x1p-20f, 0x1p20f}) {
+    CAPTURE(scale);
+    Room scaled(true);
+    for (Vec3& p : scaled.positions) p = p * scale;
+    scaled.cameras[0].eye = scaled.cameras[0].eye * scale, scaled.cameras[0].target = scaled.cameras[0].target * scale;
+    scaled.lights[0].intensity = scaled.lights[0].intensity * (scale * scale);
+    scaled.bind();
+    std::unique_ptr<TestRenderer> s = rendered(scaled.scene, instant(64));
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < image.size(); ++i) different += !same_pixel(s->renderer.image[i], image[i]);
+    CHECK(different == 0);
+  }
+}
+
+// Goal: coherence, which retraces pixels alone, stays off, and says why.
+TEST_CASE("instant_radiosity_switches_coherence_off") {
+  Room room(true);
+  Settings settings = instant(64);
+  settings.coherence = CoherenceMode::on;
+  std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
+  CHECK_FALSE(t->renderer.coherence_state.planned);
+  REQUIRE(t->renderer.coherence_state.unplanned_because != nullptr);
+  CHECK(std::string(t->renderer.coherence_state.unplanned_because).find("neighbouring pixels") != std::string::npos);
+}
+
+// Goal: virtual lights that memory was not planned for are refused.
+TEST_CASE("instant_radiosity_is_planned_or_refused") {
+  Room room(false);
+  Settings settings = instant(64);
+  settings.indirect = IndirectChoice::none;
+  std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
+  Status status = change_settings(&t->renderer, [&] {
+    Settings changed = t->renderer.settings;
+    changed.indirect = indirect_choice(Effect::instant_radiosity);
+    return changed;
+  }());
+  CHECK_FALSE(status.ok);
+  CHECK(std::string(status.message).find("instant-radiosity") != std::string::npos);
+}
+
+// Goal: virtual lights cast shadows. Method: a box across the room, between the light and the viewer's half; with the
+// shadow effect off, light passes through it.
+TEST_CASE("instant_radiosity_is_shadowed") {
+  Room room(false);
+  add_box(&room, {-0.98f, -0.98f, -0.4f}, {0.98f, 0.98f, -0.3f}, 0);
+  room.cameras[0].eye = {0, 0, -0.5f}, room.cameras[0].target = {0, 0, -1};
+  room.bind();
+  auto brightest = [&](EffectMask off) {
+    Settings settings = instant(128);
+    settings.forced_off = off;
+    std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
+    float most = 0;
+    for (const Vec3& p : t->renderer.image) most = max_component(p) > most ? max_component(p) : most;
+    return most;
+  };
+  CHECK(brightest(0) < 0.2f * brightest(bit(Effect::shadow)));
+}
