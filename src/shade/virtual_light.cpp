@@ -34,7 +34,7 @@ void add_packet(const FrameData& frame, const SegmentPacket& packet, const std::
   std::uint64_t blocked = 0;
   if (has(frame.mask, Effect::shadow)) {
     ShadowContext context = {&frame, kNone};
-    HitFilter opaque = {frame.accept_opaque, &context};
+    HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
     blocked =
         frame.first_rays->occluded_packet(frame.accel, packet, frame.filter_every_shadow ? &opaque : nullptr, stats);
   }
