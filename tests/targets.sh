@@ -10,6 +10,7 @@ for name in $names; do
     cli_* | serve | conformance | numbers | packages) echo pocketray_sealed ;;
     objects) echo pocketray_core ;;
     wrong_cpu) echo pocketray ;;
+    progressive_cost) echo progressive_cost ;;
     *) echo "test_$name" ;;
   esac
 done | sort -u

@@ -54,6 +54,7 @@ struct AccelInfo : AccelTraversal {
   // Lower bound of the distance from the point to any triangle: the least distance less its rounding error. Infinity
   // without triangles, 0 for a point that is not finite.
   float (*nearest_distance)(const Accel& accel, const Vec3& point);
+  bool packets_by_rays = false;  // packets are traced ray by ray: neighbours share no work
 };
 
 }  // namespace pocketray

@@ -101,6 +101,7 @@ const AccelInfo kBruteAccel = {
     brute_refit,
     brute_adopt,
     brute_nearest_distance,
+    true,
 };
 
 }  // namespace pocketray

@@ -24,6 +24,12 @@ constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels};
 constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels};
 #endif
 
+#if defined(__SOFTFP__)
+constexpr bool kPacketsByRays = true;  // in integers
+#else
+constexpr bool kPacketsByRays = false;
+#endif
+
 // The functions of AccelInfo for one kind of leaves, with the kernels of every instruction set.
 template <const LeafKind& kLeaves, const auto& kKernels>
 struct Hierarchy {
@@ -60,7 +66,8 @@ struct Hierarchy {
             build,
             refit,
             adopt,
-            nearest_distance};
+            nearest_distance,
+            kPacketsByRays};
   }
 };
 

@@ -68,6 +68,7 @@ const AccelInfo kGridAccel = {
     nullptr,
     adopt,
     grid_nearest_distance,
+    true,
 };
 
 }  // namespace pocketray

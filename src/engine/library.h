@@ -12,7 +12,7 @@ struct pocketray_instance {
   pocketray::Array<pocketray::Light> lights;            // set by the caller; empty: the scene's lights
   pocketray::Array<pocketray::Light> posed_lights;      // room for as many, if anything moves
   pocketray::Array<pocketray::NodeOverride> overrides;  // one per node; empty: only the animation moves nodes
-  pocketray::Array<pocketray::Span> row_spans;          // for pocketray_refine()
+  pocketray::Array<pocketray::Span> tile_spans;         // for pocketray_refine()
   pocketray::Progressive progressive;
   bool refining = false;  // a frame was begun and nothing has changed since
   std::uint32_t rows_done = 0;

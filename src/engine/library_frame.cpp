@@ -160,6 +160,7 @@ pocketray_result pocketray_begin(pocketray_instance* instance, double seconds) {
   status = prepare_frame(&instance->renderer, seconds);
   if (!status.ok) return refuse(POCKETRAY_ERROR_SCENE, status);
   instance->progressive = Progressive();
+  instance->progressive.row_ns = instance->renderer.row_ns.data;
   instance->refining = true;
   return POCKETRAY_OK;
 }
@@ -183,17 +184,10 @@ pocketray_result pocketray_refine(pocketray_instance* instance, double milliseco
       result = POCKETRAY_STOPPED;
       break;
     }
-    bool finest = progressive->step == 1;
-    std::uint32_t row = progressive->row;
-    std::uint64_t before = progressive->trace_ns;
-    bool finished =
-        progressive->step == 0 || advance_progressive(renderer, instance->row_spans, 0, progressive);  // one row
-    if (row < renderer->row_ns.count) renderer->row_ns[row] += progressive->trace_ns - before;
-    if (finest && progressive->trace_ns > before) ++instance->rows_done;
-    if (finished) result = POCKETRAY_OK;
+    if (advance_progressive(renderer, instance->tile_spans, 0, progressive)) result = POCKETRAY_OK;  // one batch
     if (clock_ns() >= deadline) break;
   }
-  CHECK_LE(instance->rows_done, renderer->settings.height);
+  instance->rows_done = finished_rows(*renderer, *progressive);
   renderer->timings.trace_ms = static_cast<double>(progressive->trace_ns) * 1e-6;
   std::uint32_t begin, end;
   if (take_dirty_rows(progressive, &begin, &end)) write_pixels(*renderer, begin, end, target);

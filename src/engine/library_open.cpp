@@ -248,7 +248,7 @@ pocketray_result build(const Request& q, pocketray_instance* instance) {
     stop_workers(renderer->workers);
     return refuse(POCKETRAY_ERROR_SCENE, status);
   }
-  instance->row_spans = arena_array<Span>(&renderer->frame_arena, q.settings.width);
+  instance->tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(q.settings));
   attach_changes(instance);
   return POCKETRAY_OK;
 }

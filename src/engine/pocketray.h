@@ -300,10 +300,10 @@ typedef struct pocketray_pixels {
 POCKETRAY_API pocketray_result pocketray_render(pocketray_instance* instance, double seconds,
                                                 const pocketray_pixels* pixels);
 
-/* The same picture, coarse first: begins a frame, then refines it for some milliseconds per call, by at least one row.
- * Pass the same pixels each time: only changed rows are written. POCKETRAY_OK: the frame is finished;
- * POCKETRAY_UNFINISHED: call again; POCKETRAY_STOPPED: call again when the stop flag is cleared. pocketray_render() and
- * any change of the instance end a frame in progress. */
+/* The same picture, coarse first: begins a frame, then refines it for some milliseconds per call, by at least a few
+ * tiles of 8 × 8 pixels. Pass the same pixels each time: only changed rows are written. POCKETRAY_OK: the frame is
+ * finished; POCKETRAY_UNFINISHED: call again; POCKETRAY_STOPPED: call again when the stop flag is cleared.
+ * pocketray_render() and any change of the instance end a frame in progress. */
 POCKETRAY_API pocketray_result pocketray_begin(pocketray_instance* instance, double seconds);
 POCKETRAY_API pocketray_result pocketray_refine(pocketray_instance* instance, double milliseconds,
                                                 const pocketray_pixels* pixels);

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -59,10 +60,12 @@ void take_spans(void* context, std::uint32_t thread) {
     std::uint32_t begin = queue->next_span.load(), count;
     do {
       if (begin >= job.span_count) return;
-      count = spans_at_once(job.spans + begin, job.span_count - begin, queue->thread_count);
+      const std::uint32_t left = job.span_count - begin;
+      count = job.spans_at_once ? std::min(job.spans_at_once, left)
+                                : spans_at_once(job.spans + begin, left, queue->thread_count);
     } while (!queue->next_span.compare_exchange_weak(begin, begin + count));
     std::uint64_t start = job.span_ns ? clock_ns() : 0;
-    trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image);
+    trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image, job.pitch);
     if (job.span_ns) {
       std::uint64_t each = (clock_ns() - start) / count;
       for (std::uint32_t i = 0; i < count; ++i) job.span_ns[begin + i] = each;

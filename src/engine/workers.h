@@ -29,9 +29,10 @@ struct TraceJob {
   std::uint32_t span_count;
   Aov aov;
   Vec3* image;
-  Tracer* tracers;                          // one per thread
-  std::uint64_t* span_ns;                   // cost of each span, equal for spans taken together; null: not measured
-  const std::atomic<bool>* stop = nullptr;  // set: skip the remaining spans
+  Tracer* tracers;                             // one per thread
+  std::uint64_t* span_ns;                      // cost of each span, equal for spans taken together; null: not measured
+  const std::atomic<bool>* stop = nullptr;     // set: skip the remaining spans
+  std::uint32_t pitch = 1, spans_at_once = 0;  // as in SpanBatch
 };
 
 // Traces all spans and returns how many were done. If `workers` is null, the caller's thread does all of it.

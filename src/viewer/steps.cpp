@@ -129,7 +129,7 @@ bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
     return complete;
   }
   std::uint64_t before = progressive->trace_ns;
-  bool complete = advance_progressive(renderer, loop->row_spans, clock_ns() + kSliceNs, progressive);
+  bool complete = advance_progressive(renderer, loop->tile_spans, clock_ns() + kSliceNs, progressive);
   loop->coherent.spent_ns += progressive->trace_ns - before;
   if (complete) {
     renderer->coherence_state.pixels_traced = progressive->pixels_traced;
@@ -267,7 +267,7 @@ bool takes_memory(const platform::Backend& screen) { return std::strcmp(screen.n
 
 Status step_viewer(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   CHECK(viewer->backend != nullptr);
-  CHECK_GE(loop->row_spans.count, renderer->settings.width);
+  CHECK_GE(loop->tile_spans.count, progressive_spans_max(renderer->settings));
   if (viewer->budget) return step_budgeted(viewer, renderer, loop);
   return viewer->servers ? step_with_servers(viewer, renderer, loop) : step_picture(viewer, renderer, loop);
 }

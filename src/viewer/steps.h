@@ -11,7 +11,7 @@ struct ViewerLoop {
   CameraControl control;
   Progressive progressive;
   CoherentFrame coherent;
-  Array<Span> row_spans;
+  Array<Span> tile_spans;
   HudText hud;
   double seconds = 0;                 // of the animation
   bool camera_moved = false;          // by the user, since the scene's own camera was shown

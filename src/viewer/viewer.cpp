@@ -333,7 +333,7 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
   CHECK_EQ(renderer->settings.height, static_cast<std::uint32_t>(viewer->height));
   ViewerLoop loop;
   std::size_t mark = arena_mark(renderer->frame_arena);
-  loop.row_spans = arena_array<Span>(&renderer->frame_arena, renderer->settings.width);
+  loop.tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(renderer->settings));
   loop.control = make_camera_control(renderer->camera, renderer->accel.bounds);
   take_kept_view(*viewer, renderer, &loop);
   loop.finished = true;  // no picture in progress

@@ -148,7 +148,7 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
     Stage::load("seesaw", coherent ? "on" : "off", &opened);
     Renderer* r = &opened.renderer;
     ViewerLoop loop;
-    loop.row_spans = arena_array<Span>(&r->frame_arena, r->settings.width);
+    loop.tile_spans = arena_array<Span>(&r->frame_arena, progressive_spans_max(r->settings));
     loop.finished = true;
     finish_picture(1, &stage.viewer, r, &loop);
     CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: whole frame: no frame before" : ""));
