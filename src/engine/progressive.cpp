@@ -28,6 +28,7 @@ struct Refinement {
 
 // Whether each pixel costs the same with and without its neighbours.
 bool are_pixels_separate(const FrameData& frame) {
+  if (frame.trace_strip) return false;
   return frame.ray_by_ray || frame.accel_info->packets_by_rays || frame.camera.orthographic;
 }
 bool leaves_out_coarser(const Refinement& r) {

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "effect/setting_list.h"
 #include "scene/builtin_helpers.h"
 #include "support/generated_scene.h"
 
@@ -122,6 +123,21 @@ TEST_CASE("progressive_shows_final_pixels_in_every_picture") {
           else
             check_steps(&test->renderer, expected, {8, 1});
         }
+  }
+}
+
+// Goal: the same where pixels share virtual lights in blocks. Method: as above.
+TEST_CASE("progressive_shows_final_pixels_lit_by_virtual_lights") {
+  auto built = build_builtin("cornell");
+  for (std::uint32_t threads : {1u, 3u}) {
+    Settings settings;
+    settings.width = 45, settings.height = 34;
+    settings.indirect = indirect_choice(Effect::instant_radiosity), settings.virtual_lights = 16;
+    const Picture expected = render_picture(built->scene, settings, 0.3);
+    settings.threads = threads;
+    auto test = make_renderer(built->scene, settings);
+    CHECK(has(test->renderer.effects.mask, Effect::instant_radiosity));
+    check_steps(&test->renderer, expected, {8, 1});
   }
 }
 
