@@ -19,6 +19,13 @@ struct Accel {
   Array<const std::uint8_t> data;  // the structure itself; of `grid`, queries change it: grid.h
 };
 
+// A question about triangles. The value of a box bounds that of every triangle inside it, rounding included.
+struct TriangleQuery {
+  const void* context;
+  float (*box_value)(const void* context, const Box& box);
+  float (*triangle_value)(const void* context, std::uint32_t triangle);
+};
+
 // How rays traverse it.
 struct AccelTraversal {
   // Nearest hit in (0, ray.t_max). Without one, hit->triangle is kNoTriangle and t is unchanged. `filter` and `stats`
@@ -51,9 +58,8 @@ struct AccelInfo : AccelTraversal {
   void (*refit)(Accel* accel, Array<std::uint8_t> data);
   // Adopts baked data, aligned to 64, after checking every index, bound and vertex in it against the geometry.
   Status (*adopt)(Accel* accel, Array<const std::uint8_t> data);
-  // Lower bound of the distance from the point to any triangle: the least distance less its rounding error. Infinity
-  // without triangles, 0 for a point that is not finite.
-  float (*nearest_distance)(const Accel& accel, const Vec3& point);
+  // The largest value of a triangle that rays can hit; 0 if none has a positive one.
+  float (*largest)(const Accel& accel, const TriangleQuery& query);
   bool packets_by_rays = false;  // packets are traced ray by ray: neighbours share no work
 };
 

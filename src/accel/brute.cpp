@@ -1,9 +1,7 @@
 // The oracle: tests every triangle for every ray. The other accelerators must return the same bits.
-#include <limits>
-
 #include "accel/accel_list.h"
+#include "accel/all_triangles.h"
 #include "accel/by_rays.h"
-#include "accel/point_distance.h"
 #include "accel/triangle.h"
 #include "base/check.h"
 
@@ -74,19 +72,6 @@ bool brute_occluded(const Accel& accel, const Ray& ray, const HitFilter* filter,
   return any;
 }
 
-float brute_nearest_distance(const Accel& accel, const Vec3& point) {
-  if (!is_finite(point)) return 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Triangle& triangle : accel.triangles) {
-    if (!is_hittable(accel.positions, triangle)) continue;
-    double d = squared_distance(to_double(point), to_double(accel.positions[triangle.vertex(0)]),
-                                to_double(accel.positions[triangle.vertex(1)]),
-                                to_double(accel.positions[triangle.vertex(2)]));
-    if (d < least) least = d;
-  }
-  return distance_bound(least, accel.bounds);
-}
-
 }  // namespace
 
 const AccelInfo kBruteAccel = {
@@ -100,7 +85,7 @@ const AccelInfo kBruteAccel = {
     brute_build,
     brute_refit,
     brute_adopt,
-    brute_nearest_distance,
+    largest_of_all,
     true,
 };
 

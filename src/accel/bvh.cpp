@@ -52,9 +52,7 @@ struct Hierarchy {
                                        TraceStats* stats) {
     return kernels().occluded_packet(accel, rays, filter, stats);
   }
-  static float nearest_distance(const Accel& accel, const Vec3& point) {
-    return bvh_nearest_distance(kLeaves, accel, point);
-  }
+  static float largest(const Accel& accel, const TriangleQuery& query) { return bvh_largest(kLeaves, accel, query); }
   static constexpr AccelInfo info(const char* name, const char* help, std::uint32_t magic) {
     return {{closest, closest_packet, occluded, occluded_packet},
             name,
@@ -66,7 +64,7 @@ struct Hierarchy {
             build,
             refit,
             adopt,
-            nearest_distance,
+            largest,
             kPacketsByRays};
   }
 };

@@ -120,6 +120,6 @@ std::size_t bvh_scratch_need(std::uint32_t triangle_count);
 void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch);
 void bvh_refit(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data);
 Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data);
-float bvh_nearest_distance(const LeafKind& kind, const Accel& accel, const Vec3& point);
+float bvh_largest(const LeafKind& kind, const Accel& accel, const TriangleQuery& query);
 
 }  // namespace pocketray

@@ -2,6 +2,7 @@
 #include "accel/grid.h"
 
 #include "accel/accel_list.h"
+#include "accel/all_triangles.h"
 #include "accel/by_rays.h"
 #include "accel/grid_pool.h"
 #include "accel/grid_walk.h"
@@ -67,7 +68,7 @@ const AccelInfo kGridAccel = {
     build,
     nullptr,
     adopt,
-    grid_nearest_distance,
+    largest_of_all,
     true,
 };
 

@@ -113,6 +113,5 @@ inline double cell_begin(const GridShape& shape, int axis, std::uint32_t i) {
 std::size_t grid_need(std::uint32_t triangle_count, std::uint64_t pool_words);
 // build() of AccelInfo with a pool of that size; tests make it small.
 void grid_build(Accel* accel, Arena* keep, Arena* scratch, std::uint64_t pool_words);
-float grid_nearest_distance(const Accel& accel, const Vec3& point);
 
 }  // namespace pocketray

@@ -1,5 +1,6 @@
 #include "plan/plan_lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -158,32 +159,65 @@ float box_distance_square(const Box& box, const Vec3& p) {
   return dot(d, d);
 }
 
+// A light that shines on triangles and boxes.
+struct LightReach {
+  const FrameData* frame;
+  const LightPoint* light;
+  bool is_area;
+};
+
+// Upper bound of the irradiance within a box that reaches as high over the emitter's plane; falls as the box shrinks.
+float irradiance_within(const LightReach& reach, const Box& box, float height) {
+  const LightPoint& light = *reach.light;
+  const float square = box_distance_square(box, light.position);
+  float scale = 1;
+  if (reach.is_area) {  // cos ≤ height / distance
+    if (!(height > 0)) return 0;
+    const float distance = std::sqrt(square);
+    if (height < distance) scale = height / distance;
+  }
+  if (light.range > 0 && square > light.range * light.range) return 0;
+  return max_component(light.intensity) * scale / square;
+}
+
+float triangle_irradiance(const void* context, std::uint32_t triangle) {
+  const LightReach& reach = *static_cast<const LightReach*>(context);
+  const Triangle& t = reach.frame->scene->triangles[triangle];
+  if (t.material() == reach.light->material) return 0;
+  Box box = empty_box();
+  float height = 0;
+  for (std::uint32_t v : t.vertices()) {
+    const Vec3& p = reach.frame->positions[v];
+    box = merge(box, p);
+    if (!reach.is_area) continue;
+    float h = dot(p - reach.light->position, reach.light->direction);
+    if (reach.light->two_sided) h = std::fabs(h);
+    if (h > height) height = h;
+  }
+  return irradiance_within(reach, box, height);
+}
+
+float box_irradiance(const void* context, const Box& box) {
+  const LightReach& reach = *static_cast<const LightReach*>(context);
+  const Vec3 &from = reach.light->position, &direction = reach.light->direction;
+  float height = 0;
+  if (reach.is_area) {
+    // The sums of the largest and smallest products are the corners' heights, rounded as those of any vertex.
+    const Vec3 low = (box.low - from) * direction, high = (box.high - from) * direction;
+    const Vec3 most = max(low, high), least = min(low, high);
+    height = most.x + most.y + most.z;
+    if (reach.light->two_sided) height = std::max(height, -(least.x + least.y + least.z));
+  }
+  return irradiance_within(reach, box, height);
+}
+
 // Upper bound of a light's irradiance on any triangle but its own.
 float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind) {
-  float intensity = max_component(light.intensity), most = 0;
+  const float intensity = max_component(light.intensity);
   if (!(intensity > 0)) return 0;
   if (kind == Effect::directional_light) return intensity;
-  for (const Triangle& t : frame.scene->triangles) {
-    if (t.material() == light.material) continue;
-    Box box = empty_box();
-    float height = 0;  // over the emitter's plane: cos ≤ height / distance
-    for (std::uint32_t v : t.vertices()) {
-      const Vec3& p = frame.positions[v];
-      box = merge(box, p);
-      float h = dot(p - light.position, light.direction);
-      if (light.two_sided) h = std::fabs(h);
-      if (h > height) height = h;
-    }
-    float square = box_distance_square(box, light.position), scale = 1;
-    if (kind == Effect::area_light) {
-      if (!(height > 0)) continue;
-      float distance = std::sqrt(square);
-      if (height < distance) scale = height / distance;
-    }
-    if (light.range > 0 && square > light.range * light.range) continue;
-    float irradiance = intensity * scale / square;
-    if (irradiance > most) most = irradiance;
-  }
+  const LightReach reach = {&frame, &light, kind == Effect::area_light};
+  const float most = frame.accel_info->largest(frame.accel, {&reach, box_irradiance, triangle_irradiance});
   return most < kRadianceMax ? most : kRadianceMax;
 }
 

@@ -118,11 +118,37 @@ TEST_CASE("accel_raises_no_invalid_operation") {
     }
 }
 
-// Goal: nearest_distance() never exceeds the distance to any point of any triangle, and is within a millionth of the
-// nearest. Method: sampled points of all triangles; a sphere, with known distance; brute force gives the same.
-TEST_CASE("accel_nearest_distance_is_a_tight_lower_bound") {
+namespace {
+
+// Values that fall with the squared distance to a point, less for some triangles than their boxes allow.
+struct NearPoint {
+  const Mesh* mesh;
+  Vec3 point;
+  mutable int asked = 0;  // triangles
+
+  static float value(const Vec3& p, const Box& box) {
+    const Vec3 d = max(max(box.low - p, p - box.high), Vec3{0, 0, 0});
+    return 1 / (1 + dot(d, d));
+  }
+  static float box_value(const void* context, const Box& box) {
+    return value(static_cast<const NearPoint*>(context)->point, box);
+  }
+  static float triangle_value(const void* context, std::uint32_t id) {
+    const NearPoint& near = *static_cast<const NearPoint*>(context);
+    ++near.asked;
+    Box box = empty_box();
+    for (std::uint32_t v : near.mesh->triangles[id].vertices()) box = merge(box, near.mesh->positions[v]);
+    return value(near.point, box) / static_cast<float>(1 + id % 3);
+  }
+  TriangleQuery query() const { return {this, box_value, triangle_value}; }
+};
+
+}  // namespace
+
+// Goal: largest() finds the largest value of any triangle that rays can hit, to the bit. Method: brute force over the
+// mesh; points inside and outside.
+TEST_CASE("accel_finds_the_largest_value_of_a_triangle") {
   for (const Mesh& mesh : generated_meshes()) {
-    auto oracle = make_world(mesh, &kBruteAccel);
     for (const AccelInfo* info : kAccelList) {
       auto world = make_world(mesh, info);
       Rng rng = make_rng(106);
@@ -130,28 +156,30 @@ TEST_CASE("accel_nearest_distance_is_a_tight_lower_bound") {
       float size = is_empty(bounds) ? 1.0f : max_component(extent(bounds));
       int wrong = 0;
       for (int i = 0; i < effort(60); ++i) {
-        Vec3 p = (is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds)) + random_vec3(&rng, size);
-        float bound = info->nearest_distance(world->accel, p);
-        wrong += !same_bits(bound, kBruteAccel.nearest_distance(oracle->accel, p));
-        for (const Triangle& t : mesh.triangles) {
-          if (!is_hittable(world->accel.positions, t)) continue;
-          double u = next_double(&rng), v = (1 - u) * next_double(&rng);
-          Vec3d a = to_double(mesh.positions[t.vertex(0)]), b = to_double(mesh.positions[t.vertex(1)]),
-                c = to_double(mesh.positions[t.vertex(2)]);
-          wrong += bound > length(a * (1 - u - v) + b * u + c * v - to_double(p));
-          wrong += bound > length(a - to_double(p));
-        }
+        const NearPoint near = {&mesh, (is_empty(bounds) ? Vec3{0, 0, 0} : center(bounds)) + random_vec3(&rng, size)};
+        float most = 0;
+        for (std::uint32_t id = 0; id < mesh.triangles.size(); ++id)
+          if (is_hittable(world->accel.positions, mesh.triangles[id]))
+            most = std::fmax(most, NearPoint::triangle_value(&near, id));
+        wrong += !same_bits(info->largest(world->accel, near.query()), most);
       }
       INFO(mesh.name << ", " << info->name);
       CHECK(wrong == 0);
     }
   }
-  auto sphere = make_world(jittered_sphere(4, 1, {0, 0, 0}, 0, 107), &kBvhAccel);
-  CHECK(kBvhAccel.nearest_distance(sphere->accel, {0, 5, 0}) == doctest::Approx(4).epsilon(0.002));
-  CHECK(kBvhAccel.nearest_distance(sphere->accel, {0, 0, 0}) == doctest::Approx(1).epsilon(0.01));
-  CHECK(kBvhAccel.nearest_distance(sphere->accel, sphere->positions[0]) == 0);
-  CHECK(kBvhAccel.nearest_distance(sphere->accel, {std::numeric_limits<float>::quiet_NaN(), 0, 0}) == 0);
-  CHECK(kBvhAccel.nearest_distance(make_world(Mesh(), &kBvhAccel)->accel, {0, 0, 0}) == kInfinity);
+}
+
+// Goal: a hierarchy asks for few triangles, and none has the value 0. Method: triangles of a sphere near a point.
+TEST_CASE("accel_asks_few_triangles_for_the_largest_value") {
+  const Mesh mesh = jittered_sphere(5, 1, {0, 0, 0}, 0, 107);
+  for (const AccelInfo* info : {&kBvhAccel, &kCompactAccel}) {
+    auto sphere = make_world(mesh, info);
+    const NearPoint near = {&mesh, {0, 5, 0.1f}};
+    CHECK(info->largest(sphere->accel, near.query()) == doctest::Approx(1 / 17.0).epsilon(0.01));
+    CHECK(near.asked < static_cast<int>(mesh.triangles.size()) / 20);
+    const Mesh empty;
+    CHECK(info->largest(make_world(empty, info)->accel, NearPoint{&empty, {0, 0, 0}}.query()) == 0);
+  }
 }
 
 // Goal: build() takes no more than need() says, keeps no more than its data, and returns its scratch; on a mesh the

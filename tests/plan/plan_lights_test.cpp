@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "accel/accel_list.h"
 #include "base/limits.h"
 #include "plan/plan_lights.h"
 #include "support/effort.h"
@@ -174,4 +175,23 @@ TEST_CASE("plan_lights_radiance_bound_knows_both_sides_of_a_light") {
   }
   CHECK(bound[0] == bound[1]);
   CHECK(bound[0] > 2);
+}
+
+// Goal: the radiance bound does not depend on the accelerator: a hierarchy leaves out only boxes that cannot count.
+// Method: brute force, generated scenes with every kind of light and range.
+TEST_CASE("plan_lights_radiance_bound_is_the_same_with_every_accelerator") {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    auto s = generate_scene(kAllFeatures & ~bit(Feature::supersampling), seed);
+    Rng rng = make_rng(seed);
+    for (Light& light : s->lights) light.range = seed % 3 ? 0 : 4 * next_float(&rng);
+    for (Material& m : s->materials) m.double_sided = seed % 2;
+    s->bind();
+    Settings settings = settings_for(kAllFeatures, 4, 3);
+    settings.points_per_area_light = 9;
+    const float expected = radiance_bound(make_renderer(s->scene, settings, &kBruteAccel)->renderer.frame);
+    CAPTURE(seed);
+    CHECK(expected > 0);
+    for (const AccelInfo* info : kAccelList)
+      CHECK(radiance_bound(make_renderer(s->scene, settings, info)->renderer.frame) == expected);
+  }
 }
