@@ -6,8 +6,10 @@
 namespace pocketray {
 
 extern const BrdfInfo kPhongBrdf;
+extern const BrdfInfo kGgxBrdf;
 
-inline const BrdfInfo* const kBrdfList[] = {&kPhongBrdf};
+enum : std::uint32_t { kPhong, kGgx };  // values of Material::brdf
+inline const BrdfInfo* const kBrdfList[] = {&kPhongBrdf, &kGgxBrdf};
 constexpr std::uint32_t kBrdfCount = sizeof kBrdfList / sizeof kBrdfList[0];
 static_assert(kBrdfCount <= kBrdfCountMax, "raise it in base/limits.h");
 

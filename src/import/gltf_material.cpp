@@ -3,16 +3,17 @@
 // The mapping, for base colour c, metallic m, roughness r, transmission t, index of refraction n:
 //   F0 = lerp(((n − 1)/(n + 1))², c, m)        reflectance at normal incidence (sec. B.2.2)
 //   k = max(0, 1 − r/0.3)²                     how much of F0 is a perfect mirror: all at r = 0, none from r = 0.3
-//   mirror = F0·k, specular = F0·(1 − k)       the glossy lobe is Phong's, of exponent
-//   exponent = 2/α² − 2, α = r²                the Blinn–Phong lobe as wide as GGX of that α [Walter et al. 2007,
-//   sec. 5.2] t' = t·(1 − m), transmission = c·t', diffuse = c·(1 − m)·(1 − t), mirror × (1 − t'): Fresnel gives glass
-//   its mirror absorption = −ln(attenuation colour)/attenuation distance (KHR_materials_volume)
+//   mirror = F0·k                              c·m·k of it is tinted by texture and vertex colour
+//   specular = F0·(1 − k), grazing = 1 − k     the GGX lobe of α = r² (sec. B.3); c·m·(1 − k) is tinted
+//   t' = t·(1 − m), transmission = c·t', diffuse = c·(1 − m)·(1 − t), mirror × (1 − t'): Fresnel gives glass its mirror
+//   absorption = −ln(attenuation colour)/attenuation distance (KHR_materials_volume)
 // A metallicRoughness or transmission texture multiplies its factor by the texture's mean.
 #include <algorithm>
 #include <cmath>
 
 #include "base/fmath.h"
 #include "base/limits.h"
+#include "brdf/brdf_list.h"
 #include "import/gltf.h"
 #include "import/import_error.h"
 
@@ -61,13 +62,17 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
       transmission *= texture_mean(file, gltf_texture_info(*extension, "transmissionTexture").index, 0, "transmission");
   }
   float root = (material->ior - 1) / (material->ior + 1), dielectric = root * root;
-  Vec3 f0 = Vec3{dielectric, dielectric, dielectric} * (1 - metallic) + base * metallic;
-  float k = std::max(0.0f, 1 - roughness / 0.3f), alpha = roughness * roughness;
+  Vec3 metal = base * metallic, f0 = Vec3{dielectric, dielectric, dielectric} * (1 - metallic) + metal;
+  float k = std::max(0.0f, 1 - roughness / 0.3f);
   k = k * k;
   material->diffuse = base * ((1 - metallic) * (1 - transmission));
   material->mirror = f0 * (k * (1 - transmission));
+  material->mirror_tinted = metal * (k * (1 - transmission));
   material->specular = f0 * (1 - k);
-  material->exponent = alpha * alpha > 2e-6f ? std::max(0.0f, 2 / (alpha * alpha) - 2) : kPhongExponentMax;
+  material->specular_tinted = metal * (1 - k);
+  material->brdf = kGgx;
+  material->roughness = roughness * roughness;
+  material->grazing = 1 - k;
   material->transmission = base * transmission;
   if (transmission > 0) read_volume(source.extensions, material);
 }

@@ -97,7 +97,8 @@ double window_at(float range, float distance) {
 
 // Sends the particle on from a surface; false: it is absorbed.
 bool scatter(const Surface& s, Walk* walk, Particle* p) {
-  Vec3d diffuse = to_double(s.diffuse), mirror = to_double(s.material->mirror);
+  Vec3d diffuse = to_double(s.diffuse),
+        mirror = to_double(reflectance_at(s, s.material->mirror, s.material->mirror_tinted));
   Vec3d glass = to_double(s.material->transmission);
   double d = max_component(diffuse), r = max_component(mirror), g = max_component(glass), total = d + r + g;
   double choice = walk->next() * (total > 1 ? total : 1), scale = total > 1 ? total : 1;

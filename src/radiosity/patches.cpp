@@ -74,10 +74,10 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
               f = corner_of(scene, triangle, 2) - a, n = cross(e, f), way = point - a;
   const double square = dot(n, n);
   const double u = dot(cross(way, f), n) / square, v = dot(cross(e, way), n) / square;
-  Vec3d albedo = to_double(m.diffuse);
+  Vec3d tint = {1, 1, 1};
   if (m.diffuse_texture.texture != kNone) {
     const Vec2 uv = hit_uv(scene, triangle, static_cast<float>(u), static_cast<float>(v));
-    albedo *= to_double(sample_texture(scene, m.diffuse_texture, uv, TextureFilter::as_scene).rgb);
+    tint *= to_double(sample_texture(scene, m.diffuse_texture, uv, TextureFilter::as_scene).rgb);
   }
   if (scene.colors.count) {
     Vec3d color = {0, 0, 0};
@@ -86,9 +86,11 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
       const Rgba16& c = scene.colors[t.vertex(i)];
       color += Vec3d{double(c.r), double(c.g), double(c.b)} * (weight[i] / 65535);
     }
-    albedo *= color;
+    tint *= color;
   }
-  return albedo + to_double(m.specular) + to_double(m.mirror);
+  const Vec3d glossy = to_double(m.specular) + to_double(m.mirror);
+  const Vec3d tinted = to_double(m.specular_tinted) + to_double(m.mirror_tinted);
+  return to_double(m.diffuse) * tint + glossy - tinted * (Vec3d{1, 1, 1} - tint);
 }
 
 Patch patch_of(const Material& m) {

@@ -62,7 +62,7 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
              const ReferenceContact& contact, ReferenceRay* ray, Path* path, ReferenceSamples* samples) {
   const FrameData& frame = *reference.world.frame;
   const Material& m = *s.material;
-  Vec3d mirror = to_double(m.mirror), to_viewer = -ray->direction;
+  Vec3d mirror = s.mirror, to_viewer = -ray->direction;
   double mirror_share = max_component(mirror), glass_share = is_zero(m.transmission) ? 0 : 1, lobe_share = 0;
   if (options.transport == Transport::physical)
     lobe_share = max_component(s.diffuse) + static_cast<double>(max_component(m.specular));

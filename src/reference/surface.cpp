@@ -55,7 +55,12 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
       tint += Vec3d{c.r / 65535.0, c.g / 65535.0, c.b / 65535.0} * weight[i];
     }
   }
-  s.diffuse = to_double(m.diffuse) * texel(m.diffuse_texture) * tint;
+  tint *= texel(m.diffuse_texture);
+  auto tinted = [&](const Vec3& reflectance, const Vec3& part) {
+    return to_double(reflectance) - to_double(part) * (Vec3d{1, 1, 1} - tint);
+  };
+  s.diffuse = to_double(m.diffuse) * tint;
+  s.specular = tinted(m.specular, m.specular_tinted), s.mirror = tinted(m.mirror, m.mirror_tinted);
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
     s.emission = to_double(m.emission) * texel(m.emission_texture);
@@ -79,7 +84,8 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   Vec3d value = s.diffuse * (1 / kPi);
-  if (!is_zero(s.material->specular)) value += glossy_lobe(s).exact_value(*s.material, s.normal, to_viewer, to_light);
+  if (!is_zero(s.material->specular))
+    value += glossy_lobe(s).exact_value(*s.material, s.specular, s.normal, to_viewer, to_light);
   return value;
 }
 

@@ -9,7 +9,7 @@ struct ReferenceSurface {
   Vec3d point;
   double magnitude;         // of the coordinates behind the point: bounds its rounding error
   Vec3d geometric, normal;  // unit, both on the side the ray came from
-  Vec3d diffuse, emission;
+  Vec3d diffuse, specular, mirror, emission;
   bool front;
   std::uint32_t triangle;
   double u, v;

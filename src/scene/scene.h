@@ -66,9 +66,13 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 // How a surface interacts with light. Any lobe may be absent (zero); an absent lobe costs nothing.
 struct Material {
   Vec3 diffuse = {0.8f, 0.8f, 0.8f};  // Lambertian albedo; × texture × vertex colour
-  Vec3 specular = {0, 0, 0};          // albedo of the glossy lobe at its peak direction, see brdf/
-  float exponent = 0;                 // of the Phong lobe, 0 to kPhongExponentMax
+  Vec3 specular = {0, 0, 0};          // of the glossy lobe at normal incidence, see brdf/
   Vec3 mirror = {0, 0, 0};            // reflectance of the perfect mirror
+  // The parts of specular and mirror that texture and vertex colour tint like the diffuse albedo: those of metals.
+  Vec3 specular_tinted = {0, 0, 0}, mirror_tinted = {0, 0, 0};
+  float exponent = 0;             // of the Phong lobe, 0 to kPhongExponentMax
+  float roughness = 1;            // of the GGX lobe: α, 0 to 1
+  float grazing = 0;              // of the GGX lobe: reflectance at grazing incidence, F₉₀
   Vec3 transmission = {0, 0, 0};  // of the dielectric; zero: opaque. Reflects by Fresnel and transmits the rest × this
   float ior = 1.5f;               // index of refraction, 1 to kIorMax
   Vec3 absorption = {0, 0, 0};    // per scene unit inside the body (Beer–Lambert)

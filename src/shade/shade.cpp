@@ -96,7 +96,7 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
   if constexpr (has(mask, Effect::mirror)) {
     if (!is_zero(m.mirror)) {
       effect_entered<Effect::mirror>();
-      sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, m.mirror);
+      sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, reflectance_at(s, m.mirror, m.mirror_tinted));
     }
   }
   if constexpr (has(mask, Effect::refraction)) {

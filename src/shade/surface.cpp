@@ -60,18 +60,24 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
     if (frame.normals.count) s->normal = smooth_normal(frame, t, w, u, v, s->geometric);
   }
   s->diffuse = m.diffuse;
+  s->is_tinted = false;
   if constexpr (has(mask, Effect::texture)) {
     if (m.diffuse_texture.texture != kNone) {
       effect_entered<Effect::texture>();
-      s->diffuse *=
+      s->tint =
           sample_texture(scene, m.diffuse_texture, hit_uv(scene, hit.triangle, u, v), frame.settings.texture_filter)
               .rgb;
+      s->diffuse *= s->tint;
+      s->is_tinted = true;
     }
   }
   if constexpr (has(mask, Effect::vertex_color)) {
     if (scene.colors.count) {
       effect_entered<Effect::vertex_color>();
-      s->diffuse *= vertex_color(scene, t, w, u, v);
+      Vec3 color = vertex_color(scene, t, w, u, v);
+      s->diffuse *= color;
+      s->tint = s->is_tinted ? s->tint * color : color;
+      s->is_tinted = true;
     }
   }
   s->glow = {0, 0, 0};

@@ -15,6 +15,8 @@ struct Surface {
   Vec3 diffuse;            // albedo
   Vec3 glow;               // radiance that leaves without any lights: emission, ambient
   bool front;              // the ray met the front (counter-clockwise) side
+  bool is_tinted;          // by `tint`, the colour of texture and vertices; otherwise that is not set
+  Vec3 tint;
   const Material* material;
   Hit hit;
 };
@@ -26,6 +28,11 @@ inline bool is_culled(const Material& m, bool front) { return !front && !m.doubl
 // Whether two surfaces of the same frame are the same in every respect.
 inline bool same_surface(const Surface& a, const Surface& b) {
   return a.hit.triangle == b.hit.triangle && a.hit.u == b.hit.u && a.hit.v == b.hit.v && a.front == b.front;
+}
+
+// The material's specular or mirror reflectance at the surface, given the part of it that is tinted.
+inline Vec3 reflectance_at(const Surface& s, const Vec3& reflectance, const Vec3& tinted) {
+  return s.is_tinted ? reflectance - tinted * (Vec3{1, 1, 1} - s.tint) : reflectance;
 }
 
 // Selects the instantiation for the plan's mask.

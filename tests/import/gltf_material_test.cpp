@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "brdf/brdf_list.h"
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
 
@@ -46,7 +47,10 @@ TEST_CASE("gltf_metallic_roughness_maps_to_our_lobes") {
   check_vec(plastic.diffuse, {0.8f, 0.4f, 0.2f});
   check_vec(plastic.specular, {0.04f, 0.04f, 0.04f});
   check_vec(plastic.mirror, {0, 0, 0});
-  CHECK(plastic.exponent == doctest::Approx(2 / (0.25 * 0.25) - 2));
+  check_vec(plastic.specular_tinted, {0, 0, 0});
+  CHECK(plastic.brdf == kGgx);
+  CHECK(plastic.roughness == 0.25f);
+  CHECK(plastic.grazing == 1);
   CHECK(plastic.double_sided == 0);
   Material gold = material_of(
       "{\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.8,0.4,1],\"metallicFactor\":1,"
@@ -54,11 +58,14 @@ TEST_CASE("gltf_metallic_roughness_maps_to_our_lobes") {
   check_vec(gold.diffuse, {0, 0, 0});
   check_vec(gold.mirror, {0.25f, 0.2f, 0.1f});
   check_vec(gold.specular, {0.75f, 0.6f, 0.3f});
+  check_vec(gold.mirror_tinted, gold.mirror);
+  check_vec(gold.specular_tinted, gold.specular);
+  CHECK(gold.grazing == doctest::Approx(0.75));
   CHECK(gold.double_sided == 1);
   Material mirror = material_of("{\"pbrMetallicRoughness\":{\"roughnessFactor\":0}}");
   check_vec(mirror.mirror, {1, 1, 1});
   check_vec(mirror.specular, {0, 0, 0});
-  CHECK(mirror.exponent == 1e6f);
+  CHECK(mirror.roughness == 0);
 }
 
 // Goal: transmission, index of refraction and volume. Method: Beer–Lambert over the attenuation distance gives back the
@@ -139,9 +146,9 @@ TEST_CASE("gltf_metallic_roughness_texture_counts_by_its_mean") {
   std::string json =
       "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}},\"normalTexture\":{\"index\":0}}";
   ImportedScene imported = load_text(triangle_gltf(json, images(kRoughMetal)));
-  double metallic = 64 / 255.0, roughness = 128 / 255.0, alpha = roughness * roughness;
+  double metallic = 64 / 255.0, roughness = 128 / 255.0;
   CHECK(imported.scene.materials[0].diffuse.x == doctest::Approx(1 - metallic));
-  CHECK(imported.scene.materials[0].exponent == doctest::Approx(2 / (alpha * alpha) - 2));
+  CHECK(imported.scene.materials[0].roughness == doctest::Approx(roughness * roughness));
   CHECK(imported.scene.textures.count == 0);  // it is not a texture of the scene
   CHECK(contains(imported.warning, "normal maps"));
   CHECK(contains(imported.warning, "by their mean"));

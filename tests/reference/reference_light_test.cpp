@@ -224,6 +224,7 @@ TEST_CASE("reference_lobes_have_their_albedo_in_a_white_furnace") {
     check_equal(look_at(t, Transport::physical, {0.1, 1, 0.1}, {0.1, 0, 0.1}, 20000), 0.8);
     ReferenceSurface surface = {};
     surface.material = &m, surface.normal = surface.geometric = {0, 1, 0}, surface.diffuse = to_double(m.diffuse);
+    surface.specular = to_double(m.specular);
     Vec3d to_viewer = normalize(Vec3d{2, 1, 0});
     double albedo = 0, one_way = 0;
     constexpr int kRings = 400;

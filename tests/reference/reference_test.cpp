@@ -100,6 +100,7 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
     const float exponent = kExponents[row % 4];
     Material m;
     m.specular = {0.4f, 0.4f, 0.4f}, m.brdf = row / 4, m.exponent = exponent;
+    m.roughness = std::sqrt(2 / (exponent + 2)), m.grazing = 1;
     ReferenceSurface s = {};
     s.material = &m;
     s.normal = s.geometric = normalize(Vec3d{0.1, 1, 0.2});
@@ -159,8 +160,17 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
   for (int i = 0; i < kFeatureCount; ++i)
     if (!(without & 1u << i)) sets.push_back(1u << i | bit(Feature::point_light));
   sets.push_back(bit(Feature::refraction) | bit(Feature::absorption) | bit(Feature::point_light));
-  for (std::uint32_t set : sets) {
+  const std::size_t plain_count = sets.size();
+  sets.push_back(bit(Feature::texture) | bit(Feature::vertex_color) | bit(Feature::point_light));
+  sets.push_back(sets.back() | bit(Feature::mirror) | bit(Feature::smooth_normal));
+  for (std::size_t i_set = 0; i_set < sets.size(); ++i_set) {
+    const std::uint32_t set = sets[i_set];
     auto s = generate_scene(set, 17);
+    if (i_set >= plain_count)  // all of metal
+      for (Material& m : s->materials) {
+        m.brdf = kGgx, m.roughness = 0.2f, m.grazing = 1;
+        m.specular = {0.8f, 0.7f, 0.5f}, m.specular_tinted = {0.7f, 0.7f, 0.3f}, m.mirror_tinted = m.mirror * 0.5f;
+      }
     Settings settings = settings_for(set, 8, 8);
     settings.cut_off_levels = 0, settings.ray_depth = kRayDepthMax;
     TestReference t(s->scene, settings);

@@ -64,8 +64,10 @@ struct FloatCount {
     add(l.position), add(l.direction), add(l.intensity), add(l.range), add(l.cos_inner), add(l.cos_outer);
   }
   void add(const Material& m) {
-    for (const Vec3& v : {m.diffuse, m.specular, m.mirror, m.transmission, m.absorption, m.emission}) add(v);
-    for (float value : {m.exponent, m.ior, m.opacity, m.alpha_cutoff}) add(value);
+    for (const Vec3& v : {m.diffuse, m.specular, m.mirror, m.specular_tinted, m.mirror_tinted, m.transmission,
+                          m.absorption, m.emission})
+      add(v);
+    for (float value : {m.exponent, m.roughness, m.grazing, m.ior, m.opacity, m.alpha_cutoff}) add(value);
     add(&m.diffuse_texture.m[0][0], 6), add(&m.emission_texture.m[0][0], 6);
   }
   template <class T>
@@ -233,7 +235,7 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(baked_open(file.data(), file.size() - 64, &scene).message, "it should be"));
   CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "aligned to 64"));
   put_u32(file, kVersionAt, 1);
-  CHECK(open_error(file) == "made by version 1, this program reads version 3: bake it again");
+  CHECK(open_error(file) == "made by version 1, this program reads version 4: bake it again");
   put_u32(file, kVersionAt, kBakedVersion);
   file.data()[file.size() - 1] ^= 1;
   CHECK(mentions(open_error(file), "checksum"));

@@ -135,6 +135,10 @@ TEST_CASE("validate_scene_refuses_bad_materials") {
     refuses("materials[0].specular.y", [=](FullScene* f) { f->materials[0].specular.y = bad; });
     refuses("materials[1].mirror.z", [=](FullScene* f) { f->materials[1].mirror.z = bad; });
     refuses("materials[1].transmission.x", [=](FullScene* f) { f->materials[1].transmission.x = bad; });
+    refuses("materials[1].roughness", [=](FullScene* f) { f->materials[1].roughness = bad; });
+    refuses("materials[1].grazing", [=](FullScene* f) { f->materials[1].grazing = bad; });
+    refuses("materials[1].specular_tinted.x", [=](FullScene* f) { f->materials[1].specular_tinted.x = bad; });
+    refuses("materials[1].mirror_tinted.y", [=](FullScene* f) { f->materials[1].mirror_tinted.y = bad; });
     refuses("materials[1].opacity", [=](FullScene* f) { f->materials[1].opacity = bad; });
   }
   for (float bad : {kNan, kInf, -1.0f}) {

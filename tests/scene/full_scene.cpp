@@ -29,6 +29,8 @@ void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_c
   Material plain, rich;
   rich.specular = color(rng), rich.mirror = color(rng), rich.transmission = color(rng),
   rich.absorption = color(rng) * 9.0f;
+  rich.specular_tinted = rich.specular * 0.5f, rich.mirror_tinted = rich.mirror, rich.roughness = 0.3f;
+  rich.grazing = 0.9f;
   rich.emission = color(rng) * 100.0f, rich.exponent = 30, rich.opacity = 0.5f, rich.brdf = 1, rich.thin = 1;
   rich.double_sided = 0, rich.alpha_mode = AlphaMode::blend;
   rich.diffuse_texture.texture = 0, rich.emission_texture.texture = 1;

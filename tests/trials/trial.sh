@@ -46,7 +46,7 @@ for kind in ${@:-setting lobe accelerator indirect device}; do
       ;;
     lobe)
       cp tests/trials/retro.cpp src/brdf/
-      sed -i 's/kPhongBrdf;/kPhongBrdf, kRetroBrdf;/; s/{&kPhongBrdf}/{\&kPhongBrdf, \&kRetroBrdf}/' src/brdf/brdf_list.h
+      sed -i 's/kPhongBrdf;/kPhongBrdf, kRetroBrdf;/; s/&kGgxBrdf}/\&kGgxBrdf, \&kRetroBrdf}/' src/brdf/brdf_list.h
       edited src/brdf/brdf_list.h
       try lobe brdf plan
       ;;

@@ -156,7 +156,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=8, more=b""):
+def hello(version=9, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
 
 
@@ -201,7 +201,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\10\0", "the server says hello first, of version 8")
+            check(kind == HELLO and fields[:6] == b"PRAY\11\0", "the server says hello first, of version 9")
             self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
 
     def send(self, data):
