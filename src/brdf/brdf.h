@@ -21,6 +21,8 @@ struct BrdfInfo {
   // over the sphere, positive wherever the value is.
   Vec3d (*sample)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, double u, double v);
   double (*density)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light);
+  // The share of uniform light that the lobe reflects to the viewer. Null: it reflects lights only.
+  Vec3 (*albedo)(const Material& material, const Vec3& specular, float cos_viewer);
 };
 
 }  // namespace pocketray

@@ -8,6 +8,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
+#include "brdf/ggx_albedo.h"
 
 namespace pocketray {
 namespace {
@@ -104,8 +105,12 @@ double density(const Material& material, const Vec3d& normal, const Vec3d& viewe
   return square / (kPi * slope * slope) / (2 * (cosine + root_term(cosine, square)));
 }
 
+Vec3 albedo(const Material& material, const Vec3& specular, float cos_viewer) {
+  return ggx_albedo(material.roughness, specular, material.grazing, std::fabs(cos_viewer));
+}
+
 }  // namespace
 
-const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density};
+const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density, albedo};
 
 }  // namespace pocketray

@@ -26,8 +26,9 @@ enum class Effect : std::uint8_t {
   back_face_culling,
   radiosity,
   instant_radiosity,
+  ambient_gloss,
 };
-constexpr int kEffectCount = 21;
+constexpr int kEffectCount = 22;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

@@ -32,6 +32,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::back_face_culling, "back-face-culling", "a material visible from the front only"},
     {Effect::radiosity, "radiosity", "a stored solution of the light between surfaces"},
     {Effect::instant_radiosity, "instant-radiosity", "--indirect instant-radiosity"},
+    {Effect::ambient_gloss, "ambient-gloss", "a rough metal or plastic under ambient light or a background"},
 };
 
 constexpr bool effects_in_order() {

@@ -6,6 +6,7 @@
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 #include "indirect/indirect_list.h"
+#include "indirect/surroundings.h"
 
 namespace pocketray {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // Counts of materials with a property, among those that triangles use.
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
-                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0;
+                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
@@ -38,6 +39,7 @@ Census take_census(const Scene& scene, const Settings& settings) {
     c.emissive += !is_zero(m.emission);
     c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
+    c.reflecting += reflects_surroundings(m);
     c.one_sided += !m.double_sided && !transmits;
     c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular));
   }
@@ -135,8 +137,15 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   for (const IndirectInfo& info : IndirectList::kInfos)
     if (info.effects) decide_indirect(info, indirect, scene, settings, &w);
   const EffectMask excluded_indirect = indirect ? kIndirectEffects & ~indirect->effects
-                                       : settings.indirect == IndirectChoice::none ? kIndirectEffects
-                                                                                   : bit(Effect::instant_radiosity);
+                                       : settings.indirect == IndirectChoice::none
+                                           ? kIndirectEffects | bit(Effect::ambient_gloss)
+                                           : bit(Effect::instant_radiosity);
+  if (settings.indirect == IndirectChoice::none)
+    w.set(Effect::ambient_gloss, false, "no indirect light requested");
+  else if (is_zero(radiance_of_surroundings(scene.info)))
+    w.set(Effect::ambient_gloss, false, "no ambient light or background");
+  else
+    w.set_by_materials(Effect::ambient_gloss, c.reflecting, "reflect the surroundings");
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
   bool animated = is_animated(scene);

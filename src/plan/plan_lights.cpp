@@ -8,6 +8,7 @@
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
+#include "indirect/surroundings.h"
 #include "shade/even_points.h"
 #include "shade/lights.h"
 #include "shade/texture.h"
@@ -275,6 +276,7 @@ float radiance_bound(const FrameData& frame) {
     bool shines = m.unlit && has(frame.mask, Effect::emission);
     float own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
     if (!shines) own += max_component(m.diffuse) * virtual_light;
+    if (has(frame.mask, Effect::ambient_gloss)) own += reflected_surroundings_bound(scene.info, m);
     if (own > glow) glow = own;
     float passes =
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));

@@ -3,6 +3,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
+#include "indirect/surroundings.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -80,6 +81,14 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
     }
   }
   return {origin, direction, kOwnSurface * s.magnitude / length(direction), t_max};
+}
+
+Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer) {
+  if (!has(frame.mask, Effect::ambient_gloss) || !reflects_surroundings(*s.material)) return {0, 0, 0};
+  const Vec3 specular = {static_cast<float>(s.specular.x), static_cast<float>(s.specular.y),
+                         static_cast<float>(s.specular.z)};
+  const float cosine = static_cast<float>(dot(s.normal, to_viewer));
+  return to_double(reflected_surroundings(frame.scene->info, *s.material, specular, cosine));
 }
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {

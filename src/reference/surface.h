@@ -23,6 +23,9 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
 // normals start where the renderer starts them, see curved_origin() in surface.h.
 ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3d& direction, double t_max);
 
+// Radiance of the surroundings that the glossy lobe reflects, if the frame's plan has Effect::ambient_gloss.
+Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer);
+
 // Value of the diffuse plus the glossy lobe, 1/sr.
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light);
 // Density of sample_lobes(), 1/sr; 0 without lobes.

@@ -76,6 +76,7 @@ struct FrameData {
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;
   SurfaceFunction first_surface = nullptr;  // at first hits: the same, but without light that trace_strip adds there
+  SurfaceFunction plain_surface = nullptr, plain_first_surface = nullptr;  // see ambient_gloss.h
   RadianceFunction radiance = nullptr;
   ShadowsFunction find_shadows = nullptr;  // null if nothing casts a shadow
   StripFunction trace_strip = nullptr;     // traces pixels in blocks; null: each by itself

@@ -241,6 +241,38 @@ TEST_CASE("hard_30_ggx_is_finite_at_roughness_zero_and_below_the_horizon") {
   }
 }
 
+// Goal: the table of the share of uniform light that the lobe reflects is that share. Method: the mean of value ×
+// cosine / density over even samples, for F = 1 and for the rise alone, between the table's points.
+TEST_CASE("ggx_reflects_the_integral_of_its_value") {
+  constexpr int kSide = 60, kSteps = 15;
+  const BrdfInfo& ggx = *kBrdfList[kGgx];
+  double worst = 0, squares = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j)
+      for (float specular : {0.0f, 1.0f}) {
+        Material m;
+        float roughness = 0.1f + 0.9f * float(i + 0.5) / kSteps;
+        m.brdf = kGgx, m.roughness = roughness * roughness, m.grazing = 1, m.specular = {specular, specular, specular};
+        double cosine = std::pow((j + 0.5) / kSteps, 2), sum = 0;
+        Vec3d v = {std::sqrt(1 - cosine * cosine), 0, cosine}, n = {0, 0, 1};
+        for (int k = 0; k < kSide * kSide; ++k) {
+          Vec3d l = ggx.sample(m, n, v, (k % kSide + 0.5) / kSide, (k / kSide + 0.5) / kSide);
+          if (l.z > 0) sum += ggx.exact_value(m, to_double(m.specular), n, v, l).x * l.z / ggx.density(m, n, v, l);
+        }
+        double off = double(ggx.albedo(m, m.specular, float(cosine)).x) - sum / (kSide * kSide);
+        worst = std::max(worst, std::fabs(off)), squares += off * off;
+      }
+  CHECK(worst < 0.035);
+  CHECK(std::sqrt(squares / (2 * kSteps * kSteps)) < 0.005);
+  Material m = lobe(kGgx, 1);
+  for (float alpha : {0.0f, 1e-9f, 1.0f})
+    for (float cosine : {-1.0f, 0.0f, 1e-30f, 1.0f, 1.0000002f}) {
+      m.roughness = alpha;
+      Vec3 share = ggx.albedo(m, m.specular, cosine);
+      CHECK((is_finite(share) && share.x >= 0 && share.x <= 0.9f && share.z <= share.y));
+    }
+}
+
 // Goal: names are unique, and the order of the list, part of the file format, begins with Phong.
 TEST_CASE("brdf_list_begins_with_phong") {
   CHECK(std::string(kBrdfList[0]->name) == "phong");

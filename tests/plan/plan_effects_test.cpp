@@ -55,6 +55,7 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::vertex_color), bit(E::vertex_color)},
       {bit(F::smooth_normal), bit(E::smooth_normal)},
       {bit(F::ambient), bit(E::ambient)},
+      {bit(F::ambient) | bit(F::specular), bit(E::ambient) | bit(E::specular) | bit(E::ambient_gloss)},
       {bit(F::point_light), bit(E::point_light) | bit(E::shadow)},
       {bit(F::spot_light), bit(E::spot_light) | bit(E::shadow)},
       {bit(F::directional_light), bit(E::directional_light) | bit(E::shadow)},

@@ -1,5 +1,7 @@
 #include "support/generated_scene.h"
 
+#include "brdf/brdf_list.h"
+
 namespace pocketray {
 namespace {
 
@@ -33,6 +35,8 @@ void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   Material shiny = matte(random_color(rng)), reflecting = matte(random_color(rng) * 0.5f),
            glass = matte(random_color(rng)), core = glass;
   if (has(features, Feature::specular)) shiny.specular = {0.5f, 0.4f, 0.3f}, shiny.exponent = 20;
+  if (has(features, Feature::specular) && has(features, Feature::ambient))
+    shiny.brdf = kGgx, shiny.roughness = 0.3f, shiny.grazing = 0.9f;
   if (has(features, Feature::mirror)) reflecting.mirror = {0.6f, 0.7f, 0.8f};
   if (has(features, Feature::refraction)) {
     glass.diffuse = core.diffuse = {0, 0, 0};

@@ -40,6 +40,6 @@ double density(const Material& material, const Vec3d&, const Vec3d& to_viewer, c
 
 }  // namespace
 
-const BrdfInfo kRetroBrdf = {"retro", value, peak, exact_value, sample, density};
+const BrdfInfo kRetroBrdf = {"retro", value, peak, exact_value, sample, density, nullptr};
 
 }  // namespace pocketray

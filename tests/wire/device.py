@@ -9,7 +9,8 @@ WRONG_VERSION, MALFORMED, UNKNOWN_SCENE, TOO_LARGE, BAD_REQUEST, BUSY, CLOSING =
 RGB565, RGB888 = 0, 1
 EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-mask", "alpha-blend", "emission", "texture",
            "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
-           "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity"]
+           "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
+           "ambient-gloss"]
 
 failures = []
 

@@ -1,0 +1,29 @@
+// Light from the surroundings on glossy lobes: ambient light, or the background where that is brighter, from
+// everywhere, times the lobe's albedo. Without it, metals would be black wherever no light shines into their highlight.
+#pragma once
+#include "brdf/brdf_list.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+inline Vec3 radiance_of_surroundings(const SceneInfo& info) { return max(info.ambient, info.background); }
+
+// Phong's lobe reflects lights only.
+inline bool reflects_surroundings(const Material& m) {
+  return !is_zero(m.specular) && m.brdf < kBrdfCount && kBrdfList[m.brdf]->albedo;
+}
+
+// Radiance to a viewer at a cosine from the normal; `specular` as in brdf.h. The material reflects the surroundings.
+inline Vec3 reflected_surroundings(const SceneInfo& info, const Material& m, const Vec3& specular, float cos_viewer) {
+  return kBrdfList[m.brdf]->albedo(m, specular, cos_viewer) * radiance_of_surroundings(info);
+}
+
+// Upper bound of it, per component.
+inline float reflected_surroundings_bound(const SceneInfo& info, const Material& m) {
+  if (!reflects_surroundings(m)) return 0;
+  float reflectance = max_component(m.specular);
+  if (m.grazing > reflectance) reflectance = m.grazing;
+  return reflectance * max_component(radiance_of_surroundings(info));
+}
+
+}  // namespace pocketray
