@@ -40,7 +40,8 @@ void add_light(GltfFile* file, const tinygltf::Light& source, int node_index) {
     double outer = std::min(std::max(source.spot.outerConeAngle, 0.0), kPi / 2);
     double inner = std::min(std::max(source.spot.innerConeAngle, 0.0), outer);
     light.cos_outer = static_cast<float>(det_cos(outer));
-    light.cos_inner = static_cast<float>(det_cos(inner));
+    // Between the cones the cosine falls by 0.001 at least (KHR_lights_punctual, "Inner and Outer Cone Angles").
+    light.cos_inner = static_cast<float>(std::min(std::max(det_cos(inner), det_cos(outer) + 0.001), 1.0));
   }
   out.lights.push_back(light);
   out.info.auto_exposure = 1;  // candela and lux: the raw numbers are too bright for any display

@@ -194,6 +194,22 @@ TEST_CASE("gltf_punctual_lights_follow_their_node") {
   CHECK(load_text(triangle_gltf("")).scene.info.auto_exposure == 0);
 }
 
+// Goal: a cone whose angles are close gets the soft edge that KHR_lights_punctual gives it. Method: its formula at the
+// middle of the edge, where the cosine is 0.0005 above that of the outer angle.
+TEST_CASE("gltf_spot_cones_keep_a_soft_edge") {
+  for (const char* inner : {"0.7", "0.69999"}) {
+    std::string lights = R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{"innerConeAngle":)";
+    lights += std::string(inner) + R"(,"outerConeAngle":0.7}}]}})";
+    ImportedScene imported =
+        load_text(triangle_gltf("", lights, R"(,"extensions":{"KHR_lights_punctual":{"light":0}})"));
+    REQUIRE(imported.scene.lights.count == 1);
+    const Light& spot = imported.scene.lights[0];
+    double middle = std::cos(0.7) + 0.0005;
+    double f = (middle - double(spot.cos_outer)) / (double(spot.cos_inner) - double(spot.cos_outer));
+    CHECK(f == doctest::Approx(0.5).epsilon(1e-3));
+  }
+}
+
 // Goal: perspective and orthographic cameras stand where their node is; an invalid camera is skipped with a note.
 TEST_CASE("gltf_cameras_stand_where_their_node_is") {
   auto with_camera = [](const std::string& camera) {
