@@ -10,19 +10,21 @@ namespace pocketray {
 struct BrdfInfo {
   const char* name;
   // Both directions point away from the surface, on the side of the normal.
-  Vec3 (*value)(const Material& material, const Vec3& specular, const Vec3& normal, const Vec3& to_viewer,
-                const Vec3& to_light);
-  // Least upper bound of the value × the light's cosine over all directions; the cut-off relies on it.
+  // The lobe plus what it leaves of `diffuse`, the value of the Lambertian lobe below it.
+  Vec3 (*value)(const Material& material, const Vec3& specular, const Vec3& diffuse, const Vec3& normal,
+                const Vec3& to_viewer, const Vec3& to_light);
+  // Least upper bound of the lobe × the light's cosine over all directions; the cut-off relies on it.
   Vec3 (*peak)(const Material& material);
   // The same value in double precision, for the reference.
-  Vec3d (*exact_value)(const Material& material, const Vec3d& specular, const Vec3d& normal, const Vec3d& to_viewer,
-                       const Vec3d& to_light);
+  Vec3d (*exact_value)(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const Vec3d& normal,
+                       const Vec3d& to_viewer, const Vec3d& to_light);
   // Samples a direction by importance from numbers uniform in [0, 1); it may point below the surface. The density is
   // over the sphere, positive wherever the value is.
   Vec3d (*sample)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, double u, double v);
   double (*density)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light);
   // The share of uniform light that the lobe reflects to the viewer. Null: it reflects lights only.
   Vec3 (*albedo)(const Material& material, const Vec3& specular, float cos_viewer);
+  float diffuse_max;  // upper bound of what remains of `diffuse`, as a factor
 };
 
 }  // namespace pocketray

@@ -3,6 +3,9 @@
 //   D = α² / (π ((n·h)² (α² − 1) + 1)²)
 //   V = 1/2 / (n·l √((n·v)² (1 − α²) + α²) + n·v √((n·l)² (1 − α²) + α²))
 //   F = specular + (grazing − specular) (1 − v·h)⁵
+// Below it lies the diffuse lobe × 21/20 (1 − R)(1 − (1 − n·l)⁵)(1 − (1 − n·v)⁵), where R is a dielectric's reflectance
+// at normal incidence: what remains of uniform light is 1 − F(n·v) [Shirley et al. 1997, "A practitioner's assessment
+// of light reflection models"]. With glTF's 1 − F(v·h), a white plastic of α = 0.1 would reflect 121 % of it at 80°.
 // Light scattered more than once between microfacets is left out: at α = 1 and F = 1 the lobe reflects
 // 1 − n·v ln(1 + 1/n·v) of it, 31 % at normal incidence.
 #include "base/fmath.h"
@@ -13,6 +16,7 @@
 namespace pocketray {
 namespace {
 
+constexpr float kDiffuseMax = 1.05f;
 constexpr float kAlphaMin = 1e-3f;   // a smoother lobe is a mirror; keeps D finite
 constexpr float kCosineMin = 1e-6f;  // in V, which is infinite where both cosines are 0
 
@@ -45,26 +49,34 @@ T root_term(T cosine, T square) {
 }
 
 template <class T>
-Vec3T<T> value_of(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& normal, const Vec3T<T>& viewer,
-                  const Vec3T<T>& to_light) {
+T fifth_power(T x) {
+  T square = x * x;
+  return square * square * x;
+}
+
+template <class T>
+Vec3T<T> value_of(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& diffuse, const Vec3T<T>& normal,
+                  const Vec3T<T>& viewer, const Vec3T<T>& to_light) {
   const T cos_light = dot(normal, to_light), square = alpha_square<T>(material);
-  if (!(cos_light > 0)) return {0, 0, 0};
+  if (!(cos_light > 0)) return diffuse;
   const Vec3T<T> to_viewer = above_horizon(normal, viewer), sum = to_viewer + to_light;
   const T cos_viewer = dot(normal, to_viewer), sum_square = dot(sum, sum), least = static_cast<T>(kCosineMin);
-  if (!(sum_square > 0)) return {0, 0, 0};
+  if (!(sum_square > 0)) return diffuse;
   const T l = cos_light > least ? cos_light : least, v = cos_viewer > least ? cos_viewer : least;
   const T slope = slope_term(normal, sum, sum_square, square);
   const T masking = l * root_term(v, square) + v * root_term(l, square);
-  T x = 1 - std::sqrt(sum_square) / 2;  // |v + l| = 2 v·h
-  if (!(x > 0)) x = 0;
-  const T grazing = static_cast<T>(material.grazing), x_square = x * x, rise = x_square * x_square * x;
+  const T x = 1 - std::sqrt(sum_square) / 2;  // |v + l| = 2 v·h
+  const T ior = static_cast<T>(material.ior), root = (ior - 1) / (ior + 1), normal_reflectance = root * root;
+  const T grazing = static_cast<T>(material.grazing), rise = x > 0 ? fifth_power(x) : 0;
   const Vec3T<T> fresnel = specular + (Vec3T<T>{grazing, grazing, grazing} - specular) * rise;
-  return fresnel * (square * static_cast<T>(0.5 / kPi) / (slope * slope * masking));
+  const T passes =
+      static_cast<T>(kDiffuseMax) * (1 - normal_reflectance) * (1 - fifth_power(1 - l)) * (1 - fifth_power(1 - v));
+  return diffuse * passes + fresnel * (square * static_cast<T>(0.5 / kPi) / (slope * slope * masking));
 }
 
-Vec3 value(const Material& material, const Vec3& specular, const Vec3& normal, const Vec3& to_viewer,
-           const Vec3& to_light) {
-  return value_of(material, specular, normal, to_viewer, to_light);
+Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, const Vec3& normal,
+           const Vec3& to_viewer, const Vec3& to_light) {
+  return value_of(material, specular, diffuse, normal, to_viewer, to_light);
 }
 
 // D ≤ 1/πα², and n·l V < 1/2α, which it approaches where n·v ≪ n·l ≪ α.
@@ -74,9 +86,9 @@ Vec3 peak(const Material& material) {
   return most * (0.5f / kPiF / (square * std::sqrt(square)) * 1.00001f);  // covers rounding
 }
 
-Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& normal, const Vec3d& to_viewer,
-                  const Vec3d& to_light) {
-  return value_of(material, specular, normal, to_viewer, to_light);
+Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const Vec3d& normal,
+                  const Vec3d& to_viewer, const Vec3d& to_light) {
+  return value_of(material, specular, diffuse, normal, to_viewer, to_light);
 }
 
 // Mirrors the viewer in a normal visible to it [Dupuy & Benyoub 2023, "Sampling visible GGX normals with spherical
@@ -111,6 +123,6 @@ Vec3 albedo(const Material& material, const Vec3& specular, float cos_viewer) {
 
 }  // namespace
 
-const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density, albedo};
+const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density, albedo, kDiffuseMax};
 
 }  // namespace pocketray

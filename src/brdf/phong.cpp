@@ -9,12 +9,12 @@ namespace {
 
 float scale(const Material& material) { return (material.exponent + 2) * (0.5f / kPiF); }
 
-Vec3 value(const Material& material, const Vec3& specular, const Vec3& normal, const Vec3& to_viewer,
-           const Vec3& to_light) {
+Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, const Vec3& normal,
+           const Vec3& to_viewer, const Vec3& to_light) {
   float cos_lobe = 2 * dot(normal, to_light) * dot(normal, to_viewer) - dot(to_light, to_viewer);
-  if (!(cos_lobe > 0)) return {0, 0, 0};
+  if (!(cos_lobe > 0)) return diffuse;
   if (cos_lobe > 1) cos_lobe = 1;  // rounded unit vectors (HARDCASES row 30)
-  return specular * (scale(material) * det_pow(cos_lobe, material.exponent));
+  return diffuse + specular * (scale(material) * det_pow(cos_lobe, material.exponent));
 }
 
 Vec3 peak(const Material& material) { return material.specular * scale(material); }
@@ -24,11 +24,11 @@ double exact_cosine(const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to
   return c < 1 ? c : 1;
 }
 
-Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& normal, const Vec3d& to_viewer,
-                  const Vec3d& to_light) {
+Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const Vec3d& normal,
+                  const Vec3d& to_viewer, const Vec3d& to_light) {
   double cosine = exact_cosine(normal, to_viewer, to_light), n = static_cast<double>(material.exponent);
-  if (!(cosine > 0)) return {0, 0, 0};
-  return specular * ((n + 2) / (2 * kPi) * unit_power(cosine, n));
+  if (!(cosine > 0)) return diffuse;
+  return diffuse + specular * ((n + 2) / (2 * kPi) * unit_power(cosine, n));
 }
 
 Vec3d sample(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, double u, double v) {
@@ -43,6 +43,6 @@ double density(const Material& material, const Vec3d& normal, const Vec3d& to_vi
 
 }  // namespace
 
-const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr};
+const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr, 1};
 
 }  // namespace pocketray

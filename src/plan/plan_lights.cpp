@@ -283,7 +283,7 @@ float radiance_bound(const FrameData& frame) {
     if (passes > reflectance) reflectance = passes;
     float f = max_component(m.diffuse) / kPiF;
     CHECK_LT(m.brdf, kBrdfCount);
-    if (!is_zero(m.specular)) f += max_component(kBrdfList[m.brdf]->peak(m));
+    if (!is_zero(m.specular)) f = f * kBrdfList[m.brdf]->diffuse_max + max_component(kBrdfList[m.brdf]->peak(m));
     if (f > scattering) scattering = f;
   }
   float irradiance = 0;

@@ -94,7 +94,7 @@ Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   Vec3d value = s.diffuse * (1 / kPi);
   if (!is_zero(s.material->specular))
-    value += glossy_lobe(s).exact_value(*s.material, s.specular, s.normal, to_viewer, to_light);
+    value = glossy_lobe(s).exact_value(*s.material, s.specular, value, s.normal, to_viewer, to_light);
   return value;
 }
 

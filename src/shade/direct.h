@@ -169,7 +169,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const
         if (!is_zero(m.specular)) {
           effect_entered<Effect::specular>();
           Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
-          f += kBrdfList[m.brdf]->value(m, specular, s.normal, to_viewer, sample.direction);
+          f = kBrdfList[m.brdf]->value(m, specular, diffuse, s.normal, to_viewer, sample.direction);
         }
       }
       Vec3 light_out = f * sample.irradiance * cosine;

@@ -9,11 +9,11 @@ namespace {
 
 float scale(const Material& material) { return (material.exponent + 2) * (0.5f / kPiF); }
 
-Vec3 value(const Material& material, const Vec3& specular, const Vec3&, const Vec3& to_viewer, const Vec3& to_light) {
+Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, const Vec3&, const Vec3& to_viewer, const Vec3& to_light) {
   float cosine = dot(to_viewer, to_light);
-  if (!(cosine > 0)) return {0, 0, 0};
+  if (!(cosine > 0)) return diffuse;
   if (cosine > 1) cosine = 1;
-  return specular * (scale(material) * det_pow(cosine, material.exponent));
+  return diffuse + specular * (scale(material) * det_pow(cosine, material.exponent));
 }
 
 Vec3 peak(const Material& material) { return material.specular * scale(material); }
@@ -23,10 +23,10 @@ double exact_cosine(const Vec3d& to_viewer, const Vec3d& to_light) {
   return cosine < 1 ? cosine : 1;
 }
 
-Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d&, const Vec3d& to_viewer, const Vec3d& to_light) {
+Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const Vec3d&, const Vec3d& to_viewer, const Vec3d& to_light) {
   double cosine = exact_cosine(to_viewer, to_light), n = static_cast<double>(material.exponent);
-  if (!(cosine > 0)) return {0, 0, 0};
-  return specular * ((n + 2) / (2 * kPi) * unit_power(cosine, n));
+  if (!(cosine > 0)) return diffuse;
+  return diffuse + specular * ((n + 2) / (2 * kPi) * unit_power(cosine, n));
 }
 
 Vec3d sample(const Material& material, const Vec3d&, const Vec3d& to_viewer, double u, double v) {
@@ -40,6 +40,6 @@ double density(const Material& material, const Vec3d&, const Vec3d& to_viewer, c
 
 }  // namespace
 
-const BrdfInfo kRetroBrdf = {"retro", value, peak, exact_value, sample, density, nullptr};
+const BrdfInfo kRetroBrdf = {"retro", value, peak, exact_value, sample, density, nullptr, 1};
 
 }  // namespace pocketray
