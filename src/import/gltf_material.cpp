@@ -5,7 +5,8 @@
 //   k = max(0, 1 − r/0.3)²                     how much of F0 is a perfect mirror: all at r = 0, none from r = 0.3
 //   mirror = F0·k                              c·m·k of it is tinted by texture and vertex colour
 //   specular = F0·(1 − k), grazing = 1 − k     the GGX lobe of α = r² (sec. B.3); c·m·(1 − k) is tinted
-//   t' = t·(1 − m), transmission = c·t', diffuse = c·(1 − m)·(1 − t), mirror × (1 − t'): Fresnel gives glass its mirror
+//   t' = t·(1 − m)                             glass; Fresnel gives it its mirror: mirror × (1 − t')
+//   transmission = c·t', diffuse = c·(1 − m)·(1 − t)
 //   absorption = −ln(attenuation colour)/attenuation distance (KHR_materials_volume)
 // A metallicRoughness or transmission texture multiplies its factor by the texture's mean.
 #include <algorithm>
