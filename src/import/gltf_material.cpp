@@ -1,7 +1,9 @@
 // Metallic-roughness materials (sec. 3.9) and the KHR_materials extensions.
 //
 // The mapping, for base colour c, metallic m, roughness r, transmission t, index of refraction n:
-//   F0 = lerp(((n − 1)/(n + 1))², c, m)        reflectance at normal incidence (sec. B.2.2)
+//   F0 = lerp(((n − 1)/(n + 1))², c, m)        reflectance at normal incidence (sec. B.2.2); the first term times
+//                                              specular colour and factor, F90 times the factor
+//                                              (KHR_materials_specular)
 //   k = max(0, 1 − r/0.3)²                     how much of F0 is a perfect mirror: all at r = 0, none from r = 0.3
 //   mirror = F0·k                              c·m·k of it is tinted by texture and vertex colour
 //   specular = F0·(1 − k), grazing = 1 − k     the GGX lobe of α = r² (sec. B.3); c·m·(1 − k) is tinted
@@ -47,6 +49,29 @@ void read_volume(const tinygltf::ExtensionMap& extensions, Material* material) {
   }
 }
 
+// KHR_materials_specular: what a dielectric reflects at normal incidence and at grazing incidence.
+struct DielectricSpecular {
+  Vec3 normal;
+  float grazing;
+};
+
+DielectricSpecular read_specular(GltfFile* file, const tinygltf::ExtensionMap& extensions, float ior) {
+  const float root = (ior - 1) / (ior + 1), reflectance = root * root;
+  const tinygltf::Value* extension = gltf_extension(extensions, "KHR_materials_specular");
+  if (!extension) return {{reflectance, reflectance, reflectance}, 1};
+  if (extension->Has("specularTexture") || extension->Has("specularColorTexture"))
+    note_unused(file->builder, "specular textures");
+  DielectricSpecular d = {{reflectance, reflectance, reflectance}, unit(gltf_number(*extension, "specularFactor", 1))};
+  const tinygltf::Value color =
+      extension->Has("specularColorFactor") ? extension->Get("specularColorFactor") : tinygltf::Value();
+  for (int c = 0; c < 3; ++c) {
+    const bool given = color.IsArray() && color.ArrayLen() == 3 && color.Get(c).IsNumber();
+    const double factor = given ? color.Get(c).GetNumberAsDouble() : 1;  // may be above 1
+    d.normal[c] = unit(factor * static_cast<double>(reflectance)) * d.grazing;
+  }
+  return d;
+}
+
 void read_surface(GltfFile* file, const tinygltf::Material& source, Material* material) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   Vec3 base = color3(pbr.baseColorFactor, {1, 1, 1});
@@ -62,8 +87,8 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
     if (transmission > 0)
       transmission *= texture_mean(file, gltf_texture_info(*extension, "transmissionTexture").index, 0, "transmission");
   }
-  float root = (material->ior - 1) / (material->ior + 1), dielectric = root * root;
-  Vec3 metal = base * metallic, f0 = Vec3{dielectric, dielectric, dielectric} * (1 - metallic) + metal;
+  const DielectricSpecular dielectric = read_specular(file, source.extensions, material->ior);
+  Vec3 metal = base * metallic, f0 = dielectric.normal * (1 - metallic) + metal;
   float k = std::max(0.0f, 1 - roughness / 0.3f);
   k = k * k;
   material->diffuse = base * ((1 - metallic) * (1 - transmission));
@@ -73,7 +98,7 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
   material->specular_tinted = metal * (1 - k);
   material->brdf = kGgx;
   material->roughness = roughness * roughness;
-  material->grazing = 1 - k;
+  material->grazing = (dielectric.grazing * (1 - metallic) + metallic) * (1 - k);
   material->transmission = base * transmission;
   if (transmission > 0) read_volume(source.extensions, material);
 }

@@ -13,9 +13,10 @@ using Json = nlohmann::json;
 
 // Implemented here, or harmless to ignore.
 const char* const kKnownExtensions[] = {
-    "KHR_texture_transform", "KHR_materials_transmission", "KHR_materials_ior",
-    "KHR_materials_volume",  "KHR_materials_unlit",        "KHR_materials_emissive_strength",
-    "KHR_lights_punctual",   "EXT_mesh_gpu_instancing",    "KHR_mesh_quantization",
+    "KHR_texture_transform",           "KHR_materials_transmission", "KHR_materials_ior",
+    "KHR_materials_specular",          "KHR_materials_volume",       "KHR_materials_unlit",
+    "KHR_materials_emissive_strength", "KHR_lights_punctual",        "EXT_mesh_gpu_instancing",
+    "KHR_mesh_quantization",
 };
 bool is_known_extension(const std::string& name) {
   return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),

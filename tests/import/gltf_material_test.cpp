@@ -68,6 +68,21 @@ TEST_CASE("gltf_metallic_roughness_maps_to_our_lobes") {
   CHECK(mirror.roughness == 0);
 }
 
+// Goal: KHR_materials_specular scales what a dielectric reflects, not what a metal does. Method: its formulas by hand:
+// F₀ = min(.04 colour, 1) factor, F₉₀ = factor, mixed with the metal's.
+TEST_CASE("gltf_specular_factor_and_color_scale_the_dielectric_part") {
+  const std::string specular =
+      "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularColorFactor\":[1,0.5,40]}}}";
+  Material plastic = material_of("{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":1}," + specular);
+  check_vec(plastic.specular, {0.02f, 0.01f, 0.5f});
+  CHECK(plastic.grazing == 0.5f);
+  Material half = material_of("{\"pbrMetallicRoughness\":{\"metallicFactor\":0.5,\"roughnessFactor\":1}," + specular);
+  check_vec(half.specular, {0.51f, 0.505f, 0.75f});
+  check_vec(half.specular_tinted, {0.5f, 0.5f, 0.5f});
+  CHECK(half.grazing == 0.75f);
+  CHECK(material_of("{\"pbrMetallicRoughness\":{\"roughnessFactor\":1}," + specular).grazing == 1);
+}
+
 // Goal: transmission, index of refraction and volume. Method: Beer–Lambert over the attenuation distance gives back the
 // attenuation colour; without a volume the surface is thin.
 TEST_CASE("gltf_transmission_ior_and_volume_become_glass") {
