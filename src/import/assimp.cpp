@@ -18,9 +18,9 @@
 namespace pocketray {
 namespace {
 
-// Formats that assimp reads well; glTF and OBJ have their own readers here.
-const char* const kEndings[] = {"ply", "stl", "fbx", "dae", "3ds",  "off", "x",   "3mf", "blend",
-                                "lwo", "ac",  "ase", "b3d", "ms3d", "md2", "md3", "smd", "x3d"};
+// Formats that assimp reads well; glTF, OBJ and PLY have their own readers here.
+const char* const kEndings[] = {"stl", "fbx", "dae", "3ds",  "off", "x",   "3mf", "blend", "lwo",
+                                "ac",  "ase", "b3d", "ms3d", "md2", "md3", "smd", "x3d"};
 
 // A file in memory. Some of assimp's readers loop forever at the end of a truncated file; this stops them.
 class MemoryStream : public Assimp::IOStream {
@@ -180,7 +180,7 @@ void import_assimp(const std::string& path, const std::string& ending, const Byt
   if (scene->HasAnimations()) note_unused(builder, "animation (use glTF)");
 
   AssimpReader reader = {scene, builder, {}, own_normals};
-  bool bare = ending == "ply" || ending == "stl" || ending == "off";  // no materials; assimp invents a shiny one
+  bool bare = ending == "stl" || ending == "off";  // no materials; assimp invents a shiny one
   for (unsigned i = 0; i < scene->mNumMaterials; ++i)
     reader.materials.push_back(bare ? add_default_material(builder)
                                     : add_assimp_material(builder, path, *scene, *scene->mMaterials[i]));

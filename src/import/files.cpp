@@ -1,6 +1,8 @@
 #include "import/files.h"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -50,6 +52,37 @@ std::string path_beside(const std::string& scene_path, const std::string& name) 
   return (slash == std::string::npos ? std::string() : scene_path.substr(0, slash + 1)) + relative;
 }
 
+// The entry of `folder` with that name, else with the same but for case: the first in byte order. Empty if none.
+static std::string entry_in_any_case(const std::string& folder, const std::string& name) {
+  std::unique_ptr<DIR, int (*)(DIR*)> directory(opendir(folder.empty() ? "." : folder.c_str()), closedir);
+  std::string found;
+  while (const dirent* entry = directory ? readdir(directory.get()) : nullptr) {
+    if (name == entry->d_name) return name;
+    bool same = strcasecmp(entry->d_name, name.c_str()) == 0;
+    if (same && (found.empty() || found > entry->d_name)) found = entry->d_name;
+  }
+  return found;
+}
+
+std::string find_beside(const std::string& scene_path, const std::string& name) {
+  std::string path = path_beside(scene_path, name);
+  std::string folder = scene_path.substr(0, scene_path.rfind('/') + 1);
+  if (access(path.c_str(), F_OK) == 0) return path;
+  std::string relative = path.substr(folder.size());
+  for (std::size_t begin = 0; begin < relative.size();) {
+    std::size_t end = std::min(relative.find('/', begin), relative.size());
+    std::string entry = entry_in_any_case(folder, relative.substr(begin, end - begin));
+    if (entry.empty()) return path;
+    folder += entry + (end < relative.size() ? "/" : "");
+    begin = end + 1;
+  }
+  return folder;
+}
+
+Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max) {
+  return read_file(find_beside(scene_path, name), byte_count_max);
+}
+
 static int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   char lower = static_cast<char>(c | 0x20);
@@ -88,7 +121,7 @@ static Bytes base64_decoded(const char* text, std::size_t size) {
 }
 
 Bytes read_uri(const std::string& scene_path, const std::string& uri, std::uint64_t byte_count_max) {
-  if (uri.compare(0, 5, "data:") != 0) return read_file(path_beside(scene_path, percent_decoded(uri)), byte_count_max);
+  if (uri.compare(0, 5, "data:") != 0) return read_beside(scene_path, percent_decoded(uri), byte_count_max);
   std::size_t comma = uri.find(',');
   if (comma == std::string::npos || comma < 7 || uri.compare(comma - 7, 7, ";base64") != 0)
     fail_import("a data URI is not base64; export the file again");

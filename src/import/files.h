@@ -15,6 +15,11 @@ Bytes read_file(const std::string& path, std::uint64_t byte_count_max);
 // ImportError for any other name.
 std::string path_beside(const std::string& scene_path, const std::string& name);
 
+// The same path, or if no such file exists, one that differs only in the case of ASCII letters, as on systems that do
+// not tell them apart.
+std::string find_beside(const std::string& scene_path, const std::string& name);
+Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max);
+
 // A glTF URI's bytes: "data:…;base64,…" or a percent-encoded relative path.
 Bytes read_uri(const std::string& scene_path, const std::string& uri, std::uint64_t byte_count_max);
 

@@ -11,7 +11,7 @@
 #include "import/gltf.h"
 #include "import/import_error.h"
 #include "import/obj.h"
-#include "import/ply_check.h"
+#include "import/ply.h"
 #include "import/scene_builder.h"
 
 namespace pocketray {
@@ -21,11 +21,10 @@ bool is_gltf(const std::string& ending, const Bytes& bytes) {
   return ending == "gltf" || ending == "glb" || (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0);
 }
 
-// Assimp's many readers trust their files and may crash, so they run in a child process. The glTF and OBJ readers run
-// in place, with checks before and after that are fuzzed.
+// Assimp's many readers trust their files and may crash, so they run in a child process. The glTF, OBJ and PLY readers
+// run in place, with checks before and after that are fuzzed.
 void import_by_assimp(const std::string& path, const std::string& ending, const Bytes& bytes,
                       const ImportOptions& options, ImportedScene* result) {
-  if (ending == "ply") check_ply(bytes);
   // Assimp needs up to about 30 times the size of a point or text file; a compressed one may first grow tenfold.
   std::uint64_t memory_bytes = (std::uint64_t(512) << 20) + 256 * static_cast<std::uint64_t>(bytes.size());
   memory_bytes = std::min(memory_bytes, 8 * options.byte_count_max + (std::uint64_t(256) << 20));
@@ -48,7 +47,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   Bytes bytes = read_file(path, options.byte_count_max);
   if (bytes.empty()) fail_import("the file is empty");
   bool gltf = is_gltf(ending, bytes);
-  if (!gltf && ending != "obj") {
+  if (!gltf && ending != "obj" && ending != "ply") {
     if (assimp_reads(ending)) return import_by_assimp(path, ending, bytes, options, result);
     fail_import("no reader for '.%.20s' files; convert to one of: %s", ending.c_str(), import_formats().c_str());
   }
@@ -56,8 +55,10 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   builder.options = options;
   if (gltf)
     import_gltf(path, std::move(bytes), &builder);
+  else if (ending == "ply")
+    import_ply(bytes, &builder);
   else
-    import_obj(path, bytes, &builder);
+    import_obj(path, std::move(bytes), &builder);
   finish_scene(&builder, path_stem(path), result);
 }
 
@@ -78,7 +79,7 @@ Status one_line_failure(const std::string& path, const char* message) {
 
 }  // namespace
 
-std::string import_formats() { return "gltf glb obj" + assimp_formats(); }
+std::string import_formats() { return "gltf glb obj ply" + assimp_formats(); }
 
 Status import_scene(const std::string& path, const ImportOptions& options, ImportedScene* result) {
   try {

@@ -1,4 +1,4 @@
-// Reads glTF 2.0, OBJ/MTL and, if assimp is built in, its formats into a Scene. Desktop only: uses exceptions and the
+// Reads glTF 2.0, OBJ/MTL, PLY and, if assimp is built in, its formats into a Scene. Desktop only: uses exceptions and the
 // heap, but no exception escapes.
 #pragma once
 #include <cstdint>

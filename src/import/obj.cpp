@@ -11,6 +11,7 @@
 #include "import/normals.h"
 #include "import/obj_material.h"
 #include "import/obj_numbers.h"
+#include "import/obj_text.h"
 
 namespace pocketray {
 namespace {
@@ -30,7 +31,8 @@ class MaterialFiles : public tinyobj::MaterialReader {
                   std::map<std::string, int>* by_name, std::string* warning, std::string* error) override {
     Bytes bytes;
     try {
-      bytes = read_file(path_beside(scene_path_, name), builder_->options.byte_count_max / 16);
+      bytes = read_beside(scene_path_, name, builder_->options.byte_count_max / 16);
+      tidy_obj_text(&bytes);
     } catch (const ImportError& failure) {
       note_remark(builder_, std::string("materials are missing: ") + failure.what());
       return false;
@@ -143,8 +145,9 @@ MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attr
 
 }  // namespace
 
-void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* builder) {
+void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   require_bytes(*builder, bytes.size(), 8, "the OBJ text");
+  tidy_obj_text(&bytes);
   check_obj_numbers(bytes);
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;

@@ -6,6 +6,6 @@
 namespace pocketray {
 
 // Reads an .obj into the builder; the .mtl files and images it names lie beside it.
-void import_obj(const std::string& path, const Bytes& bytes, SceneBuilder* builder);
+void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder);
 
 }  // namespace pocketray

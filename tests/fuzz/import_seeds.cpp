@@ -84,9 +84,16 @@ std::vector<Model> models() {
       {"triangle.gltf", "gltf", triangle_gltf("{}")},
       {"animated.glb", "glb", animated_glb()},
       {"square.obj", "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -1\nl 1 2\n"},
+      {"forms.obj", "obj",
+       "\xEF\xBB\xBFv 0 0 0\nv 1 0 \\\n0\nv 1 1 0\r\nv 0 1 0\rf 1// 2// 3//\nf 1/1/ 2/ \\\r\n3//\n#\\\nf 1 2 4\\"},
+      {"wide.obj", "obj", std::string("\xFF\xFEv\0 \0", 6)},
       {"shining.mtl", "mtl", "newmtl m\nKd 1 0 0\nKs 1 1 1\nNs 20\nd 0.5\nmap_Kd a.png\n"},
       {"ascii.ply", "ply", ply("ascii", "uchar", false)},
       {"binary.ply", "ply", ply("binary_little_endian", "uchar", true)},
+      {"strips.ply", "ply",
+       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
+       "tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 2 "
+       "3\n"},
       {"no_corners.ply", "ply", ply("ascii", "uchar", false).replace(ply("ascii", "uchar", false).size() - 8, 7, "0")},
       {"ascii.stl", "stl",
        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"

@@ -1,6 +1,5 @@
 // Formats read by assimp, if built in.
 #include <cstring>
-#include <initializer_list>
 
 #include "import/import_testing.h"
 
@@ -12,82 +11,7 @@ static bool reads(const char* ending) {
   return false;
 }
 
-// Goal: PLY faces, vertex colours (display values, so sRGB) and normals arrive. Method: an ASCII file of a quad and a
-// triangle.
-TEST_CASE("assimp_ply_quads_and_vertex_colors") {
-  if (!reads("ply")) return;
-  TemporaryFolder folder;
-  ImportedScene imported = load(folder.write(
-      "a.ply",
-      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
-      "red\n"
-      "property uchar green\nproperty uchar blue\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
-      "0 0 0 255 188 0\n1 0 0 255 188 0\n1 1 0 255 188 0\n0 1 0 255 188 0\n2 0 0 255 188 0\n4 0 1 2 3\n3 1 4 2\n"));
-  const Scene& s = imported.scene;
-  CHECK(s.triangles.count == 3);
-  CHECK(surface_area(s) == doctest::Approx(1.5));
-  REQUIRE(s.colors.count == s.positions.count);
-  CHECK(s.colors[0].r == 65535);
-  CHECK(s.colors[0].g / 65535.0 == doctest::Approx(0.503).epsilon(0.01));
-  CHECK(s.materials[0].diffuse == Vec3{0.8f, 0.8f, 0.8f});
-  CHECK(is_zero(s.materials[0].specular));
-}
-
-// Goal: a PLY header that states more than the file holds is refused before allocating.
-TEST_CASE("assimp_ply_header_that_lies_is_refused") {
-  if (!reads("ply")) return;
-  TemporaryFolder folder;
-  for (const char* format : {"ascii", "binary_little_endian"}) {
-    std::string error =
-        load_error(folder.write("a.ply", std::string("ply\nformat ") + format +
-                                             " 1.0\nelement vertex 4000000000\nproperty float x\nproperty float "
-                                             "y\nproperty float z\nend_header\n0 0 0\n"));
-    CHECK(contains(error, "states 4000000000"));
-  }
-}
-
-namespace {
-
-// A PLY file of four vertices; `faces` in text, or in bytes.
-std::string ply_of_faces(const char* format, const char* count_type, const std::string& faces) {
-  std::string file = std::string("ply\nformat ") + format +
-                     " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
-                     "property list " +
-                     count_type + " int vertex_indices\nend_header\n";
-  if (format[0] == 'a') return file + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" + faces;
-  const float corners[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-  return file + std::string(reinterpret_cast<const char*>(corners), sizeof corners) + faces;
-}
-std::string words(std::initializer_list<std::int32_t> values) {
-  return std::string(reinterpret_cast<const char*>(values.begin()), 4 * values.size());
-}
-
-}  // namespace
-
-// Goal: faces with no corners, a negative number, too many, or missing vertices are refused by name before they reach
-// assimp, parts of which would crash. Method: such lists in text and binary, after a valid face; valid lists are read.
-TEST_CASE("assimp_ply_faces_that_lie_are_refused") {
-  if (!reads("ply")) return;
-  TemporaryFolder folder;
-  auto error = [&](const char* format, const char* type, const std::string& faces) {
-    return load_error(folder.write("a.ply", ply_of_faces(format, type, faces)));
-  };
-  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n0\n"), "face 1 of the PLY file has no corners"));
-  CHECK(contains(error("ascii", "uchar", "0\n3 0 1 2\n"), "face 0 of the PLY file has no corners"));
-  CHECK(contains(error("ascii", "int", "3 0 1 2\n-3 0 1 2\n"), "list 1 of the PLY file has -3 entries"));
-  CHECK(contains(error("ascii", "int", "3 0 1 2\n100000 0 1 2\n"), "has 100000 entries"));
-  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n3 0 -3 2\n"), "face 1 of the PLY file uses vertex -3"));
-  CHECK(contains(error("ascii", "uchar", "3 0 1 2\n3 0 4 2\n"), "uses vertex 4 of 4"));
-  const char* little = "binary_little_endian";
-  CHECK(contains(error(little, "int", words({3, 0, 1, 2, 0})), "face 1 of the PLY file has no corners"));
-  CHECK(contains(error(little, "int", words({3, 0, 1, 2, -3, 0, 1, 2})), "list 1 of the PLY file has -3 entries"));
-  CHECK(contains(error(little, "uint", words({3, 0, 1, 2, -3, 0, 1, 2})), "has 4.29497e+09 entries"));
-  CHECK(contains(error("binary_big_endian", "int", words({0x03000000, 0, 1 << 24, 2 << 24, 0})), "has no corners"));
-  ImportedScene imported = load(folder.write("a.ply", ply_of_faces(little, "int", words({3, 0, 1, 2, 3, 0, 2, 3}))));
-  CHECK(imported.scene.triangles.count == 2);
-}
-
-// Goal: faces without corners are also refused in formats that are not pre-checked. Method: COLLADA's list of polygons.
+// Goal: faces without corners are refused by name. Method: COLLADA's list of polygons.
 TEST_CASE("assimp_faces_without_corners_are_refused") {
   if (!reads("dae")) return;
   TemporaryFolder folder;

@@ -137,3 +137,57 @@ TEST_CASE("obj_sample_cornell_boxes_have_their_materials") {
     CHECK(count(imported, [](const Material& m) { return m.transmission.x > 0 && m.ior == 2.5f; }) == 1);
   }
 }
+
+// Goal: OBJ's less usual forms are read. Method: the same square in each; an error behind a continued line still names
+// the right line.
+TEST_CASE("obj_less_usual_forms") {
+  TemporaryFolder folder;
+  auto area = [&](const std::string& text) { return surface_area(load(folder.write("a.obj", text)).scene); };
+  const std::string quad = kQuad, normal = "vn 0 0 1\n";
+  for (const char* faces :
+       {"f 1// 2// 3// 4//\n", "f 1/ 2/ 3/ 4/\n", "f 1/1/ 2/2/ 3/3/ 4/4/\n", "f 1/1/ 2/2/ 3/3/ 4/4/", "f 1 2 \\\n3 4\n",
+        "f 1 2\\\r\n 3\\\n 4\r\n", "f 1// 2//\\\n 3// 4//\n", "f 1 2 3 4\\", "f 1 2 3 4 \\\n",
+        "f 1/1/1 2//1 3/3/ 4//\n", "# a comment may end so \\\nf 1 2 3 4\n"}) {
+    CAPTURE(std::string(faces));
+    CHECK(area(quad + normal + faces) == doctest::Approx(1));
+  }
+  CHECK(area("v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") == doctest::Approx(0.5));
+  CHECK(contains(load_error(folder.write("a.obj", "v 0 \\\n0 \\\n0\nv 1 0 0\nv 0 x 0\nf 1 2 3\n")), "line 5"));
+  std::string marked = "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  CHECK(area(marked) == doctest::Approx(0.5));
+}
+
+// Goal: texts in UTF-16 are refused by that name. Method: both byte orders, with and without a byte order mark.
+TEST_CASE("obj_in_utf_16_is_refused") {
+  TemporaryFolder folder;
+  for (bool big : {false, true})
+    for (bool mark : {false, true}) {
+      std::string wide = mark ? std::string(big ? "\xFE\xFF" : "\xFF\xFE") : "";
+      for (char c : std::string(kQuad) + "f 1 2 3\n") wide += big ? std::string(1, '\0') + c : c + std::string(1, '\0');
+      CHECK(contains(load_error(folder.write("a.obj", wide)), "UTF-16; save it as UTF-8"));
+    }
+}
+
+// Goal: files whose names differ only in case are found, as where the model was made; the exact name wins.
+TEST_CASE("obj_files_are_found_in_any_case") {
+  TemporaryFolder folder;
+  REQUIRE(mkdir((folder.path + "/Maps").c_str(), 0700) == 0);
+  folder.write("M.MTL", "newmtl m\nmap_Kd maps\\Sp_LUK.TGA\n");
+  folder.write("Maps/sp_luk.tga", tga({255, 0, 0}));
+  std::string obj = folder.write("a.obj", std::string("mtllib m.mtl\n") + kQuad + "usemtl m\nf 1/1 2/2 3/3 4/4\n");
+  auto red = [&] {
+    ImportedScene imported = load(obj);
+    CHECK(imported.warning.empty());
+    REQUIRE(imported.scene.texels.count == 1);
+    return imported.scene.texels[0] & 255;
+  };
+  CHECK(red() == 255);
+  folder.write("Maps/Sp_luk.tga", tga({7, 0, 0}));
+  CHECK(red() == 7);  // the first in byte order
+  folder.write("Maps/Sp_LUK.TGA", tga({9, 0, 0}));
+  CHECK(red() == 9);
+  REQUIRE(rename((folder.path + "/Maps").c_str(), (folder.path + "/maps").c_str()) == 0);
+  CHECK(red() == 9);
+  REQUIRE(std::remove((folder.path + "/M.MTL").c_str()) == 0);
+  CHECK(contains(load(obj).warning, "m.mtl"));
+}

@@ -1,0 +1,11 @@
+// Stanford PLY, ASCII and binary of both byte orders: vertices, their normals and colours, faces and triangle strips.
+#pragma once
+#include "import/files.h"
+#include "import/scene_builder.h"
+
+namespace pocketray {
+
+// Reads a .ply into the builder. Throws ImportError for a damaged file.
+void import_ply(const Bytes& bytes, SceneBuilder* builder);
+
+}  // namespace pocketray
