@@ -48,8 +48,10 @@ std::uint32_t find_block(const Grid& grid, std::uint32_t words) {
   for (std::uint64_t seen = 0; seen < pool_words(h);) {
     GridNode& node = grid.node(place);
     CHECK(words_of(node) > 0 && words_of(node) <= h.pool_end - place);
-    while (!is_in_use(node) && place + node.block < h.pool_end && !is_in_use(grid.node(place + node.block)))
+    while (!is_in_use(node) && place + node.block < h.pool_end && !is_in_use(grid.node(place + node.block))) {
+      if (place + node.block == h.next) h.next = place;  // no block begins there any more
       node.block += grid.node(place + node.block).block;
+    }
     std::uint32_t size = words_of(node);
     if (!is_in_use(node) && size >= words) {
       if (size > words) grid.node(place + words).block = size - words;

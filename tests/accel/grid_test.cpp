@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "accel/accel_world.h"
+#include "accel/grid_pool.h"
 #include "support/effort.h"
 
 using namespace pocketray;
@@ -189,6 +190,52 @@ TEST_CASE("grid_keeps_what_rays_keep_entering") {
   closest(*world, beam);
   CHECK(given_up > 50);
   CHECK(header_of(*world).grid_count == made);
+}
+
+// Goal: blocks of the pool never overlap, however it is searched. Method: random requests, successful and in vain, and
+// random blocks given up; after each, the blocks fill the pool, and those taken are where they were.
+TEST_CASE("grid_pool_keeps_blocks_apart") {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(300)); ++seed) {
+    auto world = make_grid_world(clusters(1, 171), 1000);
+    Grid grid(world->accel);
+    GridHeader& h = grid.header();
+    const GridVisit visit(&h);
+    Rng rng = make_rng(seed);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> taken;  // place and size
+    bool sound = true;
+    for (int i = 0; i < 200 && sound; ++i) {
+      const auto [limit, size] = std::pair(next_u32(&rng) % 3 ? 60u : 600u, next_u32(&rng));
+      const std::uint32_t words = 16 + size % limit;
+      h.rest = 0;
+      // Whatever is taken counts as just entered: nothing is given up but by this test.
+      h.clock.store(0), h.words_since_tick = 0;
+      if (std::uint32_t place = take_block(grid, kRootPlace, words)) {
+        GridNode& node = grid.node(place);
+        node.parent = kRootPlace, node.cell = 0, node.stamp.store(0);
+        taken.emplace_back(place, node.block & ~kBlockInUse);
+        sound = taken.back().second >= words;
+      }
+      while (!taken.empty() && next_u32(&rng) % 2) {
+        const std::size_t n = next_u32(&rng) % taken.size();
+        grid.node(taken[n].first).block &= ~kBlockInUse;
+        taken.erase(taken.begin() + static_cast<std::ptrdiff_t>(n));
+      }
+      std::size_t found = 0;
+      std::uint32_t at = h.pool_begin;
+      while (sound && at < h.pool_end) {
+        const std::uint32_t block = grid.node(at).block, length = block & ~kBlockInUse;
+        if (block & kBlockInUse) {
+          ++found;
+          sound = std::find(taken.begin(), taken.end(), std::pair(at, length)) != taken.end();
+        }
+        sound = sound && length > 0 && length <= h.pool_end - at;
+        at += length;
+      }
+      sound = sound && at == h.pool_end && found == taken.size();
+    }
+    CAPTURE(seed);
+    CHECK(sound);
+  }
 }
 
 // Goal: threads that divide and give up voxels of one grid at the same time get the answers of brute force. Method: a
