@@ -86,17 +86,17 @@ TEST_CASE("view_leaves_its_first_picture_to_servers") {
   servers->addresses = world.addresses;
 
   CommonOptions common;
-  common.scene = "seesaw", common.size = "16x64", common.threads = 1;
+  common.scene = "seesaw", common.size = "128x128", common.threads = 1;
   ViewOptions options;
   options.backend = "null", options.rotation = 0, options.frame_count = 3;
   Viewer viewer;
-  REQUIRE(open_viewer(options, "seesaw", 16, 64, &viewer).ok);
+  REQUIRE(open_viewer(options, "seesaw", 128, 128, &viewer).ok);
   viewer.servers = servers.get();
   OpenScene opened;
   REQUIRE(open_scene_with(servers.get(), common, viewer_bytes, &opened).ok);
-  opened.renderer.pace.ns_per_pixel = 5e8;  // a picture alone takes eight minutes
+  opened.renderer.pace.ns_per_pixel = 5e8 / 16;  // a picture alone takes eight minutes
   REQUIRE(kRenderServers.start(servers.get(), &opened.renderer, false, false).ok);
-  opened.renderer.pace.ns_per_pixel = 3e6;
+  opened.renderer.pace.ns_per_pixel = 3e6 / 16;
   std::uint64_t begin = world_now_ns(world);
   bool again;
   REQUIRE(run_viewer(&viewer, &opened.renderer, &again).ok);
