@@ -27,8 +27,9 @@ enum class Effect : std::uint8_t {
   radiosity,
   instant_radiosity,
   ambient_gloss,
+  metallic_roughness,
 };
-constexpr int kEffectCount = 22;
+constexpr int kEffectCount = 23;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

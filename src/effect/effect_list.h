@@ -33,6 +33,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::radiosity, "radiosity", "a stored solution of the light between surfaces"},
     {Effect::instant_radiosity, "instant-radiosity", "--indirect instant-radiosity"},
     {Effect::ambient_gloss, "ambient-gloss", "a rough metal or plastic under ambient light or a background"},
+    {Effect::metallic_roughness, "metallic-roughness", "a material with a metallic-roughness texture"},
 };
 
 constexpr bool effects_in_order() {

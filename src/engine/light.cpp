@@ -9,6 +9,7 @@
 #include "shade/camera.h"
 #include "shade/filters.h"
 #include "shade/interleaved.h"
+#include "shade/material_maps.h"
 #include "shade/media.h"
 #include "shade/shade.h"
 #include "shade/surface.h"
@@ -36,7 +37,10 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.surface = find_surface_function(renderer->effects.mask);
   const EffectMask virtual_lights = bit(Effect::instant_radiosity) & kEffectsBuilt;
   renderer->frame.first_surface = find_surface_function(renderer->effects.mask & ~virtual_lights);
-  if (has(renderer->effects.mask, Effect::ambient_gloss)) add_ambient_gloss(&renderer->frame);
+  if (renderer->effects.mask & kMapEffects & kEffectsBuilt)
+    add_material_maps(&renderer->frame);
+  else if (has(renderer->effects.mask, Effect::ambient_gloss))
+    add_ambient_gloss(&renderer->frame);
   renderer->frame.trace_strip = has(renderer->effects.mask, Effect::instant_radiosity) ? trace_interleaved : nullptr;
   renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
   renderer->frame.find_shadows = has(renderer->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/limits.h"
@@ -40,9 +41,10 @@ struct GltfFile {
   std::vector<std::uint32_t> materials;  // glTF index → scene index, made on first use
   std::vector<int> material_uv_set;      // TEXCOORD set each material uses, -1: none; parallel to model.materials
   std::uint32_t default_material = kNone;
-  std::map<int, Image> images;            // decoded, for reading channel means
-  std::map<int, TexelRun> texels;         // glTF image → its texels in the scene
-  std::map<int, std::uint32_t> textures;  // glTF texture → scene texture
+  using ImageUse = std::pair<int, TexelKind>;
+  std::map<ImageUse, Image> images;            // decoded, for reading channels
+  std::map<ImageUse, TexelRun> texels;         // glTF image → its texels in the scene
+  std::map<ImageUse, std::uint32_t> textures;  // glTF texture → scene texture
 };
 
 // gltf.cpp: reads a .gltf or .glb into the builder.
@@ -66,9 +68,9 @@ int gltf_component_count(const GltfFile& file, int accessor);
 std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, float limit = kCoordinateMax);
 
 // gltf_texture.cpp
-const Image& gltf_image(GltfFile* file, int texture_index);
+const Image& gltf_image(GltfFile* file, int texture_index, TexelKind kind);
 // Scene texture and transform of a texture reference.
-TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info);
+TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info, TexelKind kind = TexelKind::colors);
 // TEXCOORD set of the reference, after KHR_texture_transform.
 int gltf_uv_set(const tinygltf::TextureInfo& info);
 

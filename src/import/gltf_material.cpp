@@ -1,16 +1,13 @@
 // Metallic-roughness materials (sec. 3.9) and the KHR_materials extensions.
 //
-// The mapping, for base colour c, metallic m, roughness r, transmission t, index of refraction n:
-//   F0 = lerp(((n − 1)/(n + 1))², c, m)        reflectance at normal incidence (sec. B.2.2); the first term times
-//                                              specular colour and factor, F90 times the factor
-//                                              (KHR_materials_specular)
-//   k = max(0, 1 − r/0.3)²                     how much of F0 is a perfect mirror: all at r = 0, none from r = 0.3
-//   mirror = F0·k                              c·m·k of it is tinted by texture and vertex colour
-//   specular = F0·(1 − k), grazing = 1 − k     the GGX lobe of α = r² (sec. B.3); c·m·(1 − k) is tinted
-//   t' = t·(1 − m)                             glass; Fresnel gives it its mirror: mirror × (1 − t')
-//   transmission = c·t', diffuse = c·(1 − m)·(1 − t)
+// scene/metallic_roughness.h has the mapping, for base colour c, metallic m, roughness r and transmission t. Here, for
+// index of refraction n:
+//   reflectance at normal incidence d = ((n − 1)/(n + 1))² × specular colour and factor, at grazing incidence g =
+//   factor
+//                (KHR_materials_specular)
 //   absorption = −ln(attenuation colour)/attenuation distance (KHR_materials_volume)
-// A metallicRoughness or transmission texture multiplies its factor by the texture's mean.
+// A metallicRoughness texture becomes a map, and the material has the lobes of its mean; of a transparent material, the
+// mean is all that counts. A transmission texture multiplies its factor by its mean.
 #include <algorithm>
 #include <cmath>
 
@@ -19,6 +16,7 @@
 #include "brdf/brdf_list.h"
 #include "import/gltf.h"
 #include "import/import_error.h"
+#include "scene/metallic_roughness.h"
 
 namespace pocketray {
 namespace {
@@ -34,7 +32,20 @@ Vec3 color3(const std::vector<double>& values, const Vec3& fallback) {
 float texture_mean(GltfFile* file, int texture, int channel, const char* name) {
   if (texture < 0) return 1;
   note_remark(file->builder, std::string(name) + " textures count only by their mean");
-  return channel_mean(gltf_image(file, texture), channel);
+  return channel_mean(gltf_image(file, texture, TexelKind::numbers), channel);
+}
+
+// Metallic (blue) and roughness (green) where the material has a texture of them: their ranges, and the use of it.
+void read_map(GltfFile* file, const tinygltf::PbrMetallicRoughness& pbr, MaterialMaps* maps) {
+  const Image& image = gltf_image(file, pbr.metallicRoughnessTexture.index, TexelKind::numbers);
+  const ChannelRange metallic = channel_range(image, 2), roughness = channel_range(image, 1);
+  auto scaled = [](float factor, std::uint8_t texel) { return factor * (static_cast<float>(texel) / 255); };
+  maps->metallic = unit(pbr.metallicFactor), maps->roughness = unit(pbr.roughnessFactor);
+  maps->metallic_low = scaled(maps->metallic, metallic.low);
+  maps->metallic_high = scaled(maps->metallic, metallic.high);
+  maps->roughness_low = scaled(maps->roughness, roughness.low);
+  maps->roughness_high = scaled(maps->roughness, roughness.high);
+  maps->metallic_roughness = gltf_texture_use(file, pbr.metallicRoughnessTexture, TexelKind::numbers);
 }
 
 void read_volume(const tinygltf::ExtensionMap& extensions, Material* material) {
@@ -72,35 +83,38 @@ DielectricSpecular read_specular(GltfFile* file, const tinygltf::ExtensionMap& e
   return d;
 }
 
-void read_surface(GltfFile* file, const tinygltf::Material& source, Material* material) {
+// The mean of a channel of a metallic-roughness texture; above zero if any texel is, so that the mean lobe has what any
+// other has.
+float map_mean(GltfFile* file, int texture, int channel) {
+  if (texture < 0) return 1;
+  const Image& image = gltf_image(file, texture, TexelKind::numbers);
+  const float mean = channel_mean(image, channel);
+  return channel_range(image, channel).high > 0 ? std::max(mean, 0x1p-10f) : mean;
+}
+
+void read_surface(GltfFile* file, const tinygltf::Material& source, Material* material, MaterialMaps* maps) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  Vec3 base = color3(pbr.baseColorFactor, {1, 1, 1});
-  int texture = pbr.metallicRoughnessTexture.index;
-  float metallic = unit(pbr.metallicFactor) * texture_mean(file, texture, 2, "metallic-roughness");
-  float roughness = unit(pbr.roughnessFactor) * texture_mean(file, texture, 1, "metallic-roughness");
+  const int texture = pbr.metallicRoughnessTexture.index;
   if (const tinygltf::Value* ior = gltf_extension(source.extensions, "KHR_materials_ior"))
     material->ior =
         static_cast<float>(std::min(std::max(gltf_number(*ior, "ior", 1.5), 1.0), static_cast<double>(kIorMax)));
   float transmission = 0;
   if (const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_transmission")) {
-    transmission = unit(gltf_number(*extension, "transmissionFactor", 0)) * (1 - metallic);
+    transmission = unit(gltf_number(*extension, "transmissionFactor", 0));
     if (transmission > 0)
       transmission *= texture_mean(file, gltf_texture_info(*extension, "transmissionTexture").index, 0, "transmission");
   }
   const DielectricSpecular dielectric = read_specular(file, source.extensions, material->ior);
-  Vec3 metal = base * metallic, f0 = dielectric.normal * (1 - metallic) + metal;
-  float k = std::max(0.0f, 1 - roughness / 0.3f);
-  k = k * k;
-  material->diffuse = base * ((1 - metallic) * (1 - transmission));
-  material->mirror = f0 * (k * (1 - transmission));
-  material->mirror_tinted = metal * (k * (1 - transmission));
-  material->specular = f0 * (1 - k);
-  material->specular_tinted = metal * (1 - k);
+  maps->model = {color3(pbr.baseColorFactor, {1, 1, 1}), dielectric.normal, dielectric.grazing};
   material->brdf = kGgx;
-  material->roughness = roughness * roughness;
-  material->grazing = (dielectric.grazing * (1 - metallic) + metallic) * (1 - k);
-  material->transmission = base * transmission;
-  if (transmission > 0) read_volume(source.extensions, material);
+  set_lobes(maps->model, unit(pbr.metallicFactor) * map_mean(file, texture, 2),
+            unit(pbr.roughnessFactor) * map_mean(file, texture, 1), transmission, material);
+  const bool is_clear = !is_zero(material->transmission);
+  if (is_clear) read_volume(source.extensions, material);
+  if (texture >= 0 && is_clear)
+    note_remark(file->builder, "metallic-roughness textures of transparent materials count only by their mean");
+  else if (texture >= 0)
+    read_map(file, pbr, maps);
 }
 
 void read_emission(GltfFile* file, const tinygltf::Material& source, Material* material) {
@@ -111,21 +125,32 @@ void read_emission(GltfFile* file, const tinygltf::Material& source, Material* m
   if (!is_zero(material->emission)) material->emission_texture = gltf_texture_use(file, source.emissiveTexture);
 }
 
-// The scene keeps one set of texture coordinates per vertex: the base colour's, else the emission's.
-int choose_uv_set(GltfFile* file, const tinygltf::Material& source, Material* material) {
-  int base = gltf_uv_set(source.pbrMetallicRoughness.baseColorTexture), emission = gltf_uv_set(source.emissiveTexture);
-  bool has_base = material->diffuse_texture.texture != kNone,
-       has_emission = material->emission_texture.texture != kNone;
-  if (has_base && has_emission && base != emission) {
-    note_remark(file->builder, "emission textures use the base colour's texture coordinates");
-    return base;
+// The scene keeps one set of texture coordinates per vertex: that of the first of these textures that the material has.
+int choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
+                  const MaterialMaps& maps) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  const struct {
+    const char* name;
+    const TextureUse& use;
+    const tinygltf::TextureInfo& info;
+  } all[] = {{"base colour", material.diffuse_texture, pbr.baseColorTexture},
+             {"metallic-roughness", maps.metallic_roughness, pbr.metallicRoughnessTexture},
+             {"emission", material.emission_texture, source.emissiveTexture}};
+  const char* chosen = nullptr;
+  int set = -1;
+  for (const auto& texture : all) {
+    if (texture.use.texture == kNone) continue;
+    if (!chosen)
+      chosen = texture.name, set = gltf_uv_set(texture.info);
+    else if (gltf_uv_set(texture.info) != set)
+      note_remark(file->builder, std::string(texture.name) + " textures use the texture coordinates of the " + chosen);
   }
-  return has_base ? base : has_emission ? emission : -1;
+  return set;
 }
 
-Material convert(GltfFile* file, const tinygltf::Material& source) {
+Material convert(GltfFile* file, const tinygltf::Material& source, MaterialMaps* maps) {
   Material material;
-  read_surface(file, source, &material);
+  read_surface(file, source, &material, maps);
   read_emission(file, source, &material);
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   material.diffuse_texture = gltf_texture_use(file, pbr.baseColorTexture);
@@ -144,7 +169,7 @@ Material convert(GltfFile* file, const tinygltf::Material& source) {
     AlphaMode mode = material.alpha_mode;
     float opacity = material.opacity, cutoff = material.alpha_cutoff;
     std::uint8_t double_sided = material.double_sided;
-    material = Material();
+    material = Material(), *maps = MaterialMaps();
     material.diffuse = color, material.diffuse_texture = texture, material.alpha_mode = mode;
     material.opacity = opacity, material.alpha_cutoff = cutoff, material.double_sided = double_sided,
     material.unlit = 1;
@@ -165,9 +190,14 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   static const tinygltf::Material kDefault;
   const tinygltf::Material& source = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
   if (out.materials.size() >= kMaterialCountMax) fail_import("more than %u materials; merge some", kMaterialCountMax);
-  Material material = convert(file, source);
-  if (index >= 0) file->material_uv_set[static_cast<std::size_t>(index)] = choose_uv_set(file, source, &material);
+  MaterialMaps maps;
+  Material material = convert(file, source, &maps);
+  if (index >= 0) file->material_uv_set[static_cast<std::size_t>(index)] = choose_uv_set(file, source, material, maps);
   *known = static_cast<std::uint32_t>(out.materials.size());
+  if (maps.metallic_roughness.texture != kNone) {
+    out.material_maps.resize(out.materials.size());
+    out.material_maps.push_back(maps);
+  }
   out.materials.push_back(material);
   return *known;
 }

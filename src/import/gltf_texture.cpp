@@ -14,7 +14,7 @@ const tinygltf::Texture& texture_at(const GltfFile& file, int index) {
   return file.model.textures[static_cast<std::size_t>(index)];
 }
 
-Image load_image(GltfFile* file, int index) {
+Image load_image(GltfFile* file, int index, TexelKind kind) {
   if (index < 0 || static_cast<std::size_t>(index) >= file->model.images.size())
     fail_import("image %d does not exist; export the file again", index);
   const tinygltf::Image& image = file->model.images[static_cast<std::size_t>(index)];
@@ -28,7 +28,7 @@ Image load_image(GltfFile* file, int index) {
     bytes.assign(data, data + count);
   }
   Image decoded = decode_image(file->builder, bytes, name);
-  shrink_image(&decoded, file->builder->options.texture_side_max);
+  shrink_image(&decoded, file->builder->options.texture_side_max, kind);
   return decoded;
 }
 
@@ -37,8 +37,8 @@ Wrap wrap_of(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
 
-std::uint32_t scene_texture(GltfFile* file, int index) {
-  auto known = file->textures.find(index);
+std::uint32_t scene_texture(GltfFile* file, int index, TexelKind kind) {
+  auto known = file->textures.find({index, kind});
   if (known != file->textures.end()) return known->second;
   const tinygltf::Texture& texture = texture_at(*file, index);
   tinygltf::Sampler sampler;
@@ -47,12 +47,13 @@ std::uint32_t scene_texture(GltfFile* file, int index) {
       fail_import("sampler %d does not exist; export the file again", texture.sampler);
     sampler = file->model.samplers[static_cast<std::size_t>(texture.sampler)];
   }
-  auto texels = file->texels.find(texture.source);
+  const GltfFile::ImageUse use = {texture.source, kind};
+  auto texels = file->texels.find(use);
   if (texels == file->texels.end())
-    texels = file->texels.emplace(texture.source, add_texels(file->builder, gltf_image(file, index))).first;
+    texels = file->texels.emplace(use, add_texels(file->builder, gltf_image(file, index, kind), kind)).first;
   std::uint32_t result = add_texture(file->builder, texels->second, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT),
                                      sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST);
-  file->textures[index] = result;
+  file->textures[{index, kind}] = result;
   return result;
 }
 
@@ -65,10 +66,10 @@ void pair_of(const tinygltf::Value& object, const char* key, double* x, double* 
 
 }  // namespace
 
-const Image& gltf_image(GltfFile* file, int texture_index) {
-  int source = texture_at(*file, texture_index).source;
-  auto known = file->images.find(source);
-  if (known == file->images.end()) known = file->images.emplace(source, load_image(file, source)).first;
+const Image& gltf_image(GltfFile* file, int texture_index, TexelKind kind) {
+  const GltfFile::ImageUse use = {texture_at(*file, texture_index).source, kind};
+  auto known = file->images.find(use);
+  if (known == file->images.end()) known = file->images.emplace(use, load_image(file, use.first, kind)).first;
   return known->second;
 }
 
@@ -78,10 +79,10 @@ int gltf_uv_set(const tinygltf::TextureInfo& info) {
   return set >= 0 && set < 64 ? static_cast<int>(set) : 0;
 }
 
-TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info) {
+TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info, TexelKind kind) {
   TextureUse use;
   if (info.index < 0) return use;
-  use.texture = scene_texture(file, info.index);
+  use.texture = scene_texture(file, info.index, kind);
   const tinygltf::Value* transform = gltf_extension(info.extensions, "KHR_texture_transform");
   if (!transform) return use;
   double offset_u = 0, offset_v = 0, scale_u = 1, scale_v = 1, rotation = gltf_number(*transform, "rotation", 0);

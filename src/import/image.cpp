@@ -1,5 +1,6 @@
 #include "import/image.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/color.h"
@@ -63,7 +64,21 @@ static std::uint32_t mean_texel(const std::uint32_t* texels, int count) {
   return packed;
 }
 
-static Image halved(const Image& image) {
+static std::uint32_t mean_number(const std::uint32_t* texels, int count) {
+  int sum[4] = {0, 0, 0, 0};
+  for (int i = 0; i < count; ++i) {
+    std::uint8_t bytes[4];
+    std::memcpy(bytes, &texels[i], 4);
+    for (int c = 0; c < 4; ++c) sum[c] += bytes[c];
+  }
+  std::uint8_t mean[4];
+  for (int c = 0; c < 4; ++c) mean[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+  std::uint32_t packed;
+  std::memcpy(&packed, mean, 4);
+  return packed;
+}
+
+static Image halved(const Image& image, TexelKind kind) {
   Image half;
   half.width = (image.width + 1) / 2, half.height = (image.height + 1) / 2;
   half.texels.resize(static_cast<std::size_t>(half.width) * half.height);
@@ -74,19 +89,20 @@ static Image halved(const Image& image) {
       for (std::uint32_t v = 2 * y; v < 2 * y + 2 && v < image.height; ++v)
         for (std::uint32_t u = 2 * x; u < 2 * x + 2 && u < image.width; ++u)
           box[count++] = image.texels[static_cast<std::size_t>(v) * image.width + u];
-      half.texels[static_cast<std::size_t>(y) * half.width + x] = mean_texel(box, count);
+      half.texels[static_cast<std::size_t>(y) * half.width + x] =
+          kind == TexelKind::colors ? mean_texel(box, count) : mean_number(box, count);
     }
   return half;
 }
 
-void shrink_image(Image* image, std::uint32_t side_max) {
+void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind) {
   if (side_max < 1) side_max = 1;
-  while (image->width > side_max || image->height > side_max) *image = halved(*image);
+  while (image->width > side_max || image->height > side_max) *image = halved(*image, kind);
 }
 
-TexelRun add_texels(SceneBuilder* builder, Image image) {
+TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind) {
   SceneArrays& out = *builder->out;
-  shrink_image(&image, builder->options.texture_side_max);
+  shrink_image(&image, builder->options.texture_side_max, kind);
   charge_bytes(builder, image.texels.size() * 4, "the textures");
   TexelRun run = {static_cast<std::uint32_t>(out.texels.size()), image.width, image.height};
   out.texels.insert(out.texels.end(), image.texels.begin(), image.texels.end());
@@ -112,6 +128,16 @@ float channel_mean(const Image& image, int channel) {
     sum += rgba[channel];
   }
   return image.texels.empty() ? 1.0f : static_cast<float>(sum / (255.0 * static_cast<double>(image.texels.size())));
+}
+
+ChannelRange channel_range(const Image& image, int channel) {
+  ChannelRange range;
+  for (std::uint32_t texel : image.texels) {
+    std::uint8_t rgba[4];
+    std::memcpy(rgba, &texel, 4);
+    range.low = std::min(range.low, rgba[channel]), range.high = std::max(range.high, rgba[channel]);
+  }
+  return range;
 }
 
 }  // namespace pocketray

@@ -9,6 +9,8 @@
 
 namespace pocketray {
 
+enum class TexelKind { colors, numbers };  // numbers: linear, the channels independent of each other
+
 struct Image {
   std::uint32_t width = 0, height = 0;  // texels
   std::vector<std::uint32_t> texels;    // bytes R, G, B, A in memory; rows from the top
@@ -17,20 +19,26 @@ struct Image {
 // Decodes an image; refuses one too large by its header. `name` is for the error line.
 Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name);
 
-// Box-halves width and height, in linear light, weighted by alpha, until neither exceeds `side_max`. Odd sides round
-// up.
-void shrink_image(Image* image, std::uint32_t side_max);
+// Box-halves width and height until neither exceeds `side_max`: colours in linear light, weighted by alpha. Odd sides
+// round up.
+void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind = TexelKind::colors);
 
 // Texels of an image in the scene; several textures may sample them differently.
 struct TexelRun {
   std::uint32_t begin = 0, width = 0, height = 0;
 };
 // Appends the image, shrunk to options.texture_side_max.
-TexelRun add_texels(SceneBuilder* builder, Image image);
+TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind = TexelKind::colors);
 // Appends a texture of these texels; returns its index.
 std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wrap_u, Wrap wrap_v, bool nearest);
 
 // Mean of a channel (0 = R … 3 = A) as stored, 0–1.
 float channel_mean(const Image& image, int channel);
+
+// The smallest and largest value of a channel, as stored.
+struct ChannelRange {
+  std::uint8_t low = 255, high = 0;
+};
+ChannelRange channel_range(const Image& image, int channel);
 
 }  // namespace pocketray

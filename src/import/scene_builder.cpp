@@ -187,6 +187,7 @@ static void pose_at_start(const Scene& scene, SceneArrays* out) {
   std::copy(pose.normals.begin(), pose.normals.end(), out->normals.begin());
 }
 
+static bool is_mapped(const MaterialMaps& maps) { return maps.metallic_roughness.texture != kNone; }
 static bool is_textured(const Material& material) {
   return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
 }
@@ -197,8 +198,10 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
-  bool textured = std::any_of(out.materials.begin(), out.materials.end(), is_textured);
+  bool textured = std::any_of(out.materials.begin(), out.materials.end(), is_textured) ||
+                  std::any_of(out.material_maps.begin(), out.material_maps.end(), is_mapped);
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
+  if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())
     out.rest_normals.resize(out.rest_positions.size(), Vec3{0, 0, 0});
@@ -210,7 +213,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.info = out.info;
   scene.positions = view(out.positions), scene.normals = view(out.normals);
   scene.uvs = view(out.uvs), scene.colors = view(out.colors);
-  scene.triangles = view(out.triangles), scene.materials = view(out.materials);
+  scene.triangles = view(out.triangles), scene.materials = view(out.materials),
+  scene.material_maps = view(out.material_maps);
   scene.textures = view(out.textures), scene.texels = view(out.texels);
   scene.lights = view(out.lights), scene.cameras = view(out.cameras);
   scene.nodes = view(out.nodes), scene.animations = view(out.animations), scene.channels = view(out.channels);

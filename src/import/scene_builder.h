@@ -33,6 +33,7 @@ struct SceneArrays {
   std::vector<Rgba16> colors;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
+  std::vector<MaterialMaps> material_maps;  // of the first materials; the rest have none
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;

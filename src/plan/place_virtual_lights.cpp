@@ -7,6 +7,7 @@
 #include "brdf/directions.h"
 #include "shade/filters.h"
 #include "shade/lights.h"
+#include "shade/material_maps.h"
 #include "shade/surface.h"
 
 namespace pocketray {
@@ -96,10 +97,11 @@ double window_at(float range, float distance) {
 }
 
 // Sends the particle on from a surface; false: it is absorbed.
-bool scatter(const Surface& s, Walk* walk, Particle* p) {
-  Vec3d diffuse = to_double(s.diffuse),
-        mirror = to_double(reflectance_at(s, s.material->mirror, s.material->mirror_tinted));
-  Vec3d glass = to_double(s.material->transmission);
+bool scatter(const FrameData& frame, const Surface& s, Walk* walk, Particle* p) {
+  Material mapped;
+  const Material& m = lobes_at(frame, s, &mapped);
+  Vec3d diffuse = to_double(s.diffuse), mirror = to_double(reflectance_at(s, m.mirror, m.mirror_tinted));
+  Vec3d glass = to_double(m.transmission);
   double d = max_component(diffuse), r = max_component(mirror), g = max_component(glass), total = d + r + g;
   double choice = walk->next() * (total > 1 ? total : 1), scale = total > 1 ? total : 1;
   double u = walk->next(), v = walk->next();
@@ -134,7 +136,7 @@ bool follow(const FrameData& frame, Particle particle, std::uint32_t count_max, 
       Vec3d intensity = particle.flux * to_double(s.diffuse) * (1 / kPi);
       lights->light[lights->count++] = {safe_origin(s, 1), s.geometric, to_float(intensity)};
     }
-    if (!scatter(s, walk, &particle)) return true;
+    if (!scatter(frame, s, walk, &particle)) return true;
   }
   return true;
 }

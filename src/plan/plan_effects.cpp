@@ -7,6 +7,7 @@
 #include "effect/setting_list.h"
 #include "indirect/indirect_list.h"
 #include "indirect/surroundings.h"
+#include "scene/metallic_roughness.h"
 
 namespace pocketray {
 namespace {
@@ -14,20 +15,24 @@ namespace {
 // Counts of materials with a property, among those that triangles use.
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
-                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0;
+                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0,
+                metallic_roughness = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
 // If emission is forced off, unlit materials scatter like others.
 Census take_census(const Scene& scene, const Settings& settings) {
   CHECK_LE(scene.materials.count, kMaterialCountMax);
+  CHECK(scene.material_maps.empty() || scene.material_maps.count == scene.materials.count);
   bool shows_unlit = !has(settings.forced_off, Effect::emission);
   Census c;
   std::uint32_t used[kMaterialCountMax / 32] = {};
   for (const Triangle& t : scene.triangles) used[t.material() / 32] |= 1u << t.material() % 32;
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
     if (!(used[i / 32] >> i % 32 & 1)) continue;
-    const Material& m = scene.materials[i];
+    const Material m =
+        scene.material_maps.count ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
+    if (scene.material_maps.count) c.metallic_roughness += scene.material_maps[i].metallic_roughness.texture != kNone;
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
     c.specular += !is_zero(m.specular);
@@ -117,6 +122,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::alpha_blend, c.blended, "blend with the background");
   w.set_by_materials(Effect::emission, c.emissive + c.unlit, c.unlit ? "emit or are unlit" : "emit");
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
+  w.set_by_materials(Effect::metallic_roughness, c.metallic_roughness, "have a metallic-roughness texture");
   w.set_by_materials(Effect::back_face_culling, c.one_sided, "are one-sided");
   w.set_by_materials(Effect::area_light, c.emissive, "emit light");
   w.set_by_count(Effect::point_light, c.lights[static_cast<int>(LightKind::point)], "point light");

@@ -9,6 +9,7 @@
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
 #include "indirect/surroundings.h"
+#include "scene/metallic_roughness.h"
 #include "shade/even_points.h"
 #include "shade/lights.h"
 #include "shade/texture.h"
@@ -269,10 +270,13 @@ void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData
 
 float radiance_bound(const FrameData& frame) {
   const Scene& scene = *frame.scene;
+  CHECK(scene.material_maps.empty() || scene.material_maps.count == scene.materials.count);
   float glow = 0, reflectance = 0, scattering = 0, virtual_light = 0;
   if (has(frame.mask, Effect::instant_radiosity))
     virtual_light = virtual_lights_of(frame.indirect)->irradiance_max / kPiF;
-  for (const Material& m : scene.materials) {
+  for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
+    const bool mapped = has(frame.mask, Effect::metallic_roughness) && scene.material_maps.count;
+    const Material m = mapped ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
     bool shines = m.unlit && has(frame.mask, Effect::emission);
     float own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
     if (!shines) own += max_component(m.diffuse) * virtual_light;

@@ -90,6 +90,13 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
   }
   const Vec3d glossy = to_double(m.specular) + to_double(m.mirror);
   const Vec3d tinted = to_double(m.specular_tinted) + to_double(m.mirror_tinted);
+  if (scene.material_maps.count && scene.material_maps[t.material()].metallic_roughness.texture != kNone) {
+    const MaterialMaps& maps = scene.material_maps[t.material()];
+    const Vec2 uv = hit_uv(scene, triangle, static_cast<float>(u), static_cast<float>(v));
+    const double texel = double(sample_numbers(scene, maps.metallic_roughness, uv, TextureFilter::as_scene).z) / 255;
+    const double metallic = texel * double(maps.metallic), other = 1 - metallic;
+    return to_double(maps.model.base) * tint + to_double(maps.model.dielectric) * other;
+  }
   return to_double(m.diffuse) * tint + glossy - tinted * (Vec3d{1, 1, 1} - tint);
 }
 

@@ -34,7 +34,7 @@ void follow_light(const Reference& reference, const ReferenceSurface& light, con
     ReferenceHit hit = next_hit(reference.world, ray, nullptr);
     if (hit.triangle == kNone) return;
     ReferenceSurface s = reference_surface(frame, hit, ray.direction);
-    const Material& m = *s.material;
+    const Material& m = lobes_of(s);
     if (bounce > 0 && (!is_zero(s.diffuse) || !is_zero(m.specular)))
       remember(s.point, {way, kMirrorMargin * guide->cell_size, kByMirrors}, guide);
     if (!is_specular(m) || m.unlit) return;

@@ -65,7 +65,7 @@ bool scatter(const Reference& reference, const ReferenceOptions& options, const 
   Vec3d mirror = s.mirror, to_viewer = -ray->direction;
   double mirror_share = max_component(mirror), glass_share = is_zero(m.transmission) ? 0 : 1, lobe_share = 0;
   if (options.transport == Transport::physical)
-    lobe_share = max_component(s.diffuse) + static_cast<double>(max_component(m.specular));
+    lobe_share = max_component(s.diffuse) + static_cast<double>(max_component(lobes_of(s).specular));
   double total = mirror_share + glass_share + lobe_share;
   if (!(total > 0)) return false;
   double choice = samples->choice() * total;  // rescaled after the choice, it is uniform again
@@ -128,7 +128,7 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
     sum += exact_indirect(*frame.scene, path.weight * s.diffuse, model);
     if (model) sum += path.weight * reflected_surroundings(frame, s, -ray.direction);
     if (!model) s.cell = find_cell(reference.guide, s.point);
-    if (!is_zero(s.diffuse) || !is_zero(s.material->specular))
+    if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
       sum +=
           path.weight * sample_direct_light(reference, options, s, -ray.direction, depth < options.depth_max, samples);
     if (depth >= options.depth_max || !scatter(reference, options, s, contact, &ray, &path, samples)) return sum;

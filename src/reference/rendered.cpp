@@ -33,8 +33,10 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
   Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask);
   sum += reflected_surroundings(frame, s, -ray.direction);
-  if (!is_zero(s.diffuse) || !is_zero(m.specular)) sum += sum_light_points(reference, s, -ray.direction, true);
-  if (!is_zero(m.mirror)) sum += spawn(reference, s, mirrored(ray.direction, s), s.mirror, branch, branch.media);
+  if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
+    sum += sum_light_points(reference, s, -ray.direction, true);
+  if (!is_zero(lobes_of(s).mirror))
+    sum += spawn(reference, s, mirrored(ray.direction, s), s.mirror, branch, branch.media);
   if (!is_zero(m.transmission)) {
     ReferenceBoundary b = meet_boundary(frame, s, contact, ray.direction, branch.media);
     Vec3d reflected = {b.reflectance, b.reflectance, b.reflectance};

@@ -14,9 +14,37 @@ constexpr double kOwnSurface = 0x1p-40;
 
 const BrdfInfo& glossy_lobe(const ReferenceSurface& s) { return *kBrdfList[s.material->brdf]; }
 
+// Lobes of a metallic-roughness texture, by the formulas of the glTF specification, secs. 3.9.2 and B.2.2, and the
+// mirror's share of src/import/README.md.
+void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d& tint,
+                              ReferenceSurface* s) {
+  const Vec3d numbers =
+      to_double(sample_numbers(*frame.scene, maps.metallic_roughness, uv, frame.settings.texture_filter));
+  auto within = [](double x, float low, float high) {
+    return std::fmin(std::fmax(x, static_cast<double>(low)), static_cast<double>(high));
+  };
+  const double metallic =
+      within(numbers.z / 255 * static_cast<double>(maps.metallic), maps.metallic_low, maps.metallic_high);
+  const double roughness =
+      within(numbers.y / 255 * static_cast<double>(maps.roughness), maps.roughness_low, maps.roughness_high);
+  const Vec3d color = to_double(maps.model.base) * tint;
+  const double smooth = std::fmax(0, 1 - roughness / 0.3), mirrored = smooth * smooth;
+  s->diffuse = color * (1 - metallic);
+  const Vec3d reflectance = to_double(maps.model.dielectric) * (1 - metallic) + color * metallic;
+  s->mirror = reflectance * mirrored, s->specular = reflectance * (1 - mirrored);
+  s->mapped = *s->material, s->is_mapped = true;
+  s->mapped.roughness = static_cast<float>(roughness * roughness);
+  s->mapped.grazing =
+      static_cast<float>((static_cast<double>(maps.model.grazing) * (1 - metallic) + metallic) * (1 - mirrored));
+  s->mapped.specular = {static_cast<float>(s->specular.x), static_cast<float>(s->specular.y),
+                        static_cast<float>(s->specular.z)};
+  s->mapped.mirror = {static_cast<float>(s->mirror.x), static_cast<float>(s->mirror.y),
+                      static_cast<float>(s->mirror.z)};
+}
+
 // Probability of sampling the glossy lobe rather than the diffuse one.
 double glossy_share(const ReferenceSurface& s) {
-  double glossy = static_cast<double>(max_component(s.material->specular)), diffuse = max_component(s.diffuse);
+  double glossy = static_cast<double>(max_component(lobes_of(s).specular)), diffuse = max_component(s.diffuse);
   return glossy > 0 ? glossy / (glossy + diffuse) : 0;
 }
 
@@ -62,6 +90,11 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   };
   s.diffuse = to_double(m.diffuse) * tint;
   s.specular = tinted(m.specular, m.specular_tinted), s.mirror = tinted(m.mirror, m.mirror_tinted);
+  s.is_mapped = false;
+  if (scene.material_maps.count && has(frame.mask, Effect::metallic_roughness)) {
+    const MaterialMaps& maps = scene.material_maps[t.material()];
+    if (maps.metallic_roughness.texture != kNone) apply_metallic_roughness(frame, maps, uv, tint, &s);
+  }
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
     s.emission = to_double(m.emission) * texel(m.emission_texture);
@@ -84,24 +117,24 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
 }
 
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer) {
-  if (!has(frame.mask, Effect::ambient_gloss) || !reflects_surroundings(*s.material)) return {0, 0, 0};
+  if (!has(frame.mask, Effect::ambient_gloss) || !reflects_surroundings(lobes_of(s))) return {0, 0, 0};
   const Vec3 specular = {static_cast<float>(s.specular.x), static_cast<float>(s.specular.y),
                          static_cast<float>(s.specular.z)};
   const float cosine = static_cast<float>(dot(s.normal, to_viewer));
-  return to_double(reflected_surroundings(frame.scene->info, *s.material, specular, cosine));
+  return to_double(reflected_surroundings(frame.scene->info, lobes_of(s), specular, cosine));
 }
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   Vec3d value = s.diffuse * (1 / kPi);
-  if (!is_zero(s.material->specular))
-    value = glossy_lobe(s).exact_value(*s.material, s.specular, value, s.normal, to_viewer, to_light);
+  if (!is_zero(lobes_of(s).specular))
+    value = glossy_lobe(s).exact_value(lobes_of(s), s.specular, value, s.normal, to_viewer, to_light);
   return value;
 }
 
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   double cosine = dot(s.normal, to_light), share = glossy_share(s);
   if (!(cosine > 0) || (is_zero(s.diffuse) && share == 0)) return 0;
-  double glossy = share > 0 ? glossy_lobe(s).density(*s.material, s.normal, to_viewer, to_light) : 0;
+  double glossy = share > 0 ? glossy_lobe(s).density(lobes_of(s), s.normal, to_viewer, to_light) : 0;
   return (1 - share) * cosine / kPi + share * glossy;
 }
 
@@ -109,7 +142,7 @@ bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choi
                   Vec3d* direction) {
   double share = glossy_share(s);
   if (is_zero(s.diffuse) && share == 0) return false;
-  *direction = choice < share ? glossy_lobe(s).sample(*s.material, s.normal, to_viewer, pair.u, pair.v)
+  *direction = choice < share ? glossy_lobe(s).sample(lobes_of(s), s.normal, to_viewer, pair.u, pair.v)
                               : power_cosine_direction(s.normal, 1, pair.u, pair.v);
   return dot(*direction, s.normal) > 0;
 }

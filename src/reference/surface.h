@@ -14,8 +14,13 @@ struct ReferenceSurface {
   std::uint32_t triangle;
   double u, v;
   const Material* material;
+  Material mapped;  // the material with the lobes that its maps give it here, if is_mapped
+  bool is_mapped;
   const ReferenceCell* cell = nullptr;  // of the guide, if it has one here
 };
+
+// The material with its lobes at the surface.
+inline const Material& lobes_of(const ReferenceSurface& s) { return s.is_mapped ? s.mapped : *s.material; }
 
 ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction);
 

@@ -18,6 +18,7 @@ static_assert(sizeof(SceneInfo) == 64 + 6 * 4 + 6 * 4, "no padding");
 static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && sizeof(Triangle) == 12, "no padding");
 static_assert(sizeof(Texture) == 4 + 2 * 2 + 4, "no padding");
 static_assert(sizeof(TextureUse) == 28 && sizeof(Material) == 8 * 12 + 6 * 4 + 2 * 28 + 4 + 4, "no padding");
+static_assert(sizeof(MetallicRoughness) == 28 && sizeof(MaterialMaps) == 28 + 28 + 6 * 4, "no padding");
 static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 12 + 4 * 4, "no padding");
 static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "no padding");
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
@@ -81,8 +82,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("radiosity_nodes", scene.radiosity_nodes);
   visit("radiosity_corners", scene.radiosity_corners);
   visit("radiosity_values", scene.radiosity_values);
+  visit("material_maps", scene.material_maps);
 }
-constexpr std::uint32_t kArrayCount = 31;
+constexpr std::uint32_t kArrayCount = 32;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {

@@ -87,6 +87,24 @@ struct Material {
   std::uint8_t thin = 0;   // transmits without refraction and encloses nothing (glTF without KHR_materials_volume)
 };
 
+// The metallic-roughness model of glTF, as far as maps do not change it; metallic_roughness.h makes lobes of it.
+struct MetallicRoughness {
+  Vec3 base = {0, 0, 0};        // colour of the diffuse lobe and of metals; × texture × vertex colour
+  Vec3 dielectric = {0, 0, 0};  // reflectance of a non-metal at normal incidence
+  float grazing = 0;            // reflectance of a non-metal at grazing incidence
+};
+
+// Textures that change a material from point to point. Their texels are numbers, not colours: 0 to 255, linear.
+struct MaterialMaps {
+  // Lobes where there is a metallic_roughness texture: metallic × B, roughness × G. The material's own lobes are those
+  // of the means.
+  MetallicRoughness model;
+  TextureUse metallic_roughness;
+  float metallic = 0, roughness = 0;
+  // What the texture and the factors amount to. Other values are moved to the nearer end, so that bounds hold.
+  float metallic_low = 0, metallic_high = 0, roughness_low = 0, roughness_high = 0;
+};
+
 enum class LightKind : std::uint32_t { point, spot, directional };
 
 // Lights other than surfaces. Emissive materials are the area lights; the plan finds them.
@@ -207,7 +225,8 @@ struct Scene {
   Array<const RadiosityNode> radiosity_nodes;
   Array<const RadiosityCorners> radiosity_corners;
   Array<const Vec3> radiosity_values;
-  Array<const std::uint8_t> accel;  // baked accelerator in the layout of accel/; may be empty
+  Array<const std::uint8_t> accel;          // baked accelerator in the layout of accel/; may be empty
+  Array<const MaterialMaps> material_maps;  // one per material, or empty
 };
 
 inline bool is_animated(const Scene& scene) {

@@ -52,17 +52,6 @@ Status validate_info(const SceneInfo& info) {
   return check_fields("info", 0, fields);
 }
 
-Status check_texture_use(const char* field, std::uint32_t index, const TextureUse& use, const Scene& scene) {
-  for (const auto& row : use.m)
-    for (float x : row)
-      if (!is_coordinate(x)) return failure("materials[%u].%s has a transform that is not finite", index, field);
-  if (use.texture == kNone) return success();
-  if (use.texture >= scene.textures.count)
-    return failure("materials[%u].%s is texture %u of %u", index, field, use.texture, scene.textures.count);
-  if (scene.uvs.empty()) return failure("materials[%u].%s needs uvs, the scene has none", index, field);
-  return success();
-}
-
 Status validate_material(const Scene& scene, std::uint32_t index) {
   const Material& m = scene.materials[index];
   const FieldRange fields[] = {
@@ -98,8 +87,8 @@ Status validate_material(const Scene& scene, std::uint32_t index) {
       {"alpha_cutoff", m.alpha_cutoff, 0, kFloatMax},
   };
   RETURN_IF_ERROR(check_fields("materials", index, fields));
-  RETURN_IF_ERROR(check_texture_use("diffuse_texture", index, m.diffuse_texture, scene));
-  RETURN_IF_ERROR(check_texture_use("emission_texture", index, m.emission_texture, scene));
+  RETURN_IF_ERROR(check_texture_use("materials", "diffuse_texture", index, m.diffuse_texture, scene));
+  RETURN_IF_ERROR(check_texture_use("materials", "emission_texture", index, m.emission_texture, scene));
   if (m.brdf >= kBrdfCountMax)
     return failure("materials[%u].brdf is %u, at most %u exist", index, m.brdf, kBrdfCountMax);
   if (m.alpha_mode > AlphaMode::blend) return failure("materials[%u] has an unknown alpha mode", index);
@@ -201,6 +190,7 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_counts(scene));
   RETURN_IF_ERROR(validate_geometry(scene));
   RETURN_IF_ERROR(validate_materials(scene));
+  RETURN_IF_ERROR(validate_material_maps(scene));
   RETURN_IF_ERROR(validate_lights_and_cameras(scene));
   RETURN_IF_ERROR(validate_nodes(scene));
   RETURN_IF_ERROR(validate_animations(scene));

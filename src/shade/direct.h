@@ -140,12 +140,11 @@ Vec3 shadow(Tracer* tracer, FindRay find_ray, std::uint32_t light, bool at_first
   return {1, 1, 1};
 }
 
-// Radiance towards the viewer from light that arrives straight from the lights. `weight` is the throughput of the path
-// so far.
+// Radiance towards the viewer from light that arrives straight from the lights; `m` has the lobes there. `weight` is
+// the throughput of the path so far.
 template <EffectMask mask>
-Vec3 direct_light(Tracer* tracer, const Surface& s, const Vec3& to_viewer, const Vec3& weight) {
+Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec3& to_viewer, const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
-  const Material& m = *s.material;
   Vec3 diffuse = s.diffuse * (1 / kPiF);
   Vec3 sum = {0, 0, 0};
   const bool at_first_hit = tracer->first_surface && same_surface(*tracer->first_surface, s);

@@ -55,6 +55,7 @@ struct Tracer;
 
 // The instantiated parts of the kernel, selected once per frame for the plan.
 using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
+using GlowFunction = void (*)(const FrameData& frame, Surface* surface);
 // Radiance along a ray, given its first hit and the surface there if already known (otherwise null).
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
 using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
@@ -77,6 +78,7 @@ struct FrameData {
   SurfaceFunction surface = nullptr;
   SurfaceFunction first_surface = nullptr;  // at first hits: the same, but without light that trace_strip adds there
   SurfaceFunction plain_surface = nullptr, plain_first_surface = nullptr;  // see ambient_gloss.h
+  GlowFunction glow = nullptr, first_glow = nullptr;                       // see material_maps.h
   RadianceFunction radiance = nullptr;
   ShadowsFunction find_shadows = nullptr;  // null if nothing casts a shadow
   StripFunction trace_strip = nullptr;     // traces pixels in blocks; null: each by itself

@@ -7,6 +7,7 @@
 #include "shade/contact.h"
 #include "shade/direct.h"
 #include "shade/instantiate.h"
+#include "shade/material_maps.h"
 
 namespace pocketray {
 namespace {
@@ -85,14 +86,14 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   return sum;
 }
 
-// Radiance that leaves the surface back along the ray. `contact` is required if it transmits.
+// Radiance that leaves the surface back along the ray; `m` has its lobes there.
 template <EffectMask mask>
-Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
-  const Material& m = *s.material;
+inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const Material& m, const Contact* contact,
+                        const Path<mask>& path) {
   Vec3 sum = s.glow;
   bool scatters = !is_zero(s.diffuse);
   if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
-  if (scatters) sum += direct_light<mask>(tracer, s, -ray.direction, path.weight);
+  if (scatters) sum += direct_light<mask>(tracer, s, m, -ray.direction, path.weight);
   if constexpr (has(mask, Effect::mirror)) {
     if (!is_zero(m.mirror)) {
       effect_entered<Effect::mirror>();
@@ -103,6 +104,25 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
     if (!is_zero(m.transmission)) sum += dielectric<mask>(tracer, ray, s, *contact, path);
   }
   return sum;
+}
+
+// The same. `contact` is required if it transmits.
+template <EffectMask mask>
+Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
+  if constexpr (has(mask, Effect::metallic_roughness)) {
+    const EffectMask plan = tracer->frame->mask;
+    Material mapped;
+    const Material* m = &lobes_at(*tracer->frame, s, &mapped);
+    if (!has(plan, Effect::specular) || !has(plan, Effect::mirror)) {  // reduced() has added them
+      if (m != &mapped) mapped = *m;
+      if (!has(plan, Effect::specular)) mapped.specular = {0, 0, 0};
+      if (!has(plan, Effect::mirror)) mapped.mirror = {0, 0, 0};
+      m = &mapped;
+    }
+    return shade_lobes<mask>(tracer, ray, s, *m, contact, path);
+  } else {
+    return shade_lobes<mask>(tracer, ray, s, *s.material, contact, path);
+  }
 }
 
 // Adds the blending surfaces of a contact, one over the other. False if whatever is behind them does not matter.
@@ -210,15 +230,23 @@ Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surf
 
 struct RadiancePart {
   using Function = RadianceFunction;
-  static constexpr Effect kEffects[] = {Effect::shadow,           Effect::specular,   Effect::mirror,
-                                        Effect::refraction,       Effect::absorption, Effect::alpha_blend,
-                                        Effect::back_face_culling};
+  static constexpr Effect kEffects[] = {Effect::shadow,
+                                        Effect::specular,
+                                        Effect::mirror,
+                                        Effect::refraction,
+                                        Effect::absorption,
+                                        Effect::alpha_blend,
+                                        Effect::back_face_culling,
+                                        Effect::metallic_roughness};
+  // No absorption without media. With maps, shade() leaves out the lobes that the plan does not have: fewer instances.
+  static constexpr EffectMask reduced(EffectMask mask) {
+    if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);
+    if (has(mask, Effect::metallic_roughness)) mask |= bit(Effect::specular) | bit(Effect::mirror);
+    return mask;
+  }
   template <EffectMask mask>
-  static constexpr Function instance() {  // no absorption without media
-    if constexpr (has(mask, Effect::refraction))
-      return primary_radiance<mask>;
-    else
-      return primary_radiance<(mask & ~bit(Effect::absorption))>;
+  static constexpr Function instance() {
+    return primary_radiance<reduced(mask)>;
   }
 };
 

@@ -34,6 +34,39 @@ void keep_off_edges(const Vec3& a, const Vec3& b, const Vec3& c, float least_wei
   *point += step < size ? inward * (step / size) : inward;
 }
 
+// Sets the light that leaves the surface without any lights.
+template <EffectMask mask>
+inline void add_glow(const FrameData& frame, Surface* s) {
+  const Scene& scene = *frame.scene;
+  const Material& m = *s->material;
+  s->glow = {0, 0, 0};
+  if constexpr (has(mask, Effect::emission)) {
+    if (m.unlit) {
+      effect_entered<Effect::emission>();
+      s->glow = s->diffuse;
+      s->diffuse = {0, 0, 0};
+    }
+  }
+  if constexpr ((mask & kEffectsBuilt & IndirectList::kEffects) != 0) {
+    const IndirectPoint point = {scene,           nullptr,  s->point, s->normal, s->diffuse,
+                                 s->hit.triangle, s->hit.u, s->hit.v, s->front,  frame.settings.reconstruction};
+    IndirectList::add_radiance<mask>(frame.indirect.prepared, point, &s->glow);
+  }
+  if constexpr (has(mask, Effect::emission)) {
+    if (!is_zero(m.emission) && (s->front || m.double_sided)) {
+      effect_entered<Effect::emission>();
+      Vec3 emission = m.emission;
+      if constexpr (has(mask, Effect::texture)) {
+        if (m.emission_texture.texture != kNone)
+          emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, s->hit.triangle, s->hit.u, s->hit.v),
+                                     frame.settings.texture_filter)
+                          .rgb;
+      }
+      s->glow += emission;
+    }
+  }
+}
+
 template <EffectMask mask>
 void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   const Scene& scene = *frame.scene;
@@ -42,7 +75,7 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
   const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
   float u = hit.u, v = hit.v, w = 1 - u - v;
   s->material = &m;
-  s->hit = hit;
+  s->hit = {u, v, hit.triangle};
   s->point = a * w + b * u + c * v;
   Vec3 perpendicular = cross(b - a, c - a), outward = normalize(perpendicular);
   s->front = dot(outward, ray.direction) <= 0;
@@ -80,32 +113,7 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
       s->is_tinted = true;
     }
   }
-  s->glow = {0, 0, 0};
-  if constexpr (has(mask, Effect::emission)) {
-    if (m.unlit) {
-      effect_entered<Effect::emission>();
-      s->glow = s->diffuse;
-      s->diffuse = {0, 0, 0};
-    }
-  }
-  if constexpr ((mask & kEffectsBuilt & IndirectList::kEffects) != 0) {
-    const IndirectPoint point = {scene,        nullptr, s->point, s->normal, s->diffuse,
-                                 hit.triangle, u,       v,        s->front,  frame.settings.reconstruction};
-    IndirectList::add_radiance<mask>(frame.indirect.prepared, point, &s->glow);
-  }
-  if constexpr (has(mask, Effect::emission)) {
-    if (!is_zero(m.emission) && (s->front || m.double_sided)) {
-      effect_entered<Effect::emission>();
-      Vec3 emission = m.emission;
-      if constexpr (has(mask, Effect::texture)) {
-        if (m.emission_texture.texture != kNone)
-          emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, hit.triangle, u, v),
-                                     frame.settings.texture_filter)
-                          .rgb;
-      }
-      s->glow += emission;
-    }
-  }
+  add_glow<mask>(frame, s);
 }
 
 struct SurfacePart {
@@ -119,7 +127,18 @@ struct SurfacePart {
   }
 };
 
+struct GlowPart {
+  using Function = GlowFunction;
+  static constexpr EffectsOf<bit(Effect::texture) | bit(Effect::emission) | IndirectList::kEffects> kEffects = {};
+  template <EffectMask mask>
+  static constexpr Function instance() {
+    return add_glow<mask>;
+  }
+};
+
 }  // namespace
+
+GlowFunction find_glow_function(EffectMask mask) { return Instantiations<GlowPart>::find(mask); }
 
 Vec3 curved_origin(const FrameData& frame, const Surface& s) {
   Surface moved = s;

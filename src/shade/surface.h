@@ -8,6 +8,11 @@
 
 namespace pocketray {
 
+struct SurfacePlace {
+  float u, v;  // in the triangle
+  std::uint32_t triangle;
+};
+
 struct Surface {
   Vec3 point;
   Vec3 offset;             // from the point to a safe origin on the side the ray came from
@@ -16,9 +21,11 @@ struct Surface {
   Vec3 glow;               // radiance that leaves without any lights: emission, ambient
   bool front;              // the ray met the front (counter-clockwise) side
   bool is_tinted;          // by `tint`, the colour of texture and vertices; otherwise that is not set
+  std::uint16_t metallic;  // of a metallic-roughness map, in 65535ths; not set without one, nor is the roughness
   Vec3 tint;
   const Material* material;
-  Hit hit;
+  float roughness;
+  SurfacePlace hit;
 };
 
 // Whether the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:
@@ -37,6 +44,8 @@ inline Vec3 reflectance_at(const Surface& s, const Vec3& reflectance, const Vec3
 
 // Selects the instantiation for the plan's mask.
 SurfaceFunction find_surface_function(EffectMask mask);
+// The part of it that sets Surface::glow.
+GlowFunction find_glow_function(EffectMask mask);
 
 // Distance from a computed point to a ray origin that no rounding error puts on the wrong side. Each coordinate of the
 // point errs by at most γ₈·Σ|bᵢ vᵢ| [PBR3 sec. 3.9.4]; moving by that error, projected on the normal, leaves the slab

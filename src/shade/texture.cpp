@@ -26,33 +26,53 @@ int wrap_texel(float coordinate, int size, Wrap wrap) {
   return i < size ? i : 2 * size - 1 - i;
 }
 
-Rgba texel(const Scene& scene, const Texture& t, int x, int y) {
+const std::uint8_t* texel_bytes(const Scene& scene, const Texture& t, int x, int y) {
   const std::uint32_t* texels = scene.texels.data + t.texel_begin;
-  const auto* c = reinterpret_cast<const std::uint8_t*>(texels + static_cast<std::size_t>(y) * t.width + x);
-  return {{srgb_to_linear(c[0]), srgb_to_linear(c[1]), srgb_to_linear(c[2])},
-          static_cast<float>(c[3]) * (1.0f / 255.0f)};
+  return reinterpret_cast<const std::uint8_t*>(texels + static_cast<std::size_t>(y) * t.width + x);
 }
 
+struct ColorTexel {
+  static Rgba read(const std::uint8_t* c) {
+    return {{srgb_to_linear(c[0]), srgb_to_linear(c[1]), srgb_to_linear(c[2])},
+            static_cast<float>(c[3]) * (1.0f / 255.0f)};
+  }
+};
+
+struct NumberTexel {
+  static Vec3 read(const std::uint8_t* c) {
+    return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
+  }
+};
+
+Vec3 blend(const Vec3& a, const Vec3& b, float f) { return a + (b - a) * f; }
 Rgba blend(const Rgba& a, const Rgba& b, float f) {
-  return {a.rgb + (b.rgb - a.rgb) * f, a.alpha + (b.alpha - a.alpha) * f};
+  return {blend(a.rgb, b.rgb, f), a.alpha + (b.alpha - a.alpha) * f};
+}
+
+template <class Texel>
+auto sample(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter) {
+  const Texture& t = scene.textures[use.texture];
+  auto at = [&](int x, int y) { return Texel::read(texel_bytes(scene, t, x, y)); };
+  float u = use.m[0][0] * uv.x + use.m[0][1] * uv.y + use.m[0][2];
+  float v = use.m[1][0] * uv.x + use.m[1][1] * uv.y + use.m[1][2];
+  float x = texel_coordinate(u, t.width), y = texel_coordinate(v, t.height);
+  bool nearest = filter == TextureFilter::as_scene ? t.nearest != 0 : filter == TextureFilter::nearest;
+  if (nearest) return at(wrap_texel(std::floor(x), t.width, t.wrap_u), wrap_texel(std::floor(y), t.height, t.wrap_v));
+  float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
+  float fx = (x - 0.5f) - left, fy = (y - 0.5f) - top;
+  int x0 = wrap_texel(left, t.width, t.wrap_u), x1 = wrap_texel(left + 1, t.width, t.wrap_u);
+  int y0 = wrap_texel(top, t.height, t.wrap_v), y1 = wrap_texel(top + 1, t.height, t.wrap_v);
+  return blend(blend(at(x0, y0), at(x1, y0), fx), blend(at(x0, y1), at(x1, y1), fx), fy);
 }
 
 }  // namespace
 
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter) {
-  const Texture& t = scene.textures[use.texture];
-  float u = use.m[0][0] * uv.x + use.m[0][1] * uv.y + use.m[0][2];
-  float v = use.m[1][0] * uv.x + use.m[1][1] * uv.y + use.m[1][2];
-  float x = texel_coordinate(u, t.width), y = texel_coordinate(v, t.height);
-  bool nearest = filter == TextureFilter::as_scene ? t.nearest != 0 : filter == TextureFilter::nearest;
-  if (nearest)
-    return texel(scene, t, wrap_texel(std::floor(x), t.width, t.wrap_u), wrap_texel(std::floor(y), t.height, t.wrap_v));
-  float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
-  float fx = (x - 0.5f) - left, fy = (y - 0.5f) - top;
-  int x0 = wrap_texel(left, t.width, t.wrap_u), x1 = wrap_texel(left + 1, t.width, t.wrap_u);
-  int y0 = wrap_texel(top, t.height, t.wrap_v), y1 = wrap_texel(top + 1, t.height, t.wrap_v);
-  return blend(blend(texel(scene, t, x0, y0), texel(scene, t, x1, y0), fx),
-               blend(texel(scene, t, x0, y1), texel(scene, t, x1, y1), fx), fy);
+  return sample<ColorTexel>(scene, use, uv, filter);
+}
+
+Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter) {
+  return sample<NumberTexel>(scene, use, uv, filter);
 }
 
 float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,

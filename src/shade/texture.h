@@ -15,6 +15,9 @@ enum class TextureFilter : std::uint8_t;
 // The colour of `use` at uv. Coordinates wrap as in the texture's sampler; row 0 is at v = 0.
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
 
+// The same of a texture of numbers: texel bytes R, G, B as they are, 0 to 255.
+Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
+
 // uv of a hit, interpolated from its triangle.
 inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v) {
   const Triangle& t = scene.triangles[triangle];

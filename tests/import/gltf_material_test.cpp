@@ -156,16 +156,40 @@ TEST_CASE("gltf_textures_keep_texels_sampler_transform_and_uv_set") {
   CHECK(v == doctest::Approx(0.25 - 2));
 }
 
-// Goal: a metallic-roughness texture counts by its mean, and the warning says so.
-TEST_CASE("gltf_metallic_roughness_texture_counts_by_its_mean") {
-  std::string json =
-      "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}},\"normalTexture\":{\"index\":0}}";
-  ImportedScene imported = load_text(triangle_gltf(json, images(kRoughMetal)));
-  double metallic = 64 / 255.0, roughness = 128 / 255.0;
-  CHECK(imported.scene.materials[0].diffuse.x == doctest::Approx(1 - metallic));
-  CHECK(imported.scene.materials[0].roughness == doctest::Approx(roughness * roughness));
-  CHECK(imported.scene.textures.count == 0);  // it is not a texture of the scene
+// Goal: a metallic-roughness texture becomes a map of numbers, with factors and ranges; the material has the lobes of
+// its mean. Method: a texture of one colour, once plain, once in a transparent material, which keeps the mean alone,
+// and says so.
+TEST_CASE("gltf_metallic_roughness_texture_becomes_a_map") {
+  const std::string textured =
+      "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0,\"texCoord\":1},"
+      "\"metallicFactor\":0.5,\"baseColorFactor\":[0.5,0.25,1,1]}";
+  ImportedScene imported =
+      load_text(triangle_gltf(textured + ",\"normalTexture\":{\"index\":0}}", images(kRoughMetal)));
+  const double metallic = 32 / 255.0, roughness = 128 / 255.0;
+  const Scene& s = imported.scene;
+  CHECK(s.materials[0].diffuse.x == doctest::Approx(0.5 * (1 - metallic)));
+  CHECK(s.materials[0].roughness == doctest::Approx(roughness * roughness));
+  REQUIRE(s.material_maps.count == 1);
+  REQUIRE(s.textures.count == 1);
+  const MaterialMaps& maps = s.material_maps[0];
+  CHECK(maps.metallic_roughness.texture == 0);
+  CHECK(maps.model.base == Vec3{0.5f, 0.25f, 1});
+  check_vec(maps.model.dielectric, {0.04f, 0.04f, 0.04f});
+  CHECK(maps.model.grazing == 1);
+  CHECK((maps.metallic == 0.5f && maps.roughness == 1));
+  CHECK((maps.metallic_low == maps.metallic_high && maps.roughness_low == maps.roughness_high));
+  CHECK(maps.metallic_low == doctest::Approx(metallic));
+  CHECK(maps.roughness_low == doctest::Approx(roughness));
+  CHECK(s.uvs[1].x == 0.75f);  // TEXCOORD_1
   CHECK(contains(imported.warning, "normal maps"));
+  CHECK_FALSE(contains(imported.warning, "by their mean"));
+  imported = load_text(
+      triangle_gltf(textured + ",\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.5}}}",
+                    images(kRoughMetal)));
+  CHECK(imported.scene.material_maps.count == 0);
+  CHECK(imported.scene.textures.count == 0);
+  CHECK(imported.scene.materials[0].diffuse.x == doctest::Approx(0.25 * (1 - metallic)));
+  CHECK(imported.scene.materials[0].transmission.x == doctest::Approx(0.25 * (1 - metallic)));
   CHECK(contains(imported.warning, "by their mean"));
 }
 
@@ -176,7 +200,7 @@ TEST_CASE("gltf_large_textures_are_halved_until_they_fit") {
   ImportOptions options;
   options.texture_side_max = 64;
   ImportedScene imported = load(path, options);
-  REQUIRE(imported.scene.textures.count == 2);
+  REQUIRE(imported.scene.textures.count == 3);
   for (const Texture& t : imported.scene.textures) CHECK((t.width == 64 && t.height == 64));
 }
 

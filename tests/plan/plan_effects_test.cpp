@@ -62,6 +62,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::animation), bit(E::animation)},
       {bit(F::supersampling), bit(E::supersampling)},
       {bit(F::one_sided), bit(E::back_face_culling)},
+      {bit(F::metallic_roughness),
+       bit(E::metallic_roughness) | bit(E::specular) | bit(E::mirror) | bit(E::ambient_gloss)},
       {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity)},  // stored; by request
   };
   for (const Row& row : rows) {
@@ -74,8 +76,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
 TEST_CASE("plan_effects_give_reasons") {
   std::uint32_t features = bit(Feature::mirror) | bit(Feature::point_light);
   EffectPlan plan = plan_effects(generate_scene(features, 1)->scene, settings_for(features, 8, 6));
-  CHECK(reason(plan, Effect::mirror) == "1 of 10 materials mirror");
-  CHECK(reason(plan, Effect::refraction) == "none of 10 materials transmit");
+  CHECK(reason(plan, Effect::mirror) == "1 of 11 materials mirror");
+  CHECK(reason(plan, Effect::refraction) == "none of 11 materials transmit");
   CHECK(reason(plan, Effect::point_light) == "1 point light");
   CHECK(reason(plan, Effect::spot_light) == "no spot light");
   CHECK(reason(plan, Effect::supersampling) == "1 sample per pixel");
@@ -84,8 +86,8 @@ TEST_CASE("plan_effects_give_reasons") {
   Settings settings = settings_for(features, 8, 6);
   settings.forced_on = bit(Effect::absorption), settings.forced_off = bit(Effect::mirror) | bit(Effect::animation);
   plan = plan_effects(generate_scene(features, 1)->scene, settings);
-  CHECK(reason(plan, Effect::absorption) == "forced on (none of 10 materials absorb)");
-  CHECK(reason(plan, Effect::mirror) == "forced off (1 of 10 materials mirror)");
+  CHECK(reason(plan, Effect::absorption) == "forced on (none of 11 materials absorb)");
+  CHECK(reason(plan, Effect::mirror) == "forced off (1 of 11 materials mirror)");
   CHECK(reason(plan, Effect::animation) == "nothing moves");  // was off anyway
   CHECK(has(plan.mask, Effect::absorption));
   CHECK_FALSE(has(plan.mask, Effect::mirror));

@@ -27,7 +27,8 @@ bool same_scene(const Scene& a, const Scene& b) {
          same_bytes(a.joints, b.joints) && same_bytes(a.moving_meshes, b.moving_meshes) &&
          same_bytes(a.rest_positions, b.rest_positions) && same_bytes(a.rest_normals, b.rest_normals) &&
          same_bytes(a.skin_weights, b.skin_weights) && same_bytes(a.morph_positions, b.morph_positions) &&
-         same_bytes(a.morph_normals, b.morph_normals) && same_bytes(a.accel, b.accel);
+         same_bytes(a.morph_normals, b.morph_normals) && same_bytes(a.accel, b.accel) &&
+         same_bytes(a.material_maps, b.material_maps);
 }
 
 }  // namespace

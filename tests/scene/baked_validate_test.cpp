@@ -76,7 +76,7 @@ TEST_CASE("hard_08_vertices_and_indices_out_of_range_are_refused") {
   for (int corner = 0; corner < 3; ++corner)
     refuses("triangles[5]", [=](FullScene* f) { f->triangles[5].set_vertex(corner, 14); });
   refuses("triangles[0]", [](FullScene* f) { f->triangles[0].set_vertex(1, kVertexCountMax - 1); });
-  refuses("triangles[2]", [](FullScene* f) { f->triangles[2].set_material(2); });
+  refuses("triangles[2]", [](FullScene* f) { f->triangles[2].set_material(3); });
 }
 
 // Goal: HARDCASES row 27: singular and overflowing transforms are refused, naming the node. Method: determinants 0,
@@ -163,6 +163,30 @@ TEST_CASE("validate_scene_refuses_bad_materials") {
   accepts([](FullScene* f) {
     f->materials[1].exponent = 1e6f, f->materials[1].ior = 1, f->materials[1].diffuse = {1, 1, 0};
   });
+}
+
+// Goal: maps that would leave their bounds, or with invalid references, are refused, and so are maps of materials that
+// kernels would not ask for them. Method: each field in turn.
+TEST_CASE("validate_scene_refuses_bad_material_maps") {
+  for (float bad : {kNan, kInf, -0.001f, 1.001f}) {
+    refuses("material_maps[2].base.x", [=](FullScene* f) { f->material_maps[2].model.base.x = bad; });
+    refuses("material_maps[2].dielectric.z", [=](FullScene* f) { f->material_maps[2].model.dielectric.z = bad; });
+    refuses("material_maps[2].grazing", [=](FullScene* f) { f->material_maps[2].model.grazing = bad; });
+    refuses("material_maps[2].metallic", [=](FullScene* f) { f->material_maps[2].metallic = bad; });
+    refuses("material_maps[0].roughness", [=](FullScene* f) { f->material_maps[0].roughness = bad; });
+    refuses("material_maps[2].metallic_low", [=](FullScene* f) { f->material_maps[2].metallic_low = bad; });
+    refuses("material_maps[2].metallic_high", [=](FullScene* f) { f->material_maps[2].metallic_high = bad; });
+    refuses("material_maps[2].roughness_low", [=](FullScene* f) { f->material_maps[2].roughness_low = bad; });
+    refuses("material_maps[2].roughness_high", [=](FullScene* f) { f->material_maps[2].roughness_high = bad; });
+  }
+  refuses("metallic_low", [](FullScene* f) { f->material_maps[2].metallic_low = 0.8f; });
+  refuses("is texture 2 of 2", [](FullScene* f) { f->material_maps[2].metallic_roughness.texture = 2; });
+  refuses("not finite", [](FullScene* f) { f->material_maps[0].metallic_roughness.m[0][1] = kInf; });
+  refuses("one for each", [](FullScene* f) { f->material_maps.pop_back(); });
+  refuses("transmits", [](FullScene* f) { f->materials[2].transmission.y = 0.5f; });
+  refuses("unlit", [](FullScene* f) { f->materials[2].unlit = 1, f->materials[2].specular = {0, 0, 0}; });
+  refuses("has none", [](FullScene* f) { f->materials[2].specular = {0, 0, 0}; });
+  accepts([](FullScene* f) { f->material_maps.clear(); });
 }
 
 // Goal: no texel outside the array is ever fetched.

@@ -25,7 +25,7 @@ void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_c
   }
   for (std::uint32_t i = 0; i < triangle_count; ++i)
     f->triangles.push_back(
-        {next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, i % 2});
+        {next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, next_u32(rng) % vertex_count, i % 3});
   Material plain, rich;
   rich.specular = color(rng), rich.mirror = color(rng), rich.transmission = color(rng),
   rich.absorption = color(rng) * 9.0f;
@@ -36,6 +36,13 @@ void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_c
   rich.diffuse_texture.texture = 0, rich.emission_texture.texture = 1;
   f->materials = {plain, rich};
   f->textures = {{0, 3, 2, Wrap::repeat, Wrap::clamp, 1}, {6, 1, 4, Wrap::mirror, Wrap::repeat, 0}};
+  f->materials.push_back(plain);
+  f->materials[2].specular = {0.5f, 0.75f, 1};
+  f->material_maps.resize(3);
+  MaterialMaps& maps = f->material_maps[2];
+  maps.model = {{1, 0.5f, 0.25f}, {0.04f, 0.05f, 0}, 0.75f};
+  maps.metallic_roughness.texture = 1, maps.metallic = 0.75f, maps.roughness = 1;
+  maps.metallic_low = 0.25f, maps.metallic_high = 0.75f, maps.roughness_low = 0.125f, maps.roughness_high = 1;
   for (int i = 0; i < 10; ++i) f->texels.push_back(next_u32(rng));
 }
 
@@ -68,7 +75,8 @@ void make_motion(Rng* rng, std::uint32_t vertex_count, FullScene* f) {
 
 void FullScene::bind() {
   scene.positions = view(positions), scene.normals = view(normals), scene.uvs = view(uvs), scene.colors = view(colors);
-  scene.triangles = view(triangles), scene.materials = view(materials), scene.textures = view(textures);
+  scene.triangles = view(triangles), scene.materials = view(materials), scene.material_maps = view(material_maps),
+  scene.textures = view(textures);
   scene.texels = view(texels), scene.lights = view(lights), scene.cameras = view(cameras), scene.nodes = view(nodes);
   scene.animations = view(animations), scene.channels = view(channels), scene.key_times = view(key_times);
   scene.key_values = view(key_values), scene.weights = view(weights), scene.skins = view(skins);

@@ -12,6 +12,7 @@ struct FullScene {
   std::vector<pocketray::Rgba16> colors;
   std::vector<pocketray::Triangle> triangles;
   std::vector<pocketray::Material> materials;
+  std::vector<pocketray::MaterialMaps> material_maps;
   std::vector<pocketray::Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<pocketray::Light> lights;

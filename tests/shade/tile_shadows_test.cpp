@@ -69,9 +69,9 @@ TEST_CASE("tile_shadows_are_known_at_first_hits_alone") {
   CHECK_FALSE(is_known(tracer, 1, &blocked));
   CHECK_FALSE(is_known(tracer, kTileLightMax, &blocked));
   Surface first = {};
-  first.hit = {1, 0.25f, 0.5f, 7}, first.front = true;
+  first.hit = {0.25f, 0.5f, 7}, first.front = true;
   Surface same = first, other_u = first, other_v = first, other_triangle = first, other_side = first;
-  same.hit.t = 2;  // met by another ray
+  same.point = {1, 2, 3};  // met by another ray
   other_u.hit.u = 0.5f, other_v.hit.v = 0.25f, other_triangle.hit.triangle = 8, other_side.front = false;
   CHECK(same_surface(first, same));
   for (const Surface* s : {&other_u, &other_v, &other_triangle, &other_side}) CHECK_FALSE(same_surface(first, *s));

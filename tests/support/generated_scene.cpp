@@ -31,6 +31,19 @@ void add_floor_and_wall(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   add_quad(s, {-3, 0, -2.5f}, {3, 0, -2.5f}, {3, 3, -2.5f}, {-3, 3, -2.5f}, w);
 }
 
+// Between metal and plastic, smooth enough to mirror a little everywhere.
+void add_mapped_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
+  const std::uint32_t material = add_material(s, matte({0.7f, 0.6f, 0.5f}));
+  add_box(s, {-2.7f, 0, -2}, {-2.1f, 1.7f, -1.3f}, material);
+  if (!has(features, Feature::metallic_roughness)) return;
+  std::vector<std::array<int, 4>> texels;
+  for (int i = 0; i < 16; ++i)
+    texels.push_back({9, 40 + static_cast<int>(next_u32(rng) % 36), static_cast<int>(next_u32(rng) % 256), 255});
+  if (has(features, Feature::texture))
+    s->materials[material].diffuse_texture.texture = add_noise_texture(s, rng, false);
+  add_map(s, material, {{0.7f, 0.6f, 0.5f}, {0.04f, 0.05f, 0.06f}, 0.9f}, add_texture(s, 4, 4, texels));
+}
+
 void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   Material shiny = matte(random_color(rng)), reflecting = matte(random_color(rng) * 0.5f),
            glass = matte(random_color(rng)), core = glass;
@@ -123,6 +136,8 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   add_bodies(s.get(), features, &rng);
   std::uint32_t vertex_count = static_cast<std::uint32_t>(s->positions.size()) - first_vertex;
   add_panes(s.get(), features, &rng);
+  add_mapped_box(s.get(), features, &rng);
+  if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
   add_lights(s.get(), features, &rng);
   if (has(features, Feature::animation)) add_motion(s.get(), first_vertex, vertex_count);
   aim(s.get(), {0.3f, 1.6f, 4.6f}, {0, 1, 0}, 50);

@@ -31,8 +31,9 @@ enum class Feature : int {
   animation,
   supersampling,
   one_sided,
+  metallic_roughness,
 };
-constexpr int kFeatureCount = 18;
+constexpr int kFeatureCount = 19;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
@@ -45,6 +46,7 @@ struct GeneratedScene {
   std::vector<Rgba16> colors;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
+  std::vector<MaterialMaps> material_maps;
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;
@@ -74,6 +76,9 @@ void add_sphere(GeneratedScene* s, const Vec3& center, float radius, int columns
 std::uint32_t add_texture(GeneratedScene* s, int width, int height, const std::vector<std::array<int, 4>>& rgba,
                           Wrap wrap_u = Wrap::repeat, Wrap wrap_v = Wrap::repeat, bool nearest = false);
 void aim(GeneratedScene* s, const Vec3& eye, const Vec3& target, double vertical_fov_degrees);
+
+// Gives a material a metallic-roughness map of that texture; its own lobes become those of middling values.
+void add_map(GeneratedScene* s, std::uint32_t material, const MetallicRoughness& model, std::uint32_t texture);
 
 // At most 300 triangles: a floor, a wall, boxes, spheres and panes, each of which shows one feature if the set has it.
 std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint64_t seed);

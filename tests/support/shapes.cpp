@@ -2,6 +2,8 @@
 #include <cstring>
 
 #include "base/fmath.h"
+#include "brdf/brdf_list.h"
+#include "scene/metallic_roughness.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {
@@ -21,7 +23,8 @@ Array<const T> view(const std::vector<T>& v, bool wanted) {
 
 void GeneratedScene::bind() {
   scene.positions = view(positions), scene.normals = view(normals, with_normals), scene.uvs = view(uvs, with_uvs);
-  scene.colors = view(colors, with_colors), scene.triangles = view(triangles), scene.materials = view(materials);
+  scene.colors = view(colors, with_colors), scene.triangles = view(triangles), scene.materials = view(materials),
+  scene.material_maps = view(material_maps);
   scene.textures = view(textures), scene.texels = view(texels), scene.lights = view(lights);
   scene.cameras = view(cameras), scene.nodes = view(nodes), scene.animations = view(animations);
   scene.channels = view(channels), scene.key_times = view(key_times), scene.key_values = view(key_values);
@@ -41,6 +44,16 @@ std::uint32_t add_vertex(GeneratedScene* s, const Vec3& position, const Vec3& no
   auto channel = [&](float x) { return static_cast<std::uint16_t>(32768 + 32767 * std::sin(3 * x)); };
   s->colors.push_back({channel(position.x), channel(position.y), channel(position.z), 65535});
   return static_cast<std::uint32_t>(s->positions.size() - 1);
+}
+
+void add_map(GeneratedScene* s, std::uint32_t material, const MetallicRoughness& model, std::uint32_t texture) {
+  s->material_maps.resize(s->materials.size());
+  MaterialMaps& maps = s->material_maps[material];
+  maps.model = model, maps.metallic = maps.roughness = 1;
+  maps.metallic_high = maps.roughness_high = 1;
+  maps.metallic_roughness.texture = texture;
+  set_lobes(model, 0.5f, 0.5f, 0, &s->materials[material]);
+  s->materials[material].brdf = kGgx;
 }
 
 void add_triangle(GeneratedScene* s, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material) {

@@ -1,0 +1,56 @@
+// Textures of materials.
+#include "scene/metallic_roughness.h"
+#include "scene/validate_checks.h"
+
+namespace pocketray {
+
+Status check_texture_use(const char* array, const char* field, std::uint32_t index, const TextureUse& use,
+                         const Scene& scene) {
+  for (const auto& row : use.m)
+    for (float x : row)
+      if (!is_coordinate(x)) return failure("%s[%u].%s has a transform that is not finite", array, index, field);
+  if (use.texture == kNone) return success();
+  if (use.texture >= scene.textures.count)
+    return failure("%s[%u].%s is texture %u of %u", array, index, field, use.texture, scene.textures.count);
+  if (scene.uvs.empty()) return failure("%s[%u].%s needs uvs, the scene has none", array, index, field);
+  return success();
+}
+
+static Status validate_maps(const Scene& scene, std::uint32_t index) {
+  const Material& m = scene.materials[index];
+  const MaterialMaps& maps = scene.material_maps[index];
+  const FieldRange fields[] = {
+      {"base.x", maps.model.base.x, 0, 1},
+      {"base.y", maps.model.base.y, 0, 1},
+      {"base.z", maps.model.base.z, 0, 1},
+      {"dielectric.x", maps.model.dielectric.x, 0, 1},
+      {"dielectric.y", maps.model.dielectric.y, 0, 1},
+      {"dielectric.z", maps.model.dielectric.z, 0, 1},
+      {"grazing", maps.model.grazing, 0, 1},
+      {"metallic", maps.metallic, 0, 1},
+      {"roughness", maps.roughness, 0, 1},
+      {"metallic_high", maps.metallic_high, 0, 1},
+      {"metallic_low", maps.metallic_low, 0, maps.metallic_high},
+      {"roughness_high", maps.roughness_high, 0, 1},
+      {"roughness_low", maps.roughness_low, 0, maps.roughness_high},
+  };
+  RETURN_IF_ERROR(check_fields("material_maps", index, fields));
+  RETURN_IF_ERROR(check_texture_use("material_maps", "metallic_roughness", index, maps.metallic_roughness, scene));
+  if (maps.metallic_roughness.texture == kNone) return success();
+  if (m.unlit || !is_zero(m.transmission))
+    return failure("material_maps[%u].metallic_roughness: its material is unlit or transmits light", index);
+  // Kernels decide by the mean lobe whether the material has one at all.
+  if (is_zero(m.specular) && !is_zero(lobe_bounds(m, maps).specular))
+    return failure("material_maps[%u] makes a glossy lobe, but materials[%u] has none", index, index);
+  return success();
+}
+
+Status validate_material_maps(const Scene& scene) {
+  if (scene.material_maps.count != 0 && scene.material_maps.count != scene.materials.count)
+    return failure("%u material_maps for %u materials: there must be one for each or none", scene.material_maps.count,
+                   scene.materials.count);
+  for (std::uint32_t i = 0; i < scene.material_maps.count; ++i) RETURN_IF_ERROR(validate_maps(scene, i));
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,78 @@
+#include "shade/material_maps.h"
+
+#include "base/check.h"
+#include "effect/effect_probe.h"
+#include "scene/metallic_roughness.h"
+#include "shade/ambient_gloss.h"
+#include "shade/instantiate.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+const MaterialMaps* maps_of(const Scene& scene, const Surface& s) {
+  return scene.material_maps.count ? &scene.material_maps[static_cast<std::uint32_t>(s.material - scene.materials.data)]
+                                   : nullptr;
+}
+
+float within(float x, float low, float high) { return x > low ? (x < high ? x : high) : low; }
+
+void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, Surface* s) {
+  effect_entered<Effect::metallic_roughness>();
+  const Vec3 numbers = sample_numbers(*frame.scene, maps.metallic_roughness, uv, frame.settings.texture_filter);
+  const float metallic = within(maps.metallic * (numbers.z / 255), maps.metallic_low, maps.metallic_high);
+  s->metallic = static_cast<std::uint16_t>(metallic * 65535 + 0.5f);
+  s->roughness = within(maps.roughness * (numbers.y / 255), maps.roughness_low, maps.roughness_high);
+  s->diffuse = maps.model.base * (1 - metallic);
+  if (s->is_tinted) s->diffuse *= s->tint;
+}
+
+template <EffectMask mask, bool first>
+void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
+  frame.plain_surface(frame, ray, hit, s);
+  const Scene& scene = *frame.scene;
+  if (const MaterialMaps* maps = maps_of(scene, *s)) {
+    if constexpr (has(mask, Effect::metallic_roughness)) {
+      if (maps->metallic_roughness.texture != kNone)
+        apply_metallic_roughness(frame, *maps, hit_uv(scene, hit.triangle, hit.u, hit.v), s);
+    }
+  }
+  (first ? frame.first_glow : frame.glow)(frame, s);
+  if (has(frame.mask, Effect::ambient_gloss)) {
+    Material mapped;
+    add_surroundings(frame, ray, lobes_at(frame, *s, &mapped), s);
+  }
+}
+
+template <bool first>
+struct MapsPart {
+  using Function = SurfaceFunction;
+  static constexpr EffectsOf<kMapEffects> kEffects = {};
+  template <EffectMask mask>
+  static constexpr Function instance() {
+    return mapped_surface<mask, first>;
+  }
+};
+
+}  // namespace
+
+const Material& lobes_at(const FrameData& frame, const Surface& s, Material* mapped) {
+  const MaterialMaps* maps = maps_of(*frame.scene, s);
+  if (!has(frame.mask, Effect::metallic_roughness) || !maps || maps->metallic_roughness.texture == kNone)
+    return *s.material;
+  *mapped = *s.material;
+  set_lobes(maps->model, static_cast<float>(s.metallic) / 65535, s.roughness, 0, mapped);
+  return *mapped;
+}
+
+void add_material_maps(FrameData* frame) {
+  CHECK(frame != nullptr && frame->scene != nullptr);
+  CHECK((frame->mask & kMapEffects) != 0);
+  const EffectMask late = bit(Effect::instant_radiosity);  // its light comes with the tile
+  frame->plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
+  frame->glow = find_glow_function(frame->mask), frame->first_glow = find_glow_function(frame->mask & ~late);
+  frame->surface = Instantiations<MapsPart<false>>::find(frame->mask);
+  frame->first_surface = Instantiations<MapsPart<true>>::find(frame->mask);
+}
+
+}  // namespace pocketray
