@@ -26,6 +26,7 @@ constexpr std::uint32_t kChannelKeyCountMax = 1u << 22;  // over all animation c
 constexpr std::uint32_t kMorphTargetCountMax = 1024;     // of one mesh
 constexpr std::uint32_t kBrdfCountMax = 16;
 constexpr float kPhongExponentMax = 1e6f;  // HARDCASES row 31
+constexpr float kNormalScaleMax = 1000;    // steeper normals are horizontal within rounding
 constexpr float kIorMax = 100;
 constexpr std::uint32_t kSampleCountMax = 16;       // per pixel
 constexpr float kCutOffLevelsMax = 64;              // a quarter of the display's range

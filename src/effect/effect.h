@@ -28,8 +28,10 @@ enum class Effect : std::uint8_t {
   instant_radiosity,
   ambient_gloss,
   metallic_roughness,
+  normal_map,
+  occlusion,
 };
-constexpr int kEffectCount = 23;
+constexpr int kEffectCount = 25;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

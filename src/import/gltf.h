@@ -77,6 +77,15 @@ int gltf_uv_set(const tinygltf::TextureInfo& info);
 // gltf_material.cpp: scene material of a glTF material (-1: the default one).
 std::uint32_t gltf_material(GltfFile* file, int material);
 
+// gltf_maps.cpp: the maps of a material, except for metallic and roughness if it is clear.
+void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps);
+// The mean of a channel of a metallic-roughness texture, 1 without one; above zero if any texel is, so that the mean
+// lobe has what any other has.
+float gltf_map_mean(GltfFile* file, int texture, int channel);
+// The scene keeps one set of texture coordinates per vertex: that of the first texture that the material has; -1: none.
+int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
+                       const MaterialMaps& maps);
+
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);
 
@@ -115,6 +124,9 @@ void gltf_apply_skin(MeshData* mesh, const std::vector<Transform>& joints);
 
 // gltf_light.cpp
 void gltf_lights_and_cameras(GltfFile* file);
+
+// A value limited to 0 to 1; 0 for NaN.
+inline float gltf_unit(double value) { return value > 0 ? static_cast<float>(value < 1 ? value : 1) : 0.0f; }
 
 // Numbers out of tinygltf's generic values, with defaults; an extension object or null.
 const tinygltf::Value* gltf_extension(const tinygltf::ExtensionMap& extensions, const char* name);

@@ -21,11 +21,9 @@
 namespace pocketray {
 namespace {
 
-float unit(double value) { return value > 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0f; }
-
 Vec3 color3(const std::vector<double>& values, const Vec3& fallback) {
   if (values.size() < 3) return fallback;
-  return {unit(values[0]), unit(values[1]), unit(values[2])};
+  return {gltf_unit(values[0]), gltf_unit(values[1]), gltf_unit(values[2])};
 }
 
 // The mean of a data texture's channel; 1 without the texture.
@@ -33,19 +31,6 @@ float texture_mean(GltfFile* file, int texture, int channel, const char* name) {
   if (texture < 0) return 1;
   note_remark(file->builder, std::string(name) + " textures count only by their mean");
   return channel_mean(gltf_image(file, texture, TexelKind::numbers), channel);
-}
-
-// Metallic (blue) and roughness (green) where the material has a texture of them: their ranges, and the use of it.
-void read_map(GltfFile* file, const tinygltf::PbrMetallicRoughness& pbr, MaterialMaps* maps) {
-  const Image& image = gltf_image(file, pbr.metallicRoughnessTexture.index, TexelKind::numbers);
-  const ChannelRange metallic = channel_range(image, 2), roughness = channel_range(image, 1);
-  auto scaled = [](float factor, std::uint8_t texel) { return factor * (static_cast<float>(texel) / 255); };
-  maps->metallic = unit(pbr.metallicFactor), maps->roughness = unit(pbr.roughnessFactor);
-  maps->metallic_low = scaled(maps->metallic, metallic.low);
-  maps->metallic_high = scaled(maps->metallic, metallic.high);
-  maps->roughness_low = scaled(maps->roughness, roughness.low);
-  maps->roughness_high = scaled(maps->roughness, roughness.high);
-  maps->metallic_roughness = gltf_texture_use(file, pbr.metallicRoughnessTexture, TexelKind::numbers);
 }
 
 void read_volume(const tinygltf::ExtensionMap& extensions, Material* material) {
@@ -72,24 +57,16 @@ DielectricSpecular read_specular(GltfFile* file, const tinygltf::ExtensionMap& e
   if (!extension) return {{reflectance, reflectance, reflectance}, 1};
   if (extension->Has("specularTexture") || extension->Has("specularColorTexture"))
     note_unused(file->builder, "specular textures");
-  DielectricSpecular d = {{reflectance, reflectance, reflectance}, unit(gltf_number(*extension, "specularFactor", 1))};
+  DielectricSpecular d = {{reflectance, reflectance, reflectance},
+                          gltf_unit(gltf_number(*extension, "specularFactor", 1))};
   const tinygltf::Value color =
       extension->Has("specularColorFactor") ? extension->Get("specularColorFactor") : tinygltf::Value();
   for (int c = 0; c < 3; ++c) {
     const bool given = color.IsArray() && color.ArrayLen() == 3 && color.Get(c).IsNumber();
     const double factor = given ? color.Get(c).GetNumberAsDouble() : 1;  // may be above 1
-    d.normal[c] = unit(factor * static_cast<double>(reflectance)) * d.grazing;
+    d.normal[c] = gltf_unit(factor * static_cast<double>(reflectance)) * d.grazing;
   }
   return d;
-}
-
-// The mean of a channel of a metallic-roughness texture; above zero if any texel is, so that the mean lobe has what any
-// other has.
-float map_mean(GltfFile* file, int texture, int channel) {
-  if (texture < 0) return 1;
-  const Image& image = gltf_image(file, texture, TexelKind::numbers);
-  const float mean = channel_mean(image, channel);
-  return channel_range(image, channel).high > 0 ? std::max(mean, 0x1p-10f) : mean;
 }
 
 void read_surface(GltfFile* file, const tinygltf::Material& source, Material* material, MaterialMaps* maps) {
@@ -100,21 +77,18 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
         static_cast<float>(std::min(std::max(gltf_number(*ior, "ior", 1.5), 1.0), static_cast<double>(kIorMax)));
   float transmission = 0;
   if (const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_transmission")) {
-    transmission = unit(gltf_number(*extension, "transmissionFactor", 0));
+    transmission = gltf_unit(gltf_number(*extension, "transmissionFactor", 0));
     if (transmission > 0)
       transmission *= texture_mean(file, gltf_texture_info(*extension, "transmissionTexture").index, 0, "transmission");
   }
   const DielectricSpecular dielectric = read_specular(file, source.extensions, material->ior);
   maps->model = {color3(pbr.baseColorFactor, {1, 1, 1}), dielectric.normal, dielectric.grazing};
   material->brdf = kGgx;
-  set_lobes(maps->model, unit(pbr.metallicFactor) * map_mean(file, texture, 2),
-            unit(pbr.roughnessFactor) * map_mean(file, texture, 1), transmission, material);
+  set_lobes(maps->model, gltf_unit(pbr.metallicFactor) * gltf_map_mean(file, texture, 2),
+            gltf_unit(pbr.roughnessFactor) * gltf_map_mean(file, texture, 1), transmission, material);
   const bool is_clear = !is_zero(material->transmission);
   if (is_clear) read_volume(source.extensions, material);
-  if (texture >= 0 && is_clear)
-    note_remark(file->builder, "metallic-roughness textures of transparent materials count only by their mean");
-  else if (texture >= 0)
-    read_map(file, pbr, maps);
+  gltf_read_maps(file, source, is_clear, maps);
 }
 
 void read_emission(GltfFile* file, const tinygltf::Material& source, Material* material) {
@@ -125,36 +99,13 @@ void read_emission(GltfFile* file, const tinygltf::Material& source, Material* m
   if (!is_zero(material->emission)) material->emission_texture = gltf_texture_use(file, source.emissiveTexture);
 }
 
-// The scene keeps one set of texture coordinates per vertex: that of the first of these textures that the material has.
-int choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
-                  const MaterialMaps& maps) {
-  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  const struct {
-    const char* name;
-    const TextureUse& use;
-    const tinygltf::TextureInfo& info;
-  } all[] = {{"base colour", material.diffuse_texture, pbr.baseColorTexture},
-             {"metallic-roughness", maps.metallic_roughness, pbr.metallicRoughnessTexture},
-             {"emission", material.emission_texture, source.emissiveTexture}};
-  const char* chosen = nullptr;
-  int set = -1;
-  for (const auto& texture : all) {
-    if (texture.use.texture == kNone) continue;
-    if (!chosen)
-      chosen = texture.name, set = gltf_uv_set(texture.info);
-    else if (gltf_uv_set(texture.info) != set)
-      note_remark(file->builder, std::string(texture.name) + " textures use the texture coordinates of the " + chosen);
-  }
-  return set;
-}
-
 Material convert(GltfFile* file, const tinygltf::Material& source, MaterialMaps* maps) {
   Material material;
   read_surface(file, source, &material, maps);
   read_emission(file, source, &material);
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   material.diffuse_texture = gltf_texture_use(file, pbr.baseColorTexture);
-  material.opacity = pbr.baseColorFactor.size() > 3 ? unit(pbr.baseColorFactor[3]) : 1;
+  material.opacity = pbr.baseColorFactor.size() > 3 ? gltf_unit(pbr.baseColorFactor[3]) : 1;
   material.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::mask
                         : source.alphaMode == "BLEND" ? AlphaMode::blend
                                                       : AlphaMode::opaque;
@@ -174,8 +125,6 @@ Material convert(GltfFile* file, const tinygltf::Material& source, MaterialMaps*
     material.opacity = opacity, material.alpha_cutoff = cutoff, material.double_sided = double_sided,
     material.unlit = 1;
   }
-  if (source.normalTexture.index >= 0) note_unused(file->builder, "normal maps");
-  if (source.occlusionTexture.index >= 0) note_unused(file->builder, "occlusion maps");
   if (const tinygltf::Value* volume = gltf_extension(source.extensions, "KHR_materials_volume"))
     if (volume->Has("thicknessTexture")) note_unused(file->builder, "thickness maps");
   return material;
@@ -192,9 +141,10 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   if (out.materials.size() >= kMaterialCountMax) fail_import("more than %u materials; merge some", kMaterialCountMax);
   MaterialMaps maps;
   Material material = convert(file, source, &maps);
-  if (index >= 0) file->material_uv_set[static_cast<std::size_t>(index)] = choose_uv_set(file, source, material, maps);
+  if (index >= 0)
+    file->material_uv_set[static_cast<std::size_t>(index)] = gltf_choose_uv_set(file, source, material, maps);
   *known = static_cast<std::uint32_t>(out.materials.size());
-  if (maps.metallic_roughness.texture != kNone) {
+  if (has_map(maps)) {
     out.material_maps.resize(out.materials.size());
     out.material_maps.push_back(maps);
   }
@@ -218,7 +168,7 @@ Vec3 gltf_color(const tinygltf::Value& object, const char* key, const Vec3& fall
   Vec3 color = fallback;
   for (int c = 0; c < 3; ++c) {
     const tinygltf::Value& value = object.Get(key).Get(c);
-    if (value.IsNumber()) color[c] = unit(value.GetNumberAsDouble());
+    if (value.IsNumber()) color[c] = gltf_unit(value.GetNumberAsDouble());
   }
   return color;
 }

@@ -8,6 +8,7 @@
 #include "import/import_error.h"
 #include "scene/animate.h"
 #include "scene/baked.h"
+#include "scene/metallic_roughness.h"
 
 namespace pocketray {
 
@@ -187,7 +188,6 @@ static void pose_at_start(const Scene& scene, SceneArrays* out) {
   std::copy(pose.normals.begin(), pose.normals.end(), out->normals.begin());
 }
 
-static bool is_mapped(const MaterialMaps& maps) { return maps.metallic_roughness.texture != kNone; }
 static bool is_textured(const Material& material) {
   return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
 }
@@ -199,7 +199,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
   bool textured = std::any_of(out.materials.begin(), out.materials.end(), is_textured) ||
-                  std::any_of(out.material_maps.begin(), out.material_maps.end(), is_mapped);
+                  std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map);
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});

@@ -16,7 +16,7 @@ namespace {
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0,
-                metallic_roughness = 0;
+                metallic_roughness = 0, bumpy = 0, occluded = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
@@ -32,7 +32,11 @@ Census take_census(const Scene& scene, const Settings& settings) {
     if (!(used[i / 32] >> i % 32 & 1)) continue;
     const Material m =
         scene.material_maps.count ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
-    if (scene.material_maps.count) c.metallic_roughness += scene.material_maps[i].metallic_roughness.texture != kNone;
+    if (scene.material_maps.count) {
+      const MaterialMaps& maps = scene.material_maps[i];
+      c.metallic_roughness += maps.metallic_roughness.texture != kNone;
+      c.bumpy += maps.normal.texture != kNone, c.occluded += maps.occlusion.texture != kNone;
+    }
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
     c.specular += !is_zero(m.specular);
@@ -123,6 +127,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::emission, c.emissive + c.unlit, c.unlit ? "emit or are unlit" : "emit");
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
   w.set_by_materials(Effect::metallic_roughness, c.metallic_roughness, "have a metallic-roughness texture");
+  w.set_by_materials(Effect::normal_map, c.bumpy, "have a normal texture");
   w.set_by_materials(Effect::back_face_culling, c.one_sided, "are one-sided");
   w.set_by_materials(Effect::area_light, c.emissive, "emit light");
   w.set_by_count(Effect::point_light, c.lights[static_cast<int>(LightKind::point)], "point light");
@@ -152,6 +157,11 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     w.set(Effect::ambient_gloss, false, "no ambient light or background");
   else
     w.set_by_materials(Effect::ambient_gloss, c.reflecting, "reflect the surroundings");
+  if (plan.decisions[static_cast<int>(Effect::ambient)].on ||
+      plan.decisions[static_cast<int>(Effect::ambient_gloss)].on)
+    w.set_by_materials(Effect::occlusion, c.occluded, "have an occlusion texture");
+  else
+    w.set(Effect::occlusion, false, "no ambient light");
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
   bool animated = is_animated(scene);

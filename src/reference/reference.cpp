@@ -125,7 +125,7 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
       return sum + path.weight * to_double(info.background);
     if (s.material->unlit && has(frame.mask, Effect::emission)) return sum + path.weight * s.diffuse;
     if (!is_zero(s.emission)) sum += path.weight * s.emission * emission_weight(reference, s, ray.direction, path);
-    sum += exact_indirect(*frame.scene, path.weight * s.diffuse, model);
+    sum += exact_indirect(*frame.scene, path.weight * s.diffuse, model) * s.open;
     if (model) sum += path.weight * reflected_surroundings(frame, s, -ray.direction);
     if (!model) s.cell = find_cell(reference.guide, s.point);
     if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))

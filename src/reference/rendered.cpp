@@ -31,7 +31,8 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   const FrameData& frame = *reference.world.frame;
   const Material& m = *s.material;
   if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
-  Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask);
+  const double open = has(frame.mask, Effect::ambient) ? s.open : 1;
+  Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask) * open;
   sum += reflected_surroundings(frame, s, -ray.direction);
   if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
     sum += sum_light_points(reference, s, -ray.direction, true);

@@ -48,6 +48,33 @@ double glossy_share(const ReferenceSurface& s) {
   return glossy > 0 ? glossy / (glossy + diffuse) : 0;
 }
 
+// The normal of a normal texture (sec. 3.9.3), for the rules stated in shade/normal_map.h: from ∂P/∂u and ∂P/∂v, which
+// solve e = u ∂P/∂u + v ∂P/∂v for both edges.
+Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d* corner,
+                    const Vec3d& direction, const ReferenceSurface& s) {
+  const Scene& scene = *frame.scene;
+  const Triangle& t = scene.triangles[s.triangle];
+  Vec3d numbers = to_double(sample_numbers(scene, maps.normal, uv, frame.settings.texture_filter));
+  for (int c = 0; c < 3; ++c) numbers[c] = std::fmax((numbers[c] - 128) / 127, -1);
+  numbers.x *= static_cast<double>(maps.normal_scale), numbers.y *= static_cast<double>(maps.normal_scale);
+  Vec2 at[3];
+  for (std::uint32_t i = 0; i < 3; ++i) at[i] = scene.uvs[t.vertex(i)];
+  const double u1 = static_cast<double>(at[1].x - at[0].x), v1 = static_cast<double>(at[1].y - at[0].y);
+  const double u2 = static_cast<double>(at[2].x - at[0].x), v2 = static_cast<double>(at[2].y - at[0].y);
+  const double determinant = u1 * v2 - u2 * v1;
+  if ((numbers.x == 0 && numbers.y == 0) || determinant == 0) return s.normal;
+  const Vec3d e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+  const Vec3d by_u = (e1 * v2 - e2 * v1) * (1 / determinant), by_v = (e2 * u1 - e1 * u2) * (1 / determinant);
+  const double side = s.front ? 1 : -1;
+  const Vec3d n = s.normal * side, tangent = normalize(by_u - n * dot(n, by_u));
+  Vec3d bitangent = cross(n, tangent);
+  if (dot(bitangent, by_v) > 0) bitangent = -bitangent;
+  Vec3d mapped = normalize(tangent * numbers.x + bitangent * numbers.y + n * numbers.z) * side;
+  const Vec3d way = normalize(direction);
+  if (dot(mapped, way) > 0) mapped = normalize(mapped - way * dot(mapped, way));
+  return is_zero(tangent) || is_zero(mapped) ? s.normal : mapped;
+}
+
 }  // namespace
 
 ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& hit, const Vec3d& direction) {
@@ -90,10 +117,17 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   };
   s.diffuse = to_double(m.diffuse) * tint;
   s.specular = tinted(m.specular, m.specular_tinted), s.mirror = tinted(m.mirror, m.mirror_tinted);
-  s.is_mapped = false;
-  if (scene.material_maps.count && has(frame.mask, Effect::metallic_roughness)) {
+  s.is_mapped = false, s.open = 1;
+  if (scene.material_maps.count) {
     const MaterialMaps& maps = scene.material_maps[t.material()];
-    if (maps.metallic_roughness.texture != kNone) apply_metallic_roughness(frame, maps, uv, tint, &s);
+    if (has(frame.mask, Effect::normal_map) && maps.normal.texture != kNone)
+      s.normal = normal_of_map(frame, maps, uv, corner, direction, s);
+    if (has(frame.mask, Effect::occlusion) && maps.occlusion.texture != kNone) {
+      const double red = sample_numbers(scene, maps.occlusion, uv, frame.settings.texture_filter).x;
+      s.open = 1 - static_cast<double>(maps.occlusion_strength) * (1 - red / 255);
+    }
+    if (has(frame.mask, Effect::metallic_roughness) && maps.metallic_roughness.texture != kNone)
+      apply_metallic_roughness(frame, maps, uv, tint, &s);
   }
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
@@ -121,7 +155,7 @@ Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, 
   const Vec3 specular = {static_cast<float>(s.specular.x), static_cast<float>(s.specular.y),
                          static_cast<float>(s.specular.z)};
   const float cosine = static_cast<float>(dot(s.normal, to_viewer));
-  return to_double(reflected_surroundings(frame.scene->info, lobes_of(s), specular, cosine));
+  return s.open * to_double(reflected_surroundings(frame.scene->info, lobes_of(s), specular, cosine));
 }
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {

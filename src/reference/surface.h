@@ -16,6 +16,7 @@ struct ReferenceSurface {
   const Material* material;
   Material mapped;  // the material with the lobes that its maps give it here, if is_mapped
   bool is_mapped;
+  double open;                          // what an occlusion map leaves of ambient light
   const ReferenceCell* cell = nullptr;  // of the guide, if it has one here
 };
 

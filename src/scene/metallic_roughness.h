@@ -28,6 +28,10 @@ inline void set_lobes(const MetallicRoughness& model, float metallic, float roug
   m->transmission = model.base * passes;
 }
 
+inline bool has_map(const MaterialMaps& maps) {
+  return maps.metallic_roughness.texture != kNone || maps.normal.texture != kNone || maps.occlusion.texture != kNone;
+}
+
 // Upper bounds of the lobes that the map makes of the material, and the smallest roughness: all are monotonic in
 // metallic and roughness, so that the ends of their ranges have the extremes.
 inline Material lobe_bounds(Material m, const MaterialMaps& maps) {

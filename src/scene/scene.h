@@ -103,6 +103,13 @@ struct MaterialMaps {
   float metallic = 0, roughness = 0;
   // What the texture and the factors amount to. Other values are moved to the nearer end, so that bounds hold.
   float metallic_low = 0, metallic_high = 0, roughness_low = 0, roughness_high = 0;
+  // The normal in the frame of the tangent: R along u, G against v, B along the vertex normal, each −1 at 1 (and 0), 0
+  // at 128, 1 at 255. R and G × normal_scale.
+  TextureUse normal;
+  float normal_scale = 1;
+  // Ambient light × lerp(1, R, occlusion_strength).
+  TextureUse occlusion;
+  float occlusion_strength = 1;
 };
 
 enum class LightKind : std::uint32_t { point, spot, directional };

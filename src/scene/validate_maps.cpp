@@ -33,9 +33,13 @@ static Status validate_maps(const Scene& scene, std::uint32_t index) {
       {"metallic_low", maps.metallic_low, 0, maps.metallic_high},
       {"roughness_high", maps.roughness_high, 0, 1},
       {"roughness_low", maps.roughness_low, 0, maps.roughness_high},
+      {"normal_scale", maps.normal_scale, -kNormalScaleMax, kNormalScaleMax},
+      {"occlusion_strength", maps.occlusion_strength, 0, 1},
   };
   RETURN_IF_ERROR(check_fields("material_maps", index, fields));
   RETURN_IF_ERROR(check_texture_use("material_maps", "metallic_roughness", index, maps.metallic_roughness, scene));
+  RETURN_IF_ERROR(check_texture_use("material_maps", "normal", index, maps.normal, scene));
+  RETURN_IF_ERROR(check_texture_use("material_maps", "occlusion", index, maps.occlusion, scene));
   if (maps.metallic_roughness.texture == kNone) return success();
   if (m.unlit || !is_zero(m.transmission))
     return failure("material_maps[%u].metallic_roughness: its material is unlit or transmits light", index);

@@ -7,23 +7,23 @@
 
 namespace pocketray {
 
-void add_surroundings(const FrameData& frame, const Ray& ray, const Material& m, Surface* s) {
-  if (!reflects_surroundings(m)) return;
+Vec3 glow_of_surroundings(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s) {
+  if (!reflects_surroundings(m)) return {0, 0, 0};
   effect_entered<Effect::ambient_gloss>();
-  const Vec3 specular = reflectance_at(*s, m.specular, m.specular_tinted);
-  s->glow += reflected_surroundings(frame.scene->info, m, specular, dot(s->normal, ray.direction));
+  const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
+  return reflected_surroundings(frame.scene->info, m, specular, dot(s.normal, ray.direction));
 }
 
 namespace {
 
 void surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   frame.plain_surface(frame, ray, hit, s);
-  add_surroundings(frame, ray, *s->material, s);
+  s->glow += glow_of_surroundings(frame, ray, *s->material, *s);
 }
 
 void first_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   frame.plain_first_surface(frame, ray, hit, s);
-  add_surroundings(frame, ray, *s->material, s);
+  s->glow += glow_of_surroundings(frame, ray, *s->material, *s);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 namespace pocketray {
 
-// Adds it to the surface that the ray met, for the material's lobes there.
-void add_surroundings(const FrameData& frame, const Ray& ray, const Material& m, Surface* s);
+// This light at the surface that the ray met, for the material's lobes there.
+Vec3 glow_of_surroundings(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s);
 
 // Puts the effect in front of the frame's surface functions, so that frames without it do not even test for it.
 void add_ambient_gloss(FrameData* frame);

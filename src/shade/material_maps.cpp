@@ -5,6 +5,7 @@
 #include "scene/metallic_roughness.h"
 #include "shade/ambient_gloss.h"
 #include "shade/instantiate.h"
+#include "shade/normal_map.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -27,20 +28,38 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
   if (s->is_tinted) s->diffuse *= s->tint;
 }
 
+// What the map leaves of ambient light.
+float openness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv) {
+  effect_entered<Effect::occlusion>();
+  const float open = sample_numbers(*frame.scene, maps.occlusion, uv, frame.settings.texture_filter).x / 255;
+  return 1 + maps.occlusion_strength * (open - 1);
+}
+
 template <EffectMask mask, bool first>
 void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   frame.plain_surface(frame, ray, hit, s);
   const Scene& scene = *frame.scene;
+  float open = 1;
   if (const MaterialMaps* maps = maps_of(scene, *s)) {
+    const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
+    if constexpr (has(mask, Effect::normal_map)) {
+      if (maps->normal.texture != kNone) s->normal = mapped_normal(frame, *maps, uv, ray, *s);
+    }
     if constexpr (has(mask, Effect::metallic_roughness)) {
-      if (maps->metallic_roughness.texture != kNone)
-        apply_metallic_roughness(frame, *maps, hit_uv(scene, hit.triangle, hit.u, hit.v), s);
+      if (maps->metallic_roughness.texture != kNone) apply_metallic_roughness(frame, *maps, uv, s);
+    }
+    if constexpr (has(mask, Effect::occlusion)) {
+      if (maps->occlusion.texture != kNone) open = openness(frame, *maps, uv);
     }
   }
   (first ? frame.first_glow : frame.glow)(frame, s);
+  if constexpr (has(mask, Effect::occlusion)) {
+    if (has(frame.mask, Effect::ambient))
+      s->glow += AmbientIndirect::radiance({scene, nullptr, s->point, s->normal, s->diffuse}) * open;
+  }
   if (has(frame.mask, Effect::ambient_gloss)) {
     Material mapped;
-    add_surroundings(frame, ray, lobes_at(frame, *s, &mapped), s);
+    s->glow += glow_of_surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
   }
 }
 
@@ -69,8 +88,10 @@ void add_material_maps(FrameData* frame) {
   CHECK(frame != nullptr && frame->scene != nullptr);
   CHECK((frame->mask & kMapEffects) != 0);
   const EffectMask late = bit(Effect::instant_radiosity);  // its light comes with the tile
+  EffectMask glow = frame->mask;
+  if (has(glow, Effect::occlusion)) glow &= ~bit(Effect::ambient);  // mapped_surface() adds it
   frame->plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
-  frame->glow = find_glow_function(frame->mask), frame->first_glow = find_glow_function(frame->mask & ~late);
+  frame->glow = find_glow_function(glow), frame->first_glow = find_glow_function(glow & ~late);
   frame->surface = Instantiations<MapsPart<false>>::find(frame->mask);
   frame->first_surface = Instantiations<MapsPart<true>>::find(frame->mask);
 }

@@ -5,7 +5,7 @@
 
 namespace pocketray {
 
-constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness);
+constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion);
 
 // Puts the maps behind the frame's surface functions, and ambient gloss with them.
 void add_material_maps(FrameData* frame);

@@ -64,6 +64,9 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::one_sided), bit(E::back_face_culling)},
       {bit(F::metallic_roughness),
        bit(E::metallic_roughness) | bit(E::specular) | bit(E::mirror) | bit(E::ambient_gloss)},
+      {bit(F::normal_map), bit(E::normal_map)},
+      {bit(F::occlusion), 0},  // nothing to take away
+      {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity)},  // stored; by request
   };
   for (const Row& row : rows) {

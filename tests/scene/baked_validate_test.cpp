@@ -179,6 +179,14 @@ TEST_CASE("validate_scene_refuses_bad_material_maps") {
     refuses("material_maps[2].roughness_low", [=](FullScene* f) { f->material_maps[2].roughness_low = bad; });
     refuses("material_maps[2].roughness_high", [=](FullScene* f) { f->material_maps[2].roughness_high = bad; });
   }
+  for (float bad : {kNan, kInf, -1001.0f}) {
+    refuses("material_maps[1].normal_scale", [=](FullScene* f) { f->material_maps[1].normal_scale = bad; });
+    refuses("material_maps[2].occlusion_strength", [=](FullScene* f) { f->material_maps[2].occlusion_strength = bad; });
+    refuses("material_maps[2].normal has a transform",
+            [=](FullScene* f) { f->material_maps[2].normal.m[0][0] = bad * 1e30f; });
+  }
+  refuses("normal is texture 9 of 2", [](FullScene* f) { f->material_maps[0].normal.texture = 9; });
+  refuses("occlusion is texture 2 of 2", [](FullScene* f) { f->material_maps[0].occlusion.texture = 2; });
   refuses("metallic_low", [](FullScene* f) { f->material_maps[2].metallic_low = 0.8f; });
   refuses("is texture 2 of 2", [](FullScene* f) { f->material_maps[2].metallic_roughness.texture = 2; });
   refuses("not finite", [](FullScene* f) { f->material_maps[0].metallic_roughness.m[0][1] = kInf; });

@@ -35,6 +35,14 @@ void add_floor_and_wall(GeneratedScene* s, std::uint32_t features, Rng* rng) {
 void add_mapped_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   const std::uint32_t material = add_material(s, matte({0.7f, 0.6f, 0.5f}));
   add_box(s, {-2.7f, 0, -2}, {-2.1f, 1.7f, -1.3f}, material);
+  if (has(features, Feature::normal_map) || has(features, Feature::occlusion)) {
+    s->material_maps.resize(s->materials.size());
+    MaterialMaps& maps = s->material_maps[material];
+    if (has(features, Feature::normal_map))
+      maps.normal.texture = add_noise_texture(s, rng, false), maps.normal_scale = 0.4f;
+    if (has(features, Feature::occlusion))
+      maps.occlusion.texture = add_noise_texture(s, rng, false), maps.occlusion_strength = 0.8f;
+  }
   if (!has(features, Feature::metallic_roughness)) return;
   std::vector<std::array<int, 4>> texels;
   for (int i = 0; i < 16; ++i)

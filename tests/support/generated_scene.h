@@ -32,8 +32,10 @@ enum class Feature : int {
   supersampling,
   one_sided,
   metallic_roughness,
+  normal_map,
+  occlusion,  // shows under ambient light only
 };
-constexpr int kFeatureCount = 19;
+constexpr int kFeatureCount = 21;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }

@@ -10,7 +10,7 @@ RGB565, RGB888 = 0, 1
 EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-mask", "alpha-blend", "emission", "texture",
            "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
-           "ambient-gloss", "metallic-roughness"]
+           "ambient-gloss", "metallic-roughness", "normal-map", "occlusion"]
 
 failures = []
 

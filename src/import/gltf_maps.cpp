@@ -1,0 +1,80 @@
+// Textures of numbers: metallic and roughness, normals, occlusion (secs. 3.9.2, 3.9.3).
+#include <algorithm>
+#include <cmath>
+
+#include "base/limits.h"
+#include "import/gltf.h"
+
+namespace pocketray {
+namespace {
+
+// Metallic (blue) and roughness (green): their ranges, and the use of the texture.
+void read_metallic_roughness(GltfFile* file, const tinygltf::PbrMetallicRoughness& pbr, MaterialMaps* maps) {
+  const Image& image = gltf_image(file, pbr.metallicRoughnessTexture.index, TexelKind::numbers);
+  const ChannelRange metallic = channel_range(image, 2), roughness = channel_range(image, 1);
+  auto scaled = [](float factor, std::uint8_t texel) { return factor * (static_cast<float>(texel) / 255); };
+  maps->metallic = gltf_unit(pbr.metallicFactor), maps->roughness = gltf_unit(pbr.roughnessFactor);
+  maps->metallic_low = scaled(maps->metallic, metallic.low);
+  maps->metallic_high = scaled(maps->metallic, metallic.high);
+  maps->roughness_low = scaled(maps->roughness, roughness.low);
+  maps->roughness_high = scaled(maps->roughness, roughness.high);
+  maps->metallic_roughness = gltf_texture_use(file, pbr.metallicRoughnessTexture, TexelKind::numbers);
+}
+
+// Normal and occlusion textures have structures of their own in tinygltf.
+template <class Info>
+tinygltf::TextureInfo plain(const Info& info) {
+  tinygltf::TextureInfo result;
+  result.index = info.index, result.texCoord = info.texCoord, result.extensions = info.extensions;
+  return result;
+}
+
+}  // namespace
+
+float gltf_map_mean(GltfFile* file, int texture, int channel) {
+  if (texture < 0) return 1;
+  const Image& image = gltf_image(file, texture, TexelKind::numbers);
+  const float mean = channel_mean(image, channel);
+  return channel_range(image, channel).high > 0 ? std::max(mean, 0x1p-10f) : mean;
+}
+
+void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  if (pbr.metallicRoughnessTexture.index >= 0) {
+    if (is_clear)
+      note_remark(file->builder, "metallic-roughness textures of transparent materials count only by their mean");
+    else
+      read_metallic_roughness(file, pbr, maps);
+  }
+  maps->normal = gltf_texture_use(file, plain(source.normalTexture), TexelKind::numbers);
+  const double scale = source.normalTexture.scale, most = static_cast<double>(kNormalScaleMax);
+  maps->normal_scale = std::isfinite(scale) ? static_cast<float>(std::min(std::max(scale, -most), most)) : 1.0f;
+  maps->occlusion = gltf_texture_use(file, plain(source.occlusionTexture), TexelKind::numbers);
+  maps->occlusion_strength = gltf_unit(source.occlusionTexture.strength);
+}
+
+int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
+                       const MaterialMaps& maps) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  const struct {
+    const char* name;
+    const TextureUse& use;
+    tinygltf::TextureInfo info;
+  } all[] = {{"base colour", material.diffuse_texture, pbr.baseColorTexture},
+             {"metallic-roughness", maps.metallic_roughness, pbr.metallicRoughnessTexture},
+             {"normal", maps.normal, plain(source.normalTexture)},
+             {"emission", material.emission_texture, source.emissiveTexture},
+             {"occlusion", maps.occlusion, plain(source.occlusionTexture)}};
+  const char* chosen = nullptr;
+  int set = -1;
+  for (const auto& texture : all) {
+    if (texture.use.texture == kNone) continue;
+    if (!chosen)
+      chosen = texture.name, set = gltf_uv_set(texture.info);
+    else if (gltf_uv_set(texture.info) != set)
+      note_remark(file->builder, std::string(texture.name) + " textures use the texture coordinates of the " + chosen);
+  }
+  return set;
+}
+
+}  // namespace pocketray
