@@ -33,7 +33,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::radiosity, "radiosity", "a stored solution of the light between surfaces"},
     {Effect::instant_radiosity, "instant-radiosity", "--indirect instant-radiosity"},
     {Effect::ambient_gloss, "ambient-gloss", "a rough metal or plastic under ambient light or a background"},
-    {Effect::metallic_roughness, "metallic-roughness", "a material with a metallic-roughness texture"},
+    {Effect::metallic_roughness, "metallic-roughness", "a material with a metallic-roughness or specular texture"},
     {Effect::normal_map, "normal-map", "a material with a texture of normals"},
     {Effect::occlusion, "occlusion", "a material with an occlusion texture, under ambient light"},
 };

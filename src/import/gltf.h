@@ -77,11 +77,13 @@ int gltf_uv_set(const tinygltf::TextureInfo& info);
 // gltf_material.cpp: scene material of a glTF material (-1: the default one).
 std::uint32_t gltf_material(GltfFile* file, int material);
 
-// gltf_maps.cpp: the maps of a material, except for metallic and roughness if it is clear.
+// gltf_maps.cpp: the maps of a material; if it is clear, only those that do not change lobes.
 void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps);
 // The mean of a channel of a metallic-roughness texture, 1 without one; above zero if any texel is, so that the mean
 // lobe has what any other has.
 float gltf_map_mean(GltfFile* file, int texture, int channel);
+// The model dimmed by the means of specular textures.
+MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& source, MetallicRoughness model);
 // The scene keeps one set of texture coordinates per vertex: that of the first texture that the material has; -1: none.
 int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
                        const MaterialMaps& maps);

@@ -1,17 +1,22 @@
-// Textures of numbers: metallic and roughness, normals, occlusion (secs. 3.9.2, 3.9.3).
+// Maps: metallic and roughness, normals, occlusion (secs. 3.9.2, 3.9.3), KHR_materials_specular.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "base/color.h"
 #include "base/limits.h"
 #include "import/gltf.h"
 
 namespace pocketray {
 namespace {
 
-// Metallic (blue) and roughness (green): their ranges, and the use of the texture.
+// Metallic (blue) and roughness (green): their ranges, and the use of the texture, if there is one.
 void read_metallic_roughness(GltfFile* file, const tinygltf::PbrMetallicRoughness& pbr, MaterialMaps* maps) {
-  const Image& image = gltf_image(file, pbr.metallicRoughnessTexture.index, TexelKind::numbers);
-  const ChannelRange metallic = channel_range(image, 2), roughness = channel_range(image, 1);
+  ChannelRange metallic = {255, 255}, roughness = {255, 255};
+  if (pbr.metallicRoughnessTexture.index >= 0) {
+    const Image& image = gltf_image(file, pbr.metallicRoughnessTexture.index, TexelKind::numbers);
+    metallic = channel_range(image, 2), roughness = channel_range(image, 1);
+  }
   auto scaled = [](float factor, std::uint8_t texel) { return factor * (static_cast<float>(texel) / 255); };
   maps->metallic = gltf_unit(pbr.metallicFactor), maps->roughness = gltf_unit(pbr.roughnessFactor);
   maps->metallic_low = scaled(maps->metallic, metallic.low);
@@ -29,22 +34,63 @@ tinygltf::TextureInfo plain(const Info& info) {
   return result;
 }
 
+struct SpecularTextures {
+  tinygltf::TextureInfo share, color;
+};
+SpecularTextures specular_textures(const tinygltf::Material& source) {
+  const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_specular");
+  if (!extension) return {};
+  return {gltf_texture_info(*extension, "specularTexture"), gltf_texture_info(*extension, "specularColorTexture")};
+}
+
+// A dark texture leaves a trace of a lobe, for the same reason as in gltf_map_mean().
+constexpr float kLeastMean = 0x1p-10f;
+
+Vec3 color_mean(const Image& image) {
+  double sum[3] = {0, 0, 0};
+  for (std::uint32_t texel : image.texels) {
+    std::uint8_t rgba[4];
+    std::memcpy(rgba, &texel, 4);
+    for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(srgb_to_linear(rgba[c]));
+  }
+  Vec3 mean;
+  for (int c = 0; c < 3; ++c)
+    mean[c] = std::max(static_cast<float>(sum[c] / static_cast<double>(image.texels.size())), kLeastMean);
+  return mean;
+}
+
 }  // namespace
+
+MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& source, MetallicRoughness model) {
+  const SpecularTextures textures = specular_textures(source);
+  if (textures.share.index >= 0) {
+    const Image& image = gltf_image(file, textures.share.index, TexelKind::colors);
+    const float share = std::max(channel_mean(image, 3), kLeastMean);
+    model.dielectric = model.dielectric * share, model.grazing *= share;
+  }
+  if (textures.color.index >= 0)
+    model.dielectric *= color_mean(gltf_image(file, textures.color.index, TexelKind::colors));
+  return model;
+}
 
 float gltf_map_mean(GltfFile* file, int texture, int channel) {
   if (texture < 0) return 1;
   const Image& image = gltf_image(file, texture, TexelKind::numbers);
   const float mean = channel_mean(image, channel);
-  return channel_range(image, channel).high > 0 ? std::max(mean, 0x1p-10f) : mean;
+  return channel_range(image, channel).high > 0 ? std::max(mean, kLeastMean) : mean;
 }
 
 void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  if (pbr.metallicRoughnessTexture.index >= 0) {
-    if (is_clear)
-      note_remark(file->builder, "metallic-roughness textures of transparent materials count only by their mean");
-    else
-      read_metallic_roughness(file, pbr, maps);
+  const SpecularTextures specular = specular_textures(source);
+  const bool is_rough = pbr.metallicRoughnessTexture.index >= 0;
+  if (!is_clear) {
+    read_metallic_roughness(file, pbr, maps);
+    maps->specular = gltf_texture_use(file, specular.share);
+    maps->specular_color = gltf_texture_use(file, specular.color);
+  } else if (is_rough || specular.share.index >= 0 || specular.color.index >= 0) {
+    note_remark(file->builder,
+                "metallic-roughness and specular textures of transparent materials count only by their mean");
   }
   maps->normal = gltf_texture_use(file, plain(source.normalTexture), TexelKind::numbers);
   const double scale = source.normalTexture.scale, most = static_cast<double>(kNormalScaleMax);
@@ -56,12 +102,15 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
 int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
                        const MaterialMaps& maps) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  const SpecularTextures specular = specular_textures(source);
   const struct {
     const char* name;
     const TextureUse& use;
     tinygltf::TextureInfo info;
   } all[] = {{"base colour", material.diffuse_texture, pbr.baseColorTexture},
              {"metallic-roughness", maps.metallic_roughness, pbr.metallicRoughnessTexture},
+             {"specular", maps.specular, specular.share},
+             {"specular colour", maps.specular_color, specular.color},
              {"normal", maps.normal, plain(source.normalTexture)},
              {"emission", material.emission_texture, source.emissiveTexture},
              {"occlusion", maps.occlusion, plain(source.occlusionTexture)}};

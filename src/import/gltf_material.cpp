@@ -51,12 +51,10 @@ struct DielectricSpecular {
   float grazing;
 };
 
-DielectricSpecular read_specular(GltfFile* file, const tinygltf::ExtensionMap& extensions, float ior) {
+DielectricSpecular read_specular(const tinygltf::ExtensionMap& extensions, float ior) {
   const float root = (ior - 1) / (ior + 1), reflectance = root * root;
   const tinygltf::Value* extension = gltf_extension(extensions, "KHR_materials_specular");
   if (!extension) return {{reflectance, reflectance, reflectance}, 1};
-  if (extension->Has("specularTexture") || extension->Has("specularColorTexture"))
-    note_unused(file->builder, "specular textures");
   DielectricSpecular d = {{reflectance, reflectance, reflectance},
                           gltf_unit(gltf_number(*extension, "specularFactor", 1))};
   const tinygltf::Value color =
@@ -81,10 +79,10 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
     if (transmission > 0)
       transmission *= texture_mean(file, gltf_texture_info(*extension, "transmissionTexture").index, 0, "transmission");
   }
-  const DielectricSpecular dielectric = read_specular(file, source.extensions, material->ior);
+  const DielectricSpecular dielectric = read_specular(source.extensions, material->ior);
   maps->model = {color3(pbr.baseColorFactor, {1, 1, 1}), dielectric.normal, dielectric.grazing};
   material->brdf = kGgx;
-  set_lobes(maps->model, gltf_unit(pbr.metallicFactor) * gltf_map_mean(file, texture, 2),
+  set_lobes(gltf_mean_model(file, source, maps->model), gltf_unit(pbr.metallicFactor) * gltf_map_mean(file, texture, 2),
             gltf_unit(pbr.roughnessFactor) * gltf_map_mean(file, texture, 1), transmission, material);
   const bool is_clear = !is_zero(material->transmission);
   if (is_clear) read_volume(source.extensions, material);

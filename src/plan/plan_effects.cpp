@@ -34,7 +34,7 @@ Census take_census(const Scene& scene, const Settings& settings) {
         scene.material_maps.count ? lobe_bounds(scene.materials[i], scene.material_maps[i]) : scene.materials[i];
     if (scene.material_maps.count) {
       const MaterialMaps& maps = scene.material_maps[i];
-      c.metallic_roughness += maps.metallic_roughness.texture != kNone;
+      c.metallic_roughness += has_lobe_map(maps);
       c.bumpy += maps.normal.texture != kNone, c.occluded += maps.occlusion.texture != kNone;
     }
     bool transmits = !is_zero(m.transmission);
@@ -126,7 +126,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::alpha_blend, c.blended, "blend with the background");
   w.set_by_materials(Effect::emission, c.emissive + c.unlit, c.unlit ? "emit or are unlit" : "emit");
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
-  w.set_by_materials(Effect::metallic_roughness, c.metallic_roughness, "have a metallic-roughness texture");
+  w.set_by_materials(Effect::metallic_roughness, c.metallic_roughness, "have a metallic-roughness or specular texture");
   w.set_by_materials(Effect::normal_map, c.bumpy, "have a normal texture");
   w.set_by_materials(Effect::back_face_culling, c.one_sided, "are one-sided");
   w.set_by_materials(Effect::area_light, c.emissive, "emit light");

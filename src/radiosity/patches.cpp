@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/fmath.h"
 #include "effect/settings.h"
+#include "scene/metallic_roughness.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -90,12 +91,18 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
   }
   const Vec3d glossy = to_double(m.specular) + to_double(m.mirror);
   const Vec3d tinted = to_double(m.specular_tinted) + to_double(m.mirror_tinted);
-  if (scene.material_maps.count && scene.material_maps[t.material()].metallic_roughness.texture != kNone) {
+  if (scene.material_maps.count && has_lobe_map(scene.material_maps[t.material()])) {
     const MaterialMaps& maps = scene.material_maps[t.material()];
     const Vec2 uv = hit_uv(scene, triangle, static_cast<float>(u), static_cast<float>(v));
-    const double texel = double(sample_numbers(scene, maps.metallic_roughness, uv, TextureFilter::as_scene).z) / 255;
-    const double metallic = texel * double(maps.metallic), other = 1 - metallic;
-    return to_double(maps.model.base) * tint + to_double(maps.model.dielectric) * other;
+    double metallic = double(maps.metallic);
+    Vec3d dielectric = to_double(maps.model.dielectric);
+    if (maps.metallic_roughness.texture != kNone)
+      metallic *= double(sample_numbers(scene, maps.metallic_roughness, uv, TextureFilter::as_scene).z) / 255;
+    if (maps.specular.texture != kNone)
+      dielectric = dielectric * double(sample_texture(scene, maps.specular, uv, TextureFilter::as_scene).alpha);
+    if (maps.specular_color.texture != kNone)
+      dielectric *= to_double(sample_texture(scene, maps.specular_color, uv, TextureFilter::as_scene).rgb);
+    return to_double(maps.model.base) * tint + dielectric * (1 - metallic);
   }
   return to_double(m.diffuse) * tint + glossy - tinted * (Vec3d{1, 1, 1} - tint);
 }

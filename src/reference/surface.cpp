@@ -4,6 +4,7 @@
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
 #include "indirect/surroundings.h"
+#include "scene/metallic_roughness.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -18,8 +19,17 @@ const BrdfInfo& glossy_lobe(const ReferenceSurface& s) { return *kBrdfList[s.mat
 // mirror's share of src/import/README.md.
 void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d& tint,
                               ReferenceSurface* s) {
-  const Vec3d numbers =
-      to_double(sample_numbers(*frame.scene, maps.metallic_roughness, uv, frame.settings.texture_filter));
+  const TextureFilter filter = frame.settings.texture_filter;
+  Vec3d numbers = {255, 255, 255}, dielectric = to_double(maps.model.dielectric);
+  double grazing = static_cast<double>(maps.model.grazing);
+  if (maps.metallic_roughness.texture != kNone)
+    numbers = to_double(sample_numbers(*frame.scene, maps.metallic_roughness, uv, filter));
+  if (maps.specular.texture != kNone) {  // KHR_materials_specular
+    const double share = static_cast<double>(sample_texture(*frame.scene, maps.specular, uv, filter).alpha);
+    dielectric = dielectric * share, grazing *= share;
+  }
+  if (maps.specular_color.texture != kNone)
+    dielectric *= to_double(sample_texture(*frame.scene, maps.specular_color, uv, filter).rgb);
   auto within = [](double x, float low, float high) {
     return std::fmin(std::fmax(x, static_cast<double>(low)), static_cast<double>(high));
   };
@@ -30,12 +40,11 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
   const Vec3d color = to_double(maps.model.base) * tint;
   const double smooth = std::fmax(0, 1 - roughness / 0.3), mirrored = smooth * smooth;
   s->diffuse = color * (1 - metallic);
-  const Vec3d reflectance = to_double(maps.model.dielectric) * (1 - metallic) + color * metallic;
+  const Vec3d reflectance = dielectric * (1 - metallic) + color * metallic;
   s->mirror = reflectance * mirrored, s->specular = reflectance * (1 - mirrored);
   s->mapped = *s->material, s->is_mapped = true;
   s->mapped.roughness = static_cast<float>(roughness * roughness);
-  s->mapped.grazing =
-      static_cast<float>((static_cast<double>(maps.model.grazing) * (1 - metallic) + metallic) * (1 - mirrored));
+  s->mapped.grazing = static_cast<float>((grazing * (1 - metallic) + metallic) * (1 - mirrored));
   s->mapped.specular = {static_cast<float>(s->specular.x), static_cast<float>(s->specular.y),
                         static_cast<float>(s->specular.z)};
   s->mapped.mirror = {static_cast<float>(s->mirror.x), static_cast<float>(s->mirror.y),
@@ -126,7 +135,7 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
       const double red = sample_numbers(scene, maps.occlusion, uv, frame.settings.texture_filter).x;
       s.open = 1 - static_cast<double>(maps.occlusion_strength) * (1 - red / 255);
     }
-    if (has(frame.mask, Effect::metallic_roughness) && maps.metallic_roughness.texture != kNone)
+    if (has(frame.mask, Effect::metallic_roughness) && has_lobe_map(maps))
       apply_metallic_roughness(frame, maps, uv, tint, &s);
   }
   s.emission = {0, 0, 0};

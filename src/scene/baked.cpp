@@ -18,7 +18,7 @@ static_assert(sizeof(SceneInfo) == 64 + 6 * 4 + 6 * 4, "no padding");
 static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && sizeof(Triangle) == 12, "no padding");
 static_assert(sizeof(Texture) == 4 + 2 * 2 + 4, "no padding");
 static_assert(sizeof(TextureUse) == 28 && sizeof(Material) == 8 * 12 + 6 * 4 + 2 * 28 + 4 + 4, "no padding");
-static_assert(sizeof(MetallicRoughness) == 28 && sizeof(MaterialMaps) == 28 + 3 * 28 + 8 * 4, "no padding");
+static_assert(sizeof(MetallicRoughness) == 28 && sizeof(MaterialMaps) == 28 + 5 * 28 + 8 * 4, "no padding");
 static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 12 + 4 * 4, "no padding");
 static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "no padding");
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");

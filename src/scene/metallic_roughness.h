@@ -28,14 +28,19 @@ inline void set_lobes(const MetallicRoughness& model, float metallic, float roug
   m->transmission = model.base * passes;
 }
 
+// Whether the lobes change from point to point.
+inline bool has_lobe_map(const MaterialMaps& maps) {
+  return maps.metallic_roughness.texture != kNone || maps.specular.texture != kNone ||
+         maps.specular_color.texture != kNone;
+}
 inline bool has_map(const MaterialMaps& maps) {
-  return maps.metallic_roughness.texture != kNone || maps.normal.texture != kNone || maps.occlusion.texture != kNone;
+  return has_lobe_map(maps) || maps.normal.texture != kNone || maps.occlusion.texture != kNone;
 }
 
-// Upper bounds of the lobes that the map makes of the material, and the smallest roughness: all are monotonic in
-// metallic and roughness, so that the ends of their ranges have the extremes.
+// Upper bounds of the lobes that the maps make of the material, and the smallest roughness: all are monotonic in
+// metallic and roughness, so that the ends of their ranges have the extremes. A specular texture only dims.
 inline Material lobe_bounds(Material m, const MaterialMaps& maps) {
-  if (maps.metallic_roughness.texture == kNone) return m;
+  if (!has_lobe_map(maps)) return m;
   set_lobes(maps.model, maps.metallic_low, maps.roughness_low, 0, &m);
   for (int i = 1; i < 4; ++i) {
     Material end = m;

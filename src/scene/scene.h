@@ -94,15 +94,17 @@ struct MetallicRoughness {
   float grazing = 0;            // reflectance of a non-metal at grazing incidence
 };
 
-// Textures that change a material from point to point. Their texels are numbers, not colours: 0 to 255, linear.
+// Textures that change a material from point to point. Most have numbers for texels, not colours: 0 to 255, linear.
 struct MaterialMaps {
-  // Lobes where there is a metallic_roughness texture: metallic × B, roughness × G. The material's own lobes are those
-  // of the means.
+  // Lobes where there is a metallic_roughness or specular texture: metallic × B, roughness × G. The material's own
+  // lobes are those of the means.
   MetallicRoughness model;
   TextureUse metallic_roughness;
   float metallic = 0, roughness = 0;
   // What the texture and the factors amount to. Other values are moved to the nearer end, so that bounds hold.
   float metallic_low = 0, metallic_high = 0, roughness_low = 0, roughness_high = 0;
+  // Textures of colours: a dielectric's reflectance × alpha; at normal incidence × colour as well.
+  TextureUse specular, specular_color;
   // The normal in the frame of the tangent: R along u, G against v, B along the vertex normal, each −1 at 1 (and 0), 0
   // at 128, 1 at 255. R and G × normal_scale.
   TextureUse normal;

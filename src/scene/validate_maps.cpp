@@ -40,9 +40,11 @@ static Status validate_maps(const Scene& scene, std::uint32_t index) {
   RETURN_IF_ERROR(check_texture_use("material_maps", "metallic_roughness", index, maps.metallic_roughness, scene));
   RETURN_IF_ERROR(check_texture_use("material_maps", "normal", index, maps.normal, scene));
   RETURN_IF_ERROR(check_texture_use("material_maps", "occlusion", index, maps.occlusion, scene));
-  if (maps.metallic_roughness.texture == kNone) return success();
+  RETURN_IF_ERROR(check_texture_use("material_maps", "specular", index, maps.specular, scene));
+  RETURN_IF_ERROR(check_texture_use("material_maps", "specular_color", index, maps.specular_color, scene));
+  if (!has_lobe_map(maps)) return success();
   if (m.unlit || !is_zero(m.transmission))
-    return failure("material_maps[%u].metallic_roughness: its material is unlit or transmits light", index);
+    return failure("material_maps[%u] changes lobes: its material is unlit or transmits light", index);
   // Kernels decide by the mean lobe whether the material has one at all.
   if (is_zero(m.specular) && !is_zero(lobe_bounds(m, maps).specular))
     return failure("material_maps[%u] makes a glossy lobe, but materials[%u] has none", index, index);

@@ -20,12 +20,25 @@ float within(float x, float low, float high) { return x > low ? (x < high ? x : 
 
 void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, Surface* s) {
   effect_entered<Effect::metallic_roughness>();
-  const Vec3 numbers = sample_numbers(*frame.scene, maps.metallic_roughness, uv, frame.settings.texture_filter);
+  Vec3 numbers = {255, 255, 255};
+  if (maps.metallic_roughness.texture != kNone)
+    numbers = sample_numbers(*frame.scene, maps.metallic_roughness, uv, frame.settings.texture_filter);
   const float metallic = within(maps.metallic * (numbers.z / 255), maps.metallic_low, maps.metallic_high);
   s->metallic = static_cast<std::uint16_t>(metallic * 65535 + 0.5f);
   s->roughness = within(maps.roughness * (numbers.y / 255), maps.roughness_low, maps.roughness_high);
   s->diffuse = maps.model.base * (1 - metallic);
   if (s->is_tinted) s->diffuse *= s->tint;
+}
+
+void apply_specular(const FrameData& frame, const MaterialMaps& maps, const Surface& s, MetallicRoughness* model) {
+  const Scene& scene = *frame.scene;
+  const Vec2 uv = hit_uv(scene, s.hit.triangle, s.hit.u, s.hit.v);
+  if (maps.specular.texture != kNone) {
+    const float share = sample_texture(scene, maps.specular, uv, frame.settings.texture_filter).alpha;
+    model->dielectric = model->dielectric * share, model->grazing *= share;
+  }
+  if (maps.specular_color.texture != kNone)
+    model->dielectric *= sample_texture(scene, maps.specular_color, uv, frame.settings.texture_filter).rgb;
 }
 
 // What the map leaves of ambient light.
@@ -46,7 +59,7 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
       if (maps->normal.texture != kNone) s->normal = mapped_normal(frame, *maps, uv, ray, *s);
     }
     if constexpr (has(mask, Effect::metallic_roughness)) {
-      if (maps->metallic_roughness.texture != kNone) apply_metallic_roughness(frame, *maps, uv, s);
+      if (has_lobe_map(*maps)) apply_metallic_roughness(frame, *maps, uv, s);
     }
     if constexpr (has(mask, Effect::occlusion)) {
       if (maps->occlusion.texture != kNone) open = openness(frame, *maps, uv);
@@ -77,10 +90,11 @@ struct MapsPart {
 
 const Material& lobes_at(const FrameData& frame, const Surface& s, Material* mapped) {
   const MaterialMaps* maps = maps_of(*frame.scene, s);
-  if (!has(frame.mask, Effect::metallic_roughness) || !maps || maps->metallic_roughness.texture == kNone)
-    return *s.material;
+  if (!has(frame.mask, Effect::metallic_roughness) || !maps || !has_lobe_map(*maps)) return *s.material;
   *mapped = *s.material;
-  set_lobes(maps->model, static_cast<float>(s.metallic) / 65535, s.roughness, 0, mapped);
+  MetallicRoughness model = maps->model;
+  if (maps->specular.texture != kNone || maps->specular_color.texture != kNone) apply_specular(frame, *maps, s, &model);
+  set_lobes(model, static_cast<float>(s.metallic) / 65535, s.roughness, 0, mapped);
   return *mapped;
 }
 

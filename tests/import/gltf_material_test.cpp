@@ -196,6 +196,28 @@ TEST_CASE("gltf_metallic_roughness_texture_becomes_a_map") {
   CHECK(contains(imported.warning, "by their mean"));
 }
 
+// Goal: specular textures become maps; the material has the lobes of their means. Method: four texels, of which the
+// green channels are 0, 1, 0, 1 and the alphas 1, 1, ½, 0.
+TEST_CASE("gltf_specular_textures_become_maps") {
+  const std::string rest =
+      "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularTexture\":{\"index\":0},"
+      "\"specularColorTexture\":{\"index\":0}}}}";
+  const std::string pbr = "{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.75},";
+  ImportedScene imported = load_text(triangle_gltf(pbr + rest, images(kColors)));
+  const Scene& s = imported.scene;
+  REQUIRE(s.material_maps.count == 1);
+  const MaterialMaps& maps = s.material_maps[0];
+  CHECK((maps.specular.texture == 0 && maps.specular_color.texture == 0 && maps.metallic_roughness.texture == kNone));
+  CHECK((maps.metallic_low == 0 && maps.metallic_high == 0));
+  CHECK((maps.roughness_low == 0.75f && maps.roughness_high == 0.75f));
+  check_vec(maps.model.dielectric, {0.02f, 0.02f, 0.02f});
+  CHECK(maps.model.grazing == 0.5f);
+  const double alpha = static_cast<double>(s.materials[0].grazing) / 0.5;
+  CHECK((alpha > 0.6 && alpha < 0.65));
+  CHECK(static_cast<double>(s.materials[0].specular.y) == doctest::Approx(0.02 * alpha / 2).epsilon(1e-4));
+  CHECK(imported.warning.find("specular") == std::string::npos);
+}
+
 // Goal: textures are halved until they fit. Method: the sample helmet at a side of at most 64.
 TEST_CASE("gltf_large_textures_are_halved_until_they_fit") {
   std::string path = shared_scene("gltf/DamagedHelmet.glb");

@@ -186,6 +186,9 @@ TEST_CASE("validate_scene_refuses_bad_material_maps") {
             [=](FullScene* f) { f->material_maps[2].normal.m[0][0] = bad * 1e30f; });
   }
   refuses("normal is texture 9 of 2", [](FullScene* f) { f->material_maps[0].normal.texture = 9; });
+  refuses("specular is texture 3 of 2", [](FullScene* f) { f->material_maps[2].specular.texture = 3; });
+  refuses("specular_color is texture 2 of 2", [](FullScene* f) { f->material_maps[1].specular_color.texture = 2; });
+  refuses("transmits", [](FullScene* f) { f->material_maps[1].specular_color.texture = 1; });
   refuses("occlusion is texture 2 of 2", [](FullScene* f) { f->material_maps[0].occlusion.texture = 2; });
   refuses("metallic_low", [](FullScene* f) { f->material_maps[2].metallic_low = 0.8f; });
   refuses("is texture 2 of 2", [](FullScene* f) { f->material_maps[2].metallic_roughness.texture = 2; });

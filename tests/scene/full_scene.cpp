@@ -43,6 +43,7 @@ void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_c
   maps.model = {{1, 0.5f, 0.25f}, {0.04f, 0.05f, 0}, 0.75f};
   maps.metallic_roughness.texture = 1, maps.metallic = 0.75f, maps.roughness = 1;
   maps.metallic_low = 0.25f, maps.metallic_high = 0.75f, maps.roughness_low = 0.125f, maps.roughness_high = 1;
+  maps.specular.texture = 0, maps.specular_color.texture = 1;
   maps.normal.texture = 0, maps.normal_scale = -0.5f, maps.occlusion.texture = 1, maps.occlusion_strength = 0.75f;
   for (int i = 0; i < 10; ++i) f->texels.push_back(next_u32(rng));
 }

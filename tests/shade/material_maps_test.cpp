@@ -57,6 +57,28 @@ TEST_CASE("metallic_roughness_map_equals_its_values") {
   }
 }
 
+// Goal: specular textures dim a dielectric's reflectance by alpha, at normal incidence by their colour as well, and
+// leave a metal alone. Method: a sheet against one whose model has these values; without a metallic-roughness texture.
+TEST_CASE("specular_textures_dim_dielectrics") {
+  for (float metallic : {0.0f, 0.5f, 1.0f}) {
+    GeneratedScene mapped;
+    make_sheet(&mapped, nullptr, false);
+    MaterialMaps& maps = mapped.material_maps[0];
+    maps.metallic_roughness.texture = kNone, maps.metallic = metallic, maps.roughness = 0.5f;
+    maps.specular.texture = maps.specular_color.texture = add_texture(&mapped, 1, 1, {{255, 188, 99, 51}});
+    Material m = mapped.materials[0];
+    MetallicRoughness model = kModel;
+    model.dielectric = model.dielectric * Vec3{1, 0.502886f, 0.124772f} * 0.2f, model.grazing *= 0.2f;
+    set_lobes(model, metallic, 0.5f, 0, &m);
+    GeneratedScene plain;
+    make_sheet(&plain, &m, false);
+    const Vec3 eye = {1, 0.5f, 2}, at = {0.3f, 0.3f, 0};
+    const Vec3 found = look(*ray_renderer(&mapped), eye, at), expected = look(*ray_renderer(&plain), eye, at);
+    CAPTURE(metallic);
+    for (int c = 0; c < 3; ++c) CHECK(found[c] == doctest::Approx(expected[c]).epsilon(1e-5));
+  }
+}
+
 // Goal: a plan without the effect shows the material's own lobes, those of the means. Method: the same bits as without
 // the map.
 TEST_CASE("metallic_roughness_map_can_be_left_out") {

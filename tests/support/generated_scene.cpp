@@ -49,7 +49,9 @@ void add_mapped_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
     texels.push_back({9, 40 + static_cast<int>(next_u32(rng) % 36), static_cast<int>(next_u32(rng) % 256), 255});
   if (has(features, Feature::texture))
     s->materials[material].diffuse_texture.texture = add_noise_texture(s, rng, false);
+  const std::uint32_t specular = has(features, Feature::texture) ? add_noise_texture(s, rng, true) : kNone;
   add_map(s, material, {{0.7f, 0.6f, 0.5f}, {0.04f, 0.05f, 0.06f}, 0.9f}, add_texture(s, 4, 4, texels));
+  s->material_maps[material].specular.texture = s->material_maps[material].specular_color.texture = specular;
 }
 
 void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
