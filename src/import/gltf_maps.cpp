@@ -81,6 +81,7 @@ float gltf_map_mean(GltfFile* file, int texture, int channel) {
 }
 
 void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps) {
+  if (gltf_extension(source.extensions, "KHR_materials_unlit")) return;  // its texels would only take memory
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const SpecularTextures specular = specular_textures(source);
   const bool is_rough = pbr.metallicRoughnessTexture.index >= 0;

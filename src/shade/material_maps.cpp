@@ -1,5 +1,7 @@
 #include "shade/material_maps.h"
 
+#include <cstring>
+
 #include "base/check.h"
 #include "effect/effect_probe.h"
 #include "scene/metallic_roughness.h"
@@ -18,11 +20,22 @@ const MaterialMaps* maps_of(const Scene& scene, const Surface& s) {
 
 float within(float x, float low, float high) { return x > low ? (x < high ? x : high) : low; }
 
-void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, Surface* s) {
+// The last look-up at a point: many files keep occlusion in the red of their metallic-roughness texture.
+struct LookUp {
+  const TextureUse* use = nullptr;
+  Vec3 numbers;
+};
+
+const Vec3& look_up(const FrameData& frame, const TextureUse& use, Vec2 uv, LookUp* last) {
+  if (!last->use || std::memcmp(last->use, &use, sizeof use) != 0)
+    *last = {&use, sample_numbers(*frame.scene, use, uv, frame.settings.texture_filter)};
+  return last->numbers;
+}
+
+void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, LookUp* last, Surface* s) {
   effect_entered<Effect::metallic_roughness>();
   Vec3 numbers = {255, 255, 255};
-  if (maps.metallic_roughness.texture != kNone)
-    numbers = sample_numbers(*frame.scene, maps.metallic_roughness, uv, frame.settings.texture_filter);
+  if (maps.metallic_roughness.texture != kNone) numbers = look_up(frame, maps.metallic_roughness, uv, last);
   const float metallic = within(maps.metallic * (numbers.z / 255), maps.metallic_low, maps.metallic_high);
   s->metallic = static_cast<std::uint16_t>(metallic * 65535 + 0.5f);
   s->roughness = within(maps.roughness * (numbers.y / 255), maps.roughness_low, maps.roughness_high);
@@ -42,9 +55,9 @@ void apply_specular(const FrameData& frame, const MaterialMaps& maps, const Surf
 }
 
 // What the map leaves of ambient light.
-float openness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv) {
+float openness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, LookUp* last) {
   effect_entered<Effect::occlusion>();
-  const float open = sample_numbers(*frame.scene, maps.occlusion, uv, frame.settings.texture_filter).x / 255;
+  const float open = look_up(frame, maps.occlusion, uv, last).x / 255;
   return 1 + maps.occlusion_strength * (open - 1);
 }
 
@@ -53,16 +66,17 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   frame.plain_surface(frame, ray, hit, s);
   const Scene& scene = *frame.scene;
   float open = 1;
+  LookUp last;
   if (const MaterialMaps* maps = maps_of(scene, *s)) {
     const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
     if constexpr (has(mask, Effect::normal_map)) {
       if (maps->normal.texture != kNone) s->normal = mapped_normal(frame, *maps, uv, ray, *s);
     }
     if constexpr (has(mask, Effect::metallic_roughness)) {
-      if (has_lobe_map(*maps)) apply_metallic_roughness(frame, *maps, uv, s);
+      if (has_lobe_map(*maps)) apply_metallic_roughness(frame, *maps, uv, &last, s);
     }
     if constexpr (has(mask, Effect::occlusion)) {
-      if (maps->occlusion.texture != kNone) open = openness(frame, *maps, uv);
+      if (maps->occlusion.texture != kNone) open = openness(frame, *maps, uv, &last);
     }
   }
   (first ? frame.first_glow : frame.glow)(frame, s);

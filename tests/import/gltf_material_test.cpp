@@ -196,6 +196,18 @@ TEST_CASE("gltf_metallic_roughness_texture_becomes_a_map") {
   CHECK(contains(imported.warning, "by their mean"));
 }
 
+// Goal: maps of an unlit material, which would have no effect, take no memory. Method: none becomes a texture.
+TEST_CASE("gltf_unlit_materials_have_no_maps") {
+  ImportedScene imported = load_text(triangle_gltf(
+      "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}},\"normalTexture\":{\"index\":0},"
+      "\"occlusionTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_unlit\":{}}}",
+      images(kRoughMetal)));
+  CHECK(imported.scene.materials[0].unlit == 1);
+  CHECK(imported.scene.material_maps.count == 0);
+  CHECK(imported.scene.textures.count == 0);
+  CHECK(imported.scene.texels.count == 0);
+}
+
 // Goal: specular textures become maps; the material has the lobes of their means. Method: four texels, of which the
 // green channels are 0, 1, 0, 1 and the alphas 1, 1, ½, 0.
 TEST_CASE("gltf_specular_textures_become_maps") {

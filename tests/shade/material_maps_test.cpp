@@ -79,6 +79,27 @@ TEST_CASE("specular_textures_dim_dielectrics") {
   }
 }
 
+// Goal: a texture that holds metallic, roughness and occlusion is looked up once, with the light of two look-ups; used
+// twice with different transforms, it is two. Method: the same bits as with a copy of it, as one use and as two.
+TEST_CASE("maps_may_share_a_texture") {
+  for (bool turned : {false, true}) {
+    GeneratedScene shared, apart;
+    for (GeneratedScene* s : {&shared, &apart}) {
+      make_sheet(s, nullptr, false);
+      const std::uint32_t copy =
+          add_texture(s, 2, 1, {{9, 51, 255, 9}, {200, 204, 0, 9}}, Wrap::clamp, Wrap::clamp, true);
+      MaterialMaps& maps = s->material_maps[0];
+      maps.metallic_roughness.texture = copy;
+      maps.occlusion.texture = s == &shared ? copy : copy + 1;
+      add_texture(s, 2, 1, {{9, 51, 255, 9}, {200, 204, 0, 9}}, Wrap::clamp, Wrap::clamp, true);
+      if (turned) maps.occlusion.m[0][0] = -1, maps.occlusion.m[0][2] = 1;
+    }
+    const Vec3 eye = {1, 0.5f, 2}, at = {0.3f, 0.3f, 0};
+    CAPTURE(turned);
+    CHECK(same_bits(look(*ray_renderer(&shared), eye, at), look(*ray_renderer(&apart), eye, at)));
+  }
+}
+
 // Goal: a plan without the effect shows the material's own lobes, those of the means. Method: the same bits as without
 // the map.
 TEST_CASE("metallic_roughness_map_can_be_left_out") {
