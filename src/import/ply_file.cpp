@@ -88,9 +88,9 @@ double number(const PlyType& type, const std::uint8_t* bytes) {
 PlyHeader read_ply_header(const Bytes& bytes) {
   constexpr std::size_t kHeaderBytesMax = 65536;
   std::string text(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), kHeaderBytesMax)));
+  if (text.compare(0, 3, "ply") != 0) fail_import("not a PLY file; export it again");
   // All lines end as the first does: the byte after the header may itself be a line feed.
   std::string line_end = text.compare(3, 2, "\r\n") == 0 ? "\r\n" : text.compare(3, 1, "\r") == 0 ? "\r" : "\n";
-  if (text.compare(0, 3, "ply") != 0) fail_import("not a PLY file; export it again");
   PlyHeader header;
   for (std::size_t at = 0;;) {
     std::size_t next = text.find(line_end, at);
@@ -138,8 +138,10 @@ double PlyNumbers::next_word() {
   while (at_ < end_ && *at_ <= ' ') ++at_;
   char word[64];
   std::size_t length = 0;
-  for (; at_<end_&& * at_> ' '; ++at_)
+  for (; at_ < end_; ++at_) {
+    if (*at_ <= ' ') break;
     if (length + 1 < sizeof word) word[length++] = static_cast<char>(*at_);
+  }
   word[length] = 0;
   if (length == 0) fail_at_end();
   char* end;

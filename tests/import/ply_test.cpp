@@ -40,6 +40,17 @@ TEST_CASE("ply_header_that_lies_is_refused") {
   }
 }
 
+// Goal: a file too short for a header is refused by name. Method: the beginnings of one.
+TEST_CASE("ply_beginning_of_a_header_is_refused") {
+  TemporaryFolder folder;
+  const std::string header = "ply\nformat";
+  for (std::size_t length = 1; length <= header.size(); ++length) {
+    CAPTURE(length);
+    std::string error = load_error(folder.write("a.ply", header.substr(0, length)));
+    CHECK(contains(error, length < 3 ? "not a PLY file" : "PLY header"));
+  }
+}
+
 namespace {
 
 // A PLY file of four vertices; `faces` in text, or in bytes.
