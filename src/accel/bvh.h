@@ -63,8 +63,6 @@ struct LeafKind {
   // they may become valid in a refit.
   Box (*fill)(Array<const Vec3> positions, Array<const Triangle> triangles, const std::uint32_t* ids,
               std::uint32_t count, void* leaf);
-  // The vertices of a leaf, gathered into `scratch` if the leaf holds none.
-  const TriangleBlock& (*block)(const Accel& accel, const void* leaf, TriangleBlock* scratch);
 };
 extern const LeafKind kBlockLeaves, kCompactLeaves;
 

@@ -1,4 +1,5 @@
-// The largest value of a triangle, best first: nodes whose box cannot have a larger one are left out.
+// The largest value of a triangle, depth first and the best child first: nodes whose box cannot have a larger one are
+// left out.
 #include <limits>
 
 #include "accel/bvh.h"

@@ -1,5 +1,5 @@
 // The two kinds of leaves.
-#include "accel/bvh_tree.h"
+#include "accel/bvh.h"
 
 namespace pocketray {
 namespace {
@@ -29,9 +29,6 @@ Box fill_block(Array<const Vec3> positions, Array<const Triangle> triangles, con
   }
   return box;
 }
-const TriangleBlock& same_block(const Accel&, const void* leaf, TriangleBlock*) {
-  return *static_cast<const TriangleBlock*>(leaf);
-}
 
 Box fill_compact(Array<const Vec3> positions, Array<const Triangle> triangles, const std::uint32_t* ids,
                  std::uint32_t count, void* leaf) {
@@ -46,15 +43,10 @@ Box fill_compact(Array<const Vec3> positions, Array<const Triangle> triangles, c
   }
   return box;
 }
-const TriangleBlock& compact_block(const Accel& accel, const void* leaf, TriangleBlock* scratch) {
-  return gather_leaf(accel.positions.data, accel.triangles.data, *static_cast<const CompactLeaf*>(leaf), scratch);
-}
 
 }  // namespace
 
-const LeafKind kBlockLeaves = {kBvhMagic, sizeof(TriangleBlock), offsetof(TriangleBlock, triangle), fill_block,
-                               same_block};
-const LeafKind kCompactLeaves = {kCompactMagic, sizeof(CompactLeaf), offsetof(CompactLeaf, triangle), fill_compact,
-                                 compact_block};
+const LeafKind kBlockLeaves = {kBvhMagic, sizeof(TriangleBlock), offsetof(TriangleBlock, triangle), fill_block};
+const LeafKind kCompactLeaves = {kCompactMagic, sizeof(CompactLeaf), offsetof(CompactLeaf, triangle), fill_compact};
 
 }  // namespace pocketray

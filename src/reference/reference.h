@@ -10,12 +10,11 @@ namespace pocketray {
 
 enum class Transport {
   // The renderer's own lighting model in the limit: direct light, mirrors, glass and the ambient term, with whole area
-  // lights, every depth and no cut-off. Glossy lobes reflect only lights
-  // and even surroundings; shadow rays pass glass without refraction.
+  // lights, every depth and no cut-off. Glossy lobes reflect only lights and even surroundings; shadow rays pass
+  // glass without refraction.
   model,
   // Full light transport, without the ambient term. Punctual lights shine through glass without refraction, because no
-  // path
-  // could find them otherwise; light of area lights is refracted.
+  // path could find them otherwise; light of area lights is refracted.
   physical,
 };
 
