@@ -41,13 +41,14 @@ bool contains_children(const World& world, const LeafKind& kind) {
         if (!contains(box, node_box(bvh.nodes[child]))) return false;
         continue;
       }
-      TriangleBlock scratch;
       const std::uint8_t* leaf = leaf_at(kind, world.accel.data.data, child & kLeafIndexMask);
-      for (std::uint32_t k = 0; k < leaf_triangle_count(child); ++k)
-        for (int v = 0; v < 3 && !(leaf_ids(kind, leaf)[k] & kUnhittableBit); ++v) {
-          Vec3 p = block_vertex(kind.block(world.accel, leaf, &scratch), v, static_cast<int>(k));
+      for (std::uint32_t k = 0; k < leaf_triangle_count(child); ++k) {
+        const std::uint32_t id = leaf_ids(kind, leaf)[k];
+        for (std::uint32_t v = 0; v < 3 && !(id & kUnhittableBit); ++v) {
+          Vec3 p = world.accel.positions[world.accel.triangles[id].vertex(v)];
           if (!contains(box, {p, p})) return false;
         }
+      }
     }
   return true;
 }
