@@ -3,6 +3,7 @@
 #include "base/color.h"
 #include "effect/setting_list.h"
 #include "engine/prepare.h"
+#include "indirect/surroundings.h"
 #include "plan/place_virtual_lights.h"
 #include "plan/plan_lights.h"
 #include "shade/ambient_gloss.h"
@@ -51,6 +52,7 @@ void choose_kernels(Renderer* renderer) {
 void light_scene(Renderer* renderer) {
   CHECK_GT(renderer->exposure, 0);
   CHECK_LE(renderer->light_points.count, renderer->light_point_count_max);
+  renderer->frame.beyond_depth = radiance_beyond_depth(renderer->scene.info, renderer->effects.mask);
   if (!is_lit(*renderer)) {
     place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
                  renderer->light_points, &renderer->frame);

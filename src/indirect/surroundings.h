@@ -2,11 +2,17 @@
 // everywhere, times the lobe's albedo. Without it, metals would be black wherever no light shines into their highlight.
 #pragma once
 #include "brdf/brdf_list.h"
+#include "effect/effect.h"
 #include "scene/scene.h"
 
 namespace pocketray {
 
 inline Vec3 radiance_of_surroundings(const SceneInfo& info) { return max(info.ambient, info.background); }
+
+// Stands in for what a path would see beyond its maximum depth.
+inline Vec3 radiance_beyond_depth(const SceneInfo& info, EffectMask mask) {
+  return has(mask, Effect::ambient) ? radiance_of_surroundings(info) : info.background;
+}
 
 // Phong's lobe reflects lights only.
 inline bool reflects_surroundings(const Material& m) {

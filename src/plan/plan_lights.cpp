@@ -301,7 +301,8 @@ float radiance_bound(const FrameData& frame) {
       irradiance += irradiance_bound(frame, light, kind);
     }
   }
-  float leaves = glow + scattering * irradiance, background = max_component(scene.info.background), bound = background;
+  const float leaves = glow + scattering * irradiance, background = max_component(scene.info.background);
+  float bound = std::max(background, max_component(frame.beyond_depth));
   for (std::uint32_t depth = 0; depth <= frame.settings.ray_depth; ++depth) {
     float next = leaves + (reflectance > 0 ? reflectance * bound : 0);
     bound = next > background ? next : background;

@@ -21,7 +21,8 @@ Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& 
 Vec3d spawn(const Reference& reference, const ReferenceSurface& s, const Vec3d& direction, const Vec3d& weight,
             const Branch& from, const MediumStack& media) {
   const FrameData& frame = *reference.world.frame;
-  if (from.depth >= frame.settings.ray_depth || is_zero(weight)) return {0, 0, 0};
+  if (is_zero(weight)) return {0, 0, 0};
+  if (from.depth >= frame.settings.ray_depth) return weight * to_double(frame.beyond_depth);
   return weight * follow(reference, leave(frame, s, direction, kInfinity), {from.depth + 1, media});
 }
 

@@ -87,6 +87,7 @@ struct FrameData {
   bool filters_read_point = false;                                              // HitFilter::reads_point
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
   float radiance_bound = 0;          // upper bound for any ray
+  Vec3 beyond_depth = {0, 0, 0};     // radiance that stands in for rays beyond Settings::ray_depth
   float left_out_max = 0;            // radiance that may be skipped of one sample
   IndirectData indirect;
   Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept

@@ -27,12 +27,12 @@ struct Path {
 template <EffectMask mask>
 Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path);
 
-// Radiance along a spawned ray, or zero if it could not matter or the path has reached its maximum depth.
+// Radiance along a spawned ray: zero if it could not matter, the surroundings' beyond the path's maximum depth.
 template <EffectMask mask>
 Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path<mask>& path,
            const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
-  if (path.depth >= frame.settings.ray_depth) return {0, 0, 0};
+  if (path.depth >= frame.settings.ray_depth) return weight * frame.beyond_depth;
   Path<mask> next = path;
   next.weight = path.weight * weight;
   next.depth = path.depth + 1;

@@ -63,6 +63,19 @@ TEST_CASE("hard_33_clear_glass_in_uniform_light_vanishes") {
   }
 }
 
+// Goal: beyond the maximum depth the surroundings stand in for what would be seen: glass in uniform surroundings
+// vanishes at every depth, and no cut-off makes it dark. Method: the slab again, seen at few depths.
+TEST_CASE("hard_34_clear_glass_in_uniform_light_vanishes_at_every_depth") {
+  count_assertions("1 within 1e-6");
+  GeneratedScene s;
+  add_box(&s, {-90, -90, -0.5f}, {90, 90, 0.5f}, add_material(&s, glass(1.5f)));
+  s.scene.info.background = {1, 1, 1};
+  for (std::uint32_t depth : {0u, 1u, 2u, 3u, 8u}) {
+    CAPTURE(depth);
+    CHECK(look(*ray_renderer(&s, depth), {-1.7f, 0.1f, 1.5f}, {0, 0.1f, 0.5f}).x == doctest::Approx(1).epsilon(1e-6));
+  }
+}
+
 // Goal: a slab of n = 1.5 transmits 12/13 and reflects 1/13 at normal incidence. Method: closed form, and its partial
 // sums at every ray depth: T = (1 − r)²·Σ r²ᵏ over the orders that fit.
 TEST_CASE("hard_34_slab_transmits_12_of_13") {
@@ -110,6 +123,29 @@ TEST_CASE("hard_35_facing_mirrors_sum_the_series") {
       sum += std::pow(double(rho), depth);
       CAPTURE(depth);
       CHECK(look(*ray_renderer(&s, depth, 1), {0, 0, 0}, {0.03f, 0.02f, -1}).x == doctest::Approx(sum).epsilon(1e-5));
+    }
+  }
+}
+
+// Goal: where a path ends by its depth, the brighter of ambient light and background takes the place of the rest, and
+// counts in the bound of radiance. Method: the series of facing mirrors, completed in closed form.
+TEST_CASE("hard_35_surroundings_complete_the_series") {
+  count_assertions("partial sums within 1e-5");
+  const float rho = 0.5f;
+  for (const Vec3& around : {Vec3{0, 0, 0}, Vec3{3, 0, 0}, Vec3{200, 0, 0}, Vec3{1, 200, 0}}) {
+    GeneratedScene s;
+    add_facing_mirrors(&s, rho);
+    add_sheet(&s, 5, add_material(&s, matte(0.01f)));  // not seen; calls for ambient light
+    s.scene.info.background = Vec3{1, 1, 1} * around.x, s.scene.info.ambient = Vec3{1, 1, 1} * around.y;
+    double sum = 0;
+    for (std::uint32_t depth = 0; depth <= 8; ++depth) {
+      sum += std::pow(double(rho), depth);
+      CAPTURE(around);
+      CAPTURE(depth);
+      auto t = ray_renderer(&s, depth, 1);
+      double seen = sum + std::pow(double(rho), depth + 1) * double(max_component(around));
+      CHECK(look(*t, {0, 0, 0}, {0.03f, 0.02f, -1}).x == doctest::Approx(seen).epsilon(1e-5));
+      CHECK(double(t->renderer.frame.radiance_bound) >= seen * (1 - 1e-6));
     }
   }
 }
