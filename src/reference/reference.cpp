@@ -131,7 +131,9 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
     if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
       sum +=
           path.weight * sample_direct_light(reference, options, s, -ray.direction, depth < options.depth_max, samples);
-    if (depth >= options.depth_max || !scatter(reference, options, s, contact, &ray, &path, samples)) return sum;
+    bool is_last = depth >= options.depth_max;
+    if ((is_last && !model) || !scatter(reference, options, s, contact, &ray, &path, samples)) return sum;
+    if (is_last) return sum + path.weight * to_double(frame.beyond_depth);
     if (depth < kSureDepth) continue;
     double survival = std::fmin(kSurvivalMax, path.worth);
     if (!(samples->next() < survival)) return sum;
