@@ -60,7 +60,7 @@ void light_scene(Renderer* renderer) {
     if (has(renderer->effects.mask, Effect::instant_radiosity)) place_virtual_lights(&renderer->frame);
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
-    renderer->frame.radiance_bound = spawns ? radiance_bound(renderer->frame) : 0;
+    renderer->frame.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};
     renderer->lit_settings = renderer->settings;
     renderer->lit_mask = renderer->effects.mask;
   }

@@ -268,7 +268,7 @@ void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData
   frame->lights = {points.data, count};
 }
 
-float radiance_bound(const FrameData& frame) {
+RadianceBounds radiance_bounds(const FrameData& frame) {
   const Scene& scene = *frame.scene;
   CHECK(scene.material_maps.empty() || scene.material_maps.count == scene.materials.count);
   float glow = 0, reflectance = 0, scattering = 0, virtual_light = 0;
@@ -302,13 +302,14 @@ float radiance_bound(const FrameData& frame) {
     }
   }
   const float leaves = glow + scattering * irradiance, background = max_component(scene.info.background);
-  float bound = std::max(background, max_component(frame.beyond_depth));
-  for (std::uint32_t depth = 0; depth <= frame.settings.ray_depth; ++depth) {
-    float next = leaves + (reflectance > 0 ? reflectance * bound : 0);
-    bound = next > background ? next : background;
+  float bound = max_component(frame.beyond_depth);
+  RadianceBounds bounds;
+  for (std::uint32_t i = 0; i <= frame.settings.ray_depth; ++i) {
+    bound = std::max(background, leaves + (reflectance > 0 ? reflectance * bound : 0));
+    CHECK_GE(bound, background);                  // fails for NaN, too
+    bounds.after[i] = round_up(bound * 1.0001f);  // covers rounding of the sums
   }
-  CHECK_GE(bound, background);       // fails for NaN, too
-  return round_up(bound * 1.0001f);  // covers rounding of the sums
+  return bounds;
 }
 
 }  // namespace pocketray

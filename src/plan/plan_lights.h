@@ -12,9 +12,9 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
 // runs for the effects of its mask. Allocates nothing.
 void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame);
 
-// Upper bound of the radiance along any ray, for the cut-off: emission, direct light at the smallest distance of every
-// light from the geometry, and the most that ray_depth interreflections at the strongest mirror can add; rounded up by
-// at most an eighth. Infinite if unbounded.
-float radiance_bound(const FrameData& frame);
+// Upper bounds of the radiance along any ray, for the cut-off: emission, direct light at the smallest distance of every
+// light from the geometry, and the most that up to ray_depth interreflections at the strongest mirror can add; rounded
+// up by at most an eighth. Infinite if unbounded.
+RadianceBounds radiance_bounds(const FrameData& frame);
 
 }  // namespace pocketray

@@ -37,14 +37,14 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   sum += reflected_surroundings(frame, s, -ray.direction);
   if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
     sum += sum_light_points(reference, s, -ray.direction, true);
-  if (!is_zero(lobes_of(s).mirror))
-    sum += spawn(reference, s, mirrored(ray.direction, s), s.mirror, branch, branch.media);
+  Vec3d turned = {0, 0, 0};
+  if (!is_zero(lobes_of(s).mirror)) turned += s.mirror;
   if (!is_zero(m.transmission)) {
     ReferenceBoundary b = meet_boundary(frame, s, contact, ray.direction, branch.media);
-    Vec3d reflected = {b.reflectance, b.reflectance, b.reflectance};
-    sum += spawn(reference, s, mirrored(ray.direction, s), reflected, branch, branch.media);
+    turned += Vec3d{b.reflectance, b.reflectance, b.reflectance};
     sum += spawn(reference, s, b.direction, b.tint * (1 - b.reflectance), branch, b.beyond);
   }
+  if (!is_zero(turned)) sum += spawn(reference, s, mirrored(ray.direction, s), turned, branch, branch.media);
   return sum;
 }
 

@@ -1,5 +1,8 @@
 // Everything trace_spans reads while a frame is traced. Filled by plan/ and engine/, constant while threads run.
 #pragma once
+#include <algorithm>
+#include <iterator>
+
 #include "accel/accel.h"
 #include "base/limits.h"
 #include "effect/effect.h"
@@ -62,6 +65,14 @@ using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, 
                                  TraceStats* stats);
 using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, Vec3* image);
 
+// Upper bounds of the radiance along a ray, by the number of reflections and refractions that it may still meet.
+struct RadianceBounds {
+  float after[kRayDepthMax + 1] = {};
+
+  bool operator==(const RadianceBounds& other) const { return std::equal(after, std::end(after), other.after); }
+  bool operator!=(const RadianceBounds& other) const { return !(*this == other); }
+};
+
 struct FrameData {
   const Scene* scene = nullptr;
   Array<const Vec3> positions, normals;  // posed
@@ -86,9 +97,9 @@ struct FrameData {
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
   bool filters_read_point = false;                                              // HitFilter::reads_point
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
-  float radiance_bound = 0;          // upper bound for any ray
-  Vec3 beyond_depth = {0, 0, 0};     // radiance that stands in for rays beyond Settings::ray_depth
-  float left_out_max = 0;            // radiance that may be skipped of one sample
+  RadianceBounds radiance_bounds;
+  Vec3 beyond_depth = {0, 0, 0};  // radiance that stands in for rays beyond Settings::ray_depth
+  float left_out_max = 0;         // radiance that may be skipped of one sample
   IndirectData indirect;
   Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept
   bool ray_by_ray = false;    // no packets

@@ -27,6 +27,11 @@ struct Path {
 template <EffectMask mask>
 Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path);
 
+// Of any ray after `depth` reflections and refractions.
+inline float radiance_bound(const FrameData& frame, std::uint32_t depth) {
+  return frame.radiance_bounds.after[frame.settings.ray_depth - depth];
+}
+
 // Radiance along a spawned ray: zero if it could not matter, the surroundings' beyond the path's maximum depth.
 template <EffectMask mask>
 Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path<mask>& path,
@@ -37,7 +42,7 @@ Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction
   next.weight = path.weight * weight;
   next.depth = path.depth + 1;
   float most = max_component(next.weight);
-  if (!(most > 0) || leave_out(tracer, most * frame.radiance_bound)) return {0, 0, 0};
+  if (!(most > 0) || leave_out(tracer, most * radiance_bound(frame, next.depth))) return {0, 0, 0};
   ++tracer->rays[static_cast<int>(kind)];
   return weight * radiance<mask>(tracer, {safe_origin(s, side), direction, __builtin_inff()}, next);
 }
@@ -51,9 +56,11 @@ Vec3 mirror(Tracer* tracer, RayKind kind, const Ray& ray, const Surface& s, cons
   return spawn<mask>(tracer, kind, s, normalize(direction), 1, path, weight);
 }
 
-// A dielectric boundary: reflects by Fresnel; the rest is transmitted, refracted by Snell.
+// A dielectric boundary: reflects by Fresnel; the rest is transmitted, refracted by Snell. What the surface reflects
+// besides, as a metal, shares the reflected ray: a tree of rays with two branches, not three.
 template <EffectMask mask>
-Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path<mask>& path) {
+Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact& contact, const Path<mask>& path,
+                const Vec3& mirrored) {
   effect_entered<Effect::refraction>();
   const Scene& scene = *tracer->frame->scene;
   const Material& m = *s.material;
@@ -72,7 +79,8 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
   if (eta == 1) reflected = 0, cos_t = cos_i;  // touching bodies of equal index: no reflection from rounding
   if (m.thin && reflected < 1) reflected = 2 * reflected / (1 + reflected);  // both faces of the sheet, all orders
   Vec3 sum = {0, 0, 0};
-  if (reflected > 0) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, {reflected, reflected, reflected});
+  Vec3 turned = mirrored + Vec3{reflected, reflected, reflected};
+  if (!is_zero(turned)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, turned);
   if (reflected < 1) {
     Vec3 tint = {1, 1, 1};
     for (std::uint32_t i = 0; i < contact.count; ++i) {
@@ -94,14 +102,18 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   bool scatters = !is_zero(s.diffuse);
   if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
   if (scatters) sum += direct_light<mask>(tracer, s, m, -ray.direction, path.weight);
+  Vec3 mirrored = {0, 0, 0};
   if constexpr (has(mask, Effect::mirror)) {
     if (!is_zero(m.mirror)) {
       effect_entered<Effect::mirror>();
-      sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, reflectance_at(s, m.mirror, m.mirror_tinted));
+      mirrored = reflectance_at(s, m.mirror, m.mirror_tinted);
     }
   }
   if constexpr (has(mask, Effect::refraction)) {
-    if (!is_zero(m.transmission)) sum += dielectric<mask>(tracer, ray, s, *contact, path);
+    if (!is_zero(m.transmission)) return sum + dielectric<mask>(tracer, ray, s, *contact, path, mirrored);
+  }
+  if constexpr (has(mask, Effect::mirror)) {
+    if (!is_zero(m.mirror)) sum += mirror<mask>(tracer, RayKind::mirror, ray, s, path, mirrored);
   }
   return sum;
 }
@@ -147,7 +159,7 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
     path->weight = path->weight * (1 - alpha);
   }
   float most = max_component(path->weight);
-  return !any || (most > 0 && !leave_out(tracer, most * frame.radiance_bound));
+  return !any || (most > 0 && !leave_out(tracer, most * radiance_bound(frame, path->depth)));
 }
 
 // The face that a ray meets behind the blending surfaces of a contact: an opaque one, else a body that it enters or

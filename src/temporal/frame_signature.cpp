@@ -33,7 +33,7 @@ FrameSignature signature_of(const FrameData& frame) {
   s.eye_media = frame.eye_media;
   s.background = frame.scene->info.background;
   s.ambient = frame.scene->info.ambient;
-  s.radiance_bound = frame.radiance_bound;
+  s.radiance_bounds = frame.radiance_bounds;
   s.left_out_max = frame.left_out_max;
   s.indirect = frame.indirect;
   s.run_count = frame.light_run_count;
@@ -51,7 +51,7 @@ const char* difference(const FrameSignature& a, const FrameSignature& b) {
     return "the surroundings changed";
   if (!same_runs(a, b)) return "lights were added or removed";
   if (!same_media(a.eye_media, b.eye_media)) return "the camera entered or left a body";
-  if (a.radiance_bound != b.radiance_bound) return "the brightest light on a surface changed";
+  if (a.radiance_bounds != b.radiance_bounds) return "the brightest light on a surface changed";
   return nullptr;
 }
 

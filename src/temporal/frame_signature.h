@@ -12,7 +12,8 @@ struct FrameSignature {
   CameraRays camera;
   MediumStack eye_media;
   Vec3 background, ambient;
-  float radiance_bound = 0, left_out_max = 0;
+  RadianceBounds radiance_bounds;
+  float left_out_max = 0;
   IndirectData indirect;
   LightRun runs[4];
   int run_count = 0;

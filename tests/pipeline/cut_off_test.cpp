@@ -95,17 +95,23 @@ TEST_CASE("cut_off_is_bounded_on_generated_scenes") {
   CHECK(left_out > static_cast<std::uint64_t>(effort(1000)));
 }
 
-// Goal: no ray exceeds the bound that the cut-off relies on. Method: sampling, rays from everywhere to everywhere
-// through scenes with every kind of light and surface.
+// Goal: no ray exceeds the bound that the cut-off relies on, whatever number of bounces remains. Method: sampling, rays
+// from everywhere to everywhere through scenes with every kind of light and surface, at every depth up to 8; the bounds
+// at depth 8.
 TEST_CASE("radiance_bound_bounds_every_ray") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     std::uint32_t features = (kAllFeatures & ~bit(Feature::supersampling)) ^ (seed % 2 ? bit(Feature::refraction) : 0u);
     auto generated = generate_scene(features, seed);
     Settings settings = settings_for(features, 8, 6);
     settings.cut_off_levels = 0;
+    auto deepest = make_renderer(generated->scene, settings);
+    const RadianceBounds bounds = deepest->renderer.frame.radiance_bounds;
+    settings.ray_depth = static_cast<std::uint32_t>(seed % 9);
+    const float bound = bounds.after[settings.ray_depth];
+    REQUIRE(std::isfinite(bound));
+    CHECK(bound <= bounds.after[8]);
     auto test = make_renderer(generated->scene, settings);
     const Renderer& r = test->renderer;
-    REQUIRE(std::isfinite(r.frame.radiance_bound));
     Rng rng = make_rng(seed);
     auto between = [&](float low, float high) { return low + (high - low) * next_float(&rng); };
     float most = 0;
@@ -115,7 +121,7 @@ TEST_CASE("radiance_bound_bounds_every_ray") {
       most = std::max(most, max_component(trace_ray(r, from, normalize(to - from))));
     }
     CAPTURE(seed);
-    CHECK(most <= r.frame.radiance_bound);
+    CHECK(most <= bound);
     CHECK(most > 0.01f);
   }
 }
@@ -137,8 +143,9 @@ TEST_CASE("radiance_bound_is_reached_by_a_mirror_before_an_emitter") {
   settings.cut_off_levels = 0;
   auto test = make_renderer(s.scene, settings);
   float seen = trace_ray(test->renderer, {0, 0, 0}, {0, 0, -1}).x;
-  CHECK(seen <= test->renderer.frame.radiance_bound);
-  CHECK(test->renderer.frame.radiance_bound <=
+  const float bound = test->renderer.frame.radiance_bounds.after[settings.ray_depth];
+  CHECK(seen <= bound);
+  CHECK(bound <=
         4 * 1.13f);  // 2/(1 − ½), all surfaces assumed as strong as the strongest, rounded up by at most an eighth
   CHECK(seen == doctest::Approx(2 / 0.75).epsilon(1e-4));  // Σ (ρ²)ᵏ · 2
 }
