@@ -301,11 +301,12 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
       irradiance += irradiance_bound(frame, light, kind);
     }
   }
-  const float leaves = glow + scattering * irradiance, background = max_component(scene.info.background);
+  const float lit = scattering > 0 && irradiance > 0 ? scattering * irradiance : 0;  // not 0 × ∞
+  const float leaves = glow + lit, background = max_component(scene.info.background);
   float bound = max_component(frame.beyond_depth);
   RadianceBounds bounds;
   for (std::uint32_t i = 0; i <= frame.settings.ray_depth; ++i) {
-    bound = std::max(background, leaves + (reflectance > 0 ? reflectance * bound : 0));
+    bound = std::max(leaves + (reflectance > 0 ? reflectance * bound : 0), background);
     CHECK_GE(bound, background);                  // fails for NaN, too
     bounds.after[i] = round_up(bound * 1.0001f);  // covers rounding of the sums
   }

@@ -214,7 +214,9 @@ std::string run_settled(FaultWorld* w, SessionResult* result) {
     if (!w->client.share.unchanged) times.push_back(static_cast<double>(w->elapsed() - w->frame_begin_ns));
     let_client_rest(w, kSettlePauseNs);
   }
-  double ns = *std::min_element(times.end() - kJudgedFrames, times.end());
+  if (times.empty()) return "";
+  auto judged = times.end() - std::min<std::ptrdiff_t>(times.end() - times.begin(), kJudgedFrames);
+  double ns = *std::min_element(judged, times.end());
   double best = best_frame_ns(w->plan, w->client), ratio = ns / best;
   result->worst_settled = std::max(result->worst_settled, ratio);
   result->far_from_best = ns > kSettledMax * best + 2 * dearest_row(w->plan) * w->plan.device_ns;

@@ -44,6 +44,9 @@ TEST_CASE("faults_simulated_sessions_end_well") {
     worst_calm = std::max(worst_calm, r.worst_calm), worst_disturbed = std::max(worst_disturbed, r.worst_disturbed);
     worst_settled = std::max(worst_settled, r.worst_settled);
     return_ns = std::max(return_ns, r.return_ns);
+    if (r.far_from_best)
+      std::printf("POCKETRAY_FAULT_SEED=%llu: in the end a frame takes %.3f times the best split's\n  %s\n",
+                  static_cast<unsigned long long>(seed), r.worst_settled, plan_text(plan).c_str());
     if (r.failure.empty()) continue;
     if (++failures <= 20)
       std::printf("POCKETRAY_FAULT_SEED=%llu: %s\n  %s\n", static_cast<unsigned long long>(seed), r.failure.c_str(),
