@@ -86,6 +86,7 @@ void read_surface(GltfFile* file, const tinygltf::Material& source, Material* ma
             gltf_unit(pbr.roughnessFactor) * gltf_map_mean(file, texture, 1), transmission, material);
   const bool is_clear = !is_zero(material->transmission);
   if (is_clear) read_volume(source.extensions, material);
+  if (is_clear && material->roughness > 0) note_remark(file->builder, "rough transmission is rendered clear");
   gltf_read_maps(file, source, is_clear, maps);
 }
 

@@ -80,9 +80,9 @@ class Box:
         return self.run("cat /tmp/view.log")[1].strip()
 
     def wait_for_end(self, seconds=20):
-        status, printed = self.run(f"n=0; while [ ! -e /tmp/view.status ] && [ $n -lt {10 * seconds} ]; do usleep 100000; "
+        status, printed = self.run(f"n=0; while [ ! -s /tmp/view.status ] && [ $n -lt {10 * seconds} ]; do usleep 100000; "
                                    "n=$((n + 1)); done; cat /tmp/view.status", seconds + 30)
-        require(status == 0, f"the viewer does not end; it said: {self.said()!r}")
+        require(status == 0 and printed.strip().isdigit(), f"the viewer does not end; it said: {self.said()!r}")
         return int(printed)
 
     def check_one_line(self, command, status, pattern):

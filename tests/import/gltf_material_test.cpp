@@ -106,6 +106,19 @@ TEST_CASE("gltf_transmission_ior_and_volume_become_glass") {
   CHECK(material_of(glass + "}}").thin == 1);
 }
 
+// Goal: glass rendered clearer than it is meant is named. Method: the remark, for rough glass only.
+TEST_CASE("gltf_rough_transmission_is_a_remark") {
+  auto remark_of = [](const char* roughness, const char* transmission) {
+    return load_text(triangle_gltf(std::string("{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":") +
+                                   roughness + "},\"extensions\":{\"KHR_materials_transmission\":{" +
+                                   "\"transmissionFactor\":" + transmission + "}}}"))
+        .warning;
+  };
+  CHECK(remark_of("0.4", "0.9") == "rough transmission is rendered clear");
+  CHECK(remark_of("0", "0.9") == "");
+  CHECK(remark_of("0.4", "0") == "");
+}
+
 // Goal: emission with its strength, unlit surfaces, alpha modes.
 TEST_CASE("gltf_emission_unlit_and_alpha_modes") {
   Material lamp = material_of(
