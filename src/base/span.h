@@ -8,4 +8,9 @@ struct Span {
   std::uint16_t row, column_begin, column_end;  // pixels; end is exclusive
 };
 
+// Rows of a picture; end is exclusive.
+struct RowRange {
+  std::uint32_t begin, end;
+};
+
 }  // namespace pocketray

@@ -34,7 +34,7 @@ struct SharedRows {
   std::uint32_t tile_row = 0;       // the next to search
   std::uint32_t known_rows = 0;     // of the last frame ...
   std::uint64_t known_changes = 0;  // ... and pixels to trace in these
-  Span parts[kThreadCountMax];      // of a row
+  Span parts[2 * kThreadCountMax];  // of a row, or several rows apart
 };
 
 struct Renderer {

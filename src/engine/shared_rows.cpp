@@ -106,14 +106,29 @@ std::uint32_t listed_rows_max(const Renderer& renderer) {
 }
 
 SharedSpans list_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end) {
-  CHECK(row_begin < row_end && row_end <= renderer->settings.height);
-  CHECK_LE(row_end - row_begin, listed_rows_max(*renderer));
-  if (!records(*renderer)) return {renderer->spans.data + row_begin, row_end - row_begin};
+  const RowRange range = {row_begin, row_end};
+  return list_ranges(renderer, &range, 1);
+}
+
+SharedSpans list_ranges(Renderer* renderer, const RowRange* ranges, std::uint32_t range_count) {
+  CHECK_GT(range_count, 0u);
+  std::uint32_t rows = 0, count = 0;
+  for (std::uint32_t i = 0; i < range_count; ++i) {
+    CHECK(ranges[i].begin < ranges[i].end && ranges[i].end <= renderer->settings.height);
+    rows += ranges[i].end - ranges[i].begin;
+  }
+  CHECK_LE(rows, listed_rows_max(*renderer));
+  const bool whole = !records(*renderer);
+  if (whole && range_count == 1) return {renderer->spans.data + ranges[0].begin, rows};
+  CHECK(!whole || rows <= kRangesRowsMax);
   Coherence* c = &renderer->coherence;
-  std::uint32_t count = 0;
-  for (std::uint32_t row = row_begin; row < row_end; ++row)
-    count += list_changes(*c, row, 0, c->plan.width, c->spans.data + count);
-  return {c->spans.data, count};
+  for (std::uint32_t i = 0; i < range_count; ++i)
+    for (std::uint32_t row = ranges[i].begin; row < ranges[i].end; ++row)
+      if (whole)
+        renderer->shared_rows.parts[count++] = renderer->spans[row];
+      else
+        count += list_changes(*c, row, 0, c->plan.width, c->spans.data + count);
+  return {whole ? renderer->shared_rows.parts : c->spans.data, count};
 }
 
 SharedSpans list_part(Renderer* renderer, std::uint32_t row, std::uint32_t begin, std::uint32_t end) {

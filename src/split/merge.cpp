@@ -31,6 +31,12 @@ bool take_rows(Merge* merge, std::uint32_t row_count_max, std::uint32_t* row_beg
   return *row_begin < *row_end;
 }
 
+void take_row(Merge* merge, std::uint32_t row) {
+  CHECK_LT(row, merge->rows.count);
+  CHECK(merge->rows[row].state == RowState::missing);
+  merge->rows[row].state = RowState::taken;
+}
+
 void finish_rows(Merge* merge, std::uint32_t row_begin, std::uint32_t row_end) {
   CHECK_LE(row_begin, row_end);
   CHECK_LE(row_end, merge->rows.count);

@@ -1,7 +1,7 @@
 // Merge: the origin of each row of the current frame. The device takes rows from the top, first its own and then those
-// that have not arrived; servers' chunks arrive from the bottom; they meet. Honest servers send the same pixels as the
-// device, so whoever is first wins, and a lost server costs time but no pixel; rows of a server that sends wrong pixels
-// can be discarded. Not thread-safe.
+// that have not arrived; servers' chunks arrive in the order asked for; they meet. Honest servers send the same pixels
+// as the device, so whoever is first wins, and a lost server costs time but no pixel; rows of a server that sends wrong
+// pixels can be discarded. Not thread-safe.
 #pragma once
 #include <cstdint>
 
@@ -35,6 +35,9 @@ void begin_merge(Merge* merge, std::uint32_t frame);
 // Takes the rows that the device renders next: the topmost run of missing rows, at most row_count_max of them. False if
 // none is missing.
 bool take_rows(Merge* merge, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
+
+// Takes that row, which must be missing.
+void take_row(Merge* merge, std::uint32_t row);
 
 // The device has rendered rows that it took. Rows that arrived meanwhile stay the server's.
 void finish_rows(Merge* merge, std::uint32_t row_begin, std::uint32_t row_end);

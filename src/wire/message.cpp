@@ -6,68 +6,14 @@
 
 #include "base/check.h"
 #include "effect/setting_list.h"
+#include "wire/message_io.h"
+#include "wire/row_sequence.h"
 
 namespace pocketray {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x59415250;  // "PRAY"
 constexpr std::uint32_t kChecksumAt = 4;
-
-// Reader and Writer process the fields of a message with the same function, fields(io, &message), so that both sides
-// agree. The length is checked before either runs.
-struct Reader {
-  const std::uint8_t* at;
-  const std::uint8_t* end;
-  bool valid = true;
-
-  void integer(std::uint64_t* value, std::uint32_t byte_count) {
-    *value = 0;
-    for (std::uint32_t i = byte_count; i-- > 0;) *value = *value << 8 | at[i];
-    at += byte_count;
-  }
-  void require(bool condition) { valid = valid && condition; }
-  void text(char* text) {
-    std::memcpy(text, at, kNameBytes);
-    at += kNameBytes;
-    std::size_t length = strnlen(text, kNameBytes);
-    for (std::size_t i = length; i < kNameBytes; ++i) require(text[i] == 0);
-    require(length < kNameBytes);
-  }
-  void tail(Array<const std::uint8_t>* bytes) {
-    *bytes = {at, static_cast<std::uint32_t>(end - at)};
-    at = end;
-  }
-};
-
-struct Writer {
-  std::uint8_t* at;
-
-  void integer(std::uint64_t* value, std::uint32_t byte_count) {
-    for (std::uint32_t i = 0; i < byte_count; ++i) at[i] = static_cast<std::uint8_t>(*value >> 8 * i);
-    at += byte_count;
-  }
-  void require(bool condition) { CHECK(condition); }
-  void text(char* text) {
-    require(strnlen(text, kNameBytes) < kNameBytes);
-    std::memset(at, 0, kNameBytes);
-    std::memcpy(at, text, strnlen(text, kNameBytes));
-    at += kNameBytes;
-  }
-  void tail(Array<const std::uint8_t>* bytes) {
-    if (bytes->count) std::memmove(at, bytes->data, bytes->count);
-    at += bytes->count;
-  }
-};
-
-// Visits the fields of a message to be sent and writes nothing.
-struct Checker {
-  bool valid = true;
-
-  void integer(std::uint64_t*, std::uint32_t) {}
-  void require(bool condition) { valid = valid && condition; }
-  void text(char* text) { require(strnlen(text, kNameBytes) < kNameBytes); }
-  void tail(Array<const std::uint8_t>*) {}
-};
 
 // Integers, bools and enumerations of `byte_count` bytes.
 template <class Io, class T>
@@ -194,6 +140,21 @@ void fields(Io& io, Settings* settings) {
   io.require((settings->forced_on & ~kAllEffects) == 0 && (settings->forced_off & ~kAllEffects) == 0);
 }
 
+// Which rows, and how they come.
+template <class Io>
+void row_fields(Io& io, FrameRequest* m, std::uint32_t height) {
+  number(io, &m->row_begin), number(io, &m->row_end);
+  io.require(m->row_begin < m->row_end && m->row_end <= height);
+  number(io, &m->chunk_rows);
+  io.require(m->chunk_rows >= 1);
+  number(io, &m->deflate_level);
+  io.require(m->deflate_level <= 9);
+  io.length_of(&m->run_count);
+  if (m->run_count > kRunCountMax) return;
+  for (std::uint32_t i = 0; i < m->run_count; ++i) number(io, &m->runs[i].row_count), number(io, &m->runs[i].place);
+  io.require(is_order(*m));
+}
+
 template <class Io>
 void fields(Io& io, FrameRequest* m) {
   number(io, &m->frame), hash(io, &m->scene), real(io, &m->seconds, Quantity::seconds);
@@ -204,12 +165,7 @@ void fields(Io& io, FrameRequest* m) {
   own_or_exposure(io, &m->exposure);
   choice(io, &m->dither, true);
   choice(io, &m->format, WireFormat::rgb888);
-  number(io, &m->row_begin), number(io, &m->row_end);
-  number(io, &m->chunk_rows), number(io, &m->chunk_rows_max), number(io, &m->chunk_growth);
-  io.require(m->row_begin < m->row_end && m->row_end <= m->settings.height);
-  io.require(m->chunk_rows >= 1 && m->chunk_rows <= m->chunk_rows_max);
-  number(io, &m->deflate_level);
-  io.require(m->deflate_level <= 9);
+  row_fields(io, m, m->settings.height);
 }
 
 // The fields that change from frame to frame.
@@ -217,12 +173,7 @@ template <class Io>
 void change_fields(Io& io, FrameRequest* m) {
   number(io, &m->frame), real(io, &m->seconds, Quantity::seconds);
   fields(io, &m->camera);
-  number(io, &m->row_begin), number(io, &m->row_end);
-  number(io, &m->chunk_rows), number(io, &m->chunk_rows_max), number(io, &m->chunk_growth);
-  io.require(m->row_begin < m->row_end && m->row_end <= kImageSideMax);
-  io.require(m->chunk_rows >= 1 && m->chunk_rows <= m->chunk_rows_max);
-  number(io, &m->deflate_level);
-  io.require(m->deflate_level <= 9);
+  row_fields(io, m, kImageSideMax);
 }
 
 template <class Io>
@@ -313,22 +264,22 @@ struct PayloadSize {
   std::uint32_t fields, tail_max;
 };
 constexpr PayloadSize kPayloadSizes[] = {
-    {0, 0},                    // no type
-    {20, 0},                   // hello
-    {2, 0},                    // scene_list
-    {16, 0},                   // scene_query
-    {96, 0},                   // scene_entry
-    {28, 0},                   // scene_fetch
-    {24, kPieceBytesMax},      // scene_piece
-    {95 + kSettingsBytes, 0},  // frame_request
-    {17, kChunkBytesMax},      // row_chunk
-    {4, 0},                    // cancel
-    {6, 0},                    // error
-    {8, 0},                    // ping
-    {8, kPingBytesMax},        // pong
-    {68 + kSettingsBytes, 0},  // view_query
-    {104, 0},                  // view_entry
-    {70, 0},                   // frame_change
+    {0, 0},                                          // no type
+    {20, 0},                                         // hello
+    {2, 0},                                          // scene_list
+    {16, 0},                                         // scene_query
+    {96, 0},                                         // scene_entry
+    {28, 0},                                         // scene_fetch
+    {24, kPieceBytesMax},                            // scene_piece
+    {92 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
+    {17, kChunkBytesMax},                            // row_chunk
+    {4, 0},                                          // cancel
+    {6, 0},                                          // error
+    {8, 0},                                          // ping
+    {8, kPingBytesMax},                              // pong
+    {68 + kSettingsBytes, 0},                        // view_query
+    {104, 0},                                        // view_entry
+    {67, kRunBytes* kRunCountMax},                   // frame_change
 };
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
 static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::frame_change) + 1, "one for each type");
@@ -340,6 +291,8 @@ std::uint32_t tail_bytes(const Message& m) {
   if (m.type == MessageType::scene_piece) return m.scene_piece.bytes.count;
   if (m.type == MessageType::row_chunk) return m.row_chunk.bytes.count;
   if (m.type == MessageType::pong) return m.pong.bytes.count;
+  if (m.type == MessageType::frame_request || m.type == MessageType::frame_change)
+    return kRunBytes * m.frame_request.run_count;
   return 0;
 }
 
@@ -422,12 +375,14 @@ void take_change(const FrameRequest& change, FrameRequest* request) {
   request->frame = change.frame, request->seconds = change.seconds;
   request->camera = change.camera;
   request->row_begin = change.row_begin, request->row_end = change.row_end;
-  request->chunk_rows = change.chunk_rows, request->chunk_rows_max = change.chunk_rows_max;
-  request->chunk_growth = change.chunk_growth, request->deflate_level = change.deflate_level;
+  request->chunk_rows = change.chunk_rows, request->deflate_level = change.deflate_level;
+  request->run_count = change.run_count;
+  std::memcpy(request->runs, change.runs, sizeof request->runs);
 }
 
 bool is_change(const FrameRequest& request, const FrameRequest& before) {
-  std::uint8_t bytes[2][kPayloadSizes[static_cast<std::uint32_t>(MessageType::frame_request)].fields];
+  constexpr PayloadSize kSize = kPayloadSizes[static_cast<std::uint32_t>(MessageType::frame_request)];
+  std::uint8_t bytes[2][kSize.fields + kSize.tail_max] = {};
   FrameRequest changed[2] = {request, before};
   take_change(request, &changed[1]);
   for (int i = 0; i < 2; ++i) {
@@ -435,16 +390,6 @@ bool is_change(const FrameRequest& request, const FrameRequest& before) {
     fields(writer, &changed[i]);
   }
   return std::memcmp(bytes[0], bytes[1], sizeof bytes[0]) == 0;
-}
-
-std::uint32_t next_chunk_rows(const FrameRequest& request, std::uint32_t rows_before, std::uint32_t rows_left) {
-  constexpr std::uint32_t kWhole = 16;
-  std::uint32_t growth = request.chunk_growth;
-  std::uint32_t grown = rows_before * (kWhole + growth) / kWhole, tail = rows_left * growth / (kWhole + growth);
-  std::uint32_t rows = grown < tail ? grown : tail;
-  if (rows > request.chunk_rows_max) rows = request.chunk_rows_max;
-  if (rows < request.chunk_rows) rows = request.chunk_rows;
-  return rows < rows_left ? rows : rows_left;
 }
 
 }  // namespace pocketray

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/box.h"
+#include "base/span.h"
 #include "effect/setting_list.h"
 #include "scene/content_hash.h"
 #include "scene/scene.h"
@@ -13,7 +14,7 @@
 namespace pocketray {
 
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 7 + (kSettingCount - 6);
+constexpr std::uint16_t kWireVersion = 8 + (kSettingCount - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -73,7 +74,14 @@ struct ScenePiece {
 enum class WireFormat : std::uint8_t { rgb565, rgb888 };  // 2 bytes, little-endian; 3 bytes R, G, B
 constexpr std::uint32_t pixel_bytes(WireFormat format) { return format == WireFormat::rgb565 ? 2 : 3; }
 
-// Requests rows of a frame, sent in chunks from the bottom of the band upward.
+constexpr std::uint32_t kRunCountMax = 64;
+
+// Rows of a request that follow each other, and when their turn is.
+struct RowRun {
+  std::uint8_t row_count = 0, place = 0;
+};
+
+// Requests rows of a frame. They come run after run, each from its lowest row upward.
 struct FrameRequest {
   std::uint32_t frame = 0;  // counts up
   ContentHash scene;
@@ -86,9 +94,10 @@ struct FrameRequest {
   bool dither = false;
   WireFormat format = WireFormat::rgb565;
   std::uint16_t row_begin = 0, row_end = 0;
-  std::uint16_t chunk_rows = 1, chunk_rows_max = 1;  // rows of the first and last chunk; largest chunk in between
-  std::uint8_t chunk_growth = 0;                     // growth of chunks from either end, in 16ths
-  std::uint8_t deflate_level = 1;                    // 0 (no compression) to 9
+  std::uint16_t chunk_rows = 1;    // of a chunk, at most; no chunk has rows of two runs
+  std::uint8_t deflate_level = 1;  // 0 (no compression) to 9
+  std::uint8_t run_count = 0;      // 0: all rows are one run
+  RowRun runs[kRunCountMax];       // from top to bottom; their places are a permutation of 0 … run_count − 1
 };
 
 struct RowChunk {
@@ -195,9 +204,5 @@ std::uint32_t row_chunk_prefix_bytes();
 void take_change(const FrameRequest& change, FrameRequest* request);
 // Whether a frame_change can express how `request` differs from `before`.
 bool is_change(const FrameRequest& request, const FrameRequest& before);
-
-// Rows of the next chunk of a request. `rows_before` is the previous chunk's, 0 for the first; `rows_left` (≥ 1) are
-// still to be sent. A sender may use fewer.
-std::uint32_t next_chunk_rows(const FrameRequest& request, std::uint32_t rows_before, std::uint32_t rows_left);
 
 }  // namespace pocketray

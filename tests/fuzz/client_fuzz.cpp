@@ -12,6 +12,7 @@
 #include "remote/client/frame.h"
 #include "remote/client/inquiry.h"
 #include "wire/codec.h"
+#include "wire/row_sequence.h"
 
 POCKETRAY_FUZZ_TARGET(fuzz_client)
 
@@ -32,7 +33,8 @@ struct Peer {
   bool silent = false;
   Bytes in, out;
   FrameRequest request;
-  std::uint32_t row_end = 0, chunk_rows = 0, chunk_count = 0;
+  RowSequence due;
+  std::uint32_t chunk_count = 0;
   Bytes encoder_block;
   RowEncoder* encoder = nullptr;
 };
@@ -90,26 +92,25 @@ void send(const Message& message) {
 void send_rows() {
   const FrameRequest& q = peer->request;
   CodecShape shape = {kFuzzWidth, kFuzzHeight, kFuzzHeight, q.format};
-  peer->chunk_rows = next_chunk_rows(q, peer->chunk_rows, peer->row_end - q.row_begin);
-  std::uint32_t begin = peer->row_end - peer->chunk_rows;
+  const std::uint32_t row_count = next_chunk_rows(q, peer->due), begin = peer->due.row_end - row_count;
   if (!peer->encoder) {
     peer->encoder_block.assign(row_encoder_need(shape) + kArenaAlignment, 0);
     Arena arena = make_arena("encoder", peer->encoder_block.data(), peer->encoder_block.size());
     CHECK(make_row_encoder(shape, &arena, &peer->encoder).ok);
   }
-  Bytes encoded(encoded_bytes_max(shape, peer->chunk_rows));
+  Bytes encoded(encoded_bytes_max(shape, row_count));
   Message message;
   message.type = MessageType::row_chunk;
   RowChunk* chunk = &message.row_chunk;
-  chunk->frame = q.frame, chunk->pixel_ps = 10'000'000, chunk->pixels_traced = kFuzzWidth * peer->chunk_rows;
-  chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(peer->chunk_rows);
+  chunk->frame = q.frame, chunk->pixel_ps = 10'000'000, chunk->pixels_traced = kFuzzWidth * row_count;
+  chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(row_count);
   const Bytes& picture = picture_of(q.format, q.seconds);
   std::uint32_t count =
-      encode_rows(peer->encoder, begin, peer->chunk_rows, picture.data() + begin * kFuzzWidth * pixel_bytes(q.format),
+      encode_rows(peer->encoder, begin, row_count, picture.data() + begin * kFuzzWidth * pixel_bytes(q.format),
                   q.deflate_level, encoded.data(), &chunk->encoding);
   add_chunk_number(chunk, peer->chunk_count++);
   chunk->bytes = {encoded.data(), count};
-  peer->row_end = begin;
+  pass_rows(q, row_count, &peer->due);
   send(message);
 }
 
@@ -150,10 +151,10 @@ void answer(const Message& asked) {
         take_change(asked.frame_request, &peer->request);
       else
         peer->request = asked.frame_request;
-      peer->row_end = peer->request.row_end, peer->chunk_rows = 0;
+      peer->due = first_rows(peer->request);
       return;
     case MessageType::cancel:
-      peer->row_end = 0;
+      peer->due = RowSequence();
       return;
     default:
       return;
@@ -167,7 +168,7 @@ void step_peer() {
     hang_up();
     peer->stream = stream, peer->silent = false;
     peer->in.clear(), peer->out.clear();
-    peer->row_end = peer->chunk_count = 0, peer->encoder = nullptr;
+    peer->due = RowSequence(), peer->chunk_count = 0, peer->encoder = nullptr;
     Message hello;
     hello.type = MessageType::hello;
     hello.hello.image_side_max = kImageSideMax, hello.hello.message_bytes_max = 512;
@@ -188,8 +189,7 @@ void step_peer() {
     answer(message);
   }
   peer->in.erase(peer->in.begin(), peer->in.begin() + static_cast<std::ptrdiff_t>(begin));
-  while (peer->stream >= 0 && !peer->silent && peer->out.empty() && peer->row_end > peer->request.row_begin)
-    send_rows();
+  while (peer->stream >= 0 && !peer->silent && peer->out.empty() && has_rows(peer->due)) send_rows();
   if (peer->stream >= 0 && !write_some(peer->link, peer->stream, &peer->out)) hang_up();
 }
 

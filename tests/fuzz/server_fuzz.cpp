@@ -96,7 +96,12 @@ Message sensible_message(FuzzInput* input) {
   q->frame = 1 + input->byte() % 16, q->scene = scene.hash;
   q->settings.width = kFuzzWidth, q->settings.height = kFuzzHeight;
   q->row_end = kFuzzHeight;
-  q->chunk_rows = 1 + input->byte() % 4, q->chunk_rows_max = q->chunk_rows;
+  q->chunk_rows = 1 + input->byte() % 4;
+  // Sometimes an order that begins with the upper rows.
+  if (std::uint8_t cut = input->byte() % (2 * kFuzzHeight); cut > 0 && cut < kFuzzHeight) {
+    q->run_count = 2;
+    q->runs[0] = {cut, 0}, q->runs[1] = {static_cast<std::uint8_t>(kFuzzHeight - cut), 1};
+  }
   m.view_query.settings = q->settings;
   m.cancel.frame = q->frame;
   return m;

@@ -64,6 +64,32 @@ TEST_CASE("client_leaves_a_server_that_floods") {
     }
 }
 
+// Goal: rows that come in another order than asked for end the connection, as do rows of two runs in one chunk. Method:
+// a server that sends the right rows from the bottom upward, whatever the order, or the first run with a row too many.
+TEST_CASE("client_leaves_a_server_that_sends_in_another_order") {
+  for (bool crosses_runs : {false, true}) {
+    CAPTURE(crosses_runs);
+    HostileRig rig;
+    bool ordered = false;
+    rig.frames_until_ready();
+    rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
+      if (!r->note_request(message)) return r->answer(message);
+      const FrameRequest& q = r->request;
+      const RowSequence first = first_rows(q);
+      // Of equal rows, the lowest come first anyway; so the upper run first, which no device asked for.
+      if (q.run_count < 2) return r->rows.rows(q);
+      ordered = true;
+      const RowRange last = run_at(q, q.run_count - 1u);
+      if (!crosses_runs) return {r->rows.chunk(q.frame, last.begin, last.end - last.begin)};
+      return {r->rows.chunk(q.frame, first.row_begin - 1, first.row_end - first.row_begin + 1)};
+    };
+    for (int i = 0; i < 3 && rig.log.empty(); ++i) CHECK(rig.frame() < 1.05);
+    CHECK(ordered);
+    REQUIRE(rig.log.size() == 1);
+    CHECK(rig.log[0].find("unrequested rows") != std::string::npos);
+  }
+}
+
 // Goal: late rows of earlier requests do not end the connection; one row too many does. Method: a server holds back the
 // rows of some frames and sends them in order with the next request, as a slow line would; then it repeats a few.
 TEST_CASE("client_takes_late_rows_no_more_than_it_asked_for") {
@@ -112,8 +138,8 @@ TEST_CASE("client_look_is_bounded") {
     if (!gives) return {};
     std::vector<Message> chunks;
     for (const FrameRequest& request : kept)
-      for (std::uint32_t row = request.row_end; row > request.row_begin; --row)
-        chunks.push_back(r->rows.chunk(request.frame, row - 1, 1));
+      for (RowSequence at = first_rows(request); has_rows(at); pass_rows(request, 1, &at))
+        chunks.push_back(r->rows.chunk(request.frame, at.row_end - 1, 1));
     kept.clear();
     return chunks;
   };

@@ -151,3 +151,37 @@ TEST_CASE("client_counts_preparation") {
   }
   CHECK(rows[0] == rows[1]);
 }
+
+// Goal: a device that is done with its own rows goes on with those that its server would send last, so that the two
+// meet and no row is rendered twice. Method: a server that holds its rows back; the rows that the device takes one
+// after the other, against the request's order backwards.
+TEST_CASE("client_goes_on_with_the_rows_a_server_sends_last") {
+  HostileRig rig;
+  rig.frames_until_ready();
+  Client* client = &rig.client;
+  client->options.device_share = 0.25;
+  // The lower rows are dear to send, so that the order is not simply from the bottom upward.
+  for (std::uint32_t row = 0; row < kHeight; ++row) {
+    client->model.rows[row].bytes = Smoothed();
+    smooth(&client->model.rows[row].bytes, row < 32 ? 4000.0 : 10.0);
+  }
+  std::vector<Message> none;
+  rig.act = [&](HostileRig* r, const Message& message) { return r->note_request(message) ? none : r->answer(message); };
+  REQUIRE(begin_frame(&rig.device->renderer, client, 0).ok);
+  std::vector<std::uint32_t> expected, taken;
+  const FrameRequest asked = client->servers[0].asked;
+  REQUIRE(asked.run_count > 1);
+  REQUIRE(asked.row_begin == kHeight / 4);
+  CHECK(first_rows(asked).row_end != asked.row_end);
+  for (std::uint32_t row = 0; row < asked.row_begin; ++row) expected.push_back(row);
+  for (std::uint32_t place = asked.run_count; place-- > 0;)
+    for (std::uint32_t row = run_at(asked, place).begin; row < run_at(asked, place).end; ++row) expected.push_back(row);
+  std::uint32_t begin, end;
+  while (take_device_rows(client, 8, &begin, &end)) {
+    for (std::uint32_t row = begin; row < end; ++row) taken.push_back(row);
+    finish_device_rows(client, begin, end, 1000, (end - begin) * kWidth);
+  }
+  CHECK(taken == expected);
+  CHECK(has_all_rows(*client));
+  end_client_frame(client);
+}

@@ -57,8 +57,9 @@ TEST_CASE("client_merged_frames_equal_local_ones") {
         if (std::string(scene) == "cornell") CHECK(share.device_rows > 0);
         CHECK(server_rows(share) > options.height / 2);
         CHECK(share.device_rows + server_rows(share) == options.height);
-        // For a small picture, more than one server may not pay off.
-        for (std::uint32_t i = 0; i < server_count && kEffortDivisor == 1; ++i) CHECK(share.server_rows[i] > 0);
+        // For a small picture, or one of which a server holds most, more than one server may not pay off.
+        const bool pays = kEffortDivisor == 1 && std::string(scene) == "cornell";
+        for (std::uint32_t i = 0; i < server_count && pays; ++i) CHECK(share.server_rows[i] > 0);
         CHECK(rig.log.empty());
       }
 }

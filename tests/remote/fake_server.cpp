@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "support/scripted_client.h"
+#include "wire/row_sequence.h"
 
 namespace pocketray {
 namespace {
@@ -119,10 +120,10 @@ Message RowSource::chunk(std::uint32_t frame, std::uint32_t row_begin, std::uint
 
 std::vector<Message> RowSource::rows(const FrameRequest& request, std::uint8_t shade) {
   std::vector<Message> chunks;
-  for (std::uint32_t end = request.row_end; end > request.row_begin;) {
-    std::uint32_t count = std::min<std::uint32_t>(end - request.row_begin, 8);
-    chunks.push_back(chunk(request.frame, end - count, count, shade));
-    end -= count;
+  for (RowSequence at = first_rows(request); has_rows(at);) {
+    const std::uint32_t count = std::min<std::uint32_t>(next_chunk_rows(request, at), 8);
+    chunks.push_back(chunk(request.frame, at.row_end - count, count, shade));
+    pass_rows(request, count, &at);
   }
   return chunks;
 }

@@ -36,7 +36,7 @@ double best_frame_ns(const FaultPlan& plan, const Client& client) {
     t->transfer_ns = by_bytes(line_ns);
     t->cost = by_bytes(1);
     t->start_ns = start_ns;
-    t->chunk_rows = std::min(kChunkRowsEven, plan.height);
+    t->chunk_rows = std::min(kChunkRowsMin, plan.height);
     t->chunk_row_ns =
         static_cast<std::uint64_t>(std::min(plan.server_ns[i] * plan.width, bytes_sum / plan.height * line_ns));
   }

@@ -22,7 +22,7 @@ FrameRequest small_frame(HostileClient* c) {
   request.scene = c->scene;
   request.settings.width = 8, request.settings.height = 8;
   request.row_end = 8;
-  request.chunk_rows = request.chunk_rows_max = 1;
+  request.chunk_rows = 1;
   request.deflate_level = 6;
   return request;
 }

@@ -117,15 +117,14 @@ std::uint64_t chunk_ns(const HostileServer& server, const Connection& c, std::ui
 void plan_chunk(HostileServer* server, Connection* c) {
   const FrameRequest& q = c->request;
   c->due_ns = ~std::uint64_t(0);
-  if (c->row_end <= q.row_begin) return;
-  c->chunk_rows =
-      std::min(next_chunk_rows(q, c->chunk_rows, c->row_end - q.row_begin), std::min(32u, q.settings.height));
+  if (!has_rows(c->due)) return;
+  c->chunk_rows = std::min(next_chunk_rows(q, c->due), std::min(32u, q.settings.height));
   c->due_ns = net.now_ns(server->link) + chunk_ns(*server, *c, c->chunk_rows);
 }
 
 void send_due_rows(HostileServer* server, Connection* c) {
   if (net.now_ns(server->link) < c->due_ns) return;
-  std::uint32_t end = c->row_end, begin = end - c->chunk_rows, height = c->request.settings.height;
+  std::uint32_t end = c->due.row_end, begin = end - c->chunk_rows, height = c->request.settings.height;
   Malice malice = server->settings.malice;
   bool lies = malice == Malice::wrong_pixels && c->request.frame > server->honest_frames;
   say_rows(server, c, c->request.frame, begin, end, lies);
@@ -134,7 +133,7 @@ void send_due_rows(HostileServer* server, Connection* c) {
     if (c->request.row_begin > 0) say_rows(server, c, c->request.frame, 0, 1, true);
     if (c->request.row_end < height) say_rows(server, c, c->request.frame, height - 1, height, true);
   }
-  c->row_end = begin;
+  pass_rows(c->request, c->chunk_rows, &c->due);
   plan_chunk(server, c);
 }
 
@@ -143,7 +142,7 @@ void take_request(HostileServer* server, Connection* c, const FrameRequest& requ
     take_change(request, &c->request);
   else
     c->request = request;
-  c->row_end = c->request.row_end, c->chunk_rows = 0;
+  c->due = first_rows(c->request);
   plan_chunk(server, c);
 }
 
@@ -197,7 +196,7 @@ void answer(HostileServer* server, Connection* c, const Message& message) {
       c->ready = true;
       return take_request(server, c, message.frame_request, message.type == MessageType::frame_change);
     case MessageType::cancel:
-      c->row_end = 0, c->due_ns = ~std::uint64_t(0);
+      c->due = RowSequence(), c->due_ns = ~std::uint64_t(0);
       return;
     default:
       return;

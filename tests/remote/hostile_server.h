@@ -8,6 +8,7 @@
 #include "fault_random.h"
 #include "platform/link.h"
 #include "wire/codec.h"
+#include "wire/row_sequence.h"
 
 namespace pocketray {
 
@@ -23,11 +24,11 @@ struct HostileSettings {
 struct HostileConnection {
   int stream;
   std::vector<std::uint8_t> in, out;
-  bool ready = false;         // has greeted and received a request
-  bool silent = false;        // stalls for good
-  int patience = 0;           // for flaps: number of messages it still answers
-  FrameRequest request;       // the last
-  std::uint32_t row_end = 0;  // rows [request.row_begin, row_end) remain to be sent
+  bool ready = false;    // has greeted and received a request
+  bool silent = false;   // stalls for good
+  int patience = 0;      // for flaps: number of messages it still answers
+  FrameRequest request;  // the last
+  RowSequence due;       // remain to be sent
   std::uint32_t chunk_rows = 0, chunk_count = 0, ping_id = 0;
   std::uint64_t due_ns = ~std::uint64_t(0);  // the next chunk
   std::vector<std::uint8_t> block;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "base/rng.h"
 #include "platform/net/tcp.h"
 #include "remote/server/session.h"
 #include "scene/baked.h"
+#include "support/effort.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
 
@@ -54,10 +56,15 @@ TEST_CASE("server_frames_equal_local_ones") {
   request.frame = 8, request.camera_stated = false, request.exposure = 0;
   check_frame(&client, request);
   request = frame_request("statue", 9, 40, 30);
-  request.settings.samples_per_pixel = 4, request.chunk_rows = request.chunk_rows_max = 7, request.deflate_level = 0;
+  request.settings.samples_per_pixel = 4, request.chunk_rows = 7, request.deflate_level = 0;
   check_frame(&client, request);
-  request.frame = 10, request.chunk_growth = 8, request.chunk_rows = 2;
+  request.frame = 10, request.run_count = 3;
+  request.runs[0] = {9, 1}, request.runs[1] = {14, 0}, request.runs[2] = {7, 2};
   check_frame(&client, request, MessageType::frame_change);
+  const std::uint32_t rows[] = {16, 9, 2, 0,
+                                23};  // from the 14 rows' lowest upward, then the upper ones, then the lowest
+  REQUIRE(client.chunks.size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) CHECK(client.chunks[i].row_begin == rows[i]);
   CHECK(server_totals(*rig.server).frame_count == 10);
   CHECK(server_totals(*rig.server).row_count == 8 * 48 + 2 * 30);
 }
@@ -106,7 +113,7 @@ TEST_CASE("server_frames_follow_every_setting") {
     CAPTURE(std::string(row.name));
     double usual = row.field.get(plain.settings);
     double coarse = row.sweep.values[row.sweep.values[0] == usual ? row.sweep.count / 2 : 0];
-    if (row.effects == bit(Effect::instant_radiosity)) continue;  // below
+    if (row.effects == bit(Effect::instant_radiosity)) continue;   // below
     const bool shows = std::string(row.name) != "reconstruction";  // the scene stores no radiosity
     check_and_back([&](FrameRequest* r) { row.field.set(&r->settings, coarse); }, shows);
   }
@@ -140,7 +147,7 @@ TEST_CASE("server_makes_rows_no_earlier_than_they_can_be_sent") {
   ServerRig rig(ServerOptions(), settings);
   ScriptedClient client(&rig);
   FrameRequest request = frame_request("cube", 1, 320, 240);
-  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = request.chunk_rows_max = 4;
+  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = 4;
   client.request(request);
   std::uint64_t ahead_max = 0;
   rig.run_until([&] {
@@ -196,7 +203,7 @@ TEST_CASE("server_cuts_chunks_to_the_size_that_the_client_takes") {
   hello.hello.message_bytes_max = 3072;
   client.send(hello);
   FrameRequest request = frame_request("cornell", 1);
-  request.chunk_rows = request.chunk_rows_max = 48, request.deflate_level = 0;
+  request.chunk_rows = 48, request.deflate_level = 0;
   client.request(request);
   client.wait_for_rows(48);
   CHECK(client.chunks.size() > 2);
@@ -215,7 +222,7 @@ TEST_CASE("server_sends_chunks_that_waited_without_delay") {
   ServerRig rig(options);
   ScriptedClient client(&rig);
   FrameRequest request = frame_request("cube", 1, 320, 240);
-  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = request.chunk_rows_max = 4;
+  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = 4;
   std::uint64_t start = rig.now();
   client.request(request);
   while (client.rows_come < 240 && rig.now() - start < 5000 * kMs) {
@@ -324,7 +331,7 @@ TEST_CASE("server_interrupts_rows_that_take_long") {
   ServerRig rig(options);
   ScriptedClient first(&rig), second(&rig);
   FrameRequest large = frame_request("cube", 1, 1280, 16), small = frame_request("cube", 1, 16, 12);
-  large.chunk_rows = large.chunk_rows_max = 3;
+  large.chunk_rows = 3;
   first.request(large);
   std::uint64_t start = rig.now();
   rig.run_until([&] { return rig.now() - start > 500 * kMs; });
@@ -347,8 +354,8 @@ TEST_CASE("server_shares_its_time_fairly") {
   ScriptedClient first(&rig), second(&rig), third(&rig);
   FrameRequest requests[3] = {frame_request("cornell", 0, 40, 30), frame_request("cornell", 0, 96, 72),
                               frame_request("cube", 0)};
-  requests[0].chunk_rows = requests[0].chunk_rows_max = 1;
-  requests[1].chunk_rows = requests[1].chunk_rows_max = 16;
+  requests[0].chunk_rows = 1;
+  requests[1].chunk_rows = 16;
   ScriptedClient* clients[3] = {&first, &second, &third};
   std::uint64_t pixels[3] = {0, 0, 0};
   auto run_for = [&](std::uint64_t ns, int client_count) {

@@ -109,6 +109,28 @@ TEST_CASE("merge_completes_under_random_arrivals") {
   }
 }
 
+// Goal: the device can take any missing row; the others go on from the top. Method: the last row and one between, of
+// five; one of them arrives meanwhile.
+TEST_CASE("merge_takes_single_rows") {
+  OwnMerge own(5);
+  Merge* m = &own.merge;
+  begin_merge(m, 1);
+  take_row(m, 4), take_row(m, 2);
+  accept_rows(m, 1, 4, 5, 0);
+  finish_rows(m, 2, 3), finish_rows(m, 4, 5);
+  CHECK(m->rows[2].state == RowState::device);
+  CHECK(m->rows[4].state == RowState::server);
+  std::uint32_t begin, end;
+  REQUIRE(take_rows(m, 9, &begin, &end));
+  CHECK(begin == 0);
+  CHECK(end == 2);
+  REQUIRE(take_rows(m, 9, &begin, &end));
+  CHECK(begin == 3);
+  CHECK(end == 4);
+  finish_rows(m, 0, 2), finish_rows(m, 3, 4);
+  CHECK(is_complete(*m));
+}
+
 // Goal: rows of an untrusted server are missing again, those of others stay, and the device takes them from the top.
 // Method: against simple bookkeeping, over random frames.
 TEST_CASE("merge_discards_the_rows_of_a_server") {

@@ -70,12 +70,13 @@ void next_frame(Pair* p) {
 std::vector<ShopJob> jobs_of(const Pair& p, double server_ns, double ns_per_byte) {
   const FrameRequest& asked = p.client.servers[0].asked;
   std::vector<ShopJob> jobs;
-  for (std::uint32_t end = asked.row_end, rows = 0; end > asked.row_begin; end -= rows) {
-    rows = next_chunk_rows(asked, rows, end - asked.row_begin);
-    ShopJob job = {end - rows, end, server_ns * kWidth * rows, 0};
-    for (std::uint32_t r = job.row_begin; r < end; ++r)
+  for (RowSequence at = first_rows(asked); has_rows(at);) {
+    const std::uint32_t rows = next_chunk_rows(asked, at);
+    ShopJob job = {at.row_end - rows, at.row_end, server_ns * kWidth * rows, 0};
+    for (std::uint32_t r = job.row_begin; r < job.row_end; ++r)
       job.send_ns += ns_per_byte * static_cast<double>(p.client.model.rows[r].bytes.value);
     jobs.push_back(job);
+    pass_rows(asked, rows, &at);
   }
   return jobs;
 }
@@ -114,9 +115,9 @@ Figures measure(const SceneStore& store, const char* scene, const PixelTimes& ti
 
 }  // namespace
 
-// Goal: the simulation tells what a frame takes, and what another order of its chunks would. Method: the rows of the
-// paper's table that each scene is named in, on the virtual clock; the simulation knows the rows' bytes and prices, and
-// nothing of the split's model.
+// Goal: a frame takes at most 5 % more than full overlap allows, and no other order of its chunks would save 1 %.
+// Method: the rows of the paper's table that each scene is named in, on the virtual clock, and a simulation that knows
+// the rows' bytes and prices, and nothing of the split's model.
 TEST_CASE("overlap_of_the_paper_s_rows") {
   struct Row {
     const char* scene;
@@ -133,10 +134,10 @@ TEST_CASE("overlap_of_the_paper_s_rows") {
     if (!has_buddha && std::string(row.scene) == "Buddha") continue;
     if (kEffortDivisor > 1 && &row != &rows[2]) continue;
     const Figures f = measure(store, row.scene, {row.device_ns, row.server_ns, 0});
-    std::printf(
-        "%-8s T_s %4.0f: %6.1f ns a pixel, simulated %6.1f, dear rows first %6.1f, full overlap %6.1f (%+.1f %%)\n",
-        row.scene, row.server_ns, f.measured, f.simulated, f.sorted, f.bound, 100 * (f.measured / f.bound - 1));
+    std::printf("%-8s T_s %4.0f: %6.1f ns a pixel, simulated %6.1f, best order %6.1f, full overlap %6.1f (%+.1f %%)\n",
+                row.scene, row.server_ns, f.measured, f.simulated, f.sorted, f.bound, 100 * (f.measured / f.bound - 1));
     CHECK(f.measured == doctest::Approx(f.simulated).epsilon(0.03));
-    CHECK(f.sorted <= f.simulated);
+    CHECK(f.measured <= 1.05 * f.bound);
+    CHECK(f.simulated <= 1.01 * f.sorted);
   }
 }

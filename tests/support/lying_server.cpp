@@ -24,15 +24,17 @@ void lie_about(Liar* liar, Session* s, const Slice& slice) {
   Renderer* r = &s->renderer;
   std::uint32_t width = r->settings.width;
   bool in_row = slice.row_count == 0 || job.traced_columns > 0;
-  std::uint32_t row_begin = job.traced_begin - (in_row ? 1 : slice.row_count);
   std::uint32_t column_end = slice.column_end > 0 ? slice.column_end : width;
-  for (std::uint32_t row = row_begin; row < job.traced_begin; ++row)
-    for (std::uint32_t column = job.traced_columns; column < column_end; ++column) {
-      if (!liar->lie(job.request.frame, row, column)) continue;
-      Vec3* pixel = &r->image[std::size_t(row) * width + column];
-      *pixel = wrong(*pixel, r->exposure);
-      ++told;
-    }
+  RowRange ranges[kRunCountMax];
+  const std::uint32_t range_count = next_ranges(job, in_row ? 1 : slice.row_count, ranges);
+  for (std::uint32_t i = 0; i < range_count; ++i)
+    for (std::uint32_t row = ranges[i].begin; row < ranges[i].end; ++row)
+      for (std::uint32_t column = job.traced_columns; column < column_end; ++column) {
+        if (!liar->lie(job.request.frame, row, column)) continue;
+        Vec3* pixel = &r->image[std::size_t(row) * width + column];
+        *pixel = wrong(*pixel, r->exposure);
+        ++told;
+      }
 }
 
 // A server asks for the time after tracing a slice and recording its end, but before packing it.

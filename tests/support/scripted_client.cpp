@@ -218,7 +218,7 @@ FrameRequest frame_request(const std::string& scene, std::uint32_t frame, std::u
   request.settings.width = width;
   request.settings.height = height;
   request.row_end = static_cast<std::uint16_t>(height);
-  request.chunk_rows = request.chunk_rows_max = 8;
+  request.chunk_rows = 8;
   return request;
 }
 

@@ -76,9 +76,10 @@ def test_frames(program, folder, device, scenes):
     rgb = rendered(program, folder, "cornell")
     frame = 0
     for pixel_format in (RGB888, RGB565):
-        for level, growth, chunk in ((0, 0, 1), (1, 8, 4), (6, 255, 2), (9, 16, 16)):
+        for level, largest, order in ((0, 1, ()), (1, 4, ()), (6, 255, ((10, 2), (1, 0), (25, 1))),
+                                      (9, 16, tuple((1, (7 * i + 3) % 36) for i in range(36)))):
             frame += 1
-            picture = device.frame(cornell, frame=frame, format=pixel_format, level=level, growth=growth, chunk=chunk)
+            picture = device.frame(cornell, frame=frame, format=pixel_format, level=level, largest=largest, order=order)
             check(picture.compare(rgb), "cornell, format %d, level %d" % (pixel_format, level))
     # Rows of another scene over those of the first, in two parts of one frame.
     moved = rendered(program, folder, "seesaw", "--time", "0.5")
@@ -95,7 +96,7 @@ def test_frames(program, folder, device, scenes):
     device.frame(seesaw, frame=frame, format=RGB565)
     for time in (0.25, 0.5, 1.0):
         frame += 1
-        picture = device.frame(b"", FRAME_CHANGE, frame=frame, time=time, format=RGB565, level=6)
+        picture = device.frame(b"", FRAME_CHANGE, frame=frame, time=time, format=RGB565, level=6, order=((30, 1), (6, 0)))
         check(picture.compare(rendered(program, folder, "seesaw", "--time", str(time))), "a change to %g s" % time)
     # The same time again: nothing is traced, nothing is given.
     traced = device.traced
@@ -118,7 +119,7 @@ def test_frames(program, folder, device, scenes):
     # A row, a column, a pixel.
     for width, height in ((300, 1), (1, 70), (1, 1)):
         frame += 1
-        device.frame(cornell, frame=frame, width=width, height=height, chunk=1, largest=70)
+        device.frame(cornell, frame=frame, width=width, height=height, largest=70)
     check(device.encodings == {0, 1, 2, 3}, "every encoding has occurred, not just %s" % device.encodings)
     return frame
 
@@ -146,7 +147,7 @@ def test_pings_and_cancel(device, scenes, frame):
         fields = device.ask(message(PING, struct.pack("<II", 7 + size, size)), PONG)
         check(struct.unpack("<I", fields[:4])[0] == 7 + size and len(fields) == 8 + size, "a pong of %d bytes" % size)
     # Large enough to be under way when it is cancelled.
-    large = dict(width=1024, height=1024, samples=16, chunk=1, largest=1)
+    large = dict(width=1024, height=1024, samples=16, largest=1)
     device.send(request(scenes["statue"]["hash"], frame=frame + 1, **large) + message(CANCEL, struct.pack("<I", frame + 1)) +
                 message(PING, struct.pack("<II", 1, 0)))
     kind, fields = device.receive()
@@ -191,9 +192,13 @@ def test_malformed(server, scenes):
               dict(cut_off=65.0), dict(filter=3), dict(normals=2), dict(indirect=5), dict(virtual_lights=0), dict(virtual_lights=513), dict(reconstruction=3),
               dict(on=1 << len(EFFECTS)), dict(off=1 << 31), dict(exposure=-1.0),
               dict(exposure=big), dict(exposure=8e-19), dict(dither=2), dict(format=2), dict(first=36), dict(first=9, end=9), dict(end=37),
-              dict(chunk=0), dict(chunk=9, largest=8), dict(level=10)]
+              dict(largest=0), dict(level=10)]
+    # Orders that are none: too few rows, too many, an empty run, a place twice, a place beyond the last, too many runs.
+    orders = [((35, 0),), ((37, 0),), ((0, 0), (36, 1)), ((20, 0), (16, 0)), ((20, 0), (16, 2)), ((1, 0),) * 65]
+    values += [dict(order=order) for order in orders]
     cases = [request(cube, **v) for v in values]
-    cases += [request(cube, FRAME_CHANGE, time=nan), request(cube, FRAME_CHANGE, end=8193), request(cube, FRAME_CHANGE, chunk=0)]
+    cases += [request(cube, FRAME_CHANGE, time=nan), request(cube, FRAME_CHANGE, end=8193), request(cube, FRAME_CHANGE, largest=0)]
+    cases += [request(cube, FRAME_CHANGE, order=order) for order in orders]
     cases += [request(cube, VIEW_QUERY, measure=2), request(cube, VIEW_QUERY, samples=0)]
     cases += [message(SCENE_FETCH, cube + struct.pack("<QI", 0, 65537)), message(SCENE_FETCH, cube + struct.pack("<QI", MASK, 0)),
               message(PING, struct.pack("<II", 1, 65537)), message(ERROR, struct.pack("<HI", 0, 0)),
@@ -208,8 +213,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\13\0"), WRONG_VERSION), (hello(11, bytes(236)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\13\0" + bytes(251)), MALFORMED), (hello(10, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\14\0"), WRONG_VERSION), (hello(12, bytes(236)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\14\0" + bytes(251)), MALFORMED), (hello(11, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(16)), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])

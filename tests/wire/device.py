@@ -157,7 +157,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=10, more=b""):
+def hello(version=11, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
 
 
@@ -171,13 +171,13 @@ def pack_camera(camera):
 
 DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4,
                 cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
-                chunk=4, largest=16, growth=8, level=1, measure=0)
+                largest=16, level=1, order=(), measure=0)
 
 
 def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
-    rows = struct.pack("<HHHHBB", r["first"], end, r["chunk"], r["largest"], r["growth"], r["level"])
+    rows = struct.pack("<HHHB", r["first"], end, r["largest"], r["level"]) + bytes(x for run in r["order"] for x in run)
     settings = struct.pack("<HHBBHfBBBBHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["on"], r["off"])
@@ -202,7 +202,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\12\0", "the server says hello first, of version 10")
+            check(kind == HELLO and fields[:6] == b"PRAY\13\0", "the server says hello first, of version 11")
             self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
 
     def send(self, data):
@@ -264,17 +264,16 @@ class Device:
         check(name[1].strip(b"\0") == b"", "a name is filled with zeros")
         return dict(hash=fields[:16], size=size, index=index, count=count, triangles=triangles, name=name[0].decode())
 
-    def take_chunk(self, fields, frame, r, due, before):
+    def take_chunk(self, fields, frame, r, due):
         number, row, rows, _, traced, encoding = struct.unpack("<IHHIIB", fields[:17])
         data = fields[17:]
         self.traced += traced
         check(traced <= rows * r["width"], "no more pixels are traced than the rows have")
         check(number == frame, "a chunk is of the frame")
         check(encoding >> 2 == self.chunk_count % 64, "chunks are counted")
-        check(row + rows == due and row >= r["first"], "the lowest rows come first")
-        left, growth = due - r["first"], r["growth"]
-        most = max(min(before * (16 + growth) // 16, left * growth // (16 + growth), r["largest"]), r["chunk"])
-        check(rows <= min(most, left), "a chunk of %d rows grows as asked" % rows)
+        first, end = due[0]
+        check(row + rows == end and row >= first, "the lowest rows of the next run come first")
+        check(rows <= r["largest"], "a chunk of %d rows is no larger than asked" % rows)
         size = 3 if r["format"] == RGB888 else 2
         count = rows * r["width"]
         body = 21 + count // 2 + count * size
@@ -282,7 +281,9 @@ class Device:
         self.encodings.add(encoding & 3)
         self.chunk_count += 1
         self.picture.decode(row, rows, encoding, data)
-        return row, rows
+        due[0] = first, row
+        if row == first:
+            del due[0]
 
     def frame(self, scene, kind=FRAME_REQUEST, **changes):
         """Requests rows and receives them."""
@@ -291,11 +292,16 @@ class Device:
         if not p or (p.width, p.height, p.format) != (r["width"], r["height"], r["format"]):
             self.picture = Picture(r["width"], r["height"], r["format"])
         self.send(request(scene, kind, **changes))
-        due, before = r["height"] if r["end"] is None else r["end"], 0
-        while due > r["first"]:
+        end = r["height"] if r["end"] is None else r["end"]
+        due, row = {}, r["first"]
+        for rows, place in r["order"] or [(end - row, 0)]:
+            due[place] = row, row + rows
+            row += rows
+        due = [due[place] for place in range(len(due))]  # runs in the order they are sent, without what has come
+        while due:
             kind, fields = self.receive()
             if kind != ROW_CHUNK:
                 check(False, "rows come, not %s %s: %s" % (kind, fields[:6], changes))
                 break
-            due, before = self.take_chunk(fields, r["frame"], r, due, before)
+            self.take_chunk(fields, r["frame"], r, due)
         return self.picture

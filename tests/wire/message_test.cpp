@@ -132,7 +132,13 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_change, [](Message* m) { m->frame_request.frame ^= 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.seconds += 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.camera.eye.z += 1; }},
-      {MessageType::frame_change, [](Message* m) { m->frame_request.chunk_growth ^= 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.deflate_level ^= 1; }},
+      {MessageType::frame_change,
+       [](Message* m) {
+         FrameRequest* q = &m->frame_request;
+         q->row_end = static_cast<std::uint16_t>(q->row_begin + 9), q->run_count = 2;
+         q->runs[0] = {4, 1}, q->runs[1] = {5, 0};
+       }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixels_traced ^= 1; }},
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
@@ -246,13 +252,13 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + more + 107, {5, 0, 5, 0}},          // no rows
       {MessageType::frame_request, 8 + more + 109, {0xFF, 0xFF}},          // rows beyond the picture
       {MessageType::frame_request, 8 + more + 111, {0, 0}},                // chunk rows
-      {MessageType::frame_request, 8 + more + 116, {10}},                  // level
+      {MessageType::frame_request, 8 + more + 113, {10}},                  // level
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 60, {5, 0, 5, 0}},                   // no rows
       {MessageType::frame_change, 8 + 62, {0xFF, 0xFF}},                   // rows beyond any picture
       {MessageType::frame_change, 8 + 64, {0, 0}},                         // chunk rows
-      {MessageType::frame_change, 8 + 69, {10}},                           // level
+      {MessageType::frame_change, 8 + 66, {10}},                           // level
       {MessageType::row_chunk, 8 + 6, {0, 0}},
       {MessageType::row_chunk, 8 + 4, {0xFF, 0x1F, 2, 0}},
       {MessageType::error, 8, {0, 0}},
@@ -327,7 +333,7 @@ TEST_CASE("message_change_gives_the_request") {
     Message change = sample_message(MessageType::frame_change, &rng, {}), read, whole;
     FrameRequest request = before;
     take_change(change.frame_request, &request);
-    request.row_begin = 0, request.row_end = 1;
+    request.row_begin = 0, request.row_end = 1, request.run_count = 0;
     CHECK(is_change(request, before));
     change.frame_request = request;
     REQUIRE(decode(encoded(change), &read).state == DecodeState::message);
@@ -345,31 +351,51 @@ TEST_CASE("message_change_gives_the_request") {
   }
 }
 
-// Goal: chunks of a request cover its rows exactly once, small at both ends and large between, with neighbours never
-// further apart than the growth; without growth they are equal. Method: bands, ends, limits and growths.
-TEST_CASE("message_chunks_grow_from_both_ends") {
-  FrameRequest request;
-  for (std::uint32_t band : {1u, 5u, 64u, 240u, 8192u})
-    for (std::uint16_t first : {1, 4, 8})
-      for (std::uint16_t most : {8, 32})
-        for (std::uint8_t growth : {0, 4, 16, 255}) {
-          request.chunk_rows = first, request.chunk_rows_max = most, request.chunk_growth = growth;
-          std::uint32_t before = 0, largest = 0, left = band, last = 0;
-          while (left > 0) {
-            std::uint32_t rows = next_chunk_rows(request, before, left);
-            REQUIRE(rows >= 1);
-            REQUIRE(rows <= left);
-            CHECK(rows <= most);
-            CHECK((rows >= first || rows == left));
-            CHECK((rows <= first || rows * 16 <= before * (16u + growth)));
-            CHECK((rows <= first || rows * (16u + growth) <= left * growth));
-            left -= rows, before = last = rows;
-            largest = std::max(largest, rows);
-          }
-          CHECK(last <= first);
-          if (growth == 0) CHECK(largest <= first);
-          if (growth == 16 && band == 240) CHECK(largest == most);
-        }
+// Goal: an order is one of the rows asked for. Method: orders of ten rows with one thing wrong, as bytes with a correct
+// checksum; in a frame_request and in a frame_change.
+TEST_CASE("message_orders_that_are_none_are_refused") {
+  Rng rng = make_rng(12);
+  using Runs = std::vector<std::uint8_t>;  // row count and place, run by run
+  const Runs good[] = {{}, {10, 0}, {4, 1, 6, 0}, {1, 2, 2, 0, 7, 1}};
+  const Runs bad[] = {
+      {4, 1, 6},              // half a run
+      {4},                    //
+      {9, 0},                 // rows are missing
+      {11, 0},                // or too many
+      {4, 1, 5, 0},           //
+      {255, 0, 11, 1},        // also modulo 256
+      {0, 0, 10, 1},          // an empty run
+      {4, 0, 6, 0},           // a place taken twice
+      {4, 1, 6, 2},           // a place beyond the last
+      {4, 255, 6, 0},         //
+      {4, 64, 6, 0},          //
+      {1, 2, 2, 0, 7, 0},     //
+      Runs(2 * 65, 0),        // too many runs
+      Runs(3 * kHeaderBytes)  //
+  };
+  for (MessageType type : {MessageType::frame_request, MessageType::frame_change}) {
+    Message message = sample_message(type, &rng, {});
+    FrameRequest* q = &message.frame_request;
+    q->settings.height = 100, q->row_begin = 50, q->row_end = 60, q->run_count = 0;
+    const std::vector<std::uint8_t> without = encoded(message);
+    auto with = [&](const Runs& runs) {
+      std::vector<std::uint8_t> bytes = without;
+      bytes.insert(bytes.end(), runs.begin(), runs.end());
+      return sealed(bytes);
+    };
+    for (const Runs& runs : good) CHECK(!refused(with(runs)));
+    for (const Runs& runs : bad) {
+      CAPTURE(runs.size());
+      CHECK(refused(with(runs)));
+    }
+    // What could not be decoded cannot be sent.
+    q->run_count = 2, q->runs[0] = {4, 0}, q->runs[1] = {6, 0};
+    CHECK(!can_encode(message));
+    q->runs[1].place = 1;
+    CHECK(can_encode(message));
+    q->run_count = kRunCountMax + 1;
+    CHECK(!can_encode(message));
+  }
 }
 
 // Goal: of a hello of another version, the version is read, however long the message.

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdio>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "base/limits.h"
@@ -48,8 +49,18 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   f->row_begin = static_cast<std::uint16_t>(next_u32(rng) % f->settings.height);
   f->row_end = static_cast<std::uint16_t>(f->row_begin + 1 + next_u32(rng) % (f->settings.height - f->row_begin));
   f->chunk_rows = static_cast<std::uint16_t>(2 + next_u32(rng) % 64);
-  f->chunk_rows_max = static_cast<std::uint16_t>(f->chunk_rows + next_u32(rng) % 64);
-  f->chunk_growth = static_cast<std::uint8_t>(next_u32(rng));
+  // Runs of one to 255 rows, in any order, where the rows are few enough.
+  const std::uint32_t rows = f->row_end - f->row_begin, runs = 1 + next_u32(rng) % kRunCountMax;
+  if (rows >= runs && rows <= 255 * runs && next_u32(rng) % 4 > 0) {
+    f->run_count = static_cast<std::uint8_t>(runs);
+    for (std::uint32_t i = 0, left = rows; i < runs; left -= f->runs[i++].row_count) {
+      const std::uint32_t behind = runs - i - 1, most = left - behind < 255 ? left - behind : 255;
+      const std::uint32_t least = left > 255 * behind ? left - 255 * behind : 1;
+      f->runs[i].row_count = static_cast<std::uint8_t>(least + next_u32(rng) % (most - least + 1));
+      f->runs[i].place = static_cast<std::uint8_t>(i);
+      std::swap(f->runs[i].place, f->runs[next_u32(rng) % (i + 1)].place);
+    }
+  }
   f->deflate_level = static_cast<std::uint8_t>(next_u32(rng) % 10);
   m.row_chunk.frame = next_u32(rng), m.row_chunk.row_begin = narrow() % 4000;
   m.row_chunk.row_count = static_cast<std::uint16_t>(1 + next_u32(rng) % 100);

@@ -142,6 +142,38 @@ void look_at_servers(Client* client, std::uint64_t timeout_ns) {
   let_join(client);
 }
 
+bool is_missing(const Client& client, std::uint32_t row) { return client.merge.rows[row].state == RowState::missing; }
+
+bool is_awaited(const Client& client, std::uint32_t row) {
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const ServerFrame& f = client.servers[i].frame;
+    if (f.open && f.row_begin <= row && row < f.row_end) return true;
+  }
+  return false;
+}
+
+// Takes a missing row that no server is about to send; otherwise the one that its server will send last, the topmost
+// server's first. False if none is missing.
+bool take_latest_row(Client* client, std::uint32_t* row_begin, std::uint32_t* row_end) {
+  auto take = [&](std::uint32_t row) {
+    take_row(&client->merge, row);
+    *row_begin = row, *row_end = row + 1;
+    return true;
+  };
+  for (std::uint32_t row = client->merge.next_row; row < client->merge.rows.count; ++row)
+    if (is_missing(*client, row) && !is_awaited(*client, row)) return take(row);
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    const RemoteServer& server = client->servers[i];
+    if (!server.frame.open) continue;
+    for (std::uint32_t place = run_count(server.asked); place-- > 0;) {
+      const RowRange run = run_at(server.asked, place);
+      for (std::uint32_t row = run.begin; row < run.end; ++row)
+        if (is_missing(*client, row)) return take(row);
+    }
+  }
+  return false;
+}
+
 void cancel_rest(Client* client) {
   Message message;
   message.type = MessageType::cancel;
@@ -342,7 +374,7 @@ bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t
     bool awaited = false;
     for (std::uint32_t i = 0; i < client->server_count; ++i) awaited = awaited || client->servers[i].frame.open;
     if (awaited && (!client->options.device_goes_on || is_worth_waiting(*client))) return false;
-    if (awaited) row_count_max = 1;
+    if (awaited) return take_latest_row(client, row_begin, row_end);
   }
   return take_rows(&client->merge, row_count_max, row_begin, row_end);
 }

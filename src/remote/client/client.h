@@ -11,12 +11,13 @@
 #include "split/cost_model.h"
 #include "split/merge.h"
 #include "wire/codec.h"
+#include "wire/row_sequence.h"
 
 namespace pocketray {
 
-// Rows per chunk that a server sends: at the ends of a frame, at most in between, and throughout if chunks do not grow.
-// Larger chunks need fewer headers and compress better, smaller ones arrive sooner; tuned with split-report.
-constexpr std::uint32_t kChunkRowsMin = 4, kChunkRowsMax = 32, kChunkRowsEven = 8;
+// Rows per chunk that a server sends: at the ends of a frame, at most, and throughout if no order is asked for. Larger
+// chunks need fewer headers and compress better, smaller ones arrive sooner; tuned with split-report.
+constexpr std::uint32_t kChunkRowsMin = 2, kChunkRowsMax = 32, kChunkRowsEven = 8;
 
 struct ClientOptions {
   WireFormat format = WireFormat::rgb888;
@@ -91,13 +92,13 @@ struct RemoteServer {
   double probe_ns_per_pixel = 0;
   Smoothed row_ns;                 // for a device without the scene: time from request to arrival of a row
   FrameRequest asked;              // last request; frame 0: none on this connection
-  std::uint32_t due_end = 0;       // its rows [asked.row_begin, due_end) are still expected
+  RowSequence due;                 // its rows that are still expected,
+  std::uint32_t due_rows = 0;      // and their number
   std::uint64_t late_rows = 0;     // rows of earlier requests that may be in flight;
   std::uint64_t late_at_ping = 0;  // their number when the ping was sent
   bool more = false;               // unread input remains: one poll handles at most a frame's worth
   bool unanswered = false;         // no answer since rows were requested; new requests do not extend the time
   std::uint32_t chunk_count = 0;   // received on this connection
-  std::uint8_t chunk_growth = 0;   // 16ths, see FrameRequest; 0: they do not grow
   ServerFrame frame;
   bool is_witness = false;   // asked for another server's row; its own rows of the frame
   ServerFrame frame_before;  // are then kept here

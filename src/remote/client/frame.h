@@ -1,5 +1,6 @@
 // One split frame: scene → plan → accelerate → split → trace + shade spans → merge. The device renders rows from the
-// top, going on into missing ones; the servers send theirs from the bottom; when they meet, the frame is complete.
+// top, going on into missing ones; the servers send theirs in the order asked for; when they meet, the frame is
+// complete.
 #pragma once
 #include "remote/client/client.h"
 

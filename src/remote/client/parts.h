@@ -50,10 +50,13 @@ std::uint64_t wait_wanted_ns(const Client& client);
 double device_pixel_ns(const Client& client);
 // Plans the split `elapsed_ns` into the frame and sends the requests.
 void share_rows(Client* client, std::uint64_t elapsed_ns);
-// Requests rows from a server, without finished rows at the ends.
-void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
+// Requests rows from a server, without finished rows at the ends: in the order that takes least by the problem, or from
+// the bottom upward.
+void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
+                  const SplitProblem* problem = nullptr);
 // The same, including finished rows.
-void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end);
+void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
+                  const SplitProblem* problem = nullptr);
 // Gives servers that became ready during the frame a share of the rest, once no server is worth waiting for.
 void let_join(Client* client);
 // Measures the link by the frame's rows. Rows come as fast as the slower of servers and link: if the servers were

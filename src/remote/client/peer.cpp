@@ -44,10 +44,10 @@ void greet_server(Client* client, RemoteServer* server) {
   CHECK(server->phase == ServerPhase::connecting);
   restart_row_decoder(server->decoder);
   server->pings_answered = server->pings_missed = 0, server->ping_id = 0, server->round_trip_ns = 0;
-  server->chunk_count = 0, server->chunk_growth = 0, server->unanswered = false;
+  server->chunk_count = 0, server->unanswered = false;
   server->quiet_until_ns = server->anew_ns = 0;
   server->asked = FrameRequest();
-  server->due_end = 0, server->late_rows = 0;
+  server->due = RowSequence(), server->due_rows = 0, server->late_rows = 0;
   server->frame = ServerFrame();
   enter(client, server, ServerPhase::greeting);
   Message message;
@@ -78,13 +78,15 @@ void take_scene_entry(Client* client, RemoteServer* server, const SceneEntry& en
   send_ping(client, server, 0);
 }
 
-// True if the server owes these rows: the next of the last request, from the bottom up, or rows in flight when that
-// replaced an earlier request. No row is owed twice, which bounds what a server can make the device decode. A chunk of
-// the last request ends the earlier ones.
+// True if the server owes these rows: the next of the last request, in its order, or rows in flight when that replaced
+// an earlier request. No row is owed twice, which bounds what a server can make the device decode. A chunk of the last
+// request ends the earlier ones.
 bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
   std::uint32_t end = std::uint32_t(chunk.row_begin) + chunk.row_count;
-  if (chunk.frame == server->asked.frame && end == server->due_end && chunk.row_begin >= server->asked.row_begin) {
-    server->due_end = chunk.row_begin;
+  if (chunk.frame == server->asked.frame && end == server->due.row_end && chunk.row_begin >= server->due.row_begin) {
+    pass_rows(server->asked, chunk.row_count, &server->due);
+    CHECK_LE(chunk.row_count, server->due_rows);
+    server->due_rows -= chunk.row_count;
     server->late_rows = server->late_at_ping = 0;
     return true;
   }

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "remote/client/parts.h"
+#include "split/row_order.h"
 
 namespace pocketray {
 namespace {
@@ -13,26 +14,31 @@ constexpr double kGapsMin = 4;       // polls in which rows must arrive for thei
 constexpr double kDisproved = 1.25;  // a link faster than estimated by more than this is not noise
 constexpr double kLinkBound = 1.15;  // rows that take this much longer than on the servers are bound by the link
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
-constexpr double kGrowthMin = 4, kGrowthMax = 32;                // of growing chunks, in 16ths
+static_assert(kOrderRunsMax <= kRunCountMax && kRunRowsMax <= UINT8_MAX, "a request can express every order");
 // Nanoseconds per byte beyond which fewer bytes are worth more server time. Measured (codec_frames_test), per pixel of
 // RGB565: level 1 takes 400 ns and saves 1.5 bytes, level 6 takes another 300 ns and saves 0.06.
 constexpr double kDeflateNsPerByte = 250, kDeflateMoreNsPerByte = 5000;
 
-// How much chunks may grow from one to the next without starving the slower of rendering and sending: while one chunk
-// is in the slower stage, the next passes the faster one. 0 if neither is much slower. Changes only by a factor of two
-// or more, as rows compress better when cut as in the last frame.
-std::uint8_t chunk_growth(const SplitProblem& p, std::uint32_t server, const Split& split, std::uint8_t before) {
+// Sets the order of a request's rows: the one in which the server's tracing and sending overlap best.
+void set_order(const SplitProblem& p, std::uint32_t server, FrameRequest* request) {
   CHECK_LT(server, p.server_count);
   const ServerTables& t = p.servers[server];
-  std::uint32_t begin = split.boundary[server], end = split.boundary[server + 1];
-  if (begin == end) return before;
-  double render = static_cast<double>(t.render_ns[end] - t.render_ns[begin]);
-  double send = static_cast<double>(
-      std::max(t.transfer_ns[end] - t.transfer_ns[begin], p.link_ns[p.row_count] - p.link_ns[split.boundary[0]]));
-  double slower = std::max(render, send), faster = std::min(render, send);
-  double growth = faster * kGrowthMax < 16 * (slower - faster) ? kGrowthMax : 16 * (slower - faster) / faster;
-  if (growth <= 2 * before && 2 * growth >= before) return before;
-  return growth < kGrowthMin ? std::uint8_t(0) : static_cast<std::uint8_t>(growth);
+  const std::uint32_t begin = request->row_begin, end = request->row_end;
+  if (!t.usable) return;
+  const double own = static_cast<double>(t.transfer_ns[end] - t.transfer_ns[begin]);
+  // All servers' rows may share a link.
+  const double link = static_cast<double>(p.link_ns[p.row_count] - p.link_ns[begin]);
+  RowOrder order;
+  order_rows(t, begin, end, link > own && own > 0 ? link / own : 1, &order);
+  request->run_count = static_cast<std::uint8_t>(order.run_count);
+  std::uint8_t places[kOrderRunsMax];  // in the order from the top
+  for (std::uint32_t i = 0; i < order.run_count; ++i) places[i] = static_cast<std::uint8_t>(i);
+  std::sort(places, places + order.run_count,
+            [&](std::uint8_t a, std::uint8_t b) { return order.runs[a].begin < order.runs[b].begin; });
+  for (std::uint32_t i = 0; i < order.run_count; ++i) {
+    const RowRange run = order.runs[places[i]];
+    request->runs[i] = {static_cast<std::uint8_t>(run.end - run.begin), places[i]};
+  }
 }
 
 // Fixed share: the device's rows as given, the others divided among the servers by speed.
@@ -88,34 +94,36 @@ std::uint8_t deflate_level(double ns_per_byte) {
   return ns_per_byte < kDeflateNsPerByte ? 0 : ns_per_byte < kDeflateMoreNsPerByte ? 1 : 6;
 }
 
-void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end) {
+void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
+                  const SplitProblem* problem) {
   CHECK(row_begin <= row_end && row_end <= client->settings.height);
   auto is_done = [&](std::uint32_t row) {
     return client->merge.rows[row].state == RowState::device || client->merge.rows[row].state == RowState::server;
   };
   while (row_end > row_begin && is_done(row_end - 1)) --row_end;
-  if (row_begin < row_end) request_rows(client, server, row_begin, row_end);
+  if (row_begin < row_end) request_rows(client, server, row_begin, row_end, problem);
 }
 
-void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end) {
+void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
+                  const SplitProblem* problem) {
   Message message;
   CHECK(row_begin < row_end && row_end <= client->settings.height);
   CHECK_GE(server->messages.stream, 0);
   message.frame_request = client->request;
   message.frame_request.row_begin = static_cast<std::uint16_t>(row_begin);
   message.frame_request.row_end = static_cast<std::uint16_t>(row_end);
-  std::uint32_t chunk_rows = server->chunk_growth > 0 ? kChunkRowsMin : kChunkRowsEven;
-  client->model.servers[index_of(*client, server)].chunk_rows = chunk_rows;
+  const std::uint32_t index = index_of(*client, server);
+  if (problem) set_order(*problem, index, &message.frame_request);
+  const bool ordered = message.frame_request.run_count > 0;
+  client->model.servers[index].chunk_rows = ordered ? kChunkRowsMin : kChunkRowsEven;
+  const std::uint32_t chunk_rows = ordered ? kChunkRowsMax : kChunkRowsEven;
   message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, client->settings.height));
-  message.frame_request.chunk_rows_max = static_cast<std::uint16_t>(std::min(kChunkRowsMax, client->settings.height));
-  message.frame_request.chunk_growth = server->chunk_growth;
   message.frame_request.deflate_level = deflate_level(server->ns_per_byte);
   bool like_the_last = server->asked.frame > 0 && is_change(message.frame_request, server->asked);
   message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
-  CHECK(server->asked.frame == 0 || server->asked.row_begin <= server->due_end);
-  if (server->asked.frame > 0) server->late_rows += server->due_end - server->asked.row_begin;
+  server->late_rows += server->due_rows;
   server->asked = message.frame_request;
-  server->due_end = row_end;
+  server->due = first_rows(server->asked), server->due_rows = row_end - row_begin;
   if (!send_message(&server->messages, message)) return lose_server(client, server, "it stopped reading");
   std::uint64_t bytes = server->frame.bytes, row_bytes = server->frame.row_bytes;
   server->frame = {row_begin, row_end, 0, client_now_ns(*client), bytes, row_bytes, 0, true};
@@ -157,8 +165,7 @@ void share_rows(Client* client, std::uint64_t elapsed_ns) {
     RemoteServer* server = &client->servers[i];
     if (server->phase != ServerPhase::ready) continue;  // for others the overture's figure stands
     server->ns_per_byte = static_cast<double>(client->model.servers[i].ns_per_byte.value);
-    server->chunk_growth = chunk_growth(problem, i, client->split, server->chunk_growth);
-    ask_for_rows(client, server, client->split.boundary[i], client->split.boundary[i + 1]);
+    ask_for_rows(client, server, client->split.boundary[i], client->split.boundary[i + 1], &problem);
   }
   client->joined = true;
 }

@@ -48,7 +48,7 @@ bool is_built_for(const Session& session) {
 
 // Rows of the largest chunk within the limits of request, codec and client.
 std::uint32_t largest_chunk_rows(const Session& session) {
-  std::uint32_t rows = session.job.request.chunk_rows_max;
+  std::uint32_t rows = session.job.request.chunk_rows;
   if (rows > session.shape.chunk_rows_max) rows = session.shape.chunk_rows_max;
   while (rows > 0 && row_chunk_prefix_bytes() + encoded_bytes_max(session.shape, rows) > session.message_bytes_max)
     --rows;
@@ -61,10 +61,8 @@ Status plan_chunks(Session* session) {
     if (!codec_shape_valid(session->shape)) return failure("no message can hold one of its rows");
     RETURN_IF_ERROR(make_codec(session));
   }
-  FrameRequest* request = &session->job.request;
-  std::uint16_t rows_max = static_cast<std::uint16_t>(largest_chunk_rows(*session));
-  request->chunk_rows_max = rows_max;
-  request->chunk_rows = std::min(request->chunk_rows, rows_max);
+  const std::uint32_t rows_max = largest_chunk_rows(*session);
+  session->job.request.chunk_rows = static_cast<std::uint16_t>(rows_max);
   return rows_max > 0 ? success() : failure("the client accepts no message large enough for a row");
 }
 

@@ -83,7 +83,7 @@ void take_request(Server* server, Session* session, const FrameRequest& request)
   begin_job(session, scene);
   CHECK(request.row_begin < request.row_end && request.row_end <= settings.height);
   session->job.request = request;
-  session->job.traced_begin = session->job.sent_begin = request.row_end;
+  session->job.traced = session->job.sent = first_rows(request);
 }
 
 void take_frame_change(Server* server, Session* session, const FrameRequest& change) {

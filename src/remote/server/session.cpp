@@ -53,10 +53,7 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
 }
 
 // Rows of the next chunk to send; 0: all sent.
-std::uint32_t next_chunk_rows(const Session& session) {
-  const FrameJob& job = session.job;
-  return next_chunk_rows(job.request, job.chunk_rows, job.sent_begin - job.request.row_begin);
-}
+std::uint32_t next_chunk_rows(const Session& session) { return next_chunk_rows(session.job.request, session.job.sent); }
 
 // A slice of a job as one batch of spans.
 struct SliceSource {
@@ -70,9 +67,9 @@ void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) 
   const FrameJob& job = source->session->job;
   const Settings& settings = source->session->renderer.settings;
   CHECK_LT(job.traced_columns, settings.width);
-  CHECK_LT(job.request.row_begin, job.traced_begin);
+  CHECK(has_rows(job.traced));
   Renderer* renderer = &source->session->renderer;
-  const std::uint32_t row = job.traced_begin - 1, begin = job.traced_columns;
+  const std::uint32_t row = job.traced.row_end - 1, begin = job.traced_columns;
   const std::uint32_t end = end_of_part(*renderer, row, begin, pixels_max);
   const SharedSpans part = list_part(renderer, row, begin, end);
   batch->spans = part.spans, batch->span_count = part.count;
@@ -92,21 +89,29 @@ void next_slice(void* context, SpanBatch* batch) {
     pixels_max = slice_pixels(settings, session.renderer.light_points.count, session.trace_ns * settings.threads,
                               source->slice_ns * settings.threads);
   Renderer* renderer = &source->session->renderer;
-  if (job.traced_columns > 0 || pixels_max < count_pixels(*renderer, job.traced_begin - 1))
+  if (job.traced_columns > 0 || pixels_max < count_pixels(*renderer, job.traced.row_end - 1))
     return next_part(source, pixels_max, batch);
   // The rest of the chunk, but enough rows to keep all threads busy to the end.
-  std::uint32_t rest = next_chunk_rows(session) - (job.sent_begin - job.traced_begin);
+  std::uint32_t rest = next_chunk_rows(session) - (job.rows_traced - job.rows_sent);
   std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
-  const std::uint32_t rows_max =
-      std::min({wanted, listed_rows_max(*renderer), job.traced_begin - job.request.row_begin});
-  std::uint32_t rows = 0, traced = 0;
-  for (; rows < rows_max; ++rows) {
-    const std::uint32_t count = count_pixels(*renderer, job.traced_begin - rows - 1);
-    if (traced + count > pixels_max) break;
-    traced += count;
+  wanted = std::min(wanted, listed_rows_max(*renderer));
+  RowRange ranges[kRunCountMax];
+  std::uint32_t rows = 0, traced = 0, range_count = next_ranges(job, wanted, ranges);
+  auto fits = [&](std::uint32_t row) {
+    const std::uint32_t count = count_pixels(*renderer, row);
+    if (traced + count > pixels_max) return false;
+    ++rows, traced += count;
+    return true;
+  };
+  for (std::uint32_t i = 0; i < range_count; ++i) {
+    std::uint32_t row = ranges[i].end;
+    while (row > ranges[i].begin && fits(row - 1)) --row;
+    if (row == ranges[i].begin) continue;
+    range_count = i + (row < ranges[i].end);
+    ranges[i].begin = row;
   }
-  CHECK(rows > 0 && rows <= job.traced_begin);
-  const SharedSpans spans = list_rows(renderer, job.traced_begin - rows, job.traced_begin);
+  CHECK(rows > 0 && rows <= job.request.row_end);
+  const SharedSpans spans = list_ranges(renderer, ranges, range_count);
   batch->spans = spans.spans, batch->span_count = spans.count;
   source->slice = {rows, 0, rows * settings.width, traced, false};
 }
@@ -153,23 +158,22 @@ void send_error(Session* session, WireError code, std::uint32_t frame) {
 void drop_job(Session* session) {
   FrameJob* job = &session->job;
   if (!has_job(*session)) return;
-  CHECK(job->traced_begin <= job->sent_begin && job->sent_begin <= job->request.row_end);
+  CHECK_LE(job->rows_sent, job->rows_traced);
   job->scene = nullptr;
-  std::uint32_t traced = job->request.row_end - job->traced_begin, sent = job->request.row_end - job->sent_begin;
   session->ended_took_ns += job->took_ns;
-  if (!job->is_view_query && traced > 0) session->ended_sent_ns += job->took_ns * sent / traced;
+  if (!job->is_view_query && job->rows_traced > 0)
+    session->ended_sent_ns += job->took_ns * job->rows_sent / job->rows_traced;
 }
 
 bool has_chunk(const Session& session) {
   return has_job(session) && session.job.stage == JobStage::rows && queued_bytes(session.messages) <= kAheadBytes &&
-         session.job.sent_begin - session.job.traced_begin >= next_chunk_rows(session);
+         session.job.rows_traced - session.job.rows_sent >= next_chunk_rows(session);
 }
 
 bool can_work(const Session& session) {
   if (!has_job(session) || queued_bytes(session.messages) > kAheadBytes) return false;
-  std::uint32_t unsent = session.job.sent_begin - session.job.traced_begin;
-  return session.job.stage != JobStage::rows ||
-         (session.job.traced_begin > session.job.request.row_begin && unsent < next_chunk_rows(session));
+  std::uint32_t unsent = session.job.rows_traced - session.job.rows_sent;
+  return session.job.stage != JobStage::rows || (has_rows(session.job.traced) && unsent < next_chunk_rows(session));
 }
 
 std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_count, double known_ns,
@@ -177,6 +181,17 @@ std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_c
   double most = kLightPointNs * settings.samples_per_pixel * (1.0 + light_point_count);
   double pixels = static_cast<double>(slice_ns) / std::max(known_ns, most);
   return pixels < 1 ? 1 : pixels < kChunkPixelsMax ? static_cast<std::uint32_t>(pixels) : kChunkPixelsMax;
+}
+
+std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges) {
+  std::uint32_t count = 0;
+  for (RowSequence at = job.traced; row_count > 0 && has_rows(at) && count < kRunCountMax;) {
+    const std::uint32_t rows = std::min(row_count, at.row_end - at.row_begin);
+    ranges[count++] = {at.row_end - rows, at.row_end};
+    row_count -= rows;
+    pass_rows(job.request, rows, &at);
+  }
+  return count;
 }
 
 Slice trace_slice(Session* session, std::uint64_t slice_ns) {
@@ -196,9 +211,13 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std:
     session->probe_ns = dear_pixel_ns(session->probe_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
     return;
   }
-  CHECK_LE(slice.row_count, job->traced_begin - job->request.row_begin);
-  finish_shared_rows(&session->renderer, job->traced_begin - slice.row_count, job->traced_begin);
-  job->traced_begin -= slice.row_count;
+  RowRange ranges[kRunCountMax];
+  const std::uint32_t range_count = next_ranges(*job, slice.row_count, ranges);
+  for (std::uint32_t i = 0; i < range_count; ++i) {
+    finish_shared_rows(&session->renderer, ranges[i].begin, ranges[i].end);
+    pass_rows(job->request, ranges[i].end - ranges[i].begin, &job->traced);
+  }
+  job->rows_traced += slice.row_count;
   job->traced_columns = slice.column_end;
   job->wall_ns += wall_ns;
   job->pixel_count += slice.pixel_count;
@@ -210,12 +229,12 @@ void send_chunks(Session* session) {
   FrameJob* job = &session->job;
   while (has_chunk(*session)) {
     std::uint32_t rows = next_chunk_rows(*session);
-    send_chunk(session, job->sent_begin - rows, job->sent_begin);
-    job->sent_begin -= rows;
-    CHECK_GE(job->sent_begin, job->request.row_begin);
-    job->chunk_rows = rows;
-    if (job->sent_begin == job->traced_begin) job->wall_ns = job->pixel_count = 0;
-    if (job->sent_begin == job->request.row_begin) {
+    send_chunk(session, job->sent.row_end - rows, job->sent.row_end);
+    job->rows_sent += rows;
+    pass_rows(job->request, rows, &job->sent);
+    CHECK_LE(job->rows_sent, job->rows_traced);
+    if (job->rows_sent == job->rows_traced) job->wall_ns = job->pixel_count = 0;
+    if (!has_rows(job->sent)) {
       ++session->frame_count;
       drop_job(session);
     }

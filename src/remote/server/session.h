@@ -7,6 +7,7 @@
 #include "remote/server/share.h"
 #include "remote/stream.h"
 #include "wire/codec.h"
+#include "wire/row_sequence.h"
 
 namespace pocketray {
 
@@ -36,16 +37,17 @@ enum class JobStage : std::uint8_t {
   rows,
 };
 
-// The frame that a client waits for. The image holds rows from traced_begin on and the first traced_columns pixels of
-// the row above; rows from sent_begin on are sent.
+// The frame that a client waits for. Its rows are traced and sent in the request's order; of the next row to trace, the
+// image holds the first traced_columns pixels.
 struct FrameJob {
   const StoredScene* scene;  // null: no job
   FrameRequest request;
   bool is_view_query, measure_exposure;  // if is_view_query, only the fields of `request` that a query also has are set
   JobStage stage;
   ExposureProbe probe;
-  std::uint32_t chunk_rows;  // of the last chunk; 0: none has been sent
-  std::uint32_t traced_begin, traced_columns, sent_begin;
+  RowSequence traced, sent;  // what is left to trace, and to send
+  std::uint32_t rows_traced, rows_sent;
+  std::uint32_t traced_columns;
   std::uint64_t wall_ns, pixel_count;  // of rows traced but not completely sent
   std::uint64_t took_ns;               // CPU time so far
 };
@@ -134,6 +136,8 @@ std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_c
 inline double dear_pixel_ns(double known_ns, double new_ns) {
   return new_ns > 0.875 * known_ns ? new_ns : 0.875 * known_ns;
 }
+// The next rows to trace, at most kRunCountMax ranges; returns their number.
+std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
 // Traces the next pixels of the job, for about `slice_ns`.
 Slice trace_slice(Session* session, std::uint64_t slice_ns);
 // Accounts for a slice: `took_ns` of thread time, `wall_ns` for the client.

@@ -75,8 +75,16 @@ int choose_session(Server* server) {
 }
 
 Pace pace_of(const Server& server, const Session& session, const Slice& slice) {
-  std::uint32_t end = session.job.traced_begin, row_count = std::max(slice.row_count, slice.pixel_count > 0 ? 1u : 0u);
-  return pace_of_rows(server.options.pace, server.options.row_costs, end - row_count, end);
+  const std::uint32_t row_count = std::max(slice.row_count, slice.pixel_count > 0 ? 1u : 0u);
+  if (!server.options.row_costs || row_count == 0 || slice.is_probe) return server.options.pace;
+  RowRange ranges[kRunCountMax];
+  Pace pace = server.options.pace;
+  pace.ns_per_pixel = 0;
+  for (std::uint32_t i = 0, count = next_ranges(session.job, row_count, ranges); i < count; ++i)
+    pace.ns_per_pixel +=
+        pace_of_rows(server.options.pace, server.options.row_costs, ranges[i].begin, ranges[i].end).ns_per_pixel *
+        (ranges[i].end - ranges[i].begin) / row_count;
+  return pace;
 }
 
 // Duration of the work, on the emulated CPU if there is one.
