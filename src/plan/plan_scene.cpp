@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "plan/room.h"
 
 namespace pocketray {
 
@@ -41,6 +42,7 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
 }
 
 Camera inside_camera(const Box& bounds) {
+  CHECK(!is_empty(bounds));
   Camera camera;
   Vec3 middle = center(bounds), half = extent(bounds) * 0.5f;
   camera.eye = middle + half * Vec3{0.6f, 0.15f, 0.85f};
@@ -49,36 +51,43 @@ Camera inside_camera(const Box& bounds) {
   return camera;
 }
 
-bool is_room(const Scene& scene, const Box& bounds, Vec3* opening) {
-  CHECK(opening != nullptr);
-  // By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative if normals point inward.
-  // The area vectors of a closed surface add up to zero; a remainder is the area vector of the missing side.
-  Vec3 middle = center(bounds), size = extent(bounds);
-  Vec3d area = {0, 0, 0};
-  double volume = 0;
-  for (const Triangle& t : scene.triangles) {
-    Vec3 a = scene.positions[t.vertex(0)] - middle, b = scene.positions[t.vertex(1)] - middle,
-         c = scene.positions[t.vertex(2)] - middle;
-    volume += static_cast<double>(dot(a, cross(b, c))) / 6;
-    Vec3 twice = cross(b - a, c - a);
-    area += Vec3d{twice.x, twice.y, twice.z} * 0.5;
-  }
-  *opening = {0, 0, 0};
-  double box_volume = static_cast<double>(size.x) * static_cast<double>(size.y) * static_cast<double>(size.z);
-  if (!(-volume > 0.5 * box_volume)) return false;
-  double side = length(area), box_side = static_cast<double>(half_area(bounds)) / 3;
-  if (side > 0.3 * box_side)
-    *opening = {static_cast<float>(area.x / side), static_cast<float>(area.y / side),
-                static_cast<float>(area.z / side)};
-  return true;
+namespace {
+
+// Moves the eye towards the middle until no wall stands between them.
+void keep_in_room(const Scene& scene, const Box& bounds, Camera* camera) {
+  const Vec3 middle = center(bounds), way = camera->eye - middle;
+  const float distance = length(way);
+  if (!(distance > 0)) return;
+  const float room = 0.8f * free_distance(scene, middle, way * (1 / distance));
+  if (room < distance) camera->eye = middle + way * (room / distance);
 }
+
+// Of four directions around the scene, the front unless another shows much more of open surfaces' fronts.
+Vec3 side_to_look_from(const Scene& scene, const Box& bounds) {
+  const Vec3 kSides[] = {{0.45f, 0.35f, 1.0f}, {1.0f, 0.35f, -0.45f}, {-0.45f, 0.35f, -1.0f}, {-1.0f, 0.35f, 0.45f}};
+  Vec3 best = normalize(kSides[0]);
+  if (is_empty(bounds)) return best;
+  const Vec3d area = shown_area(scene, bounds);
+  const double box_side = static_cast<double>(half_area(bounds)) / 3;
+  double shown = dot(area, to_double(best)) + 0.3 * box_side;
+  for (const Vec3& side : kSides) {
+    const double here = dot(area, to_double(normalize(side)));
+    if (here > shown) shown = here, best = normalize(side);
+  }
+  return best;
+}
+
+}  // namespace
 
 Camera default_camera(const Scene& scene, float aspect) {
   Box bounds = scene_bounds(scene);
-  Vec3 opening;
-  if (!is_room(scene, bounds, &opening)) return framing_camera(bounds, aspect, normalize(Vec3{0.45f, 0.35f, 1.0f}));
-  bool looks_in = !is_zero(opening) && std::fabs(opening.y) < 0.5f;  // but not through a missing roof
-  return looks_in ? framing_camera(bounds, aspect, opening) : inside_camera(bounds);
+  const Room room = find_room(scene, bounds);
+  if (!room.is_room) return framing_camera(bounds, aspect, side_to_look_from(scene, bounds));
+  bool looks_in = !is_zero(room.opening) && std::fabs(room.opening.y) < 0.5f;  // but not through a missing roof
+  if (looks_in) return framing_camera(bounds, aspect, room.opening);
+  Camera camera = inside_camera(bounds);
+  if (room.has_thick_walls) keep_in_room(scene, bounds, &camera);
+  return camera;
 }
 
 bool lights_itself(const Scene& scene) {
@@ -92,14 +101,14 @@ void default_lights(const Scene& scene, const Camera& camera, Light* lights) {
   CHECK(lights != nullptr);
   lights[0] = lights[1] = Light();
   Box bounds = scene_bounds(scene);
-  Vec3 opening;
-  if (is_room(scene, bounds, &opening)) {  // the sun cannot get in
+  const Room room = find_room(scene, bounds);
+  if (room.is_room) {  // the sun cannot get in
     Vec3 half = extent(bounds) * 0.5f;
     float square = dot(half, half);
     lights[0].position = center(bounds) + Vec3{0, half.y * 0.6f, 0};
     lights[0].intensity = Vec3{0.62f, 0.6f, 0.56f} * square;
     lights[1].position = camera.eye;
-    lights[1].intensity = Vec3{0.16f, 0.18f, 0.21f} * (is_zero(opening) ? square : 4 * square);
+    lights[1].intensity = Vec3{0.16f, 0.18f, 0.21f} * (is_zero(room.opening) ? square : 4 * square);
     return;
   }
   Vec3 backward = normalize(camera.eye - camera.target);

@@ -12,12 +12,8 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward);
 // A camera inside the box that looks across it, with a 60° field of view.
 Camera inside_camera(const Box& bounds);
 
-// Whether the scene is a room: its surfaces face inward and enclose most of its bounds. `opening` is then the unit
-// vector out through its open side, or zero if it is closed.
-bool is_room(const Scene& scene, const Box& bounds, Vec3* opening);
-
 // The camera of a scene without one: inside a closed room, in front of an open one, otherwise framing the scene from
-// the front, slightly above and to the right.
+// slightly above and to the right of the front, or of another side where open surfaces show their backs to the front.
 Camera default_camera(const Scene& scene, float aspect);
 // Whether a model lights itself: it has a light, or a surface that emits more than display white.
 bool lights_itself(const Scene& scene);

@@ -1,0 +1,150 @@
+#include "plan/room.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "accel/triangle.h"
+#include "base/check.h"
+#include "base/fmath.h"
+
+namespace pocketray {
+namespace {
+
+struct Corners {
+  Vec3 a, b, c;
+};
+// Relative to a point.
+Corners corners(const Scene& scene, const Triangle& t, const Vec3& from) {
+  return {scene.positions[t.vertex(0)] - from, scene.positions[t.vertex(1)] - from,
+          scene.positions[t.vertex(2)] - from};
+}
+
+// By the divergence theorem ∑ (corner · area vector) / 3 is the enclosed volume, negative if normals point inward.
+double enclosed_volume(const Scene& scene, const Vec3& middle) {
+  double volume = 0;
+  for (const Triangle& t : scene.triangles) {
+    const Corners k = corners(scene, t, middle);
+    volume += static_cast<double>(dot(k.a, cross(k.b, k.c))) / 6;
+  }
+  return volume;
+}
+
+// The solid angle of all triangles that face a point, as if each were small: more than all directions where surfaces
+// surround the point, next to nothing inside a solid.
+float facing_solid_angle(const Scene& scene, const Vec3& from) {
+  float sum = 0;
+  for (const Triangle& t : scene.triangles) {
+    const Corners k = corners(scene, t, from);
+    const Vec3 centroid = (k.a + k.b + k.c) * (1.0f / 3);
+    const float facing = -dot(cross(k.b - k.a, k.c - k.a), centroid) * 0.5f, distance = length(centroid);
+    if (facing > 0 && distance > 0) sum += facing / distance / distance / distance;
+  }
+  return sum;
+}
+
+constexpr int kLooks = 26;  // to the neighbours in a cube of cubes
+constexpr int kWallsMin = 20;
+
+struct Look {
+  Ray ray;
+  ShearedRay sheared;
+  float distance = std::numeric_limits<float>::infinity();
+  bool is_front = false, is_square = false;  // square: a wall across an axis, a floor, a ceiling
+};
+
+// Along each ray, the first triangle.
+void look_around(const Scene& scene, Array<Look> looks) {
+  CHECK(looks.data != nullptr);
+  for (const Triangle& t : scene.triangles) {
+    if (!is_hittable(scene.positions, t)) continue;
+    const Vec3 &a = scene.positions[t.vertex(0)], &b = scene.positions[t.vertex(1)], &c = scene.positions[t.vertex(2)];
+    for (Look& look : looks) {
+      Hit hit;
+      if (!intersect_triangle(look.sheared, a, b, c, &hit) || !(hit.t > 0 && hit.t < look.distance)) continue;
+      const Vec3 normal = normalize(cross(b - a, c - a));
+      look.distance = hit.t, look.is_front = dot(normal, look.ray.direction) < 0;
+      look.is_square = max_component(abs(normal)) > 0.99f;
+    }
+  }
+}
+
+bool make_look(const Vec3& from, const Vec3& direction, Look* look) {
+  look->ray = {from, direction, std::numeric_limits<float>::infinity()};
+  return make_sheared_ray(look->ray, &look->sheared);
+}
+
+// Distance from the middle of a box to its sides.
+float distance_to_sides(const Box& box, const Vec3& direction) {
+  CHECK(!is_empty(box) && !is_zero(direction));
+  const Vec3 half = extent(box) * 0.5f, along = abs(direction);
+  float distance = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; ++k)
+    if (along[k] > 0) distance = std::min(distance, half[k] / along[k]);
+  return distance;
+}
+
+// Whether nearly all rays from the middle meet the front of a surface; on average rather at the bounds than close by,
+// as in a thicket; and most of them a floor, a ceiling or a straight wall, unlike in a vessel.
+bool has_walls_around(const Scene& scene, const Box& bounds) {
+  const Vec3 middle = center(bounds);
+  if (!(facing_solid_angle(scene, middle) > 0.6f * 4 * kPiF)) return false;
+  Look looks[kLooks];
+  std::uint32_t count = 0;
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 to = {static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1), static_cast<float>(i / 9 - 1)};
+    if (is_zero(to)) continue;
+    // Turned a little: many rooms' edges lie where the cube's do.
+    if (!make_look(middle, normalize(to + Vec3{0.05f, 0.03f, -0.04f}), &looks[count++])) return false;
+  }
+  CHECK_EQ(count, static_cast<std::uint32_t>(kLooks));
+  look_around(scene, {looks, count});
+  int walls = 0, square = 0;
+  float reach = 0;
+  for (const Look& look : looks) {
+    if (!look.is_front) continue;
+    ++walls, square += look.is_square, reach += look.distance / distance_to_sides(bounds, look.ray.direction);
+  }
+  return walls >= kWallsMin && 2 * square > walls && reach > 0.5f * static_cast<float>(walls);
+}
+
+}  // namespace
+
+float free_distance(const Scene& scene, const Vec3& from, const Vec3& direction) {
+  CHECK(is_finite(from) && is_finite(direction));
+  Look look;
+  if (!make_look(from, direction, &look)) return look.distance;
+  look_around(scene, {&look, 1});
+  return look.distance;
+}
+
+Vec3d shown_area(const Scene& scene, const Box& bounds) {
+  CHECK(!is_empty(bounds));
+  const Vec3 middle = center(bounds);
+  Vec3d area = {0, 0, 0};
+  for (const Triangle& t : scene.triangles) {
+    const Corners k = corners(scene, t, middle);
+    const Vec3 twice = cross(k.b - k.a, k.c - k.a);
+    area += Vec3d{twice.x, twice.y, twice.z} * 0.5;
+  }
+  return area;
+}
+
+Room find_room(const Scene& scene, const Box& bounds) {
+  Room room;
+  if (is_empty(bounds)) return room;
+  const Vec3 size = extent(bounds);
+  const double box_volume = static_cast<double>(size.x) * static_cast<double>(size.y) * static_cast<double>(size.z);
+  const bool encloses = -enclosed_volume(scene, center(bounds)) > 0.5 * box_volume;
+  room.has_thick_walls = !encloses && box_volume > 0 && has_walls_around(scene, bounds);
+  room.is_room = encloses || room.has_thick_walls;
+  if (!encloses) return room;
+  // The area vectors of a closed surface add up to zero; a remainder is the area vector of the missing side.
+  const Vec3d area = shown_area(scene, bounds);
+  const double side = length(area), box_side = static_cast<double>(half_area(bounds)) / 3;
+  if (side > 0.3 * box_side)
+    room.opening = {static_cast<float>(area.x / side), static_cast<float>(area.y / side),
+                    static_cast<float>(area.z / side)};
+  return room;
+}
+
+}  // namespace pocketray
