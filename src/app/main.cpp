@@ -45,6 +45,7 @@ int run(int argument_count, char** arguments) {
   add_accuracy_command(program, &exit_status);
   add_reference_command(program, &exit_status);
   add_coherence_report_command(program, &exit_status);
+  add_compare_command(program, &exit_status);
 #endif
 #ifdef POCKETRAY_HAVE_NETWORK
   add_serve_command(program, &exit_status);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 #include "base/color.h"
 #include "base/limits.h"
@@ -21,7 +22,7 @@ namespace pocketray {
 
 static_assert(STBI_MAX_DIMENSIONS == kTextureSideMax, "one limit");
 
-Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name) {
+static Image decode(const Bytes& bytes, const std::string& name, std::uint64_t texel_count_max) {
   int width = 0, height = 0, channels = 0, size = static_cast<int>(bytes.size());
   if (bytes.size() > 1u << 30 || !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
     fail_import("%s is not a PNG, JPEG, TGA or BMP image; convert it", name.c_str());
@@ -29,8 +30,7 @@ Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string&
     fail_import("%s has %d × %d pixels, more than %d per side; scale it down", name.c_str(), width, height,
                 STBI_MAX_DIMENSIONS);
   std::uint64_t texel_count = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  // Decoding holds the filtered and the final image at once.
-  if (texel_count > builder->options.byte_count_max / 12) fail_import("%s is too large; scale it down", name.c_str());
+  if (texel_count > texel_count_max) fail_import("%s is too large; scale it down", name.c_str());
   stbi_uc* pixels = stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4);
   if (!pixels) fail_import("%s cannot be decoded (%s); export it again", name.c_str(), stbi_failure_reason());
   Image image;
@@ -44,6 +44,22 @@ Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string&
   std::memcpy(image.texels.data(), pixels, texel_count * 4);
   stbi_image_free(pixels);
   return image;
+}
+
+Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name) {
+  // Decoding holds the filtered and the final image at once.
+  return decode(bytes, name, builder->options.byte_count_max / 12);
+}
+
+Status read_image(const Bytes& bytes, const std::string& name, std::size_t pixel_count_max, Image* image) {
+  try {
+    *image = decode(bytes, name, pixel_count_max);
+    return success();
+  } catch (const std::bad_alloc&) {
+    return failure("%.300s: not enough memory to read it; scale it down", name.c_str());
+  } catch (const ImportError& error) {
+    return failure("%s", error.what());
+  }
 }
 
 // Mean of up to 2 × 2 texels: colour in linear light, weighted by alpha so that invisible texels do not bleed in.

@@ -19,6 +19,9 @@ struct Image {
 // Decodes an image; refuses one too large by its header. `name` is for the error line.
 Image decode_image(SceneBuilder* builder, const Bytes& bytes, const std::string& name);
 
+// The same without a scene, for pictures of at most `pixel_count_max` pixels.
+Status read_image(const Bytes& bytes, const std::string& name, std::size_t pixel_count_max, Image* image);
+
 // Box-halves width and height until neither exceeds `side_max`: colours in linear light, weighted by alpha. Odd sides
 // round up.
 void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind = TexelKind::colors);

@@ -7,5 +7,6 @@ namespace pocketray {
 void add_accuracy_command(Command program, int* exit_status);
 void add_reference_command(Command program, int* exit_status);
 void add_coherence_report_command(Command program, int* exit_status);
+void add_compare_command(Command program, int* exit_status);
 
 }  // namespace pocketray

@@ -1,0 +1,108 @@
+// pocketray compare: how different two pictures are.
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "accuracy/flip.h"
+#include "accuracy/strip.h"
+#include "app/accuracy/accuracy_command.h"
+#include "app/accuracy/compare.h"
+#include "app/options.h"
+#include "session/output.h"
+#include "session/report.h"
+
+namespace pocketray {
+namespace {
+
+struct CompareOptions {
+  std::string reference, test, map, json;
+  double fail_above = 1;  // which no ꟻLIP exceeds
+  double pixels_per_degree = kHandheldPixelsPerDegree;
+};
+
+Status read_pictures(const CompareOptions& o, Levels* reference, Levels* test) {
+  if (!o.map.empty() && !has_suffix(o.map.c_str(), ".png"))
+    return failure("-o is '%.300s': the name must end in .png", o.map.c_str());
+  RETURN_IF_ERROR(check_outputs({{"A", o.reference}, {"B", o.test}}, {{"-o", o.map}, {"--json", o.json}}));
+  RETURN_IF_ERROR(read_picture(o.reference, reference));
+  RETURN_IF_ERROR(read_picture(o.test, test));
+  if (reference->width == test->width && reference->height == test->height) return success();
+  return failure("%.180s has %u×%u pixels, %.180s %u×%u: compare pictures of one size", o.reference.c_str(),
+                 reference->width, reference->height, o.test.c_str(), test->width, test->height);
+}
+
+Status write_map(const std::string& path, const Levels& reference, const Comparison& c) {
+  Levels map = {reference.width, reference.height, {}};
+  for (float error : c.flip_map)
+    for (std::uint8_t level : flip_color(error)) map.rgb.push_back(level);
+  std::string bytes;
+  RETURN_IF_ERROR(encode_png(map, &bytes));
+  return write_file(path, bytes);
+}
+
+int largest_level_difference(const Comparison& c) { return static_cast<int>(std::lround(255 * c.errors.max)); }
+
+void print_comparison(const Comparison& c) {
+  char psnr[40];
+  std::snprintf(psnr, sizeof psnr, std::isinf(c.errors.psnr) ? "infinite" : "%.2f dB", c.errors.psnr);
+  std::printf("ꟻLIP %.6f (largest %.6f), RMSE %.6f, PSNR %s, largest difference %d of 255; %s of %s pixels differ\n",
+              c.flip, c.flip_max, c.errors.rmse, psnr, largest_level_difference(c), grouped(c.differing_count).c_str(),
+              grouped(c.flip_map.size()).c_str());
+}
+
+Json to_json(const CompareOptions& o, const Levels& reference, const Comparison& c) {
+  return {{"reference", o.reference},
+          {"test", o.test},
+          {"width", reference.width},
+          {"height", reference.height},
+          {"pixels_per_degree", o.pixels_per_degree},
+          {"flip", c.flip},
+          {"flip_max", c.flip_max},
+          {"rmse", c.errors.rmse},
+          {"psnr", std::isinf(c.errors.psnr) ? Json() : Json(c.errors.psnr)},
+          {"largest_level_difference", largest_level_difference(c)},
+          {"differing_pixels", c.differing_count},
+          {"map", o.map.empty() ? Json() : Json(o.map)}};
+}
+
+Status run(const CompareOptions& o) {
+  Levels reference, test;
+  RETURN_IF_ERROR(read_pictures(o, &reference, &test));
+  Comparison c = compare_pictures(reference, test, o.pixels_per_degree);
+  if (o.json != "-") print_comparison(c);
+  if (!o.map.empty()) RETURN_IF_ERROR(write_map(o.map, reference, c));
+  if (!o.json.empty()) RETURN_IF_ERROR(write_json(o.json, to_json(o, reference, c)));
+  if (c.flip > o.fail_above)
+    return failure("%.180s differs from %.180s by ꟻLIP %.6f, more than --fail-above %g", o.test.c_str(),
+                   o.reference.c_str(), c.flip, o.fail_above);
+  return success();
+}
+
+}  // namespace
+
+void add_compare_command(Command program, int* exit_status) {
+  auto o = std::make_shared<CompareOptions>();
+  Command command = program.add_subcommand("compare", "measure how different two pictures look");
+  command.footer(
+      "Prints the mean ꟻLIP (Andersson et al. 2020), 0 for equal pictures and at most 1; RMSE and PSNR of the values "
+      "as\n"
+      "stored, 1 being white; the largest difference of a channel; and the number of pixels that differ. PSNR is\n"
+      "infinite for equal pictures (JSON: null). Alpha is ignored, and 16-bit PNGs are compared as 8 bits. The map\n"
+      "shows ꟻLIP from black (0) over violet and orange to light yellow (1), in the perceptually even colours of\n"
+      "magma.\n"
+      "Try:  pocketray compare expected.png out.png -o map.png --fail-above 0.01");
+  command.add_option("A", o->reference, "the reference: .png, .jpg or .ppm").required();
+  command.add_option("B", o->test, "the picture to judge, of the same size").required();
+  command.add_option("-o,--output", o->map, "also write the map of ꟻLIP, .png");
+  command.add_option("--fail-above", o->fail_above, "exit with status 1 if the mean ꟻLIP exceeds this")
+      .range(0.0, 1.0)
+      .default_str("never");
+  command.add_option("--pixels-per-degree", o->pixels_per_degree, "resolution as seen: pixels per degree of vision")
+      .range(4.0, 400.0)
+      .default_str("23.6, a handheld's; 67 is usual for desktops");
+  add_json_option(command, &o->json);
+  command.callback([=] { *exit_status = report(run(*o)); });
+}
+
+}  // namespace pocketray
