@@ -65,23 +65,24 @@ TEST_CASE("client_leaves_a_server_that_floods") {
 }
 
 // Goal: rows that come in another order than asked for end the connection, as do rows of two runs in one chunk. Method:
-// a server that sends the right rows from the bottom upward, whatever the order, or the first run with a row too many.
+// a server sends the last run first, the upper row of the first run before its lowest, or that run with a row too many.
 TEST_CASE("client_leaves_a_server_that_sends_in_another_order") {
-  for (bool crosses_runs : {false, true}) {
-    CAPTURE(crosses_runs);
+  enum Deviation { last_run, upper_row, row_too_many };
+  for (Deviation deviation : {last_run, upper_row, row_too_many}) {
+    CAPTURE(deviation);
     HostileRig rig;
     bool ordered = false;
     rig.frames_until_ready();
     rig.act = [&](HostileRig* r, const Message& message) -> std::vector<Message> {
       if (!r->note_request(message)) return r->answer(message);
       const FrameRequest& q = r->request;
-      const RowSequence first = first_rows(q);
-      // Of equal rows, the lowest come first anyway; so the upper run first, which no device asked for.
       if (q.run_count < 2) return r->rows.rows(q);
       ordered = true;
-      const RowRange last = run_at(q, q.run_count - 1u);
-      if (!crosses_runs) return {r->rows.chunk(q.frame, last.begin, last.end - last.begin)};
-      return {r->rows.chunk(q.frame, first.row_begin - 1, first.row_end - first.row_begin + 1)};
+      const RowRange first = run_at(q, 0), last = run_at(q, q.run_count - 1u);
+      REQUIRE(first.end - first.begin > 1);
+      if (deviation == last_run) return {r->rows.chunk(q.frame, last.begin, last.end - last.begin)};
+      if (deviation == upper_row) return {r->rows.chunk(q.frame, first.begin, 1)};
+      return {r->rows.chunk(q.frame, first.begin - 1, first.end - first.begin + 1)};
     };
     for (int i = 0; i < 3 && rig.log.empty(); ++i) CHECK(rig.frame() < 1.05);
     CHECK(ordered);
