@@ -117,6 +117,29 @@ void add_view_options(Command command, CommonOptions* o) {
   add_camera(command, o);
 }
 
+void add_look_options(Command command, CommonOptions* o) {
+  Option budget = command.get_option("--budget-ms");  // whose prices are those of the scene's own look
+  command
+      .add_option("--background", o->background,
+                  "colour where nothing is hit: #rrggbb as displayed without exposure (quote it), or linear radiance "
+                  "as r,g,b")
+      .default_str("the scene's")
+      .excludes(budget);
+  command
+      .add_option("--light", o->light,
+                  "light of a scene that brings none: key (a key and a fill light that follow the camera's side), sun "
+                  "(one from high above) or none (ambient alone)")
+      .one_of({"key", "sun", "none"})
+      .capture_default_str()
+      .excludes(budget);
+  command
+      .add_option("--fov", o->fov,
+                  "vertical field of view in degrees, 0.001 … 179, of the scene's cameras; the automatic camera still "
+                  "frames the scene")
+      .default_str("the camera's")
+      .excludes(command.get_option("--camera"));
+}
+
 void add_coherence_options(Command command, CommonOptions* o, const char* usual) {
   o->coherence = usual;
   command

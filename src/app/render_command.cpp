@@ -410,6 +410,7 @@ void add_render_command(Command program, const OptionalParts& parts, int* exit_s
   add_scene_options(command, &o->common);
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
+  add_look_options(command, &o->common);
   add_coherence_options(command, &o->common);
   command
       .add_option("-o,--output", o->output,

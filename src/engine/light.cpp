@@ -69,8 +69,11 @@ void light_scene(Renderer* renderer) {
 
 Status aim_camera(Renderer* renderer) {
   CHECK(renderer->pose.cameras.empty() || renderer->camera_index < renderer->pose.cameras.count);
-  if (!renderer->camera_overridden && renderer->pose.cameras.count)
+  if (!renderer->camera_overridden && renderer->pose.cameras.count) {
     renderer->camera = renderer->pose.cameras[renderer->camera_index];
+    if (renderer->look.vertical_fov > 0)
+      renderer->camera.vertical_fov = static_cast<float>(renderer->look.vertical_fov);
+  }
   RETURN_IF_ERROR(
       make_camera_rays(renderer->camera, renderer->settings.width, renderer->settings.height, &renderer->frame.camera));
   renderer->frame.eye_media = MediumStack();

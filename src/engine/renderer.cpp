@@ -22,9 +22,11 @@ void add_what_is_missing(Renderer* renderer) {
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
   if (scene.cameras.empty()) {
     scene.info.default_camera = 1;
-    renderer->camera = default_camera(scene, aspect);
+    renderer->camera = default_camera(scene, aspect, renderer->look.vertical_fov);
   } else {
     renderer->camera = scene.cameras[renderer->camera_index < scene.cameras.count ? renderer->camera_index : 0];
+    if (renderer->look.vertical_fov > 0)
+      renderer->camera.vertical_fov = static_cast<float>(renderer->look.vertical_fov);
   }
   if (!has_light(scene) || scene.info.default_lights != 0) {
     scene.info.default_lights = 1;
@@ -33,7 +35,10 @@ void add_what_is_missing(Renderer* renderer) {
     if (is_zero(scene.info.background)) scene.info.background = default_background();
     default_lights(scene, renderer->camera, renderer->default_lights);
     scene.lights = {renderer->default_lights, kDefaultLightCount};
+    if (renderer->look.light == LightChoice::sun) renderer->default_lights[0] = default_sun(), scene.lights.count = 1;
+    if (renderer->look.light == LightChoice::none) scene.lights = {};
   }
+  if (renderer->look.has_background) scene.info.background = renderer->look.background;
 }
 
 bool moves(const Renderer& renderer) {

@@ -37,6 +37,15 @@ struct SharedRows {
   Span parts[2 * kThreadCountMax];  // of a row, or several rows apart
 };
 
+// Deviations from the look that a scene brings or gets; initially none.
+enum class LightChoice { key, sun, none };  // of a scene without lights: default_lights(), default_sun(), ambient alone
+struct Look {
+  LightChoice light = LightChoice::key;
+  bool has_background = false;
+  Vec3 background;
+  double vertical_fov = 0;  // radians, of every perspective camera; 0: the camera's own
+};
+
 struct Renderer {
   Settings settings;
   Arena scene_arena, persistent_arena, frame_arena;
@@ -69,6 +78,7 @@ struct Renderer {
   Pace pace;                   // of an emulated device; default: none
   Workers* workers = nullptr;  // null: only the caller's thread
   Light default_lights[2];
+  Look look;  // set before plan_renderer()
 };
 
 // First step: carves the scene arena out of the block, to load the scene into. The caller keeps ownership of the block,

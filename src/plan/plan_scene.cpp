@@ -13,11 +13,11 @@ Box scene_bounds(const Scene& scene) {
   return box;
 }
 
-Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
+Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward, double vertical_fov) {
   CHECK_GT(aspect, 0);
   Camera camera;
   if (is_empty(bounds)) return camera;
-  camera.vertical_fov = static_cast<float>(radians(40));
+  camera.vertical_fov = static_cast<float>(vertical_fov);
   camera.target = center(bounds);
   Vec3 half = extent(bounds) * 0.5f;
   Vec3 right = normalize(cross(Vec3{0, 1, 0}, backward)), up;
@@ -25,7 +25,7 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
   up = cross(backward, right);
   // Each corner c must project into the picture: |c·up| ≤ (distance − c·backward)·tan(fov/2), and likewise to the
   // right.
-  float tan_half = static_cast<float>(det_sin(radians(20)) / det_cos(radians(20)));
+  float tan_half = static_cast<float>(det_sin(vertical_fov / 2) / det_cos(vertical_fov / 2));
   float distance = 0;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 c = {corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y, corner & 4 ? half.z : -half.z};
@@ -41,13 +41,13 @@ Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward) {
   return camera;
 }
 
-Camera inside_camera(const Box& bounds) {
+Camera inside_camera(const Box& bounds, double vertical_fov) {
   CHECK(!is_empty(bounds));
   Camera camera;
   Vec3 middle = center(bounds), half = extent(bounds) * 0.5f;
   camera.eye = middle + half * Vec3{0.6f, 0.15f, 0.85f};
   camera.target = middle - half * Vec3{0.25f, 0.2f, 0.35f};
-  camera.vertical_fov = static_cast<float>(radians(60));
+  camera.vertical_fov = static_cast<float>(vertical_fov);
   return camera;
 }
 
@@ -79,13 +79,14 @@ Vec3 side_to_look_from(const Scene& scene, const Box& bounds) {
 
 }  // namespace
 
-Camera default_camera(const Scene& scene, float aspect) {
+Camera default_camera(const Scene& scene, float aspect, double vertical_fov) {
   Box bounds = scene_bounds(scene);
   const Room room = find_room(scene, bounds);
-  if (!room.is_room) return framing_camera(bounds, aspect, side_to_look_from(scene, bounds));
+  const double framing = vertical_fov > 0 ? vertical_fov : kFramingFieldOfView;
+  if (!room.is_room) return framing_camera(bounds, aspect, side_to_look_from(scene, bounds), framing);
   bool looks_in = !is_zero(room.opening) && std::fabs(room.opening.y) < 0.5f;  // but not through a missing roof
-  if (looks_in) return framing_camera(bounds, aspect, room.opening);
-  Camera camera = inside_camera(bounds);
+  if (looks_in) return framing_camera(bounds, aspect, room.opening, framing);
+  Camera camera = inside_camera(bounds, vertical_fov > 0 ? vertical_fov : kInsideFieldOfView);
   if (room.has_thick_walls) keep_in_room(scene, bounds, &camera);
   return camera;
 }
@@ -120,6 +121,14 @@ void default_lights(const Scene& scene, const Camera& camera, Light* lights) {
   lights[0].intensity = {2.6f, 2.5f, 2.35f};
   lights[1].direction = -normalize(backward * 0.7f + up * 0.2f + right * 0.9f);
   lights[1].intensity = {0.55f, 0.62f, 0.75f};
+}
+
+Light default_sun() {
+  Light sun;
+  sun.kind = LightKind::directional;
+  sun.direction = -normalize(Vec3{-0.5f, 1, 0.6f});
+  sun.intensity = {3.0f, 2.9f, 2.7f};
+  return sun;
 }
 
 Vec3 default_ambient() { return {0.09f, 0.09f, 0.1f}; }

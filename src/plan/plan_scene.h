@@ -1,5 +1,6 @@
 // Defaults for scenes without a camera or lights.
 #pragma once
+#include "base/fmath.h"
 #include "scene/scene.h"
 
 namespace pocketray {
@@ -7,14 +8,16 @@ namespace pocketray {
 // Bounds of all triangles.
 Box scene_bounds(const Scene& scene);
 
-// A camera that frames the whole box from the unit direction `backward`, with a 40° field of view.
-Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward);
-// A camera inside the box that looks across it, with a 60° field of view.
-Camera inside_camera(const Box& bounds);
+// A camera that frames the whole box from the unit direction `backward`. Fields of view here are vertical, in radians.
+constexpr double kFramingFieldOfView = radians(40), kInsideFieldOfView = radians(60);
+Camera framing_camera(const Box& bounds, float aspect, const Vec3& backward, double vertical_fov = kFramingFieldOfView);
+// A camera inside the box that looks across it.
+Camera inside_camera(const Box& bounds, double vertical_fov = kInsideFieldOfView);
 
 // The camera of a scene without one: inside a closed room, in front of an open one, otherwise framing the scene from
 // slightly above and to the right of the front, or of another side where open surfaces show their backs to the front.
-Camera default_camera(const Scene& scene, float aspect);
+// `vertical_fov`: 0 chooses it.
+Camera default_camera(const Scene& scene, float aspect, double vertical_fov = 0);
 // Whether a model lights itself: it has a light, or a surface that emits more than display white.
 bool lights_itself(const Scene& scene);
 
@@ -23,6 +26,8 @@ bool lights_itself(const Scene& scene);
 // ambient term comes with them.
 constexpr std::uint32_t kDefaultLightCount = 2;
 void default_lights(const Scene& scene, const Camera& camera, Light* lights);
+// In place of these lights, one from high above, whatever the camera.
+Light default_sun();
 Vec3 default_ambient();
 Vec3 default_background();
 

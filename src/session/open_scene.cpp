@@ -59,6 +59,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   Renderer* renderer = &opened->renderer;
   start_renderer(opened->block, settings.memory_bytes, settings, renderer);
   RETURN_IF_ERROR(set_pace(o, renderer));
+  RETURN_IF_ERROR(parse_look(o, &renderer->look));
   renderer->camera_index = o.camera_index;
   renderer->accel_info = find_accel(o.accel);
   SceneStorage storage;
@@ -71,6 +72,8 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   if (opened->source.bytes_wanted > 0 && !planned.ok)
     return failure("%s: --memory %zuM", planned.message, (opened->source.bytes_wanted >> 20) + 1);
   RETURN_IF_ERROR(planned);
+  if (!o.fov.empty() && renderer->camera.projection != Projection::perspective)
+    return failure("--fov is for perspective cameras, and camera %u is orthographic: drop --fov", o.camera_index);
   if (!o.camera.empty()) {
     Camera camera;
     RETURN_IF_ERROR(parse_camera(o.camera, &camera));
@@ -102,13 +105,17 @@ void print_notes(const OpenScene& opened) {
         "pocketray: the accelerator %s does not fit in --memory; using the slower %s. Raise --memory to use %s\n",
         kAccelList[0]->name, opened.renderer.accel_info->name, kAccelList[0]->name);
   const SceneInfo& info = opened.renderer.scene.info;
+  constexpr const char* kLights[] = {"adding a key and a fill light", "adding a sun", "adding ambient light alone"};
+  const LightChoice light = opened.renderer.look.light;
+  const char* added = kLights[static_cast<int>(light)];
   if (info.default_camera != 0 && info.default_lights != 0)
-    std::fprintf(
-        stderr, "pocketray: the scene has no camera and no light: framing its bounds, adding a key and a fill light\n");
+    std::fprintf(stderr, "pocketray: the scene has no camera and no light: framing its bounds, %s\n", added);
   else if (info.default_camera != 0)
     std::fprintf(stderr, "pocketray: the scene has no camera: framing its bounds\n");
   else if (info.default_lights != 0)
-    std::fprintf(stderr, "pocketray: the scene has no light: adding a key and a fill light\n");
+    std::fprintf(stderr, "pocketray: the scene has no light: %s\n", added);
+  if (info.default_lights == 0 && light != LightChoice::key)
+    std::fprintf(stderr, "pocketray: --light changes nothing: the scene has light of its own\n");
 }
 
 }  // namespace pocketray

@@ -7,6 +7,7 @@
 
 #include "accel/accel_list.h"
 #include "base/check.h"
+#include "base/color.h"
 #include "base/fmath.h"
 #include "plan/plan_effects.h"
 #include "platform/memory.h"
@@ -198,6 +199,41 @@ Status parse_camera(const std::string& text, Camera* camera) {
   if (!within(Quantity::field_of_view, camera->vertical_fov))
     return failure("the field of view of --camera is %g degrees: it must lie in 0.001 … 179",
                    static_cast<double>(v[9]));
+  return success();
+}
+
+namespace {
+
+// "#rrggbb", levels of sRGB, or "r,g,b", radiance.
+Status parse_background(const std::string& text, Vec3* radiance) {
+  float v[3];
+  if (text[0] == '#' && text.size() == 7 && text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos)
+    for (std::size_t i = 0; i < 3; ++i)
+      v[i] = srgb_to_linear(static_cast<std::uint8_t>(std::stoul(text.substr(1 + 2 * i, 2), nullptr, 16)));
+  else if (text[0] == '#' || !read_numbers(text, v, 3))
+    return failure("--background is '%.100s': write #rrggbb, or radiance as r,g,b", text.c_str());
+  for (float x : v)
+    if (!(x >= 0 && x <= kRadianceMax))
+      return failure("a radiance of --background is %g: it must lie in 0 … %g", static_cast<double>(x),
+                     static_cast<double>(kRadianceMax));
+  *radiance = {v[0], v[1], v[2]};
+  return success();
+}
+
+}  // namespace
+
+Status parse_look(const CommonOptions& o, Look* look) {
+  CHECK(look != nullptr);
+  *look = Look();
+  look->has_background = !o.background.empty();
+  if (look->has_background) RETURN_IF_ERROR(parse_background(o.background, &look->background));
+  if (o.light == "sun") look->light = LightChoice::sun;
+  if (o.light == "none") look->light = LightChoice::none;
+  float degrees;
+  if (o.fov.empty()) return success();
+  if (!read_numbers(o.fov, &degrees, 1) || !within(Quantity::field_of_view, static_cast<float>(radians(degrees))))
+    return failure("--fov is '%.100s': it must lie in 0.001 … 179 degrees", o.fov.c_str());
+  look->vertical_fov = radians(degrees);
   return success();
 }
 

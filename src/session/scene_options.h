@@ -5,6 +5,7 @@
 #include "accel/accel_list.h"
 #include "base/isa.h"
 #include "effect/setting_list.h"
+#include "engine/renderer.h"
 #include "platform/devices/device_list.h"
 #include "scene/scene.h"
 
@@ -26,6 +27,7 @@ struct SettingOptions {
 struct CommonOptions {
   std::string scene;
   std::string size, memory, effects = "auto", camera, exposure, json, device, emulate, isa, accel = "auto";
+  std::string background, light = "key", fov;  // empty: the scene's
   std::uint32_t threads = 0, camera_index = 0;
   SettingOptions settings;
   std::string coherence = "off";
@@ -54,6 +56,8 @@ const AccelInfo* find_accel(const std::string& name);
 Status parse_size(const std::string& text, std::uint32_t* width, std::uint32_t* height);
 Status parse_bytes(const std::string& text, std::size_t* bytes, const char* option = "--memory");
 Status parse_camera(const std::string& text, Camera* camera);
+// Parses --background, --light and --fov.
+Status parse_look(const CommonOptions& options, Look* look);
 // Parses --exposure: whether to measure it, and the factor on the scene's or measured exposure.
 Status parse_exposure(const std::string& text, bool* measured, float* factor);
 }  // namespace pocketray

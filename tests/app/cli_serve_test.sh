@@ -36,6 +36,9 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   remote=(--size 32x24 --server "$address")
   expect fetch 0 'device rendered [1-9]' render d "${remote[@]}" -o fetched.ppm
   check fetched_scene_gives_the_same_picture cmp -s one.ppm fetched.ppm
+  "${run[@]}" render cornell --size 32x24 --fov 25 -o narrow.ppm >/dev/null
+  expect field_of_view_of_servers 0 'ns per pixel' render d "${remote[@]}" --fov 25 -o narrow_shared.ppm
+  check field_of_view_is_the_same_there cmp -s narrow.ppm narrow_shared.ppm
   expect fetch_from_the_one_that_has_it 0 'ns per pixel' render d --server 127.0.0.1:1 "${remote[@]}" -o second.ppm
   check second_server_gives_the_same_picture cmp -s one.ppm second.ppm
   expect fetch_unknown 1 'no_such is neither a file.* 127.*: it has cornell, ' render no_such "${remote[@]}" -o b.ppm

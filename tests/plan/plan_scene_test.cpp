@@ -68,6 +68,31 @@ TEST_CASE("framing_camera_is_defined_for_degenerate_bounds") {
   }
 }
 
+// Goal: the automatic camera frames the whole box with any field of view, and fills the picture.
+// Method: corners projected into the picture; the usual field of view gives the usual camera.
+TEST_CASE("framing_camera_frames_with_any_field_of_view") {
+  const Box box = {{-1, 0, -2}, {3, 1, 2}};
+  const Vec3 backward = normalize(Vec3{0.4f, 0.3f, 1});
+  for (double degrees : {0.5, 10.0, 40.0, 100.0, 170.0}) {
+    CAPTURE(degrees);
+    const Camera camera = framing_camera(box, 1.5f, backward, radians(degrees));
+    CHECK(camera.vertical_fov == doctest::Approx(radians(degrees)));
+    const Vec3 right = normalize(cross(Vec3{0, 1, 0}, backward)), up = cross(backward, right);
+    const double slope = std::tan(radians(degrees) / 2);
+    double reach = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 c = Vec3{i & 1 ? 3.0f : -1, i & 2 ? 1.0f : 0, i & 4 ? 2.0f : -2} - camera.eye;
+      const double depth = -static_cast<double>(dot(c, backward));
+      REQUIRE(depth > 0);
+      reach = std::max({reach, std::fabs(static_cast<double>(dot(c, up))) / (slope * depth),
+                        std::fabs(static_cast<double>(dot(c, right))) / (1.5 * slope * depth)});
+    }
+    CHECK(reach < 1);
+    CHECK(reach > 0.3);  // at 170°, the margin of 5 % of the distance is wide
+  }
+  CHECK(framing_camera(box, 1.5f, backward, radians(40)).eye == framing_camera(box, 1.5f, backward).eye);
+}
+
 // Goal: default lights are added only if nothing gives light, and then the scene is lit. Method: one source at a time.
 TEST_CASE("default_lights_come_only_where_nothing_gives_light") {
   auto dark = dark_scene();

@@ -170,6 +170,8 @@ EffectPlan effects_of_servers(EffectMask mask) {
 // Opens without the scene: shows what the servers render.
 Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
   CHECK(opened->block != nullptr);
+  if (!o.fov.empty())
+    return failure("--fov needs the scene on this device: raise --memory to hold it, or use --camera");
   ViewQuery query;
   query.settings = opened->renderer.settings;
   query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked
@@ -215,6 +217,8 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output
 Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
                               OpenScene* opened) {
   ConnectedServers* s = connected(servers);
+  if (!common.background.empty() || common.light != CommonOptions().light)
+    return failure("--server renders the scene's own background and lights: drop --server, --background and --light");
   OpenHooks hooks;
   hooks.output_bytes = [&](const Settings& settings) {
     return output_bytes(settings) + servers->backend->need(*servers, settings);
