@@ -35,8 +35,8 @@ struct Reader {
   }
   // The number of runs follows from the length.
   void length_of(std::uint8_t* run_count) {
-    const std::ptrdiff_t left = end - at;
-    require(left % kRunBytes == 0 && left / kRunBytes <= static_cast<std::ptrdiff_t>(kRunCountMax));
+    const std::size_t left = static_cast<std::size_t>(end - at);
+    require(left % kRunBytes == 0 && left / kRunBytes <= kRunCountMax);
     *run_count = valid ? static_cast<std::uint8_t>(left / kRunBytes) : 0;
   }
 };
