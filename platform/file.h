@@ -65,9 +65,16 @@ struct FileWriter {
 bool open_writer(const char* path, FileWriter* writer, FileError* error);
 // After a failure further data is ignored; close_writer() reports the failure.
 void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count);
+// Replaces bytes written before. False, and nothing happens, where they are written directly.
+bool rewrite_bytes(FileWriter* writer, std::uint64_t offset, const void* bytes, std::size_t byte_count);
 bool close_writer(FileWriter* writer, FileError* error);
 // Gives up: removes the data written; an older file of that name stays.
 void discard_writer(FileWriter* writer);
+
+// From here on, only writers of "-" reach standard output, and what is printed there goes to standard error. Fails if
+// standard output is a terminal.
+bool keep_output_for_data(FileError* error);
+bool is_output_for_data();
 
 // Whether open_writer() would succeed; ask before work whose result goes there. Does not open pipes.
 bool can_write(const char* path, FileError* error);

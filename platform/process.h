@@ -7,7 +7,8 @@
 namespace platform {
 
 struct Process {
-  long id = 0;  // 0: none
+  long id = 0;     // 0: none
+  int input = -1;  // the pipe to its input; -1: none
 };
 
 enum class ProcessState { running, succeeded, failed };
@@ -21,6 +22,15 @@ bool find_program(const char* name, char* path, std::size_t path_bytes);
 // that started it ends. The caller must see it end, by one of the next three functions. False: the system has no room
 // for it; a file that is not a program counts as a program that failed.
 bool start_program(const char* path, const char* const* words, const char* folder, Process* process, FileError* error);
+
+// The same for a program that reads its input from feed() and writes its errors to a file, which is replaced. Ctrl-C on
+// the terminal does not reach it.
+bool start_fed_program(const char* path, const char* const* words, const char* errors, Process* process,
+                       FileError* error);
+// Waits until it has taken the bytes. False: it takes no more.
+bool feed(Process* process, const void* bytes, std::size_t byte_count);
+// The end of its input.
+void end_feed(Process* process);
 
 // Succeeded: it ended with status 0. After it has ended, the process is none, which counts as failed.
 ProcessState look_at(Process* process);

@@ -19,6 +19,8 @@ constexpr int kLinkCountMax = 40;       // in a row, as in Linux
 constexpr int kPartCountMax = 100;      // names to try; files of killed programs may be in the way
 constexpr size_t kPartStemBytes = 200;  // of the file's name in its part's: names have at most 255 bytes
 
+int data_output = STDOUT_FILENO;  // what "-" names
+
 bool fail(FileError* error, const char* what, int number) {
   snprintf(error->text, sizeof error->text, "%s: %s", what, strerror(number));
   return false;
@@ -156,7 +158,7 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
   PLATFORM_CHECK_LT(writer->descriptor, 0);  // what was written before is closed
   *writer = FileWriter();
   if (strcmp(path, "-") == 0) {
-    writer->descriptor = STDOUT_FILENO;
+    writer->descriptor = data_output;
     return true;
   }
   Destination d;
@@ -189,11 +191,20 @@ void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) 
   }
 }
 
+bool rewrite_bytes(FileWriter* writer, std::uint64_t offset, const void* bytes, std::size_t byte_count) {
+  PLATFORM_CHECK_GE(writer->descriptor, 0);
+  PLATFORM_CHECK(bytes != nullptr && byte_count > 0);
+  if (!writer->path[0]) return false;
+  ssize_t n = pwrite(writer->descriptor, bytes, byte_count, static_cast<off_t>(offset));
+  if (n != static_cast<ssize_t>(byte_count)) writer->failed = true;
+  return true;
+}
+
 bool close_writer(FileWriter* writer, FileError* error) {
   PLATFORM_CHECK_GE(writer->descriptor, 0);
   bool is_direct = !writer->path[0];
   bool ok = !writer->failed && (is_direct || bring_to_disk(writer->descriptor));
-  if (writer->descriptor != STDOUT_FILENO && close(writer->descriptor) != 0) ok = false;
+  if (writer->descriptor != data_output && close(writer->descriptor) != 0) ok = false;
   writer->descriptor = -1;
   if (!ok) {
     remove_part(writer);
@@ -214,10 +225,26 @@ bool close_writer(FileWriter* writer, FileError* error) {
 
 void discard_writer(FileWriter* writer) {
   if (writer->descriptor < 0) return;
-  if (writer->descriptor != STDOUT_FILENO) close(writer->descriptor);
+  if (writer->descriptor != data_output) close(writer->descriptor);
   writer->descriptor = -1;
   remove_part(writer);
 }
+
+bool keep_output_for_data(FileError* error) {
+  PLATFORM_CHECK(error != nullptr);
+  if (is_output_for_data()) return true;
+  if (isatty(STDOUT_FILENO)) {
+    snprintf(error->text, sizeof error->text, "is a terminal: redirect it to a file or another program");
+    return false;
+  }
+  fflush(stdout);
+  int kept = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  if (kept < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return fail(error, "cannot be written", errno);
+  data_output = kept;
+  return true;
+}
+
+bool is_output_for_data() { return data_output != STDOUT_FILENO; }
 
 bool can_write(const char* path, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);

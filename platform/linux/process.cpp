@@ -11,6 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <initializer_list>
+
 #include "platform/check.h"
 
 namespace platform {
@@ -26,6 +28,18 @@ constexpr int kNotStarted = 127;  // as in shells
   if (nothing > 2) close(nothing);
   ok = ok && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent;
   if (ok && (!folder || chdir(folder) == 0)) execv(path, const_cast<char* const*>(words));
+  _exit(kNotStarted);
+}
+
+// The same for a program that is fed.
+[[noreturn]] void become_fed(const char* path, const char* const* words, int input, const char* errors, pid_t parent) {
+  int nothing = open("/dev/null", O_WRONLY), told = open(errors, O_WRONLY | O_CREAT | O_TRUNC | O_NOCTTY, 0600);
+  bool ok = nothing >= 0 && told >= 0 && dup2(input, 0) >= 0 && dup2(nothing, 1) >= 0 && dup2(told, 2) >= 0;
+  for (int descriptor : {nothing, told, input})
+    if (descriptor > 2) close(descriptor);
+  signal(SIGPIPE, SIG_DFL);
+  ok = ok && setpgid(0, 0) == 0 && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() == parent;
+  if (ok) execv(path, const_cast<char* const*>(words));
   _exit(kNotStarted);
 }
 
@@ -67,11 +81,52 @@ bool start_program(const char* path, const char* const* words, const char* folde
   return child > 0;
 }
 
+bool start_fed_program(const char* path, const char* const* words, const char* errors, Process* process,
+                       FileError* error) {
+  PLATFORM_CHECK(path != nullptr && words != nullptr && words[0] != nullptr && errors != nullptr);
+  PLATFORM_CHECK_EQ(process->id, 0);  // the one before has been seen to end
+  PLATFORM_CHECK_LT(process->input, 0);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    snprintf(error->text, sizeof error->text, "cannot be started: %s", strerror(errno));
+    return false;
+  }
+  pid_t parent = getpid(), child = fork();
+  if (child == 0) become_fed(path, words, ends[0], errors, parent);
+  int number = errno;
+  close(ends[0]);
+  process->id = child > 0 ? child : 0;
+  process->input = ends[1];
+  if (child > 0) return true;
+  end_feed(process);
+  snprintf(error->text, sizeof error->text, "cannot be started: %s", strerror(number));
+  return false;
+}
+
+bool feed(Process* process, const void* bytes, std::size_t byte_count) {
+  PLATFORM_CHECK_GE(process->input, 0);
+  PLATFORM_CHECK(bytes != nullptr);
+  const char* at = static_cast<const char*>(bytes);
+  while (byte_count > 0) {
+    ssize_t n = write(process->input, at, byte_count);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    at += n, byte_count -= static_cast<size_t>(n);
+  }
+  return true;
+}
+
+void end_feed(Process* process) {
+  if (process->input >= 0) close(process->input);
+  process->input = -1;
+}
+
 ProcessState look_at(Process* process) { return collect(process, WNOHANG); }
 
 bool wait_for(Process* process) { return collect(process, 0) == ProcessState::succeeded; }
 
 void kill_process(Process* process) {
+  end_feed(process);
   if (process->id == 0) return;
   kill(static_cast<pid_t>(process->id), SIGKILL);
   collect(process, 0);

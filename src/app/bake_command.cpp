@@ -1,4 +1,5 @@
 // pocketray bake: converts a model into one .pray file, accelerator included, which a device loads as it is.
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "app/options.h"
 #include "platform/file.h"
 #include "scene/baked.h"
+#include "session/compress.h"
 #include "session/heap_scene.h"
 #include "session/note.h"
 #include "session/output.h"
@@ -17,9 +19,9 @@ namespace pocketray {
 namespace {
 
 struct BakeOptions {
-  std::string input, output, json, accel = kBvhAccel.name;
+  std::string input, output, json, accel = kBvhAccel.name, textures = "exact";
   ModelOptions model;
-  bool radiosity = false;
+  bool radiosity = false, no_mip_maps = false;
 };
 
 Status write_scene(const std::string& path, const Scene& scene, std::size_t* byte_count) {
@@ -39,17 +41,39 @@ Status check(const BakeOptions& o) {
   return check_outputs({{"IN", o.input}}, {{"-o", o.output}, {"--json", o.json}});
 }
 
+// Prints, if wanted, and returns a row for each compressed texture.
+nlohmann::json report_textures(const CompressedTextures& compressed, bool prints) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const CompressedTexture& row : compressed.report) {
+    const bool is_exact = std::isinf(row.psnr);
+    char error[32] = "without error";
+    if (!is_exact) std::snprintf(error, sizeof error, "PSNR %.1f dB", row.psnr);
+    if (prints)
+      std::printf("texture %u, %u×%u: %s, %s\n", row.texture, row.width, row.height, describe_format(row.format),
+                  error);
+    rows.push_back({{"texture", row.texture},
+                    {"format", describe_format(row.format)},
+                    {"psnr_db", is_exact ? nlohmann::json() : nlohmann::json(row.psnr)}});
+  }
+  return rows;
+}
+
 Status bake(const BakeOptions& o) {
   RETURN_IF_ERROR(check(o));
+  if (o.output == "-") RETURN_IF_ERROR(keep_output_for_data());
   std::uint64_t start = clock_ns();
   HeapScene heap;
-  RETURN_IF_ERROR(read_heap_scene(o.input, o.model, &heap));
+  ModelOptions model = o.model;
+  model.mip_maps = !o.no_mip_maps;
+  RETURN_IF_ERROR(read_heap_scene(o.input, model, &heap));
   Scene& scene = heap.scene;
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
   SolvedRadiosity solved;
   if (o.radiosity) RETURN_IF_ERROR(solve_scene(o.input, std::thread::hardware_concurrency(), &scene, &solved));
   double solve_ms = static_cast<double>(clock_ns() - start) * 1e-6;
+  CompressedTextures compressed;
+  if (o.textures == "compressed") compress_textures(&scene, &compressed);
   start = clock_ns();
   void* accel_block = build_heap_accel(*find_accel(o.accel), scene, &scene.accel);
   if (!accel_block) return failure("not enough memory to build the accelerator: bake a smaller model");
@@ -60,20 +84,24 @@ Status bake(const BakeOptions& o) {
   give_block_back(accel_block);
   RETURN_IF_ERROR(status);
   if (!heap.warning.empty()) print_note(heap.warning);
-  if (o.json != "-" && o.output != "-")
+  if (o.json != "-")
     std::printf(
         "%s: %s triangles, %u materials, %u textures, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f "
         "ms\n",
-        o.output.c_str(), grouped(scene.triangles.count).c_str(), scene.materials.count, scene.textures.count,
-        static_cast<double>(byte_count) / (1 << 20), static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);
-  if (o.radiosity && o.json != "-" && o.output != "-")
+        o.output == "-" ? "standard output" : o.output.c_str(), grouped(scene.triangles.count).c_str(),
+        scene.materials.count, scene.textures.count, static_cast<double>(byte_count) / (1 << 20),
+        static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);
+  if (o.radiosity && o.json != "-")
     std::printf("radiosity: %s, %.2f MiB, solved in %.1f s\n", solved.summary.c_str(),
                 static_cast<double>(solved.memory.size()) / (1 << 20), solve_ms * 1e-3);
+  const nlohmann::json texture_rows = report_textures(compressed, o.json != "-");
   if (o.json.empty()) return success();
   return write_json(o.json, {{"output", o.output},
                              {"triangles", scene.triangles.count},
                              {"materials", scene.materials.count},
                              {"textures", scene.textures.count},
+                             {"texture_bytes", scene.texels.bytes()},
+                             {"compressed_textures", texture_rows},
                              {"bytes", byte_count},
                              {"accelerator", o.accel},
                              {"accel_bytes", accel_bytes},
@@ -96,6 +124,14 @@ void add_bake_command(Command program, int* exit_status) {
                   "longest texture side in texels; larger textures are halved until they fit")
       .capture_default_str()
       .range(1u, kTextureSideMax);
+  command.add_flag(
+      "--no-mip-maps", options->no_mip_maps,
+      "store no smaller levels of textures: a quarter less memory for them, speckles where they are small");
+  command
+      .add_option("--textures", options->textures,
+                  "exact, or compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed")
+      .one_of({"exact", "compressed"})
+      .capture_default_str();
   command
       .add_option("--crease-angle", options->model.crease_angle,
                   "for models without normals: shade edges below this angle smooth, in degrees (glTF: always flat)")

@@ -138,6 +138,14 @@ void add_look_options(Command command, CommonOptions* o) {
                   "frames the scene")
       .default_str("the camera's")
       .excludes(command.get_option("--camera"));
+#ifdef POCKETRAY_HAVE_IMPORT
+  command
+      .add_option("--focus", o->focus,
+                  "node, object or group of the model that fills the picture, seen from the same side; --orbit and "
+                  "--turntable go around it")
+      .default_str("the whole scene")
+      .excludes(command.get_option("--camera"));
+#endif
 }
 
 void add_coherence_options(Command command, CommonOptions* o, const char* usual) {

@@ -66,6 +66,8 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   Budget budget;
   if (o.budget.ms > 0) start_budget(o.budget, loading.front, *renderer, 4096, &budget);
   viewer->budget = o.budget.ms > 0 ? &budget : nullptr;
+  viewer->focus = loading.opened->source.focus;
+  viewer->material_names = loading.opened->source.material_names;
   if (!o.side_by_side.reference.empty())
     viewer->side_by_side =
         o.parts.side_by_side->open(o.side_by_side, *renderer, viewer->format.bits_per_pixel, o.view.dither);

@@ -30,8 +30,10 @@ enum class Effect : std::uint8_t {
   metallic_roughness,
   normal_map,
   occlusion,
+  mip_map,
+  selective,
 };
-constexpr int kEffectCount = 25;
+constexpr int kEffectCount = 27;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

@@ -36,6 +36,8 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::metallic_roughness, "metallic-roughness", "a material with a metallic-roughness or specular texture"},
     {Effect::normal_map, "normal-map", "a material with a texture of normals"},
     {Effect::occlusion, "occlusion", "a material with an occlusion texture, under ambient light"},
+    {Effect::mip_map, "mip-map", "a material with a texture that stores smaller levels"},
+    {Effect::selective, "selective", "--selective above 0"},
 };
 
 constexpr bool effects_in_order() {

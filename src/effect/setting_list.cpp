@@ -51,6 +51,7 @@ void describe_range(const SettingRow& row, char* text, std::size_t size) {
     std::snprintf(text, size, "%.6g … %.6g", limits.low, limits.high);
     return;
   }
+  CHECK_GT(field.name_count, 1);
   std::size_t length = 0;
   for (int i = 0; i < field.name_count && length < size; ++i) {
     const char* between = i == 0 ? "" : i + 1 < field.name_count ? ", " : " or ";
@@ -60,6 +61,7 @@ void describe_range(const SettingRow& row, char* text, std::size_t size) {
 
 void describe_value(const SettingRow& row, double value, int digits, char* text, std::size_t size) {
   CHECK(within_setting(row, value));
+  CHECK_GT(digits, 0);
   CHECK(text != nullptr);
   CHECK_GT(size, 0u);
   if (row.field.kind == SettingKind::choice)

@@ -7,7 +7,7 @@
 
 namespace pocketray {
 
-inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear"};
+inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear", "trilinear"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
 
@@ -106,7 +106,8 @@ inline constexpr SettingRow kSettingList[] = {
      bit(Effect::texture),
      true,
      double(TextureFilter::as_scene),
-     {double(TextureFilter::nearest), double(TextureFilter::as_scene), double(TextureFilter::bilinear)},
+     {double(TextureFilter::nearest), double(TextureFilter::as_scene), double(TextureFilter::bilinear),
+      double(TextureFilter::trilinear)},
      nullptr,
      ""},
     {"normals",
@@ -150,6 +151,19 @@ inline constexpr SettingRow kSettingList[] = {
      kAsAsked,
      {16, 32, 64, 128, 256, 512},
      virtual_lights_price,
+     ""},
+    {"selective",
+     "contrast of neighbouring pixels up to which those between are interpolated",
+     "0: trace every pixel; 0.2: hardly visible",
+     "selective",
+     real_field<&Quality::selective_contrast>(Quantity::contrast),
+     4,
+     bit(Effect::selective),
+     kAlways,
+     false,
+     0,
+     {0.5, 0.375, 0.25, 0.1875, 0.125, 0.0625, 0},
+     nullptr,
      ""},
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];

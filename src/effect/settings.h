@@ -8,7 +8,11 @@
 
 namespace pocketray {
 
-enum class TextureFilter : std::uint8_t { as_scene, nearest, bilinear };
+enum class TextureFilter : std::uint8_t { as_scene, nearest, bilinear, trilinear };
+// Whether it reads the levels of textures that have them.
+constexpr bool takes_levels(TextureFilter filter) {
+  return filter == TextureFilter::as_scene || filter == TextureFilter::trilinear;
+}
 enum class NormalMode : std::uint8_t { as_scene, flat };
 
 // Indirect light: the scene's own, none, or the effect of kIndirectEffects with that index, counted from `first`.
@@ -27,6 +31,7 @@ struct Quality {
   IndirectChoice indirect = IndirectChoice::automatic;
   Reconstruction reconstruction = Reconstruction::bicubic;
   std::uint32_t virtual_lights = 64;  // of instant radiosity; a pixel traces a shadow ray to a sixteenth of them
+  float selective_contrast = 0;       // up to which pixels are interpolated, as displayed; 0: all are traced
 };
 
 // Whether frames trace only what can have changed. automatic: where that pays.

@@ -81,6 +81,8 @@ bool begin_following(Renderer* renderer) {
   Coherence* c = &renderer->coherence;
   if (!state->planned) {
     state->whole_because = state->unplanned_because;
+  } else if (renderer->frame.trace_strip) {
+    state->whole_because = "pixels depend on their neighbours";
   } else if (!fits(*c, renderer->frame)) {
     state->whole_because = "more samples, lights or effects than memory was planned for";
   } else if (rests(renderer)) {

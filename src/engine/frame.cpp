@@ -18,7 +18,7 @@ Status prepare_frame(Renderer* renderer, double seconds) {
   choose_kernels(renderer);
   light_scene(renderer);
   RETURN_IF_ERROR(aim_camera(renderer));
-  for (Tracer& tracer : renderer->tracers) tracer = make_tracer(renderer->frame);
+  make_tracers(renderer);
   return success();
 }
 

@@ -9,9 +9,11 @@
 #include "shade/ambient_gloss.h"
 #include "shade/camera.h"
 #include "shade/filters.h"
+#include "shade/footprint.h"
 #include "shade/interleaved.h"
 #include "shade/material_maps.h"
 #include "shade/media.h"
+#include "shade/selective.h"
 #include "shade/shade.h"
 #include "shade/surface.h"
 #include "shade/tile_shadows.h"
@@ -24,6 +26,9 @@ bool is_lit(const Renderer& renderer) {
   return renderer.lit_mask == renderer.effects.mask && !renderer.pose.positions.count && !renderer.pose.lights.count &&
          same_lights(renderer.lit_settings, renderer.settings);
 }
+
+// Chosen: a handheld's screen in a lit room reflects about 2.5 % of its own white.
+constexpr float kDisplayFlare = 2 * 0.025f;
 
 }  // namespace
 
@@ -42,7 +47,9 @@ void choose_kernels(Renderer* renderer) {
     add_material_maps(&renderer->frame);
   else if (has(renderer->effects.mask, Effect::ambient_gloss))
     add_ambient_gloss(&renderer->frame);
-  renderer->frame.trace_strip = has(renderer->effects.mask, Effect::instant_radiosity) ? trace_interleaved : nullptr;
+  renderer->frame.trace_strip = has(renderer->effects.mask, Effect::instant_radiosity) ? trace_interleaved
+                                : has(renderer->effects.mask, Effect::selective)       ? trace_selectively
+                                                                                       : nullptr;
   renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
   renderer->frame.find_shadows = has(renderer->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
   CHECK(renderer->frame.surface != nullptr && renderer->frame.radiance != nullptr);
@@ -64,7 +71,19 @@ void light_scene(Renderer* renderer) {
     renderer->lit_settings = renderer->settings;
     renderer->lit_mask = renderer->effects.mask;
   }
+  const float white = 1 / renderer->exposure;
+  renderer->frame.selection = {renderer->settings.selective_contrast, white, kDisplayFlare * white};
   renderer->frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->exposure;
+}
+
+void make_tracers(Renderer* renderer) {
+  const std::uint32_t row_corners = corner_count(renderer->settings.width);
+  for (std::uint32_t i = 0; i < renderer->tracers.count; ++i) {
+    renderer->tracers[i] = make_tracer(renderer->frame);
+    if (!has(renderer->effects.mask, Effect::selective) || renderer->corners.empty()) continue;
+    CellCorner* corners = &renderer->corners[2 * i * row_corners];
+    keep_corner_rows({corners, row_corners}, {corners + row_corners, row_corners}, &renderer->tracers[i]);
+  }
 }
 
 Status aim_camera(Renderer* renderer) {
@@ -76,6 +95,8 @@ Status aim_camera(Renderer* renderer) {
   }
   RETURN_IF_ERROR(
       make_camera_rays(renderer->camera, renderer->settings.width, renderer->settings.height, &renderer->frame.camera));
+  if (has(renderer->effects.mask, Effect::mip_map))
+    renderer->frame.cone = pixel_cone(renderer->frame.camera, renderer->settings.samples_per_pixel);
   renderer->frame.eye_media = MediumStack();
   if (has(renderer->effects.mask, Effect::refraction))
     renderer->frame.eye_media = media_at(renderer->frame, renderer->frame.camera.eye, renderer->frame.camera.forward);

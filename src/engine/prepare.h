@@ -14,5 +14,7 @@ void choose_kernels(Renderer* renderer);
 void light_scene(Renderer* renderer);
 // The camera's rays, and the bodies that contain it. Fails if there is no such camera.
 Status aim_camera(Renderer* renderer);
+// The threads' tracers, with their memory.
+void make_tracers(Renderer* renderer);
 
 }  // namespace pocketray

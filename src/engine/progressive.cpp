@@ -32,7 +32,7 @@ bool are_pixels_separate(const FrameData& frame) {
   return frame.ray_by_ray || frame.accel_info->packets_by_rays || frame.camera.orthographic;
 }
 bool leaves_out_coarser(const Refinement& r) {
-  return r.progressive->step < kCoarsestStep && are_pixels_separate(r.renderer->frame);
+  return r.progressive->step < kCoarsestStep && !r.progressive->is_afresh && are_pixels_separate(r.renderer->frame);
 }
 
 std::uint32_t band_end(const Renderer& renderer, const Progressive& p) {
@@ -107,7 +107,7 @@ void mark_dirty(Progressive* p, std::uint32_t begin, std::uint32_t end) {
 
 // Pixels of the batch that the coarsest grid has shown already: one of each tile.
 std::uint32_t known_pixels(const Refinement& r) {
-  if (r.progressive->step == kCoarsestStep || leaves_out_coarser(r)) return 0;
+  if (r.progressive->step == kCoarsestStep || r.progressive->is_afresh || leaves_out_coarser(r)) return 0;
   return grid_side(r.batch_end, kTileSide) - grid_side(r.progressive->column, kTileSide);
 }
 

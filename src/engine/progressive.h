@@ -19,9 +19,17 @@ struct Progressive {
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_dirty_rows()
   std::uint64_t pixels_traced = 0;               // different ones
   std::uint64_t trace_ns = 0;
+  bool is_afresh = false;           // no pixel of a coarser grid is in the picture
   bool is_coherent = false;         // it completes a frame begun by begin_coherent()
   std::uint64_t* row_ns = nullptr;  // the costs of the picture's rows are added here; null: not wanted
 };
+
+// Traces the whole picture without showing it coarse first.
+inline Progressive afresh() {
+  Progressive progressive;
+  progressive.step = 1, progressive.shown_coarse = progressive.is_afresh = true;
+  return progressive;
+}
 
 // Spans that advance_progressive() needs room for.
 std::uint32_t progressive_spans_max(const Settings& settings);
@@ -30,7 +38,7 @@ inline std::size_t progressive_need(const Settings& settings) {
 }
 
 // Traces until about `deadline_ns` by the pace's clock, at least a few tiles per thread. True when the frame is
-// finished. To begin a new frame, call prepare_frame() and pass a default Progressive.
+// finished. To begin a new frame, call prepare_frame() and pass a default Progressive, or afresh().
 bool advance_progressive(Renderer* renderer, Array<Span> tile_spans, std::uint64_t deadline_ns,
                          Progressive* progressive);
 // Rows that are finished, from the top.

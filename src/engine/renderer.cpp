@@ -13,6 +13,7 @@
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
 #include "shade/camera.h"
+#include "shade/selective.h"
 
 namespace pocketray {
 namespace {
@@ -154,6 +155,9 @@ Status build_renderer_unexposed(Renderer* renderer) {
   if (renderer->light_points.count)
     renderer->light_points = arena_array<LightPoint>(&renderer->persistent_arena, renderer->light_points.count);
   renderer->tracers = arena_array<Tracer>(&renderer->persistent_arena, renderer->settings.threads);
+  if (has(renderer->effects.mask, Effect::selective))
+    renderer->corners =
+        arena_array<CellCorner>(&renderer->persistent_arena, selective_corner_count(renderer->settings));
   renderer->spans = arena_array<Span>(&renderer->persistent_arena, renderer->settings.height);
   renderer->row_ns = arena_array_zeroed<std::uint64_t>(&renderer->persistent_arena, renderer->settings.height);
   renderer->image = arena_array_zeroed<Vec3>(
@@ -236,7 +240,9 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
   auto places = [](std::uint32_t side) { return (side + kStep / 2 - 1) / kStep; };
   std::uint32_t columns = places(renderer->settings.width), count = columns * places(renderer->settings.height),
                 begin = p->next;
-  Tracer tracer = make_tracer(renderer->frame);
+  FrameData frame = renderer->frame;
+  if (has(frame.mask, Effect::selective)) frame.trace_strip = nullptr;  // it depends on the exposure
+  Tracer tracer = make_tracer(frame);
   for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {
     std::uint32_t row = kStep / 2 + p->next / columns * kStep, column = kStep / 2 + p->next % columns * kStep;
     Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column),

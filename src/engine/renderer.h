@@ -64,6 +64,7 @@ struct Renderer {
   Array<Span> spans;            // one per scanline
   Array<std::uint64_t> row_ns;  // cost of each in the last frame
   Array<Tracer> tracers;        // one per thread
+  Array<CellCorner> corners;    // of selective rendering, two rows per thread; empty: not planned
   Array<Vec3> image;            // width × height, linear
   Camera camera;
   Settings lit_settings;                 // the settings that the frame's lights were placed for,

@@ -132,11 +132,14 @@ void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
   struct Visit {
     const aiNode* node;
     Transform world;
+    std::uint32_t parent;  // part
   };
-  std::vector<Visit> stack = {{reader->scene->mRootNode, transform_of(reader->scene->mRootNode->mTransformation)}};
+  std::vector<Visit> stack = {
+      {reader->scene->mRootNode, transform_of(reader->scene->mRootNode->mTransformation), kNone}};
   while (!stack.empty()) {
     Visit visit = stack.back();
     stack.pop_back();
+    const std::uint32_t part = begin_part(reader->builder, visit.node->mName.C_Str(), visit.parent);
     for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
       unsigned mesh = visit.node->mMeshes[i];
       if (mesh >= meshes->size()) fail_import("a node uses a mesh that does not exist; export the file again");
@@ -145,7 +148,7 @@ void append_nodes(AssimpReader* reader, std::vector<MeshData>* meshes) {
     }
     for (unsigned i = visit.node->mNumChildren; i-- > 0;)
       stack.push_back(
-          {visit.node->mChildren[i], visit.world * transform_of(visit.node->mChildren[i]->mTransformation)});
+          {visit.node->mChildren[i], visit.world * transform_of(visit.node->mChildren[i]->mTransformation), part});
   }
 }
 

@@ -135,8 +135,6 @@ std::uint32_t add_default_material(SceneBuilder* builder) {
 
 std::uint32_t add_assimp_material(SceneBuilder* builder, const std::string& scene_path, const aiScene& scene,
                                   const aiMaterial& source) {
-  if (builder->out->materials.size() >= kMaterialCountMax)
-    fail_import("more than %u materials; merge some", kMaterialCountMax);
   Material material;
   aiColor3D color;
   float value;
@@ -164,8 +162,7 @@ std::uint32_t add_assimp_material(SceneBuilder* builder, const std::string& scen
     note_unused(builder, "bump and normal maps");
   if (source.GetTextureCount(aiTextureType_SPECULAR) > 0) note_unused(builder, "specular maps");
   if (source.GetTextureCount(aiTextureType_OPACITY) > 0) note_unused(builder, "opacity maps");
-  builder->out->materials.push_back(material);
-  return static_cast<std::uint32_t>(builder->out->materials.size() - 1);
+  return add_material(builder, material, source.GetName().C_Str());
 }
 
 void add_assimp_lights_and_cameras(SceneBuilder* builder, const aiScene& scene) {

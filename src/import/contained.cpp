@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -30,13 +31,14 @@
 namespace pocketray {
 namespace {
 
-// Header of the child's result; the text (a warning or error) and the baked scene follow.
+// Header of the child's result; the text (a warning or error), the names of materials and parts and the baked scene
+// follow.
 struct ResultHeader {
   std::uint32_t read;  // 1 if a scene follows
-  std::uint32_t text_bytes;
+  std::uint32_t text_bytes, name_bytes;
   std::uint64_t scene_bytes;
 };
-constexpr std::uint32_t kTextBytesMax = 1u << 16;
+constexpr std::uint32_t kTextBytesMax = 1u << 20;
 constexpr std::size_t kAlignment = 64;  // of a baked scene
 
 struct FreeBlock {
@@ -115,13 +117,55 @@ void become_contained(const ContainerLimits& limits) {
   if (limits.memory_bytes > 0) limit_memory(limits.memory_bytes);
 }
 
-bool send_result(int pipe, bool read, const std::string& text, const std::uint8_t* scene, std::size_t scene_bytes) {
+std::uint32_t text_bytes(const std::string& text) {
+  return static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), kTextBytesMax));
+}
+
+bool send_result(int pipe, bool read, const std::string& text, const std::string& names, const std::uint8_t* scene,
+                 std::size_t scene_bytes) {
   ResultHeader header;
   header.read = read;
-  header.text_bytes = static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), kTextBytesMax));
+  header.text_bytes = text_bytes(text), header.name_bytes = text_bytes(names);
   header.scene_bytes = scene_bytes;
   return write_all(pipe, &header, sizeof header) && write_all(pipe, text.data(), header.text_bytes) &&
-         write_all(pipe, scene, scene_bytes);
+         write_all(pipe, names.data(), header.name_bytes) && write_all(pipe, scene, scene_bytes);
+}
+
+std::string one_line(std::string name) {
+  std::replace(name.begin(), name.end(), '\n', ' ');
+  return name;
+}
+
+// A line for each material and each part.
+std::string join_names(const ImportedScene& imported) {
+  std::string lines;
+  for (const std::string& name : imported.material_names) lines += "material " + one_line(name) + '\n';
+  for (const auto& part : imported.parts) {
+    const Vec3 &low = part.second.low, &high = part.second.high;
+    char numbers[200];
+    std::snprintf(numbers, sizeof numbers, "part %a %a %a %a %a %a ", static_cast<double>(low.x),
+                  static_cast<double>(low.y), static_cast<double>(low.z), static_cast<double>(high.x),
+                  static_cast<double>(high.y), static_cast<double>(high.z));
+    lines += numbers + one_line(part.first) + '\n';
+  }
+  return lines;
+}
+
+// Lines that the child may have sent wrong are left out.
+void split_names(const std::string& lines, ImportedScene* imported) {
+  const std::string material = "material ";
+  for (std::size_t at = 0, end; (end = lines.find('\n', at)) != std::string::npos; at = end + 1) {
+    const std::string line = lines.substr(at, end - at);
+    Box box;
+    int used = 0;
+    if (line.compare(0, material.size(), material) == 0)
+      imported->material_names.push_back(line.substr(material.size()));
+    else if (std::sscanf(line.c_str(), "part %a %a %a %a %a %a%n", &box.low.x, &box.low.y, &box.low.z, &box.high.x,
+                         &box.high.y, &box.high.z, &used) == 6 &&
+             used > 0 && static_cast<std::size_t>(used) < line.size() && is_finite(box.low) && is_finite(box.high) &&
+             !is_empty(box))
+      imported->parts.emplace_back(line.substr(static_cast<std::size_t>(used) + 1), box);
+  }
 }
 
 bool read_and_send(int pipe, const std::function<void(ImportedScene*)>& read) {
@@ -131,22 +175,25 @@ bool read_and_send(int pipe, const std::function<void(ImportedScene*)>& read) {
     std::size_t bytes = baked_size(imported.scene);
     Block block = take_aligned(bytes);
     baked_write(imported.scene, block.get());
-    return send_result(pipe, true, imported.warning, block.get(), bytes);
+    return send_result(pipe, true, imported.warning, join_names(imported), block.get(), bytes);
   } catch (const std::bad_alloc&) {
-    return send_result(pipe, false, "not enough memory to read it; use a smaller model", nullptr, 0);
+    return send_result(pipe, false, "not enough memory to read it; use a smaller model", "", nullptr, 0);
   } catch (const std::exception& error) {
-    return send_result(pipe, false, error.what(), nullptr, 0);
+    return send_result(pipe, false, error.what(), "", nullptr, 0);
   } catch (...) {
-    return send_result(pipe, false, "cannot be read; export the file again", nullptr, 0);
+    return send_result(pipe, false, "cannot be read; export the file again", "", nullptr, 0);
   }
 }
 
 // False if the child did not finish.
-bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* header, std::string* text, Block* block) {
+bool receive_result(int pipe, const ContainerLimits& limits, ResultHeader* header, std::string* text,
+                    std::string* names, Block* block) {
   const SteadyClock::time_point deadline = SteadyClock::now() + std::chrono::seconds(limits.elapsed_seconds);
-  if (!read_all(pipe, header, sizeof *header, deadline) || header->text_bytes > kTextBytesMax) return false;
-  text->resize(header->text_bytes);
+  if (!read_all(pipe, header, sizeof *header, deadline)) return false;
+  if (header->text_bytes > kTextBytesMax || header->name_bytes > kTextBytesMax) return false;
+  text->resize(header->text_bytes), names->resize(header->name_bytes);
   if (!read_all(pipe, &(*text)[0], text->size(), deadline)) return false;
+  if (!read_all(pipe, &(*names)[0], names->size(), deadline)) return false;
   if (header->scene_bytes > limits.result_bytes_max)
     fail_import("the scene would take %llu MiB; use a smaller model",
                 static_cast<unsigned long long>(header->scene_bytes >> 20));
@@ -210,9 +257,9 @@ void import_contained(const ContainerLimits& limits, const std::function<void(Im
   if (child.id < 0) fail_import("cannot create a process to read it: %s; try again", std::strerror(fork_error));
 
   ResultHeader header = {};
-  std::string text;
+  std::string text, names;
   Block block;
-  bool complete = receive_result(child.pipe, limits, &header, &text, &block);
+  bool complete = receive_result(child.pipe, limits, &header, &text, &names, &block);
   child.close_pipe();
   if (!complete) child.end();
   child.wait_for_end();
@@ -222,6 +269,7 @@ void import_contained(const ContainerLimits& limits, const std::function<void(Im
   if (!status.ok) fail_import("%s", status.message);
   result->storage = std::shared_ptr<void>(block.release(), [](void* data) { std::free(data); });
   result->warning = text;
+  split_names(names, result);
 }
 
 }  // namespace pocketray

@@ -57,6 +57,13 @@ void append_node_meshes(GltfFile* file, int index, MeshCache* meshes) {
   }
 }
 
+// The node's name, or its mesh's.
+std::string part_name(const GltfFile& file, int index) {
+  const tinygltf::Node& node = file.model.nodes[static_cast<std::size_t>(index)];
+  const bool has_mesh = node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < file.model.meshes.size();
+  return node.name.empty() && has_mesh ? file.model.meshes[static_cast<std::size_t>(node.mesh)].name : node.name;
+}
+
 }  // namespace
 
 void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
@@ -72,7 +79,13 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   gltf_export_nodes(&file);
   gltf_export_animations(&file);
   MeshCache meshes;
-  for (std::size_t i = 0; i < file.visible_count; ++i) append_node_meshes(&file, file.order[i], &meshes);
+  std::vector<std::uint32_t> parts(file.nodes.size(), kNone);
+  for (std::size_t i = 0; i < file.visible_count; ++i) {
+    const int index = file.order[i], parent = file.nodes[static_cast<std::size_t>(index)].parent;
+    const std::uint32_t above = parent < 0 ? kNone : parts[static_cast<std::size_t>(parent)];
+    parts[static_cast<std::size_t>(index)] = begin_part(builder, part_name(file, index), above);
+    append_node_meshes(&file, index, &meshes);
+  }
   gltf_lights_and_cameras(&file);
 }
 

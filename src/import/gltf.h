@@ -43,7 +43,8 @@ struct GltfFile {
   std::uint32_t default_material = kNone;
   using ImageUse = std::pair<int, TexelKind>;
   std::map<ImageUse, Image> images;            // decoded, for reading channels
-  std::map<ImageUse, TexelRun> texels;         // glTF image → its texels in the scene
+  using TexelUse = std::pair<ImageUse, bool>;  // whether with levels
+  std::map<TexelUse, TexelRun> texels;         // glTF image → its texels in the scene
   std::map<ImageUse, std::uint32_t> textures;  // glTF texture → scene texture
 };
 

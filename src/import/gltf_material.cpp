@@ -137,17 +137,15 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   if (*known != kNone) return *known;
   static const tinygltf::Material kDefault;
   const tinygltf::Material& source = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
-  if (out.materials.size() >= kMaterialCountMax) fail_import("more than %u materials; merge some", kMaterialCountMax);
   MaterialMaps maps;
   Material material = convert(file, source, &maps);
   if (index >= 0)
     file->material_uv_set[static_cast<std::size_t>(index)] = gltf_choose_uv_set(file, source, material, maps);
-  *known = static_cast<std::uint32_t>(out.materials.size());
+  *known = add_material(file->builder, material, source.name);
   if (has_map(maps)) {
-    out.material_maps.resize(out.materials.size());
+    out.material_maps.resize(*known);
     out.material_maps.push_back(maps);
   }
-  out.materials.push_back(material);
   return *known;
 }
 

@@ -47,10 +47,14 @@ std::uint32_t scene_texture(GltfFile* file, int index, TexelKind kind) {
       fail_import("sampler %d does not exist; export the file again", texture.sampler);
     sampler = file->model.samplers[static_cast<std::size_t>(texture.sampler)];
   }
-  const GltfFile::ImageUse use = {texture.source, kind};
+  // A sampler that names a filter without mip maps does not want them; without a filter, the choice is ours.
+  const bool has_levels =
+      sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
+  const GltfFile::TexelUse use = {{texture.source, kind}, has_levels};
   auto texels = file->texels.find(use);
   if (texels == file->texels.end())
-    texels = file->texels.emplace(use, add_texels(file->builder, gltf_image(file, index, kind), kind)).first;
+    texels =
+        file->texels.emplace(use, add_texels(file->builder, gltf_image(file, index, kind), kind, has_levels)).first;
   std::uint32_t result = add_texture(file->builder, texels->second, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT),
                                      sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST);
   file->textures[{index, kind}] = result;

@@ -116,13 +116,21 @@ void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind) {
   while (image->width > side_max || image->height > side_max) *image = halved(*image, kind);
 }
 
-TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind) {
+TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind, bool has_levels) {
   SceneArrays& out = *builder->out;
   shrink_image(&image, builder->options.texture_side_max, kind);
-  charge_bytes(builder, image.texels.size() * 4, "the textures");
-  TexelRun run = {static_cast<std::uint32_t>(out.texels.size()), image.width, image.height};
+  const std::uint32_t level_count =
+      builder->options.mip_maps && has_levels ? level_count_max(image.width, image.height) : 1;
+  const std::uint64_t begin = out.texels.size(), count = level_texels(image.width, image.height, level_count);
+  charge_bytes(builder, count * 4, "the textures");
   out.texels.insert(out.texels.end(), image.texels.begin(), image.texels.end());
-  return run;
+  out.texels.resize(begin + count);
+  if (level_count > 1) {
+    std::vector<float> scratch(level_scratch_need(image.width, image.height));
+    make_levels(image.texels.data(), image.width, image.height, kind, scratch.data(),
+                out.texels.data() + begin + image.texels.size());
+  }
+  return {static_cast<std::uint32_t>(begin), image.width, image.height, level_count};
 }
 
 std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wrap_u, Wrap wrap_v, bool nearest) {
@@ -132,6 +140,7 @@ std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wr
   texture.texel_begin = texels.begin;
   texture.width = static_cast<std::uint16_t>(texels.width), texture.height = static_cast<std::uint16_t>(texels.height);
   texture.wrap_u = wrap_u, texture.wrap_v = wrap_v, texture.nearest = nearest ? 1 : 0;
+  texture.level_count = static_cast<std::uint8_t>(texels.level_count);
   out.textures.push_back(texture);
   return static_cast<std::uint32_t>(out.textures.size() - 1);
 }

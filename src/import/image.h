@@ -6,10 +6,9 @@
 
 #include "import/files.h"
 #include "import/scene_builder.h"
+#include "scene/texture_levels.h"
 
 namespace pocketray {
-
-enum class TexelKind { colors, numbers };  // numbers: linear, the channels independent of each other
 
 struct Image {
   std::uint32_t width = 0, height = 0;  // texels
@@ -28,10 +27,10 @@ void shrink_image(Image* image, std::uint32_t side_max, TexelKind kind = TexelKi
 
 // Texels of an image in the scene; several textures may sample them differently.
 struct TexelRun {
-  std::uint32_t begin = 0, width = 0, height = 0;
+  std::uint32_t begin = 0, width = 0, height = 0, level_count = 1;
 };
-// Appends the image, shrunk to options.texture_side_max.
-TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind = TexelKind::colors);
+// Appends the image, shrunk to options.texture_side_max, and its levels if the options have them.
+TexelRun add_texels(SceneBuilder* builder, Image image, TexelKind kind = TexelKind::colors, bool has_levels = true);
 // Appends a texture of these texels; returns its index.
 std::uint32_t add_texture(SceneBuilder* builder, const TexelRun& texels, Wrap wrap_u, Wrap wrap_v, bool nearest);
 

@@ -176,6 +176,7 @@ void import_obj(const std::string& path, Bytes bytes, SceneBuilder* builder) {
     if (mesh.normals.empty()) smooth_normals(&mesh, builder->options.crease_angle);
     mesh.name = "'" + shape.name.substr(0, 60) + "'";
     tidy_mesh(&mesh);
+    begin_part(builder, shape.name);
     append_mesh(builder, mesh, Transform());
   }
   if (!default_used && default_material > 0) builder->out->materials.pop_back();

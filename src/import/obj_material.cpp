@@ -112,8 +112,6 @@ void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
 
 std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_path,
                                const tinyobj::material_t& source) {
-  SceneArrays& out = *builder->out;
-  if (out.materials.size() >= kMaterialCountMax) fail_import("more than %u materials; merge some", kMaterialCountMax);
   Material material;
   material.diffuse = bounded3(source.diffuse, 1);
   material.emission = bounded3(source.emission, 1e18f);
@@ -135,8 +133,7 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
   }
   read_textures(builder, scene_path, source, &material);
   name_unused(builder, source);
-  out.materials.push_back(material);
-  return static_cast<std::uint32_t>(out.materials.size() - 1);
+  return add_material(builder, material, source.name);
 }
 
 }  // namespace pocketray

@@ -188,6 +188,37 @@ static void pose_at_start(const Scene& scene, SceneArrays* out) {
   std::copy(pose.normals.begin(), pose.normals.end(), out->normals.begin());
 }
 
+std::uint32_t add_material(SceneBuilder* builder, const Material& material, const std::string& name) {
+  std::vector<Material>& materials = builder->out->materials;
+  if (materials.size() >= kMaterialCountMax) fail_import("more than %u materials; merge some", kMaterialCountMax);
+  builder->material_names.resize(materials.size());
+  builder->material_names.push_back(name);
+  materials.push_back(material);
+  return static_cast<std::uint32_t>(materials.size() - 1);
+}
+
+std::uint32_t begin_part(SceneBuilder* builder, const std::string& name, std::uint32_t parent) {
+  builder->parts.push_back({name, parent, builder->out->positions.size()});
+  return static_cast<std::uint32_t>(builder->parts.size() - 1);
+}
+
+// Parts come after those they are below.
+static NamedBoxes named_parts(const SceneBuilder& builder) {
+  const std::vector<Vec3>& positions = builder.out->positions;
+  std::vector<Box> boxes(builder.parts.size(), empty_box());
+  std::size_t end = positions.size();
+  for (std::size_t i = boxes.size(); i-- > 0;) {
+    const PartSource& part = builder.parts[i];
+    for (std::size_t v = part.vertex_begin; v < end; ++v) boxes[i] = merge(boxes[i], positions[v]);
+    end = part.vertex_begin;
+    if (part.parent != kNone) boxes[part.parent] = merge(boxes[part.parent], boxes[i]);
+  }
+  NamedBoxes named;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (!builder.parts[i].name.empty() && !is_empty(boxes[i])) named.emplace_back(builder.parts[i].name, boxes[i]);
+  return named;
+}
+
 static bool is_textured(const Material& material) {
   return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
 }
@@ -228,6 +259,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   pose_at_start(scene, &out);
   result->storage = builder->out;
   result->warning = warning_line(*builder);
+  result->parts = named_parts(*builder);
+  result->material_names = std::move(builder->material_names);
 }
 
 }  // namespace pocketray

@@ -50,9 +50,18 @@ struct SceneArrays {
   std::vector<Vec3> morph_positions, morph_normals;
 };
 
+// A part of the model; the meshes appended until the next part begins are its own.
+struct PartSource {
+  std::string name;  // may be empty
+  std::uint32_t parent;
+  std::size_t vertex_begin;
+};
+
 struct SceneBuilder {
   ImportOptions options;
   std::shared_ptr<SceneArrays> out = std::make_shared<SceneArrays>();
+  std::vector<std::string> material_names;  // of the first materials
+  std::vector<PartSource> parts;
   std::uint64_t bytes_charged = 0;
   std::vector<std::string> unused;   // contents of the file that are not used
   std::vector<std::string> remarks;  // simplifications and repairs
@@ -65,6 +74,12 @@ void require_bytes(const SceneBuilder& builder, std::uint64_t count, std::uint64
 // Adds to the warning line, once each.
 void note_unused(SceneBuilder* builder, const std::string& what);
 void note_remark(SceneBuilder* builder, const std::string& what);
+
+// Adds a material; returns its index. Throws beyond kMaterialCountMax.
+std::uint32_t add_material(SceneBuilder* builder, const Material& material, const std::string& name);
+
+// Begins a part below `parent`, an earlier one or kNone; returns its index.
+std::uint32_t begin_part(SceneBuilder* builder, const std::string& name, std::uint32_t parent = kNone);
 
 // Checks indices and array lengths; removes unused vertices.
 void tidy_mesh(MeshData* mesh);

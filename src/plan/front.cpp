@@ -96,10 +96,11 @@ bool adopt_prices(Front* front, const Front& measured) {
 Front builtin_front() {
   constexpr struct {
     std::uint32_t samples, depth, area_lights;
-    float cut_off;
-  } kLadder[] = {{1, 0, 1, 4},      {1, 1, 1, 4},      {1, 1, 1, 0.5f}, {1, 2, 2, 0.5f}, {1, 8, 4, 0.5f},
-                 {2, 8, 4, 0.5f},   {4, 8, 4, 0.5f},   {4, 8, 8, 0.5f}, {8, 8, 8, 0.5f}, {8, 8, 16, 0.5f},
-                 {16, 8, 16, 0.5f}, {16, 8, 64, 0.5f}, {16, 16, 64, 0}};
+    float cut_off, contrast;
+  } kLadder[] = {{1, 0, 1, 4, 0.5f},      {1, 1, 1, 4, 0.25f}, {1, 2, 2, 0.5f, 0.25f}, {1, 8, 4, 0.5f, 0.25f},
+                 {1, 8, 4, 0.5f, 0.125f}, {1, 8, 4, 0.5f, 0},  {2, 8, 4, 0.5f, 0},     {4, 8, 4, 0.5f, 0},
+                 {4, 8, 8, 0.5f, 0},      {8, 8, 8, 0.5f, 0},  {8, 8, 16, 0.5f, 0},    {16, 8, 16, 0.5f, 0},
+                 {16, 8, 64, 0.5f, 0},    {16, 16, 64, 0, 0}};
   static_assert(sizeof kLadder / sizeof kLadder[0] <= kFrontCandidateMax, "a front holds them");
   Front front;
   Candidate c;
@@ -109,12 +110,14 @@ Front builtin_front() {
     c.ray_depth = row.depth;
     c.points_per_area_light = row.area_lights;
     c.cut_off_levels = row.cut_off;
+    c.selective_contrast = row.contrast;
     // Guesses within a factor of two of `pocketray bench` on the built-in scenes.
     double reach = row.depth < 4 ? row.depth : 4, points = row.area_lights;
     double exact = row.cut_off == 0 ? 1.2 : row.cut_off > 1 ? 0.95 : 1.0;
     double sample_ns = exact * (200 + 40 * reach + (c.texture_filter == TextureFilter::nearest ? 0 : 10) +
                                 60 * points * (1 + 0.1 * reach));
-    c.ns_per_pixel = static_cast<float>(sample_ns * row.samples);
+    double traced = row.contrast == 0 ? 1 : row.contrast < 0.25f ? 0.5 : row.contrast < 0.5f ? 0.42 : 0.36;
+    c.ns_per_pixel = static_cast<float>(sample_ns * traced * row.samples);
     front.candidates[front.count++] = c;
     c.texture_filter = TextureFilter::as_scene;
   }

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/limit_list.h"
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
 #include "indirect/indirect_list.h"
@@ -16,9 +17,21 @@ namespace {
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0,
-                metallic_roughness = 0, bumpy = 0, occluded = 0;
+                metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
+
+bool reads_levels(const Scene& scene, std::uint32_t material) {
+  auto has_levels = [&](const TextureUse& use) {
+    return use.texture != kNone && scene.textures[use.texture].level_count > 1;
+  };
+  const Material& m = scene.materials[material];
+  if (has_levels(m.diffuse_texture) || has_levels(m.emission_texture)) return true;
+  if (scene.material_maps.empty()) return false;
+  const MaterialMaps& maps = scene.material_maps[material];
+  return has_levels(maps.metallic_roughness) || has_levels(maps.specular) || has_levels(maps.specular_color) ||
+         has_levels(maps.normal) || has_levels(maps.occlusion);
+}
 
 // If emission is forced off, unlit materials scatter like others.
 Census take_census(const Scene& scene, const Settings& settings) {
@@ -37,6 +50,7 @@ Census take_census(const Scene& scene, const Settings& settings) {
       c.metallic_roughness += has_lobe_map(maps);
       c.bumpy += maps.normal.texture != kNone, c.occluded += maps.occlusion.texture != kNone;
     }
+    c.with_levels += reads_levels(scene, i);
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
     c.specular += !is_zero(m.specular);
@@ -115,6 +129,7 @@ void decide_indirect(const IndirectInfo& info, const IndirectInfo* chosen, const
 }  // namespace
 
 EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
+  CHECK(within(Quantity::contrast, settings.selective_contrast));
   Census c = take_census(scene, settings);
   EffectPlan plan;
   PlanWriter w = {&plan, c.materials};
@@ -128,6 +143,11 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
   w.set_by_materials(Effect::metallic_roughness, c.metallic_roughness, "have a metallic-roughness or specular texture");
   w.set_by_materials(Effect::normal_map, c.bumpy, "have a normal texture");
+  if (takes_levels(settings.texture_filter))
+    w.set_by_materials(Effect::mip_map, c.with_levels, "have a texture with levels");
+  else
+    w.set(Effect::mip_map, false, "--texture-filter %s",
+          kTextureFilterNames[static_cast<int>(settings.texture_filter)]);
   w.set_by_materials(Effect::back_face_culling, c.one_sided, "are one-sided");
   w.set_by_materials(Effect::area_light, c.emissive, "emit light");
   w.set_by_count(Effect::point_light, c.lights[static_cast<int>(LightKind::point)], "point light");
@@ -164,6 +184,13 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     w.set(Effect::occlusion, false, "no ambient light");
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
+  if (settings.selective_contrast > 0 && indirect && has(indirect->effects, Effect::instant_radiosity))
+    w.set(Effect::selective, false, "instant radiosity needs every pixel");
+  else if (settings.selective_contrast > 0)
+    w.set(Effect::selective, true, "contrasts below %.3g interpolated",
+          static_cast<double>(settings.selective_contrast));
+  else
+    w.set(Effect::selective, false, "every pixel traced");
   bool animated = is_animated(scene);
   w.set(Effect::animation, animated, animated ? "%u animation%s" : "nothing moves", scene.animations.count,
         scene.animations.count == 1 ? "" : "s");

@@ -7,7 +7,7 @@
 #include "base/check.h"
 #include "base/span.h"
 #include "scene/animate.h"
-#include "shade/frame_data.h"
+#include "shade/selective.h"
 
 namespace pocketray {
 namespace {
@@ -73,6 +73,8 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
   add_part(plan, "lights", ArenaKind::persistent, light_point_count ? arena_need<LightPoint>(light_point_count) : 0);
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
+  add_part(plan, "selective", ArenaKind::persistent,
+           has(effects.mask, Effect::selective) ? selective_need(settings) : 0);
   add_part(plan, "spans", ArenaKind::persistent,
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
@@ -108,9 +110,11 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                    MemoryPlan* plan, const char** without_coherence) {
   const bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
-  const bool mixes = has(effects.mask, Effect::instant_radiosity);
+  const char* mixes = has(effects.mask, Effect::instant_radiosity) ? "instant radiosity mixes neighbouring pixels' rays"
+                      : has(effects.mask, Effect::selective)       ? "selective rendering interpolates pixels"
+                                                                   : nullptr;
   wanted = wanted && !mixes;
-  const char* why = mixes ? "instant radiosity mixes the rays of neighbouring pixels"
+  const char* why = mixes                                      ? mixes
                     : settings.coherence == CoherenceMode::off ? "coherence is off"
                     : wanted                                   ? nullptr
                                                                : "nothing moves";

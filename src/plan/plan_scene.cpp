@@ -1,5 +1,7 @@
 #include "plan/plan_scene.h"
 
+#include <algorithm>
+
 #include "base/check.h"
 #include "base/fmath.h"
 #include "plan/room.h"
@@ -62,6 +64,11 @@ void keep_in_room(const Scene& scene, const Box& bounds, Camera* camera) {
   if (room < distance) camera->eye = middle + way * (room / distance);
 }
 
+// Whether any light is on.
+bool shines(Array<const Light> lights) {
+  return std::any_of(lights.begin(), lights.end(), [](const Light& light) { return !is_zero(light.intensity); });
+}
+
 // Of four directions around the scene, the front unless another shows much more of open surfaces' fronts.
 Vec3 side_to_look_from(const Scene& scene, const Box& bounds) {
   const Vec3 kSides[] = {{0.45f, 0.35f, 1.0f}, {1.0f, 0.35f, -0.45f}, {-0.45f, 0.35f, -1.0f}, {-1.0f, 0.35f, 0.45f}};
@@ -92,7 +99,7 @@ Camera default_camera(const Scene& scene, float aspect, double vertical_fov) {
 }
 
 bool lights_itself(const Scene& scene) {
-  if (scene.lights.count) return true;
+  if (shines(scene.lights)) return true;
   for (const Material& m : scene.materials)
     if (max_component(m.emission) > 1) return true;
   return false;

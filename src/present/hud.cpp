@@ -52,6 +52,12 @@ void dim_pixel(const Canvas& canvas, int column, int row, int divisor) {
   write_pixel(canvas.format, pixel, pack_levels(canvas.format, levels[0], levels[1], levels[2]));
 }
 
+void set_pixel(const Canvas& canvas, int column, int row, const std::uint8_t levels[3]) {
+  CHECK(column >= 0 && column < canvas.width && row >= 0 && row < canvas.height);
+  write_pixel(canvas.format, pixel_at(canvas, column, row),
+              pack_levels(canvas.format, levels[0], levels[1], levels[2]));
+}
+
 int text_box_width(int characters, int scale) { return (characters * kCellWidth - 1 + 2 * kMargin) * scale; }
 int text_box_height(int lines, int scale) { return (lines * kCellHeight - 1 + 2 * kMargin) * scale; }
 

@@ -17,6 +17,8 @@ struct Canvas {
 // Divides the levels of a pixel of the picture.
 void dim_pixel(const Canvas& canvas, int column, int row, int divisor);
 
+void set_pixel(const Canvas& canvas, int column, int row, const std::uint8_t levels[3]);
+
 // Picture pixels covered by a box of that much text, including its margin. `scale`: pixels per font pixel, at least 1.
 int text_box_width(int characters, int scale);
 int text_box_height(int lines, int scale);

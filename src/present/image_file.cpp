@@ -27,7 +27,8 @@ void encode_ppm(const std::uint8_t* rgb, int width, int height, const ByteSink& 
   sink.write(sink.user, rgb, 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
-void encode_pfm(const float* values, int channels, int width, int height, const ByteSink& sink) {
+void encode_pfm(const float* values, int channels, int width, int height, const ByteSink& sink,
+                std::size_t line_values) {
   CHECK(channels == 1 || channels == 3);
   CHECK(values != nullptr && sink.write != nullptr);
   CHECK(width > 0 && height > 0);
@@ -38,7 +39,7 @@ void encode_pfm(const float* values, int channels, int width, int height, const 
   unsigned char bytes[4 * kChunk];
   std::size_t row_values = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
   for (int row = height - 1; row >= 0; --row) {
-    const float* in = values + static_cast<std::size_t>(row) * row_values;
+    const float* in = values + static_cast<std::size_t>(row) * (line_values > 0 ? line_values : row_values);
     for (std::size_t first = 0; first < row_values; first += kChunk) {
       std::size_t count = row_values - first < kChunk ? row_values - first : kChunk;
       for (std::size_t i = 0; i < count; ++i) put_little_endian(in[first + i], bytes + 4 * i);

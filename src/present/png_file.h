@@ -13,4 +13,26 @@ std::size_t encode_png_need(int width);
 // previous mark. Fails if the arena is too small.
 Status encode_png(const std::uint8_t* rgb, int width, int height, Arena* arena, const ByteSink& sink);
 
+// Animated PNG [PNG 3rd edition, sec. 11.3.6], written frame by frame, each as the box of pixels that changed.
+struct AnimatedPng {
+  ByteSink sink = {};
+  Arena* arena = nullptr;
+  int width = 0, height = 0;
+  bool has_frame = false;
+  std::uint32_t sequence = 0, frames_left = 0;
+  Array<std::uint8_t> last;  // R, G, B of the frame before
+};
+
+// Bytes of arena that it takes.
+std::size_t animated_png_need(int width, int height);
+// Begins a file of that many frames that repeats without end. The arena must have animated_png_need() bytes free, for
+// as long as the file is written.
+// If fewer frames come, write_png_frame_count() makes the 20 bytes at kPngFrameCountOffset anew.
+constexpr std::uint64_t kPngFrameCountOffset = 46;
+void write_png_frame_count(const ByteSink& sink, std::uint32_t frame_count);
+AnimatedPng begin_animated_png(const ByteSink& sink, int width, int height, std::uint32_t frame_count, Arena* arena);
+// Adds a frame that is shown for `delay` / `delay_unit` seconds; `rgb` as for encode_png().
+Status add_png_frame(AnimatedPng* png, const std::uint8_t* rgb, std::uint16_t delay, std::uint16_t delay_unit);
+void end_animated_png(AnimatedPng* png);
+
 }  // namespace pocketray

@@ -16,7 +16,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
 // on every ABI, and writing them is copying them.
 static_assert(sizeof(SceneInfo) == 64 + 6 * 4 + 6 * 4, "no padding");
 static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && sizeof(Triangle) == 12, "no padding");
-static_assert(sizeof(Texture) == 4 + 2 * 2 + 4, "no padding");
+static_assert(sizeof(Texture) == 4 + 2 * 2 + 4 + 4, "no padding");
 static_assert(sizeof(TextureUse) == 28 && sizeof(Material) == 8 * 12 + 6 * 4 + 2 * 28 + 4 + 4, "no padding");
 static_assert(sizeof(MetallicRoughness) == 28 && sizeof(MaterialMaps) == 28 + 5 * 28 + 8 * 4, "no padding");
 static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 12 + 4 * 4, "no padding");

@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kBakedVersion = 5;
+constexpr std::uint32_t kBakedVersion = 7;
 
 // Size in bytes of the file that baked_write() makes.
 std::size_t baked_size(const Scene& scene);

@@ -47,12 +47,18 @@ struct Rgba16 {
 
 enum class Wrap : std::uint8_t { repeat, mirror, clamp };
 
+// What a texture stores of its texels: all of them, or blocks of 4 × 4 with 4, 8 or 12 bits a texel (texel_blocks.h).
+enum class TexelFormat : std::uint8_t { exact, color4, color_alpha8, red4, green_blue8, normal8, numbers12 };
+constexpr int kTexelFormatCount = 7;
+
 struct Texture {
-  std::uint32_t texel_begin;    // first texel in Scene::texels; rows from the top
+  std::uint32_t texel_begin;    // first texel or block in Scene::texels; rows from the top
   std::uint16_t width, height;  // texels, ≥ 1
   Wrap wrap_u, wrap_v;
-  std::uint8_t nearest;  // 1: nearest texel, 0: bilinear
-  std::uint8_t reserved = 0;
+  std::uint8_t nearest;      // 1: nearest texel, 0: bilinear; between levels always bilinear
+  std::uint8_t level_count;  // 1: the texels alone; more: smaller ones follow them, see texture_levels.h
+  TexelFormat format = TexelFormat::exact;
+  std::uint8_t reserved[3] = {0, 0, 0};
 };
 
 // A use of a texture by a material: uv' = m · (u, v, 1) (KHR_texture_transform).
@@ -215,7 +221,7 @@ struct Scene {
   Array<const Triangle> triangles;
   Array<const Material> materials;
   Array<const Texture> textures;
-  Array<const std::uint32_t> texels;  // bytes R, G, B, A in memory; RGB in sRGB
+  Array<const std::uint32_t> texels;  // bytes R, G, B, A in memory, RGB of colours in sRGB; or blocks
   Array<const Light> lights;
   Array<const Camera> cameras;
   Array<const Node> nodes;

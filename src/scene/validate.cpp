@@ -3,6 +3,7 @@
 
 #include "base/limit_list.h"
 #include "scene/baked.h"
+#include "scene/texel_blocks.h"
 #include "scene/validate_checks.h"
 
 namespace pocketray {
@@ -104,7 +105,13 @@ Status validate_texture(const Scene& scene, std::uint32_t index) {
   if (t.width < 1 || t.height < 1 || t.width > kTextureSideMax || t.height > kTextureSideMax)
     return failure("textures[%u] is %u by %u texels, its sides must lie in 1 to %u", index, t.width, t.height,
                    kTextureSideMax);
-  if (!is_range(t.texel_begin, std::uint64_t(t.width) * t.height, scene.texels.count))
+  if (static_cast<int>(t.format) >= kTexelFormatCount || t.reserved[0] || t.reserved[1] || t.reserved[2])
+    return failure("textures[%u] is of an unknown format", index);
+  const std::uint32_t level_max = level_count_max(t.width, t.height);
+  if (t.level_count < 1 || t.level_count > level_max)
+    return failure("textures[%u] of %u by %u texels has %u levels, it must have 1 to %u", index, t.width, t.height,
+                   t.level_count, level_max);
+  if (!is_range(t.texel_begin, level_words(t.format, t.width, t.height, t.level_count), scene.texels.count))
     return failure("textures[%u] extends beyond the scene's %u texels", index, scene.texels.count);
   if (t.wrap_u > Wrap::clamp || t.wrap_v > Wrap::clamp || t.nearest > 1)
     return failure("textures[%u] has an unknown wrap mode or filter", index);

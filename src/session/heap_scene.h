@@ -20,6 +20,7 @@ struct HeapScene {
 // Options for importing models; see import/import.h.
 struct ModelOptions {
   std::uint32_t texture_side_max = 512;
+  bool mip_maps = true;
   float crease_angle = 40;
 };
 

@@ -4,7 +4,9 @@
 
 #include "base/check.h"
 #include "base/limit_list.h"
+#include "plan/plan_scene.h"
 #include "platform/memory.h"
+#include "session/focus.h"
 #include "session/interrupt.h"
 #include "session/note.h"
 #include "session/radiosity.h"
@@ -74,6 +76,12 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   RETURN_IF_ERROR(planned);
   if (!o.fov.empty() && renderer->camera.projection != Projection::perspective)
     return failure("--fov is for perspective cameras, and camera %u is orthographic: drop --fov", o.camera_index);
+  if (!o.focus.empty()) {
+    RETURN_IF_ERROR(find_part(opened->source, o.scene, o.focus, &opened->source.focus));
+    const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+    const double fov = renderer->look.vertical_fov > 0 ? renderer->look.vertical_fov : kFramingFieldOfView;
+    RETURN_IF_ERROR(set_camera(renderer, focused_camera(renderer->camera, opened->source.focus, aspect, fov)));
+  }
   if (!o.camera.empty()) {
     Camera camera;
     RETURN_IF_ERROR(parse_camera(o.camera, &camera));

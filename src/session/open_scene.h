@@ -35,6 +35,11 @@ Status open_scene(const CommonOptions& options, const OpenHooks& hooks, OpenScen
 // Builds the accelerator and starts the threads, ready for render_frame().
 Status start_scene(OpenScene* opened, const CommonOptions& options);
 
+// The bounds of what the camera turns around.
+inline const Box& subject_of(const OpenScene& opened) {
+  return is_empty(opened.source.focus) ? opened.renderer.accel.bounds : opened.source.focus;
+}
+
 // Multiplies *exposure; fails if the product is out of range.
 Status change_exposure(float factor, float* exposure);
 

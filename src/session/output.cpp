@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "platform/file.h"
+#include "platform/standard_streams.h"
 #include "scene/builtin/builtin.h"
 #include "session/report.h"
 
@@ -51,6 +52,12 @@ Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<Nam
   return success();
 }
 
+Status keep_output_for_data() {
+  platform::survive_closed_pipes();
+  platform::FileError error;
+  return platform::keep_output_for_data(&error) ? success() : failure("standard output %s", error.text);
+}
+
 Status make_output_folder(const std::string& folder) {
   platform::FileError error;
   if (!platform::make_folder(folder.c_str(), &error)) return failure("%.300s %s", folder.c_str(), error.text);
@@ -88,6 +95,7 @@ Status write_file(const std::string& path, const std::string& bytes) {
 int finish_printing(int exit_status) {
   bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (arrived || exit_status != kExitDone) return exit_status;  // an earlier failure has been reported
+  if (platform::is_output_for_data()) return exit_status;       // the data have arrived; the rest is nobody's
   return report(failure("could not write all output to standard output: is it full or closed?"));
 }
 

@@ -21,6 +21,10 @@ bool has_suffix(const char* path, const char* suffix);
 // work. Inputs need not be files. Leaves no trace.
 Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
+// For commands that write data to standard output: what they print goes to standard error from here on, and a reader
+// that goes away fails the write instead of ending the program. Fails if standard output is a terminal.
+Status keep_output_for_data();
+
 // Creates a folder for results unless it exists; its parent must exist. Fails if no file can be created in it.
 Status make_output_folder(const std::string& folder);
 

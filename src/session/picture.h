@@ -3,14 +3,19 @@
 #include <string>
 
 #include "engine/renderer.h"
+#include "present/changed_pixels.h"
+#include "present/false_color.h"
 #include "present/pack.h"
 
 namespace pocketray {
 
 struct PictureOptions {
+  const char* kind = nullptr;        // ".png": what to write, whatever the path's ending; null: what that says
   PixelFormat raw_format = kRgb565;  // of .raw files
   Rotation rotation = Rotation::none;
   bool dither = false;
+  PixelBox crop;                   // the pixels to write, unless they are rotated; width 0: all
+  const Legend* legend = nullptr;  // drawn at the bottom left, except into .pfm; null or empty: none
   const Vec3* radiance = nullptr;  // null: renderer->image
   // Rows already packed, packed_line_bytes apart, for all kinds but .pfm. Null: packs renderer->image.
   const std::uint8_t* packed = nullptr;
@@ -18,11 +23,18 @@ struct PictureOptions {
   PixelFormat packed_format;
 };
 
+// The pixels of a picture of the settings' size that are written.
+PixelBox box_to_write(const PictureOptions& options, const Settings& settings);
+
 // Bytes needed in the frame arena to write any format.
 std::size_t picture_bytes(const Settings& settings);
 
-// Fails unless the path ends in .png, .ppm, .pfm or .raw.
+// Fails unless the path ends in .png, .ppm, .pfm, .raw or, if this build has JPEG, .jpg or .jpeg, or is such an ending.
 Status check_picture_path(const std::string& path);
+
+// The picture in the options as rows of R, G and B, without padding. `rgb` has room for the whole picture, even if it
+// is cropped.
+void picture_levels(const PictureOptions& options, const Renderer& renderer, std::uint8_t* rgb);
 
 // Writes the picture in the options, else renderer->image. Replaces the file atomically.
 Status write_picture(const char* path, const PictureOptions& options, Renderer* renderer);

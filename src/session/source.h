@@ -2,6 +2,8 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/renderer.h"
 #include "scene/content_hash.h"
@@ -11,11 +13,16 @@
 
 namespace pocketray {
 
+using NamedBoxes = std::vector<std::pair<std::string, Box>>;
+
 struct SceneSource {
   const std::uint8_t* baked = nullptr;  // the .pray file, or what a model became, that the scene is a view of; null: a
   std::size_t baked_bytes = 0;          // built-in scene
   std::string warning;                  // one line; empty: none
-  std::size_t bytes_wanted = 0;         // memory needed, if loading failed for lack of it; else 0
+  std::vector<std::string> material_names;  // of the scene's materials, as far as the file has them
+  NamedBoxes parts;              // named parts of a model and their bounds at time 0; names may occur more than once
+  Box focus = empty_box();       // bounds of the part that --focus names; empty: none
+  std::size_t bytes_wanted = 0;  // memory needed, if loading failed for lack of it; else 0
 };
 
 // Takes the one memory block, kept while its scene is open. Null if the system refuses.

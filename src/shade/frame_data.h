@@ -44,6 +44,11 @@ struct CameraRays {
   bool orthographic;
 };
 
+// Width of a pixel's cone: at the eye, and by how much it grows with the distance; see footprint.h.
+struct PixelCone {
+  float width, spread;
+};
+
 // Bodies that contain the ray, innermost last, as material indices.
 struct MediumStack {
   std::uint32_t material[kMediumDepthMax];
@@ -57,6 +62,7 @@ struct TileStrip;
 struct Tracer;
 
 // The instantiated parts of the kernel, selected once per frame for the plan.
+// Hit::t is the distance from the eye along the whole path.
 using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
 using GlowFunction = void (*)(const FrameData& frame, Surface* surface);
 // Radiance along a ray, given its first hit and the surface there if already known (otherwise null).
@@ -73,6 +79,12 @@ struct RadianceBounds {
   bool operator!=(const RadianceBounds& other) const { return !(*this == other); }
 };
 
+// What selective rendering interpolates; selective.h.
+struct Selection {
+  float contrast = 0;          // Michelson, as displayed; none reaches it unseen. 0: every pixel is traced
+  float white = 0, flare = 0;  // radiances: the most that is displayed, and twice what the display reflects
+};
+
 struct FrameData {
   const Scene* scene = nullptr;
   Array<const Vec3> positions, normals;  // posed
@@ -80,7 +92,8 @@ struct FrameData {
   const AccelTraversal* first_rays = nullptr;  // for camera rays, and shadow rays from their first hits
   Accel accel;
   CameraRays camera;
-  MediumStack eye_media;  // bodies that contain the camera
+  PixelCone cone = {0, 0};  // set with Effect::mip_map
+  MediumStack eye_media;    // bodies that contain the camera
   Array<const LightPoint> lights;
   LightRun light_runs[4];
   int light_run_count = 0;
@@ -99,7 +112,8 @@ struct FrameData {
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
   RadianceBounds radiance_bounds;
   Vec3 beyond_depth = {0, 0, 0};  // radiance that stands in for rays beyond Settings::ray_depth
-  float left_out_max = 0;         // radiance that may be skipped of one sample
+  Selection selection;
+  float left_out_max = 0;  // radiance that may be skipped of one sample
   IndirectData indirect;
   Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept
   bool ray_by_ray = false;    // no packets
@@ -114,6 +128,12 @@ enum class RayKind : int { primary, shadow, mirror, refraction, blend };
 constexpr int kRayKindCount = 5;
 constexpr const char* kRayKindNames[kRayKindCount] = {"primary", "shadow", "mirror", "refraction", "blend"};
 
+struct CellCorner;
+struct CornerRow {
+  Array<CellCorner> corners;
+  std::uint32_t row = ~0u;  // of the picture; ~0: none
+};
+
 // One thread's state; counters accumulate. Aligned so that threads do not share a cache line.
 struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
@@ -124,6 +144,7 @@ struct alignas(64) Tracer {
   const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
   std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded
   float budget = 0;                           // radiance that may still be skipped of the current sample
+  CornerRow corner_rows[2];                   // empty: none is kept; at even and odd rows of tiles
   float left_out_max = 0;                     // largest sum skipped of one sample so far
 };
 

@@ -1,7 +1,5 @@
 #include "shade/interleaved.h"
 
-#include <algorithm>
-
 #include "base/check.h"
 #include "base/fmath.h"
 #include "shade/even_points.h"
@@ -19,19 +17,11 @@ struct BlockTile {
   bool wanted[kPacketMax];
 };
 
-std::uint32_t morton_of(std::uint32_t column, std::uint32_t row) {
-  std::uint32_t m = 0;
-  for (std::uint32_t b = 0; b < 3; ++b) m |= (column >> b & 1) << 2 * b | (row >> b & 1) << (2 * b + 1);
-  return m;
-}
-std::uint32_t column_of(std::uint32_t m) { return (m & 1) | (m >> 1 & 2) | (m >> 2 & 4); }
-std::uint32_t row_of(std::uint32_t m) { return column_of(m >> 1); }
-
 // The pixels of all blocks that have a wanted one.
 void list_pixels(const FrameData& frame, std::uint32_t left, std::uint32_t top, std::uint64_t wanted, BlockTile* tile) {
   tile->count = 0;
   for (std::uint32_t m = 0; m < kPacketMax; ++m) {
-    std::uint32_t column = left + column_of(m), row = top + row_of(m);
+    std::uint32_t column = left + morton_column(m), row = top + morton_row(m);
     if (!(wanted >> (m & ~(kBlockPixels - 1)) & 0xFFFF)) continue;
     if (column >= frame.settings.width || row >= frame.settings.height) continue;
     std::uint32_t i = tile->count++;
@@ -104,22 +94,13 @@ void trace_block_tile(Tracer* tracer, const BlockTile& tile, Vec3* image) {
 void trace_interleaved(Tracer* tracer, const TileStrip& strip, Vec3* image) {
   if (strip.tile_count == 0) return;
   CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
-  // The strip's tiles lie across those at multiples of eight: up to two rows of these, and one more column.
-  std::uint64_t wanted[2][kImageSideMax / kTileSide + 1];
-  const std::uint32_t first_column = strip.column / kTileSide, first_row = strip.row / kTileSide;
-  for (std::uint64_t* row : wanted) std::fill_n(row, strip.tile_count + 1, 0);
-  for (std::uint32_t i = 0; i < strip.tile_count; ++i)
-    for (std::uint64_t mask = strip.mask[i]; mask; mask &= mask - 1) {
-      auto m = static_cast<std::uint32_t>(__builtin_ctzll(mask));
-      std::uint32_t column = strip.column + i * kTileSide + column_of(m), row = strip.row + row_of(m);
-      wanted[row / kTileSide - first_row][column / kTileSide - first_column] |=
-          std::uint64_t(1) << morton_of(column % kTileSide, row % kTileSide);
-    }
+  AlignedTiles tiles;
+  align_tiles(strip, &tiles);
   BlockTile tile;
   for (std::uint32_t r = 0; r < 2; ++r)
-    for (std::uint32_t c = 0; c <= strip.tile_count; ++c) {
-      if (!wanted[r][c]) continue;
-      list_pixels(*tracer->frame, (first_column + c) * kTileSide, (first_row + r) * kTileSide, wanted[r][c], &tile);
+    for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
+      if (!tiles.mask[r][c]) continue;
+      list_pixels(*tracer->frame, tiles.column + c * kTileSide, tiles.row + r * kTileSide, tiles.mask[r][c], &tile);
       trace_block_tile(tracer, tile, image);
     }
 }

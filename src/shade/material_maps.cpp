@@ -26,16 +26,19 @@ struct LookUp {
   Vec3 numbers;
 };
 
-const Vec3& look_up(const FrameData& frame, const TextureUse& use, Vec2 uv, LookUp* last) {
+template <EffectMask mask>
+const Vec3& look_up(const FrameData& frame, const TextureUse& use, const Surface& s, Vec2 uv, LookUp* last) {
   if (!last->use || std::memcmp(last->use, &use, sizeof use) != 0)
-    *last = {&use, sample_numbers(*frame.scene, use, uv, frame.settings.texture_filter)};
+    *last = {&use,
+             numbers_at<has(mask, Effect::mip_map)>(*frame.scene, use, uv, frame.settings.texture_filter, s.footprint)};
   return last->numbers;
 }
 
+template <EffectMask mask>
 void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, LookUp* last, Surface* s) {
   effect_entered<Effect::metallic_roughness>();
   Vec3 numbers = {255, 255, 255};
-  if (maps.metallic_roughness.texture != kNone) numbers = look_up(frame, maps.metallic_roughness, uv, last);
+  if (maps.metallic_roughness.texture != kNone) numbers = look_up<mask>(frame, maps.metallic_roughness, *s, uv, last);
   const float metallic = within(maps.metallic * (numbers.z / 255), maps.metallic_low, maps.metallic_high);
   s->metallic = static_cast<std::uint16_t>(metallic * 65535 + 0.5f);
   s->roughness = within(maps.roughness * (numbers.y / 255), maps.roughness_low, maps.roughness_high);
@@ -46,18 +49,23 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
 void apply_specular(const FrameData& frame, const MaterialMaps& maps, const Surface& s, MetallicRoughness* model) {
   const Scene& scene = *frame.scene;
   const Vec2 uv = hit_uv(scene, s.hit.triangle, s.hit.u, s.hit.v);
+  auto color = [&](const TextureUse& use) {
+    const TextureFilter filter = frame.settings.texture_filter;
+    return has(frame.mask, Effect::mip_map) ? color_at<true>(scene, use, uv, filter, s.footprint)
+                                            : color_at<false>(scene, use, uv, filter, 0);
+  };
   if (maps.specular.texture != kNone) {
-    const float share = sample_texture(scene, maps.specular, uv, frame.settings.texture_filter).alpha;
+    const float share = color(maps.specular).alpha;
     model->dielectric = model->dielectric * share, model->grazing *= share;
   }
-  if (maps.specular_color.texture != kNone)
-    model->dielectric *= sample_texture(scene, maps.specular_color, uv, frame.settings.texture_filter).rgb;
+  if (maps.specular_color.texture != kNone) model->dielectric *= color(maps.specular_color).rgb;
 }
 
 // What the map leaves of ambient light.
-float openness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, LookUp* last) {
+template <EffectMask mask>
+float openness(const FrameData& frame, const MaterialMaps& maps, const Surface& s, Vec2 uv, LookUp* last) {
   effect_entered<Effect::occlusion>();
-  const float open = look_up(frame, maps.occlusion, uv, last).x / 255;
+  const float open = look_up<mask>(frame, maps.occlusion, s, uv, last).x / 255;
   return 1 + maps.occlusion_strength * (open - 1);
 }
 
@@ -70,13 +78,17 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   if (const MaterialMaps* maps = maps_of(scene, *s)) {
     const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
     if constexpr (has(mask, Effect::normal_map)) {
-      if (maps->normal.texture != kNone) s->normal = mapped_normal(frame, *maps, uv, ray, *s);
+      if (maps->normal.texture != kNone) {
+        const Vec3 texel = numbers_at<has(mask, Effect::mip_map)>(scene, maps->normal, uv,
+                                                                  frame.settings.texture_filter, s->footprint);
+        s->normal = mapped_normal(frame, *maps, texel, ray, *s);
+      }
     }
     if constexpr (has(mask, Effect::metallic_roughness)) {
-      if (has_lobe_map(*maps)) apply_metallic_roughness(frame, *maps, uv, &last, s);
+      if (has_lobe_map(*maps)) apply_metallic_roughness<mask>(frame, *maps, uv, &last, s);
     }
     if constexpr (has(mask, Effect::occlusion)) {
-      if (maps->occlusion.texture != kNone) open = openness(frame, *maps, uv, &last);
+      if (maps->occlusion.texture != kNone) open = openness<mask>(frame, *maps, *s, uv, &last);
     }
   }
   (first ? frame.first_glow : frame.glow)(frame, s);
@@ -93,7 +105,7 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
 template <bool first>
 struct MapsPart {
   using Function = SurfaceFunction;
-  static constexpr EffectsOf<kMapEffects> kEffects = {};
+  static constexpr EffectsOf<kMapEffects | bit(Effect::mip_map)> kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
     return mapped_surface<mask, first>;

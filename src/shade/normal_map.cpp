@@ -1,7 +1,6 @@
 #include "shade/normal_map.h"
 
 #include "effect/effect_probe.h"
-#include "shade/texture.h"
 
 namespace pocketray {
 namespace {
@@ -13,10 +12,10 @@ float component(float texel) {
 
 }  // namespace
 
-Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Ray& ray, const Surface& s) {
+Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3& texel, const Ray& ray,
+                   const Surface& s) {
   effect_entered<Effect::normal_map>();
   const Scene& scene = *frame.scene;
-  const Vec3 texel = sample_numbers(scene, maps.normal, uv, frame.settings.texture_filter);
   const float x = component(texel.x) * maps.normal_scale, y = component(texel.y) * maps.normal_scale;
   if (x == 0 && y == 0) return s.normal;
   const Triangle& t = scene.triangles[s.hit.triangle];

@@ -4,15 +4,17 @@
 
 namespace pocketray {
 
-// The surface's normal as its map has it, unit. The map's frame is that of the shading normal n: the tangent is the
-// triangle's ∂P/∂u made perpendicular to n, the bitangent perpendicular to both, against ∂P/∂v. MikkTSpace averages
-// tangents at the vertices and interpolates them. The normals differ from that by a turn about n by no more than the
-// tangents of neighbouring triangles do, and not in their slope; no vertex needs memory for a tangent.
+// The surface's normal as its map has it, unit, for the map's numbers there. The map's frame is that of the shading
+// normal n: the tangent is the triangle's ∂P/∂u made perpendicular to n, the bitangent perpendicular to both, against
+// ∂P/∂v. MikkTSpace averages tangents at the vertices and interpolates them. The normals differ from that by a turn
+// about n by no more than the tangents of neighbouring triangles do, and not in their slope; no vertex needs memory for
+// a tangent.
 //   - A texel (128, 128, z) gives n itself, bit for bit.
 //   - On the back of a surface, the normal is that of the front reversed.
 //   - A normal that faces away from the viewer is bent back to the viewer's horizon: the part of it that is
 //     perpendicular to the ray. Such a point is seen edge-on; it is lit, and mirrors by the geometric normal.
 //   - Where texture coordinates span no area, or nothing is left of a direction, the normal is n.
-Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Ray& ray, const Surface& s);
+Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3& texel, const Ray& ray,
+                   const Surface& s);
 
 }  // namespace pocketray

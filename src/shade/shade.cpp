@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include "base/check.h"
 #include "shade/contact.h"
 #include "shade/direct.h"
 #include "shade/instantiate.h"
@@ -17,12 +18,26 @@ struct NoMedia {};
 template <EffectMask mask>
 using Media = std::conditional_t<has(mask, Effect::refraction), MediumStack, NoMedia>;
 
-template <EffectMask mask>
+template <EffectMask mask, bool has_footprints = has(mask, Effect::mip_map)>
 struct Path {
   Vec3 weight;          // throughput of the path so far; bounds the contribution of a ray to the sample
   std::uint32_t depth;  // reflections and refractions so far
   Media<mask> media;
 };
+template <EffectMask mask>
+struct Path<mask, true> {
+  Vec3 weight;
+  std::uint32_t depth;
+  Media<mask> media;
+  float distance = 0;  // from the eye along the path, to its last surface
+};
+
+// The hit as surface functions take it, at the path's last surface.
+template <EffectMask mask>
+Hit on_path(Hit hit, const Path<mask>& path) {
+  if constexpr (has(mask, Effect::mip_map)) hit.t = path.distance;
+  return hit;
+}
 
 template <EffectMask mask>
 Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path);
@@ -121,14 +136,18 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
 // The same. `contact` is required if it transmits.
 template <EffectMask mask>
 Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
-  if constexpr (has(mask, Effect::metallic_roughness)) {
+  if constexpr (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map)) {
     const EffectMask plan = tracer->frame->mask;
     Material mapped;
-    const Material* m = &lobes_at(*tracer->frame, s, &mapped);
-    if (!has(plan, Effect::specular) || !has(plan, Effect::mirror)) {  // reduced() has added them
+    const Material* m = s.material;
+    if constexpr (has(mask, Effect::metallic_roughness)) m = &lobes_at(*tracer->frame, s, &mapped);
+    // reduced() has added them
+    const bool shines = !has(plan, Effect::specular) && !is_zero(m->specular);
+    const bool mirrors = !has(plan, Effect::mirror) && !is_zero(m->mirror);
+    if (shines || mirrors) {
       if (m != &mapped) mapped = *m;
-      if (!has(plan, Effect::specular)) mapped.specular = {0, 0, 0};
-      if (!has(plan, Effect::mirror)) mapped.mirror = {0, 0, 0};
+      if (shines) mapped.specular = {0, 0, 0};
+      if (mirrors) mapped.mirror = {0, 0, 0};
       m = &mapped;
     }
     return shade_lobes<mask>(tracer, ray, s, *m, contact, path);
@@ -149,9 +168,11 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
     if (!blends(m, mask) || culls(m, face.front, mask)) continue;
     any = true;
     Surface s;
-    frame.surface(frame, ray, face.hit, &s);
+    frame.surface(frame, ray, on_path(face.hit, *path), &s);
+    float area = 0;
+    if constexpr (has(mask, Effect::mip_map)) area = s.footprint;
     float alpha = hit_alpha<Effect::alpha_blend>(scene, *s.material, face.hit.triangle, face.hit.u, face.hit.v,
-                                                 frame.settings.texture_filter);
+                                                 frame.settings.texture_filter, area);
     Path<mask> covered = *path;
     covered.weight = path->weight * alpha;
     if (alpha > 0) *sum += *carried * alpha * shade<mask>(tracer, ray, s, &contact, covered);
@@ -187,11 +208,12 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) return sum + carried * scene.info.background;
+    if constexpr (has(mask, Effect::mip_map)) path.distance += hit.t;
     Surface s;
     if (layer == 0 && first)
       s = *first;
     else
-      frame.surface(frame, ray, hit, &s);
+      frame.surface(frame, ray, on_path(hit, path), &s);
     if constexpr (has(mask, Effect::absorption)) {
       if (path.media.depth) {
         effect_entered<Effect::absorption>();
@@ -216,7 +238,7 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
           ray.origin = safe_origin(s, -1);
           continue;
         }
-        if (next->hit.triangle != hit.triangle) frame.surface(frame, ray, next->hit, &s);
+        if (next->hit.triangle != hit.triangle) frame.surface(frame, ray, on_path(next->hit, path), &s);
         return sum + carried * shade<mask>(tracer, ray, s, &contact, path);
       }
     }
@@ -235,7 +257,8 @@ Vec3 radiance(Tracer* tracer, const Ray& ray, const Path<mask>& path) {
 
 template <EffectMask mask>
 Vec3 primary_radiance(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface) {
-  Path<mask> path = {{1, 1, 1}, 0, {}};
+  Path<mask> path = {};
+  path.weight = {1, 1, 1};
   if constexpr (has(mask, Effect::refraction)) path.media = tracer->frame->eye_media;
   return radiance_from<mask>(tracer, ray, hit, surface, path);
 }
@@ -249,11 +272,17 @@ struct RadiancePart {
                                         Effect::absorption,
                                         Effect::alpha_blend,
                                         Effect::back_face_culling,
-                                        Effect::metallic_roughness};
-  // No absorption without media. With maps, shade() leaves out the lobes that the plan does not have: fewer instances.
+                                        Effect::metallic_roughness,
+                                        Effect::mip_map};
+  // No absorption without media; no distance along a path that ends at its first surface. With maps and footprints,
+  // shade() leaves out the lobes that the plan does not have: fewer instances.
   static constexpr EffectMask reduced(EffectMask mask) {
     if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);
-    if (has(mask, Effect::metallic_roughness)) mask |= bit(Effect::specular) | bit(Effect::mirror);
+    constexpr EffectMask kGoesOn =
+        bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
+    if (!(mask & kGoesOn)) mask &= ~bit(Effect::mip_map);
+    if (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map))
+      mask |= bit(Effect::specular) | bit(Effect::mirror);
     return mask;
   }
   template <EffectMask mask>
@@ -264,6 +293,9 @@ struct RadiancePart {
 
 }  // namespace
 
-RadianceFunction find_radiance_function(EffectMask mask) { return Instantiations<RadiancePart>::find(mask); }
+RadianceFunction find_radiance_function(EffectMask mask) {
+  CHECK_EQ(mask & ~kAllEffects, 0u);
+  return Instantiations<RadiancePart>::find(mask);
+}
 
 }  // namespace pocketray

@@ -45,4 +45,24 @@ void make_strip(const Span* spans, std::uint32_t span_count, TileStrip* strip) {
   }
 }
 
+void align_tiles(const TileStrip& strip, AlignedTiles* tiles) {
+  CHECK(tiles != nullptr);
+  CHECK_LE(strip.row_count, kTileRows);
+  const std::uint32_t left = strip.column % kTileSide, top = strip.row % kTileSide;
+  tiles->column = strip.column - left, tiles->row = strip.row - top;
+  tiles->tile_count = strip.tile_count ? strip.tile_count + (left > 0) : 0;
+  for (std::uint64_t* row : tiles->mask) std::fill_n(row, tiles->tile_count, 0);
+  if (left == 0 && top == 0) {
+    std::copy_n(strip.mask, strip.tile_count, tiles->mask[0]);
+    return;
+  }
+  for (std::uint32_t i = 0; i < strip.tile_count; ++i)
+    for (std::uint64_t mask = strip.mask[i]; mask; mask &= mask - 1) {
+      const auto m = static_cast<std::uint32_t>(__builtin_ctzll(mask));
+      const std::uint32_t column = left + i * kTileSide + morton_column(m), row = top + morton_row(m);
+      tiles->mask[row / kTileSide][column / kTileSide] |= std::uint64_t(1)
+                                                          << morton_place(column % kTileSide, row % kTileSide);
+    }
+}
+
 }  // namespace pocketray

@@ -9,6 +9,15 @@ namespace pocketray {
 constexpr std::uint32_t kTileSide = 8;
 static_assert(kTileSide * kTileRows == 64, "a tile's mask has 64 bits");
 
+// Places in a tile: bits of column and row by turns, the column's first.
+constexpr std::uint32_t morton_column(std::uint32_t m) { return (m & 1) | (m >> 1 & 2) | (m >> 2 & 4); }
+constexpr std::uint32_t morton_row(std::uint32_t m) { return morton_column(m >> 1); }
+constexpr std::uint32_t morton_place(std::uint32_t column, std::uint32_t row) {
+  std::uint32_t m = 0;
+  for (std::uint32_t b = 0; b < 3; ++b) m |= (column >> b & 1) << 2 * b | (row >> b & 1) << (2 * b + 1);
+  return m;
+}
+
 struct TileStrip {
   std::uint32_t row, column;                      // of the first tile's first pixel
   std::uint32_t row_count;                        // up to the last row with a pixel, at most kTileRows
@@ -18,5 +27,13 @@ struct TileStrip {
 
 // Makes a strip of spans that lie within kTileRows rows of the first one's row, in any order. They may overlap.
 void make_strip(const Span* spans, std::uint32_t span_count, TileStrip* strip);
+
+// The same pixels by tiles at multiples of eight: up to two rows of these, across which the strip lies.
+struct AlignedTiles {
+  std::uint32_t column, row;  // of the first tile's first pixel
+  std::uint32_t tile_count;   // in each row
+  std::uint64_t mask[2][kImageSideMax / kTileSide + 1];
+};
+void align_tiles(const TileStrip& strip, AlignedTiles* tiles);
 
 }  // namespace pocketray

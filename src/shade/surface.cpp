@@ -1,6 +1,7 @@
 #include "shade/surface.h"
 
 #include "effect/effect_probe.h"
+#include "shade/footprint.h"
 #include "shade/instantiate.h"
 #include "shade/texture.h"
 
@@ -58,8 +59,9 @@ inline void add_glow(const FrameData& frame, Surface* s) {
       Vec3 emission = m.emission;
       if constexpr (has(mask, Effect::texture)) {
         if (m.emission_texture.texture != kNone)
-          emission *= sample_texture(scene, m.emission_texture, hit_uv(scene, s->hit.triangle, s->hit.u, s->hit.v),
-                                     frame.settings.texture_filter)
+          emission *= color_at<has(mask, Effect::mip_map)>(scene, m.emission_texture,
+                                                           hit_uv(scene, s->hit.triangle, s->hit.u, s->hit.v),
+                                                           frame.settings.texture_filter, s->footprint)
                           .rgb;
       }
       s->glow += emission;
@@ -92,14 +94,16 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
     effect_entered<Effect::smooth_normal>();
     if (frame.normals.count) s->normal = smooth_normal(frame, t, w, u, v, s->geometric);
   }
+  if constexpr (has(mask, Effect::mip_map))
+    s->footprint = footprint(frame.cone, hit.t, ray.direction, perpendicular, outward, scene, t);
   s->diffuse = m.diffuse;
   s->is_tinted = false;
   if constexpr (has(mask, Effect::texture)) {
     if (m.diffuse_texture.texture != kNone) {
       effect_entered<Effect::texture>();
-      s->tint =
-          sample_texture(scene, m.diffuse_texture, hit_uv(scene, hit.triangle, u, v), frame.settings.texture_filter)
-              .rgb;
+      s->tint = color_at<has(mask, Effect::mip_map)>(scene, m.diffuse_texture, hit_uv(scene, hit.triangle, u, v),
+                                                     frame.settings.texture_filter, s->footprint)
+                    .rgb;
       s->diffuse *= s->tint;
       s->is_tinted = true;
     }
@@ -119,7 +123,7 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
 struct SurfacePart {
   using Function = SurfaceFunction;
   static constexpr EffectsOf<bit(Effect::smooth_normal) | bit(Effect::texture) | bit(Effect::vertex_color) |
-                             bit(Effect::emission) | IndirectList::kEffects>
+                             bit(Effect::emission) | bit(Effect::mip_map) | IndirectList::kEffects>
       kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
@@ -129,7 +133,9 @@ struct SurfacePart {
 
 struct GlowPart {
   using Function = GlowFunction;
-  static constexpr EffectsOf<bit(Effect::texture) | bit(Effect::emission) | IndirectList::kEffects> kEffects = {};
+  static constexpr EffectsOf<bit(Effect::texture) | bit(Effect::emission) | bit(Effect::mip_map) |
+                             IndirectList::kEffects>
+      kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
     return add_glow<mask>;

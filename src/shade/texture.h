@@ -14,9 +14,25 @@ enum class TextureFilter : std::uint8_t;
 
 // The colour of `use` at uv. Coordinates wrap as in the texture's sampler; row 0 is at v = 0.
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
+// The same, filtered for a footprint of that area in uv where the texture has levels (Effect::mip_map): between two
+// levels, each bilinear. With the filters nearest and bilinear, level 0 as above.
+Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint);
 
 // The same of a texture of numbers: texel bytes R, G, B as they are, 0 to 255.
 Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
+Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint);
+
+// The one of the two that the plan calls for.
+template <bool has_levels>
+Rgba color_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint) {
+  if constexpr (has_levels) return sample_texture(scene, use, uv, filter, footprint);
+  return sample_texture(scene, use, uv, filter);
+}
+template <bool has_levels>
+Vec3 numbers_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint) {
+  if constexpr (has_levels) return sample_numbers(scene, use, uv, filter, footprint);
+  return sample_numbers(scene, use, uv, filter);
+}
 
 // uv of a hit, interpolated from its triangle.
 inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v) {
@@ -28,15 +44,16 @@ inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v)
 
 // Alpha of a material at a hit: opacity × texture alpha × vertex alpha.
 float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                     TextureFilter filter);
+                     TextureFilter filter, float footprint = 0);
 
-// The same, for the effect in question: alpha_mask or alpha_blend.
+// The same, for the effect in question: alpha_mask or alpha_blend. Without a footprint, as for holes and shadows, of
+// level 0: means would fill or widen holes with the distance, and a surface and its shadow would differ.
 template <Effect effect>
 float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                TextureFilter filter) {
+                TextureFilter filter, float footprint = 0) {
   static_assert(effect == Effect::alpha_mask || effect == Effect::alpha_blend, "no other effect reads alpha");
   effect_entered<effect>();
-  return material_alpha(scene, material, triangle, u, v, filter);
+  return material_alpha(scene, material, triangle, u, v, filter, footprint);
 }
 
 }  // namespace pocketray

@@ -1,54 +1,18 @@
 #include "shade/trace_spans.h"
 
 #include "base/check.h"
-#include "effect/effect_probe.h"
 #include "shade/camera.h"
 #include "shade/contact.h"
 #include "shade/even_points.h"
-#include "shade/pixel.h"
+#include "shade/filters.h"
 #include "shade/strip.h"
 #include "shade/surface.h"
-#include "shade/tile_shadows.h"
+#include "shade/tile.h"
 
 namespace pocketray {
 namespace {
 
 Vec3 same(float value) { return {value, value, value}; }
-
-void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
-  if (RayObserver* observer = tracer->stats.observer)
-    observer->column = static_cast<std::uint16_t>(column), observer->row = static_cast<std::uint16_t>(row);
-}
-
-void keep_first_hit(const FrameData& frame, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
-                    const Hit& hit) {
-  std::size_t width = frame.settings.width;
-  frame.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
-}
-
-Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
-  const FrameData& frame = *tracer->frame;
-  std::uint32_t sample_count = frame.settings.samples_per_pixel;
-  if (sample_count > 1) effect_entered<Effect::supersampling>();
-  Vec3 sum = {0, 0, 0};
-  observe_pixel(tracer, column, row);
-  for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-    Ray ray = pixel_ray(frame, column, row, sample_offset(sample, sample_count));
-    Hit hit;
-    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
-    Surface first;
-    if (frame.first_hits) {
-      keep_first_hit(frame, sample, column, row, hit);
-      if (hit.triangle != kNoTriangle) {
-        frame.surface(frame, ray, hit, &first);
-        tracer->first_surface = &first;
-      }
-    }
-    sum += sample_radiance(tracer, ray, hit, tracer->first_surface);
-    tracer->first_surface = nullptr;
-  }
-  return sum * (1.0f / static_cast<float>(sample_count));
-}
 
 Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov) {
   const FrameData& frame = *tracer->frame;
@@ -89,67 +53,17 @@ Vec3 pixel_aov(Tracer* tracer, std::uint32_t column, std::uint32_t row, Aov aov)
   return {0, 0, 0};
 }
 
-// Up to 64 pixels traced together, in an order that keeps neighbours adjacent.
-struct Tile {
-  std::uint32_t count = 0;
-  std::uint16_t column[kPacketMax], row[kPacketMax];
-};
-
-void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
-  const FrameData& frame = *tracer->frame;
-  std::uint32_t sample_count = frame.settings.samples_per_pixel;
-  if (sample_count > 1) effect_entered<Effect::supersampling>();
-  Vec3 sum[kPacketMax] = {};
-  TileShadows shadows;
-  RayPacket packet;
-  packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
-  for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-    Vec2 offset = sample_offset(sample, sample_count);
-    for (std::uint32_t i = 0; i < tile.count; ++i) {
-      Vec3 direction = pixel_ray(frame, tile.column[i], tile.row[i], offset).direction;
-      for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
-    }
-    Hit hits[kPacketMax];
-    frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
-    if (frame.first_hits)
-      for (std::uint32_t i = 0; i < tile.count; ++i)
-        keep_first_hit(frame, sample, tile.column[i], tile.row[i], hits[i]);
-    if (frame.find_shadows) {
-      frame.find_shadows(frame, packet, hits, &shadows, &tracer->stats);
-      tracer->tile_shadows = &shadows;
-    }
-    for (std::uint32_t i = 0; i < tile.count; ++i) {
-      tracer->tile_pixel = i;
-      tracer->first_surface = frame.find_shadows && hits[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
-      observe_pixel(tracer, tile.column[i], tile.row[i]);
-      sum[i] += sample_radiance(tracer, ray_of(packet, i), hits[i], tracer->first_surface);
-    }
-  }
-  tracer->first_surface = nullptr;
-  tracer->tile_shadows = nullptr;
-  for (std::uint32_t i = 0; i < tile.count; ++i)
-    image[static_cast<std::size_t>(tile.row[i]) * frame.settings.width + tile.column[i]] =
-        sum[i] * (1.0f / static_cast<float>(sample_count));
-}
-
 // Appends the tile's pixels in Morton order.
 void add_pixels(const TileStrip& strip, std::uint32_t index, std::uint32_t pitch, Tile* tile) {
   const std::uint32_t left = strip.column + index * kTileSide;
   for (std::uint64_t mask = strip.mask[index]; mask; mask &= mask - 1) {
     std::uint32_t m = static_cast<std::uint32_t>(__builtin_ctzll(mask));
-    std::uint32_t column = left + ((m & 1) | (m >> 1 & 2) | (m >> 2 & 4));
-    std::uint32_t row = strip.row + ((m >> 1 & 1) | (m >> 2 & 2) | (m >> 3 & 4));
-    tile->column[tile->count] = static_cast<std::uint16_t>(column * pitch);
-    tile->row[tile->count++] = static_cast<std::uint16_t>(row * pitch);
+    add_pixel((left + morton_column(m)) * pitch, (strip.row + morton_row(m)) * pitch, tile);
   }
 }
 
-// Fewer rays are faster one by one: measured with bench --sparse and progressive frames of view, for 4 to 64 rays, on
-// cornell, statue, a mesh of 100,000 triangles and a room.
-constexpr std::uint32_t kPacketRaysMin = kPacketMax / 2 + 1;
-
-// So are rays of pixels that are not neighbours, unless packets are traced ray by ray anyway: a packet of rays 8 pixels
-// apart takes up to 7 times the instructions (Buddha, AVX2).
+// Rays of pixels that are not neighbours are faster one by one, unless packets are traced ray by ray anyway: a packet
+// of rays 8 pixels apart takes up to 7 times the instructions (Buddha, AVX2).
 void trace_pixels(Tracer* tracer, const Tile& tile, std::uint32_t pitch, Vec3* image) {
   const FrameData& frame = *tracer->frame;
   const bool adjacent = pitch == 1 || frame.accel_info->packets_by_rays;

@@ -105,6 +105,41 @@ Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
+// Sets the contrast of the next frames.
+Status set_contrast(Renderer* renderer, float contrast) {
+  Settings settings = renderer->settings;
+  settings.selective_contrast = contrast;
+  return change_settings(renderer, settings);
+}
+
+bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop& loop) {
+  if (loop.exact || viewer.picture_merged || viewer.options.frame_count > 0) return false;
+  return loop.selective_contrast > 0 || has(renderer.effects.mask, Effect::selective);
+}
+
+// Traces a slice of the exact picture, over one with interpolated pixels.
+Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
+  if (loop->selective_contrast == 0) {
+    loop->selective_contrast = renderer->settings.selective_contrast;
+    RETURN_IF_ERROR(set_contrast(renderer, 0));
+    RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
+    loop->progressive = afresh();
+  }
+  loop->exact = advance_progressive(renderer, loop->tile_spans, clock_ns() + kSliceNs, &loop->progressive);
+  write_picture_lines(*viewer, *renderer, loop);
+  std::uint32_t begin = 0, end = 0;
+  take_dirty_rows(&loop->progressive, &begin, &end);
+  show_rows(viewer, *renderer, loop->hud, begin, end);
+  return success();
+}
+
+// A new picture is due: it is traced as before.
+Status end_refining(Renderer* renderer, ViewerLoop* loop) {
+  const float contrast = loop->selective_contrast;
+  loop->selective_contrast = 0, loop->exact = false;
+  return contrast > 0 ? set_contrast(renderer, contrast) : success();
+}
+
 // The rows from the first to the last that the frame has traced are to be shown.
 void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
   const Coherence& c = renderer.coherence;
@@ -146,6 +181,7 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   bool follow = loop->moved && loop->progressive.shown_coarse && viewer->options.frame_count == 0;
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
     std::uint64_t start = clock_ns();
+    RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
     loop->prepare_ns = clock_ns() - start;
     loop->progressive = Progressive();
@@ -153,6 +189,7 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     loop->progressive.is_coherent = true;
     loop->moved = loop->passed = loop->finished = false;
   }
+  if (loop->finished && can_refine(*viewer, *renderer, *loop)) return refine(viewer, renderer, loop);
   if (loop->finished && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
   bool was_finished = loop->finished;
   if (!was_finished) loop->finished = advance_picture(renderer, loop);
@@ -183,10 +220,12 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   }
   if (loop->moved || loop->passed) loop->still_frames = loop->steady_frames = 0;
   bool due = loop->moved || loop->passed || (!loop->settled && viewer->options.frame_count == 0);
+  if (!due && can_refine(*viewer, *renderer, *loop)) return refine(viewer, renderer, loop);
   if (!due && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
   std::uint32_t before = budget->last;
   std::uint64_t start = clock_ns(), traced = start;
   if (due) {
+    RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(begin_budget_frame(budget, renderer));
     RETURN_IF_ERROR(render_coherent(renderer, loop->seconds, &interrupted));
     traced = clock_ns();
@@ -212,6 +251,7 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
   if (loop->finished && (loop->moved || loop->passed)) {
+    RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(servers.begin_frame(viewer->servers, renderer, loop->seconds));
     loop->moved = loop->passed = loop->finished = false;
   }

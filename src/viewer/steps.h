@@ -21,6 +21,9 @@ struct ViewerLoop {
   // With a budget: frames since camera or time moved, and how many of the latest had the same settings.
   std::uint32_t still_frames = 0, steady_frames = 0;
   bool settled = true;
+  // A picture with interpolated pixels that rests is traced again without.
+  float selective_contrast = 0;  // of the picture being refined, and of the next; 0: none is refined
+  bool exact = false;            // the picture at rest has been refined
   std::uint64_t last_ns = 0;  // when camera and time last advanced; 0: not yet
 };
 

@@ -8,6 +8,7 @@
 #include "base/printable.h"
 #include "base/seal.h"
 #include "platform/file.h"
+#include "session/black_picture.h"
 #include "session/interrupt.h"
 #include "session/picture.h"
 #include "viewer/steps.h"
@@ -274,6 +275,12 @@ Status take_screen(const ViewOptions& options, int width, int height, Viewer* vi
                  quarter_turned(*viewer) ? format.width : format.height);
 }
 
+// Prints a warning if the first finished picture is black.
+void explain_first_picture(Viewer* viewer, const Renderer& renderer) {
+  char text[kBlackTextBytes];
+  if (explain_black(renderer, viewer->material_names, text)) tell(viewer, text);
+}
+
 }  // namespace
 
 std::size_t viewer_bytes(const Settings& settings) { return picture_bytes(settings) + progressive_need(settings); }
@@ -334,13 +341,16 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
   ViewerLoop loop;
   std::size_t mark = arena_mark(renderer->frame_arena);
   loop.tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(renderer->settings));
-  loop.control = make_camera_control(renderer->camera, renderer->accel.bounds);
+  loop.control =
+      make_camera_control(renderer->camera, is_empty(viewer->focus) ? renderer->accel.bounds : viewer->focus);
   take_kept_view(*viewer, renderer, &loop);
   loop.finished = true;  // no picture in progress
   viewer->picture_merged = false;
   *again = false;
   viewer->reload = viewer->dropped[0] != 0;  // dropped while this scene was loading
   Status status;
+  const std::uint32_t finished_before = viewer->frames_finished;
+  bool is_first = !viewer->servers;
   while (status.ok) {
     take_events(viewer);
     bool enough = viewer->options.frame_count > 0 && viewer->frames_finished >= viewer->options.frame_count;
@@ -355,6 +365,9 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
     answer_buttons(viewer, renderer);
     status = step_scene(viewer, renderer, &loop);
     if (status.ok) status = step_viewer(viewer, renderer, &loop);
+    if (!status.ok || !is_first || viewer->frames_finished == finished_before) continue;
+    is_first = false;
+    explain_first_picture(viewer, *renderer);
   }
   arena_release(&renderer->frame_arena, mark);
   return status;

@@ -44,7 +44,9 @@ struct KeptView {
 struct Viewer {
   const platform::Backend* backend = nullptr;
   ViewOptions options;
-  std::string scene_path;  // reloaded when this file changes
+  std::string scene_path;                   // reloaded when this file changes
+  Box focus = empty_box();                  // of the part that the camera turns around; empty: the scene
+  std::vector<std::string> material_names;  // of the scene shown, as far as known
   int width = 0, height = 0;
   Rotation rotation = Rotation::none;
   PixelFormat format;

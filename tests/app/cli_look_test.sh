@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Background, lights and field of view from the command line. Usage: cli_look_test.sh PROGRAM [EMULATOR...]
+# Background, lights and field of view from the command line; black pictures. Usage: cli_look_test.sh PROGRAM [EMULATOR...]
 . "$(dirname "$0")/cli.sh"
 
 render() { "${run[@]}" render "$1" "${small[@]}" -o "$2" "${@:3}" 2>&1 >/dev/null; }
@@ -47,6 +47,37 @@ if "${run[@]}" render --help | grep -q glTF; then
   check usual_field_of_view cmp -s usual.ppm fov.ppm
   render model.obj narrow.ppm --fov 5 >/dev/null
   check narrow_field_of_view bash -c '! cmp -s usual.ppm narrow.ppm'
+
+  # Goal: a black picture is explained in one line, which names the material where the file does. Method: a black triangle in
+  # render, of a model, of what it bakes to and of a sequence; in view; not in a depth picture, nor the same in grey.
+  printf 'newmtl Body\nKd 0 0 0\n' >black.mtl
+  printf 'mtllib black.mtl\nusemtl Body\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >black.obj
+  black_lines() { grep -c 'exactly black: '"$1" <<<"$2"; }
+  check black_is_told test "$(black_lines "material 'Body' reflects nothing" "$(render black.obj black.ppm)")" = 1
+  check black_is_told_once test "$(black_lines '' "$(render black.obj black.ppm --frames 0:2)")" = 1
+  "${run[@]}" bake black.obj -o black.pray >/dev/null
+  check black_baked test "$(black_lines 'material 1 of 1 ' "$(render black.pray black.ppm)")" = 1
+  check black_in_view test "$(black_lines "material 'Body'" "$("${run[@]}" view black.obj "${small[@]}" --screen null --frames 3 2>&1)")" = 1
+  check depth_is_not_black test "$(black_lines '' "$(render black.obj depth.ppm --aov depth)")" = 0
+  check grey_is_not_black test "$(black_lines '' "$(render model.obj grey.ppm)")" = 0
+
+  # Goal: --focus fills the picture with a part of the model, in render and view, and a wrong name is told. Method: two
+  # triangles far apart, as objects; the background, on most of the whole picture.
+  printf 'o near\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no far\nv 99 0 0\nv 100 0 0\nv 99 1 0\nf 4 5 6\n' >two.obj
+  background_pixels() { tail -c $((32 * 24 * 3)) "$1" | od -An -v -tx1 -w3 | grep -c 'ff 00 ff'; }
+  render two.obj both.ppm --background '#ff00ff' >/dev/null
+  for part in near far; do render two.obj $part.ppm --background '#ff00ff' --focus $part >/dev/null; done
+  check whole_is_small test "$(background_pixels both.ppm)" -gt 700
+  for part in near far; do check "focus_fills_$part" test "$(background_pixels $part.ppm)" -lt 650; done
+  check focus_turntable test -z "$(render two.obj turn.ppm --focus far --turntable 4 --background '#ff00ff' | grep -v 'no camera')"
+  check turntable_stays_on_it test "$(background_pixels turn-0002.ppm)" -lt 650
+  expect focus_in_view 0 '' view two.obj "${small[@]}" --screen null --frames 1 --focus far
+  expect focus_on_nothing 1 "no part 'fat'; near ones: 'far', 'near'" render two.obj "${small[@]}" --focus fat -o refused.ppm
+  expect focus_in_view_on_nothing 1 "no part 'fat'" view two.obj "${small[@]}" --screen null --frames 1 --focus fat
+  expect focus_or_camera 2 'excludes' render two.obj "${small[@]}" --focus far --camera "0,0,5 0,0,0 0,1,0 40" -o refused.ppm
+  "${run[@]}" bake two.obj -o two.pray >/dev/null
+  expect focus_of_baked 1 'a .pray file keeps no names' render two.pray "${small[@]}" --focus far -o refused.ppm
+  check nothing_refused_is_written_either test ! -e refused.ppm
 fi
 
 finish

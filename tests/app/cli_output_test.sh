@@ -4,7 +4,7 @@
 
 tiny=(--size 8x6 --threads 1)
 has() { "${run[@]}" --help | grep -q "^ *$1 "; }
-quality="samples=1 depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64"
+quality="samples=1 depth=1 area-lights=1 cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0"
 mode_of() { stat -c %a "$1"; }
 
 # Goal: replacing a file keeps its permissions and a link to it, and a pipe stays a pipe. Method: each of them, with each kind
@@ -42,15 +42,45 @@ for name in - /dev/stdout /dev/fd/1; do
   check "figures_to_$name" grep -q '"total_bytes"' both.txt
   [ "$name" = - ] || check "text_before_them_$name" test "$(grep -nm1 '^effects' both.txt | cut -d: -f1)" -lt "$(grep -nm1 '"scene"' both.txt | cut -d: -f1)"
 done
-"${run[@]}" bake cube -o - >piped.pray
+"${run[@]}" bake cube -o - >piped.pray 2>told
 check baked_to_stdout cmp -s piped.pray seen.pray
+check bake_tells_elsewhere grep -q 'standard output: .* triangles' told
+
+# Goal: a picture goes to standard output alone, in the format asked for; everything printed goes to standard error. Method:
+# the same bytes as the file's, through a pipe; a reader that leaves early; a terminal where there is a program that makes one.
+for format in png ppm pfm raw; do
+  "${run[@]}" render cube --size 8x6 -o file.$format >/dev/null 2>&1
+  "${run[@]}" render cube --size 8x6 -o - --format $format --plan 2>told | cat >piped.$format
+  check "picture_to_stdout_$format" cmp -s file.$format piped.$format
+  check "picture_tells_elsewhere_$format" grep -q '^standard output: 8×6' told
+done
+if "${run[@]}" render cube --size 8x6 -o file.jpg >/dev/null 2>&1; then
+  "${run[@]}" render cube --size 8x6 -o - --format jpg 2>/dev/null >piped.jpg
+  check jpeg_to_stdout cmp -s file.jpg piped.jpg
+  check jpeg_magic test "$(head -c 3 file.jpg | od -An -tx1 | tr -d ' \n')" = ffd8ff
+fi
+"${run[@]}" render cube --size 8x6 -o - 2>/dev/null >piped && check png_is_usual cmp -s piped file.png
+"${run[@]}" render cube --size 8x6 -o file.gif --turntable 3 >/dev/null
+"${run[@]}" render cube --size 8x6 -o - --turntable 3 --format gif 2>/dev/null >piped && check gif_to_stdout cmp -s piped file.gif
+"${run[@]}" render cube --size 8x6 -o - 2>&- >piped && check picture_without_stderr cmp -s piped file.png
+leave_early() { "${run[@]}" render cube --size 320x240 -o - --format pfm 2>told | true; return "${PIPESTATUS[0]}"; }
+leave_early
+check closed_pipe test $? -eq 1
+check closed_pipe_is_told_once test "$(grep -c 'did not take all' told)" = 1 -a "$(grep -c '^pocketray: ' told)" = 1
+if command -v script >/dev/null; then
+  check terminal_is_refused grep -q 'standard output is a terminal' <<<"$(script -qec "${run[*]} render cube -o -" /dev/null)"
+  check terminal_is_refused_by_bake grep -q 'is a terminal' <<<"$(script -qec "${run[*]} bake cube -o -" /dev/null)"
+fi
+expect sequence_to_stdout 1 'add --format gif' render cube --size 8x6 --frames 0:3 -o -
+expect format_of_a_file 1 'is for -o -' render cube --size 8x6 --format ppm -o refused.png
+expect format_name 2 'format' render cube --size 8x6 --format bmp -o -
 expect nowhere 0 'effects' plan cube --json /dev/null
 
 # Goal: a failed write to standard output is reported and breaks nothing else. Method: a full device and a closed output, with
 # every command that prints.
 printing=("--help" "--version" "plan cube" "plan cube --json -" "render cube --size 8x6 -o full.ppm" "bake cube -o full.pray"
   "render cube --size 8x6 -o full.ppm --json -" "bench cube --size 8x6 --frames 1 --no-prices"
-  "bench cube --size 8x6 --frames 1 --no-prices --json -" "bake cube -o -")
+  "bench cube --size 8x6 --frames 1 --no-prices --json -" "bake cube -o -" "render cube --size 8x6 -o -")
 ! has split-report || printing+=("split-report cube --size 64x48 --steps 2 --frames 2 --device-ns 5000 --server-ns 500 --no-paper")
 [ $# -gt 0 ] || ! has accuracy || printing+=("accuracy cube --size 8x6 --threads 1 --reference-samples 2 --rounds 1 -o swept")
 ! has coherence-report || printing+=("coherence-report seesaw --size 8x6 --threads 1 --frames 0:1 --no-paper")
@@ -135,6 +165,22 @@ for output in no/such/a.ppm folder.ppm file/a.ppm "$(printf 'n%.0s' {1..2000}).p
   expect "told_at_once_${output:0:20}" 1 'cannot be written|is a folder|path is longer' \
     render statue "${ages[@]}" -o "$output"
 done
+for kind in gif apng; do
+  mkdir folder.$kind
+  for output in folder.$kind no/such/a.$kind file/a.$kind; do
+    expect "animation_told_$output" 1 'cannot be written|is a folder' render seesaw "${ages[@]}" --frames 0:999 -o "$output"
+  done
+done
+if has reference; then
+  mkdir folder.pfm
+  "${run[@]}" render cube --size 8x6 -o one.png >/dev/null
+  for output in folder no/such/a file/a; do
+    expect "reference_told_$output" 1 'cannot be written|is a folder' reference statue --size 2048x2048 --samples 64 -o $output.pfm
+    expect "reference_json_told_$output" 1 'cannot be written|is a folder' reference statue --size 2048x2048 --samples 64 -o r.pfm --json $output.json
+    expect "compare_json_told_$output" 1 'cannot be written|is a folder' compare one.png one.png --json $output.json
+  done
+  expect compare_told 1 'cannot be written' compare one.png one.png -o no/such/a.png
+fi
 for output in no/such/a.json folder.json; do
   expect "render_json_told_$output" 1 'cannot be written|is a folder' render statue "${ages[@]}" -o refused.ppm --json "$output"
   expect "bench_json_told_$output" 1 'cannot be written|is a folder' bench statue "${ages[@]}" --frames 1000 --json "$output"

@@ -10,6 +10,11 @@ check pfm_size test "$(tail -c $((32 * 24 * 12)) a.pfm | wc -c)" -eq $((32 * 24 
 expect render_raw 0 'ns per pixel' render "$subject" "${small[@]}" --raw-format rgb565 --rotate 90 --dither -o a.raw
 check raw_size test "$(stat -c %s a.raw)" -eq $((32 * 24 * 2))
 for aov in depth normal triangle cost; do expect "aov_$aov" 0 'ns per pixel' render "$subject" "${small[@]}" --aov $aov -o "$aov.pfm"; done
+expect aov_is_told 0 'cost: dark violet is 0, yellow [0-9]+ boxes' render "$subject" --size 160x48 --threads 2 --aov cost -o legend.ppm
+expect aov_without_legend 0 'ns per pixel' render "$subject" --size 160x48 --threads 2 --aov cost --no-legend -o plain.ppm
+check legend_is_below_the_picture cmp -s <(head -c $((14 + 160 * 37 * 3)) legend.ppm) <(head -c $((14 + 160 * 37 * 3)) plain.ppm)
+check legend_is_there bash -c '! cmp -s legend.ppm plain.ppm'
+expect aov_raw_legend 0 '' render "$subject" --size 160x48 --threads 2 --aov cost --rotate 90 -o legend.raw
 expect sequence 0 'per frame' render seesaw "${small[@]}" --frames 3:5 -o s.ppm
 for n in 3 4 5; do check "sequence_file_$n" test -s s-000$n.ppm; done
 check no_part_file_is_left test -z "$(ls ./*.part 2>/dev/null)"

@@ -11,7 +11,7 @@ expect unknown_option 2 'nonsense' render cornell --nonsense
 expect unknown_scene 1 'no_such_scene' render no_such_scene -o a.ppm
 expect bad_size 1 '320x240' render cube --size 0y3 -o a.ppm
 expect bad_size_zero 1 'width' render cube --size 0x3 -o a.ppm
-expect bad_ending 1 '\.png' render cube "${small[@]}" -o a.jpeg
+expect bad_ending 1 '\.png' render cube "${small[@]}" -o a.bmp
 expect bad_folder 1 'cannot be written' render cube "${small[@]}" -o no/such/folder/a.ppm
 expect bad_depth 1 'depth' render cube "${small[@]}" --depth 99 -o a.ppm
 expect bad_effect 1 'unknown effect' render cube "${small[@]}" --effects auto,-sparkle -o a.ppm

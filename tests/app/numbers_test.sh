@@ -38,7 +38,7 @@ sweep() {
 
 scene="--samples --depth --area-lights --cut-off --threads --camera-index --exposure --memory --size"
 small=(--size 8x6 --threads 1 --memory 4M)
-sweep "${scene/ --size/} --time --orbit --rotate --frames --budget-ms" render cube "${small[@]}" -o a.ppm
+sweep "${scene/ --size/} --time --orbit --turntable --rotate --frames --budget-ms" render cube "${small[@]}" -o a.ppm
 sweep "--size" render cube --memory 4M -o a.ppm
 sweep "$scene" plan cube
 sweep "--frames" bench cube "${small[@]}" --no-prices --json nowhere/a.json

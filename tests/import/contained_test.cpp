@@ -39,11 +39,14 @@ void make_triangle(ImportedScene* imported) {
   imported->scene.materials = {&arrays->material, 1};
   imported->storage = arrays;
   imported->warning = "not used: a hat";
+  imported->parts = {{"brim of hat", {{-1, 0.1f, 0}, {1, 1e30f, 3}}}, {"two\nlines", {{0, 0, 0}, {0, 0, 0}}}};
+  imported->material_names = {"felt", "", "two\nlines"};
 }
 
 }  // namespace
 
-// Goal: the scene and warning of a contained reader arrive. Method: a triangle; all descriptors are closed again.
+// Goal: the scene, warning and names of a contained reader arrive. Method: a triangle; all descriptors are closed
+// again.
 TEST_CASE("contained_scene_and_warning_arrive") {
   int before = dup(0);
   close(before);
@@ -53,6 +56,12 @@ TEST_CASE("contained_scene_and_warning_arrive") {
     REQUIRE(result.scene.triangles.count == 1);
     CHECK(result.scene.positions[1] == Vec3{1, 0, 0});
     CHECK(result.warning == "not used: a hat");
+    REQUIRE(result.parts.size() == 2);
+    CHECK(result.parts[0].first == "brim of hat");
+    CHECK(result.parts[0].second.low == Vec3{-1, 0.1f, 0});
+    CHECK(result.parts[0].second.high == Vec3{1, 1e30f, 3});
+    CHECK(result.parts[1].first == "two lines");
+    CHECK(result.material_names == std::vector<std::string>{"felt", "", "two lines"});
   }
   int after = dup(0);
   close(after);

@@ -152,7 +152,7 @@ TEST_CASE("gltf_textures_keep_texels_sampler_transform_and_uv_set") {
                                                           "{\"magFilter\":9728,\"wrapS\":33071,\"wrapT\":33648}")));
   const Scene& s = imported.scene;
   REQUIRE(s.textures.count == 2);
-  CHECK(s.texels.count == 4);
+  CHECK(s.texels.count == 4 + 1);  // and the level of one texel
   const std::uint8_t expected[16] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 128, 255, 255, 255, 0};
   CHECK(std::memcmp(s.texels.data, expected, 16) == 0);
   const Material& m = s.materials[0];
@@ -167,6 +167,25 @@ TEST_CASE("gltf_textures_keep_texels_sampler_transform_and_uv_set") {
   const float u = t[0][0] * 1 + t[0][1] * 0 + t[0][2], v = t[1][0] * 1 + t[1][1] * 0 + t[1][2];
   CHECK(u == doctest::Approx(0.5));
   CHECK(v == doctest::Approx(0.25 - 2));
+}
+
+// Goal: a sampler that names a filter without mip maps gets no levels, any other does, and so does a texture without
+// one; options can leave them out. Method: each value of minFilter, and none.
+TEST_CASE("gltf_samplers_choose_mip_maps") {
+  const char* material = "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}";
+  auto level_count = [&](const std::string& sampler, const ImportOptions& options = ImportOptions()) {
+    const ImportedScene imported = load_text(
+        triangle_gltf(material, images(kColors, "{\"source\":0,\"sampler\":0}", "{" + sampler + "}")), options);
+    REQUIRE(imported.scene.textures.count == 1);
+    CHECK(imported.scene.texels.count == (imported.scene.textures[0].level_count == 2 ? 5 : 4));
+    return static_cast<int>(imported.scene.textures[0].level_count);
+  };
+  for (const char* none : {"9728", "9729"}) CHECK(level_count(std::string("\"minFilter\":") + none) == 1);
+  for (const char* mip : {"9984", "9985", "9986", "9987"}) CHECK(level_count(std::string("\"minFilter\":") + mip) == 2);
+  CHECK(level_count("") == 2);
+  ImportOptions options;
+  options.mip_maps = false;
+  CHECK(level_count("", options) == 1);
 }
 
 // Goal: a metallic-roughness texture becomes a map of numbers, with factors and ranges; the material has the lobes of

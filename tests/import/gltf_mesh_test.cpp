@@ -28,6 +28,26 @@ std::string mesh_document(const std::string& primitives, const std::string& node
 
 }  // namespace
 
+// Goal: named nodes have the bounds of their meshes and of all below them, in the world; a node without a name has its
+// mesh's. Method: a triangle under a moved parent and beside it; an empty node.
+TEST_CASE("gltf_parts_have_names_and_bounds") {
+  GltfWriter w;
+  w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const ImportedScene s = load_text(
+      w.gltf("\"meshes\":[{\"name\":\"leaf\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                 "\"nodes\":[{\"name\":\"tree\",\"translation\":[10,0,0],\"children\":[1,2,3]},"
+                 "{\"name\":\"branch\",\"mesh\":0},{\"mesh\":0,\"translation\":[0,5,0]},{\"name\":\"nothing\"}],"
+                 "\"scenes\":[{\"nodes\":[0]}]"));
+  REQUIRE(s.parts.size() == 3);
+  CHECK(s.parts[0].first == "tree");
+  CHECK(s.parts[0].second.low == Vec3{10, 0, 0});
+  CHECK(s.parts[0].second.high == Vec3{11, 6, 0});
+  CHECK(s.parts[1].first == "branch");
+  CHECK(s.parts[1].second.high == Vec3{11, 1, 0});
+  CHECK(s.parts[2].first == "leaf");
+  CHECK(s.parts[2].second.low == Vec3{10, 5, 0});
+}
+
 // Goal: strips and fans become the same triangles, all facing one way; modes without triangles are reported. Method: a
 // flat quad of four vertices in every mode.
 TEST_CASE("gltf_primitive_modes_make_triangles_that_face_alike") {

@@ -12,7 +12,7 @@
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-all_suites="base effect brdf indirect accel hard shade reference present plan golden pipeline temporal split wire remote split_report
+all_suites="base scene effect brdf indirect accel hard shade reference present plan golden pipeline temporal split wire remote split_report
   accuracy radiosity session app budget sweep viewer platform api"
 import_suites="import fuzz"  # need the importers, which take longer to build: only for faults that name one
 seconds_max=240  # anything longer counts as a hang

@@ -23,6 +23,17 @@ bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 }  // namespace
 
+// Goal: exposure is measured on traced pixels: a picture with interpolated ones is as bright as one without. Method:
+// differential, at a contrast that interpolates most pixels.
+TEST_CASE("change_settings_keeps_the_measured_exposure") {
+  auto generated = generate_scene(kAllFeatures, 3);
+  Settings settings = settings_for(kAllFeatures, 60, 45);
+  auto exact = make_renderer(generated->scene, settings);
+  settings.selective_contrast = 1;
+  auto interpolated = make_renderer(generated->scene, settings);
+  CHECK(measure_exposure(&interpolated->renderer) == measure_exposure(&exact->renderer));
+}
+
 // Goal: a renderer with changed settings equals one started with them. Method: scenes with every effect, started with
 // the maximum of points per area light; change one setting after the other, in both directions; compare the bits of the
 // picture with those of a fresh renderer.

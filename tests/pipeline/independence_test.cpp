@@ -16,7 +16,12 @@ namespace {
 
 constexpr std::uint32_t kRich = kAllFeatures;
 
-Settings small_settings() { return settings_for(kRich, 45, 34); }
+Settings small_settings(float contrast = 0) {
+  Settings settings = settings_for(kRich, 45, 34);
+  settings.selective_contrast = contrast;
+  return settings;
+}
+constexpr float kContrasts[] = {0, 0.25f};  // every pixel traced; or some interpolated between others
 
 bool same_image(const Array<Vec3>& image, const Picture& picture) {
   return image.count == picture.size() && std::memcmp(image.data, picture.data(), image.bytes()) == 0;
@@ -61,28 +66,44 @@ TEST_CASE("picture_is_independent_of_threads") {
   }
 }
 
+// Goal: the same where threads keep traced pixels for the rows below; only the number of rays depends on them.
+TEST_CASE("picture_with_interpolated_pixels_is_independent_of_threads") {
+  auto generated = generate_scene(kRich, 5);
+  const Picture expected = render_picture(generated->scene, small_settings(0.25f), 0.4);
+  CHECK(!same_picture(expected, render_picture(generated->scene, small_settings(), 0.4)));
+  for (std::uint32_t threads : {2u, 3u, 7u}) {
+    Settings settings = small_settings(0.25f);
+    settings.threads = threads;
+    CAPTURE(threads);
+    for (int repeat = 0; repeat < 5; ++repeat)
+      CHECK(same_picture(render_picture(generated->scene, settings, 0.4), expected));
+  }
+}
+
 // Goal: the picture does not depend on how a frame is divided into spans, nor on their order: threads, servers and
 // temporal coherence rely on that. Method: differential, shuffled pieces of random length by one tracer.
 TEST_CASE("picture_is_independent_of_spans") {
   auto generated = generate_scene(kRich, 6);
-  auto test = make_renderer(generated->scene, small_settings());
-  Renderer& r = test->renderer;
-  REQUIRE(render_frame(&r, 0.9).ok);
-  Picture expected(r.image.begin(), r.image.end());
-  Rng rng = make_rng(3);
-  for (int round = 0; round < 4; ++round) {
-    std::vector<Span> spans;
-    for (std::uint32_t row = 0; row < r.settings.height; ++row)
-      for (std::uint32_t begin = 0, end; begin < r.settings.width; begin = end) {
-        end = std::min(begin + 1 + next_u32(&rng) % 20, r.settings.width);
-        spans.push_back(
-            {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)});
-      }
-    shuffle(&rng, &spans);
-    Picture picture(expected.size(), Vec3{-1, -1, -1});
-    Tracer tracer = make_tracer(r.frame);
-    trace_spans(&tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, picture.data());
-    CHECK(same_picture(picture, expected));
+  for (float contrast : kContrasts) {
+    auto test = make_renderer(generated->scene, small_settings(contrast));
+    Renderer& r = test->renderer;
+    REQUIRE(render_frame(&r, 0.9).ok);
+    Picture expected(r.image.begin(), r.image.end());
+    Rng rng = make_rng(3);
+    for (int round = 0; round < 4; ++round) {
+      std::vector<Span> spans;
+      for (std::uint32_t row = 0; row < r.settings.height; ++row)
+        for (std::uint32_t begin = 0, end; begin < r.settings.width; begin = end) {
+          end = std::min(begin + 1 + next_u32(&rng) % 20, r.settings.width);
+          spans.push_back(
+              {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)});
+        }
+      shuffle(&rng, &spans);
+      Picture picture(expected.size(), Vec3{-1, -1, -1});
+      Tracer tracer = make_tracer(r.frame);
+      trace_spans(&tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, picture.data());
+      CHECK(same_picture(picture, expected));
+    }
   }
 }
 
@@ -103,8 +124,9 @@ TEST_CASE("picture_is_independent_of_accelerator") {
 // Goal: progressive refinement ends with the picture of a direct frame. Method: differential, stopping at every batch.
 TEST_CASE("picture_is_independent_of_progressive_refinement") {
   auto generated = generate_scene(kRich, 8);
-  for (std::uint32_t threads : {1u, 3u}) {
-    Settings settings = small_settings();
+  for (int i = 0; i < 4; ++i) {
+    const std::uint32_t threads = i % 2 ? 3 : 1;
+    Settings settings = small_settings(kContrasts[i / 2]);
     Picture expected = render_picture(generated->scene, settings, 0.3);
     settings.threads = threads;
     auto test = make_renderer(generated->scene, settings);
@@ -124,9 +146,11 @@ TEST_CASE("picture_is_independent_of_progressive_refinement") {
 TEST_CASE("picture_is_independent_of_earlier_frames") {
   auto generated = generate_scene(kRich, 9);
   auto test = make_renderer(generated->scene, small_settings());
-  for (double seconds : {1.5, 0.2, 1.0, 0.0}) {
-    REQUIRE(render_frame(&test->renderer, seconds).ok);
-    CAPTURE(seconds);
-    CHECK(same_image(test->renderer.image, render_picture(generated->scene, small_settings(), seconds)));
-  }
+  for (double seconds : {1.5, 0.2, 1.0, 0.0})
+    for (float contrast : kContrasts) {  // without memory planned for corners
+      REQUIRE(change_settings(&test->renderer, small_settings(contrast)).ok);
+      REQUIRE(render_frame(&test->renderer, seconds).ok);
+      CAPTURE(seconds);
+      CHECK(same_image(test->renderer.image, render_picture(generated->scene, small_settings(contrast), seconds)));
+    }
 }

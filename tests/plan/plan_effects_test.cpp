@@ -52,6 +52,9 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::alpha_blend), bit(E::alpha_blend)},
       {bit(F::emission), bit(E::emission) | bit(E::area_light) | bit(E::shadow)},
       {bit(F::texture), bit(E::texture)},
+      {bit(F::texture) | bit(F::mip_map), bit(E::texture) | bit(E::mip_map)},
+      {bit(F::mip_map), 0},  // of no texture
+      {bit(F::normal_map) | bit(F::mip_map), bit(E::normal_map) | bit(E::mip_map)},
       {bit(F::vertex_color), bit(E::vertex_color)},
       {bit(F::smooth_normal), bit(E::smooth_normal)},
       {bit(F::ambient), bit(E::ambient)},
@@ -67,7 +70,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::normal_map), bit(E::normal_map)},
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
-      {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity)},  // stored; by request
+      // Stored, or by request.
+      {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective)},
   };
   for (const Row& row : rows) {
     CAPTURE(row.features);
@@ -94,6 +98,15 @@ TEST_CASE("plan_effects_give_reasons") {
   CHECK(reason(plan, Effect::animation) == "nothing moves");  // was off anyway
   CHECK(has(plan.mask, Effect::absorption));
   CHECK_FALSE(has(plan.mask, Effect::mirror));
+  CHECK(reason(plan, Effect::selective) == "every pixel traced");
+  settings.selective_contrast = 0.25f;
+  plan = plan_effects(generate_scene(features, 1)->scene, settings);
+  CHECK(reason(plan, Effect::selective) == "contrasts below 0.25 interpolated");
+  CHECK(has(plan.mask, Effect::selective));
+  settings.indirect = indirect_choice(Effect::instant_radiosity);
+  plan = plan_effects(generate_scene(features, 1)->scene, settings);
+  CHECK(reason(plan, Effect::selective) == "instant radiosity needs every pixel");
+  CHECK_FALSE(has(plan.mask, Effect::selective));
 }
 
 // Goal: --indirect chooses the method, --effects cannot add another to it. Method: an ambient scene and a scene without

@@ -117,6 +117,11 @@ TEST_CASE("default_lights_come_only_where_nothing_gives_light") {
     CHECK(lit_test->renderer.scene.info.default_lights == 0);
     CHECK(lit_test->renderer.scene.lights.count == lit->lights.size());
   }
+  auto off = generate_scene(bit(Feature::point_light), 1);
+  for (Light& light : off->lights) light.intensity = {0, 0, 0};
+  off->bind();
+  CHECK(has_light(off->scene));  // which the caller may switch on
+  CHECK_FALSE(lights_itself(off->scene));
   auto unlit = dark_scene();
   for (Material& m : unlit->materials) m.unlit = 1;
   CHECK(has_light(unlit->scene));

@@ -66,6 +66,51 @@ TEST_CASE("file_is_replaced_as_a_whole") {
   CHECK(folder.names() == std::vector<std::string>{"a"});
 }
 
+// Goal: bytes of a file can be written anew, those of a pipe cannot. Method: the middle of a file; a pipe.
+TEST_CASE("file_bytes_are_rewritten") {
+  Folder folder;
+  FileError error;
+  FileWriter writer;
+  REQUIRE(open_writer(folder.file("a").c_str(), &writer, &error));
+  write_bytes(&writer, "abcdef", 6);
+  CHECK(rewrite_bytes(&writer, 2, "XY", 2));
+  write_bytes(&writer, "g", 1);
+  REQUIRE(close_writer(&writer, &error));
+  CHECK(content_of(folder.file("a")) == "abXYefg");
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  REQUIRE(open_writer(("/dev/fd/" + std::to_string(ends[1])).c_str(), &writer, &error));
+  CHECK_FALSE(rewrite_bytes(&writer, 0, "XY", 2));
+  CHECK(close_writer(&writer, &error));
+  close(ends[0]), close(ends[1]);
+}
+
+// Goal: standard output kept for data gets nothing else. Method: in another process with both outputs in files, data
+// and prints before and after.
+TEST_CASE("file_output_is_kept_for_data") {
+  Folder folder;
+  pid_t child = fork();
+  if (child == 0) {
+    FileError error;
+    FileWriter writer;
+    bool ok =
+        std::freopen(folder.file("out").c_str(), "w", stdout) && std::freopen(folder.file("told").c_str(), "w", stderr);
+    std::printf("before ");
+    ok = ok && !is_output_for_data() && keep_output_for_data(&error) && is_output_for_data();
+    std::printf("after ");
+    ok = ok && keep_output_for_data(&error) && open_writer("-", &writer, &error);
+    if (ok) write_bytes(&writer, "data", 4);
+    ok = ok && close_writer(&writer, &error);
+    std::fflush(stdout);
+    _exit(ok ? 0 : 1);
+  }
+  int status = 1;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
+  CHECK(content_of(folder.file("out")) == "before data");
+  CHECK(content_of(folder.file("told")) == "after ");
+}
+
 // Goal: two programs that write one file both succeed, and the last one's content is complete. Method: another process
 // writes it while this one does.
 TEST_CASE("file_of_two_writers_is_whole") {

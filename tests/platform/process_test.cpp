@@ -9,8 +9,10 @@
 
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 using namespace platform;
 
@@ -59,6 +61,38 @@ TEST_CASE("process_runs_with_its_words_in_its_folder") {
   CHECK_FALSE(wait_for(&process));
   REQUIRE(start_shell("exit 0", "", folder.file("none").c_str(), &process));
   CHECK_FALSE(wait_for(&process));
+}
+
+// Goal: a program reads what it is fed, to the last byte, and its errors arrive in a file; one that ends early is
+// noticed and ends nothing else. Method: a shell that counts more bytes than a pipe holds; one that reads none.
+TEST_CASE("process_is_fed") {
+  Folder folder;
+  Process process;
+  FileError error;
+  const std::string counted = folder.file("counted"), errors = folder.file("errors");
+  const std::string count = "wc -c >'" + counted + "'; echo told >&2";
+  const char* counting[] = {"sh", "-c", count.c_str(), nullptr};
+  REQUIRE(start_fed_program("/bin/sh", counting, errors.c_str(), &process, &error));
+  const std::vector<char> bytes(300'000, 'x');
+  CHECK(feed(&process, bytes.data(), bytes.size()));
+  CHECK(feed(&process, bytes.data(), 7));
+  end_feed(&process);
+  CHECK(wait_for(&process));
+  std::ifstream number(counted), line(errors);
+  int sum = 0;
+  std::string told;
+  CHECK((number >> sum && sum == 300'007));
+  CHECK((line >> told && told == "told"));
+
+  const auto usual = signal(SIGPIPE, SIG_IGN);
+  const char* deaf[] = {"sh", "-c", "exec <&-; exit 4", nullptr};
+  REQUIRE(start_fed_program("/bin/sh", deaf, errors.c_str(), &process, &error));
+  bool taken = true;
+  for (int i = 0; i < 100 && taken; ++i) taken = feed(&process, bytes.data(), bytes.size());
+  CHECK_FALSE(taken);
+  kill_process(&process);
+  CHECK(process.input < 0);
+  signal(SIGPIPE, usual);
 }
 
 // Goal: a program is watched without waiting, and killed. Method: one that sleeps for longer than the test may take.

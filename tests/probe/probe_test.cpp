@@ -109,12 +109,17 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   Settings settings = settings_for(kAllFeatures, 24, 18);
   settings.indirect = indirect_choice(Effect::instant_radiosity);
   auto with_virtual_lights = make_renderer(generated->scene, settings);
-  const EffectMask all = test->renderer.effects.mask | with_virtual_lights->renderer.effects.mask;
+  Settings selective = settings_for(kAllFeatures, 24, 18);
+  selective.selective_contrast = 0.25f;
+  auto interpolated = make_renderer(generated->scene, selective);
+  const EffectMask all = interpolated->renderer.effects.mask | with_virtual_lights->renderer.effects.mask;
   REQUIRE(all == (kAllEffects & ~bit(Effect::radiosity)));  // nothing is stored
   for (const EffectRow& row : kEffectList) {
     if (!has(all, row.effect)) continue;
     CAPTURE(std::string(row.name));
-    Renderer* r = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer : &test->renderer;
+    Renderer* r = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer
+                  : row.effect == Effect::selective       ? &interpolated->renderer
+                                                          : &test->renderer;
     CHECK(signal_of_render_without(row.effect, r) == SIGABRT);
   }
 }

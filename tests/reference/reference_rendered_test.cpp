@@ -44,12 +44,14 @@ Comparison compare(const Scene& scene, Settings settings, double bound) {
 // beyond 10⁻⁴ of a pixel's radiance, as rays next to an edge may have, in at most one pixel of two hundred.
 TEST_CASE("reference_as_rendered_is_the_renderer_but_for_rounding") {
   std::uint32_t side = effort_side(24);
+  const std::uint32_t all = kAllFeatures & ~bit(Feature::mip_map);  // its holes are repeated: too many edges
   for (int i = 0; i <= kFeatureCount; ++i) {
-    std::uint32_t set = i == kFeatureCount ? kAllFeatures : 1u << i | bit(Feature::point_light);
+    std::uint32_t set = i == kFeatureCount ? all : 1u << i | bit(Feature::point_light);
     auto s = generate_scene(set, 23);
     if (i % 2) s->cameras[0].projection = Projection::orthographic, s->cameras[0].vertical_extent = 3;
     s->bind();
     Settings settings = settings_for(set, side, side);
+    settings.texture_filter = TextureFilter::bilinear;  // as the reference, which takes samples instead of levels
     settings.ray_depth = 5;
     Comparison c = compare(s->scene, settings, 1e-4);
     CAPTURE(set);

@@ -172,6 +172,7 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
         m.specular = {0.8f, 0.7f, 0.5f}, m.specular_tinted = {0.7f, 0.7f, 0.3f}, m.mirror_tinted = m.mirror * 0.5f;
       }
     Settings settings = settings_for(set, 8, 8);
+    settings.texture_filter = TextureFilter::bilinear;  // as the reference, which takes samples instead of levels
     settings.cut_off_levels = 0, settings.ray_depth = kRayDepthMax;
     TestReference t(s->scene, settings);
     const FrameData& frame = t.renderer->renderer.frame;

@@ -192,8 +192,8 @@ bool sender_accepts(const Field& field, double x) { return can_encode(message_wi
 // The decoder's limits, with bytes our encoder never writes: the field is located by what changes with its lowest byte.
 bool receiver_accepts(const Field& field, double x) {
   double other = field.byte_count <= 2   ? 2
-                 : field.byte_count == 4 ? double(std::nextafterf(1, 2))
-                                         : std::nextafter(1, 2);
+                 : field.byte_count == 4 ? double(std::nextafterf(1, 0))
+                                         : std::nextafter(1.0, 0.0);
   std::vector<std::uint8_t> bytes = bytes_with(field, 1), changed = bytes_with(field, other);
   std::size_t at = kHeaderBytes;
   while (at < bytes.size() && bytes[at] == changed[at]) ++at;

@@ -10,6 +10,7 @@
 #include "base/limits.h"
 #include "scene/baked.h"
 #include "scene/full_scene.h"
+#include "scene/texel_blocks.h"
 #include "support/hard_case.h"
 
 using namespace pocketray;
@@ -205,12 +206,28 @@ TEST_CASE("validate_scene_refuses_bad_textures") {
   refuses("textures[0]", [](FullScene* f) { f->textures[0].width = 0; });
   refuses("textures[1]", [](FullScene* f) { f->textures[1].height = 0; });
   refuses("textures[1]", [](FullScene* f) { f->textures[1].height = 5; });
-  refuses("textures[1]", [](FullScene* f) { f->textures[1].texel_begin = 7; });
+  refuses("textures[1]", [](FullScene* f) { f->textures[1].texel_begin = 8; });
   refuses("textures[0]", [](FullScene* f) { f->textures[0].texel_begin = kNone; });
   refuses("textures[0]", [](FullScene* f) { f->textures[0].width = kTextureSideMax + 1; });
   refuses("textures[0]", [](FullScene* f) { f->textures[0].wrap_u = unknown<Wrap>(3); });
   refuses("textures[0]", [](FullScene* f) { f->textures[0].wrap_v = unknown<Wrap>(255); });
   refuses("textures[0]", [](FullScene* f) { f->textures[0].nearest = 2; });
+  refuses("textures[0] of 3 by 2 texels has 0 levels", [](FullScene* f) { f->textures[0].level_count = 0; });
+  refuses("has 3 levels, it must have 1 to 2", [](FullScene* f) { f->textures[0].level_count = 3; });
+  refuses("has 255 levels", [](FullScene* f) { f->textures[1].level_count = 255; });
+  refuses("textures[1] extends beyond", [](FullScene* f) { f->texels.pop_back(); });  // its last level
+  accepts([](FullScene* f) { f->textures[1].level_count = 2, f->texels.pop_back(); });
+  refuses("textures[0] is of an unknown format", [](FullScene* f) { f->textures[0].format = unknown<TexelFormat>(7); });
+  refuses("textures[1] is of an unknown format", [](FullScene* f) { f->textures[1].reserved[2] = 1; });
+  for (int format = 1; format < kTexelFormatCount; ++format) {
+    const auto blocks = static_cast<TexelFormat>(format);
+    const std::uint32_t words = level_words(blocks, 1, 4, 3);
+    auto resize = [=](FullScene* f, std::uint32_t count) {
+      f->textures[1].format = blocks, f->texels.resize(f->textures[1].texel_begin + count);
+    };
+    accepts([=](FullScene* f) { resize(f, words); });
+    refuses("textures[1] extends beyond", [=](FullScene* f) { resize(f, words - 1); });
+  }
 }
 
 // Goal: lights and cameras that would give NaN are refused. HARDCASES row 28.

@@ -35,7 +35,7 @@ void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_c
   rich.double_sided = 0, rich.alpha_mode = AlphaMode::blend;
   rich.diffuse_texture.texture = 0, rich.emission_texture.texture = 1;
   f->materials = {plain, rich};
-  f->textures = {{0, 3, 2, Wrap::repeat, Wrap::clamp, 1}, {6, 1, 4, Wrap::mirror, Wrap::repeat, 0}};
+  f->textures = {{0, 3, 2, Wrap::repeat, Wrap::clamp, 1, 2}, {7, 1, 4, Wrap::mirror, Wrap::repeat, 0, 3}};
   f->materials.push_back(plain);
   f->materials[2].specular = {0.5f, 0.75f, 1};
   f->material_maps.resize(3);
@@ -46,6 +46,7 @@ void make_surface(Rng* rng, std::uint32_t vertex_count, std::uint32_t triangle_c
   maps.specular.texture = 0, maps.specular_color.texture = 1;
   maps.normal.texture = 0, maps.normal_scale = -0.5f, maps.occlusion.texture = 1, maps.occlusion_strength = 0.75f;
   for (int i = 0; i < 10; ++i) f->texels.push_back(next_u32(rng));
+  f->texels.insert(f->texels.end(), {0x80402010u, 0xFF00FF00u, 0x01020304u, 0xFFFFFFFFu});
 }
 
 void make_motion(Rng* rng, std::uint32_t vertex_count, FullScene* f) {

@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
 #include "base/color.h"
+#include "base/rng.h"
+#include "scene/texel_blocks.h"
 #include "shade/shade_helpers.h"
 #include "shade/texture.h"
 #include "support/hard_case.h"
@@ -86,6 +88,47 @@ TEST_CASE("hard_62_texture_coordinates_saturate") {
 TEST_CASE("texture_filter_can_be_overridden") {
   CHECK(at(.45f, .25f, Wrap::repeat, Wrap::repeat, false, TextureFilter::nearest).rgb == Vec3{1, 0, 0});
   CHECK(at(.5f, .25f, Wrap::repeat, Wrap::repeat, true, TextureFilter::bilinear).rgb == Vec3{.5f, .5f, 0});
+}
+
+// Goal: a texture in blocks is sampled as the exact one of its decoded texels, at every level, with every filter, bit
+// for bit. Method: random blocks of every format, odd sizes, random places and footprints, both kinds of look-up.
+TEST_CASE("texture_in_blocks_is_that_of_its_texels") {
+  Rng rng = make_rng(12);
+  for (int format = 1; format < kTexelFormatCount; ++format)
+    for (std::uint16_t width : {1, 4, 13, 32})
+      for (std::uint16_t height : {3, 8, 21}) {
+        Texture blocks = {0, width, height, Wrap::repeat, Wrap::mirror, 0, 1, static_cast<TexelFormat>(format)};
+        blocks.level_count = static_cast<std::uint8_t>(level_count_max(width, height));
+        Texture exact = blocks;
+        exact.format = TexelFormat::exact;
+        const std::uint32_t words = block_words(blocks.format);
+        std::vector<std::uint32_t> stored(level_words(blocks.format, width, height, blocks.level_count)), texels;
+        for (std::uint32_t& word : stored) word = next_u32(&rng);
+        for (std::uint32_t level = 0; level < blocks.level_count; ++level) {
+          const std::uint32_t* begin = stored.data() + level_words(blocks.format, width, height, level);
+          const std::uint32_t across = block_count(blocks.format, level_side(width, level));
+          for (std::uint32_t y = 0; y < level_side(height, level); ++y)
+            for (std::uint32_t x = 0; x < level_side(width, level); ++x)
+              texels.push_back(block_texel(blocks.format, begin + (y / 4 * across + x / 4) * words, y % 4 * 4 + x % 4));
+        }
+        Scene a, b;
+        a.textures = {&blocks, 1}, a.texels = {stored.data(), static_cast<std::uint32_t>(stored.size())};
+        b.textures = {&exact, 1}, b.texels = {texels.data(), static_cast<std::uint32_t>(texels.size())};
+        TextureUse use;
+        use.texture = 0;
+        int unequal = 0;
+        for (int i = 0; i < 200; ++i) {
+          const Vec2 uv = {next_float(&rng) * 4 - 2, next_float(&rng) * 4 - 2};
+          const float area = next_float(&rng) * next_float(&rng) * next_float(&rng);
+          const auto filter = static_cast<TextureFilter>(next_u32(&rng) % 4);
+          const Rgba p = sample_texture(a, use, uv, filter, area), q = sample_texture(b, use, uv, filter, area);
+          unequal += !(p.rgb == q.rgb && p.alpha == q.alpha);
+          unequal += !(sample_numbers(a, use, uv, filter) == sample_numbers(b, use, uv, filter));
+        }
+        CAPTURE(format);
+        CAPTURE(width);
+        CHECK(unequal == 0);
+      }
 }
 
 // Goal: textures reach the picture in the right place: uv, transform and base colour. Method: rays at texel centres of

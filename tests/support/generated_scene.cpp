@@ -136,6 +136,15 @@ void add_motion(GeneratedScene* s, std::uint32_t first_vertex, std::uint32_t ver
   if (!s->lights.empty()) s->lights[0].node = 0;
 }
 
+// Levels for all textures, each repeated until pixels cover several texels.
+void add_mip_maps(GeneratedScene* s) {
+  auto repeat = [](TextureUse* use) { use->m[0][0] = use->m[1][1] = 9; };
+  for (std::uint32_t i = 0; i < s->textures.size(); ++i) add_levels(s, i);
+  for (Material& m : s->materials) repeat(&m.diffuse_texture), repeat(&m.emission_texture);
+  for (MaterialMaps& maps : s->material_maps)
+    repeat(&maps.metallic_roughness), repeat(&maps.occlusion), repeat(&maps.specular);
+}
+
 }  // namespace
 
 std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint64_t seed) {
@@ -148,6 +157,7 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   add_panes(s.get(), features, &rng);
   add_mapped_box(s.get(), features, &rng);
   if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
+  if (has(features, Feature::mip_map)) add_mip_maps(s.get());
   add_lights(s.get(), features, &rng);
   if (has(features, Feature::animation)) add_motion(s.get(), first_vertex, vertex_count);
   aim(s.get(), {0.3f, 1.6f, 4.6f}, {0, 1, 0}, 50);

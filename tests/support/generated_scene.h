@@ -34,8 +34,9 @@ enum class Feature : int {
   metallic_roughness,
   normal_map,
   occlusion,  // shows under ambient light only
+  mip_map,    // of whatever textures there are
 };
-constexpr int kFeatureCount = 21;
+constexpr int kFeatureCount = 22;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
@@ -77,6 +78,8 @@ void add_sphere(GeneratedScene* s, const Vec3& center, float radius, int columns
 // width × height texels, 4 bytes each as R, G, B, A; returns the texture's index.
 std::uint32_t add_texture(GeneratedScene* s, int width, int height, const std::vector<std::array<int, 4>>& rgba,
                           Wrap wrap_u = Wrap::repeat, Wrap wrap_v = Wrap::repeat, bool nearest = false);
+// Gives a texture all its levels.
+void add_levels(GeneratedScene* s, std::uint32_t texture);
 void aim(GeneratedScene* s, const Vec3& eye, const Vec3& target, double vertical_fov_degrees);
 
 // Gives a material a metallic-roughness map of that texture; its own lobes become those of middling values.

@@ -4,6 +4,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "scene/metallic_roughness.h"
+#include "scene/texture_levels.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {
@@ -107,6 +108,7 @@ void add_sphere(GeneratedScene* s, const Vec3& center, float radius, int columns
 std::uint32_t add_texture(GeneratedScene* s, int width, int height, const std::vector<std::array<int, 4>>& rgba,
                           Wrap wrap_u, Wrap wrap_v, bool nearest) {
   Texture t = {};
+  t.level_count = 1;
   t.texel_begin = static_cast<std::uint32_t>(s->texels.size());
   t.width = static_cast<std::uint16_t>(width);
   t.height = static_cast<std::uint16_t>(height);
@@ -120,6 +122,18 @@ std::uint32_t add_texture(GeneratedScene* s, int width, int height, const std::v
   }
   s->textures.push_back(t);
   return static_cast<std::uint32_t>(s->textures.size() - 1);
+}
+
+void add_levels(GeneratedScene* s, std::uint32_t texture) {
+  Texture& t = s->textures[texture];
+  const std::size_t count = std::size_t(t.width) * t.height, begin = s->texels.size();
+  const std::vector<std::uint32_t> texels(s->texels.begin() + t.texel_begin, s->texels.begin() + t.texel_begin + count);
+  t.texel_begin = static_cast<std::uint32_t>(begin);
+  t.level_count = static_cast<std::uint8_t>(level_count_max(t.width, t.height));
+  s->texels.insert(s->texels.end(), texels.begin(), texels.end());
+  s->texels.resize(begin + level_texels(t.width, t.height, t.level_count));
+  std::vector<float> scratch(level_scratch_need(t.width, t.height));
+  make_levels(texels.data(), t.width, t.height, TexelKind::colors, scratch.data(), s->texels.data() + begin + count);
 }
 
 void aim(GeneratedScene* s, const Vec3& eye, const Vec3& target, double vertical_fov_degrees) {

@@ -13,6 +13,7 @@
 #include "platform/file.h"
 #include "platform/null/null.h"
 #include "session/open_scene.h"
+#include "support/generated_scene.h"
 #include "viewer/stage.h"
 
 using namespace pocketray;
@@ -244,6 +245,60 @@ void count_sleep(std::uint64_t duration) {
 }
 
 }  // namespace
+
+namespace {
+
+// Shows a still with interpolated pixels, alone or within a budget, until a time, a button pressed before; the picture.
+// *last_contrast receives the contrast of the last frame.
+Picture picture_at(double seconds, float contrast, bool budgeted, double button_at, double button_seconds = 0.2,
+                   float* last_contrast = nullptr) {
+  Stage stage;
+  if (button_at > 0) {
+    stage.press(button_at, platform::Button::left);
+    stage.press(button_at + button_seconds, platform::Button::left, false);
+  }
+  stage.leave(seconds);
+  stage.open("statue");
+  CommonOptions common;
+  common.scene = "statue", common.size = "320x60", common.threads = 1;
+  common.settings["selective"].real = contrast;
+  OpenHooks hooks;
+  hooks.output_bytes = viewer_bytes;
+  OpenScene opened;
+  REQUIRE(open_scene(common, hooks, &opened).ok);
+  REQUIRE(start_scene(&opened, common).ok);
+  OpenFront front;
+  Candidate only = candidate_of(opened.renderer.settings);
+  only.ns_per_pixel = 1000;
+  front.front.candidates[front.front.count++] = only;
+  BudgetOptions options;
+  options.ms = 1e6;
+  Budget budget;
+  start_budget(options, front, opened.renderer, 320 * 60, &budget);
+  if (budgeted) stage.viewer.budget = &budget;
+  bool again;
+  REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
+  if (last_contrast) *last_contrast = opened.renderer.settings.selective_contrast;
+  return Picture(opened.renderer.image.begin(), opened.renderer.image.end());
+}
+
+}  // namespace
+
+// Goal: what rests is refined to the exact picture, and after a move interpolated again. Method: pictures long after
+// the first and soon after a move, with every pixel traced and without; a frame takes 1/60 s of the screen's clock.
+TEST_CASE("viewer_refines_what_rests") {
+  for (bool budgeted : {false, true}) {
+    CAPTURE(budgeted);
+    const Picture exact = picture_at(20, 0, budgeted, 0);
+    CHECK(same_picture(picture_at(20, 0.25f, budgeted, 0), exact));
+    const Picture moved = picture_at(40, 0, budgeted, 19);
+    CHECK(!same_picture(moved, exact));
+    CHECK(same_picture(picture_at(40, 0.25f, budgeted, 19), moved));
+    float contrast = 0;
+    picture_at(20, 0.25f, budgeted, 19, 2, &contrast);  // still moving
+    CHECK(contrast == 0.25f);
+  }
+}
 
 // Goal: a viewer that nobody touches wakes rarely, shows nothing, and answers soon all the same. Method: count the
 // sleeps of a minute; a key at its end, and the time of the answer. Stills, and a paused animation.

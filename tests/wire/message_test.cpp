@@ -240,10 +240,11 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 87, nan},                     // cut-off
       {MessageType::frame_request, 8 + 87, {0, 0, 0x82, 0x42}},      // 65 levels
       {MessageType::frame_request, 8 + 87, {0, 0, 0x80, 0xBF}},      // −1
-      {MessageType::frame_request, 8 + 91, {3}},                     // filter
+      {MessageType::frame_request, 8 + 91, {4}},                     // filter
       {MessageType::frame_request, 8 + 92, {2}},                     // normals
       {MessageType::frame_request, 8 + 93, {kIndirectChoiceCount}},  // indirect
       {MessageType::frame_request, 8 + 94, {3}},                     // reconstruction
+      {MessageType::frame_request, 8 + 97, nan},                     // selective
       {MessageType::frame_request, 8 + more + 96, {0xFF}},           // effects
       {MessageType::frame_request, 8 + more + 100, {0xFF}},
       {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1

@@ -233,7 +233,7 @@ Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, con
   };
   Status status = open_scene(common, hooks, opened);
   if (status.ok) return start_scene(opened, common);
-  if (opened->source.bytes_wanted == 0) return status;
+  if (opened->source.bytes_wanted == 0 || !common.focus.empty()) return status;
   return open_thin(s, common, hooks.output_bytes(opened->renderer.settings), opened);
 }
 

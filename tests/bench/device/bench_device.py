@@ -10,6 +10,7 @@ import bisect
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -104,13 +105,13 @@ class Count:
                 self.parts[part] = self.parts.get(part, 0) + instructions
 
 
-def count_pixels(machine, program, scene, plugin, folder, symbols, effects="auto"):
+def count_pixels(machine, program, scene, plugin, folder, symbols, options, effects="auto"):
     qemu, cpu, _, weights = machine
     count = Count()
     for (width, height), sign in zip(SIZES, (1, -1)):
         out = os.path.join(folder, "count.txt")
         command = [qemu, "-cpu", cpu, "-plugin", f"{plugin},out={out}", "-d", "plugin", program, "render", scene,
-                   "--size", f"{width}x{height}", "--threads", "1", "--effects", effects,
+                   "--size", f"{width}x{height}", "--threads", "1", "--effects", effects, *options,
                    "-o", os.path.join(folder, "out.raw")]
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode:
@@ -141,7 +142,7 @@ def effects_in(baker, scene):
 
 def measure(arguments):
     machine = MACHINES[arguments.cpu_class]
-    results = []
+    results, options = [], shlex.split(arguments.options)
     with tempfile.TemporaryDirectory() as folder:
         plugin = build_plugin(folder)
         symbols = symbols_of(arguments.program, machine[2])
@@ -150,16 +151,18 @@ def measure(arguments):
             if not baked:
                 print(f"{scene}: skipped, since {arguments.shared}/scenes/{BUDDHA} is not there", file=sys.stderr)
                 continue
-            count = count_pixels(machine, arguments.program, baked, plugin, folder, symbols)
+            count = count_pixels(machine, arguments.program, baked, plugin, folder, symbols, options)
             result = {"scene": scene, "class": arguments.cpu_class, "compiler": compiler_of(machine[2]),
                       "instructions_per_pixel": round(count.instructions / PIXELS, 1),
                       "cycles_per_pixel": round(count.cycles / PIXELS, 1),
                       "parts": {part: round(n / PIXELS, 1) for part, n in
                                 sorted(count.parts.items(), key=lambda item: -item[1])}}
+            if options:
+                result["options"] = arguments.options
             if arguments.effects:
                 result["effects"] = {}
                 for effect in effects_in(arguments.baker, baked):
-                    without = count_pixels(machine, arguments.program, baked, plugin, folder, symbols,
+                    without = count_pixels(machine, arguments.program, baked, plugin, folder, symbols, options,
                                            f"auto,-{effect}")
                     result["effects"][effect] = round((count.instructions - without.instructions) / PIXELS, 1)
             results.append(result)
@@ -207,9 +210,12 @@ def main():
     parser.add_argument("--shared", default="../shared", help="where the Buddha's scenes/ is")
     parser.add_argument("--effects", action="store_true", help="also price each effect: render without it")
     parser.add_argument("--symbols", type=int, default=0, metavar="N", help="also list the N dearest functions")
+    parser.add_argument("--options", default="", metavar="TEXT", help='options of render, as in --options="--selective .25"')
     parser.add_argument("--json", metavar="FILE", help="write the results; - for standard output")
     parser.add_argument("--check", metavar="FILE", help="fail if a scene takes 2 %% more instructions than in FILE")
     arguments = parser.parse_args()
+    if arguments.options and arguments.check:
+        fail("the counts to --check with are those without --options")
     results = measure(arguments)
     text = json.dumps(results, indent=2) + "\n"
     if arguments.json == "-":

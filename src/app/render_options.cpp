@@ -1,0 +1,279 @@
+#include "app/render_options.h"
+
+#include <cinttypes>
+#include <cmath>
+
+#include "app/coherent_sequence.h"
+#include "base/limit_list.h"
+#include "engine/pocketray.h"
+#include "scene/content_hash.h"
+#include "session/output.h"
+#include "session/resume.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kTurntableMax = 3600;  // a tenth of a degree
+
+Status parse_aov(const std::string& text, Aov* aov) {
+  constexpr struct {
+    const char* name;
+    Aov aov;
+  } kNames[] = {{"none", Aov::none},
+                {"depth", Aov::depth},
+                {"normal", Aov::normal},
+                {"triangle", Aov::triangle},
+                {"cost", Aov::cost}};
+  for (const auto& row : kNames)
+    if (text == row.name) return *aov = row.aov, success();
+  return failure("--aov is '%s': it must be depth, normal, triangle or cost", text.c_str());
+}
+
+Status parse_raw_format(const std::string& text, PixelFormat* format) {
+  const struct {
+    const char* name;
+    PixelFormat format;
+  } kNames[] = {{"rgb565", kRgb565},     {"bgr565", kBgr565}, {"xrgb8888", kXrgb8888},
+                {"xbgr8888", kXbgr8888}, {"rgb888", kRgb888}, {"bgr888", kBgr888}};
+  for (const auto& row : kNames)
+    if (text == row.name) return *format = row.format, success();
+  return failure("--raw-format is '%s': it must be rgb565, bgr565, xrgb8888, xbgr8888, rgb888 or bgr888", text.c_str());
+}
+
+// "out.png" and 7 → "out-0007.png".
+std::string numbered_path(const std::string& path, std::uint32_t number) {
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "-%04" PRIu32, number);
+  std::size_t dot = path.rfind('.');
+  return path.substr(0, dot) + digits + path.substr(dot);
+}
+
+// Refuses pictures that servers cannot send.
+Status check_shareable(const RenderOptions& o, const RenderRequest& request) {
+  if (o.servers.addresses.empty()) return success();
+  if (request.aov != Aov::none) return failure("--server sends only colours: drop --server or --aov");
+  if (has_suffix(request.kind.c_str(), ".pfm"))
+    return failure("--server sends display levels but .pfm stores radiance: drop --server, or write .png or .ppm");
+  return success();
+}
+
+Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
+  if (!(std::fabs(o.orbit_degrees) <= 360))
+    return failure("--orbit is %g: it must lie in -360 … 360", static_cast<double>(o.orbit_degrees));
+  if (o.orbit_degrees != 0 && o.frames.empty())
+    return failure("--orbit turns the camera from frame to frame: add --frames 0:359, or use --turntable 360");
+  if (o.budget.ms == 0) return success();
+  if (!o.servers.addresses.empty())
+    return failure("--budget-ms changes settings per frame and servers cannot: drop --budget-ms or --server");
+  if (aov != Aov::none) return failure("--budget-ms renders only colours: drop --budget-ms or --aov");
+  return success();
+}
+
+// Coherence is for sequences in colour.
+const char* incoherent_because(const RenderOptions& o, Aov aov) {
+  if (o.turntable > 0) return "--turntable, which moves the camera: drop --coherence";
+  if (!o.crop.empty()) return "--crop: drop --crop or --coherence";
+  if (o.frames.empty()) return "a single frame: add --frames 0:99, or drop --coherence";
+  return aov != Aov::none ? "--aov: drop --aov or --coherence" : nullptr;
+}
+
+Status check_path(const RenderOptions& o, const std::string& path, RenderRequest* request) {
+  request->paths.push_back(path);
+  return check_outputs({{"SCENE", o.common.scene}, {"--front", o.budget.front}},
+                       {{"-o", path}, {"--json", o.common.json}});
+}
+
+// Standard output has no ending: PNG unless --format says otherwise.
+Status choose_kind(const RenderOptions& o, RenderRequest* request) {
+  request->kind = o.output;
+  if (o.output != "-")
+    return o.format.empty() ? success()
+                            : failure("--format is for -o -: the ending of -o %.200s says it", o.output.c_str());
+  request->kind = "-." + (o.format.empty() ? "png" : o.format);
+  return keep_output_for_data();
+}
+
+// Checks that each picture can be written, before rendering the first.
+Status check_paths(const RenderOptions& o, RenderRequest* request) {
+  const FrameRange& s = request->sequence;
+  RETURN_IF_ERROR(choose_kind(o, request));
+  request->animation = animation_kind(request->kind);
+  if (request->animation != AnimationKind::none) {
+    if (!s.given) return failure("-o %.200s is an animation: add --frames 0:99 or --turntable 36", o.output.c_str());
+    return check_path(o, o.output, request);
+  }
+  if (o.output == "-" && s.given)
+    return failure("-o - is one file: add --format gif or apng for a sequence, or drop --frames and --turntable");
+  RETURN_IF_ERROR(check_picture_path(request->kind));
+  for (std::uint32_t frame = s.first; frame <= s.last; ++frame)
+    RETURN_IF_ERROR(check_path(o, s.given ? numbered_path(o.output, frame) : o.output, request));
+  return success();
+}
+
+// "X,Y,WxH" in pixels.
+Status read_crop(const RenderOptions& o, RenderRequest* request) {
+  std::uint32_t width, height;
+  RETURN_IF_ERROR(picture_size(o.common, &width, &height));
+  if (o.crop.empty()) return success();
+  int used = 0;
+  PixelBox box;
+  const bool plain = o.crop.find_first_not_of("0123456789,x") == std::string::npos;  // a sign would wrap around
+  if (!plain ||
+      std::sscanf(o.crop.c_str(), "%6d,%6d,%6dx%6d%n", &box.left, &box.top, &box.width, &box.height, &used) != 4 ||
+      static_cast<std::size_t>(used) != o.crop.size() || box.width < 1 || box.height < 1 ||
+      box.left + box.width > static_cast<int>(width) || box.top + box.height > static_cast<int>(height))
+    return failure("--crop is '%.100s': write X,Y,WxH, as 0,0,%ux%u, within the picture's %ux%u pixels", o.crop.c_str(),
+                   (width + 1) / 2, (height + 1) / 2, width, height);
+  if (!o.servers.addresses.empty()) return failure("--server sends whole rows: drop --server or --crop");
+  if (o.budget.ms > 0) return failure("--budget-ms measures whole frames: drop --budget-ms or --crop");
+  if (o.rotation != 0) return failure("--crop cannot be rotated: drop --rotate or --crop");
+  request->picture.crop = box;
+  return success();
+}
+
+Status check_resume(const RenderOptions& o, const RenderRequest& request) {
+  if (keeps_journal(o, request))
+    return check_outputs({{"SCENE", o.common.scene}}, {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
+  if (!o.resume) return success();
+  if (!o.servers.addresses.empty() || o.budget.ms > 0)
+    return failure(
+        "--resume cannot tell that pictures match, with servers or a budget: drop it, or --server and --budget-ms");
+  return failure("--resume is for sequences of numbered pictures: add --frames 0:99 or --turntable 36, and write .png");
+}
+
+Status check_frame_rate(const RenderOptions& o, const RenderRequest& request) {
+  if (o.frames_per_second > 0 && !request.sequence.given)
+    return failure("--fps is for sequences: add --frames 0:99 or --turntable 36");
+  if (o.frames_per_second > 0 && o.turntable > 0 && request.animation == AnimationKind::none)
+    return failure("--fps changes nothing in numbered pictures of one time: write .gif, .apng or .mp4, or drop --fps");
+  Settings settings;
+  RETURN_IF_ERROR(picture_size(o.common, &settings.width, &settings.height));
+  const PixelBox box = box_to_write(request.picture, settings);
+  return check_animation(request.animation, o.frames_per_second, static_cast<std::uint32_t>(box.width),
+                         static_cast<std::uint32_t>(box.height));
+}
+
+}  // namespace
+
+bool keeps_journal(const RenderOptions& o, const RenderRequest& request) {
+  return request.sequence.given && request.animation == AnimationKind::none && o.servers.addresses.empty() &&
+         o.budget.ms == 0;
+}
+
+std::string identity_of(const RenderOptions& o, const RenderRequest& request, const SceneSource& source,
+                        const Renderer& renderer) {
+  std::string text = o.common.scene.substr(0, source.baked ? 0 : std::string::npos);  // a built-in one is its name
+  auto add = [&](const char* format, auto... values) {
+    char part[400];
+    std::snprintf(part, sizeof part, format, values...);
+    text += part;
+  };
+  const ContentHash scene = content_hash(source.baked, source.baked_bytes);
+  add(" %" PRIx64 " %" PRIx64 " %d.%d.%d", scene.low, scene.high, POCKETRAY_VERSION_MAJOR, POCKETRAY_VERSION_MINOR,
+      POCKETRAY_VERSION_PATCH);
+  add(" %u %u %" PRIx64, renderer.settings.width, renderer.settings.height, std::uint64_t(renderer.effects.mask));
+  for (const SettingRow& row : kSettingList) add(" %a", row.field.get(renderer.settings));
+  const Camera& c = renderer.camera;
+  for (const Vec3& v : {c.eye, c.target, c.up, renderer.scene.info.background, renderer.scene.info.ambient})
+    add(" %a %a %a", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+  add(" %a %a %d %u %d", static_cast<double>(c.vertical_fov), static_cast<double>(c.vertical_extent),
+      static_cast<int>(c.projection), renderer.camera_index, renderer.camera_overridden);
+  add(" %a %d", static_cast<double>(renderer.exposure), static_cast<int>(renderer.look.light));
+  add(" %a %u %a %a", static_cast<double>(o.orbit_degrees), o.turntable, o.seconds, o.frames_per_second);
+  if (moves_camera(o)) add(" %u", request.sequence.first);
+  const PixelBox box = box_to_write(request.picture, renderer.settings);
+  add(" %s %s %d %d %d,%d,%dx%d", o.aov.c_str(), o.raw_format.c_str(), o.rotation, o.dither, box.left, box.top,
+      box.width, box.height);
+  const ContentHash hash = content_hash(text.data(), text.size());
+  char digits[40];
+  std::snprintf(digits, sizeof digits, "%016" PRIx64 "%016" PRIx64, hash.low, hash.high);
+  return digits;
+}
+
+bool moves_camera(const RenderOptions& o) { return o.orbit_degrees != 0 || o.turntable > 0; }
+
+float orbit_after(const RenderOptions& o, std::uint32_t frame_count) {
+  if (o.turntable > 0) return static_cast<float>(360.0 * frame_count / o.turntable);
+  return static_cast<float>(frame_count) * o.orbit_degrees;
+}
+
+double frame_rate(const RenderOptions& o, const SceneInfo& scene) {
+  return o.frames_per_second > 0 ? o.frames_per_second : static_cast<double>(scene.frames_per_second);
+}
+
+double time_of(const RenderOptions& o, const RenderRequest& request, std::uint32_t frame, const SceneInfo& scene) {
+  return o.turntable > 0 || !request.sequence.given ? o.seconds : frame / frame_rate(o, scene);
+}
+
+Status read_render_options(RenderOptions* o, RenderRequest* request) {
+  RETURN_IF_ERROR(parse_frames(o->frames, &request->sequence));
+  if (o->turntable > 0) request->sequence = {0, o->turntable - 1, true};
+  RETURN_IF_ERROR(parse_aov(o->aov, &request->aov));
+  RETURN_IF_ERROR(parse_raw_format(o->raw_format, &request->picture.raw_format));
+  RETURN_IF_ERROR(check_paths(*o, request));
+  if (!rotation_from_degrees(o->rotation, &request->picture.rotation))
+    return failure("--rotate is %d: it must be 0, 90, 180 or 270", o->rotation);
+  request->picture.dither = o->dither;
+  RETURN_IF_ERROR(read_crop(*o, request));
+  RETURN_IF_ERROR(check_resume(*o, *request));
+  RETURN_IF_ERROR(check_frame_rate(*o, *request));
+  RETURN_IF_ERROR(check_limit(Quantity::seconds, o->seconds, "--time"));
+  RETURN_IF_ERROR(check_shareable(*o, *request));
+  RETURN_IF_ERROR(check_budget_and_orbit(*o, request->aov));
+  return check_coherence(incoherent_because(*o, request->aov), &o->common);
+}
+
+void add_render_options(Command command, RenderOptions* o) {
+  add_scene_options(command, &o->common);
+  if (o->parts.servers) add_servers_options(command, &o->servers);
+  add_budget_options(command, &o->budget);
+  add_look_options(command, &o->common);
+  add_coherence_options(command, &o->common);
+  command
+      .add_option(
+          "-o,--output", o->output,
+          "picture to write: .png, .jpg, .ppm, .pfm (linear radiance) or .raw (framebuffer bytes). A sequence gives "
+          "numbered pictures, out-0000.png …, or one animation: .gif, .apng (all colours) or .mp4 (by ffmpeg). "
+          "-: standard output")
+      .capture_default_str();
+  command.add_option("--format", o->format, "what -o - writes: png, jpg, ppm, pfm, raw, gif, apng or mp4")
+      .one_of({"png", "jpg", "ppm", "pfm", "raw", "gif", "apng", "mp4"})
+      .default_str("png");
+  Option frames = command.add_option("--frames", o->frames, "render a sequence, FIRST:LAST");
+  command.add_option("--time", o->seconds, "animation time in seconds, for a single frame").capture_default_str();
+  Option orbit = command.add_option("--orbit", o->orbit_degrees, "degrees that the camera orbits its target per frame")
+                     .capture_default_str();
+  command
+      .add_option("--turntable", o->turntable,
+                  "render a sequence of N frames once around the camera's target; time stands still (--time)")
+      .range(2u, kTurntableMax)
+      .excludes(frames)
+      .excludes(orbit);
+  command
+      .add_option("--fps", o->frames_per_second,
+                  "frames per second of a sequence, in the scene's time and in animations, 0.1 … 240")
+      .range(kAnimationRateMin, kAnimationRateMax)
+      .default_str("the scene's");
+  command.add_flag("--resume", o->resume,
+                   "leave out the frames that an earlier run of the same scene, version and options has finished; "
+                   "OUT.resume lists them");
+  command.add_option("--crop", o->crop,
+                     "X,Y,WxH: trace and write only these pixels of the picture, counted from its top left");
+  command
+      .add_option(
+          "--aov", o->aov,
+          "write depth, normal, triangle or cost in (false) colours instead of the picture; .pfm has the values")
+      .capture_default_str();
+  command.add_flag("--no-legend", o->no_legend, "leave out the legend at the bottom left of --aov");
+  command.add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")
+      .capture_default_str();
+  command.add_flag("--dither", o->dither, "apply ordered dithering to .raw pictures");
+  command
+      .add_option("--raw-format", o->raw_format,
+                  "pixel format of .raw: rgb565, bgr565, xrgb8888, xbgr8888, rgb888, bgr888")
+      .capture_default_str();
+  command.add_flag("--plan", o->plan, "also print the effect plan and the memory map");
+  add_json_option(command, &o->common.json);
+}
+
+}  // namespace pocketray

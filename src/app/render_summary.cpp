@@ -1,0 +1,85 @@
+#include "app/render_summary.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+void print_share(const Servers& servers, std::uint32_t width) {
+  ServersTotals t = servers.backend->totals(servers);
+  if (t.frames == 0) return;
+  double rows = static_cast<double>(t.device_rows + t.server_rows), frames = static_cast<double>(t.frames);
+  std::printf("  render servers: the device rendered %.0f %% of the rows, servers sent %.1f kB per frame",
+              100 * static_cast<double>(t.device_rows) / rows, static_cast<double>(t.bytes_in) * 1e-3 / frames);
+  if (t.device_rows > 0)
+    std::printf("; the device traced %.1f %% of its pixels",
+                100 * static_cast<double>(t.device_pixels) / (static_cast<double>(t.device_rows) * width));
+  if (t.unchanged_frames > 0)
+    std::printf("; %.0f frames equal the one before", static_cast<double>(t.unchanged_frames));
+  if (t.local_ns > 0) std::printf("; predicted %.2f times as fast as the device alone", t.local_ns / t.known_ns);
+  if (t.checked > 0)
+    std::printf(
+        "; %.1f of their %s per frame checked, which catches one wrong row per frame with a probability of %.4g %%",
+        static_cast<double>(t.checked) / frames, t.checks_rows ? "rows" : "pixels", 100 * t.caught_row);
+  std::printf("; last frame:\n");
+  HudText lines;
+  servers.backend->write_lines(servers, false, &lines);
+  for (int i = 0; i < lines.line_count; ++i) std::printf("    %s\n", lines.lines[i]);
+}
+
+}  // namespace
+
+void print_summary(const RenderSummary& s) {
+  CHECK(s.frame_count > 0 && !s.files.empty());
+  const Renderer& renderer = *s.renderer;
+  double pixels = static_cast<double>(s.box.width) * s.box.height * s.frame_count;
+  if (s.options->plan) {
+    print_effects(renderer.effects);
+    print_memory(renderer.memory);
+  }
+  if (s.files.size() > 1) std::printf("%s … ", s.files.front().c_str());
+  std::printf("%s: ", s.files.back() == "-" ? "standard output" : s.files.back().c_str());
+  if (s.frame_count > s.files.size())
+    std::printf("%u frames at %g per second, ", s.frame_count, frame_rate(*s.options, renderer.scene.info));
+  std::printf("%d×%d, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s%s\n", s.box.width, s.box.height,
+              grouped(triangle_count(s.servers, renderer)).c_str(), s.trace_ms / s.frame_count,
+              s.frame_count > 1 ? " per frame" : "", s.trace_ms * 1e6 / pixels, renderer.settings.threads,
+              renderer.settings.threads == 1 ? "" : "s", emulation_text(renderer.pace).c_str());
+  if (!s.aov_line.empty()) std::printf("%s\n", s.aov_line.c_str());
+  if (s.coherent) print_coherence(*s.coherent);
+  Tracer counts = total_counts(renderer);
+  if (counts.rays_left_out)
+    std::printf("  %s rays skipped, which could change a sample by at most %.2g of a display level in total\n",
+                grouped(counts.rays_left_out).c_str(),
+                static_cast<double>(counts.left_out_max * renderer.exposure) * 255 * 12.92);
+  if (s.servers) print_share(*s.servers, renderer.settings.width);
+  if (s.budget) print_budget(*s.budget, s.frame_count == 1);
+}
+
+Json to_json(const RenderSummary& s) {
+  const Renderer& renderer = *s.renderer;
+  Tracer counts = total_counts(renderer);
+  Json rays = Json::object();
+  for (int kind = 0; kind < kRayKindCount; ++kind) rays[kRayKindNames[kind]] = counts.rays[kind];
+  double pixels = static_cast<double>(s.box.width) * s.box.height * (s.frame_count == 0 ? 1 : s.frame_count);
+  return {{"scene", s.options->common.scene},
+          {"files", s.files},
+          {"frames", s.frame_count},
+          {"triangles", triangle_count(s.servers, renderer)},
+          {"width", s.box.width},
+          {"height", s.box.height},
+          {"ns_per_pixel", s.trace_ms * 1e6 / pixels},
+          {"emulated", renderer.pace.device ? Json(renderer.pace.device) : Json()},
+          {"rays", rays},
+          {"rays_left_out", counts.rays_left_out},
+          {"left_out_radiance_max", counts.left_out_max},
+          {"exposure", renderer.exposure},
+          {"memory", memory_json(renderer.memory)},
+          {"effects", effects_json(renderer.effects)},
+          {"coherence", s.coherent ? coherence_json(*s.coherent) : Json()},
+          {"budget", s.budget ? budget_json(*s.budget) : Json()}};
+}
+
+}  // namespace pocketray

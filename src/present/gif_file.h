@@ -1,0 +1,31 @@
+// Animated GIF, written frame by frame.
+#pragma once
+#include "base/arena.h"
+#include "present/changed_pixels.h"
+#include "present/image_file.h"
+#include "present/palette.h"
+
+namespace pocketray {
+
+struct LzwTable;
+
+struct GifWriter {
+  ByteSink sink = {};
+  int width = 0, height = 0;
+  bool has_frame = false;
+  Array<std::uint8_t> last;           // R, G, B of the frame before
+  Array<Rgb> samples;                 // for its palette
+  Array<std::uint32_t> known_colors;  // a cache of nearest_color()
+  LzwTable* table = nullptr;
+};
+
+// Bytes of arena that a writer takes.
+std::size_t gif_need(int width, int height);
+// Begins a file that repeats without end. The arena must have gif_need() bytes free, for as long as the writer is used.
+GifWriter begin_gif(const ByteSink& sink, int width, int height, Arena* arena);
+// Adds a frame that is shown for `centiseconds`: a palette of its own, and only the pixels that changed. `rgb`: width ×
+// height pixels of bytes R, G, B, row 0 on top.
+void add_gif_frame(GifWriter* gif, const std::uint8_t* rgb, std::uint32_t centiseconds);
+void end_gif(GifWriter* gif);
+
+}  // namespace pocketray

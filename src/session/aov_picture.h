@@ -1,0 +1,19 @@
+// AOVs as pictures of levels: false colours and a legend.
+#pragma once
+#include "present/false_color.h"
+#include "session/picture.h"
+#include "shade/trace_spans.h"
+
+namespace pocketray {
+
+struct AovPicture {
+  Legend legend;         // empty where there is no room
+  char told[160] = {0};  // the same for people, a line; empty: nothing to tell
+};
+
+// Replaces the values of the box in renderer->image by the colours that stand for them, and the exposure by 1. Cost:
+// viridis from 0 to the largest; triangle: a colour each; normal: x, y and z as red, green and blue; depth: grey, the
+// farthest white.
+AovPicture color_aov(Aov aov, const PixelBox& box, Renderer* renderer);
+
+}  // namespace pocketray

@@ -1,0 +1,16 @@
+// A camera on one part of a model.
+#pragma once
+#include <string>
+
+#include "session/source.h"
+
+namespace pocketray {
+
+// The bounds of the part of that name. Fails, and lists the nearest names, if there is none.
+Status find_part(const SceneSource& source, const std::string& scene, const std::string& name, Box* bounds);
+
+// A perspective camera that looks at the part from where `camera` looks at the scene, and shows all of it. `fov`: the
+// vertical field of view in radians.
+Camera focused_camera(const Camera& camera, const Box& bounds, float aspect, double fov);
+
+}  // namespace pocketray

@@ -1,0 +1,112 @@
+#include "shade/cell.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "shade/contact.h"
+
+namespace pocketray {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// Chosen: the light of a corner on a much darker texel tells little of a bright one.
+constexpr float kRecolorMax = 4;
+
+// The range of several radiances.
+struct Range {
+  Vec3 low = {kInfinity, kInfinity, kInfinity}, high = {0, 0, 0};
+
+  void add(const Vec3& radiance) { low = min(low, radiance), high = max(high, radiance); }
+};
+
+// Whether the Michelson contrast of what the display shows, its own reflection included, stays below a share of the
+// selection's. False for radiances that are not finite.
+bool is_low_contrast(const Range& range, const Selection& selection, float share) {
+  const float contrast = share * selection.contrast;
+  for (int c = 0; c < 3; ++c) {
+    const float high = std::min(range.high[c], selection.white), low = std::min(range.low[c], selection.white);
+    if (!(high - low < contrast * (high + low + selection.flare))) return false;
+  }
+  return true;
+}
+
+// Whether normals are so close that light changes by no more than the contrast: by about the angle between them in
+// light that falls at 45 degrees.
+bool is_same_side(const FrameData& frame, const Vec3& a, const Vec3& b) {
+  const float angle = frame.selection.contrast;
+  return dot(a, b) > 1 - angle * angle * 0.5f;
+}
+
+bool has_texture(const Scene& scene, const Material& m) {
+  if (m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone) return true;
+  if (scene.material_maps.empty()) return false;
+  const auto index = static_cast<std::size_t>(&m - scene.materials.data);
+  CHECK_LT(index, scene.material_maps.count);
+  const MaterialMaps& maps = scene.material_maps[index];
+  for (const TextureUse* use :
+       {&maps.metallic_roughness, &maps.specular, &maps.specular_color, &maps.normal, &maps.occlusion})
+    if (use->texture != kNone) return true;
+  return false;
+}
+
+// The corner's light on the surface's diffuse colour. False if it is too dark there.
+bool recolor(const CellCorner& corner, const Surface& s, Vec3* radiance) {
+  Vec3 light = corner.radiance - corner.glow;
+  for (int c = 0; c < 3; ++c) {
+    if (s.diffuse[c] == corner.diffuse[c]) continue;
+    if (!(s.diffuse[c] < kRecolorMax * corner.diffuse[c])) return false;
+    light[c] *= s.diffuse[c] / corner.diffuse[c];
+  }
+  *radiance = light + s.glow;
+  return true;
+}
+
+}  // namespace
+
+bool has_smooth_light(const FrameData& frame, const Surface& s) {
+  const Material& m = *s.material;
+  if (!is_zero(m.mirror) || !is_zero(m.transmission) || m.alpha_mode != AlphaMode::opaque) return false;
+  return !culls(m, s.front, frame.mask) && frame.eye_media.depth == 0;
+}
+
+bool is_flat(const FrameData& frame, const PixelCell& cell) {
+  const CellCorner& first = *cell.corner[0];
+  Range range;
+  for (const CellCorner* corner : cell.corner) {
+    CHECK(corner->known);
+    if (corner->material != first.material || !corner->is_smooth) return false;
+    if (first.material && !is_same_side(frame, corner->normal, first.normal)) return false;
+    range.add(corner->radiance);
+  }
+  if (first.material && has_texture(*frame.scene, *first.material)) return false;
+  return is_low_contrast(range, frame.selection, 1);
+}
+
+bool predict(const FrameData& frame, const PixelCell& cell, const Surface& s, std::uint32_t column, std::uint32_t row,
+             Vec3* radiance) {
+  CHECK(column < kCellSide && row < kCellSide);
+  if (!has_smooth_light(frame, s)) return false;
+  const float x = static_cast<float>(column) * cell.across, y = static_cast<float>(row) * cell.down;
+  const float weight[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
+  Vec3 sum = {0, 0, 0};
+  float sum_weight = 0;
+  int count = 0;
+  Range range;
+  for (int c = 0; c < 4; ++c) {
+    const CellCorner& corner = *cell.corner[c];
+    Vec3 predicted;
+    if (corner.material != s.material || !corner.is_smooth || !is_same_side(frame, corner.normal, s.normal)) continue;
+    if (!recolor(corner, s, &predicted)) continue;
+    range.add(predicted);
+    sum += predicted * weight[c];
+    sum_weight += weight[c];
+    ++count;
+  }
+  // The fewer, the more they must agree.
+  if (count < 2 || !(sum_weight > 0)) return false;
+  if (!is_low_contrast(range, frame.selection, 0.25f * static_cast<float>(count))) return false;
+  *radiance = sum * (1 / sum_weight);
+  return true;
+}
+
+}  // namespace pocketray

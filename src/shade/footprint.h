@@ -1,0 +1,55 @@
+// How much of a texture a pixel covers: ray cones [Akenine-Möller et al. 2021, secs. 2 and 3]. A pixel's cone is as
+// wide as the pixel and keeps its angle through mirrors and refraction: the curvature of surfaces, which would widen or
+// narrow it, is left out, and so is the smaller angle of pixels away from the picture's centre. The texture's level is
+// that of the covered area, the mean of both axes: [Akenine-Möller et al. 2021] takes the longer one, which blurs
+// surfaces seen at a grazing angle.
+#pragma once
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "base/check.h"
+#include "effect/effect_probe.h"
+#include "shade/frame_data.h"
+
+namespace pocketray {
+
+// The cone of a camera's pixels, each divided among its samples.
+inline PixelCone pixel_cone(const CameraRays& camera, std::uint32_t sample_count) {
+  CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
+  CHECK(camera.height >= 1);
+  const float side = 2 * length(camera.up) / (camera.height * std::sqrt(static_cast<float>(sample_count)));
+  return camera.orthographic ? PixelCone{side, 0} : PixelCone{0, side};
+}
+
+// The area that the cone covers in texture coordinates, where a ray of unit direction meets the triangle after the
+// distance t from the eye: the cone's cross-section divided by the cosine, times the triangle's area there per area in
+// the scene. `perpendicular` is the cross product of the triangle's edges, `normal` the same of length 1. The largest
+// float where the triangle is seen edge-on. Always finite: nothing here is an invalid operation, whatever the scene.
+inline float footprint(const PixelCone& cone, float t, const Vec3& direction, const Vec3& perpendicular,
+                       const Vec3& normal, const Scene& scene, const Triangle& triangle) {
+  effect_entered<Effect::mip_map>();
+  if (scene.uvs.empty()) return 0;
+  const Vec2 a = scene.uvs[triangle.vertex(0)], b = scene.uvs[triangle.vertex(1)], c = scene.uvs[triangle.vertex(2)];
+  const float area = std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+  const float width = cone.width + t * cone.spread,
+              seen = std::fabs(dot(normal, direction) * dot(normal, perpendicular));
+  constexpr float kMost = std::numeric_limits<float>::max();
+  if (!(area > 0 && width > 0)) return 0;
+  const float covered = seen > 0 && width < kMost ? width / seen * width * area : kMost;
+  return covered < kMost ? covered : kMost;
+}
+
+// The level at which that many texels of level 0 are one: ½·log₂. Exact for powers of two, within 0.0005 elsewhere;
+// depends on nothing but the float's bits. 0 for one texel or less and for NaN.
+inline float texture_level(float texel_count) {
+  if (!(texel_count > 1)) return 0;
+  std::uint32_t word;
+  std::memcpy(&word, &texel_count, sizeof word);
+  const float exponent = static_cast<float>(static_cast<int>(word >> 23) - 127);
+  const float x = static_cast<float>(word & 0x7FFFFFu) * 0x1p-23f;
+  // log₂(1 + x), 0 ≤ x < 1: the chord and a cubic between its ends.
+  return 0.5f * (exponent + (x + x * (1 - x) * (0.4228f - 0.159f * x)));
+}
+
+}  // namespace pocketray

@@ -1,0 +1,32 @@
+// Selective rendering [Aranha07, sec. 3 and 5]: every fourth pixel of every fourth row is traced, and of the others
+// only those that a viewer would miss.
+//
+// A cell of 4 × 4 pixels whose corners show one plain surface at hardly any contrast is interpolated. In any other
+// cell, camera rays find the edges; a pixel takes the light from corners on its own surface if they agree on it, and is
+// shaded otherwise. On textures the light is interpolated, not the colours.
+//
+// Cells have fixed places in the picture, and a pixel depends on its own cell's corners alone: the picture does not
+// depend on how it is divided.
+#pragma once
+#include "shade/cell.h"
+#include "shade/strip.h"
+
+namespace pocketray {
+
+static_assert(kTileSide == 2 * kCellSide, "a tile has 2 × 2 cells");
+
+// Each thread keeps the corners below a row of tiles for the row of tiles below, in Tracer::corner_rows.
+constexpr std::uint32_t corner_count(std::uint32_t width) { return 2 * grid_side(width, kTileSide) + 1; }
+constexpr std::uint32_t selective_corner_count(const Settings& settings) {
+  return 2 * corner_count(settings.width) * settings.threads;
+}
+inline std::size_t selective_need(const Settings& settings) {
+  return arena_need<CellCorner>(selective_corner_count(settings));
+}
+// Gives a tracer its rows, of corner_count() each.
+void keep_corner_rows(Array<CellCorner> even, Array<CellCorner> odd, Tracer* tracer);
+
+// Traces the strip's pixels.
+void trace_selectively(Tracer* tracer, const TileStrip& strip, Vec3* image);
+
+}  // namespace pocketray

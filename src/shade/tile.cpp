@@ -1,0 +1,94 @@
+#include "shade/tile.h"
+
+#include "base/check.h"
+#include "effect/effect_probe.h"
+#include "shade/even_points.h"
+#include "shade/filters.h"
+#include "shade/pixel.h"
+#include "shade/tile_shadows.h"
+
+namespace pocketray {
+namespace {
+
+void keep_first_hit(const FrameData& frame, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
+                    const Hit& hit) {
+  std::size_t width = frame.settings.width;
+  frame.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
+}
+
+}  // namespace
+
+void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
+  if (RayObserver* observer = tracer->stats.observer)
+    observer->column = static_cast<std::uint16_t>(column), observer->row = static_cast<std::uint16_t>(row);
+}
+
+Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row, Surface* first) {
+  const FrameData& frame = *tracer->frame;
+  CHECK(column < frame.settings.width && row < frame.settings.height);
+  std::uint32_t sample_count = frame.settings.samples_per_pixel;
+  if (sample_count > 1) effect_entered<Effect::supersampling>();
+  Vec3 sum = {0, 0, 0};
+  observe_pixel(tracer, column, row);
+  for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+    Ray ray = pixel_ray(frame, column, row, rook_point(sample, sample_count));
+    Hit hit;
+    frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
+    if (frame.first_hits) keep_first_hit(frame, sample, column, row, hit);
+    Surface surface;
+    if (first && sample == 0) first->material = nullptr;
+    if ((frame.first_hits || (first && sample == 0)) && hit.triangle != kNoTriangle) {
+      frame.surface(frame, ray, hit, &surface);
+      tracer->first_surface = &surface;
+      if (first && sample == 0) *first = surface;
+    }
+    sum += sample_radiance(tracer, ray, hit, tracer->first_surface);
+    tracer->first_surface = nullptr;
+  }
+  return sum * (1.0f / static_cast<float>(sample_count));
+}
+
+void add_sample(Tracer* tracer, const Tile& tile, const RayPacket& packet, const Hit* hits, Vec3* sum) {
+  const FrameData& frame = *tracer->frame;
+  CHECK_EQ(tile.count, packet.count);
+  TileShadows shadows;
+  if (frame.find_shadows) {
+    frame.find_shadows(frame, packet, hits, &shadows, &tracer->stats);
+    tracer->tile_shadows = &shadows;
+  }
+  for (std::uint32_t i = 0; i < tile.count; ++i) {
+    tracer->tile_pixel = i;
+    tracer->first_surface = frame.find_shadows && hits[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
+    observe_pixel(tracer, tile.column[i], tile.row[i]);
+    sum[i] += sample_radiance(tracer, ray_of(packet, i), hits[i], tracer->first_surface);
+  }
+  tracer->first_surface = nullptr;
+  tracer->tile_shadows = nullptr;
+}
+
+void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
+  const FrameData& frame = *tracer->frame;
+  std::uint32_t sample_count = frame.settings.samples_per_pixel;
+  if (sample_count > 1) effect_entered<Effect::supersampling>();
+  Vec3 sum[kPacketMax] = {};
+  RayPacket packet;
+  packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
+  for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+    Vec2 offset = rook_point(sample, sample_count);
+    for (std::uint32_t i = 0; i < tile.count; ++i) {
+      Vec3 direction = pixel_ray(frame, tile.column[i], tile.row[i], offset).direction;
+      for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
+    }
+    Hit hits[kPacketMax];
+    frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
+    if (frame.first_hits)
+      for (std::uint32_t i = 0; i < tile.count; ++i)
+        keep_first_hit(frame, sample, tile.column[i], tile.row[i], hits[i]);
+    add_sample(tracer, tile, packet, hits, sum);
+  }
+  for (std::uint32_t i = 0; i < tile.count; ++i)
+    image[static_cast<std::size_t>(tile.row[i]) * frame.settings.width + tile.column[i]] =
+        sum[i] * (1.0f / static_cast<float>(sample_count));
+}
+
+}  // namespace pocketray

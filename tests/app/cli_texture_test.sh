@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Textures in baked scenes: mip maps and blocks. Usage: cli_texture_test.sh PROGRAM [EMULATOR...]
+. "$(dirname "$0")/cli.sh"
+
+expect textures_name 2 'textures.*small' bake cube -o refused.pray --textures small
+expect filter_names 1 'bilinear or trilinear' render cube "${small[@]}" --texture-filter fine -o refused.ppm
+"${run[@]}" bake --help | grep -q 'glTF' || { finish; exit; }
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >probe.obj
+"${run[@]}" bake probe.obj -o probe.pray >/dev/null 2>&1 || { echo "skipped: this build has no importers"; finish; exit; }
+
+size() { stat -c %s "$1"; }
+# A floor with a texture of 128 × 128 texels, repeated towards the horizon.
+{
+  printf '\0\0\2\0\0\0\0\0\0\0\0\0\200\0\200\0\030\040'
+  for row in {0..127}; do
+    for column in {0..15}; do
+      [ $(((row / 8 + column) % 2)) = 0 ] && printf '\040\140\320%.0s' {1..8} || printf '\220\060\020%.0s' {1..8}
+    done
+  done
+} >floor.tga
+printf 'newmtl floor\nKd 1 1 1\nmap_Kd floor.tga\n' >floor.mtl
+printf '%s\n' 'mtllib floor.mtl' 'usemtl floor' 'v -9 0 9' 'v 9 0 9' 'v 9 0 -9' 'v -9 0 -9' 'vt 0 0' 'vt 5 0' 'vt 5 5' \
+  'vt 0 5' 'f 1/1 2/2 3/3 4/4' >floor.obj
+view=(--size 64x48 --threads 2 --camera "0,1.5,9 0,0,0 0,1,0 50")
+
+# Goal: mip maps are stored unless told otherwise, and add a third; the picture shows them, and the plan says so.
+expect bake_levels 0 'textures' bake floor.obj -o levels.pray
+expect bake_no_levels 0 'textures' bake floor.obj -o plain.pray --no-mip-maps
+check levels_take_a_third [ $(($(size levels.pray) - $(size plain.pray))) -ge 21000 ]
+check levels_take_no_more [ $(($(size levels.pray) - $(size plain.pray))) -le 22000 ]
+expect plan_levels 0 'mip-map +on +1 of 1 materials' plan levels.pray
+expect plan_no_levels 0 'mip-map +- +none of 1 materials' plan plain.pray
+expect plan_filter 0 'mip-map +- +--texture-filter bilinear' plan levels.pray --texture-filter bilinear
+for filter in scene bilinear trilinear; do
+  expect "render_$filter" 0 'ns per pixel' render levels.pray "${view[@]}" --texture-filter $filter -o $filter.ppm
+done
+expect render_plain 0 'ns per pixel' render plain.pray "${view[@]}" -o plain.ppm
+check scene_is_trilinear cmp -s scene.ppm trilinear.ppm
+check bilinear_is_without_levels cmp -s bilinear.ppm plain.ppm
+check levels_are_seen bash -c '! cmp -s scene.ppm plain.ppm'
+
+# Goal: compressed textures are smaller, look alike, and bake says what they cost.
+expect bake_compressed 0 '128×128: colour, 4 bits, PSNR [34][0-9]' bake floor.obj -o blocks.pray --textures compressed
+check blocks_take_an_eighth [ $(($(size plain.pray) - $(size blocks.pray))) -ge 50000 ]
+expect render_blocks 0 'ns per pixel' render blocks.pray "${view[@]}" -o blocks.ppm
+if "${run[@]}" compare --help >/dev/null 2>&1; then
+  expect blocks_look_alike 0 'LIP' compare scene.ppm blocks.ppm --fail-above 0.03
+fi
+
+# Goal: Khronos' DamagedHelmet fits a small device: textures of at most 1.5 MiB that look like the exact ones.
+helmet=${POCKETRAY_SHARED:-}/scenes/gltf/DamagedHelmet.glb
+if [ -f "$helmet" ] && [ ${#run[@]} = 1 ] && "${run[@]}" compare --help >/dev/null 2>&1; then
+  "${run[@]}" bake "$helmet" -o exact.pray >/dev/null
+  "${run[@]}" bake "$helmet" -o small.pray --textures compressed --json small.json >/dev/null
+  bytes=$(sed -n 's/.*"texture_bytes": \([0-9]*\).*/\1/p' small.json)
+  check helmet_takes_at_most [ "${bytes:-9999999}" -le $((3 << 19)) ]
+  for kind in exact small; do "${run[@]}" render $kind.pray --threads 2 -o helmet_$kind.ppm >/dev/null 2>&1; done
+  expect helmet_looks_alike 0 'LIP' compare helmet_exact.ppm helmet_small.ppm --fail-above 0.02
+fi
+finish
