@@ -60,11 +60,9 @@ std::uint32_t geometry_crc(const Scene& scene) {
 // memory filled with two different patterns.
 TEST_CASE("hard_63_builtin_scenes_are_the_same_bits_everywhere") {
   count_assertions("the same bits in every build");
-  const std::map<std::string, std::uint32_t> expected = {{"cornell", 436609683u},
-                                                         {"statue", 2731962623u},
-                                                         {"seesaw", 3685938664u},
-                                                         {"cube", 469900696u},
-                                                         {"furnace", 2194944142u}};
+  const std::map<std::string, std::uint32_t> expected = {{"cornell", 436609683u},  {"statue", 2731962623u},
+                                                         {"seesaw", 3685938664u},  {"cube", 469900696u},
+                                                         {"furnace", 2194944142u}, {"lanterns", 3854817036u}};
   int count;
   const BuiltinScene* list = builtin_list(&count);
   for (int i = 0; i < count; ++i) {
@@ -110,7 +108,8 @@ TEST_CASE("builtin_cameras_see_the_scene") {
     int hits = 0;
     for (int y = -2; y <= 2; ++y)
       for (int x = -2; x <= 2; ++x) hits += material_seen(built->scene, .43 * x, .43 * y + .01) != kNone;
-    CHECK(hits >= (std::string(list[i].name) == "cornell" ? 15 : 25));
+    const std::string name = list[i].name;
+    CHECK(hits >= (name == "cornell" || name == "lanterns" ? 15 : 25));
   }
 }
 
@@ -143,4 +142,26 @@ TEST_CASE("builtin_furnace_has_radiance_1_after_full_interreflection") {
   for (int c = 0; c < 3; ++c) CHECK(wall.emission[c] / (1 - wall.diffuse[c]) == 1.0f);
   CHECK(is_zero(wall.specular));
   CHECK(is_zero(wall.mirror));
+}
+
+// Goal: `lanterns` is lit by 200 point lights and 12 area lights, and no light hides in its own shade. Method: counts;
+// each light lies below a lantern, outside of it.
+TEST_CASE("builtin_lanterns_hang_above_their_lights") {
+  const BuiltScene* built = shared_builtin("lanterns");
+  const Scene& scene = built->scene;
+  CHECK(scene.lights.count == 200);
+  int windows = 0;
+  for (const Material& m : scene.materials) windows += !is_zero(m.emission);
+  CHECK(windows == 12);
+  int below = 0;
+  for (const Light& light : scene.lights) {
+    float nearest = 1e30f;  // height of the nearest paper above the light
+    for (const Triangle& t : scene.triangles) {
+      if (!scene.materials[t.material()].unlit) continue;
+      const Vec3 way = scene.positions[t.vertex(0)] - light.position;
+      if (length(way) < .3f && way.y < nearest) nearest = way.y;
+    }
+    below += nearest > 0 && nearest < .2f;
+  }
+  CHECK(below == 200);
 }

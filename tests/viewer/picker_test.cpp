@@ -58,9 +58,9 @@ TEST_CASE("picker_lists_files_then_builtin_scenes") {
   folder.write("cube.ppm", "P6\n97 1\n255\n" + std::string(3 * 97, 'x'));
   std::vector<PickerEntry> entries;
   REQUIRE(list_scenes_to_pick(folder.path, &entries).ok);
-  REQUIRE(entries.size() == 7);
-  const char* const titles[] = {"a", "b", "cube", "cornell", "statue", "seesaw", "furnace"};
-  for (std::size_t i = 0; i < 7; ++i) CHECK(entries[i].title == titles[i]);
+  REQUIRE(entries.size() == 8);
+  const char* const titles[] = {"a", "b", "cube", "cornell", "statue", "seesaw", "furnace", "lanterns"};
+  for (std::size_t i = 0; i < 8; ++i) CHECK(entries[i].title == titles[i]);
   CHECK(entries[0].scene == folder.path + "/a.pray");
   CHECK(entries[3].scene == "cornell");
   CHECK(std::string(entries[0].rgb.begin(), entries[0].rgb.end()) == "ABCDEF");

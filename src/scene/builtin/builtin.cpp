@@ -17,6 +17,7 @@ constexpr BuiltinScene kScenes[] = {
     {"cube", "a closed cube lit by an area light in its ceiling; 20 triangles", cube_need, build_cube},
     {"furnace", "a closed enclosure that emits uniformly, so that radiance is Le/(1-rho) everywhere", furnace_need,
      build_furnace},
+    {"lanterns", "a street lit by 200 lanterns and 12 windows; 26,358 triangles", lanterns_need, build_lanterns},
 };
 
 }  // namespace

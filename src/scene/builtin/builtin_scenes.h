@@ -14,5 +14,7 @@ std::size_t cube_need();
 void build_cube(Arena* arena, Scene* scene);
 std::size_t furnace_need();
 void build_furnace(Arena* arena, Scene* scene);
+std::size_t lanterns_need();
+void build_lanterns(Arena* arena, Scene* scene);
 
 }  // namespace pocketray
