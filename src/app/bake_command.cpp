@@ -9,6 +9,7 @@
 #include "platform/file.h"
 #include "scene/baked.h"
 #include "session/compress.h"
+#include "session/environment.h"
 #include "session/heap_scene.h"
 #include "session/note.h"
 #include "session/output.h"
@@ -19,7 +20,7 @@ namespace pocketray {
 namespace {
 
 struct BakeOptions {
-  std::string input, output, json, accel = kBvhAccel.name, textures = "exact";
+  std::string input, output, json, environment, accel = kBvhAccel.name, textures = "exact";
   ModelOptions model;
   bool radiosity = false, no_mip_maps = false;
 };
@@ -69,6 +70,8 @@ Status bake(const BakeOptions& o) {
   Scene& scene = heap.scene;
   double read_ms = static_cast<double>(clock_ns() - start) * 1e-6;
   start = clock_ns();
+  EnvironmentMemory environment;
+  if (!o.environment.empty()) RETURN_IF_ERROR(set_environment(o.environment, &scene, &environment));
   SolvedRadiosity solved;
   if (o.radiosity) RETURN_IF_ERROR(solve_scene(o.input, std::thread::hardware_concurrency(), &scene, &solved));
   double solve_ms = static_cast<double>(clock_ns() - start) * 1e-6;
@@ -101,6 +104,7 @@ Status bake(const BakeOptions& o) {
                              {"materials", scene.materials.count},
                              {"textures", scene.textures.count},
                              {"texture_bytes", scene.texels.bytes()},
+                             {"environment_bytes", scene.environment_texels.bytes()},
                              {"compressed_textures", texture_rows},
                              {"bytes", byte_count},
                              {"accelerator", o.accel},
@@ -140,6 +144,7 @@ void add_bake_command(Command program, int* exit_status) {
   command.add_flag("--radiosity", options->radiosity,
                    "solve the light between diffuse surfaces and store it; costs seconds to minutes here and little on "
                    "the device. It is solved for the pose at time 0");
+  add_environment_option(command, &options->environment);
   std::vector<std::string> names;
   std::string help;
   for (const AccelInfo* info : kAccelList) {

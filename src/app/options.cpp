@@ -117,6 +117,13 @@ void add_view_options(Command command, CommonOptions* o) {
   add_camera(command, o);
 }
 
+Option add_environment_option(Command command, std::string* name) {
+  return command.add_option(
+      "--environment", *name,
+      "light from all directions: an equirectangular picture (.hdr, .png, .jpg), or sky, sky:ELEVATION,TURBIDITY: a "
+      "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3)");
+}
+
 void add_look_options(Command command, CommonOptions* o) {
   Option budget = command.get_option("--budget-ms");  // whose prices are those of the scene's own look
   command
@@ -125,6 +132,10 @@ void add_look_options(Command command, CommonOptions* o) {
                   "as r,g,b")
       .default_str("the scene's")
       .excludes(budget);
+  add_environment_option(command, &o->environment)
+      .default_str("the scene's")
+      .excludes(budget)
+      .excludes(command.get_option("--background"));
   command
       .add_option("--light", o->light,
                   "light of a scene that brings none: key (a key and a fill light that follow the camera's side), sun "

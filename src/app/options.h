@@ -12,7 +12,9 @@ namespace pocketray {
 void add_scene_options(Command command, CommonOptions* options, bool scene_required = true);
 // SCENE and the options for what a picture of it shows, for commands without settings.
 void add_view_options(Command command, CommonOptions* options);
-// --background, --light, --fov and --focus. Call after add_scene_options() and add_budget_options().
+// --environment, excluding no other option.
+Option add_environment_option(Command command, std::string* name);
+// --background, --environment, --light, --fov and --focus. Call after add_scene_options() and add_budget_options().
 void add_look_options(Command command, CommonOptions* options);
 // --coherence, initially auto, and --coherence-table.
 void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");

@@ -16,6 +16,8 @@ constexpr std::uint32_t kMaterialCountMax = 1u << 16;
 constexpr std::uint32_t kTextureCountMax = 4096;
 constexpr std::uint32_t kTextureSideMax = 16384;
 constexpr std::uint32_t kRadiositySideMax = 256;     // nodes along a side of a grid
+constexpr std::uint32_t kEnvironmentSideMax = 1024;  // texels; the bilinear filter counts in int
+constexpr float kEnvironmentScaleMin = 0x1p-40f, kEnvironmentScaleMax = 0x1p40f;
 constexpr std::uint32_t kLightCountMax = 4096;       // lights of a scene
 constexpr std::uint32_t kPointLightCountMax = 4096;  // after area lights have become points
 constexpr std::uint32_t kPointsPerAreaLightMax = 256;

@@ -32,8 +32,9 @@ enum class Effect : std::uint8_t {
   occlusion,
   mip_map,
   selective,
+  environment,
 };
-constexpr int kEffectCount = 27;
+constexpr int kEffectCount = 28;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

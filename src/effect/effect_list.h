@@ -38,6 +38,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::occlusion, "occlusion", "a material with an occlusion texture, under ambient light"},
     {Effect::mip_map, "mip-map", "a material with a texture that stores smaller levels"},
     {Effect::selective, "selective", "--selective above 0"},
+    {Effect::environment, "environment", "a stored environment: light from every direction"},
 };
 
 constexpr bool effects_in_order() {

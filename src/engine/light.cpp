@@ -43,10 +43,11 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.surface = find_surface_function(renderer->effects.mask);
   const EffectMask virtual_lights = bit(Effect::instant_radiosity) & kEffectsBuilt;
   renderer->frame.first_surface = find_surface_function(renderer->effects.mask & ~virtual_lights);
+  renderer->frame.surroundings = find_surroundings_function(renderer->frame);
   if (renderer->effects.mask & kMapEffects & kEffectsBuilt)
     add_material_maps(&renderer->frame);
-  else if (has(renderer->effects.mask, Effect::ambient_gloss))
-    add_ambient_gloss(&renderer->frame);
+  else if (renderer->frame.surroundings)
+    add_surroundings(&renderer->frame);
   renderer->frame.trace_strip = has(renderer->effects.mask, Effect::instant_radiosity) ? trace_interleaved
                                 : has(renderer->effects.mask, Effect::selective)       ? trace_selectively
                                                                                        : nullptr;

@@ -21,6 +21,7 @@ namespace {
 void add_what_is_missing(Renderer* renderer) {
   Scene& scene = renderer->scene;
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
+  if (renderer->look.has_background) scene.environment_info = {}, scene.environment_texels = {};
   if (scene.cameras.empty()) {
     scene.info.default_camera = 1;
     renderer->camera = default_camera(scene, aspect, renderer->look.vertical_fov);

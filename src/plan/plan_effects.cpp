@@ -6,8 +6,8 @@
 #include "base/limit_list.h"
 #include "effect/effect_list.h"
 #include "effect/setting_list.h"
+#include "indirect/environment.h"
 #include "indirect/indirect_list.h"
-#include "indirect/surroundings.h"
 #include "scene/metallic_roughness.h"
 
 namespace pocketray {
@@ -171,14 +171,23 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
                                        : settings.indirect == IndirectChoice::none
                                            ? kIndirectEffects | bit(Effect::ambient_gloss)
                                            : bit(Effect::instant_radiosity);
+  if (const EnvironmentInfo* environment = environment_of(scene))
+    w.set(Effect::environment, true, "%u×%u texels, radiance at most %.3g", environment->side, environment->side,
+          static_cast<double>(max_component(environment->radiance_max)));
+  else
+    w.set(Effect::environment, false, "no environment");
+  const bool shows_environment = environment_of(scene) && !has(settings.forced_off, Effect::environment);
   if (settings.indirect == IndirectChoice::none)
     w.set(Effect::ambient_gloss, false, "no indirect light requested");
+  else if (shows_environment)
+    w.set(Effect::ambient_gloss, false, "%s instead", kEffectList[static_cast<int>(Effect::environment)].name);
   else if (is_zero(radiance_of_surroundings(scene.info)))
     w.set(Effect::ambient_gloss, false, "no ambient light or background");
   else
     w.set_by_materials(Effect::ambient_gloss, c.reflecting, "reflect the surroundings");
   if (plan.decisions[static_cast<int>(Effect::ambient)].on ||
-      plan.decisions[static_cast<int>(Effect::ambient_gloss)].on)
+      plan.decisions[static_cast<int>(Effect::ambient_gloss)].on ||
+      (shows_environment && settings.indirect != IndirectChoice::none))
     w.set_by_materials(Effect::occlusion, c.occluded, "have an occlusion texture");
   else
     w.set(Effect::occlusion, false, "no ambient light");

@@ -8,7 +8,7 @@
 #include "base/fmath.h"
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
-#include "indirect/surroundings.h"
+#include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/even_points.h"
 #include "shade/lights.h"
@@ -272,6 +272,7 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
   const Scene& scene = *frame.scene;
   CHECK(scene.material_maps.empty() || scene.material_maps.count == scene.materials.count);
   float glow = 0, reflectance = 0, scattering = 0, virtual_light = 0;
+  const bool lit_by_environment = environment_lights(scene, frame.mask, frame.settings.indirect);
   if (has(frame.mask, Effect::instant_radiosity))
     virtual_light = virtual_lights_of(frame.indirect)->irradiance_max / kPiF;
   for (std::uint32_t i = 0; i < scene.materials.count; ++i) {
@@ -280,7 +281,10 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
     bool shines = m.unlit && has(frame.mask, Effect::emission);
     float own = max_component(m.emission) + (shines ? max_component(m.diffuse) : indirect_bound(scene, m, frame.mask));
     if (!shines) own += max_component(m.diffuse) * virtual_light;
-    if (has(frame.mask, Effect::ambient_gloss)) own += reflected_surroundings_bound(scene.info, m);
+    if (lit_by_environment)
+      own += environment_bound(scene, m, frame.mask);
+    else if (has(frame.mask, Effect::ambient_gloss))
+      own += reflected_surroundings_bound(scene.info, m);
     if (own > glow) glow = own;
     float passes =
         max_component(m.mirror) + (is_zero(m.transmission) ? 0 : max_component(max(m.transmission, Vec3{1, 1, 1})));
@@ -302,8 +306,10 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
     }
   }
   const float lit = scattering > 0 && irradiance > 0 ? scattering * irradiance : 0;  // not 0 × ∞
-  const float leaves = glow + lit, background = max_component(scene.info.background);
-  float bound = max_component(frame.beyond_depth);
+  const bool shows_environment = has(frame.mask, Effect::environment) && environment_of(scene);
+  const float leaves = glow + lit, background = max_component(shows_environment ? environment_of(scene)->radiance_max
+                                                                                : scene.info.background);
+  float bound = shows_environment ? background : max_component(frame.beyond_depth);
   RadianceBounds bounds;
   for (std::uint32_t i = 0; i <= frame.settings.ray_depth; ++i) {
     bound = std::max(leaves + (reflectance > 0 ? reflectance * bound : 0), background);

@@ -56,7 +56,9 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   CHECK(settings.width <= kImageSideMax && settings.height <= kImageSideMax);
   *plan = MemoryPlan();
   plan->limit_bytes = settings.memory_bytes;
-  add_part(plan, "scene", ArenaKind::scene, storage.arena_bytes);
+  const std::size_t environment = std::min(scene.environment_texels.bytes(), storage.arena_bytes);
+  add_part(plan, "scene", ArenaKind::scene, storage.arena_bytes - environment);
+  add_part(plan, "environment", ArenaKind::scene, environment);
 
   bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
   std::uint32_t triangles = scene.triangles.count;

@@ -142,7 +142,7 @@ Vec3 default_ambient() { return {0.09f, 0.09f, 0.1f}; }
 Vec3 default_background() { return {0.045f, 0.05f, 0.06f}; }
 
 bool has_light(const Scene& scene) {
-  if (scene.lights.count || !is_zero(scene.info.ambient)) return true;
+  if (scene.lights.count || !is_zero(scene.info.ambient) || scene.environment_info.count) return true;
   bool needs_light = false;
   for (const Triangle& t : scene.triangles) {  // unused materials emit no light
     const Material& m = scene.materials[t.material()];

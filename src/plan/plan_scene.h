@@ -31,8 +31,8 @@ Light default_sun();
 Vec3 default_ambient();
 Vec3 default_background();
 
-// Whether the scene is visible without default lights: it has a light, an ambient term or an emissive surface, or all
-// its surfaces are unlit.
+// Whether the scene is visible without default lights: it has a light, an ambient term, an environment or an emissive
+// surface, or all its surfaces are unlit.
 bool has_light(const Scene& scene);
 
 }  // namespace pocketray

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "reference/environment.h"
 #include "reference/guide.h"
 #include "shade/lights.h"
 #include "shade/texture.h"
@@ -38,33 +39,6 @@ Vec3d contact_transmittance(const FrameData& frame, const ReferenceContact& cont
   double cosine = std::fabs(dot(s.normal, ray.direction)) / length(ray.direction);
   double cos_t;
   return result * (1 - boundary_reflectance(cosine, from / to, &cos_t));
-}
-
-// The fraction of light that arrives along a ray, without refraction.
-Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules) {
-  Obstacle obstacle = find_obstacle(world, ray, rules);
-  if (obstacle == Obstacle::opaque) return {0, 0, 0};
-  if (obstacle == Obstacle::none) return {1, 1, 1};
-  const FrameData& frame = *world.frame;
-  Vec3d result = {1, 1, 1}, absorbed = {0, 0, 0}, open = {0, 0, 0};
-  ReferenceHit hit = next_hit(world, ray, nullptr), after;
-  for (; hit.triangle != kNone; hit = next_hit(world, ray, &after)) {
-    after = hit;
-    if (!casts_shadow(frame, hit.triangle, rules)) continue;
-    ReferenceContact contact = gather_contact(world, ray, hit);
-    for (std::uint32_t i = 0; i < contact.count; ++i) {  // including faces within rounding behind the light
-      std::uint32_t triangle = contact.face[i].triangle;
-      if (casts_shadow(frame, triangle, rules) && blocks(material_of(frame, triangle), rules)) return {0, 0, 0};
-    }
-    result *= contact_transmittance(frame, contact, ray, hit.t * length(ray.direction), &absorbed, &open);
-    if (is_zero(result)) return result;
-    after = contact.last;
-  }
-  for (int c = 0; c < 3; ++c) {
-    double depth = absorbed[c] + (open[c] > 0 ? open[c] * ray.t_max * length(ray.direction) : 0);
-    if (depth > 0) result[c] *= det_exp(-depth);
-  }
-  return result;
 }
 
 // A light of the frame at a point: its direction, distance, and irradiance on a surface facing it.
@@ -127,6 +101,32 @@ Vec3d area_light(const Reference& reference, const ReferenceOptions& options, co
 }
 
 }  // namespace
+
+Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules) {
+  Obstacle obstacle = find_obstacle(world, ray, rules);
+  if (obstacle == Obstacle::opaque) return {0, 0, 0};
+  if (obstacle == Obstacle::none) return {1, 1, 1};
+  const FrameData& frame = *world.frame;
+  Vec3d result = {1, 1, 1}, absorbed = {0, 0, 0}, open = {0, 0, 0};
+  ReferenceHit hit = next_hit(world, ray, nullptr), after;
+  for (; hit.triangle != kNone; hit = next_hit(world, ray, &after)) {
+    after = hit;
+    if (!casts_shadow(frame, hit.triangle, rules)) continue;
+    ReferenceContact contact = gather_contact(world, ray, hit);
+    for (std::uint32_t i = 0; i < contact.count; ++i) {  // including faces within rounding behind the light
+      std::uint32_t triangle = contact.face[i].triangle;
+      if (casts_shadow(frame, triangle, rules) && blocks(material_of(frame, triangle), rules)) return {0, 0, 0};
+    }
+    result *= contact_transmittance(frame, contact, ray, hit.t * length(ray.direction), &absorbed, &open);
+    if (is_zero(result)) return result;
+    after = contact.last;
+  }
+  for (int c = 0; c < 3; ++c) {
+    double depth = absorbed[c] + (open[c] > 0 ? open[c] * ray.t_max * length(ray.direction) : 0);
+    if (depth > 0) result[c] *= det_exp(-depth);
+  }
+  return result;
+}
 
 Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
                        bool with_area_lights) {
@@ -205,7 +205,8 @@ double emitter_density(const Reference& reference, std::uint32_t triangle) {
 Vec3d sample_direct_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
                           const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples) {
   return sum_light_points(reference, s, to_viewer, false) +
-         area_light(reference, options, s, to_viewer, goes_on, samples);
+         area_light(reference, options, s, to_viewer, goes_on, samples) +
+         environment_light(reference, options, s, to_viewer, goes_on, samples);
 }
 
 }  // namespace pocketray

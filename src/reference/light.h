@@ -30,6 +30,9 @@ Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, co
 Vec3d sample_direct_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
                           const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples);
 
+// The fraction of light that arrives along a ray, without refraction.
+Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const ShadowRules& rules);
+
 // Veach's power heuristic, exponent 2 [Veach 1997, eq. 9.13].
 inline double power_heuristic(double density, double other) {
   double a = density * density, b = other * other;

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "reference/environment.h"
 #include "reference/guide.h"
 #include "reference/light.h"
 #include "shade/media.h"
@@ -109,11 +110,16 @@ double emission_weight(const Reference& reference, const ReferenceSurface& s, co
   return power_heuristic(path.density, area_density * dot(way, way) / cos_light);
 }
 
+// The share of the environment's radiance due to a path that meets it.
+double environment_weight(const Reference& reference, const Vec3d& direction, const Path& path) {
+  if (path.sees_lights || reference.environment_shares.empty()) return 1;
+  return power_heuristic(path.density, environment_density(reference, direction));
+}
+
 // One sample of the radiance that arrives along a ray.
 Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, ReferenceRay ray,
                  ReferenceSamples* samples) {
   const FrameData& frame = *reference.world.frame;
-  const SceneInfo& info = frame.scene->info;
   bool model = options.transport == Transport::model;
   Vec3d sum = {0, 0, 0};
   Path path;
@@ -122,7 +128,8 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
     ReferenceSurface s;
     ReferenceContact contact;
     if (!find_surface(reference, ray, &path, samples, &s, &contact))
-      return sum + path.weight * to_double(info.background);
+      return sum +
+             path.weight * radiance_behind(frame, ray.direction) * environment_weight(reference, ray.direction, path);
     if (s.material->unlit && has(frame.mask, Effect::emission)) return sum + path.weight * s.diffuse;
     if (!is_zero(s.emission)) sum += path.weight * s.emission * emission_weight(reference, s, ray.direction, path);
     sum += exact_indirect(*frame.scene, path.weight * s.diffuse, model) * s.open;
@@ -133,7 +140,7 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
           path.weight * sample_direct_light(reference, options, s, -ray.direction, depth < options.depth_max, samples);
     bool is_last = depth >= options.depth_max;
     if ((is_last && !model) || !scatter(reference, options, s, contact, &ray, &path, samples)) return sum;
-    if (is_last) return sum + path.weight * to_double(frame.beyond_depth);
+    if (is_last) return sum + path.weight * radiance_beyond_depth(frame, ray.direction);
     if (depth < kSureDepth) continue;
     double survival = std::fmin(kSurvivalMax, path.worth);
     if (!(samples->next() < survival)) return sum;
@@ -145,7 +152,8 @@ Vec3d trace_path(const Reference& reference, const ReferenceOptions& options, Re
 
 std::size_t reference_need(const FrameData& frame) {
   std::uint32_t count = frame.scene->triangles.count;
-  return reference_world_need(count) + arena_need<ReferenceEmitter>(count) + reference_guide_need(count);
+  return reference_world_need(count) + arena_need<ReferenceEmitter>(count) + environment_shares_need(frame) +
+         reference_guide_need(count);
 }
 
 Reference make_reference(const FrameData& frame, Arena* arena, std::uint32_t guide_path_count) {
@@ -155,6 +163,7 @@ Reference make_reference(const FrameData& frame, Arena* arena, std::uint32_t gui
   reference.world = make_reference_world(frame, arena);
   reference.emitters = arena_array<ReferenceEmitter>(arena, frame.scene->triangles.count);
   reference.emitters.count = find_parts(frame, emitted_power, reference.emitters.data);
+  reference.environment_shares = make_environment_shares(frame, arena);
   make_reference_guide(frame, guide_path_count, arena, &reference);
   CHECK_LE(arena->used - used, reference_need(frame));
   return reference;

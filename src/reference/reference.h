@@ -10,8 +10,8 @@ namespace pocketray {
 
 enum class Transport {
   // The renderer's own lighting model in the limit: direct light, mirrors, glass and the ambient term, with whole area
-  // lights, every depth and no cut-off. Glossy lobes reflect only lights and even surroundings; shadow rays pass
-  // glass without refraction.
+  // lights, every depth and no cut-off. Glossy lobes reflect only lights and the surroundings, an environment by its
+  // integral and without shadows; shadow rays pass glass without refraction.
   model,
   // Full light transport, without the ambient term. Punctual lights shine through glass without refraction, because no
   // path could find them otherwise; light of area lights is refracted.
@@ -62,6 +62,7 @@ constexpr std::uint32_t kGuidePathCount = 1u << 16;
 struct Reference {
   ReferenceWorld world;
   Array<ReferenceEmitter> emitters;
+  Array<double> environment_shares;  // environment.h
   ReferenceGuide guide;
 };
 

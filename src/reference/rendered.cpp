@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/check.h"
+#include "reference/environment.h"
 #include "reference/light.h"
 #include "shade/trace_spans.h"
 
@@ -22,7 +23,7 @@ Vec3d spawn(const Reference& reference, const ReferenceSurface& s, const Vec3d& 
             const Branch& from, const MediumStack& media) {
   const FrameData& frame = *reference.world.frame;
   if (is_zero(weight)) return {0, 0, 0};
-  if (from.depth >= frame.settings.ray_depth) return weight * to_double(frame.beyond_depth);
+  if (from.depth >= frame.settings.ray_depth) return weight * radiance_beyond_depth(frame, direction);
   return weight * follow(reference, leave(frame, s, direction, kInfinity), {from.depth + 1, media});
 }
 
@@ -34,7 +35,7 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
   const double open = has(frame.mask, Effect::ambient) ? s.open : 1;
   Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask) * open;
-  sum += reflected_surroundings(frame, s, -ray.direction);
+  sum += reflected_surroundings(frame, s, -ray.direction) + environment_light_as_rendered(frame, s, -ray.direction);
   if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
     sum += sum_light_points(reference, s, -ray.direction, true);
   Vec3d turned = {0, 0, 0};
@@ -75,7 +76,7 @@ Vec3d follow(const Reference& reference, const ReferenceRay& ray, const Branch& 
     if (!face) continue;
     return sum + carried * shade(reference, ray, reference_surface(frame, *face, ray.direction), contact, branch);
   }
-  return sum + carried * to_double(frame.scene->info.background);
+  return sum + carried * radiance_behind(frame, ray.direction);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
-#include "indirect/surroundings.h"
+#include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
 
@@ -160,6 +160,7 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
 }
 
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer) {
+  if (environment_lights(*frame.scene, frame.mask, frame.settings.indirect)) return {0, 0, 0};
   if (!has(frame.mask, Effect::ambient_gloss) || !reflects_surroundings(lobes_of(s))) return {0, 0, 0};
   const Vec3 specular = {static_cast<float>(s.specular.x), static_cast<float>(s.specular.y),
                          static_cast<float>(s.specular.z)};

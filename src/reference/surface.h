@@ -29,7 +29,8 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
 // normals start where the renderer starts them, see curved_origin() in surface.h.
 ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3d& direction, double t_max);
 
-// Radiance of the surroundings that the glossy lobe reflects, if the frame's plan has Effect::ambient_gloss.
+// Radiance of the surroundings that the glossy lobe reflects, if the frame's plan has Effect::ambient_gloss and
+// no environment stands in.
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer);
 
 // Value of the diffuse plus the glossy lobe, 1/sr.

@@ -24,6 +24,7 @@ static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
 static_assert(sizeof(SkinWeight) == 8 + 16 && sizeof(MovingMesh) == 8 * 4 + 48, "no padding");
 static_assert(sizeof(RadiosityInfo) == 12 && sizeof(RadiosityGrid) == 3 * 12 + 3 * 4, "no padding");
+static_assert(sizeof(EnvironmentInfo) == 3 * 4 + 10 * 12, "no padding");
 static_assert(sizeof(RadiosityNode) == 4 * 12 && sizeof(RadiosityCorners) == 12, "no padding");
 
 constexpr std::uint64_t kSectionAlignment = 64;
@@ -83,14 +84,22 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("radiosity_corners", scene.radiosity_corners);
   visit("radiosity_values", scene.radiosity_values);
   visit("material_maps", scene.material_maps);
+  visit("environment_info", scene.environment_info);
+  visit("environment_texels", scene.environment_texels);
 }
-constexpr std::uint32_t kArrayCount = 32;
+constexpr std::uint32_t kArrayCount = 34;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
   return (offset + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
 }
-constexpr std::uint64_t kFirstOffset = aligned(sizeof(FileHeader) + kSectionCount * sizeof(Section));
+constexpr std::uint64_t first_offset(std::uint32_t section_count) {
+  return aligned(sizeof(FileHeader) + section_count * sizeof(Section));
+}
+// Older files lack the last arrays.
+constexpr std::uint32_t section_count_of(std::uint32_t version) {
+  return version < 8 ? kSectionCount - 2 : kSectionCount;
+}
 
 // zlib counts in uInt, which may be narrower than size_t.
 std::uint32_t crc(std::uint32_t start, const void* bytes, std::size_t byte_count) {
@@ -137,18 +146,20 @@ Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeade
     return failure("not a .pray file: make one with pocketray bake");
   if (byte_count < sizeof(FileHeader)) return failure("cut short after %zu bytes: copy or bake it again", byte_count);
   std::memcpy(header, bytes, sizeof *header);
-  if (header->version != kBakedVersion)
-    return failure("made by version %u, this program reads version %u: bake it again", header->version, kBakedVersion);
+  if (header->version < kBakedVersionMin || header->version > kBakedVersion)
+    return failure("made by version %u, this program reads versions %u to %u: bake it again", header->version,
+                   kBakedVersionMin, kBakedVersion);
   if (header->byte_count != byte_count)
     return failure("%zu bytes long, it should be %llu: copy or bake it again", byte_count,
                    static_cast<unsigned long long>(header->byte_count));
   if (file_checksum(bytes, byte_count) != header->checksum)
     return failure("damaged, its checksum does not match: copy or bake it again");
-  if (header->section_count != kSectionCount)
-    return failure("%u sections, not %u: bake it again", header->section_count, kSectionCount);
+  const std::uint32_t section_count = section_count_of(header->version);
+  if (header->section_count != section_count)
+    return failure("%u sections, not %u: bake it again", header->section_count, section_count);
   for (std::uint32_t word : header->reserved)
     if (word != 0) return failure("reserved bytes of the header are in use: bake it again");
-  if (byte_count < kFirstOffset) return failure("too short for its table of sections: bake it again");
+  if (byte_count < first_offset(section_count)) return failure("too short for its table of sections: bake it again");
   return success();
 }
 
@@ -162,7 +173,7 @@ Section section_at(const std::uint8_t* bytes, std::uint32_t kind) {
 }  // namespace
 
 std::size_t baked_size(const Scene& scene) {
-  std::uint64_t size = aligned(kFirstOffset + sizeof(SceneInfo));
+  std::uint64_t size = aligned(first_offset(kSectionCount) + sizeof(SceneInfo));
   for_each_array(scene, [&](const char*, const auto& array) { size = aligned(size + array.bytes()); });
   CHECK_LE(size, SIZE_MAX);
   return static_cast<std::size_t>(size);
@@ -172,7 +183,7 @@ void baked_write(const Scene& scene, std::uint8_t* bytes) {
   CHECK(bytes != nullptr);
   std::size_t size = baked_size(scene);
   std::memset(bytes, 0, size);
-  std::uint64_t offset = kFirstOffset;
+  std::uint64_t offset = first_offset(kSectionCount);
   std::uint32_t kind = 0;
   auto write = [&](const void* data, std::uint32_t element_bytes, std::uint32_t count) {
     CHECK_LT(kind, kSectionCount);
@@ -205,7 +216,7 @@ Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scen
   FileHeader header;
   RETURN_IF_ERROR(check_header(bytes, byte_count, &header));
   Scene opened;
-  std::uint64_t offset = kFirstOffset;
+  std::uint64_t offset = first_offset(header.section_count);
   Section info = section_at(bytes, 0);
   RETURN_IF_ERROR(check_section(info, 0, "info", sizeof(SceneInfo), byte_count, &offset));
   if (info.count != 1) return failure("%u info sections, not 1: bake it again", info.count);
@@ -213,7 +224,7 @@ Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scen
   Status status;
   std::uint32_t kind = 1;
   for_each_array(opened, [&](const char* name, auto& array) {
-    if (!status.ok) return;
+    if (!status.ok || kind >= header.section_count) return;
     Section section = section_at(bytes, kind);
     status = check_section(section, kind, name, sizeof array[0], byte_count, &offset);
     if (!status.ok) return;
@@ -222,7 +233,7 @@ Status baked_open(const std::uint8_t* bytes, std::size_t byte_count, Scene* scen
     ++kind;
   });
   if (!status.ok) return status;
-  CHECK_EQ(kind, kSectionCount);
+  CHECK_EQ(kind, header.section_count);
   if (offset != byte_count) return failure("bytes after the last section: bake it again");
   status = validate_scene(opened);
   if (!status.ok) return failure("%.400s; bake it again", status.message);
@@ -234,6 +245,7 @@ std::uint32_t scene_hash(const Scene& scene) {
   std::uint32_t kind = 0, hash = crc(0, &scene.info, sizeof scene.info);
   for_each_array(scene, [&](const char*, const auto& array) {
     const std::uint32_t prefix[2] = {++kind, array.count};
+    if (array.empty() && kind >= section_count_of(kBakedVersionMin)) return;  // scenes without it keep their hash
     hash ^= crc(crc(0, prefix, sizeof prefix), array.data, array.bytes());
   });
   CHECK_EQ(kind, kArrayCount);

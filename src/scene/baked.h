@@ -10,7 +10,8 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kBakedVersion = 7;
+constexpr std::uint32_t kBakedVersion = 8;     // as written
+constexpr std::uint32_t kBakedVersionMin = 7;  // the oldest that is read; it has no environment
 
 // Size in bytes of the file that baked_write() makes.
 std::size_t baked_size(const Scene& scene);

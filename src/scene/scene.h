@@ -11,6 +11,7 @@
 #include "base/limits.h"
 #include "base/transform.h"
 #include "base/vec3.h"
+#include "scene/environment.h"
 #include "scene/radiosity.h"
 
 namespace pocketray {
@@ -198,7 +199,7 @@ struct MovingMesh {
 
 struct SceneInfo {
   char name[64] = {0};
-  Vec3 background = {0, 0, 0};  // radiance where nothing is hit
+  Vec3 background = {0, 0, 0};  // radiance where nothing is hit; with an environment, its mean
   Vec3 ambient = {0, 0, 0};     // constant indirect light: radiance from everywhere
   float exposure = 1;           // displayed = exposure × radiance
   std::uint32_t frame_count = 1;
@@ -240,8 +241,10 @@ struct Scene {
   Array<const RadiosityNode> radiosity_nodes;
   Array<const RadiosityCorners> radiosity_corners;
   Array<const Vec3> radiosity_values;
-  Array<const std::uint8_t> accel;          // baked accelerator in the layout of accel/; may be empty
-  Array<const MaterialMaps> material_maps;  // one per material, or empty
+  Array<const std::uint8_t> accel;                // baked accelerator in the layout of accel/; may be empty
+  Array<const MaterialMaps> material_maps;        // one per material, or empty
+  Array<const EnvironmentInfo> environment_info;  // one, or none
+  Array<const std::uint32_t> environment_texels;  // of its maps
 };
 
 inline bool is_animated(const Scene& scene) {

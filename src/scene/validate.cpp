@@ -202,7 +202,8 @@ Status validate_scene(const Scene& scene) {
   RETURN_IF_ERROR(validate_nodes(scene));
   RETURN_IF_ERROR(validate_animations(scene));
   RETURN_IF_ERROR(validate_moving_meshes(scene));
-  return validate_radiosity(scene);
+  RETURN_IF_ERROR(validate_radiosity(scene));
+  return validate_environment(scene);
 }
 
 }  // namespace pocketray

@@ -74,5 +74,6 @@ Status validate_nodes(const Scene& scene);
 Status validate_animations(const Scene& scene);
 Status validate_moving_meshes(const Scene& scene);
 Status validate_radiosity(const Scene& scene);
+Status validate_environment(const Scene& scene);
 
 }  // namespace pocketray

@@ -6,6 +6,7 @@
 #include "base/limit_list.h"
 #include "plan/plan_scene.h"
 #include "platform/memory.h"
+#include "session/environment.h"
 #include "session/focus.h"
 #include "session/interrupt.h"
 #include "session/note.h"
@@ -66,6 +67,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   renderer->accel_info = find_accel(o.accel);
   SceneStorage storage;
   RETURN_IF_ERROR(hooks.load(o.scene, renderer, &opened->source, &storage));
+  RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, renderer));
   Status planned = hooks.plan(renderer, storage, hooks.output_bytes(settings));

@@ -28,6 +28,7 @@ struct CommonOptions {
   std::string scene;
   std::string size, memory, effects = "auto", camera, exposure, json, device, emulate, isa, accel = "auto";
   std::string background, light = "key", fov;  // empty: the scene's
+  std::string environment;                     // import/environment.h; empty: the scene's
   std::string focus;                           // a part of the model; empty: all of it
   std::uint32_t threads = 0, camera_index = 0;
   SettingOptions settings;

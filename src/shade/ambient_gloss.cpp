@@ -2,36 +2,61 @@
 
 #include "base/check.h"
 #include "effect/effect_probe.h"
-#include "indirect/surroundings.h"
+#include "indirect/environment.h"
 #include "shade/surface.h"
 
 namespace pocketray {
+namespace {
 
-Vec3 glow_of_surroundings(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s) {
+Vec3 even_light(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s) {
   if (!reflects_surroundings(m)) return {0, 0, 0};
   effect_entered<Effect::ambient_gloss>();
   const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
   return reflected_surroundings(frame.scene->info, m, specular, dot(s.normal, ray.direction));
 }
 
-namespace {
-
-void surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
-  frame.plain_surface(frame, ray, hit, s);
-  s->glow += glow_of_surroundings(frame, ray, *s->material, *s);
+Vec3 environment_light(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s) {
+  effect_entered<Effect::environment>();
+  const Scene& scene = *frame.scene;
+  Vec3 sum = {0, 0, 0};
+  if (environment_lights_diffuse(frame.mask) && !is_zero(s.diffuse))
+    sum = s.diffuse * environment_irradiance(scene.environment_info[0], s.normal);
+  if (!reflects_surroundings(m)) return sum;
+  const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
+  return sum + reflected_environment(scene, m, specular, s.normal, ray.direction);
 }
 
+template <SurroundingsFunction light>
+void surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
+  frame.plain_surface(frame, ray, hit, s);
+  s->glow += light(frame, ray, *s->material, *s);
+}
+
+template <SurroundingsFunction light>
 void first_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   frame.plain_first_surface(frame, ray, hit, s);
-  s->glow += glow_of_surroundings(frame, ray, *s->material, *s);
+  s->glow += light(frame, ray, *s->material, *s);
+}
+
+template <SurroundingsFunction light>
+void put_in_front(FrameData* frame) {
+  frame->surface = surface<light>, frame->first_surface = first_surface<light>;
 }
 
 }  // namespace
 
-void add_ambient_gloss(FrameData* frame) {
+SurroundingsFunction find_surroundings_function(const FrameData& frame) {
+  CHECK(frame.scene != nullptr);
+  if (has(kAllEffects, Effect::environment) && environment_lights(*frame.scene, frame.mask, frame.settings.indirect))
+    return environment_light;
+  return has(frame.mask, Effect::ambient_gloss) ? even_light : nullptr;
+}
+
+void add_surroundings(FrameData* frame) {
   CHECK(frame != nullptr && frame->surface != nullptr && frame->first_surface != nullptr);
-  frame->plain_surface = frame->surface, frame->surface = surface;
-  frame->plain_first_surface = frame->first_surface, frame->first_surface = first_surface;
+  CHECK(frame->surroundings != nullptr);
+  frame->plain_surface = frame->surface, frame->plain_first_surface = frame->first_surface;
+  frame->surroundings == even_light ? put_in_front<even_light>(frame) : put_in_front<environment_light>(frame);
 }
 
 }  // namespace pocketray

@@ -1,13 +1,14 @@
-// Glossy lobes lit by the surroundings (Effect::ambient_gloss), added to the light that surfaces emit of themselves.
+// Light from the surroundings, added to the light that surfaces emit of themselves: on glossy lobes where it comes
+// evenly from everywhere (Effect::ambient_gloss), on diffuse and glossy ones where it comes from an environment.
 #pragma once
 #include "shade/frame_data.h"
 
 namespace pocketray {
 
-// This light at the surface that the ray met, for the material's lobes there.
-Vec3 glow_of_surroundings(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s);
+// The function for the plan; null: the surroundings light nothing, or only by the ambient term.
+SurroundingsFunction find_surroundings_function(const FrameData& frame);
 
-// Puts the effect in front of the frame's surface functions, so that frames without it do not even test for it.
-void add_ambient_gloss(FrameData* frame);
+// Puts the frame's function in front of its surface functions, so that frames without one do not even test for it.
+void add_surroundings(FrameData* frame);
 
 }  // namespace pocketray

@@ -65,6 +65,8 @@ struct Tracer;
 // Hit::t is the distance from the eye along the whole path.
 using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* surface);
 using GlowFunction = void (*)(const FrameData& frame, Surface* surface);
+// Radiance from the surroundings that leaves a surface back along the ray, for the material's lobes there.
+using SurroundingsFunction = Vec3 (*)(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s);
 // Radiance along a ray, given its first hit and the surface there if already known (otherwise null).
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
 using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
@@ -102,6 +104,7 @@ struct FrameData {
   SurfaceFunction surface = nullptr;
   SurfaceFunction first_surface = nullptr;  // at first hits: the same, but without light that trace_strip adds there
   SurfaceFunction plain_surface = nullptr, plain_first_surface = nullptr;  // see ambient_gloss.h
+  SurroundingsFunction surroundings = nullptr;                             // null: none but ambient light
   GlowFunction glow = nullptr, first_glow = nullptr;                       // see material_maps.h
   RadianceFunction radiance = nullptr;
   ShadowsFunction find_shadows = nullptr;  // null if nothing casts a shadow

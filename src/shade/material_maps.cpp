@@ -5,7 +5,6 @@
 #include "base/check.h"
 #include "effect/effect_probe.h"
 #include "scene/metallic_roughness.h"
-#include "shade/ambient_gloss.h"
 #include "shade/instantiate.h"
 #include "shade/normal_map.h"
 #include "shade/texture.h"
@@ -96,9 +95,9 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     if (has(frame.mask, Effect::ambient))
       s->glow += AmbientIndirect::radiance({scene, nullptr, s->point, s->normal, s->diffuse}) * open;
   }
-  if (has(frame.mask, Effect::ambient_gloss)) {
+  if (frame.surroundings) {
     Material mapped;
-    s->glow += glow_of_surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
+    s->glow += frame.surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
   }
 }
 

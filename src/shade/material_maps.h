@@ -7,7 +7,7 @@ namespace pocketray {
 
 constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion);
 
-// Puts the maps behind the frame's surface functions, and ambient gloss with them.
+// Puts the maps behind the frame's surface functions, and light from FrameData::surroundings with them.
 void add_material_maps(FrameData* frame);
 
 // The lobes of the material at the surface: its own, or those that the map has put into `mapped`.

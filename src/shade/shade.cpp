@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/check.h"
+#include "indirect/environment.h"
 #include "shade/contact.h"
 #include "shade/direct.h"
 #include "shade/instantiate.h"
@@ -47,12 +48,28 @@ inline float radiance_bound(const FrameData& frame, std::uint32_t depth) {
   return frame.radiance_bounds.after[frame.settings.ray_depth - depth];
 }
 
+// Whether the frame has an environment: --effects can force the effect on without one.
+template <EffectMask mask>
+bool has_environment(const FrameData& frame) {
+  if constexpr (has(mask, Effect::environment)) return environment_of(*frame.scene) != nullptr;
+  return false;
+}
+
+// What a ray sees that hits nothing.
+template <EffectMask mask>
+Vec3 radiance_behind(const FrameData& frame, const Vec3& direction) {
+  if (!has_environment<mask>(frame)) return frame.scene->info.background;
+  effect_entered<Effect::environment>();
+  return environment_radiance(*frame.scene, direction);
+}
+
 // Radiance along a spawned ray: zero if it could not matter, the surroundings' beyond the path's maximum depth.
 template <EffectMask mask>
 Vec3 spawn(Tracer* tracer, RayKind kind, const Surface& s, const Vec3& direction, float side, const Path<mask>& path,
            const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
-  if (path.depth >= frame.settings.ray_depth) return weight * frame.beyond_depth;
+  if (path.depth >= frame.settings.ray_depth)
+    return weight * (has_environment<mask>(frame) ? radiance_behind<mask>(frame, direction) : frame.beyond_depth);
   Path<mask> next = path;
   next.weight = path.weight * weight;
   next.depth = path.depth + 1;
@@ -207,7 +224,7 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
   Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // throughput of the blended surfaces
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
-    if (hit.triangle == kNoTriangle) return sum + carried * scene.info.background;
+    if (hit.triangle == kNoTriangle) return sum + carried * radiance_behind<mask>(frame, ray.direction);
     if constexpr (has(mask, Effect::mip_map)) path.distance += hit.t;
     Surface s;
     if (layer == 0 && first)
@@ -273,14 +290,16 @@ struct RadiancePart {
                                         Effect::alpha_blend,
                                         Effect::back_face_culling,
                                         Effect::metallic_roughness,
-                                        Effect::mip_map};
-  // No absorption without media; no distance along a path that ends at its first surface. With maps and footprints,
-  // shade() leaves out the lobes that the plan does not have: fewer instances.
+                                        Effect::mip_map,
+                                        Effect::environment};
+  // No absorption without media; no distance along a path that ends at its first surface. With maps, footprints and
+  // environments, shade() leaves out the lobes that the plan does not have: fewer instances.
   static constexpr EffectMask reduced(EffectMask mask) {
     if (!has(mask, Effect::refraction)) mask &= ~bit(Effect::absorption);
     constexpr EffectMask kGoesOn =
         bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
     if (!(mask & kGoesOn)) mask &= ~bit(Effect::mip_map);
+    if (has(mask, Effect::environment)) mask |= bit(Effect::metallic_roughness);
     if (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map))
       mask |= bit(Effect::specular) | bit(Effect::mirror);
     return mask;

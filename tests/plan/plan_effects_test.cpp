@@ -8,6 +8,7 @@
 #include "effect/setting_list.h"
 #include "plan/plan_effects.h"
 #include "support/generated_scene.h"
+#include "support/test_environment.h"
 
 using namespace pocketray;
 
@@ -71,7 +72,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       // Stored, or by request.
-      {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective)},
+      {kAllFeatures,
+       kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective) & ~bit(E::environment)},
   };
   for (const Row& row : rows) {
     CAPTURE(row.features);
@@ -99,6 +101,7 @@ TEST_CASE("plan_effects_give_reasons") {
   CHECK(has(plan.mask, Effect::absorption));
   CHECK_FALSE(has(plan.mask, Effect::mirror));
   CHECK(reason(plan, Effect::selective) == "every pixel traced");
+  CHECK(reason(plan, Effect::environment) == "no environment");
   settings.selective_contrast = 0.25f;
   plan = plan_effects(generate_scene(features, 1)->scene, settings);
   CHECK(reason(plan, Effect::selective) == "contrasts below 0.25 interpolated");
@@ -219,4 +222,28 @@ TEST_CASE("validate_settings_names_what_is_out_of_range") {
       CHECK(std::string(status.message).find(std::to_string(row.high)) != std::string::npos);
     }
   }
+}
+
+// Goal: an environment is an effect of its own, in place of even surroundings, and lights what an occlusion map shades;
+// --indirect none leaves only what rays see of it. Method: the plans of one scene.
+TEST_CASE("plan_effects_shows_environments_instead_of_even_surroundings") {
+  auto s = generate_scene(bit(Feature::metallic_roughness) | bit(Feature::occlusion), 3);
+  s->scene.info.ambient = {0, 0, 0}, s->scene.info.background = {1, 1, 1};
+  const TestEnvironment even = even_environment({1, 1, 1});
+  even.give(&s->scene);
+  Settings settings;
+  EffectPlan plan = plan_effects(s->scene, settings);
+  CHECK(reason(plan, Effect::environment) == "8×8 texels, radiance at most 1");
+  CHECK(reason(plan, Effect::ambient_gloss) == "environment instead");
+  CHECK(has(plan.mask, Effect::environment));
+  CHECK_FALSE(has(plan.mask, Effect::ambient_gloss));
+  CHECK(has(plan.mask, Effect::occlusion));
+  settings.indirect = IndirectChoice::none;
+  plan = plan_effects(s->scene, settings);
+  CHECK(has(plan.mask, Effect::environment));
+  CHECK_FALSE(has(plan.mask, Effect::occlusion));
+  settings = Settings(), settings.forced_off = bit(Effect::environment);
+  plan = plan_effects(s->scene, settings);
+  CHECK_FALSE(has(plan.mask, Effect::environment));
+  CHECK(has(plan.mask, Effect::ambient_gloss));
 }

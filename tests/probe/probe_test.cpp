@@ -13,6 +13,7 @@
 #include "scene/builtin_helpers.h"
 #include "support/feature_sets.h"
 #include "support/generated_scene.h"
+#include "support/test_environment.h"
 
 using namespace pocketray;
 
@@ -112,13 +113,19 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   Settings selective = settings_for(kAllFeatures, 24, 18);
   selective.selective_contrast = 0.25f;
   auto interpolated = make_renderer(generated->scene, selective);
-  const EffectMask all = interpolated->renderer.effects.mask | with_virtual_lights->renderer.effects.mask;
+  const TestEnvironment even = even_environment({1, 1, 1});
+  Scene under_environment = generated->scene;
+  even.give(&under_environment);
+  auto with_environment = make_renderer(under_environment, settings_for(kAllFeatures, 24, 18));
+  const EffectMask all = interpolated->renderer.effects.mask | with_virtual_lights->renderer.effects.mask |
+                         with_environment->renderer.effects.mask;
   REQUIRE(all == (kAllEffects & ~bit(Effect::radiosity)));  // nothing is stored
   for (const EffectRow& row : kEffectList) {
     if (!has(all, row.effect)) continue;
     CAPTURE(std::string(row.name));
     Renderer* r = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer
                   : row.effect == Effect::selective       ? &interpolated->renderer
+                  : row.effect == Effect::environment     ? &with_environment->renderer
                                                           : &test->renderer;
     CHECK(signal_of_render_without(row.effect, r) == SIGABRT);
   }

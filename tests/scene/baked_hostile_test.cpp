@@ -63,6 +63,10 @@ struct FloatCount {
   void add(const Light& l) {
     add(l.position), add(l.direction), add(l.intensity), add(l.range), add(l.cos_inner), add(l.cos_outer);
   }
+  void add(const EnvironmentInfo& e) {
+    add(e.scale), add(e.radiance_max);
+    for (const Vec3& coefficient : e.irradiance) add(coefficient);
+  }
   void add(const Material& m) {
     for (const Vec3& v : {m.diffuse, m.specular, m.mirror, m.specular_tinted, m.mirror_tinted, m.transmission,
                           m.absorption, m.emission})
@@ -82,7 +86,7 @@ FloatCount count_floats(const Scene& s) {
   n.add(s.info.auto_exposure), n.add(s.positions), n.add(s.normals), n.add(s.uvs), n.add(s.materials), n.add(s.lights);
   n.add(s.cameras), n.add(s.nodes), n.add(s.animations), n.add(s.key_times), n.add(s.key_values), n.add(s.weights);
   n.add(s.joints), n.add(s.moving_meshes), n.add(s.rest_positions), n.add(s.rest_normals), n.add(s.skin_weights);
-  n.add(s.morph_positions), n.add(s.morph_normals);
+  n.add(s.morph_positions), n.add(s.morph_normals), n.add(s.environment_info);
   return n;
 }
 
@@ -235,16 +239,16 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(baked_open(file.data(), file.size() - 64, &scene).message, "it should be"));
   CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "aligned to 64"));
   put_u32(file, kVersionAt, 1);
-  CHECK(open_error(file) == "made by version 1, this program reads version 7: bake it again");
+  CHECK(open_error(file) == "made by version 1, this program reads versions 7 to 8: bake it again");
   put_u32(file, kVersionAt, kBakedVersion);
   file.data()[file.size() - 1] ^= 1;
   CHECK(mentions(open_error(file), "checksum"));
   fix_checksum(file);
   CHECK(open_error(file) == "");
-  put_u32(file, kSectionCountAt, 34);
+  put_u32(file, kSectionCountAt, 36);
   fix_checksum(file);
-  CHECK(mentions(open_error(file), "34 sections"));
-  put_u32(file, kSectionCountAt, 33);
+  CHECK(mentions(open_error(file), "36 sections"));
+  put_u32(file, kSectionCountAt, 35);
   put_u32(file, section_at(0) + 16, 2);
   fix_checksum(file);
   CHECK(mentions(open_error(file), "2 info sections"));

@@ -89,6 +89,7 @@ void FullScene::bind() {
   scene.radiosity_info = view(radiosity_info), scene.radiosity_triangles = view(radiosity_triangles);
   scene.radiosity_grids = view(radiosity_grids), scene.radiosity_nodes = view(radiosity_nodes);
   scene.radiosity_corners = view(radiosity_corners), scene.radiosity_values = view(radiosity_values);
+  scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
 }
 
 void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {
@@ -111,6 +112,12 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   full->radiosity_nodes.assign(4, {{1, 2, 3}, {.5f, .25f, 0}, {0, .5f, .25f}, {.125f, 0, 0}});
   full->radiosity_corners = {{{0, 1, 2}}};
   full->radiosity_values.assign(3, {1, 2, .5f});
+  EnvironmentInfo environment;
+  environment.scale = 0.5f, environment.side = environment.gloss_side = 4, environment.radiance_max = {9, 9, 9};
+  for (Vec3& coefficient : environment.irradiance) coefficient = color(&rng);
+  full->environment_info = {environment};
+  for (std::uint32_t i = 0; i < environment_texel_count(4, 4); ++i)
+    full->environment_texels.push_back(to_environment_texel(to_double(color(&rng)) * 9.0));
   for (int i = 0; i < 37; ++i) full->accel.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
   full->bind();
 }

@@ -32,6 +32,8 @@ struct FullScene {
   std::vector<pocketray::RadiosityNode> radiosity_nodes;
   std::vector<pocketray::RadiosityCorners> radiosity_corners;
   std::vector<pocketray::Vec3> radiosity_values;
+  std::vector<pocketray::EnvironmentInfo> environment_info;
+  std::vector<std::uint32_t> environment_texels;
 
   FullScene() = default;
   FullScene(const FullScene&) = delete;  // `scene` points into the vectors

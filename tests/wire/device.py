@@ -10,7 +10,7 @@ RGB565, RGB888 = 0, 1
 EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-mask", "alpha-blend", "emission", "texture",
            "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
-           "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective"]
+           "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective", "environment"]
 
 failures = []
 
@@ -157,7 +157,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=13, more=b""):
+def hello(version=14, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
 
 
@@ -202,7 +202,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\15\0", "the server says hello first, of version 13")
+            check(kind == HELLO and fields[:6] == b"PRAY\16\0", "the server says hello first, of version 14")
             self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
 
     def send(self, data):

@@ -217,8 +217,10 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output
 Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, const OutputBytes& output_bytes,
                               OpenScene* opened) {
   ConnectedServers* s = connected(servers);
-  if (!common.background.empty() || common.light != CommonOptions().light)
-    return failure("--server renders the scene's own background and lights: drop --server, --background and --light");
+  if (!common.background.empty() || !common.environment.empty() || common.light != CommonOptions().light)
+    return failure(
+        "--server renders the scene's own background and lights: drop --server, --background, --environment and "
+        "--light");
   OpenHooks hooks;
   hooks.output_bytes = [&](const Settings& settings) {
     return output_bytes(settings) + servers->backend->need(*servers, settings);

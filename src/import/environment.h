@@ -1,0 +1,48 @@
+// Environments from pictures and from a sky made by code; scene/environment.h has the form in which they are stored.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "scene/scene.h"
+
+namespace pocketray {
+
+// An environment for a scene, with the light that belongs to it: a sky's sun.
+struct ImportedEnvironment {
+  EnvironmentInfo info;
+  std::vector<std::uint32_t> texels;
+  Vec3 mean;  // radiance
+  std::vector<Light> lights;
+};
+
+// A picture of linear radiance, rows from the top.
+struct RadiancePicture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<Vec3> pixels;
+};
+
+// Reads "sky", "sky:ELEVATION[,TURBIDITY]" or a file: Radiance RGBE (.hdr), PNG or JPEG, equirectangular, with −Z in
+// the middle and +Y on top. PNG and JPEG hold radiance up to 1, in sRGB.
+Status read_environment(const std::string& name, ImportedEnvironment* environment);
+
+// Decodes a Radiance picture [Ward 1991, "Real pixels", Graphics Gems II ch. II.5]. Its bytes are hostile.
+Status decode_radiance(const std::vector<std::uint8_t>& bytes, RadiancePicture* picture);
+
+// Samples a function of direction on `side` × `side` texels, with grid × grid points in each; `side` is a power of two.
+// Radiance below 0 counts as 0, NaN too. Fails where it is too bright to store.
+Status make_environment(std::uint32_t side, std::uint32_t grid, const std::function<Vec3d(const Vec3d&)>& radiance,
+                        ImportedEnvironment* environment);
+constexpr std::uint32_t kGlossSide = 64;
+
+// The clear sky of [Preetham et al. 1999, "A practical analytic model for daylight", sec. 3 and app. A], in units of
+// 30 kcd/m², so that a white surface in the sun is about display white. Below the horizon lies even ground.
+struct Sky {
+  double elevation = 45, turbidity = 3;  // degrees; haze, 2 (clear) to 10
+};
+// Without the sun's disc, which is a directional light.
+Vec3d sky_radiance(const Sky& sky, const Vec3d& direction);
+Light sun_of(const Sky& sky);
+
+}  // namespace pocketray

@@ -1,0 +1,29 @@
+// The stored environment in double precision, sampled by importance: luminance × solid angle.
+#pragma once
+#include "reference/optics.h"
+
+namespace pocketray {
+
+// Radiance of what a ray meets that hits nothing, and of what stands in for it beyond the maximum depth.
+Vec3d radiance_behind(const FrameData& frame, const Vec3d& direction);
+Vec3d radiance_beyond_depth(const FrameData& frame, const Vec3d& direction);
+
+// Cumulative shares of the map's texels in the probability of picking them; empty without an environment or with a
+// black one.
+std::size_t environment_shares_need(const FrameData& frame);
+Array<double> make_environment_shares(const FrameData& frame, Arena* arena);
+
+// Density of picking a direction, 1/sr.
+double environment_density(const Reference& reference, const Vec3d& direction);
+// Picks a direction from numbers uniform in [0, 1).
+Vec3d sample_environment(const Reference& reference, const Pair& pair);
+
+// One sample of the environment's light towards the viewer. In the renderer's model nothing stands in its way and
+// Phong's lobe reflects none; in light transport, paths that continue share it by multiple importance sampling.
+Vec3d environment_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
+                        const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples);
+
+// The renderer's own approximation: nine coefficients and the split sum.
+Vec3d environment_light_as_rendered(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer);
+
+}  // namespace pocketray

@@ -1,0 +1,65 @@
+#include "session/environment.h"
+
+#include <cstring>
+
+#include "base/check.h"
+#ifdef POCKETRAY_HAVE_IMPORT
+#include "import/environment.h"
+#endif
+
+namespace pocketray {
+
+#ifdef POCKETRAY_HAVE_IMPORT
+Status set_environment(const std::string& name, Scene* scene, EnvironmentMemory* memory) {
+  CHECK(scene != nullptr && memory != nullptr);
+  if (!scene->radiosity_info.empty())
+    return failure("the scene stores radiosity, solved for other surroundings: bake it again with --environment");
+  ImportedEnvironment read;
+  RETURN_IF_ERROR(read_environment(name, &read));
+  if (scene->lights.count + read.lights.size() > kLightCountMax)
+    return failure("the scene has %u lights, with the environment's %zu they are more than %u: use fewer",
+                   scene->lights.count, read.lights.size(), kLightCountMax);
+  memory->info = {read.info};
+  memory->texels = std::move(read.texels);
+  memory->lights.assign(scene->lights.begin(), scene->lights.end());
+  memory->lights.insert(memory->lights.end(), read.lights.begin(), read.lights.end());
+  scene->environment_info = {memory->info.data(), 1};
+  scene->environment_texels = {memory->texels.data(), static_cast<std::uint32_t>(memory->texels.size())};
+  scene->lights = {memory->lights.data(), static_cast<std::uint32_t>(memory->lights.size())};
+  scene->info.background = read.mean;
+  scene->info.ambient = {0, 0, 0};
+  scene->info.default_lights = 0;
+  return success();
+}
+#else
+Status set_environment(const std::string& name, Scene*, EnvironmentMemory*) {
+  return failure("--environment %.200s cannot be read by this build: bake the scene with it on a desktop",
+                 name.c_str());
+}
+#endif
+
+Status set_environment_if_requested(const std::string& name, Renderer* renderer, SceneSource* source,
+                                    SceneStorage* storage) {
+  if (name.empty()) return success();
+  CHECK(renderer != nullptr && source != nullptr && storage != nullptr);
+  Scene* scene = &renderer->scene;
+  EnvironmentMemory memory;
+  RETURN_IF_ERROR(set_environment(name, scene, &memory));
+  const std::size_t bytes = arena_need<EnvironmentInfo>(1) + arena_need<std::uint32_t>(memory.texels.size()) +
+                            arena_need<Light>(memory.lights.size());
+  Arena* arena = &renderer->scene_arena;
+  if (bytes > arena_free(*arena))
+    return scene_too_large(name, arena->used + bytes, renderer->settings.memory_bytes, source);
+  auto keep = [arena](auto& array) {
+    if (array.empty()) return;
+    void* copy = arena_allocate(arena, array.bytes());
+    std::memcpy(copy, array.data, array.bytes());
+    array.data = static_cast<decltype(array.data)>(copy);
+  };
+  keep(scene->environment_info), keep(scene->environment_texels), keep(scene->lights);
+  source->baked = nullptr, source->baked_bytes = 0;  // it is no longer the file's scene
+  storage->arena_bytes = arena->used;
+  return success();
+}
+
+}  // namespace pocketray

@@ -1,0 +1,26 @@
+// --environment: light from all directions for a scene, by name.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "session/source.h"
+
+namespace pocketray {
+
+// What a scene with a new environment refers to.
+struct EnvironmentMemory {
+  std::vector<EnvironmentInfo> info;
+  std::vector<std::uint32_t> texels;
+  std::vector<Light> lights;
+};
+
+// Gives the scene the environment of that name (import/environment.h) in place of its background, ambient term and
+// default lights, and adds the environment's lights. `memory` must outlive the scene. Fails in builds without
+// importers.
+Status set_environment(const std::string& name, Scene* scene, EnvironmentMemory* memory);
+
+// The same for a loaded scene, with its memory in the scene arena; nothing if the name is empty.
+Status set_environment_if_requested(const std::string& name, Renderer* renderer, SceneSource* source,
+                                    SceneStorage* storage);
+
+}  // namespace pocketray
