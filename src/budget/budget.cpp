@@ -56,7 +56,7 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
 
 constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_radiosity);
 
-// Plans with virtual lights, if a candidate has them, and the most points per area light that fit; drops candidates
+// Plans with virtual lights and for undersampling, if a candidate has them, and the most points per area light that fit; drops candidates
 // that need more.
 Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
@@ -71,6 +71,7 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t o
     for (std::uint32_t i = 0; i < f->front.count; ++i) {
       most = std::max(most, f->front.candidates[i].points_per_area_light);
       if (f->front.candidates[i].indirect == kInstantRadiosity) renderer->settings.indirect = kInstantRadiosity;
+      if (f->front.candidates[i].resolution != Resolution::full) renderer->settings.resolution = Resolution::half;
     }
     renderer->settings.points_per_area_light = most;
     Status status = plan_renderer(renderer, storage, output_bytes);

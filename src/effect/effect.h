@@ -33,8 +33,9 @@ enum class Effect : std::uint8_t {
   mip_map,
   selective,
   environment,
+  undersampling,
 };
-constexpr int kEffectCount = 28;
+constexpr int kEffectCount = 29;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

@@ -39,6 +39,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::mip_map, "mip-map", "a material with a texture that stores smaller levels"},
     {Effect::selective, "selective", "--selective above 0"},
     {Effect::environment, "environment", "a stored environment: light from every direction"},
+    {Effect::undersampling, "undersampling", "--resolution checkerboard or half"},
 };
 
 constexpr bool effects_in_order() {

@@ -9,6 +9,7 @@ namespace pocketray {
 
 inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear", "trilinear"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
+inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
 
 // "auto", "none", then the effects that are methods of indirect light.
@@ -163,6 +164,19 @@ inline constexpr SettingRow kSettingList[] = {
      false,
      0,
      {0.5, 0.375, 0.25, 0.1875, 0.125, 0.0625, 0},
+     nullptr,
+     ""},
+    {"resolution",
+     "pixels to trace",
+     "the others are reconstructed along edges",
+     "resolution",
+     choice_field<&Quality::resolution>(kResolutionNames),
+     1,
+     bit(Effect::undersampling),
+     kAlways,
+     false,
+     double(Resolution::full),
+     {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::full)},
      nullptr,
      ""},
 };

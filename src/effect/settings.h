@@ -20,6 +20,9 @@ enum class IndirectChoice : std::uint8_t { automatic, none, first };
 // Of stored light, between the places where it is stored.
 enum class Reconstruction : std::uint8_t { constant, bilinear, bicubic };
 
+// The pixels that are traced: all, half of them, or a quarter; see shade/lattice.h.
+enum class Resolution : std::uint8_t { full, checkerboard, half };
+
 // The settings that trade accuracy for time, a row of setting_list.h each. They may change from frame to frame.
 struct Quality {
   std::uint32_t samples_per_pixel = 1;
@@ -32,6 +35,7 @@ struct Quality {
   Reconstruction reconstruction = Reconstruction::bicubic;
   std::uint32_t virtual_lights = 64;  // of instant radiosity; a pixel traces a shadow ray to a sixteenth of them
   float selective_contrast = 0;       // up to which pixels are interpolated, as displayed; 0: all are traced
+  Resolution resolution = Resolution::full;
 };
 
 // Whether frames trace only what can have changed. automatic: where that pays.

@@ -11,6 +11,7 @@
 #include "shade/filters.h"
 #include "shade/footprint.h"
 #include "shade/interleaved.h"
+#include "shade/lattice.h"
 #include "shade/material_maps.h"
 #include "shade/media.h"
 #include "shade/selective.h"
@@ -51,6 +52,11 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.trace_strip = has(renderer->effects.mask, Effect::instant_radiosity) ? trace_interleaved
                                 : has(renderer->effects.mask, Effect::selective)       ? trace_selectively
                                                                                        : nullptr;
+  renderer->frame.trace_lattice_strip = nullptr;
+  if (has(renderer->effects.mask, Effect::undersampling)) {
+    renderer->frame.trace_lattice_strip = renderer->frame.trace_strip;
+    renderer->frame.trace_strip = trace_lattice;
+  }
   renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
   renderer->frame.find_shadows = has(renderer->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
   CHECK(renderer->frame.surface != nullptr && renderer->frame.radiance != nullptr);
@@ -78,12 +84,15 @@ void light_scene(Renderer* renderer) {
 }
 
 void make_tracers(Renderer* renderer) {
-  const std::uint32_t row_corners = corner_count(renderer->settings.width);
+  const std::uint32_t corners = renderer->corners.count / renderer->settings.threads;
+  const std::uint32_t pixels = window_pixel_count(renderer->settings);
   for (std::uint32_t i = 0; i < renderer->tracers.count; ++i) {
     renderer->tracers[i] = make_tracer(renderer->frame);
-    if (!has(renderer->effects.mask, Effect::selective) || renderer->corners.empty()) continue;
-    CellCorner* corners = &renderer->corners[2 * i * row_corners];
-    keep_corner_rows({corners, row_corners}, {corners + row_corners, row_corners}, &renderer->tracers[i]);
+    if (has(renderer->effects.mask, Effect::undersampling))
+      keep_window({&renderer->window_pixels[i * pixels], pixels}, {&renderer->window_states[i * pixels], pixels},
+                  &renderer->tracers[i]);
+    if (has(renderer->effects.mask, Effect::selective) && corners > 0)
+      keep_corner_rows({&renderer->corners[i * corners], corners}, &renderer->tracers[i]);
   }
 }
 

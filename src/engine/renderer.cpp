@@ -13,6 +13,7 @@
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
 #include "shade/camera.h"
+#include "shade/lattice.h"
 #include "shade/selective.h"
 
 namespace pocketray {
@@ -159,6 +160,11 @@ Status build_renderer_unexposed(Renderer* renderer) {
   if (has(renderer->effects.mask, Effect::selective))
     renderer->corners =
         arena_array<CellCorner>(&renderer->persistent_arena, selective_corner_count(renderer->settings));
+  if (plans_lattice(renderer->settings)) {
+    const std::uint32_t count = renderer->settings.threads * window_pixel_count(renderer->settings);
+    renderer->window_pixels = arena_array<Vec3>(&renderer->persistent_arena, count);
+    renderer->window_states = arena_array<std::uint8_t>(&renderer->persistent_arena, count);
+  }
   renderer->spans = arena_array<Span>(&renderer->persistent_arena, renderer->settings.height);
   renderer->row_ns = arena_array_zeroed<std::uint64_t>(&renderer->persistent_arena, renderer->settings.height);
   renderer->image = arena_array_zeroed<Vec3>(
@@ -204,6 +210,8 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
                    renderer->light_point_count_max);
   if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
     return failure("memory is planned without virtual lights: plan with --indirect instant-radiosity");
+  if (has(effects.mask, Effect::undersampling) && renderer->window_pixels.empty())
+    return failure("memory is planned for all pixels to be traced: plan with --resolution half");
   std::size_t memory_bytes = now.memory_bytes;
   renderer->settings = settings;
   renderer->settings.memory_bytes = memory_bytes;
@@ -242,7 +250,7 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
   std::uint32_t columns = places(renderer->settings.width), count = columns * places(renderer->settings.height),
                 begin = p->next;
   FrameData frame = renderer->frame;
-  if (has(frame.mask, Effect::selective)) frame.trace_strip = nullptr;  // it depends on the exposure
+  if (frame.mask & (bit(Effect::selective) | bit(Effect::undersampling))) frame.trace_strip = nullptr;
   Tracer tracer = make_tracer(frame);
   for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {
     std::uint32_t row = kStep / 2 + p->next / columns * kStep, column = kStep / 2 + p->next % columns * kStep;

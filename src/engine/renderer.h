@@ -65,7 +65,9 @@ struct Renderer {
   Array<std::uint64_t> row_ns;  // cost of each in the last frame
   Array<Tracer> tracers;        // one per thread
   Array<CellCorner> corners;    // of selective rendering, two rows per thread; empty: not planned
-  Array<Vec3> image;            // width × height, linear
+  Array<Vec3> window_pixels;    // of undersampling, a window per thread; empty: not planned
+  Array<std::uint8_t> window_states;
+  Array<Vec3> image;  // width × height, linear
   Camera camera;
   Settings lit_settings;                 // the settings that the frame's lights were placed for,
   EffectMask lit_mask = ~EffectMask(0);  // and the effects; ~0: not placed

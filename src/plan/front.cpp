@@ -97,10 +97,22 @@ Front builtin_front() {
   constexpr struct {
     std::uint32_t samples, depth, area_lights;
     float cut_off, contrast;
-  } kLadder[] = {{1, 0, 1, 4, 0.5f},      {1, 1, 1, 4, 0.25f}, {1, 2, 2, 0.5f, 0.25f}, {1, 8, 4, 0.5f, 0.25f},
-                 {1, 8, 4, 0.5f, 0.125f}, {1, 8, 4, 0.5f, 0},  {2, 8, 4, 0.5f, 0},     {4, 8, 4, 0.5f, 0},
-                 {4, 8, 8, 0.5f, 0},      {8, 8, 8, 0.5f, 0},  {8, 8, 16, 0.5f, 0},    {16, 8, 16, 0.5f, 0},
-                 {16, 8, 64, 0.5f, 0},    {16, 16, 64, 0, 0}};
+    Resolution resolution = Resolution::full;
+  } kLadder[] = {{1, 0, 1, 4, 0.5f, Resolution::half},
+                 {1, 0, 1, 4, 0.5f},
+                 {1, 1, 1, 4, 0.25f},
+                 {1, 2, 2, 0.5f, 0.25f},
+                 {1, 8, 4, 0.5f, 0.25f},
+                 {1, 8, 4, 0.5f, 0.125f},
+                 {1, 8, 4, 0.5f, 0},
+                 {2, 8, 4, 0.5f, 0},
+                 {4, 8, 4, 0.5f, 0},
+                 {4, 8, 8, 0.5f, 0},
+                 {8, 8, 8, 0.5f, 0},
+                 {8, 8, 16, 0.5f, 0},
+                 {16, 8, 16, 0.5f, 0},
+                 {16, 8, 64, 0.5f, 0},
+                 {16, 16, 64, 0, 0}};
   static_assert(sizeof kLadder / sizeof kLadder[0] <= kFrontCandidateMax, "a front holds them");
   Front front;
   Candidate c;
@@ -111,12 +123,14 @@ Front builtin_front() {
     c.points_per_area_light = row.area_lights;
     c.cut_off_levels = row.cut_off;
     c.selective_contrast = row.contrast;
+    c.resolution = row.resolution;
     // Guesses within a factor of two of `pocketray bench` on the built-in scenes.
     double reach = row.depth < 4 ? row.depth : 4, points = row.area_lights;
     double exact = row.cut_off == 0 ? 1.2 : row.cut_off > 1 ? 0.95 : 1.0;
     double sample_ns = exact * (200 + 40 * reach + (c.texture_filter == TextureFilter::nearest ? 0 : 10) +
                                 60 * points * (1 + 0.1 * reach));
     double traced = row.contrast == 0 ? 1 : row.contrast < 0.25f ? 0.5 : row.contrast < 0.5f ? 0.42 : 0.36;
+    if (row.resolution == Resolution::half) traced *= 0.6;
     c.ns_per_pixel = static_cast<float>(sample_ns * traced * row.samples);
     front.candidates[front.count++] = c;
     c.texture_filter = TextureFilter::as_scene;

@@ -200,6 +200,14 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
           static_cast<double>(settings.selective_contrast));
   else
     w.set(Effect::selective, false, "every pixel traced");
+  const bool full = settings.resolution == Resolution::full;
+  if (!full && indirect && has(indirect->effects, Effect::instant_radiosity))
+    w.set(Effect::undersampling, false, "instant radiosity needs every pixel");
+  else
+    w.set(Effect::undersampling, !full, "%s of the pixels traced",
+          full                                      ? "all"
+          : settings.resolution == Resolution::half ? "a quarter"
+                                                    : "half");
   bool animated = is_animated(scene);
   w.set(Effect::animation, animated, animated ? "%u animation%s" : "nothing moves", scene.animations.count,
         scene.animations.count == 1 ? "" : "s");

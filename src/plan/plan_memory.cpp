@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/span.h"
 #include "scene/animate.h"
+#include "shade/lattice.h"
 #include "shade/selective.h"
 
 namespace pocketray {
@@ -77,6 +78,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
   add_part(plan, "selective", ArenaKind::persistent,
            has(effects.mask, Effect::selective) ? selective_need(settings) : 0);
+  add_part(plan, "undersampling", ArenaKind::persistent, lattice_need(settings));
   add_part(plan, "spans", ArenaKind::persistent,
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
@@ -114,6 +116,7 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
   const char* mixes = has(effects.mask, Effect::instant_radiosity) ? "instant radiosity mixes neighbouring pixels' rays"
                       : has(effects.mask, Effect::selective)       ? "selective rendering interpolates pixels"
+                      : has(effects.mask, Effect::undersampling)   ? "undersampling reconstructs pixels"
                                                                    : nullptr;
   wanted = wanted && !mixes;
   const char* why = mixes                                      ? mixes

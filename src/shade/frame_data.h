@@ -55,6 +55,16 @@ struct MediumStack {
   std::uint32_t depth = 0;
 };
 
+// Rows of pixels one after the other, the first of which is the picture's row `first_row`.
+struct PixelRows {
+  Vec3* pixels;
+  std::uint32_t width, first_row;
+
+  Vec3& at(std::uint32_t column, std::uint32_t row) const {
+    return pixels[static_cast<std::size_t>(row - first_row) * width + column];
+  }
+};
+
 struct FrameData;
 struct Surface;
 struct TileShadows;
@@ -71,7 +81,7 @@ using SurroundingsFunction = Vec3 (*)(const FrameData& frame, const Ray& ray, co
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
 using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
                                  TraceStats* stats);
-using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, Vec3* image);
+using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
 
 // Upper bounds of the radiance along a ray, by the number of reflections and refractions that it may still meet.
 struct RadianceBounds {
@@ -107,9 +117,10 @@ struct FrameData {
   SurroundingsFunction surroundings = nullptr;                             // null: none but ambient light
   GlowFunction glow = nullptr, first_glow = nullptr;                       // see material_maps.h
   RadianceFunction radiance = nullptr;
-  ShadowsFunction find_shadows = nullptr;  // null if nothing casts a shadow
-  StripFunction trace_strip = nullptr;     // traces pixels in blocks; null: each by itself
-  HitFilter visible_filter;                // accept is null if nothing is cut out; see filters.h
+  ShadowsFunction find_shadows = nullptr;       // null if nothing casts a shadow
+  StripFunction trace_strip = nullptr;          // traces pixels in blocks; null: each by itself
+  StripFunction trace_lattice_strip = nullptr;  // the same, of those that undersampling traces
+  HitFilter visible_filter;                     // accept is null if nothing is cut out; see filters.h
   decltype(HitFilter::accept) accept_opaque = nullptr, accept_clear = nullptr;  // with a ShadowContext
   bool filters_read_point = false;                                              // HitFilter::reads_point
   bool filter_every_shadow = false;  // false: only shadow rays to area lights need the filter
@@ -137,6 +148,13 @@ struct CornerRow {
   std::uint32_t row = ~0u;  // of the picture; ~0: none
 };
 
+// Pixels of kWindowRows rows, and whether they are known; lattice.h.
+struct LatticeWindow {
+  Array<Vec3> pixels;
+  Array<std::uint8_t> states;
+  std::uint32_t row = ~0u;  // of the row of tiles that it is about; ~0: none
+};
+
 // One thread's state; counters accumulate. Aligned so that threads do not share a cache line.
 struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
@@ -147,7 +165,9 @@ struct alignas(64) Tracer {
   const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
   std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded
   float budget = 0;                           // radiance that may still be skipped of the current sample
-  CornerRow corner_rows[2];                   // empty: none is kept; at even and odd rows of tiles
+  CornerRow corner_rows[4];                   // of selective rendering
+  std::uint32_t corner_row_count = 0;         // that are kept: 0, 2 or 4
+  LatticeWindow window;                       // empty: not planned
   float left_out_max = 0;                     // largest sum skipped of one sample so far
 };
 

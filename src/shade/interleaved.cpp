@@ -60,7 +60,7 @@ void find_first_hits(Tracer* tracer, const BlockTile& tile, const Vec2& offset, 
       frame.first_surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
 }
 
-void trace_block_tile(Tracer* tracer, const BlockTile& tile, Vec3* image) {
+void trace_block_tile(Tracer* tracer, const BlockTile& tile, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
   if (sample_count > 1) effect_entered<Effect::supersampling>();
@@ -84,14 +84,12 @@ void trace_block_tile(Tracer* tracer, const BlockTile& tile, Vec3* image) {
   tracer->first_surface = nullptr;
   tracer->tile_shadows = nullptr;
   for (std::uint32_t i = 0; i < tile.count; ++i)
-    if (tile.wanted[i])
-      image[static_cast<std::size_t>(tile.row[i]) * frame.settings.width + tile.column[i]] =
-          sum[i] * (1.0f / static_cast<float>(sample_count));
+    if (tile.wanted[i]) image.at(tile.column[i], tile.row[i]) = sum[i] * (1.0f / static_cast<float>(sample_count));
 }
 
 }  // namespace
 
-void trace_interleaved(Tracer* tracer, const TileStrip& strip, Vec3* image) {
+void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
   if (strip.tile_count == 0) return;
   CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
   AlignedTiles tiles;

@@ -22,6 +22,6 @@ void gather_virtual_light(const FrameData& frame, const BlockHits& pixels, Trace
                           Vec3* irradiance);
 
 // Traces the strip's pixels.
-void trace_interleaved(Tracer* tracer, const TileStrip& strip, Vec3* image);
+void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
 
 }  // namespace pocketray

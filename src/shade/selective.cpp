@@ -32,15 +32,12 @@ std::uint32_t corner_row(const CellTile& tile, std::uint32_t k) {
   return std::min(tile.row + k * kCellSide, tile.frame().settings.height - 1);
 }
 
-Vec3* pixel_at(const FrameData& frame, std::uint32_t column, std::uint32_t row, Vec3* image) {
-  return image + static_cast<std::size_t>(row) * frame.settings.width + column;
-}
-
 // Where the thread keeps the corner, or null. A new row of corners below the tile takes the place of an old one.
 CellCorner* kept_corner(const CellTile& tile, std::uint32_t i, std::uint32_t k) {
   const std::uint32_t row = tile.row + k * kCellSide;
-  CornerRow* kept = &tile.tracer->corner_rows[row / kTileSide % 2];
-  if (k == 1 || kept->corners.empty()) return nullptr;
+  const std::uint32_t count = tile.tracer->corner_row_count;
+  if (count == 0 || (count == 2 && k == 1)) return nullptr;
+  CornerRow* kept = &tile.tracer->corner_rows[row / (count == 2 ? kTileSide : kCellSide) % count];
   if (kept->row != row) {
     if (k == 0) return nullptr;
     kept->row = row;
@@ -77,7 +74,7 @@ PixelCell cell_at(CellTile* tile, std::uint32_t i, std::uint32_t k) {
 }
 
 // Interpolates a cell's pixels, given by their places in the tile.
-void interpolate(const CellTile& tile, const PixelCell& cell, std::uint64_t mask, Vec3* image) {
+void interpolate(const CellTile& tile, const PixelCell& cell, std::uint64_t mask, const PixelRows& image) {
   const Vec3 &a = cell.corner[0]->radiance, &b = cell.corner[1]->radiance;
   const Vec3 &c = cell.corner[2]->radiance, &d = cell.corner[3]->radiance;
   for (; mask; mask &= mask - 1) {
@@ -86,7 +83,7 @@ void interpolate(const CellTile& tile, const PixelCell& cell, std::uint64_t mask
     const float x = static_cast<float>(column % kCellSide) * cell.across;
     const float y = static_cast<float>(row % kCellSide) * cell.down;
     const Vec3 left = a + (c - a) * y, right = b + (d - b) * y;
-    *pixel_at(tile.frame(), tile.column + column, tile.row + row, image) = left + (right - left) * x;
+    image.at(tile.column + column, tile.row + row) = left + (right - left) * x;
   }
 }
 
@@ -108,7 +105,7 @@ bool take_light(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const R
   return true;
 }
 
-void trace_together(Tracer* tracer, const Doubtful& pixels, Vec3* image) {
+void trace_together(Tracer* tracer, const Doubtful& pixels, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Tile& tile = pixels.tile;
   RayPacket packet, rays;
@@ -122,7 +119,7 @@ void trace_together(Tracer* tracer, const Doubtful& pixels, Vec3* image) {
   Tile shaded;
   for (std::uint32_t i = 0; i < tile.count; ++i) {
     Surface s;
-    Vec3* pixel = pixel_at(frame, tile.column[i], tile.row[i], image);
+    Vec3* pixel = &image.at(tile.column[i], tile.row[i]);
     if (take_light(tracer, pixels, i, ray_of(packet, i), hits[i], &s, pixel)) continue;
     for (int axis = 0; axis < 3; ++axis) rays.direction[axis][shaded.count] = packet.direction[axis][i];
     hits[shaded.count] = hits[i];
@@ -132,23 +129,23 @@ void trace_together(Tracer* tracer, const Doubtful& pixels, Vec3* image) {
   rays.origin = packet.origin, rays.t_max = packet.t_max, rays.count = shaded.count;
   Vec3 sum[kPacketMax] = {};
   add_sample(tracer, shaded, rays, hits, sum);
-  for (std::uint32_t i = 0; i < shaded.count; ++i) *pixel_at(frame, shaded.column[i], shaded.row[i], image) = sum[i];
+  for (std::uint32_t i = 0; i < shaded.count; ++i) image.at(shaded.column[i], shaded.row[i]) = sum[i];
 }
 
-void trace_one(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, Vec3* image) {
+void trace_one(Tracer* tracer, const Doubtful& pixels, std::uint32_t i, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Ray ray = pixel_ray(frame, pixels.tile.column[i], pixels.tile.row[i], {0.5f, 0.5f});
   Hit hit;
   frame.first_rays->closest(frame.accel, ray, visible_filter(frame), &hit, &tracer->stats);
   Surface s;
-  Vec3* pixel = pixel_at(frame, pixels.tile.column[i], pixels.tile.row[i], image);
+  Vec3* pixel = &image.at(pixels.tile.column[i], pixels.tile.row[i]);
   if (take_light(tracer, pixels, i, ray, hit, &s, pixel)) return;
   tracer->first_surface = hit.triangle != kNoTriangle ? &s : nullptr;
   *pixel = sample_radiance(tracer, ray, hit, tracer->first_surface);
   tracer->first_surface = nullptr;
 }
 
-void trace_doubtful(Tracer* tracer, const Doubtful& pixels, Vec3* image) {
+void trace_doubtful(Tracer* tracer, const Doubtful& pixels, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const Tile& tile = pixels.tile;
   const bool has_packets = !frame.ray_by_ray && !frame.camera.orthographic;
@@ -160,11 +157,11 @@ void trace_doubtful(Tracer* tracer, const Doubtful& pixels, Vec3* image) {
   // A pixel of several samples has no one surface.
   if (has_packets && tile.count >= kPacketRaysMin) return trace_tile(tracer, tile, image);
   for (std::uint32_t i = 0; i < tile.count; ++i)
-    *pixel_at(frame, tile.column[i], tile.row[i], image) = pixel_radiance(tracer, tile.column[i], tile.row[i]);
+    image.at(tile.column[i], tile.row[i]) = pixel_radiance(tracer, tile.column[i], tile.row[i]);
 }
 
 // Traces the wanted pixels of a tile, cell by cell.
-void trace_cells(CellTile* tile, std::uint64_t wanted, Vec3* image) {
+void trace_cells(CellTile* tile, std::uint64_t wanted, const PixelRows& image) {
   constexpr std::uint32_t kCellPixels = kCellSide * kCellSide;
   const FrameData& frame = tile->frame();
   Doubtful doubtful;
@@ -173,8 +170,7 @@ void trace_cells(CellTile* tile, std::uint64_t wanted, Vec3* image) {
     const std::uint64_t corner_mask = std::uint64_t(1) << kCellPixels * c;
     const std::uint32_t i = c % 2, k = c / 2;
     std::uint64_t mask = wanted & cell_mask;
-    if (mask & corner_mask)
-      *pixel_at(frame, corner_column(*tile, i), corner_row(*tile, k), image) = corner_at(tile, i, k).radiance;
+    if (mask & corner_mask) image.at(corner_column(*tile, i), corner_row(*tile, k)) = corner_at(tile, i, k).radiance;
     mask &= ~corner_mask;
     if (!mask) continue;
     const PixelCell cell = doubtful.cell[c] = cell_at(tile, i, k);
@@ -202,14 +198,16 @@ void move_right(CellTile* tile) {
 
 }  // namespace
 
-void keep_corner_rows(Array<CellCorner> even, Array<CellCorner> odd, Tracer* tracer) {
+void keep_corner_rows(Array<CellCorner> rows, Tracer* tracer) {
   CHECK(tracer->frame != nullptr);
-  CHECK_GE(even.count, corner_count(tracer->frame->settings.width));
-  CHECK_EQ(even.count, odd.count);
-  tracer->corner_rows[0] = {even, ~0u}, tracer->corner_rows[1] = {odd, ~0u};
+  const std::uint32_t count = corner_count(tracer->frame->settings.width);
+  tracer->corner_row_count = rows.count / count;
+  CHECK(rows.count == 2 * count || rows.count == 4 * count);
+  for (std::uint32_t i = 0; i < tracer->corner_row_count; ++i)
+    tracer->corner_rows[i] = {{rows.data + i * count, count}, ~0u};
 }
 
-void trace_selectively(Tracer* tracer, const TileStrip& strip, Vec3* image) {
+void trace_selectively(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
   effect_entered<Effect::selective>();
   if (strip.tile_count == 0) return;
   CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);

@@ -9,24 +9,26 @@
 // depend on how it is divided.
 #pragma once
 #include "shade/cell.h"
+#include "shade/lattice.h"
 #include "shade/strip.h"
 
 namespace pocketray {
 
 static_assert(kTileSide == 2 * kCellSide, "a tile has 2 × 2 cells");
 
-// Each thread keeps the corners below a row of tiles for the row of tiles below, in Tracer::corner_rows.
+// Each thread keeps the corners below a row of tiles for the row of tiles below, in Tracer::corner_rows. Undersampling
+// looks beyond its rows: with it, the corners in a tile's middle are kept, too.
 constexpr std::uint32_t corner_count(std::uint32_t width) { return 2 * grid_side(width, kTileSide) + 1; }
 constexpr std::uint32_t selective_corner_count(const Settings& settings) {
-  return 2 * corner_count(settings.width) * settings.threads;
+  return (plans_lattice(settings) ? 4 : 2) * corner_count(settings.width) * settings.threads;
 }
 inline std::size_t selective_need(const Settings& settings) {
   return arena_need<CellCorner>(selective_corner_count(settings));
 }
-// Gives a tracer its rows, of corner_count() each.
-void keep_corner_rows(Array<CellCorner> even, Array<CellCorner> odd, Tracer* tracer);
+// Gives a tracer its rows, two or four of corner_count() each, one after the other.
+void keep_corner_rows(Array<CellCorner> rows, Tracer* tracer);
 
 // Traces the strip's pixels.
-void trace_selectively(Tracer* tracer, const TileStrip& strip, Vec3* image);
+void trace_selectively(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
 
 }  // namespace pocketray

@@ -66,7 +66,7 @@ void add_sample(Tracer* tracer, const Tile& tile, const RayPacket& packet, const
   tracer->tile_shadows = nullptr;
 }
 
-void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
+void trace_tile(Tracer* tracer, const Tile& tile, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   std::uint32_t sample_count = frame.settings.samples_per_pixel;
   if (sample_count > 1) effect_entered<Effect::supersampling>();
@@ -87,8 +87,7 @@ void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image) {
     add_sample(tracer, tile, packet, hits, sum);
   }
   for (std::uint32_t i = 0; i < tile.count; ++i)
-    image[static_cast<std::size_t>(tile.row[i]) * frame.settings.width + tile.column[i]] =
-        sum[i] * (1.0f / static_cast<float>(sample_count));
+    image.at(tile.column[i], tile.row[i]) = sum[i] * (1.0f / static_cast<float>(sample_count));
 }
 
 }  // namespace pocketray

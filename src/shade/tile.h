@@ -27,7 +27,7 @@ void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row);
 Vec3 pixel_radiance(Tracer* tracer, std::uint32_t column, std::uint32_t row, Surface* first = nullptr);
 
 // Traces the pixels of a tile of a perspective picture in packets.
-void trace_tile(Tracer* tracer, const Tile& tile, Vec3* image);
+void trace_tile(Tracer* tracer, const Tile& tile, const PixelRows& image);
 
 // Adds the radiance of a sample of the tile's pixels, given its rays and their first hits, to `sum`.
 void add_sample(Tracer* tracer, const Tile& tile, const RayPacket& packet, const Hit* hits, Vec3* sum);

@@ -64,18 +64,17 @@ void add_pixels(const TileStrip& strip, std::uint32_t index, std::uint32_t pitch
 
 // Rays of pixels that are not neighbours are faster one by one, unless packets are traced ray by ray anyway: a packet
 // of rays 8 pixels apart takes up to 7 times the instructions (Buddha, AVX2).
-void trace_pixels(Tracer* tracer, const Tile& tile, std::uint32_t pitch, Vec3* image) {
+void trace_pixels(Tracer* tracer, const Tile& tile, std::uint32_t pitch, const PixelRows& image) {
   const FrameData& frame = *tracer->frame;
   const bool adjacent = pitch == 1 || frame.accel_info->packets_by_rays;
   if (tile.count >= kPacketRaysMin && adjacent && !frame.ray_by_ray) return trace_tile(tracer, tile, image);
-  const std::size_t width = frame.settings.width;
   for (std::uint32_t i = 0; i < tile.count; ++i)
-    image[tile.row[i] * width + tile.column[i]] = pixel_radiance(tracer, tile.column[i], tile.row[i]);
+    image.at(tile.column[i], tile.row[i]) = pixel_radiance(tracer, tile.column[i], tile.row[i]);
 }
 
 // Tiles with few rows share a packet with the tiles beside them, up to 64 pixels. Other tiles do not, however few their
 // pixels: rays that are far apart have no boxes in common.
-void trace_strip(Tracer* tracer, const TileStrip& strip, std::uint32_t pitch, Vec3* image) {
+void trace_strip(Tracer* tracer, const TileStrip& strip, std::uint32_t pitch, const PixelRows& image) {
   if (strip.tile_count == 0) return;
   CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
   const std::uint32_t tiles_max = kTileRows / strip.row_count;
@@ -88,7 +87,7 @@ void trace_strip(Tracer* tracer, const TileStrip& strip, std::uint32_t pitch, Ve
 }
 
 // Pixels of a coarse grid that are traced in blocks, each with its own block.
-void trace_blocks(Tracer* tracer, const Span& span, std::uint32_t pitch, Vec3* image) {
+void trace_blocks(Tracer* tracer, const Span& span, std::uint32_t pitch, const PixelRows& image) {
   const auto row = static_cast<std::uint16_t>(span.row * pitch);
   for (std::uint32_t x = span.column_begin * pitch; x < span.column_end * pitch; x += pitch) {
     const Span pixel = {row, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(x + 1)};
@@ -99,11 +98,11 @@ void trace_blocks(Tracer* tracer, const Span& span, std::uint32_t pitch, Vec3* i
 }
 
 // Ray by ray, when rays share no origin or each is inspected separately.
-void trace_span(Tracer* tracer, const Span& span, std::uint32_t pitch, Aov aov, Vec3* image) {
+void trace_span(Tracer* tracer, const Span& span, std::uint32_t pitch, Aov aov, const PixelRows& image) {
   const std::uint32_t row = span.row * pitch;
-  Vec3* pixels = image + static_cast<std::size_t>(row) * tracer->frame->settings.width;
   for (std::uint32_t column = span.column_begin * pitch; column < span.column_end * pitch; column += pitch)
-    pixels[column] = aov == Aov::none ? pixel_radiance(tracer, column, row) : pixel_aov(tracer, column, row, aov);
+    image.at(column, row) =
+        aov == Aov::none ? pixel_radiance(tracer, column, row) : pixel_aov(tracer, column, row, aov);
 }
 
 }  // namespace
@@ -135,14 +134,15 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
     CHECK_LT(spans[i].row * pitch, frame.settings.height);
     CHECK_LE(spans[i].column_end, grid_side(frame.settings.width, pitch));
   }
+  const PixelRows rows = {image, frame.settings.width, 0};
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
   CHECK(sample_count >= 1 && sample_count <= kSampleCountMax);
   if (aov == Aov::none && frame.trace_strip && pitch > 1) {
-    for (std::uint32_t i = 0; i < span_count; ++i) trace_blocks(tracer, spans[i], pitch, image);
+    for (std::uint32_t i = 0; i < span_count; ++i) trace_blocks(tracer, spans[i], pitch, rows);
     return;
   }
   if (aov != Aov::none || (frame.camera.orthographic && !frame.trace_strip)) {
-    for (std::uint32_t i = 0; i < span_count; ++i) trace_span(tracer, spans[i], pitch, aov, image);
+    for (std::uint32_t i = 0; i < span_count; ++i) trace_span(tracer, spans[i], pitch, aov, rows);
     return;
   }
   TileStrip strip;
@@ -150,7 +150,7 @@ void trace_spans(Tracer* tracer, const Span* spans, std::uint32_t span_count, Ao
     count = strip_span_count(spans + i, span_count - i);
     CHECK_GT(count, 0u);
     make_strip(spans + i, count, &strip);
-    frame.trace_strip ? frame.trace_strip(tracer, strip, image) : trace_strip(tracer, strip, pitch, image);
+    frame.trace_strip ? frame.trace_strip(tracer, strip, rows) : trace_strip(tracer, strip, pitch, rows);
   }
 }
 

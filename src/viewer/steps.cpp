@@ -105,23 +105,27 @@ Status idle(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// Sets the contrast of the next frames.
-Status set_contrast(Renderer* renderer, float contrast) {
+// Sets the accuracy of the next frames.
+Status set_quality(Renderer* renderer, const Quality& quality) {
   Settings settings = renderer->settings;
-  settings.selective_contrast = contrast;
+  static_cast<Quality&>(settings) = quality;
   return change_settings(renderer, settings);
 }
 
+constexpr EffectMask kInterpolating = bit(Effect::selective) | bit(Effect::undersampling);
+
 bool can_refine(const Viewer& viewer, const Renderer& renderer, const ViewerLoop& loop) {
   if (loop.exact || viewer.picture_merged || viewer.options.frame_count > 0) return false;
-  return loop.selective_contrast > 0 || has(renderer.effects.mask, Effect::selective);
+  return loop.refines || (renderer.effects.mask & kInterpolating) != 0;
 }
 
 // Traces a slice of the exact picture, over one with interpolated pixels.
 Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
-  if (loop->selective_contrast == 0) {
-    loop->selective_contrast = renderer->settings.selective_contrast;
-    RETURN_IF_ERROR(set_contrast(renderer, 0));
+  if (!loop->refines) {
+    Quality exact = loop->quality = renderer->settings;
+    exact.selective_contrast = 0, exact.resolution = Resolution::full;
+    RETURN_IF_ERROR(set_quality(renderer, exact));
+    loop->refines = true;
     RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
     loop->progressive = afresh();
   }
@@ -135,9 +139,9 @@ Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 
 // A new picture is due: it is traced as before.
 Status end_refining(Renderer* renderer, ViewerLoop* loop) {
-  const float contrast = loop->selective_contrast;
-  loop->selective_contrast = 0, loop->exact = false;
-  return contrast > 0 ? set_contrast(renderer, contrast) : success();
+  const bool refines = loop->refines;
+  loop->refines = loop->exact = false;
+  return refines ? set_quality(renderer, loop->quality) : success();
 }
 
 // The rows from the first to the last that the frame has traced are to be shown.

@@ -22,8 +22,9 @@ struct ViewerLoop {
   std::uint32_t still_frames = 0, steady_frames = 0;
   bool settled = true;
   // A picture with interpolated pixels that rests is traced again without.
-  float selective_contrast = 0;  // of the picture being refined, and of the next; 0: none is refined
-  bool exact = false;            // the picture at rest has been refined
+  bool refines = false;  // it is being traced so, and the next one with `quality`
+  Quality quality;
+  bool exact = false;         // the picture at rest has been refined
   std::uint64_t last_ns = 0;  // when camera and time last advanced; 0: not yet
 };
 

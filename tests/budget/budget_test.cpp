@@ -31,7 +31,7 @@ struct Flight {
     builtin->build(&arena, &scene);
     Settings settings;
     settings.width = width, settings.height = height;
-    settings.points_per_area_light = kPointsMax;
+    settings.points_per_area_light = kPointsMax, settings.resolution = Resolution::half;
     test = make_renderer(scene, settings);
   }
 };

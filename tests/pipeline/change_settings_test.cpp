@@ -32,6 +32,9 @@ TEST_CASE("change_settings_keeps_the_measured_exposure") {
   settings.selective_contrast = 1;
   auto interpolated = make_renderer(generated->scene, settings);
   CHECK(measure_exposure(&interpolated->renderer) == measure_exposure(&exact->renderer));
+  settings.selective_contrast = 0, settings.resolution = Resolution::half;
+  auto reconstructed = make_renderer(generated->scene, settings);
+  CHECK(measure_exposure(&reconstructed->renderer) == measure_exposure(&exact->renderer));
 }
 
 // Goal: a renderer with changed settings equals one started with them. Method: scenes with every effect, started with
@@ -57,7 +60,9 @@ TEST_CASE("change_settings_equals_a_fresh_start") {
     auto generated = generate_scene(features, seed);
     Settings settings = settings_for(features, 16, 12);
     settings.points_per_area_light = 9;
-    auto changed = make_renderer(generated->scene, settings);
+    Settings planned = settings;
+    planned.resolution = Resolution::half;
+    auto changed = make_renderer(generated->scene, planned);
     std::vector<Vec3> before = picture_of(&changed->renderer);
     int differing = 0;
     for (const Change& change : changes) {
@@ -95,6 +100,11 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   wrong = settings;
   wrong.cut_off_levels = -1;
   CHECK_FALSE(change_settings(&test->renderer, wrong).ok);
+  wrong = settings;
+  wrong.resolution = Resolution::checkerboard;
+  refused = change_settings(&test->renderer, wrong);
+  CHECK_FALSE(refused.ok);
+  CHECK(std::strstr(refused.message, "plan with --resolution half") != nullptr);
   CHECK(test->renderer.settings.points_per_area_light == 4);
   CHECK(same_bits(picture_of(&test->renderer), before));
 }

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <string>
 
+#include "engine/prepare.h"
 #include "engine/progressive.h"
 #include "scene/baked.h"
 #include "scene/builtin_helpers.h"
@@ -16,12 +17,20 @@ namespace {
 
 constexpr std::uint32_t kRich = kAllFeatures;
 
-Settings small_settings(float contrast = 0) {
+// Which pixels are traced, the others being interpolated between them.
+struct Traced {
+  float contrast = 0;
+  Resolution resolution = Resolution::full;
+};
+constexpr Traced kAll = {};
+constexpr Traced kSome[] = {{0.25f, Resolution::full}, {0, Resolution::checkerboard}, {0.25f, Resolution::half}};
+constexpr Traced kAllOrSome[] = {kAll, kSome[0], kSome[1], kSome[2]};
+
+Settings small_settings(const Traced& traced = kAll) {
   Settings settings = settings_for(kRich, 45, 34);
-  settings.selective_contrast = contrast;
+  settings.selective_contrast = traced.contrast, settings.resolution = traced.resolution;
   return settings;
 }
-constexpr float kContrasts[] = {0, 0.25f};  // every pixel traced; or some interpolated between others
 
 bool same_image(const Array<Vec3>& image, const Picture& picture) {
   return image.count == picture.size() && std::memcmp(image.data, picture.data(), image.bytes()) == 0;
@@ -69,14 +78,16 @@ TEST_CASE("picture_is_independent_of_threads") {
 // Goal: the same where threads keep traced pixels for the rows below; only the number of rays depends on them.
 TEST_CASE("picture_with_interpolated_pixels_is_independent_of_threads") {
   auto generated = generate_scene(kRich, 5);
-  const Picture expected = render_picture(generated->scene, small_settings(0.25f), 0.4);
-  CHECK(!same_picture(expected, render_picture(generated->scene, small_settings(), 0.4)));
-  for (std::uint32_t threads : {2u, 3u, 7u}) {
-    Settings settings = small_settings(0.25f);
-    settings.threads = threads;
-    CAPTURE(threads);
-    for (int repeat = 0; repeat < 5; ++repeat)
-      CHECK(same_picture(render_picture(generated->scene, settings, 0.4), expected));
+  for (const Traced& traced : kSome) {
+    const Picture expected = render_picture(generated->scene, small_settings(traced), 0.4);
+    CHECK(!same_picture(expected, render_picture(generated->scene, small_settings(), 0.4)));
+    for (std::uint32_t threads : {2u, 3u, 7u}) {
+      Settings settings = small_settings(traced);
+      settings.threads = threads;
+      CAPTURE(threads);
+      for (int repeat = 0; repeat < 5; ++repeat)
+        CHECK(same_picture(render_picture(generated->scene, settings, 0.4), expected));
+    }
   }
 }
 
@@ -84,8 +95,8 @@ TEST_CASE("picture_with_interpolated_pixels_is_independent_of_threads") {
 // temporal coherence rely on that. Method: differential, shuffled pieces of random length by one tracer.
 TEST_CASE("picture_is_independent_of_spans") {
   auto generated = generate_scene(kRich, 6);
-  for (float contrast : kContrasts) {
-    auto test = make_renderer(generated->scene, small_settings(contrast));
+  for (const Traced& traced : kAllOrSome) {
+    auto test = make_renderer(generated->scene, small_settings(traced));
     Renderer& r = test->renderer;
     REQUIRE(render_frame(&r, 0.9).ok);
     Picture expected(r.image.begin(), r.image.end());
@@ -100,7 +111,8 @@ TEST_CASE("picture_is_independent_of_spans") {
         }
       shuffle(&rng, &spans);
       Picture picture(expected.size(), Vec3{-1, -1, -1});
-      Tracer tracer = make_tracer(r.frame);
+      make_tracers(&r);
+      Tracer tracer = r.tracers[0];
       trace_spans(&tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, picture.data());
       CHECK(same_picture(picture, expected));
     }
@@ -124,9 +136,9 @@ TEST_CASE("picture_is_independent_of_accelerator") {
 // Goal: progressive refinement ends with the picture of a direct frame. Method: differential, stopping at every batch.
 TEST_CASE("picture_is_independent_of_progressive_refinement") {
   auto generated = generate_scene(kRich, 8);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 8; ++i) {
     const std::uint32_t threads = i % 2 ? 3 : 1;
-    Settings settings = small_settings(kContrasts[i / 2]);
+    Settings settings = small_settings(kAllOrSome[i / 2]);
     Picture expected = render_picture(generated->scene, settings, 0.3);
     settings.threads = threads;
     auto test = make_renderer(generated->scene, settings);
@@ -145,12 +157,12 @@ TEST_CASE("picture_is_independent_of_progressive_refinement") {
 // Goal: a frame depends only on its time, not on earlier frames. Method: differential, times in two orders.
 TEST_CASE("picture_is_independent_of_earlier_frames") {
   auto generated = generate_scene(kRich, 9);
-  auto test = make_renderer(generated->scene, small_settings());
+  auto test = make_renderer(generated->scene, small_settings(kSome[1]));
   for (double seconds : {1.5, 0.2, 1.0, 0.0})
-    for (float contrast : kContrasts) {  // without memory planned for corners
-      REQUIRE(change_settings(&test->renderer, small_settings(contrast)).ok);
+    for (const Traced& traced : kAllOrSome) {  // without memory planned for corners
+      REQUIRE(change_settings(&test->renderer, small_settings(traced)).ok);
       REQUIRE(render_frame(&test->renderer, seconds).ok);
       CAPTURE(seconds);
-      CHECK(same_image(test->renderer.image, render_picture(generated->scene, small_settings(contrast), seconds)));
+      CHECK(same_image(test->renderer.image, render_picture(generated->scene, small_settings(traced), seconds)));
     }
 }

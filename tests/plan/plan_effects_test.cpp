@@ -72,8 +72,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       // Stored, or by request.
-      {kAllFeatures,
-       kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective) & ~bit(E::environment)},
+      {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective) &
+                         ~bit(E::environment) & ~bit(E::undersampling)},
   };
   for (const Row& row : rows) {
     CAPTURE(row.features);
@@ -106,10 +106,21 @@ TEST_CASE("plan_effects_give_reasons") {
   plan = plan_effects(generate_scene(features, 1)->scene, settings);
   CHECK(reason(plan, Effect::selective) == "contrasts below 0.25 interpolated");
   CHECK(has(plan.mask, Effect::selective));
+  CHECK(reason(plan, Effect::undersampling) == "all of the pixels traced");
+  CHECK_FALSE(has(plan.mask, Effect::undersampling));
+  settings.resolution = Resolution::checkerboard;
+  CHECK(reason(plan_effects(generate_scene(features, 1)->scene, settings), Effect::undersampling) ==
+        "half of the pixels traced");
+  settings.resolution = Resolution::half;
+  plan = plan_effects(generate_scene(features, 1)->scene, settings);
+  CHECK(reason(plan, Effect::undersampling) == "a quarter of the pixels traced");
+  CHECK(has(plan.mask, Effect::undersampling));
   settings.indirect = indirect_choice(Effect::instant_radiosity);
   plan = plan_effects(generate_scene(features, 1)->scene, settings);
   CHECK(reason(plan, Effect::selective) == "instant radiosity needs every pixel");
+  CHECK(reason(plan, Effect::undersampling) == "instant radiosity needs every pixel");
   CHECK_FALSE(has(plan.mask, Effect::selective));
+  CHECK_FALSE(has(plan.mask, Effect::undersampling));
 }
 
 // Goal: --indirect chooses the method, --effects cannot add another to it. Method: an ambient scene and a scene without

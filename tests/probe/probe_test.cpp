@@ -111,7 +111,7 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   settings.indirect = indirect_choice(Effect::instant_radiosity);
   auto with_virtual_lights = make_renderer(generated->scene, settings);
   Settings selective = settings_for(kAllFeatures, 24, 18);
-  selective.selective_contrast = 0.25f;
+  selective.selective_contrast = 0.25f, selective.resolution = Resolution::half;
   auto interpolated = make_renderer(generated->scene, selective);
   const TestEnvironment even = even_environment({1, 1, 1});
   Scene under_environment = generated->scene;
@@ -124,9 +124,9 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
     if (!has(all, row.effect)) continue;
     CAPTURE(std::string(row.name));
     Renderer* r = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer
-                  : row.effect == Effect::selective       ? &interpolated->renderer
                   : row.effect == Effect::environment     ? &with_environment->renderer
-                                                          : &test->renderer;
+                  : row.effect == Effect::selective || row.effect == Effect::undersampling ? &interpolated->renderer
+                                                                                           : &test->renderer;
     CHECK(signal_of_render_without(row.effect, r) == SIGABRT);
   }
 }

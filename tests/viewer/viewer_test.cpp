@@ -249,9 +249,9 @@ void count_sleep(std::uint64_t duration) {
 namespace {
 
 // Shows a still with interpolated pixels, alone or within a budget, until a time, a button pressed before; the picture.
-// *last_contrast receives the contrast of the last frame.
-Picture picture_at(double seconds, float contrast, bool budgeted, double button_at, double button_seconds = 0.2,
-                   float* last_contrast = nullptr) {
+// *last receives the settings of the last frame.
+Picture picture_at(double seconds, const Quality& quality, bool budgeted, double button_at, double button_seconds = 0.2,
+                   Quality* last = nullptr) {
   Stage stage;
   if (button_at > 0) {
     stage.press(button_at, platform::Button::left);
@@ -261,7 +261,8 @@ Picture picture_at(double seconds, float contrast, bool budgeted, double button_
   stage.open("statue");
   CommonOptions common;
   common.scene = "statue", common.size = "320x60", common.threads = 1;
-  common.settings["selective"].real = contrast;
+  common.settings["selective"].real = static_cast<double>(quality.selective_contrast);
+  common.settings["resolution"].choice = kResolutionNames[static_cast<int>(quality.resolution)];
   OpenHooks hooks;
   hooks.output_bytes = viewer_bytes;
   OpenScene opened;
@@ -278,7 +279,7 @@ Picture picture_at(double seconds, float contrast, bool budgeted, double button_
   if (budgeted) stage.viewer.budget = &budget;
   bool again;
   REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
-  if (last_contrast) *last_contrast = opened.renderer.settings.selective_contrast;
+  if (last) *last = opened.renderer.settings;
   return Picture(opened.renderer.image.begin(), opened.renderer.image.end());
 }
 
@@ -289,14 +290,19 @@ Picture picture_at(double seconds, float contrast, bool budgeted, double button_
 TEST_CASE("viewer_refines_what_rests") {
   for (bool budgeted : {false, true}) {
     CAPTURE(budgeted);
-    const Picture exact = picture_at(20, 0, budgeted, 0);
-    CHECK(same_picture(picture_at(20, 0.25f, budgeted, 0), exact));
-    const Picture moved = picture_at(40, 0, budgeted, 19);
+    const Quality all;
+    Quality some;
+    const Picture exact = picture_at(20, all, budgeted, 0), moved = picture_at(40, all, budgeted, 19);
     CHECK(!same_picture(moved, exact));
-    CHECK(same_picture(picture_at(40, 0.25f, budgeted, 19), moved));
-    float contrast = 0;
-    picture_at(20, 0.25f, budgeted, 19, 2, &contrast);  // still moving
-    CHECK(contrast == 0.25f);
+    for (int i = 0; i < 2; ++i) {
+      some.selective_contrast = i == 0 ? 0.25f : 0;
+      some.resolution = i == 0 ? Resolution::full : Resolution::half;
+      CHECK(same_picture(picture_at(20, some, budgeted, 0), exact));
+      CHECK(same_picture(picture_at(40, some, budgeted, 19), moved));
+      Quality last;
+      picture_at(20, some, budgeted, 19, 2, &last);  // still moving
+      CHECK(same_quality(last, some));
+    }
   }
 }
 

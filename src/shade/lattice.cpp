@@ -1,0 +1,270 @@
+#include "shade/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "effect/effect_probe.h"
+#include "shade/tile.h"
+
+namespace pocketray {
+namespace {
+
+// Of a pixel in the window; those to be reconstructed are never wanted.
+enum State : std::uint8_t { kUnknown, kWanted, kKnown };
+
+// What the pixels of a row of tiles are made of: a tracer's window, and the columns in use.
+struct Window {
+  Tracer* tracer;
+  PixelRows rows;
+  std::uint8_t* states;
+  std::uint32_t column_begin, column_end;
+
+  const Settings& settings() const { return tracer->frame->settings; }
+  std::uint8_t& state(std::uint32_t column, std::uint32_t row) const {
+    return states[static_cast<std::size_t>(row - rows.first_row) * rows.width + column];
+  }
+  // A picture with one row or column has no pairs of neighbours: all of it is traced.
+  bool is_traced(std::uint32_t column, std::uint32_t row) const {
+    return on_lattice(settings().resolution, column, row) || settings().width < 2 || settings().height < 2;
+  }
+};
+
+// The tracer's window about the tiles from `row` on. The rows that it shares with the last one stay known.
+Window open_window(Tracer* tracer, std::uint32_t row) {
+  LatticeWindow& kept = tracer->window;
+  const std::uint32_t width = tracer->frame->settings.width;
+  CHECK_GE(kept.pixels.count, kWindowRows * width);
+  if (kept.row != row) {
+    std::uint32_t known = 0;
+    if (kept.row + kTileSide == row) {
+      known = kWindowRows - kTileSide;
+      std::copy_n(kept.pixels.data + kTileSide * width, known * width, kept.pixels.data);
+      std::copy_n(kept.states.data + kTileSide * width, known * width, kept.states.data);
+    }
+    std::fill(kept.states.data + known * width, kept.states.data + kWindowRows * width, kUnknown);
+    kept.row = row;
+  }
+  return {tracer, {kept.pixels.data, width, row - kRowsAbove}, kept.states.data, width, 0};
+}
+
+// The index of a pixel's neighbour, which may lie beyond the picture's edges, mirrored at these.
+std::uint32_t mirrored(std::uint32_t index, int step, std::uint32_t count) {
+  const int last = static_cast<int>(count) - 1, at = std::abs(static_cast<int>(index) + step);
+  return static_cast<std::uint32_t>(at > last ? 2 * last - at : at);
+}
+
+// The pixels that a missing one lies between, in opposite pairs.
+struct Neighbours {
+  std::uint32_t column[4], row[4];
+};
+Neighbours neighbours_of(const Settings& settings, std::uint32_t column, std::uint32_t row) {
+  constexpr int kSteps[2][4][2] = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}, {{-1, -1}, {1, 1}, {1, -1}, {-1, 1}}};
+  const bool diagonal = settings.resolution == Resolution::half && column % 2 == 1 && row % 2 == 1;
+  Neighbours n;
+  for (int i = 0; i < 4; ++i) {
+    n.column[i] = mirrored(column, kSteps[diagonal][i][0], settings.width);
+    n.row[i] = mirrored(row, kSteps[diagonal][i][1], settings.height);
+  }
+  return n;
+}
+
+void want_columns(Window* window, std::uint32_t begin, std::uint32_t end) {
+  window->column_begin = std::min(window->column_begin, begin);
+  window->column_end = std::max(window->column_end, end);
+}
+
+// Marks the pixels that a pixel is made of.
+void want(Window* window, std::uint32_t column, std::uint32_t row) {
+  std::uint8_t& state = window->state(column, row);
+  if (state != kUnknown) return;
+  if (window->is_traced(column, row)) {
+    state = kWanted;
+    return want_columns(window, column, column + 1);
+  }
+  const Neighbours n = neighbours_of(window->settings(), column, row);
+  for (int i = 0; i < 4; ++i) want(window, n.column[i], n.row[i]);
+}
+
+// The same for all pixels of a tile.
+void want_tile(Window* window, std::uint32_t column, std::uint32_t row) {
+  const Settings& settings = window->settings();
+  const std::uint32_t reach = settings.resolution == Resolution::half ? 2 : 1;
+  const std::uint32_t begin = column - std::min(column, reach);
+  const std::uint32_t end = std::min(column + kTileSide + 1, settings.width);
+  const std::uint32_t row_end = std::min(row + kTileSide + 1, settings.height);
+  for (std::uint32_t y = row - std::min(row, reach); y < row_end; ++y)
+    for (std::uint32_t x = begin; x < end; ++x)
+      if (window->is_traced(x, y) && window->state(x, y) == kUnknown) window->state(x, y) = kWanted;
+  want_columns(window, begin, end);
+}
+
+void trace_pixels(const Window& window, Tile* tile) {
+  Tracer* tracer = window.tracer;
+  const FrameData& frame = *tracer->frame;
+  if (tile->count >= kPacketRaysMin && !frame.ray_by_ray && !frame.camera.orthographic) {
+    trace_tile(tracer, *tile, window.rows);
+  } else {
+    for (std::uint32_t i = 0; i < tile->count; ++i)
+      window.rows.at(tile->column[i], tile->row[i]) = pixel_radiance(tracer, tile->column[i], tile->row[i]);
+  }
+  tile->count = 0;
+}
+
+// Calls visit(column, row) for the wanted pixels of the lattice among these, and marks them as known.
+template <typename Visit>
+void take_wanted(const Window& window, std::uint32_t column_begin, std::uint32_t column_end, std::uint32_t row_begin,
+                 std::uint32_t row_end, Visit visit) {
+  for (std::uint32_t row = row_begin; row < row_end; ++row)
+    for (std::uint32_t column = column_begin; column < column_end; ++column) {
+      std::uint8_t& state = window.state(column, row);
+      if (state != kWanted || !window.is_traced(column, row)) continue;
+      state = kKnown;
+      visit(column, row);
+    }
+}
+
+// The rows of the picture in the window.
+std::uint32_t window_begin(const Window& window) {
+  return window.tracer->window.row - std::min(window.tracer->window.row, kRowsAbove);
+}
+std::uint32_t window_end(const Window& window) {
+  return std::min(window.rows.first_row + kWindowRows, window.settings().height);
+}
+
+// In packets of neighbours.
+void trace_wanted(const Window& window) {
+  Tile tile;
+  for (std::uint32_t column = window.column_begin; column < window.column_end; column += kTileSide)
+    take_wanted(window, column, std::min(column + kTileSide, window.column_end), window_begin(window),
+                window_end(window), [&](std::uint32_t x, std::uint32_t y) {
+                  add_pixel(x, y, &tile);
+                  if (tile.count == kPacketMax) trace_pixels(window, &tile);
+                });
+  trace_pixels(window, &tile);
+}
+
+// By the frame's function for them, a row of tiles at a time.
+void trace_wanted_strips(const Window& window) {
+  const std::uint32_t end = window_end(window), left = window.column_begin / kTileSide * kTileSide;
+  for (std::uint32_t row = window_begin(window), next; row < end; row = next) {
+    next = std::min((row / kTileSide + 1) * kTileSide, end);
+    TileStrip strip;
+    strip.row = row / kTileSide * kTileSide, strip.column = left, strip.row_count = kTileSide;
+    strip.tile_count = (window.column_end - left + kTileSide - 1) / kTileSide;
+    std::fill_n(strip.mask, strip.tile_count, 0);
+    bool any = false;
+    take_wanted(window, window.column_begin, window.column_end, row, next, [&](std::uint32_t x, std::uint32_t y) {
+      strip.mask[(x - left) / kTileSide] |= std::uint64_t(1) << morton_place(x % kTileSide, y % kTileSide);
+      any = true;
+    });
+    if (any) window.tracer->frame->trace_lattice_strip(window.tracer, strip, window.rows);
+  }
+}
+
+float difference(const Vec3& a, const Vec3& b) {
+  return std::fabs(a.x - b.x) + std::fabs(a.y - b.y) + std::fabs(a.z - b.z);
+}
+
+Vec3 along_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const float first = difference(a, b), second = difference(c, d);
+  if (first < second) return (a + b) * 0.5f;
+  if (second < first) return (c + d) * 0.5f;
+  return ((a + b) + (c + d)) * 0.25f;
+}
+
+const Vec3& reconstructed(const Window& window, std::uint32_t column, std::uint32_t row) {
+  Vec3& pixel = window.rows.at(column, row);
+  std::uint8_t& state = window.state(column, row);
+  if (state == kKnown) return pixel;
+  CHECK(!window.is_traced(column, row));
+  const Neighbours n = neighbours_of(window.settings(), column, row);
+  const Vec3* value[4];
+  for (int i = 0; i < 4; ++i) value[i] = &reconstructed(window, n.column[i], n.row[i]);
+  pixel = along_edge(*value[0], *value[1], *value[2], *value[3]);
+  state = kKnown;
+  return pixel;
+}
+
+// Calls visit(column, row) for the pixels of a tile that are in the mask.
+template <typename Visit>
+void for_each_pixel(std::uint32_t left, std::uint32_t top, std::uint64_t mask, Visit visit) {
+  for (; mask; mask &= mask - 1) {
+    const auto m = static_cast<std::uint32_t>(__builtin_ctzll(mask));
+    visit(left + morton_column(m), top + morton_row(m));
+  }
+}
+
+// A whole tile inside the picture, whose neighbours need no mirror, row by row.
+void reconstruct_tile(const Window& window, std::uint32_t left, std::uint32_t top, const PixelRows& image) {
+  const auto width = static_cast<std::ptrdiff_t>(window.rows.width);
+  constexpr int kSide = kTileSide;
+  const bool half = window.settings().resolution == Resolution::half;
+  Vec3* first = &window.rows.at(left, top);
+  std::uint8_t* states = &window.state(left, top);
+  if (half)
+    for (int y = -1; y < kSide; y += 2)
+      for (int x = -1; x < kSide; x += 2) {
+        const std::ptrdiff_t at = y * width + x;
+        if (states[at] == kKnown) continue;
+        const Vec3* p = first + at;
+        first[at] = along_edge(*(p - width - 1), *(p + width + 1), *(p - width + 1), *(p + width - 1));
+        states[at] = kKnown;
+      }
+  for (int y = 0; y < kSide; ++y) {
+    Vec3* to = &image.at(left, top + static_cast<std::uint32_t>(y));
+    for (int x = 0; x < kSide; ++x) {
+      const std::ptrdiff_t at = y * width + x;
+      Vec3* p = first + at;
+      if (states[at] != kKnown) *p = along_edge(*(p - 1), *(p + 1), *(p - width), *(p + width)), states[at] = kKnown;
+      to[x] = *p;
+    }
+  }
+}
+
+void reconstruct(const Window& window, std::uint32_t left, std::uint32_t top, std::uint64_t mask,
+                 const PixelRows& image) {
+  const Settings& settings = window.settings();
+  const bool inside = left > 0 && top > 0 && left + kTileSide < settings.width && top + kTileSide < settings.height;
+  if (inside && mask == ~std::uint64_t(0)) return reconstruct_tile(window, left, top, image);
+  for_each_pixel(left, top, mask, [&](std::uint32_t column, std::uint32_t row) {
+    image.at(column, row) = reconstructed(window, column, row);
+  });
+}
+
+}  // namespace
+
+void keep_window(Array<Vec3> pixels, Array<std::uint8_t> states, Tracer* tracer) {
+  CHECK(tracer->frame != nullptr);
+  CHECK_GE(pixels.count, window_pixel_count(tracer->frame->settings));
+  CHECK_EQ(pixels.count, states.count);
+  tracer->window = {pixels, states, ~0u};
+}
+
+void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
+  effect_entered<Effect::undersampling>();
+  if (strip.tile_count == 0) return;
+  CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
+  AlignedTiles tiles;
+  align_tiles(strip, &tiles);
+  for (std::uint32_t r = 0; r < 2; ++r) {
+    if (std::all_of(tiles.mask[r], tiles.mask[r] + tiles.tile_count, [](std::uint64_t mask) { return mask == 0; }))
+      continue;
+    Window window = open_window(tracer, tiles.row + r * kTileSide);
+    for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
+      const std::uint32_t left = tiles.column + c * kTileSide, top = tiles.row + r * kTileSide;
+      if (tiles.mask[r][c] == ~std::uint64_t(0)) {
+        want_tile(&window, left, top);
+        continue;
+      }
+      for_each_pixel(left, top, tiles.mask[r][c],
+                     [&](std::uint32_t column, std::uint32_t row) { want(&window, column, row); });
+    }
+    if (window.column_begin < window.column_end)
+      tracer->frame->trace_lattice_strip ? trace_wanted_strips(window) : trace_wanted(window);
+    for (std::uint32_t c = 0; c < tiles.tile_count; ++c)
+      reconstruct(window, tiles.column + c * kTileSide, tiles.row + r * kTileSide, tiles.mask[r][c], image);
+  }
+}
+
+}  // namespace pocketray

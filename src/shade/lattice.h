@@ -1,0 +1,40 @@
+// Undersampling: the pixels of a lattice are traced, the others reconstructed along the edges between them.
+//
+// A checkerboard is half of the pixels; every other pixel of every other row is a quarter. A missing pixel of a
+// checkerboard lies between two pairs of opposite neighbours and takes the mean of the pair that differs less. A
+// quarter is first completed to a checkerboard, by the diagonals, as in [Zhou et al. 2012, "Image Zooming Using
+// Directional Cubic Convolution Interpolation", sec. 2] with means for cubics. At the picture's edges it is mirrored.
+//
+// A pixel depends on those at most two columns and rows away: the picture does not depend on how it is divided.
+#pragma once
+#include "shade/strip.h"
+
+namespace pocketray {
+
+// The rows of a row of tiles and those about it that its pixels depend on.
+constexpr std::uint32_t kRowsAbove = 2, kRowsBelow = 1;
+constexpr std::uint32_t kWindowRows = kRowsAbove + kTileSide + kRowsBelow;
+
+constexpr bool on_lattice(Resolution resolution, std::uint32_t column, std::uint32_t row) {
+  return resolution == Resolution::full ||
+         (resolution == Resolution::checkerboard ? (column + row) % 2 == 0 : (column | row) % 2 == 0);
+}
+
+constexpr std::uint32_t window_pixel_count(const Settings& settings) { return kWindowRows * settings.width; }
+// Whether memory is planned for it, even if it is off at first.
+constexpr bool plans_lattice(const Settings& settings) {
+  const EffectMask effect = bit(Effect::undersampling);
+  return (settings.resolution != Resolution::full || (settings.forced_on & effect)) && !(settings.forced_off & effect);
+}
+inline std::size_t lattice_need(const Settings& settings) {
+  if (!plans_lattice(settings)) return 0;
+  return arena_need<Vec3>(std::size_t(settings.threads) * window_pixel_count(settings)) +
+         arena_need<std::uint8_t>(std::size_t(settings.threads) * window_pixel_count(settings));
+}
+// Gives a tracer its window, of window_pixel_count() each.
+void keep_window(Array<Vec3> pixels, Array<std::uint8_t> states, Tracer* tracer);
+
+// Traces or reconstructs the strip's pixels.
+void trace_lattice(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
+
+}  // namespace pocketray
