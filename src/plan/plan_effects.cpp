@@ -130,6 +130,7 @@ void decide_indirect(const IndirectInfo& info, const IndirectInfo* chosen, const
 
 EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   CHECK(within(Quantity::contrast, settings.selective_contrast));
+  CHECK(settings.resolution <= Resolution::half);
   Census c = take_census(scene, settings);
   EffectPlan plan;
   PlanWriter w = {&plan, c.materials};

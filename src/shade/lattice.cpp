@@ -33,8 +33,10 @@ struct Window {
 // The tracer's window about the tiles from `row` on. The rows that it shares with the last one stay known.
 Window open_window(Tracer* tracer, std::uint32_t row) {
   LatticeWindow& kept = tracer->window;
+  CHECK_EQ(row % kTileSide, 0u);
   const std::uint32_t width = tracer->frame->settings.width;
   CHECK_GE(kept.pixels.count, kWindowRows * width);
+  CHECK_EQ(kept.pixels.count, kept.states.count);
   if (kept.row != row) {
     std::uint32_t known = 0;
     if (kept.row + kTileSide == row) {
@@ -70,6 +72,7 @@ Neighbours neighbours_of(const Settings& settings, std::uint32_t column, std::ui
 }
 
 void want_columns(Window* window, std::uint32_t begin, std::uint32_t end) {
+  CHECK(begin < end && end <= window->rows.width);
   window->column_begin = std::min(window->column_begin, begin);
   window->column_end = std::max(window->column_end, end);
 }
@@ -102,6 +105,7 @@ void want_tile(Window* window, std::uint32_t column, std::uint32_t row) {
 void trace_pixels(const Window& window, Tile* tile) {
   Tracer* tracer = window.tracer;
   const FrameData& frame = *tracer->frame;
+  CHECK_LE(tile->count, kPacketMax);
   if (tile->count >= kPacketRaysMin && !frame.ray_by_ray && !frame.camera.orthographic) {
     trace_tile(tracer, *tile, window.rows);
   } else {
@@ -146,6 +150,7 @@ void trace_wanted(const Window& window) {
 
 // By the frame's function for them, a row of tiles at a time.
 void trace_wanted_strips(const Window& window) {
+  CHECK(window.tracer->frame->trace_lattice_strip != nullptr);
   const std::uint32_t end = window_end(window), left = window.column_begin / kTileSide * kTileSide;
   for (std::uint32_t row = window_begin(window), next; row < end; row = next) {
     next = std::min((row / kTileSide + 1) * kTileSide, end);
