@@ -169,6 +169,7 @@ std::string identity_of(const RenderOptions& o, const RenderRequest& request, co
     text += part;
   };
   const ContentHash scene = content_hash(source.baked, source.baked_bytes);
+  add(" %" PRIx64 " %" PRIx64, source.environment.low, source.environment.high);
   add(" %" PRIx64 " %" PRIx64 " %d.%d.%d", scene.low, scene.high, POCKETRAY_VERSION_MAJOR, POCKETRAY_VERSION_MINOR,
       POCKETRAY_VERSION_PATCH);
   add(" %u %u %" PRIx64, renderer.settings.width, renderer.settings.height, std::uint64_t(renderer.effects.mask));

@@ -57,6 +57,9 @@ Status set_environment_if_requested(const std::string& name, Renderer* renderer,
     array.data = static_cast<decltype(array.data)>(copy);
   };
   keep(scene->environment_info), keep(scene->environment_texels), keep(scene->lights);
+  const ContentHash parts[2] = {content_hash(source->baked, source->baked_bytes),
+                                content_hash(scene->environment_texels.data, scene->environment_texels.bytes())};
+  source->environment = content_hash(parts, sizeof parts);
   source->baked = nullptr, source->baked_bytes = 0;  // it is no longer the file's scene
   storage->arena_bytes = arena->used;
   return success();

@@ -18,6 +18,7 @@ using NamedBoxes = std::vector<std::pair<std::string, Box>>;
 struct SceneSource {
   const std::uint8_t* baked = nullptr;  // the .pray file, or what a model became, that the scene is a view of; null: a
   std::size_t baked_bytes = 0;          // built-in scene
+  ContentHash environment;              // of what --environment made of the scene; zero: it has its own
   std::string warning;                  // one line; empty: none
   std::vector<std::string> material_names;  // of the scene's materials, as far as the file has them
   NamedBoxes parts;              // named parts of a model and their bounds at time 0; names may occur more than once

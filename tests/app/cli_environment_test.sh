@@ -54,4 +54,17 @@ check sky_is_seen bash -c '! cmp -s sky.ppm red.ppm && ! cmp -s sky.ppm low.ppm'
 expect too_little_memory 1 'MiB' render cube "${small[@]}" --memory 256K --environment sky -o refused.ppm
 expect in_view 0 '' view model.obj "${small[@]}" --screen null --frames 2 --environment sky
 
+# Goal: a sequence under another sky, or of another file, is not continued. Method: --resume with each changed.
+"${run[@]}" bake cube -o resumed.pray >/dev/null
+list=(render resumed.pray "${small[@]}" --frames 0:2 -o resumed.ppm)
+"${run[@]}" render resumed.pray "${small[@]}" --frames 0:99999 -o resumed.ppm --environment sky:30 >told 2>&1 &
+for _ in $(seq 600); do [ -e resumed-0000.ppm ] && break; sleep 0.1; done
+kill -TERM $!
+wait $!
+expect resume_under_the_same_sky 0 'finished before' "${list[@]}" --environment sky:30 --resume
+expect resume_under_another_sky 1 'another scene' "${list[@]}" --environment sky:31 --resume
+expect resume_under_no_sky 1 'another scene' "${list[@]}" --resume
+"${run[@]}" bake furnace -o resumed.pray >/dev/null
+expect resume_another_scene_under_it 1 'another scene' "${list[@]}" --environment sky:30 --resume
+
 finish
