@@ -21,6 +21,7 @@ struct Reader {
   std::size_t left() const { return static_cast<std::size_t>(end - at); }
   // The next line without its end; false at the end of the bytes.
   bool line(std::string* text) {
+    if (at == end) return false;
     const auto* stop = static_cast<const std::uint8_t*>(std::memchr(at, '\n', left()));
     if (!stop) return false;
     text->assign(reinterpret_cast<const char*>(at), static_cast<std::size_t>(stop - at));
