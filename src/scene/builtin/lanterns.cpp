@@ -81,7 +81,8 @@ void add_string(Festival* f, float z, float height, Rng* rng) {
     add_quad(&f->mesh, a, b, b + thick, a + thick);
     if (i == 0) continue;
     const auto shade = static_cast<std::uint32_t>(next_float(rng) * 3);
-    add_lantern(f, a - Vec3{0, .3f, 0}, .15f + .05f * next_float(rng), shade, .8f + .5f * next_float(rng));
+    const float brightness = .8f + .5f * next_float(rng);
+    add_lantern(f, a - Vec3{0, .3f, 0}, .15f + .05f * next_float(rng), shade, brightness);
   }
 }
 
