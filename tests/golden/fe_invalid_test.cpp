@@ -220,6 +220,7 @@ TEST_CASE("frames_of_builtin_scenes_raise_no_invalid_operation") {
       CAPTURE(std::string(accel->name));
       check_frames(built->scene, small_settings(1, 8), accel, times_of(built->scene));
     }
+    if (built->scene.lights.count > 64) continue;  // each sample asks each light
     Settings settings = small_settings(4, 2);
     check_frames(built->scene, settings, nullptr, {0});
     settings.cut_off_levels = 0, settings.forced_on = ~EffectMask(0), settings.points_per_area_light = 9;
