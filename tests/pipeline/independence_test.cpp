@@ -81,11 +81,11 @@ TEST_CASE("picture_with_interpolated_pixels_is_independent_of_threads") {
   for (const Traced& traced : kSome) {
     const Picture expected = render_picture(generated->scene, small_settings(traced), 0.4);
     CHECK(!same_picture(expected, render_picture(generated->scene, small_settings(), 0.4)));
-    for (std::uint32_t threads : {2u, 3u, 7u}) {
+    for (std::uint32_t threads : {2u, 7u}) {
       Settings settings = small_settings(traced);
       settings.threads = threads;
       CAPTURE(threads);
-      for (int repeat = 0; repeat < 5; ++repeat)
+      for (int repeat = 0; repeat < 2; ++repeat)
         CHECK(same_picture(render_picture(generated->scene, settings, 0.4), expected));
     }
   }
@@ -101,7 +101,7 @@ TEST_CASE("picture_is_independent_of_spans") {
     REQUIRE(render_frame(&r, 0.9).ok);
     Picture expected(r.image.begin(), r.image.end());
     Rng rng = make_rng(3);
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0; round < 2; ++round) {
       std::vector<Span> spans;
       for (std::uint32_t row = 0; row < r.settings.height; ++row)
         for (std::uint32_t begin = 0, end; begin < r.settings.width; begin = end) {
@@ -136,9 +136,9 @@ TEST_CASE("picture_is_independent_of_accelerator") {
 // Goal: progressive refinement ends with the picture of a direct frame. Method: differential, stopping at every batch.
 TEST_CASE("picture_is_independent_of_progressive_refinement") {
   auto generated = generate_scene(kRich, 8);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < 4; ++i) {
     const std::uint32_t threads = i % 2 ? 3 : 1;
-    Settings settings = small_settings(kAllOrSome[i / 2]);
+    Settings settings = small_settings(kAllOrSome[i]);
     Picture expected = render_picture(generated->scene, settings, 0.3);
     settings.threads = threads;
     auto test = make_renderer(generated->scene, settings);
@@ -158,7 +158,7 @@ TEST_CASE("picture_is_independent_of_progressive_refinement") {
 TEST_CASE("picture_is_independent_of_earlier_frames") {
   auto generated = generate_scene(kRich, 9);
   auto test = make_renderer(generated->scene, small_settings(kSome[1]));
-  for (double seconds : {1.5, 0.2, 1.0, 0.0})
+  for (double seconds : {1.5, 0.0})
     for (const Traced& traced : kAllOrSome) {  // without memory planned for corners
       REQUIRE(change_settings(&test->renderer, small_settings(traced)).ok);
       REQUIRE(render_frame(&test->renderer, seconds).ok);
