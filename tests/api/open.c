@@ -49,7 +49,7 @@ static void planned_memory_is_what_is_needed(void) {
     for (i = 0; i < 3; ++i) {
       pocketray_source source = api_builtin(pocketray_builtin_name(scene));
       pocketray_options options = api_options();
-      options.width = 8, options.height = 6;
+      options.width = i < 2 ? 8 : 2, options.height = i < 2 ? 6 : 2; /* brute force is slow */
       options.accelerator = accelerators[i];
       expect_exact(&source, &options);
     }
