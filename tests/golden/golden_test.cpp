@@ -25,9 +25,7 @@ TEST_CASE("hard_63_golden_frames_are_the_same_in_every_build") {
     auto built = build_builtin(list[i]);
     for (double seconds : {0.0, 1.5}) {
       if (seconds > 0 && !is_animated(built->scene)) continue;
-      Settings settings;
-      const std::uint32_t part = built->scene.lights.count > 64 ? 4 : 1;  // each pixel asks each light
-      settings.width = kGoldenWidth / part, settings.height = kGoldenHeight / part;
+      Settings settings = golden_settings(built->scene);
       Picture picture = render_picture(built->scene, settings, seconds);
       std::uint32_t scene = scene_hash(built->scene), frame = picture_hash(picture.data(), picture.size());
       const GoldenFrame* golden = nullptr;

@@ -64,8 +64,7 @@ TEST_CASE("probe_builtin_scenes_render_the_golden_frames") {
     const BuiltinScene* builtin = find_builtin(golden.scene);
     REQUIRE(builtin);
     auto built = build_builtin(*builtin);
-    Settings settings;
-    settings.width = kGoldenWidth, settings.height = kGoldenHeight;
+    Settings settings = golden_settings(built->scene);
     EffectMask mask;
     Picture picture = render_trapped(built->scene, settings, golden.seconds, &mask);
     CAPTURE(std::string(golden.scene));

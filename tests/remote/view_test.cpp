@@ -51,7 +51,7 @@ TEST_CASE("view_shares_its_pictures_while_servers_are_in_reach") {
   Viewer with;
   ServersTotals shared;
   std::uint32_t frame_count = 600;
-  for (; shared.frames == 0 && frame_count < 600'000; frame_count *= 4) {  // a busy server takes longer
+  for (; shared.server_rows == 0 && frame_count < 600'000; frame_count *= 4) {  // a busy server takes longer
     with = Viewer();
     shared = view(address, frame_count, &with);
     CHECK(with.frames_finished == frame_count);
