@@ -299,7 +299,7 @@ int run(RenderOptions options) {
   const auto before = std::count(job.is_finished.begin(), job.is_finished.end(), true);
   if (before > 0 && options.common.json != "-") std::printf("%td frames were finished before\n", before);
   if (summary.frame_count > 0 && options.common.json != "-") print_summary(summary);
-  if (status.ok && job.budget) status = finish_budget(budget);
+  if (status.ok && job.budget) finish_budget(budget);
   if (status.ok && !options.common.json.empty()) status = write_json(options.common.json, to_json(summary));
   if (status.ok && stopped) {
     std::fprintf(stderr, "pocketray: interrupted; %u finished frame%s kept%s\n", summary.frame_count,

@@ -75,7 +75,7 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   Status status = run_viewer(viewer, renderer, again);
   unseal_memory();
   if (viewer->budget) print_budget(budget, false);
-  if (status.ok && viewer->budget) status = finish_budget(budget);
+  if (status.ok && viewer->budget) finish_budget(budget);
   if (viewer->side_by_side) {
     viewer->side_by_side->backend->print(*viewer->side_by_side);
     viewer->side_by_side->backend->close(viewer->side_by_side);

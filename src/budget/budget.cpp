@@ -190,7 +190,7 @@ void end_budget_frame(Budget* budget, std::uint64_t ns) {
   if (budget->frame_ms.size() < budget->frame_ms.capacity()) budget->frame_ms.push_back(ms);
 }
 
-Status finish_budget(const Budget& budget) {
+void finish_budget(const Budget& budget) {
   const Governor& g = budget.governor;
   Front learnt;
   bool wrong = false;
@@ -204,16 +204,16 @@ Status finish_budget(const Budget& budget) {
     learnt.candidates[learnt.count++] = c;
   }
   CHECK_LE(learnt.count, g.front.count);
-  if (!wrong || budget.frames == 0 || budget.front.path.empty()) return success();
-  if (budget.front.is_whole) return write_front(budget.front.path, with_prices(budget.front, learnt));
-  for (std::uint32_t i = 0; i < budget.front.measured.count && learnt.count < kFrontCandidateMax; ++i) {
-    const Candidate& old = budget.front.measured.candidates[i];
-    if (!find_candidate(learnt, old)) learnt.candidates[learnt.count++] = old;
+  if (!wrong || budget.frames == 0 || budget.front.path.empty()) return;
+  if (!budget.front.is_whole) {
+    for (std::uint32_t i = 0; i < budget.front.measured.count && learnt.count < kFrontCandidateMax; ++i) {
+      const Candidate& old = budget.front.measured.candidates[i];
+      if (!find_candidate(learnt, old)) learnt.candidates[learnt.count++] = old;
+    }
+    sort_by_price(&learnt);
   }
-  sort_by_price(&learnt);
-  Status status = cache_front(budget.front.path, prices_alone(learnt));
+  Status status = keep_measured(budget.front, learnt);
   if (!status.ok) std::fprintf(stderr, "pocketray: %s; prices are not saved\n", status.message);
-  return success();
 }
 
 std::string error_text(const Candidate& c) {

@@ -70,9 +70,8 @@ Status begin_budget_frame(Budget* budget, Renderer* renderer);
 void move_along_front(Budget* budget, int steps);
 // Call after a frame. `ns`: time from the frame's preparation until its pixels are packed.
 void end_budget_frame(Budget* budget, std::uint64_t ns);
-// Saves prices that were missing or wrong by more than a fifth. Fails if a named file cannot be written; if only the
-// cache cannot, prints a note on stderr.
-Status finish_budget(const Budget& budget);
+// Saves prices that were missing or wrong by more than a fifth; prints a note on stderr if it cannot.
+void finish_budget(const Budget& budget);
 
 // The current settings and what they trade, for the overlay. Allocates nothing.
 void write_budget_lines(const Budget& budget, HudText* text);

@@ -12,6 +12,10 @@ expect budget_front_file 0 'expected ꟻLIP 0.2500; traded away: nothing' \
   --normals flat -o settings.ppm >/dev/null
 check budget_gives_the_picture_of_its_settings cmp -s budget.ppm settings.ppm
 check budget_keeps_the_price_it_learnt grep -q '^samples=2 depth=1 .* flip=0.25 ns=[0-9.e+]*$' one.front
+printf 'pocketray-front 1\n%s flip=0.25 ns=1\n' "$one" >kept.front
+expect budget_front_read_only 0 'prices are not saved' \
+  render "$subject" "${small[@]}" --budget-ms 1000000 --front /dev/fd/3 -o kept.ppm 3<kept.front
+check budget_front_read_only_renders cmp -s budget.ppm kept.ppm
 # The scene has neither area lights nor reflections, and the last candidate is dominated: all remain, each with its own
 # price.
 quality="cut-off=0 texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic virtual-lights=64 selective=0 resolution=full"
