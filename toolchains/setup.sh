@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs the packages that a build needs and this machine lacks. Silent if none is missing.
-# Groups: desktop tests box bench-embree bench-povray clang format tidy package x86-32, and the CPU classes. Run by the Makefile and by .ci/run.
+# Groups: desktop tests ci box bench-embree bench-povray clang format tidy package x86-32, and the CPU classes. Run by the Makefile and by .ci/run.
 set -eu
 
 # Required packages of each group. "command=package" is installed if the command exists; a plain name is a Debian package.
@@ -8,7 +8,7 @@ required() {
   local common="cmake=cmake make=make doctest-dev libcli11-dev nlohmann-json3-dev"
   case $1 in
     desktop) echo $common c++=g++ pkg-config=pkg-config zlib1g-dev ;;
-    tests) ;;
+    tests | ci) ;;
     # The kernel for an ARM926 is built, as Debian has none for a machine that qemu emulates.
     box) echo qemu-system-arm=qemu-system-arm python3=python3 fdtput=device-tree-compiler bc=bc flex=flex bison=bison linux-source ;;
     bench-embree) echo libembree-dev unzip=unzip ;;
@@ -32,6 +32,7 @@ optional() {
   case $1 in
     armhf | armel | aarch64 | armv6 | armv7 | mips32 | armv4t | cross) echo ninja=ninja-build ;;
     tests) echo libembree-dev valgrind=valgrind libpng-dev zip=zip unzip=unzip mksquashfs=squashfs-tools ;; # to compare depth, count instructions, read pictures
+    ci) echo ccache=ccache identify=imagemagick ffmpeg=ffmpeg ;; # to build again, and to read animations
     desktop) echo ninja=ninja-build libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
   esac
 }
