@@ -20,11 +20,12 @@ namespace {
 constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
 static_assert(sizeof kKinds / sizeof kKinds[0] == sizeof FrameData::light_runs / sizeof(LightRun), "a run for each");
 
-// A piece of an area light: a triangle, or two that form a parallelogram.
+// A piece of an area light: a triangle, or two that form a parallelogram, (a, b, c) and (a, c, d) with b − a = c − d.
 struct Emitter {
   std::uint32_t triangle;
   bool parallelogram;
   double area;
+  std::uint32_t first_vertex[2];  // of each triangle, the vertex that is a
 };
 
 double triangle_area(const FrameData& frame, std::uint32_t triangle) {
@@ -39,19 +40,25 @@ double triangle_area(const FrameData& frame, std::uint32_t triangle) {
   return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
 }
 
-// The emitter that starts at a triangle; (a, b, c) followed by (a, c, d) with b − a = c − d is a parallelogram.
+// The emitter that starts at a triangle. The halves of a parallelogram may begin at any of their vertices.
 Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
   const Scene& scene = *frame.scene;
-  Emitter e = {triangle, false, triangle_area(frame, triangle)};
+  Emitter e = {triangle, false, triangle_area(frame, triangle), {0, 0}};
   if (triangle + 1 >= scene.triangles.count) return e;
   const Triangle &t = scene.triangles[triangle], &next = scene.triangles[triangle + 1];
-  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
-  const Vec3& d = frame.positions[next.vertex(2)];
-  Vec3 skew = (b - a) - (c - d);
-  if (next.material() == t.material() && frame.positions[next.vertex(0)] == a && frame.positions[next.vertex(1)] == c &&
-      length(skew) <= length(b - a) * 1e-3f) {
-    e.parallelogram = true;
-    e.area += triangle_area(frame, triangle + 1);
+  if (next.material() != t.material()) return e;
+  auto corner = [&](const Triangle& of, std::uint32_t i) -> const Vec3& { return frame.positions[of.vertex(i % 3)]; };
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const Vec3 &a = corner(t, i), &b = corner(t, i + 1), &c = corner(t, i + 2);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (!(corner(next, k) == a && corner(next, k + 1) == c)) continue;
+      const Vec3 skew = (b - a) - (c - corner(next, k + 2));
+      if (length(skew) > length(b - a) * 1e-3f) continue;
+      e.parallelogram = true;
+      e.first_vertex[0] = i, e.first_vertex[1] = k;
+      e.area += triangle_area(frame, triangle + 1);
+      return e;
+    }
   }
   return e;
 }
@@ -80,13 +87,14 @@ void place_on_emitter(const Emitter& e, const Cell& cell, std::uint32_t* triangl
     double root = 2 * (end - begin) / (3 * (cell.x_end - cell.x_begin));
     *u = static_cast<float>(root * (1 - cell.y));
     *v = static_cast<float>(root * cell.y);
-  } else if (x >= y) {  // a + x(b − a) + y(d − a), with c = b + d − a
-    *u = x - y;
-    *v = y;
-  } else {
-    *triangle = e.triangle + 1;
-    *u = x;
-    *v = y - x;
+  } else {  // a + x(b − a) + y(d − a), with c = b + d − a
+    const bool second = x < y;
+    *triangle += second;
+    // Weights of a, the vertex after it and the one before it.
+    const float weights[3] = {1 - (second ? y : x), second ? x : x - y, second ? y - x : y};
+    const std::uint32_t a = e.first_vertex[second];
+    *u = weights[(1 + 3 - a) % 3];
+    *v = weights[(2 + 3 - a) % 3];
   }
 }
 

@@ -115,6 +115,33 @@ TEST_CASE("plan_lights_points_lie_evenly_on_the_surface") {
   }
 }
 
+// Goal: a square lamp shines alike whichever vertices its two triangles begin with. Method: the points of every pair of
+// rotations against those of the first, and their mean against the centre.
+TEST_CASE("plan_lights_points_do_not_depend_on_the_first_vertices_of_a_square") {
+  std::vector<LightPoint> expected;
+  for (std::uint32_t rotations = 0; rotations < 9; ++rotations) {
+    const std::uint32_t i = rotations % 3, k = rotations / 3;
+    auto s = lamp_scene();
+    const std::uint32_t m = add_material(s.get(), lamp(1));
+    for (Vec3 p : {Vec3{-1, -1, 0}, Vec3{1, -1, 0}, Vec3{1, 1, 0}, Vec3{-1, 1, 0}}) add_vertex(s.get(), p);
+    const std::uint32_t first[3] = {0, 1, 2}, second[3] = {0, 2, 3};
+    add_triangle(s.get(), first[i], first[(i + 1) % 3], first[(i + 2) % 3], m);
+    add_triangle(s.get(), second[k], second[(k + 1) % 3], second[(k + 2) % 3], m);
+    s->bind();
+    const std::vector<LightPoint> points = points_of(*s, 5);
+    if (rotations == 0) expected = points;
+    REQUIRE(points.size() == expected.size());
+    CAPTURE(rotations);
+    Vec3 sum = {0, 0, 0};
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      CHECK(length(points[p].position - expected[p].position) < 1e-6f);
+      CHECK(points[p].direction == expected[p].direction);
+      sum += points[p].position;
+    }
+    CHECK(length(sum) < 2e-6f);
+  }
+}
+
 // Goal: points are distributed by area. Method: closed form, two squares of one material, one nine times the other.
 TEST_CASE("plan_lights_points_follow_the_area") {
   auto s = lamp_scene();
