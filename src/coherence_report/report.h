@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "coherence_report/image_space_run.h"
 #include "coherence_report/sequence_run.h"
 #include "session/report.h"
 
@@ -12,7 +13,8 @@ struct CoherenceReport {
   Settings settings;
   bool is_papers_scene = false;
   SequenceRun ours;
-  SequenceRun papers_way;  // without frames: not rendered
+  SequenceRun papers_way;     // without frames: not rendered
+  ImageSpaceRun image_space;  // without frames: not asked for
 };
 
 // [Jevans92, table 2]: ratios of the coherence algorithm to the traditional one.

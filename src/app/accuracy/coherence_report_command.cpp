@@ -19,7 +19,7 @@ struct ReportOptions {
   CommonOptions common;
   std::string folder, frames;
   std::uint32_t table = 16;
-  bool no_paper = false;
+  bool no_paper = false, compare = false;
 };
 
 enum class Way { frame_by_frame, coherent, by_tables };
@@ -34,6 +34,9 @@ Status plan_way(Way way, const ReportOptions& o, Renderer* renderer, const Scene
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene))
     return failure("%s does not move, so every frame would be the first again: choose a scene with an animation, as %s",
                    o.common.scene.c_str(), kPapersScene);
+  if (o.compare && (renderer->effects.mask & (bit(Effect::selective) | bit(Effect::undersampling))) != 0)
+    return failure(
+        "--compare traces single pixels, but with --selective or --resolution they depend on others: leave these out");
   if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
@@ -91,6 +94,18 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
   return success();
 }
 
+// The image-space methods, over the frames that were measured.
+Status compare(const ReportOptions& o, CoherenceReport* report) {
+  if (!o.compare || interrupted) return success();
+  OpenScene opened;
+  RETURN_IF_ERROR(open_way(Way::frame_by_frame, o, &opened));
+  const FrameRange& range = report->ours.range;
+  Progress progress = start_progress("image-space methods", image_space_step_count(range));
+  Status status = run_image_space(&opened.renderer, range, &progress, &report->image_space);
+  end_progress(&progress);
+  return status;
+}
+
 Status write_folder(const ReportOptions& o, const CoherenceReport& report) {
   if (o.folder.empty()) return success();
   bool drawn;
@@ -108,6 +123,7 @@ int run(const ReportOptions& o) {
   if (status.ok && !o.folder.empty()) status = make_output_folder(o.folder);
   CoherenceReport coherence;
   if (status.ok) status = measure(o, &coherence);
+  if (status.ok) status = compare(o, &coherence);
   if (!status.ok) return report(status);
   const std::size_t finished = coherence.ours.frames.size() + coherence.papers_way.frames.size();
   if (coherence.ours.frames.empty()) return kExitInterrupted;
@@ -136,7 +152,9 @@ void add_coherence_report_command(Command program, int* exit_status) {
       "compares every bit of every frame: a difference is an error. Prints rays and time of both, next to Table 2 of\n"
       "Jevans 1992 if the scene is seesaw, which follows its sequence. Then does the same the paper's way, with a "
       "table\n"
-      "of rays in every voxel. If interrupted, keeps the finished frames.\n"
+      "of rays in every voxel. --compare adds two methods that see pixels alone and miss changes, Badt 1988 and\n"
+      "Chapman 1990: pixels traced, time, wrong pixels and FLIP, as a table and plots beside ours.\n"
+      "If interrupted, keeps the finished frames.\n"
       "Try:  pocketray coherence-report seesaw -o report\n"
       "      pocketray coherence-report seesaw --frames 0:40 --size 640x480 --no-paper --json -");
   add_scene_options(command, &o->common);
@@ -150,6 +168,7 @@ void add_coherence_report_command(Command program, int* exit_status) {
       .range(1u, kCoherenceTableSideMax)
       .capture_default_str();
   command.add_flag("--no-paper", o->no_paper, "skip the sequence in the paper's way");
+  command.add_flag("--compare", o->compare, "also run the image-space methods of Badt and Chapman");
   add_json_option(command, &o->common.json);
   command.callback([=] { *exit_status = run(*o); });
 }
