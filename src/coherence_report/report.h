@@ -3,8 +3,7 @@
 #include <string>
 
 #include "coherence_report/image_space_run.h"
-#include "coherence_report/sequence_run.h"
-#include "session/report.h"
+#include "coherence_report/table_sweep.h"
 
 namespace pocketray {
 
@@ -15,6 +14,7 @@ struct CoherenceReport {
   SequenceRun ours;
   SequenceRun papers_way;     // without frames: not rendered
   ImageSpaceRun image_space;  // without frames: not asked for
+  TableSweep tables;
 };
 
 // [Jevans92, table 2]: ratios of the coherence algorithm to the traditional one.
