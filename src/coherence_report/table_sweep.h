@@ -30,7 +30,7 @@ Json table_sweep_json(const TableSweep& sweep);
 std::string table_sweep_csv(const TableSweep& sweep);
 std::string table_sweep_markup(const TableSweep& sweep);
 std::string table_sweep_text(const TableSweep& sweep);  // what the rays in the tables are
-// Pixels traced, rays and time over the memory of the tables.
+// Pixels traced, rays and CPU time over the side, with the memory of the tables.
 Plot table_plot(const TableSweep& sweep);
 
 }  // namespace pocketray

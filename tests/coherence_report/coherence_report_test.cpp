@@ -288,9 +288,10 @@ TEST_CASE("coherence_report_sides_of_tables_trade_memory_for_pixels") {
   CHECK(json["sides"][0]["retraced"] == 1);
   CHECK(json["sides"][2]["table_bytes"] == sweep.sides[2].table_bytes);
   CHECK(json["papers_way"] == true);
+  CHECK(json["sides"][1]["cpu_time"].get<double>() > 0);
   CHECK(lines_of(table_sweep_csv(sweep)) == 4);
   CHECK(table_sweep_csv(sweep).find("\n1,16384,") != std::string::npos);
   CHECK(table_sweep_markup(sweep).find("32 × 32") != std::string::npos);
-  CHECK(table_plot(sweep).script.find("'32²'") != std::string::npos);
+  CHECK(table_plot(sweep).script.find("\"32\\n512K\" 32") != std::string::npos);
   CHECK(table_sweep_json(TableSweep()).is_null());
 }
