@@ -116,7 +116,8 @@ Plot table_plot(const TableSweep& sweep) {
   const std::string body =
       frame_commands({0.165, 0.97, 176.0 / kHeight, 1 - 48.0 / kHeight, kHeight}) + axis_commands(x, 'x') +
       "set xtics (" + tics + ")\n" + axis_commands(y, 'y') +
-      "set title 'Side of the tables of rays'\nset xlabel 'blocks of pixels along each side; bytes of the tables'\nset "
+      "set title 'Side of the tables of rays'\nset xlabel 'blocks of pixels along each side; bytes of the tables' "
+      "offset 0,-0.9\nset "
       "ylabel "
       "'ratio to whole frames" +
       (y.logarithmic ? ", logarithmic" : "") +
