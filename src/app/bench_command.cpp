@@ -17,6 +17,24 @@
 namespace pocketray {
 namespace {
 
+// Null: coherence is off.
+Json coherence_json(const CommonOptions& options, const Renderer& renderer, const Measurement& m) {
+  if (renderer.settings.coherence == CoherenceMode::off) return Json();
+  const char* because = m.coherent ? m.whole_because : renderer.coherence_state.unplanned_because;
+  return {{"asked", options.coherence},
+          {"whole_frames", m.coherent ? m.whole_frames : m.frame_count},
+          {"whole_because", because ? Json(because) : Json()}};
+}
+
+// The frames that were traced whole though coherence was asked for.
+void print_whole_frames(const Renderer& renderer, const Measurement& m) {
+  if (renderer.settings.coherence == CoherenceMode::off) return;
+  if (!m.coherent)
+    std::printf("  %-22s %10s     (%s)\n", "traced whole", "all", renderer.coherence_state.unplanned_because);
+  else if (m.whole_frames > 0)
+    std::printf("  %-22s %10u     (the last: %s)\n", "traced whole", m.whole_frames, m.whole_because);
+}
+
 Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement* m) {
   Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
   Json rows = Json::array();
@@ -40,6 +58,7 @@ Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement
           {"ns_per_pixel", {{"min", pixel.min}, {"median", pixel.median}, {"max", pixel.max}}},
           {"scanline_ns_per_pixel", m->coherent ? Json() : rows},
           {"pixels_traced", static_cast<double>(m->pixels_traced) / m->frame_count},
+          {"coherence", coherence_json(options, renderer, *m)},
           {"rays", rays},
           {"rays_left_out", m->counts.rays_left_out},
           {"left_out_radiance_max", m->counts.left_out_max},
@@ -65,6 +84,7 @@ void print_table(const CommonOptions& options, const Renderer& renderer, Measure
   if (m->coherent)
     std::printf("  %-22s %10.1f %%   (those that can have changed since the last frame)\n", "pixels traced",
                 100 * static_cast<double>(m->pixels_traced) / (pixel_count(renderer) * m->frame_count));
+  print_whole_frames(renderer, *m);
   std::printf("  %-22s %10.2f million\n", "rays per second", rays_per_second(*m) * 1e-6);
   for (int kind = 0; kind < kRayKindCount; ++kind)
     if (m->counts.rays[kind])

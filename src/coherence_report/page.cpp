@@ -8,6 +8,7 @@
 #include "accuracy/strip.h"
 #include "accuracy/text.h"
 #include "base/check.h"
+#include "coherence_report/image_space_report.h"
 #include "coherence_report/plots.h"
 #include "present/png_file.h"
 #include "session/gnuplot.h"
@@ -86,6 +87,18 @@ std::string retraced_of(const ReportPictures& pictures) {
   return text + "</div>\n";
 }
 
+std::string tables_of(const TableSweep& sweep, const ReportPictures& pictures) {
+  if (sweep.sides.empty()) return "";
+  return "<h2>Side of the tables of rays</h2>\n<p>Here, " + escaped(table_sweep_text(sweep)) + ".</p>\n" +
+         table_sweep_markup(sweep) + plot_of(pictures, "tables");
+}
+
+std::string image_space_of(const CoherenceReport& report, const ReportPictures& pictures) {
+  if (report.image_space.frame_count == 0) return "";
+  return "<h2>Image-space methods</h2>\n<p>" + escaped(kImageSpaceText) + "</p>\n" + image_space_table(report) +
+         pair(plot_of(pictures, "wrong"), plot_of(pictures, "flip"));
+}
+
 std::string page_of(const CoherenceReport& report, const ReportPictures& pictures) {
   const SequenceRun& run = report.ours;
   std::string title =
@@ -100,7 +113,7 @@ std::string page_of(const CoherenceReport& report, const ReportPictures& picture
   if (!report.papers_way.frames.empty())
     text += "<h2>The paper’s way</h2>\n<p>T" + escaped(papers_way_text(report.settings).substr(1)) + ".</p>\n" +
             table_of(report.papers_way, report.is_papers_scene) + notes_of(report.papers_way);
-  return text + retraced_of(pictures) +
+  return text + tables_of(report.tables, pictures) + image_space_of(report, pictures) + retraced_of(pictures) +
          "<h2>Method</h2>\n<p class=\"soft\">Two renderers, each in its own memory, render the sequence, one of "
          "them whole frames, the other only what can have changed since its last frame; they take turns after a few "
          "frames. Times "
@@ -131,8 +144,16 @@ Status write_coherence_report(const std::string& folder, const CoherenceReport& 
     RETURN_IF_ERROR(write_file(folder + "/frames_papers_way.csv", frames_csv(report.papers_way)));
   RETURN_IF_ERROR(write_json(folder + "/report.json", report_json(report)));
   RETURN_IF_ERROR(write_pictures(folder, report.ours, &pictures));
-  RETURN_IF_ERROR(
-      draw_plots(folder, {rays_plot(report), time_plot(report)}, write_file, run_gnuplot, &pictures.plots, drawn));
+  std::vector<Plot> plots = {rays_plot(report), time_plot(report)};
+  if (report.image_space.frame_count > 0) {
+    RETURN_IF_ERROR(write_file(folder + "/image_space.csv", image_space_csv(report)));
+    plots.push_back(wrong_plot(report)), plots.push_back(flip_plot(report));
+  }
+  if (!report.tables.sides.empty()) {
+    RETURN_IF_ERROR(write_file(folder + "/tables.csv", table_sweep_csv(report.tables)));
+    plots.push_back(table_plot(report.tables));
+  }
+  RETURN_IF_ERROR(draw_plots(folder, plots, write_file, run_gnuplot, &pictures.plots, drawn));
   return write_file(folder + "/index.html", page_of(report, pictures));
 }
 

@@ -7,6 +7,7 @@
 #include "accuracy/csv.h"
 #include "accuracy/text.h"
 #include "base/check.h"
+#include "coherence_report/image_space_report.h"
 
 namespace pocketray {
 namespace {
@@ -178,6 +179,8 @@ void print_report(const CoherenceReport& report) {
     std::printf("%s\n", papers_way_text(report.settings).c_str());
     print_way(report.papers_way, report.is_papers_scene);
   }
+  print_table_sweep(report.tables);
+  print_image_space(report);
   if (report.is_papers_scene) std::printf("paper: %s\n", kPaperText);
 }
 
@@ -194,6 +197,8 @@ Json report_json(const CoherenceReport& report) {
                       {"points_per_area_light", settings.points_per_area_light},
                       {"coherence_table", settings.coherence_table}};
   json["papers_way"] = way_json(report.papers_way);
+  json["tables"] = table_sweep_json(report.tables);
+  json["image_space"] = image_space_json(report);
   json["paper"] = report.is_papers_scene ? paper_json() : Json();
   return json;
 }

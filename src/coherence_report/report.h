@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "coherence_report/sequence_run.h"
-#include "session/report.h"
+#include "coherence_report/image_space_run.h"
+#include "coherence_report/table_sweep.h"
 
 namespace pocketray {
 
@@ -12,7 +12,9 @@ struct CoherenceReport {
   Settings settings;
   bool is_papers_scene = false;
   SequenceRun ours;
-  SequenceRun papers_way;  // without frames: not rendered
+  SequenceRun papers_way;     // without frames: not rendered
+  ImageSpaceRun image_space;  // without frames: not asked for
+  TableSweep tables;
 };
 
 // [Jevans92, table 2]: ratios of the coherence algorithm to the traditional one.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ctime>
 #include <limits>
 
 #include "base/check.h"
@@ -26,29 +25,9 @@ struct Batch {
   std::vector<std::uint8_t> last_shown, shown;
 };
 
-std::uint64_t ray_count(const Renderer& renderer) {
-  const Tracer counts = total_counts(renderer);
-  std::uint64_t rays = 0;
-  for (std::uint64_t count : counts.rays) rays += count;
-  return rays;
-}
-
-void add(const RenderCost& cost, RenderCost* sum) {
-  sum->rays += cost.rays, sum->ms += cost.ms, sum->cpu_ms += cost.cpu_ms;
-}
-
 void add(const CoherentSteps& steps, CoherentSteps* sum) {
   sum->pose_ms += steps.pose_ms, sum->refit_ms += steps.refit_ms;
   sum->follow_ms += steps.follow_ms, sum->find_ms += steps.find_ms, sum->keep_ms += steps.keep_ms;
-}
-
-struct Stopwatch {
-  std::uint64_t start_ns = clock_ns();
-  std::clock_t start_cpu = std::clock();
-};
-void stop(const Stopwatch& watch, RenderCost* cost) {
-  cost->ms = static_cast<double>(clock_ns() - watch.start_ns) * 1e-6;
-  cost->cpu_ms = static_cast<double>(std::clock() - watch.start_cpu) * 1e3 / CLOCKS_PER_SEC;
 }
 
 Status render_whole(Renderer* renderer, double seconds, bool ray_by_ray, RenderCost* cost, bool* complete) {
@@ -127,10 +106,6 @@ void mark_picture(const Renderer& renderer, RetracedPicture* picture) {
 void color_picture(const std::vector<std::uint8_t>& shown, RetracedPicture* picture) {
   CHECK_EQ(picture->rgb.size(), shown.size());
   for (std::size_t i = 0; i < shown.size(); ++i) picture->rgb[i] &= shown[i];
-}
-
-double seconds_of(const Renderer& renderer, std::uint32_t frame) {
-  return frame / static_cast<double>(renderer.scene.info.frames_per_second);
 }
 
 // Renders `frame_count` frames from `first` on, all of them whole and then all of them coherently; *finished: those

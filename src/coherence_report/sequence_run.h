@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "engine/renderer.h"
+#include "coherence_report/render_cost.h"
 #include "session/progress.h"
 #include "session/sequence.h"
 
@@ -17,13 +17,6 @@ struct CoherencePair {
 // Where a coherent frame's time goes; tracing and lighting take the rest.
 struct CoherentSteps {
   double pose_ms = 0, refit_ms = 0, follow_ms = 0, find_ms = 0, keep_ms = 0;
-};
-
-// What one way of rendering spent.
-struct RenderCost {
-  std::uint64_t rays = 0;  // of all kinds through the whole scene; shadow rays that look for changes included
-  double ms = 0;           // from posing the scene to the last pixel
-  double cpu_ms = 0;       // of all threads
 };
 
 struct FrameFigures {

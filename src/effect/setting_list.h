@@ -1,6 +1,9 @@
 // One row per setting that trades accuracy for time. The command line, its validation, fronts, the settings on the
 // wire, the server's reuse of a renderer, sweeps and the budget's choice are all derived from the rows: a new setting
-// is a member of Quality and a row here. The member holds the default, base/limit_list.h the limits.
+// is a member of Quality and a row here. The member holds the default, base/limit_list.h the limits. Settings that
+// change no picture, as Settings::coherence_table, which trades memory for time, have no row: every choice by error
+// would take the fastest, and they cannot change in the memory that is planned. `coherence-report --sweep-table` sweeps
+// it.
 #pragma once
 #include "effect/effect_list.h"
 #include "effect/setting.h"

@@ -100,6 +100,10 @@ Status measure_frames(Renderer* renderer, Measurement* m) {
     RETURN_IF_ERROR(render(renderer, frame + m->coherent, &m->ns_per_pixel[frame]));
     if (interrupted) break;
     m->pixels_traced += m->coherent ? renderer->coherence_state.pixels_traced : renderer->image.count;
+    if (m->coherent && renderer->coherence_state.whole_because != nullptr) {
+      ++m->whole_frames;
+      m->whole_because = renderer->coherence_state.whole_because;
+    }
     for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
       m->row_ns[static_cast<std::size_t>(row) * m->frame_count_max + frame] =
           static_cast<double>(renderer->row_ns[row]);

@@ -28,6 +28,18 @@ for key in ("rays", "time", "frame0", "changed", "retraced", "memory", "settings
 assert report["retraced"] >= report["changed"] > 0
 assert report["papers_way"] is None and len(report["frames"]) == 2'
   fi
+  expect coherence_sweeps_the_table 0 '^ +128x128 +8 388 608 ' coherence-report seesaw "${tiny[@]}" --frames 0:1 --no-paper \
+    --sweep-table -o swept
+  for file in tables.csv tables.gnuplot; do
+    check "coherence_writes_$file" test -s swept/$file
+  done
+  expect coherence_compares 0 '^ +Chapman 1990, frames 16 apart +[01]\.' coherence-report seesaw "${tiny[@]}" --frames 0:1 \
+    --no-paper --compare -o compared
+  for file in image_space.csv wrong.gnuplot flip.gnuplot; do
+    check "coherence_writes_$file" test -s compared/$file
+  done
+  check coherence_shows_the_comparison grep -q 'Image-space methods' compared/index.html
+  expect coherence_compares_single_pixels 1 'leave these out' coherence-report seesaw "${tiny[@]}" --compare --selective 0.2
   "${run[@]}" coherence-report seesaw --size 160x120 --threads 1 --frames 0:99999 -o kept >kept.txt 2>interrupted.err &
   reporting=$!
   # The signal is caught once the first batch is under way at the latest.

@@ -49,6 +49,10 @@ expect plan_map 0 'persistent +accelerator' plan "$subject"
 expect plan_json 0 '"total_bytes"' plan "$subject" --json -
 expect bench 0 'per pixel' bench cube "${small[@]}" --frames 2
 expect bench_coherence 0 "pixels traced" bench seesaw "${small[@]}" --frames 2 --no-prices --coherence on
+expect bench_coherence_is_off 0 '"coherence": null' bench seesaw "${small[@]}" --frames 2 --no-prices --json -
+expect bench_coherence_json 0 '"whole_frames": 0' bench seesaw "${small[@]}" --frames 2 --no-prices --coherence on --json -
+expect bench_without_coherence 0 'traced whole +all +\(nothing moves' bench cornell "${small[@]}" --frames 2 --no-prices \
+  --coherence auto
 expect bench_coherence_or_front 2 "excludes|--front" bench seesaw "${small[@]}" --coherence on --front
 expect bench_json 0 '"scanline_ns_per_pixel"' bench cube "${small[@]}" --frames 2 --json -
 expect bench_sparse 0 ' 10 % of pixels' bench cube "${small[@]}" --frames 2 --no-prices --sparse

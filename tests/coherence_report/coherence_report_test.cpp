@@ -31,13 +31,14 @@ struct Pair {
   CoherencePair renderers() const { return {&whole->renderer, &coherent->renderer}; }
 };
 
-Pair make_pair(bool by_tables = false) {
+Pair make_pair(bool by_tables = false, std::uint32_t table_side = 16) {
   Settings settings;
   settings.width = kWidth, settings.height = kHeight;
   Pair pair;
   pair.whole = make_renderer(shared_builtin("seesaw")->scene, settings);
   settings.coherence = CoherenceMode::on;
   settings.coherence_by_tables = by_tables;
+  settings.coherence_table = table_side;
   pair.coherent = make_renderer(shared_builtin("seesaw")->scene, settings);
   return pair;
 }
@@ -259,4 +260,38 @@ TEST_CASE("coherence_report_folder_is_complete") {
     platform::unload_file(&file);
   }
   platform::remove_folder(folder);
+}
+
+// Goal: the side of the tables trades memory for pixels, never a picture. Method: the paper's way with three sides,
+// each of whose frames is compared with whole frames; memory as in the paper, a bit for each block in each voxel.
+TEST_CASE("coherence_report_sides_of_tables_trade_memory_for_pixels") {
+  TableSweep sweep;
+  sweep.papers_way = true;
+  for (std::uint32_t side : {1, 8, 32}) {
+    Pair pair = make_pair(true, side);
+    sweep.sides.push_back(table_side(side, run_frames(pair, 0, 3)));
+  }
+  REQUIRE(sweep.sides.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const TableSide& s = sweep.sides[i];
+    CAPTURE(s.side);
+    CHECK(s.pixels == 4 * kPixels);
+    CHECK(s.all.retraced >= s.all.changed);
+    CHECK(s.all.changed == sweep.sides[0].all.changed);
+    CHECK(s.table_bytes == std::size_t(4096) * std::max(4u, s.side * s.side / 8));
+    CHECK(s.coherence_bytes > s.table_bytes);
+    if (i > 0) CHECK(s.all.retraced < sweep.sides[i - 1].all.retraced);
+  }
+  CHECK(sweep.sides[0].all.retraced == 4 * kPixels);  // one block: any change is one of all pixels
+  const Json json = table_sweep_json(sweep);
+  REQUIRE(json["sides"].size() == 3);
+  CHECK(json["sides"][0]["retraced"] == 1);
+  CHECK(json["sides"][2]["table_bytes"] == sweep.sides[2].table_bytes);
+  CHECK(json["papers_way"] == true);
+  CHECK(json["sides"][1]["cpu_time"].get<double>() > 0);
+  CHECK(lines_of(table_sweep_csv(sweep)) == 4);
+  CHECK(table_sweep_csv(sweep).find("\n1,16384,") != std::string::npos);
+  CHECK(table_sweep_markup(sweep).find("32 × 32") != std::string::npos);
+  CHECK(table_plot(sweep).script.find("\"32\\n512K\" 32") != std::string::npos);
+  CHECK(table_sweep_json(TableSweep()).is_null());
 }

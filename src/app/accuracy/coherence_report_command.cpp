@@ -19,21 +19,24 @@ struct ReportOptions {
   CommonOptions common;
   std::string folder, frames;
   std::uint32_t table = 16;
-  bool no_paper = false;
+  bool no_paper = false, compare = false, sweep_table = false;
 };
 
 enum class Way { frame_by_frame, coherent, by_tables };
 
-Status plan_way(Way way, const ReportOptions& o, Renderer* renderer, const SceneStorage& storage,
+Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* renderer, const SceneStorage& storage,
                 std::size_t output_bytes) {
   Settings* settings = &renderer->settings;
   settings->coherence = way == Way::frame_by_frame ? CoherenceMode::off : CoherenceMode::on;
-  settings->coherence_table = o.table;
+  settings->coherence_table = table;
   settings->coherence_by_tables = way == Way::by_tables;
   RETURN_IF_ERROR(plan_renderer(renderer, storage, output_bytes));
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene))
     return failure("%s does not move, so every frame would be the first again: choose a scene with an animation, as %s",
                    o.common.scene.c_str(), kPapersScene);
+  if (o.compare && (renderer->effects.mask & (bit(Effect::selective) | bit(Effect::undersampling))) != 0)
+    return failure(
+        "--compare traces single pixels, but with --selective or --resolution they depend on others: leave these out");
   if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
@@ -41,11 +44,12 @@ Status plan_way(Way way, const ReportOptions& o, Renderer* renderer, const Scene
   return failure("coherence does not fit in --memory: --memory %zuM", (bytes >> 20) + 1);
 }
 
-Status open_way(Way way, const ReportOptions& o, OpenScene* opened) {
+// `table`: side of the tables.
+Status open_way(Way way, const ReportOptions& o, std::uint32_t table, OpenScene* opened) {
   OpenHooks hooks;
   hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
   hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
-    return plan_way(way, o, renderer, storage, output_bytes);
+    return plan_way(way, o, table, renderer, storage, output_bytes);
   };
   RETURN_IF_ERROR(open_scene(o.common, hooks, opened));
   return start_scene(opened, o.common);
@@ -74,8 +78,8 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
   for (Way way : {Way::coherent, Way::by_tables}) {
     if (interrupted || (way == Way::by_tables && o.no_paper)) break;
     OpenScene whole, coherent;
-    RETURN_IF_ERROR(open_way(Way::frame_by_frame, o, &whole));
-    RETURN_IF_ERROR(open_way(way, o, &coherent));
+    RETURN_IF_ERROR(open_way(Way::frame_by_frame, o, o.table, &whole));
+    RETURN_IF_ERROR(open_way(way, o, o.table, &coherent));
     if (way == Way::coherent) {
       print_notes(coherent);
       if (!range.given) range = whole_animation(whole.renderer.scene);
@@ -89,6 +93,40 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
     done += rendering_count(range);
   }
   return success();
+}
+
+// Each side of the tables, over the frames that were measured.
+Status sweep_tables(const ReportOptions& o, CoherenceReport* report) {
+  if (!o.sweep_table || interrupted) return success();
+  report->tables.papers_way = report->ours.table_bytes == 0;
+  const FrameRange& range = report->ours.range;
+  Progress progress = start_progress("sides of tables", rendering_count(range) * std::size(kTableSides));
+  std::uint64_t done = 0;
+  for (std::uint32_t side : kTableSides) {
+    OpenScene whole, coherent;
+    SequenceRun run;
+    RETURN_IF_ERROR(open_way(Way::frame_by_frame, o, side, &whole));
+    RETURN_IF_ERROR(open_way(report->tables.papers_way ? Way::by_tables : Way::coherent, o, side, &coherent));
+    Status status = run_sequence({&whole.renderer, &coherent.renderer}, range, &progress, done, &run);
+    end_progress(&progress);
+    RETURN_IF_ERROR(status);
+    if (interrupted) break;  // its frames would not be those of the others
+    report->tables.sides.push_back(table_side(side, run));
+    done += rendering_count(range);
+  }
+  return success();
+}
+
+// The image-space methods, over the frames that were measured.
+Status compare(const ReportOptions& o, CoherenceReport* report) {
+  if (!o.compare || interrupted) return success();
+  OpenScene opened;
+  RETURN_IF_ERROR(open_way(Way::frame_by_frame, o, o.table, &opened));
+  const FrameRange& range = report->ours.range;
+  Progress progress = start_progress("image-space methods", image_space_step_count(range));
+  Status status = run_image_space(&opened.renderer, range, &progress, &report->image_space);
+  end_progress(&progress);
+  return status;
 }
 
 Status write_folder(const ReportOptions& o, const CoherenceReport& report) {
@@ -108,6 +146,8 @@ int run(const ReportOptions& o) {
   if (status.ok && !o.folder.empty()) status = make_output_folder(o.folder);
   CoherenceReport coherence;
   if (status.ok) status = measure(o, &coherence);
+  if (status.ok) status = sweep_tables(o, &coherence);
+  if (status.ok) status = compare(o, &coherence);
   if (!status.ok) return report(status);
   const std::size_t finished = coherence.ours.frames.size() + coherence.papers_way.frames.size();
   if (coherence.ours.frames.empty()) return kExitInterrupted;
@@ -136,7 +176,9 @@ void add_coherence_report_command(Command program, int* exit_status) {
       "compares every bit of every frame: a difference is an error. Prints rays and time of both, next to Table 2 of\n"
       "Jevans 1992 if the scene is seesaw, which follows its sequence. Then does the same the paper's way, with a "
       "table\n"
-      "of rays in every voxel. If interrupted, keeps the finished frames.\n"
+      "of rays in every voxel. --compare adds two methods that see pixels alone and miss changes, Badt 1988 and\n"
+      "Chapman 1990: pixels traced, time, wrong pixels and FLIP, as a table and plots beside ours.\n"
+      "If interrupted, keeps the finished frames.\n"
       "Try:  pocketray coherence-report seesaw -o report\n"
       "      pocketray coherence-report seesaw --frames 0:40 --size 640x480 --no-paper --json -");
   add_scene_options(command, &o->common);
@@ -150,6 +192,9 @@ void add_coherence_report_command(Command program, int* exit_status) {
       .range(1u, kCoherenceTableSideMax)
       .capture_default_str();
   command.add_flag("--no-paper", o->no_paper, "skip the sequence in the paper's way");
+  command.add_flag("--sweep-table", o->sweep_table,
+                   "also measure sides from 1 to 128: memory, time and pixels traced; no side changes a picture");
+  command.add_flag("--compare", o->compare, "also run the image-space methods of Badt and Chapman");
   add_json_option(command, &o->common.json);
   command.callback([=] { *exit_status = run(*o); });
 }
