@@ -133,6 +133,8 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     point->m += double(share.device_rows) / settings.height / frame_count;
     point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
     point->row_bytes += double(share.row_bytes) / frame_count;
+    point->kept_rows += double(share.kept_rows) / frame_count;
+    point->kept_bytes += double(share.kept_bytes) / frame_count;
     point->row_count += double(settings.height - share.device_rows) / frame_count;
     for (std::uint32_t i = 0; i < e->setup.server_count; ++i)
       point->server_rows[i] += double(share.server_rows[i]) / frame_count;

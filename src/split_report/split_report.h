@@ -29,6 +29,7 @@ struct SplitPoint {
   double bytes = 0;                          // received and sent per frame
   double row_bytes = 0;                      // of these, rows without message overhead
   double row_count = 0;                      // sent by servers
+  double kept_rows = 0, kept_bytes = 0;      // of these, in chunks of which nothing was traced; their bytes
   double server_rows[kServerCountMax] = {};  // of these, by server
 };
 

@@ -74,3 +74,30 @@ TEST_CASE("client_and_servers_trace_what_changes") {
     CHECK((coherent ? server_part < 0.25 : server_part == doctest::Approx(1)));
   }
 }
+
+// Goal: rows in which nothing can have changed cost a server no pixel, and the wire a few bytes a chunk: asking only for
+// the others would save no more. Method: the lowest rows of a moving scene; frames in which none of them changes.
+TEST_CASE("client_receives_unchanged_rows_in_a_few_bytes") {
+  SplitRigOptions options = moving_scene(1);
+  options.coherence = CoherenceMode::on;
+  options.client.device_share = 0.92;
+  options.client.device_goes_on = false;
+  options.client.check_count = 0;
+  SplitRig rig(options);
+  for (int i = 0; i < 10; ++i) rig.frame(i / 30.0);
+  REQUIRE(is_settled(rig.client));
+  int quiet = 0;
+  for (int i = 10; i < 50; ++i) {
+    CAPTURE(i);
+    const FrameShare& share = rig.frame(i / 30.0);
+    CHECK(!share.unchanged);
+    REQUIRE(share.server_rows[0] > 0);
+    CHECK(share.kept_rows <= share.server_rows[0]);
+    CHECK(share.kept_bytes <= share.server_bytes[0]);
+    if (share.kept_rows < share.server_rows[0]) continue;
+    ++quiet;
+    CHECK(share.kept_bytes == share.server_bytes[0]);
+    CHECK(share.bytes_in + share.bytes_out < 200);
+  }
+  CHECK(quiet >= 10);
+}

@@ -104,6 +104,8 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
           {"link_bytes_per_second", setup.line.bytes_per_second},
           {"bytes_per_frame", s.chosen.bytes},
           {"row_bytes_per_frame", s.chosen.row_bytes},
+          {"kept_rows_per_frame", s.chosen.kept_rows},
+          {"kept_row_bytes_per_frame", s.chosen.kept_bytes},
           {"whole_bytes_per_frame", s.whole_bytes},
           {"raw_bytes_per_frame", pixel_count(*setup.device) * pixel_bytes(setup.format)}};
 }
@@ -131,6 +133,9 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
       "bytes per frame at the chosen m: %.0f, of which %.0f message overhead; rows sent without deltas: %.0f "
       "compressed, %.0f raw\n",
       s.chosen.bytes, s.chosen.bytes - s.chosen.row_bytes, s.whole_bytes * sent, raw * sent);
+  if (s.chosen.kept_rows > 0)
+    std::printf("of these, chunks in which no pixel could change: %.0f bytes, %.1f rows\n", s.chosen.kept_bytes,
+                s.chosen.kept_rows);
 }
 
 void print_paper(const SplitFigures& s) {

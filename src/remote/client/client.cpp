@@ -281,6 +281,7 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   bool current = chunk.frame == client->request.frame && !client->complete;
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
+  if (chunk.pixels_traced == 0) client->share.kept_rows += chunk.row_count, client->share.kept_bytes += byte_count;
   CHECK_LE(end, client->settings.height);
   s->frame.heard_ns = client_now_ns(*client);
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;

@@ -120,6 +120,8 @@ struct FrameShare {
   std::uint32_t checked[kServerCountMax] = {};  // pixels checked; rows if the device has no scene
   std::uint32_t lies = 0;                       // servers caught with wrong pixels
   std::uint64_t row_bytes = 0;                  // received, rows without message overhead
+  std::uint32_t kept_rows = 0;                  // received, of chunks of which the server traced nothing,
+  std::uint64_t kept_bytes = 0;                 // and all bytes of these chunks
   std::uint64_t bytes_in = 0, bytes_out = 0;    // on the wire, all connections
 };
 
