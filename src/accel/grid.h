@@ -32,10 +32,10 @@ constexpr std::uint32_t kRootIdsPerTriangle = 3, kIdsPerTriangle = 4;
 constexpr std::uint32_t kCellsPerAxisMax = 1024;
 // Bounds the recursion of a walk. Only what no division separates, such as boxes nested without end, reaches it.
 constexpr std::uint32_t kGridDepthMax = 8;
-// What the pool takes, in words. With the root grid that is 52 bytes per triangle, as much as a BVH.
+// Size of the pool in words. With the root grid that is 52 bytes per triangle, as much as a BVH.
 constexpr std::uint32_t kPoolWordsPerTriangle = 8, kPoolWordsMin = 4096;
 
-// What a voxel's `child` says other than the place of its grid. The paper's *not subdivided* and *subdivided*, the
+// Values of a voxel's `child` that are no place of a grid. The paper's *not subdivided* and *subdivided*, the
 // latter without a grid because there is nothing to gain.
 constexpr std::uint32_t kNotSubdivided = 0, kSubdividedWithoutGrid = 1;
 

@@ -13,7 +13,7 @@ constexpr std::uint32_t kGivingUp = 1u << 31;
 // The clock advances whenever this part of the pool has been taken, so a stamp tells the age of a grid in that unit.
 constexpr std::uint32_t kTicksPerPool = 16;
 constexpr std::uint32_t kAgeMax = kTicksPerPool;
-// What is given up at once: a quarter of the pool, so that waiting for the other threads is rare.
+// Part of the pool given up at once: a quarter, so that waiting for the other threads is rare.
 constexpr std::uint32_t kGivenUpPart = 4;
 // After a search in vain, the next so many requests are turned away at once: as many as a pool has blocks, in order of
 // magnitude, so that searching takes little of the time.

@@ -11,7 +11,7 @@ namespace {
 
 Box overlap(const Box& a, const Box& b) { return {max(a.low, b.low), min(a.high, b.high)}; }
 
-// What is left of the voxel around its triangles.
+// The part of the voxel that its triangles' boxes cover.
 Box content_box(const Accel& accel, const GridShape& shape, std::uint32_t cell, Array<const std::uint32_t> ids) {
   Box box = empty_box();
   for (std::uint32_t id : ids) box = merge(box, triangle_box(accel, id));

@@ -18,7 +18,7 @@ namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
 constexpr float kPacketSlack = 0x1p-20f;
-// Exceeds the sum of what a few operations lose to underflow.
+// Exceeds the total loss to underflow in a few operations.
 constexpr float kUnderflow = kFlushesDenormals ? 0x1p-110f : 0x1p-140f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 

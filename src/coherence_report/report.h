@@ -35,7 +35,7 @@ struct TableRow {
 };
 std::vector<TableRow> table_rows(const SequenceRun& run, bool is_papers_scene);
 
-// What the two runs of a way are, for people.
+// Describes the two runs of a way.
 std::string papers_way_text(const Settings& settings);
 constexpr char kPaperText[] =
     "Jevans 1992, Table 2: its sequence at 640 x 480 on its machine. It counts a ray for each pixel traced, so compare "

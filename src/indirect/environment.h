@@ -78,7 +78,7 @@ inline Vec3 reflected_environment(const Scene& scene, const Material& m, const V
          environment_gloss(scene, way - normal * (2 * cosine), m.roughness);
 }
 
-// What the environment lights in a frame, besides what rays see of it. Stored radiosity holds its diffuse part.
+// Whether the environment lights surfaces, besides being seen by rays. Stored radiosity holds its diffuse part.
 inline bool environment_lights(const Scene& scene, EffectMask mask, IndirectChoice indirect) {
   return has(mask, Effect::environment) && environment_of(scene) && indirect != IndirectChoice::none;
 }

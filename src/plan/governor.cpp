@@ -138,7 +138,7 @@ void center_corrections(Governor* g) {
   g->reference_high += mean;
 }
 
-// After a switch: attributes to the candidate what the loads before the switch do not explain.
+// After a switch: attributes to the candidate the load that earlier loads do not explain.
 void attribute(Governor* g, double load) {
   std::uint32_t i = g->current;
   double surprise = load - std::max(g->reference_low, std::min(g->reference_high, load));

@@ -1,4 +1,4 @@
-// Rays for the solver: what a point sees.
+// Rays by which the solver finds the light that reaches a point.
 #pragma once
 #include "radiosity/patches.h"
 #include "shade/filters.h"

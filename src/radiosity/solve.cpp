@@ -59,7 +59,8 @@ Vec3d gather(const SceneRays& rays, const std::vector<Patch>& patches, const std
     const std::size_t i = static_cast<std::size_t>(&patch - patches.data());
     sum += radiance[i] * share, seen += share;
   }
-  // Surfaces fill what is not open: this takes the error of approximate factors and of visibility by few rays out.
+  // Surfaces fill the directions that are not open: this takes out the error of approximate factors and of visibility
+  // by few rays.
   const double closed = 1 - outlook.open;
   if (seen > 0) sum = sum * std::min(2.0, closed / seen);
   return sum + to_double(rays.frame.scene->info.background) * outlook.open;

@@ -112,7 +112,7 @@ void shoot(const FormFactors& factors, bool overshoot, Exchange* e) {
     const double energy = (std::fabs(u.x) + std::fabs(u.y) + std::fabs(u.z)) * e->area[i];
     if (energy > most) most = energy, brightest = i;
   }
-  // What was sent too early is only taken back.
+  // Light sent too early is only taken back.
   const Vec3d early =
       overshoot && sum_of(e->unshot[brightest]) > 0 ? e->albedo[brightest] * ambient_estimate(*e) : Vec3d{0, 0, 0};
   const Vec3d sent = e->unshot[brightest] + early;

@@ -17,7 +17,7 @@ constexpr std::uint32_t kRaysMax = 1000, kHitsMin = 8;
 
 enum Cause { kNoReflection, kBlackSurroundings, kBlocked, kUnlit, kCauseCount };
 
-// What a grid of rays found.
+// Results of a grid of rays.
 struct Findings {
   std::uint32_t hits = 0, black = 0, causes[kCauseCount] = {};
   std::uint32_t black_backs = 0;      // seen from behind
@@ -25,7 +25,7 @@ struct Findings {
   std::uint32_t materials[kRaysMax];  // theirs
 };
 
-// The first surface behind a pixel's centre that hides what is behind it.
+// The first opaque surface behind a pixel's centre.
 bool find_surface(const FrameData& frame, std::uint32_t column, std::uint32_t row, Surface* s) {
   Ray ray = camera_ray(frame.camera, static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {

@@ -7,7 +7,7 @@
 
 namespace pocketray {
 
-// What a scene with a new environment refers to.
+// Memory that a scene with a new environment refers to.
 struct EnvironmentMemory {
   std::vector<EnvironmentInfo> info;
   std::vector<std::uint32_t> texels;

@@ -25,7 +25,7 @@ std::size_t moving_geometry_scratch_need(const Scene& scene, EffectMask mask);
 // Made for the frame's geometry, in which nothing has changed.
 MovingGeometry make_moving_geometry(const FrameData& frame, Arena* keep, Arena* scratch);
 
-// Follows the frame: what is now becomes last.
+// Follows the frame: its geometry becomes the last frame's.
 void follow_geometry(const FrameData& frame, MovingGeometry* moving);
 
 // Index of a triangle of the scene among the moving ones, or kNoTriangle.

@@ -201,7 +201,7 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     ++viewer->frames_finished;
     if (goes_on(*viewer)) loop->passed = true;
   }
-  // What a frame of changes takes is known when it is finished; until then the display tells of the one before.
+  // The cost of a frame of changes is known at its end; until then the display shows that of the one before.
   if (loop->finished || loop->coherent.all) write_picture_lines(*viewer, *renderer, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);

@@ -57,7 +57,7 @@ struct Festival {
   std::uint32_t light_count = 0;
 };
 
-// A lantern and its light, just below, which the paper keeps from what is above.
+// A lantern and its light, just below, whose paper shades everything above.
 void add_lantern(Festival* f, const Vec3& at, float radius, std::uint32_t shade, float brightness) {
   CHECK_LT(shade, 3u);
   CHECK_LT(f->light_count, f->lights.count);
