@@ -33,11 +33,11 @@ std::string mesh_document(const std::string& primitives, const std::string& node
 TEST_CASE("gltf_parts_have_names_and_bounds") {
   GltfWriter w;
   w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0});
-  const ImportedScene s = load_text(
-      w.gltf("\"meshes\":[{\"name\":\"leaf\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
-                 "\"nodes\":[{\"name\":\"tree\",\"translation\":[10,0,0],\"children\":[1,2,3]},"
-                 "{\"name\":\"branch\",\"mesh\":0},{\"mesh\":0,\"translation\":[0,5,0]},{\"name\":\"nothing\"}],"
-                 "\"scenes\":[{\"nodes\":[0]}]"));
+  const ImportedScene s =
+      load_text(w.gltf("\"meshes\":[{\"name\":\"leaf\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                       "\"nodes\":[{\"name\":\"tree\",\"translation\":[10,0,0],\"children\":[1,2,3]},"
+                       "{\"name\":\"branch\",\"mesh\":0},{\"mesh\":0,\"translation\":[0,5,0]},{\"name\":\"nothing\"}],"
+                       "\"scenes\":[{\"nodes\":[0]}]"));
   REQUIRE(s.parts.size() == 3);
   CHECK(s.parts[0].first == "tree");
   CHECK(s.parts[0].second.low == Vec3{10, 0, 0});

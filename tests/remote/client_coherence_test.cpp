@@ -75,8 +75,8 @@ TEST_CASE("client_and_servers_trace_what_changes") {
   }
 }
 
-// Goal: rows in which nothing can have changed cost a server no pixel, and the wire a few bytes a chunk: asking only for
-// the others would save no more. Method: the lowest rows of a moving scene; frames in which none of them changes.
+// Goal: rows in which nothing can have changed cost a server no pixel, and the wire a few bytes a chunk: asking only
+// for the others would save no more. Method: the lowest rows of a moving scene; frames in which none of them changes.
 TEST_CASE("client_receives_unchanged_rows_in_a_few_bytes") {
   SplitRigOptions options = moving_scene(1);
   options.coherence = CoherenceMode::on;
