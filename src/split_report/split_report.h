@@ -57,7 +57,8 @@ std::uint64_t paper_frame_count(const SplitSetup& setup);
 // minimum. An interrupt keeps finished points; without any, sweep is empty.
 Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress* progress, SplitFigures* figures);
 // Table 1 of [Aranha07] with the paper's T_m and T_s, and T_t = 400 ns per pixel for this scene's compressed rows: the
-// link's bandwidth follows from that, without latency, since the paper states none.
+// link's bandwidth follows from that, without latency, since the paper states none. Frames are traced whole, whatever
+// the device's coherence.
 Status measure_paper(const SplitSetup& setup, Progress* progress, SplitFigures* figures);
 
 }  // namespace pocketray

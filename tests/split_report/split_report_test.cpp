@@ -117,6 +117,35 @@ TEST_CASE("split_report_every_ready_server_gets_rows") {
   }
 }
 
+// Goal: the paper's rows, whose times are of whole frames, do not depend on the report's coherence, which stays on for
+// what follows. Method: a scene at rest, of which coherent frames send almost nothing, with coherence on and off.
+TEST_CASE("split_report_paper_traces_frames_whole") {
+  std::vector<PaperRow> rows[2];
+  for (CoherenceMode mode : {CoherenceMode::off, CoherenceMode::on}) {
+    const StoredScene& stored = stored_scene(builtin_store(), "seesaw");
+    Settings settings;
+    settings.width = 32, settings.height = 60, settings.coherence = mode;
+    Reporting r;
+    make_reporting(builtin_store(), "seesaw", "tablet", 1, &r);
+    r.device = make_renderer(stored.scene, settings);
+    r.setup.device = &r.device->renderer;
+    r.setup.orbit_degrees = 0, r.setup.frame_count = 2;
+    SplitFigures figures;
+    Progress progress = start_progress("the paper's table", paper_frame_count(r.setup));
+    const Status status = measure_paper(r.setup, &progress, &figures);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    CHECK(r.device->renderer.settings.coherence == mode);
+    CHECK(r.device->renderer.coherence_state.planned == (mode == CoherenceMode::on));
+    rows[mode == CoherenceMode::on] = figures.paper;
+  }
+  REQUIRE(rows[0].size() == 6);
+  REQUIRE(rows[1].size() == 6);
+  for (std::size_t i = 0; i < rows[0].size(); ++i) {
+    CHECK(rows[0][i].our_ns == rows[1][i].our_ns);
+    CHECK(rows[0][i].bytes_per_pixel == rows[1][i].bytes_per_pixel);
+  }
+}
+
 // Goal: the report is reproducible under any load. Method: twice, bit for bit.
 TEST_CASE("split_report_repeats_itself") {
   SplitFigures figures[2];
