@@ -15,6 +15,9 @@
 #include "app/network/network_commands.h"
 #include "remote/client/servers.h"
 #endif
+#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
+#include "app/split_report/split_report_command.h"
+#endif
 
 namespace pocketray {
 namespace {
@@ -50,6 +53,8 @@ int run(int argument_count, char** arguments) {
 #ifdef POCKETRAY_HAVE_NETWORK
   add_serve_command(program, &exit_status);
   add_scenes_command(program, &exit_status);
+#endif
+#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
   add_split_report_command(program, &exit_status);
 #endif
   line.refuse_meaningless_values();

@@ -152,15 +152,16 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   expect view_without_its_server 0 'continuing without it' \
     view seesaw "${small[@]}" --screen null --frames 5 --server "$address"
 
-  # Goal: the split report as text, JSON and file; invalid options are refused; an interrupt keeps finished results.
-  report=(split-report cube --size 64x48 --steps 3 --frames 2 --device-ns 5000 --server-ns 500)
-  expect split_report 0 '^ *chosen +0\.[0-9]+ ' "${report[@]}"
-  expect split_report_paper 0 'Cornell box +2 ' "${report[@]}"
-  expect split_report_file 0 '2 servers' "${report[@]}" --servers 2 --no-paper -o .
-  check split_report_csv test "$(wc -l <split.csv)" -ge 5
-  if command -v python3 >/dev/null; then
-    "${run[@]}" "${report[@]}" --json - >figures.json 2>/dev/null
-    check split_report_json_keys python3 -c '
+  if "${run[@]}" --help | grep -q '^ *split-report '; then
+    # Goal: the split report as text, JSON and file; invalid options are refused; an interrupt keeps finished results.
+    report=(split-report cube --size 64x48 --steps 3 --frames 2 --device-ns 5000 --server-ns 500)
+    expect split_report 0 '^ *chosen +0\.[0-9]+ ' "${report[@]}"
+    expect split_report_paper 0 'Cornell box +2 ' "${report[@]}"
+    expect split_report_file 0 '2 servers' "${report[@]}" --servers 2 --no-paper -o .
+    check split_report_csv test "$(wc -l <split.csv)" -ge 5
+    if command -v python3 >/dev/null; then
+      "${run[@]}" "${report[@]}" --json - >figures.json 2>/dev/null
+      check split_report_json_keys python3 -c '
 import json
 f = json.load(open("figures.json"))
 assert all(set(f[k]) == {"m", "ns_per_pixel"} for k in ("chosen", "best"))
@@ -168,19 +169,20 @@ assert len(f["sweep"]) >= 3 and all(set(p) == {"m", "ns_per_pixel"} for p in f["
 assert f["best"]["ns_per_pixel"] == min(p["ns_per_pixel"] for p in f["sweep"]) < f["local_ns_per_pixel"]
 keys = {"times_of", "processors", "share", "ns_per_pixel", "our_share", "our_ns_per_pixel"}
 assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])'
+    fi
+    expect split_report_device 1 'gp2x' split-report cube --emulate toaster
+    expect split_report_no_server 2 'servers' "${report[@]}" --servers 0
+    expect split_report_many_servers 2 'servers' "${report[@]}" --servers 9
+    "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
+    reporting=$!
+    # The process is no longer the shell, and SIGINT, signal 2, is caught: the program is running.
+    until { grep -q split-report /proc/$reporting/cmdline && grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status; } ||
+      ! kill -0 $reporting; do sleep 0.05; done
+    sleep 0.2
+    kill -INT $reporting
+    wait $reporting
+    check split_report_is_interrupted test $? -eq 3
   fi
-  expect split_report_device 1 'gp2x' split-report cube --emulate toaster
-  expect split_report_no_server 2 'servers' "${report[@]}" --servers 0
-  expect split_report_many_servers 2 'servers' "${report[@]}" --servers 9
-  "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
-  reporting=$!
-  # The process is no longer the shell, and SIGINT, signal 2, is caught: the program is running.
-  until { grep -q split-report /proc/$reporting/cmdline && grep -qE '^SigCgt:.*[2367abef]$' /proc/$reporting/status; } ||
-    ! kill -0 $reporting; do sleep 0.05; done
-  sleep 0.2
-  kill -INT $reporting
-  wait $reporting
-  check split_report_is_interrupted test $? -eq 3
 fi
 
 finish

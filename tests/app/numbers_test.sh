@@ -60,7 +60,8 @@ fi
 
 if "$program" --help | grep -q ' serve '; then
   sweep "--threads --clients --memory --scene-memory --size-max --idle" serve --listen 127.0.0.1:0 --scenes nowhere
-  sweep "--steps --frames --orbit --device-ns --server-ns --servers" split-report nothing "${small[@]}"
+  ! "$program" --help | grep -q ' split-report ' ||
+    sweep "--steps --frames --orbit --device-ns --server-ns --servers" split-report nothing "${small[@]}"
   sweep "--share --price --energy-pixel --energy-byte --cost-weight --cost-cap" \
     render nothing "${small[@]}" --server 127.0.0.1:1 -o a.ppm
   # Options of a device without room for the scene reach the server as typed.

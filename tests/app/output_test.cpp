@@ -12,8 +12,8 @@
 #include <functional>
 
 #include "app/commands.h"
-#ifdef POCKETRAY_HAVE_NETWORK
-#include "app/network/network_commands.h"
+#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
+#include "app/split_report/split_report_command.h"
 #endif
 #include "platform/file.h"
 #include "session/report.h"
@@ -38,7 +38,7 @@ int run(const std::vector<std::string>& words, const char* out = "/dev/null") {
   add_bake_command(program, &exit_status);
   add_plan_command(program, &exit_status);
   add_bench_command(program, &exit_status);
-#ifdef POCKETRAY_HAVE_NETWORK
+#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
   add_split_report_command(program, &exit_status);
 #endif
   std::fflush(stdout);
@@ -92,7 +92,7 @@ TEST_CASE("output_is_no_input") {
   CHECK(run({"bench", scene, "--size", "8x6", "--frames", "1", "--front", other}) == 1);
   CHECK(run({"render", scene, "--size", "8x6", "-o", folder / "a.ppm"}) == 1);
   CHECK(run({"render", scene, "--size", "8x6", "-o", folder / "b.ppm", "--json", json}) == 1);
-#ifdef POCKETRAY_HAVE_NETWORK
+#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
   CHECK(run({"split-report", scene, "--size", "8x6", "--json", json}) == 1);
 #endif
   CHECK(content(scene) == before);
@@ -143,7 +143,7 @@ TEST_CASE("output_folder_is_made") {
   CHECK(has(make_output_folder(folder / "no/such"), "no/such"));
   REQUIRE(write_file(folder / "file", "x").ok);
   CHECK(!make_output_folder(folder / "file").ok);
-#ifdef POCKETRAY_HAVE_NETWORK
+#if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
   std::vector<std::string> command = {"split-report", "cube", "--size",    "64x48", "--steps",     "2",
                                       "--frames",     "2",    "-o",        made,    "--device-ns", "5000",
                                       "--server-ns",  "500",  "--no-paper"};

@@ -6,6 +6,5 @@ namespace pocketray {
 
 void add_serve_command(Command program, int* exit_status);
 void add_scenes_command(Command program, int* exit_status);
-void add_split_report_command(Command program, int* exit_status);
 
 }  // namespace pocketray

@@ -1,9 +1,10 @@
 // pocketray split-report: measures what render servers gain a device, for each share of rows, next to the paper's
 // table.
+#include "app/split_report/split_report_command.h"
+
 #include <nlohmann/json.hpp>
 
 #include "accuracy/gnuplot.h"
-#include "app/network/network_commands.h"
 #include "app/options.h"
 #include "engine/frame.h"
 #include "session/interrupt.h"
