@@ -64,6 +64,7 @@ struct WayState {
 
 Status run_badt(const TracePixels& trace, std::uint32_t first, std::uint32_t divisor, BadtState* state, Group* group,
                 std::vector<std::uint64_t>* traced) {
+  CHECK_EQ(traced->size(), group->size());
   for (std::size_t i = 1; i < group->size(); ++i) {
     RETURN_IF_ERROR(badt_frame(trace, first + static_cast<std::uint32_t>(i), 1.0 / divisor, state, &(*traced)[i]));
     (*group)[i] = state->image;
@@ -73,6 +74,8 @@ Status run_badt(const TracePixels& trace, std::uint32_t first, std::uint32_t div
 
 Status run_chapman(const TracePixels& trace, std::uint32_t first, std::uint32_t step, FrameImage* last, Group* group,
                    std::vector<std::uint64_t>* traced) {
+  CHECK_EQ(traced->size(), group->size());
+  CHECK_GT(step, 0u);
   group->front() = *last;
   for (std::size_t begin = 0, end; begin + 1 < group->size(); begin = end) {
     end = std::min(begin + step, group->size() - 1);
@@ -171,6 +174,7 @@ Status run_image_space(Renderer* renderer, const FrameRange& range, Progress* pr
       ImageSpaceFigures* f = &next.ways[i];
       std::uint64_t traced;
       RETURN_IF_ERROR(run_way(f->way, renderer, first, &states[i], &group, &cost, &traced));
+      CHECK_LE(traced, (std::uint64_t(count) + 1) * whole[0].size());
       add(cost, &f->cost), f->traced += traced;
       for (std::uint32_t k = 1; k <= count; ++k)
         add_errors(whole[k], group[k], run->width, run->height, renderer->exposure, &f->errors);

@@ -32,6 +32,8 @@ std::string short_bytes(std::size_t bytes) {
 }  // namespace
 
 TableSide table_side(std::uint32_t side, const SequenceRun& run) {
+  CHECK_GT(side, 0u);
+  CHECK_LE(run.table_bytes, run.coherence_bytes);
   return {side, run.table_bytes, run.coherence_bytes, std::uint64_t(run.width) * run.height * run.frames.size(),
           entire(run)};
 }
