@@ -14,6 +14,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 all_suites="base scene effect brdf indirect accel hard shade reference present plan golden pipeline temporal split wire remote split_report
   accuracy radiosity session app budget sweep coherence_report viewer platform api"
+all_suites=${all_suites//$'\n'/ }
 import_suites="import fuzz"  # need the importers, which take longer to build: only for faults that name one
 seconds_max=240  # anything longer counts as a hang
 jobs=$(nproc 2>/dev/null || echo 2) build=$root/build-mutants mode=run
