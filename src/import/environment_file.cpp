@@ -47,7 +47,7 @@ Status read_sky(const std::string& name, ImportedEnvironment* environment) {
   RETURN_IF_ERROR(parse_sky(name, &sky));
   environment->lights = {sun_of(sky)};
   return make_environment(
-      kSkySide, 4, [&](const Vec3d& direction) { return sky_radiance(sky, direction); }, environment);
+      kSkySide, 2, [&](const Vec3d& direction) { return sky_radiance(sky, direction); }, environment);
 }
 
 // Means of 2 × 2 pixels.

@@ -65,20 +65,46 @@ Map reduced(Map map, std::uint32_t side) {
   return map;
 }
 
-// The mean over the lobe of a viewer along the normal: weights D(n·h) n·l, as [Karis 2013] samples it, here over all
+// A map, and the means of its blocks of texels.
+struct Pyramid {
+  Map fine, coarse;
+};
+constexpr std::uint32_t kBlockSide = 4;
+// Cosines between a block and a lobe's axis: near the axis, where the lobe is steep, and where the horizon may cut the
+// block, its texels count one by one. A block of a map of 128² texels spans some 6°.
+constexpr double kNearCosine = 0.9, kHorizonCosine = 0.15;
+
+// A sum over the lobe of a viewer along the normal: weights D(n·h) n·l, as [Karis 2013] samples it, here over all
 // texels. With 2 (n·h)² = 1 + n·l, D ∝ 1 / ((1 + n·l)/2 (α² − 1) + 1)².
-Vec3d lobe_mean(const Map& map, const Vec3d& axis, double alpha) {
-  const double square = alpha * alpha;
+struct LobeSum {
+  double square;  // α²
   double weights = 0;
   Vec3d sum = {0, 0, 0};
-  for (std::size_t i = 0; i < map.radiance.size(); ++i) {
-    const double cosine = dot(map.direction[i], axis);
-    if (!(cosine > 0)) continue;
+  void add(const Map& map, std::size_t texel, double cosine) {
+    if (!(cosine > 0)) return;
     const double term = (1 + std::fmin(cosine, 1)) / 2 * (square - 1) + 1;
-    const double weight = cosine / (term * term) * map.solid_angle[i];
-    sum += map.radiance[i] * weight, weights += weight;
+    const double weight = cosine / (term * term) * map.solid_angle[texel];
+    sum += map.radiance[texel] * weight, weights += weight;
   }
-  return sum / weights;
+};
+
+Vec3d lobe_mean(const Pyramid& map, const Vec3d& axis, double alpha) {
+  LobeSum lobe = {alpha * alpha};
+  auto add = [&](const Map& of, std::size_t texel) { lobe.add(of, texel, dot(of.direction[texel], axis)); };
+  if (map.coarse.radiance.empty())
+    for (std::size_t i = 0; i < map.fine.radiance.size(); ++i) add(map.fine, i);
+  for (std::size_t i = 0; i < map.coarse.radiance.size(); ++i) {
+    const double cosine = dot(map.coarse.direction[i], axis);
+    if (cosine < -kHorizonCosine) continue;
+    if (cosine > kHorizonCosine && cosine < kNearCosine) {
+      add(map.coarse, i);
+      continue;
+    }
+    const std::size_t row = i / map.coarse.side * kBlockSide, column = i % map.coarse.side * kBlockSide;
+    for (std::size_t k = 0; k < kBlockSide * kBlockSide; ++k)
+      add(map.fine, (row + k / kBlockSide) * map.fine.side + column + k % kBlockSide);
+  }
+  return lobe.sum / lobe.weights;
 }
 
 // [Ramamoorthi & Hanrahan 2001] eqs. 3, 9 and 10, as a polynomial in the normal; factors π, 2π/3 and π/4 of the bands,
@@ -128,7 +154,8 @@ Status make_environment(std::uint32_t side, std::uint32_t grid, const std::funct
   for (const Vec3d& color : map.radiance) store(color);
   add_irradiance(map, &info);
   environment->mean = max(info.irradiance[0], Vec3{0, 0, 0});
-  const Map source = reduced(map, 2 * kGlossSide);
+  Pyramid source = {reduced(map, 2 * kGlossSide), {}};
+  if (source.fine.side == 2 * kGlossSide) source.coarse = reduced(source.fine, source.fine.side / kBlockSide);
   for (int level = 0; level < kGlossLevelCount; ++level) {
     const double roughness = static_cast<double>(kGlossRoughness[level]);
     const std::uint32_t level_side = gloss_level_side(info.gloss_side, level);
