@@ -4,9 +4,9 @@
 
 expect textures_name 2 'textures.*small' bake cube -o refused.pray --textures small
 expect filter_names 1 'bilinear or trilinear' render cube "${small[@]}" --texture-filter fine -o refused.ppm
-"${run[@]}" bake --help | grep -q 'glTF' || { finish; exit; }
+"${run[@]}" bake --help | grep -q 'glTF' || { finish; }
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >probe.obj
-"${run[@]}" bake probe.obj -o probe.pray >/dev/null 2>&1 || { echo "skipped: this build has no importers"; finish; exit; }
+"${run[@]}" bake probe.obj -o probe.pray >/dev/null 2>&1 || { echo "skipped: this build has no importers"; finish; }
 
 size() { stat -c %s "$1"; }
 # A floor with a texture of 128 × 128 texels, repeated towards the horizon.
