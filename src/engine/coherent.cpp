@@ -8,11 +8,6 @@
 namespace pocketray {
 namespace {
 
-// Of CoherenceMode::automatic. Derived: a frame that saves less than a thirtieth does not pay; after it, the next
-// frames are traced whole, twice as many each time, so that what the tries cost stays below 3 %.
-constexpr double kLeastGain = 0.97;
-constexpr std::uint32_t kRestMax = 31;
-
 struct Rows {
   Renderer* renderer;
   bool all;
@@ -44,22 +39,9 @@ void list_rows(Coherence* c, CoherentFrame* frame) {
     frame->list.span_count += list_changes(*c, frame->tile_row++, c->spans.data + frame->list.span_count);
 }
 
-// Whether coherence rests for this frame, because it did not pay.
-bool rests(Renderer* renderer) {
-  CoherenceState* state = &renderer->coherence_state;
-  if (renderer->settings.coherence != CoherenceMode::automatic || state->rest == 0) return false;
-  --state->rest;
-  return true;
-}
-
-// Weighs a frame that took `ns`.
-void weigh(const CoherentFrame& frame, double ns, Renderer* renderer) {
-  CoherenceState* state = &renderer->coherence_state;
-  const bool in_vain = frame.all && frame.records && state->was_whole;
-  state->was_whole = frame.all && frame.records;
-  if (frame.all) state->whole_ns = ns;
-  const bool saves = !frame.all && ns < kLeastGain * state->whole_ns;
-  if (saves || in_vain || !frame.all) rest_after(renderer, saves);
+FrameKind kind_of(const CoherentFrame& frame) {
+  if (!frame.all) return FrameKind::coherent;
+  return frame.records ? FrameKind::recorded : FrameKind::plain;
 }
 
 }  // namespace
@@ -68,12 +50,6 @@ void make_coherent(Renderer* renderer) {
   if (!renderer->coherence_state.planned) return;
   make_coherence(renderer->frame, coherence_plan(renderer->settings, renderer->light_point_count_max),
                  &renderer->persistent_arena, &renderer->frame_arena, &renderer->coherence);
-}
-
-void rest_after(Renderer* renderer, bool did_pay) {
-  CoherenceState* state = &renderer->coherence_state;
-  state->rest = did_pay ? 0 : state->rest_next;
-  state->rest_next = did_pay ? 1 : std::min(2 * state->rest_next + 1, kRestMax);
 }
 
 bool begin_following(Renderer* renderer) {
@@ -85,7 +61,7 @@ bool begin_following(Renderer* renderer) {
     state->whole_because = "pixels depend on their neighbours";
   } else if (!fits(*c, renderer->frame)) {
     state->whole_because = "more samples, lights or effects than memory was planned for";
-  } else if (rests(renderer)) {
+  } else if (renderer->settings.coherence == CoherenceMode::automatic && rests(&state->trial)) {
     state->whole_because = "tracing only what changed did not pay";
   } else {
     follow_frame(c, renderer->frame, &state->whole_because);
@@ -139,7 +115,7 @@ void finish_coherent(Renderer* renderer, CoherentFrame* frame) {
   wait_for_pace(&renderer->pace, 0, paced_start);
   renderer->coherence_state.keep_ms = ms_since(start);
   frame->spent_ns += clock_ns() - start;
-  weigh(*frame, static_cast<double>(frame->spent_ns), renderer);
+  weigh_frame(&renderer->coherence_state.trial, kind_of(*frame), static_cast<double>(frame->spent_ns));
 }
 
 bool advance_coherent(Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop,

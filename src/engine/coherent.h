@@ -31,7 +31,5 @@ void finish_coherent(Renderer* renderer, CoherentFrame* frame);
 // For frames in parts, too. Follows the frame, unless coherence is not planned or rests; state->whole_because tells why
 // all of its rows must be traced. True if it is followed, so that it can be kept.
 bool begin_following(Renderer* renderer);
-// Of CoherenceMode::automatic: whether following the frame paid; after one that did not, coherence rests.
-void rest_after(Renderer* renderer, bool did_pay);
 
 }  // namespace pocketray

@@ -1,5 +1,6 @@
 // Renderer: one scene, planned and accelerated in one block of memory, ready to render frames. It allocates nothing.
 #pragma once
+#include "engine/coherence_trial.h"
 #include "engine/pace.h"
 #include "plan/plan_memory.h"
 #include "scene/animate.h"
@@ -20,10 +21,7 @@ struct CoherenceState {
   std::uint64_t pixels_traced = 0;
   ChangeCounts search;  // rays traced to find them
   double follow_ms = 0, find_ms = 0, keep_ms = 0;
-  // Of CoherenceMode::automatic: time of a whole frame, and frames to trace whole before the next try.
-  double whole_ns = 0;
-  bool was_whole = false;  // and recorded, for the next frame
-  std::uint32_t rest = 0, rest_next = 1;
+  CoherenceTrial trial;  // of CoherenceMode::automatic
 };
 
 // The rows of a frame that this renderer may trace; shared_rows.h.

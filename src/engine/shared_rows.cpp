@@ -26,13 +26,13 @@ bool measure_row(void* context, std::uint32_t, std::uint32_t row) {
 // cost less than a tenth of tracing the rows (coherence-report).
 void weigh(Renderer* renderer) {
   const SharedRows& rows = renderer->shared_rows;
-  CoherenceState* state = &renderer->coherence_state;
-  const bool whole = state->whole_because != nullptr, in_vain = whole && state->was_whole;
-  state->was_whole = whole;
+  CoherenceTrial* trial = &renderer->coherence_state.trial;
+  const bool whole = renderer->coherence_state.whole_because != nullptr, in_vain = whole && trial->was_recorded;
+  trial->was_recorded = whole;
   if (rows.known_rows > 0)
-    rest_after(renderer, 10 * rows.known_changes < 9 * std::uint64_t(rows.known_rows) * renderer->settings.width);
+    rest_after(trial, 10 * rows.known_changes < 9 * std::uint64_t(rows.known_rows) * renderer->settings.width);
   else if (in_vain)
-    rest_after(renderer, false);
+    rest_after(trial, false);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ void begin_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_
   SharedRows* rows = &renderer->shared_rows;
   rows->records = begin_following(renderer);
   if (!rows->records) {
-    state->was_whole = false;
+    state->trial.was_recorded = false;
     return;
   }
   std::fill(c->changed.begin(), c->changed.end(), 0);

@@ -1,0 +1,48 @@
+#include "engine/coherence_trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pocketray {
+namespace {
+
+// Derived: a frame that saves less than a thirtieth does not pay, and what a try in vain cost must be less than that of
+// the frames traced whole after it. Rests double, so that scenes in which everything moves forget the first tries.
+constexpr double kLeastGain = 0.97;
+constexpr double kMostLoss = 0.03;
+constexpr std::uint32_t kRestMax = 31, kLongRestMax = 255;
+// Measured, `bench --coherence`: recording multiplies a frame's time by up to 1.3. Only until a plain one was traced.
+constexpr double kPlainShare = 0.75;
+
+void rest_for(CoherenceTrial* trial, std::uint32_t frames) {
+  trial->rest = frames;
+  trial->rest_next = std::min(2 * frames + 1, kRestMax);
+}
+
+}  // namespace
+
+void rest_after(CoherenceTrial* trial, bool did_pay) { rest_for(trial, did_pay ? 0 : trial->rest_next); }
+
+bool rests(CoherenceTrial* trial) {
+  if (trial->rest == 0) return false;
+  --trial->rest;
+  return true;
+}
+
+void weigh_frame(CoherenceTrial* trial, FrameKind kind, double ns) {
+  const bool in_vain = kind == FrameKind::recorded && trial->was_recorded;
+  trial->was_recorded = kind == FrameKind::recorded;
+  if (kind == FrameKind::plain) trial->plain_ns = ns;
+  if (kind == FrameKind::recorded) trial->recorded_ns = ns;
+  if (kind != FrameKind::coherent && !in_vain) return;
+  const double plain = trial->plain_ns > 0 ? trial->plain_ns : kPlainShare * trial->recorded_ns;
+  const bool did_pay = kind == FrameKind::coherent && ns < kLeastGain * plain;
+  double loss = trial->recorded_ns - plain;
+  if (kind == FrameKind::coherent) loss += ns - plain;
+  rest_after(trial, did_pay);
+  if (did_pay || trial->plain_ns <= 0) return;
+  const double least = std::min<double>(std::ceil(loss / (kMostLoss * plain)), kLongRestMax);
+  if (least > trial->rest) rest_for(trial, static_cast<std::uint32_t>(least));
+}
+
+}  // namespace pocketray
