@@ -37,6 +37,32 @@ struct Particle {
 
 Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
+// What lights are placed by must not follow every movement of the scene, or each would change all of the light: six
+// bits of a length or an area, and a box that changes in steps of a sixteenth to a thirty-second of its longest edge.
+double rounded(double v) {
+  int exponent;
+  const double fraction = std::frexp(v, &exponent);
+  return std::ldexp(std::floor(fraction * 64 + 0.5), exponent - 6);
+}
+
+struct Surroundings {
+  Vec3d low, high;
+};
+
+Surroundings surroundings_of(const Box& bounds) {
+  Surroundings s = {to_double(bounds.low), to_double(bounds.high)};
+  const double longest = max_component(s.high - s.low);
+  if (!(longest > 0)) return s;
+  int exponent;
+  std::frexp(longest, &exponent);
+  const double step = std::ldexp(1, exponent - 5);
+  for (double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+    s.low.*axis = std::floor(s.low.*axis / step) * step;
+    s.high.*axis = std::ceil(s.high.*axis / step) * step;
+  }
+  return s;
+}
+
 Vec3d uniform_direction(const Vec3d& axis, double height, double u, double v) {  // height: 1 − cosine of the cone
   double below = height * u, sine = std::sqrt(below * (2 - below)), phi = 2 * kPi * v;
   Vec3d tangent, bitangent;
@@ -49,7 +75,8 @@ Vec3d flux_of(const FrameData& frame, const LightRun& run, const LightPoint& lig
   Vec3d intensity = to_double(light.intensity);
   if (light.material != kNone) return intensity * (kPi * (light.two_sided ? 2 : 1));
   if (run.sample == find_light_sampler(Effect::directional_light)) {
-    Vec3d size = to_double(frame.accel.bounds.high) - to_double(frame.accel.bounds.low);
+    const Surroundings s = surroundings_of(frame.accel.bounds);
+    const Vec3d size = s.high - s.low;
     return intensity * (kPi * 0.25 * dot(size, size));
   }
   bool spot = run.sample == find_light_sampler(Effect::spot_light);
@@ -70,11 +97,12 @@ Particle emit(const FrameData& frame, const LightRun& run, const LightPoint& lig
     // Off the emitter, by far more than rounding.
     p.ray.origin += to_float(axis) * (max_component(abs(light.position)) * 0x1p-18f);
   } else if (run.sample == find_light_sampler(Effect::directional_light)) {
-    Vec3d low = to_double(frame.accel.bounds.low), high = to_double(frame.accel.bounds.high), tangent, bitangent;
-    double radius = 0.5 * length(high - low), r = radius * std::sqrt(u), phi = 2 * kPi * v;
+    const Surroundings s = surroundings_of(frame.accel.bounds);
+    Vec3d tangent, bitangent;
+    double radius = 0.5 * length(s.high - s.low), r = radius * std::sqrt(u), phi = 2 * kPi * v;
     axis = normalize(axis);
     make_basis(axis, &tangent, &bitangent);
-    p.ray.origin = to_float((low + high) * 0.5 - axis * (2 * radius) + tangent * (r * det_cos(phi)) +
+    p.ray.origin = to_float((s.low + s.high) * 0.5 - axis * (2 * radius) + tangent * (r * det_cos(phi)) +
                             bitangent * (r * det_sin(phi)));
     p.ray.direction = to_float(axis);
   } else if (run.sample == find_light_sampler(Effect::spot_light)) {
@@ -142,22 +170,24 @@ bool follow(const FrameData& frame, Particle particle, std::uint32_t count_max, 
 }
 
 // Bits of three coordinates in turn, ten of each.
-std::uint32_t morton_code(const Box& bounds, const Vec3& p) {
-  std::uint32_t code = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    float size = bounds.high[axis] - bounds.low[axis], at = (p[axis] - bounds.low[axis]) / size;
+std::uint32_t morton_code(const Surroundings& s, const Vec3& p) {
+  const Vec3d from = to_double(p) - s.low, size = s.high - s.low;
+  std::uint32_t code = 0, axis = 0;
+  for (double at : {from.x / size.x, from.y / size.y, from.z / size.z}) {
     auto cell = static_cast<std::uint32_t>(at > 0 ? (at < 1 ? at * 1023 : 1023) : 0);
-    for (int b = 0; b < 10; ++b) code |= (cell >> b & 1) << (3 * b + axis);
+    for (std::uint32_t b = 0; b < 10; ++b) code |= (cell >> b & 1) << (3 * b + axis);
+    ++axis;
   }
   return code;
 }
 
 // Puts lights that are close together next to each other, by insertion, which keeps the order of equal ones.
 void sort_lights(const FrameData& frame, VirtualLights* lights) {
+  const Surroundings surroundings = surroundings_of(frame.accel.bounds);
   std::uint32_t code[kVirtualLightMax];
   for (std::uint32_t i = 0; i < lights->count; ++i) {
     VirtualLight light = lights->light[i];
-    std::uint32_t own = morton_code(frame.accel.bounds, light.position), at = i;
+    std::uint32_t own = morton_code(surroundings, light.position), at = i;
     for (; at > 0 && code[at - 1] > own; --at) code[at] = code[at - 1], lights->light[at] = lights->light[at - 1];
     code[at] = own, lights->light[at] = light;
   }
@@ -198,7 +228,7 @@ void place_virtual_lights(FrameData* frame) {
   const std::uint32_t wanted = frame->settings.virtual_lights;
   CHECK_LE(wanted, kVirtualLightMax);
   lights->count = 0;
-  double total = 0, area = surface_area(*frame);
+  double total = 0, area = rounded(surface_area(*frame));
   for (int r = 0; r < frame->light_run_count; ++r)
     for (std::uint32_t i = frame->light_runs[r].begin; i < frame->light_runs[r].end; ++i)
       total += max_component(flux_of(*frame, frame->light_runs[r], frame->lights[i]));

@@ -203,6 +203,72 @@ TEST_CASE("instant_radiosity_of_scaled_scenes_is_the_same") {
   }
 }
 
+namespace {
+
+// The room with small boxes that no walk meets: in the sphere, all in one place. They turn about two axes, and rise.
+// `sun`: under a directional light, in place of the point light.
+struct RoomWithTurningBoxes : Room {
+  RoomWithTurningBoxes(bool sun, double turn, float rise) : Room(true) {
+    if (sun) lights[0].kind = LightKind::directional, lights[0].direction = {0.2f, -1, 0.1f};
+    const std::size_t first = positions.size();
+    for (int i = 0; i < 100; ++i) add_box(this, {-0.1f, -0.05f, -0.07f}, {0.1f, 0.05f, 0.07f}, 0);
+    const float c = static_cast<float>(det_cos(turn)), s = static_cast<float>(det_sin(turn));
+    for (std::size_t i = first; i < positions.size(); ++i) {
+      Vec3 p = positions[i];
+      p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+      positions[i] = Vec3{p.x, c * p.y - s * p.z, s * p.y + c * p.z} + Vec3{0.3f, -0.6f + rise, -0.2f};
+    }
+    bind();
+  }
+};
+
+bool same_light(const VirtualLight& a, const VirtualLight& b) {
+  return same_pixel(a.position, b.position) && same_pixel(a.normal, b.normal) && same_pixel(a.intensity, b.intensity);
+}
+
+std::uint32_t lights_kept(const VirtualLights& a, const VirtualLights& b) {
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < a.count; ++i)
+    kept += std::any_of(b.light, b.light + b.count,
+                        [&](const VirtualLight& light) { return same_light(a.light[i], light); });
+  return kept;
+}
+
+}  // namespace
+
+// Goal: a virtual light stays, bit for bit, unless a moving object crosses its path [Jevans92, sec. 6.4], and so do
+// their order and their bound, or all of the picture would flicker. Method: a box turns where no walk passes; then it
+// comes out.
+TEST_CASE("instant_radiosity_keeps_lights_whose_paths_nothing_crosses") {
+  for (bool sun : {false, true}) {
+    CAPTURE(sun);
+    std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(sun, 0, 0).scene, instant(64));
+    const VirtualLights& before = lights_of(*first);
+    REQUIRE(before.count > 40);
+    for (double turn = 0.1; turn < 3; turn += 0.1) {
+      CAPTURE(turn);
+      std::unique_ptr<TestRenderer> turned = rendered(RoomWithTurningBoxes(sun, turn, 0).scene, instant(64));
+      const VirtualLights& now = lights_of(*turned);
+      REQUIRE(now.count == before.count);
+      CHECK(std::equal(now.light, now.light + now.count, before.light, same_light));
+      CHECK(now.geometry_max == before.geometry_max);
+    }
+    std::unique_ptr<TestRenderer> outside = rendered(RoomWithTurningBoxes(sun, 0, 0.6f).scene, instant(64));
+    std::uint32_t kept = lights_kept(before, lights_of(*outside));
+    CHECK(kept > before.count / 4);
+    if (!sun) CHECK(kept < before.count);
+  }
+}
+
+// Goal: the same where the moving object is what ends the scene. Method: boxes rise by a hundredth over the room.
+TEST_CASE("instant_radiosity_keeps_lights_as_the_bounds_change") {
+  std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(true, 0, 1.7f).scene, instant(64)),
+                                second = rendered(RoomWithTurningBoxes(true, 0, 1.71f).scene, instant(64));
+  REQUIRE(first->renderer.frame.accel.bounds.high.y != second->renderer.frame.accel.bounds.high.y);
+  const VirtualLights &a = lights_of(*first), &b = lights_of(*second);
+  CHECK(lights_kept(a, b) > a.count / 2);
+}
+
 // Goal: coherence, which retraces pixels alone, stays off, and says why.
 TEST_CASE("instant_radiosity_switches_coherence_off") {
   Room room(true);
