@@ -22,7 +22,7 @@ required() {
     armv4t | cross) echo $common ;; # the compiler is the user's
     package) echo zip=zip mksquashfs=squashfs-tools ;;
     # Not g++-multilib: that package and the cross compilers exclude each other.
-    x86-32) echo $common c++=g++ "g++-$(c++ -dumpversion 2>/dev/null | cut -d. -f1 || echo 12)-multilib" lib32z1-dev ;;
+    x86-32) echo $common c++=g++ "g++-$(c++ -dumpversion 2>/dev/null | cut -d. -f1 || echo 12)-multilib" lib32z1-dev qemu-i386=qemu-user ;;
     aarch64) echo $common aarch64-linux-gnu-g++=g++-aarch64-linux-gnu qemu-aarch64=qemu-user ;;
     *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
   esac

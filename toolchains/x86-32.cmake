@@ -3,6 +3,13 @@
 set(POCKETRAY_M32 "-m32 -march=i686 -msse2 -mfpmath=sse")
 set(CMAKE_C_FLAGS_INIT "${POCKETRAY_M32}")
 set(CMAKE_CXX_FLAGS_INIT "${POCKETRAY_M32} -isystem /usr/include/x86_64-linux-gnu")  # <asm/…> of the kernel
+# Some kernels refuse programs of 32 bits: its own loader tells.
+execute_process(COMMAND /lib32/ld-linux.so.2 --version RESULT_VARIABLE POCKETRAY_REFUSED OUTPUT_QUIET ERROR_QUIET)
+if(NOT POCKETRAY_REFUSED EQUAL 0)
+  set(CMAKE_SYSTEM_NAME Linux)
+  set(CMAKE_SYSTEM_PROCESSOR i686)
+  set(CMAKE_CROSSCOMPILING_EMULATOR qemu-i386)
+endif()
 set(ZLIB_LIBRARY /usr/lib32/libz.so CACHE FILEPATH "of lib32z1-dev")
 set(ZLIB_INCLUDE_DIR /usr/include CACHE PATH "the same for both widths")
 foreach(package PNG SDL2 assimp embree)
