@@ -88,14 +88,14 @@ double speed_against(const OurSide& reference, const OurSide& ours, const RaySet
 }
 
 double frame_ns_per_pixel(BenchScene* scene, int rounds) {
-  Renderer* r = scene->renderer.get();
-  if (!build_renderer(r).ok) return -1;
+  Renderer* renderer = scene->renderer.get();
+  if (!build_renderer(renderer).ok) return -1;
   std::vector<double> ns;
   for (int round = 0; round < rounds; ++round) {
     bool ok = false;
-    double seconds = thread_seconds_of([&] { ok = render_frame(r, 0).ok; });
+    double seconds = thread_seconds_of([&] { ok = render_frame(renderer, 0).ok; });
     if (!ok) return -1;
-    ns.push_back(seconds * 1e9 / (static_cast<double>(r->settings.width) * r->settings.height));
+    ns.push_back(seconds * 1e9 / (static_cast<double>(renderer->settings.width) * renderer->settings.height));
   }
   return median(&ns);
 }

@@ -37,11 +37,11 @@ struct Flight {
 };
 
 // Frame time from counted traversal steps, the same on every machine and under every load.
-double work_ns(const Renderer& r) {
-  Tracer t = total_counts(r);
+double work_ns(const Renderer& renderer) {
+  Tracer t = total_counts(renderer);
   double rays = 0;
   for (std::uint64_t n : t.rays) rays += static_cast<double>(n);
-  return 50e3 + 60 * static_cast<double>(r.settings.width * r.settings.height) + 60 * rays +
+  return 50e3 + 60 * static_cast<double>(renderer.settings.width * renderer.settings.height) + 60 * rays +
          8 * static_cast<double>(t.stats.nodes) + 4 * static_cast<double>(t.stats.triangles);
 }
 
@@ -54,18 +54,18 @@ struct FlightResult {
 
 // The camera orbits its target by 2° per frame while the scene moves.
 FlightResult fly(Flight* flight, const Front& front, double budget_ns, std::uint32_t frame_count) {
-  Renderer* r = &flight->test->renderer;
-  CameraControl camera = make_camera_control(flight->scene.cameras[0], r->accel.bounds);
+  Renderer* renderer = &flight->test->renderer;
+  CameraControl camera = make_camera_control(flight->scene.cameras[0], renderer->accel.bounds);
   Governor g;
-  double pixels = static_cast<double>(r->settings.width) * r->settings.height;
+  double pixels = static_cast<double>(renderer->settings.width) * renderer->settings.height;
   start_governor(front, budget_ns, pixels, 4, false, &g);
   FlightResult result;
   for (std::uint32_t frame = 0; frame < frame_count; ++frame) {
     const Candidate& c = front.candidates[next_candidate(&g)];
-    REQUIRE(change_settings(r, with_candidate(r->settings, c)).ok);
-    REQUIRE(set_camera(r, orbited_camera(camera, 2 * static_cast<float>(frame))).ok);
-    REQUIRE(render_frame(r, frame / 25.0).ok);
-    double ns = work_ns(*r);
+    REQUIRE(change_settings(renderer, with_candidate(renderer->settings, c)).ok);
+    REQUIRE(set_camera(renderer, orbited_camera(camera, 2 * static_cast<float>(frame))).ok);
+    REQUIRE(render_frame(renderer, frame / 25.0).ok);
+    double ns = work_ns(*renderer);
     observe_frame(&g, ns);
     bool late = ns > 1.1 * budget_ns;
     if (frame >= kSettlingFrames)
@@ -80,10 +80,10 @@ FlightResult fly(Flight* flight, const Front& front, double budget_ns, std::uint
 
 // A candidate's frame time at the camera's start.
 double frame_ns(Flight* flight, const Candidate& c) {
-  Renderer* r = &flight->test->renderer;
-  REQUIRE(change_settings(r, with_candidate(r->settings, c)).ok);
-  REQUIRE(render_frame(r, 0).ok);
-  return work_ns(*r);
+  Renderer* renderer = &flight->test->renderer;
+  REQUIRE(change_settings(renderer, with_candidate(renderer->settings, c)).ok);
+  REQUIRE(render_frame(renderer, 0).ok);
+  return work_ns(*renderer);
 }
 
 }  // namespace

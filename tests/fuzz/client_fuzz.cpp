@@ -44,11 +44,11 @@ const Bytes& picture_of(WireFormat format, double seconds) {
   static std::map<std::pair<int, double>, Bytes> pictures;
   Bytes& pixels = pictures[{static_cast<int>(format), seconds}];
   if (!pixels.empty()) return pixels;
-  Renderer* r = fuzz_renderer();
-  CHECK(render_frame(r, seconds).ok);
+  Renderer* renderer = fuzz_renderer();
+  CHECK(render_frame(renderer, seconds).ok);
   int line_bytes = static_cast<int>(kFuzzWidth * pixel_bytes(format));
   pixels.resize(static_cast<std::size_t>(line_bytes) * kFuzzHeight);
-  pack_rows(r->image.data, kFuzzWidth, kFuzzHeight, 0, kFuzzHeight, r->exposure,
+  pack_rows(renderer->image.data, kFuzzWidth, kFuzzHeight, 0, kFuzzHeight, renderer->exposure,
             format == WireFormat::rgb565 ? kRgb565 : kRgb888, Rotation::none, false, pixels.data(), line_bytes);
   return pixels;
 }
@@ -213,7 +213,7 @@ const platform::LinkBackend kBothLink = both_backend();
 
 // Renders frames like `render` and `view`.
 void share_frames(FuzzInput* input, std::uint8_t flags) {
-  Renderer* r = fuzz_renderer();
+  Renderer* renderer = fuzz_renderer();
   ClientOptions o;
   o.has_scene = flags & 1;
   o.format = flags & 2 ? WireFormat::rgb888 : WireFormat::rgb565;
@@ -221,17 +221,17 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   o.silence_timeout_ns = o.prepare_timeout_ns = o.connect_timeout_ns = 300 * kMs;
   o.retry_ns_min = kMs, o.retry_ns_max = 20 * kMs;
   static Bytes memory;
-  memory.resize(client_need(r->settings, o.format, 1) + kArenaAlignment);
+  memory.resize(client_need(renderer->settings, o.format, 1) + kArenaAlignment);
   Arena arena = make_arena("client", memory.data(), memory.size());
   Client client;
   platform::LinkAddress address;
   platform::Error error;
   CHECK(net.resolve("127.0.0.1:4000", &address, &error));
-  CHECK(make_client(o, r->settings, fuzz_store().scenes[0].hash, peer->link, &address, 1, &arena, &client).ok);
+  CHECK(make_client(o, renderer->settings, fuzz_store().scenes[0].hash, peer->link, &address, 1, &arena, &client).ok);
   for (int frame = 0; frame < kFrames || (input->left > 0 && frame < 10 * kFrames); ++frame) {
-    CHECK(begin_frame(r, &client, 0.25 * (frame % 4)).ok);
+    CHECK(begin_frame(renderer, &client, 0.25 * (frame % 4)).ok);
     std::uint64_t begin = client_now_ns(client);
-    while (!advance_frame(r, &client, client_now_ns(client) + 5 * kMs, nullptr)) {
+    while (!advance_frame(renderer, &client, client_now_ns(client) + 5 * kMs, nullptr)) {
       std::uint64_t took = client_now_ns(client) - begin;
       if (!o.has_scene && took > 500 * kMs) break;
       CHECK_LT(took, 20'000 * kMs);

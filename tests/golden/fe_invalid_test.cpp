@@ -51,13 +51,13 @@ bool invalid_raised() {
 #endif
 }
 
-void pack_everywhere(const Renderer& r) {
-  int width = static_cast<int>(r.settings.width), height = static_cast<int>(r.settings.height);
-  std::vector<std::uint8_t> pixels(4 * r.image.count);
+void pack_everywhere(const Renderer& renderer) {
+  int width = static_cast<int>(renderer.settings.width), height = static_cast<int>(renderer.settings.height);
+  std::vector<std::uint8_t> pixels(4 * renderer.image.count);
   for (const PixelFormat& format : {kXrgb8888, kRgb565, kRgb888})
     for (bool dither : {false, true})
-      pack_rows(r.image.data, width, height, 0, height, r.exposure, format, Rotation::none, dither, pixels.data(),
-                width * format.bits_per_pixel / 8);
+      pack_rows(renderer.image.data, width, height, 0, height, renderer.exposure, format, Rotation::none, dither,
+                pixels.data(), width * format.bits_per_pixel / 8);
 }
 
 // Renders every AOV at these times; clears the flags before each frame and reads them after tracing and after packing.

@@ -146,11 +146,11 @@ TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
       room.bind();
     }
     std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
-    Renderer& r = t->renderer;
-    std::vector<Vec3> whole(r.image.begin(), r.image.end()), again(whole.size());
+    Renderer& renderer = t->renderer;
+    std::vector<Vec3> whole(renderer.image.begin(), renderer.image.end()), again(whole.size());
     auto trace = [&](const std::vector<Span>& spans, std::size_t group) {
       std::fill(again.begin(), again.end(), Vec3{-1, -1, -1});
-      Tracer tracer = make_tracer(r.frame);
+      Tracer tracer = make_tracer(renderer.frame);
       for (std::size_t i = 0; i < spans.size(); i += group)
         trace_spans(&tracer, spans.data() + i, static_cast<std::uint32_t>(std::min(group, spans.size() - i)), Aov::none,
                     again.data());
@@ -170,9 +170,9 @@ TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
     CHECK(trace(rows, 28) == 0);
     CHECK(trace(odd, 5) == 0);
     CHECK(trace(pixels, 7) == 0);
-    r.frame.ray_by_ray = true;
+    renderer.frame.ray_by_ray = true;
     CHECK(trace(rows, 28) == 0);
-    r.frame.ray_by_ray = false;
+    renderer.frame.ray_by_ray = false;
     for (const AccelInfo* info : kAccelList) {
       CAPTURE(info->name);
       std::unique_ptr<TestRenderer> other = make_renderer(room.scene, settings, info);

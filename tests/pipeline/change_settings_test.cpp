@@ -12,9 +12,9 @@ using namespace pocketray;
 
 namespace {
 
-std::vector<Vec3> picture_of(Renderer* r) {
-  REQUIRE(render_frame(r, 0).ok);
-  return {r->image.begin(), r->image.end()};
+std::vector<Vec3> picture_of(Renderer* renderer) {
+  REQUIRE(render_frame(renderer, 0).ok);
+  return {renderer->image.begin(), renderer->image.end()};
 }
 
 bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {

@@ -111,14 +111,14 @@ TEST_CASE("radiance_bound_bounds_every_ray") {
     REQUIRE(std::isfinite(bound));
     CHECK(bound <= bounds.after[8]);
     auto test = make_renderer(generated->scene, settings);
-    const Renderer& r = test->renderer;
+    const Renderer& renderer = test->renderer;
     Rng rng = make_rng(seed);
     auto between = [&](float low, float high) { return low + (high - low) * next_float(&rng); };
     float most = 0;
     for (int i = 0; i < effort(4000); ++i) {
       Vec3 from = {between(-3, 3), between(0, 3), between(-2.4f, 3)},
            to = {between(-3, 3), between(0, 3), between(-2.4f, 3)};
-      most = std::max(most, max_component(trace_ray(r, from, normalize(to - from))));
+      most = std::max(most, max_component(trace_ray(renderer, from, normalize(to - from))));
     }
     CAPTURE(seed);
     CHECK(most <= bound);

@@ -97,22 +97,22 @@ TEST_CASE("picture_is_independent_of_spans") {
   auto generated = generate_scene(kRich, 6);
   for (const Traced& traced : kAllOrSome) {
     auto test = make_renderer(generated->scene, small_settings(traced));
-    Renderer& r = test->renderer;
-    REQUIRE(render_frame(&r, 0.9).ok);
-    Picture expected(r.image.begin(), r.image.end());
+    Renderer& renderer = test->renderer;
+    REQUIRE(render_frame(&renderer, 0.9).ok);
+    Picture expected(renderer.image.begin(), renderer.image.end());
     Rng rng = make_rng(3);
     for (int round = 0; round < 2; ++round) {
       std::vector<Span> spans;
-      for (std::uint32_t row = 0; row < r.settings.height; ++row)
-        for (std::uint32_t begin = 0, end; begin < r.settings.width; begin = end) {
-          end = std::min(begin + 1 + next_u32(&rng) % 20, r.settings.width);
+      for (std::uint32_t row = 0; row < renderer.settings.height; ++row)
+        for (std::uint32_t begin = 0, end; begin < renderer.settings.width; begin = end) {
+          end = std::min(begin + 1 + next_u32(&rng) % 20, renderer.settings.width);
           spans.push_back(
               {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)});
         }
       shuffle(&rng, &spans);
       Picture picture(expected.size(), Vec3{-1, -1, -1});
-      make_tracers(&r);
-      Tracer tracer = r.tracers[0];
+      make_tracers(&renderer);
+      Tracer tracer = renderer.tracers[0];
       trace_spans(&tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, picture.data());
       CHECK(same_picture(picture, expected));
     }
@@ -142,15 +142,16 @@ TEST_CASE("picture_is_independent_of_progressive_refinement") {
     Picture expected = render_picture(generated->scene, settings, 0.3);
     settings.threads = threads;
     auto test = make_renderer(generated->scene, settings);
-    Renderer& r = test->renderer;
+    Renderer& renderer = test->renderer;
     std::vector<Span> spans(progressive_spans_max(settings));
-    REQUIRE(prepare_frame(&r, 0.3).ok);
+    REQUIRE(prepare_frame(&renderer, 0.3).ok);
     Progressive progressive;
     int steps = 0;
-    while (!advance_progressive(&r, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive)) ++steps;
+    while (!advance_progressive(&renderer, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive))
+      ++steps;
     CHECK(steps >= 5);
     CHECK(progressive.pixels_traced == std::uint64_t(settings.width) * settings.height);
-    CHECK(same_image(r.image, expected));
+    CHECK(same_image(renderer.image, expected));
   }
 }
 

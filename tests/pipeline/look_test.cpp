@@ -16,14 +16,14 @@ std::unique_ptr<TestRenderer> rendered(const Scene& scene, const Look& look, dou
   settings.width = 32, settings.height = 24, settings.threads = 1;
   auto test = std::make_unique<TestRenderer>();
   test->block.reset(new std::uint8_t[settings.memory_bytes]);
-  Renderer* r = &test->renderer;
-  start_renderer(test->block.get(), settings.memory_bytes, settings, r);
-  r->scene = scene;
-  r->look = look;
-  REQUIRE(plan_renderer(r, SceneStorage(), 0).ok);
-  r->workers = start_workers(settings.threads);
-  REQUIRE(build_renderer(r).ok);
-  REQUIRE(render_frame(r, seconds).ok);
+  Renderer* renderer = &test->renderer;
+  start_renderer(test->block.get(), settings.memory_bytes, settings, renderer);
+  renderer->scene = scene;
+  renderer->look = look;
+  REQUIRE(plan_renderer(renderer, SceneStorage(), 0).ok);
+  renderer->workers = start_workers(settings.threads);
+  REQUIRE(build_renderer(renderer).ok);
+  REQUIRE(render_frame(renderer, seconds).ok);
   return test;
 }
 

@@ -23,21 +23,21 @@ struct Subject {
   static constexpr std::uint32_t kFeatures = bit(Feature::point_light) | bit(Feature::mirror);
   std::unique_ptr<GeneratedScene> generated = generate_scene(kFeatures, 7);
   std::unique_ptr<TestRenderer> test;
-  Renderer* r = nullptr;
+  Renderer* renderer = nullptr;
 
   explicit Subject(std::uint32_t threads = 1) {
     Settings settings = settings_for(kFeatures, 96, 72);
     settings.threads = threads;
     test = make_renderer(generated->scene, settings);
-    r = &test->renderer;
+    renderer = &test->renderer;
   }
 
   double trace_ms() {
-    Status status = render_frame(r, 0);
+    Status status = render_frame(renderer, 0);
     REQUIRE_MESSAGE(status.ok, status.message);
-    return r->timings.trace_ms;
+    return renderer->timings.trace_ms;
   }
-  Picture picture() const { return Picture(r->image.begin(), r->image.end()); }
+  Picture picture() const { return Picture(renderer->image.begin(), renderer->image.end()); }
 };
 
 std::uint64_t virtual_now_ns = 0, virtual_overrun_ns = 0;
@@ -76,17 +76,17 @@ TEST_CASE("pace_arithmetic") {
 // up for it. An upper bound would depend on the machine; paced_ns() tests the factor exactly.
 TEST_CASE("pace_slows_a_frame_by_its_factor") {
   Subject subject;
-  Renderer* r = subject.r;
+  Renderer* renderer = subject.renderer;
   constexpr double kSlowdown = 6;
   auto rows_ms = [&] {
     double ms = 0;
-    for (std::uint64_t ns : r->row_ns) ms += static_cast<double>(ns) * 1e-6;
+    for (std::uint64_t ns : renderer->row_ns) ms += static_cast<double>(ns) * 1e-6;
     return ms;
   };
   auto processor_ms = [] { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
   subject.trace_ms();
   for (double slowdown : {1.0, kSlowdown}) {
-    r->pace.slowdown = slowdown;
+    renderer->pace.slowdown = slowdown;
     const std::uint64_t begin_ns = clock_ns();
     const double begin_ms = processor_ms();
     subject.trace_ms();
@@ -104,7 +104,7 @@ TEST_CASE("pace_leaves_the_picture_as_it_is") {
   plain.trace_ms();
   for (std::uint32_t threads : {1u, 2u}) {
     Subject paced(threads);
-    paced.r->pace.slowdown = 3;
+    paced.renderer->pace.slowdown = 3;
     paced.trace_ms();
     CHECK(same_picture(plain.picture(), paced.picture()));
   }
@@ -119,27 +119,27 @@ TEST_CASE("pace_keeps_a_fixed_time_per_pixel") {
     CAPTURE(overrun_ns);
     virtual_now_ns = 0, virtual_overrun_ns = overrun_ns;
     Subject subject;
-    Renderer* r = subject.r;
-    r->pace.clock = &kVirtualClock;
-    r->pace.ns_per_pixel = kNsPerPixel;
-    double wanted = static_cast<double>(r->settings.width) * r->settings.height * kNsPerPixel;
+    Renderer* renderer = subject.renderer;
+    renderer->pace.clock = &kVirtualClock;
+    renderer->pace.ns_per_pixel = kNsPerPixel;
+    double wanted = static_cast<double>(renderer->settings.width) * renderer->settings.height * kNsPerPixel;
     // The last sleep of a frame may overrun with no wait left to make up for it.
     double longest = wanted * (1 + kTolerance) + static_cast<double>(overrun_ns);
     for (std::int64_t owed : {0, -30'000'000, 30'000'000}) {
-      r->pace.owed_ns = owed;
+      renderer->pace.owed_ns = owed;
       double ns = subject.trace_ms() * 1e6;
       CHECK(ns >= wanted * (1 - kTolerance));
       CHECK(ns <= longest);
       std::uint64_t sum = 0;
-      for (std::uint64_t row_ns : r->row_ns) sum += row_ns;
+      for (std::uint64_t row_ns : renderer->row_ns) sum += row_ns;
       CHECK(static_cast<double>(sum) == doctest::Approx(wanted));
     }
     // A pixel of each tile is traced twice.
-    const double again = grid_side(r->settings.width, 8) * grid_side(r->settings.height, 8) * kNsPerPixel;
-    std::vector<Span> spans(progressive_spans_max(r->settings));
-    REQUIRE(prepare_frame(r, 0).ok);
+    const double again = grid_side(renderer->settings.width, 8) * grid_side(renderer->settings.height, 8) * kNsPerPixel;
+    std::vector<Span> spans(progressive_spans_max(renderer->settings));
+    REQUIRE(prepare_frame(renderer, 0).ok);
     Progressive progressive;
-    while (!advance_progressive(r, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive)) {
+    while (!advance_progressive(renderer, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive)) {
     }
     CHECK(static_cast<double>(progressive.trace_ns) >= (wanted + again) * (1 - kTolerance));
     CHECK(static_cast<double>(progressive.trace_ns) <= longest + again * (1 + kTolerance));
@@ -149,18 +149,18 @@ TEST_CASE("pace_keeps_a_fixed_time_per_pixel") {
 // Goal: the display names the emulated device first, in full. Method: the longest name, slow frames, two threads.
 TEST_CASE("pace_is_shown_in_the_first_line_of_the_display") {
   Subject subject(2);
-  subject.r->pace.device = "miyoo-mini";
+  subject.renderer->pace.device = "miyoo-mini";
   Progressive progressive;
   progressive.pixels_traced = 10;
   progressive.trace_ns = 456'780;
   HudText text;
-  write_hud(*subject.r, progressive, CameraMode::orbit, &text);
+  write_hud(*subject.renderer, progressive, CameraMode::orbit, &text);
   CHECK(std::string(text.lines[0]) == "miyoo-mini  316 ms/frame  45678 ns/pixel  2 threads");
-  CHECK(emulation_text(subject.r->pace) == ", emulating miyoo-mini: 1 times slower");
-  subject.r->pace.device = nullptr;
-  write_hud(*subject.r, progressive, CameraMode::orbit, &text);
+  CHECK(emulation_text(subject.renderer->pace) == ", emulating miyoo-mini: 1 times slower");
+  subject.renderer->pace.device = nullptr;
+  write_hud(*subject.renderer, progressive, CameraMode::orbit, &text);
   CHECK(std::string(text.lines[0]) == "315.7 ms/frame  45678 ns/pixel  2 threads");
-  CHECK(emulation_text(subject.r->pace).empty());
+  CHECK(emulation_text(subject.renderer->pace).empty());
 }
 
 // Goal: leaving does not wait for the emulated CPU. Method: a pace of hours, stopped from another thread, by the
@@ -168,15 +168,15 @@ TEST_CASE("pace_is_shown_in_the_first_line_of_the_display") {
 TEST_CASE("pace_wait_ends_when_stopped") {
   for (bool by_pace : {false, true}) {
     Subject subject;
-    subject.r->pace.ns_per_pixel = 1e9;
+    subject.renderer->pace.ns_per_pixel = 1e9;
     std::atomic<bool> stop{false};
-    if (by_pace) subject.r->pace.stop = &stop;
+    if (by_pace) subject.renderer->pace.stop = &stop;
     std::thread other([&] {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       stop = true;
     });
     std::uint64_t start = clock_ns();
-    Status status = render_frame(subject.r, 0, Aov::none, by_pace ? nullptr : &stop);
+    Status status = render_frame(subject.renderer, 0, Aov::none, by_pace ? nullptr : &stop);
     other.join();
     CHECK(status.ok);
     CHECK(clock_ns() - start < 5'000'000'000);

@@ -16,48 +16,49 @@ namespace {
 Settings sized(std::uint32_t width, std::uint32_t height) { return settings_for(kAllFeatures, width, height); }
 
 struct Steps {
-  Renderer* r;
-  std::vector<Span> spans = std::vector<Span>(progressive_spans_max(r->settings));
+  Renderer* renderer;
+  std::vector<Span> spans = std::vector<Span>(progressive_spans_max(renderer->settings));
   Progressive progressive = {};
   bool advance() {
-    return advance_progressive(r, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive);
+    return advance_progressive(renderer, {spans.data(), static_cast<std::uint32_t>(spans.size())}, 0, &progressive);
   }
 };
 
 // Whether rows [begin, end) show the pixels of a grid, each as a square.
-bool shows_cells(const Renderer& r, const Picture& expected, std::uint32_t step, std::uint32_t begin,
+bool shows_cells(const Renderer& renderer, const Picture& expected, std::uint32_t step, std::uint32_t begin,
                  std::uint32_t end) {
   for (std::size_t row = begin; row < end; ++row)
-    for (std::size_t column = 0; column < r.settings.width; ++column) {
-      const std::size_t from = (row - row % step) * r.settings.width + column - column % step;
-      const Vec3 &shown = r.image[row * r.settings.width + column], &wanted = expected[from];
+    for (std::size_t column = 0; column < renderer.settings.width; ++column) {
+      const std::size_t from = (row - row % step) * renderer.settings.width + column - column % step;
+      const Vec3 &shown = renderer.image[row * renderer.settings.width + column], &wanted = expected[from];
       if (!(shown.x == wanted.x && shown.y == wanted.y && shown.z == wanted.z)) return false;
     }
   return true;
 }
 
 // Refines a frame batch by batch and checks the picture after each.
-void check_steps(Renderer* r, const Picture& expected, const std::vector<std::uint32_t>& wanted_steps) {
-  const std::uint32_t width = r->settings.width, height = r->settings.height;
-  REQUIRE(prepare_frame(r, 0.3).ok);
-  for (Vec3& pixel : r->image) pixel = {-1, -1, -1};
+void check_steps(Renderer* renderer, const Picture& expected, const std::vector<std::uint32_t>& wanted_steps) {
+  const std::uint32_t width = renderer->settings.width, height = renderer->settings.height;
+  REQUIRE(prepare_frame(renderer, 0.3).ok);
+  for (Vec3& pixel : renderer->image) pixel = {-1, -1, -1};
   std::vector<std::uint64_t> row_ns(height, 0);
-  Steps steps = {r};
+  Steps steps = {renderer};
   steps.progressive.row_ns = row_ns.data();
   std::vector<std::uint32_t> seen;
   std::uint64_t pixels = 0;
   for (bool finished = false; !finished;) {
     const std::uint32_t step = steps.progressive.step;
     if (seen.empty() || seen.back() != step) {
-      if (!seen.empty()) CHECK(shows_cells(*r, expected, seen.back(), 0, height));
+      if (!seen.empty()) CHECK(shows_cells(*renderer, expected, seen.back(), 0, height));
       CHECK(steps.progressive.shown_coarse == !seen.empty());
       seen.push_back(step);
     }
     finished = steps.advance();
     CHECK(steps.progressive.pixels_traced >= pixels);
-    CHECK(steps.progressive.pixels_traced <= pixels + 64 * (r->settings.threads > 1 ? 8 * r->settings.threads : 4));
+    CHECK(steps.progressive.pixels_traced <=
+          pixels + 64 * (renderer->settings.threads > 1 ? 8 * renderer->settings.threads : 4));
     pixels = steps.progressive.pixels_traced;
-    CHECK(shows_cells(*r, expected, 1, 0, finished_rows(*r, steps.progressive)));
+    CHECK(shows_cells(*renderer, expected, 1, 0, finished_rows(*renderer, steps.progressive)));
     std::uint32_t begin = 0, end = 0;
     CHECK(take_dirty_rows(&steps.progressive, &begin, &end));
     CHECK(begin < end);
@@ -65,8 +66,8 @@ void check_steps(Renderer* r, const Picture& expected, const std::vector<std::ui
     CHECK(end - begin <= 8 * step);
   }
   CHECK(seen == wanted_steps);
-  CHECK(finished_rows(*r, steps.progressive) == height);
-  CHECK(shows_cells(*r, expected, 1, 0, height));
+  CHECK(finished_rows(*renderer, steps.progressive) == height);
+  CHECK(shows_cells(*renderer, expected, 1, 0, height));
   CHECK(pixels == std::uint64_t(width) * height);
   std::uint64_t sum = 0;
   for (std::uint64_t ns : row_ns) {
@@ -86,8 +87,8 @@ Work operator-(const Work& a, const Work& b) {
 bool operator==(const Work& a, const Work& b) {
   return a.nodes == b.nodes && a.triangles == b.triangles && a.rays == b.rays && a.primary == b.primary;
 }
-Work work_of(const Renderer& r) {
-  const Tracer counts = total_counts(r);
+Work work_of(const Renderer& renderer) {
+  const Tracer counts = total_counts(renderer);
   Work work = {counts.stats.nodes, counts.stats.triangles, 0, counts.rays[static_cast<int>(RayKind::primary)]};
   for (std::uint64_t rays : counts.rays) work.rays += rays;
   return work;
@@ -162,18 +163,18 @@ TEST_CASE("progressive_refines_with_the_work_of_a_direct_frame") {
           CAPTURE(what);
           settings.threads = threads;
           auto test = make_renderer(built->scene, settings, accel);
-          Renderer* r = &test->renderer;
-          REQUIRE(prepare_frame(r, 0.3).ok);
-          Steps steps = {r};
+          Renderer* renderer = &test->renderer;
+          REQUIRE(prepare_frame(renderer, 0.3).ok);
+          Steps steps = {renderer};
           while (!steps.progressive.shown_coarse) steps.advance();
-          const Work coarse = work_of(*r);
+          const Work coarse = work_of(*renderer);
           CHECK(coarse.primary == std::uint64_t(13) * ((height + 7) / 8));
           while (!steps.advance()) {
           }
           if (accel->packets_by_rays) {
-            CHECK(work_of(*r).rays == whole.rays);
+            CHECK(work_of(*renderer).rays == whole.rays);
           } else {
-            CHECK(work_of(*r) - coarse == whole);
+            CHECK(work_of(*renderer) - coarse == whole);
           }
         }
       }

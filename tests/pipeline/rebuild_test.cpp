@@ -16,7 +16,9 @@ AccelInfo without_refit(AccelInfo info) {
   return info;
 }
 
-std::size_t frame_bytes(const Renderer& r) { return r.memory.arena_bytes[static_cast<int>(ArenaKind::frame)]; }
+std::size_t frame_bytes(const Renderer& renderer) {
+  return renderer.memory.arena_bytes[static_cast<int>(ArenaKind::frame)];
+}
 
 }  // namespace
 
@@ -37,16 +39,17 @@ TEST_CASE("rebuild_stands_in_for_refit_within_the_plan") {
       if (baked && usual->renderer.accel.data.empty()) continue;
       if (baked) scene.accel = usual->renderer.accel.data;
       auto test = make_renderer(scene, settings, &rebuilt);
-      Renderer& r = test->renderer;
+      Renderer& renderer = test->renderer;
       for (double seconds : {0.0, 0.9, 0.3, 0.3}) {
         REQUIRE(render_frame(&usual->renderer, seconds).ok);
-        REQUIRE(render_frame(&r, seconds).ok);
-        Picture a(usual->renderer.image.begin(), usual->renderer.image.end()), b(r.image.begin(), r.image.end());
+        REQUIRE(render_frame(&renderer, seconds).ok);
+        Picture a(usual->renderer.image.begin(), usual->renderer.image.end()),
+            b(renderer.image.begin(), renderer.image.end());
         CHECK(same_picture(a, b));
       }
-      CHECK(r.frame_arena.used == 0);
-      CHECK(r.frame_arena.used_max <= frame_bytes(r));
-      CHECK(r.persistent_arena.used_max <= r.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+      CHECK(renderer.frame_arena.used == 0);
+      CHECK(renderer.frame_arena.used_max <= frame_bytes(renderer));
+      CHECK(renderer.persistent_arena.used_max <= renderer.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
     }
   }
 }

@@ -17,8 +17,8 @@ namespace {
 
 constexpr Vec3 kUntraced = {-1, -2, -3};
 
-void clear(Renderer* r) {
-  for (Vec3& pixel : r->image) pixel = kUntraced;
+void clear(Renderer* renderer) {
+  for (Vec3& pixel : renderer->image) pixel = kUntraced;
 }
 
 // Spans of random pixels, some of them in runs, from the top.
@@ -45,25 +45,25 @@ Picture masked(const Settings& s, const Picture& picture, const std::vector<Span
   return out;
 }
 
-Picture picture_of(const Renderer& r) { return Picture(r.image.begin(), r.image.end()); }
+Picture picture_of(const Renderer& renderer) { return Picture(renderer.image.begin(), renderer.image.end()); }
 
 void check_sparse_lists(const Scene& scene, Settings settings, Rng* rng) {
   Picture expected = render_picture(scene, settings, 0.3);
   for (std::uint32_t threads : {1u, 2u, 4u}) {
     settings.threads = threads;
     auto test = make_renderer(scene, settings);
-    Renderer* r = &test->renderer;
-    REQUIRE(prepare_frame(r, 0.3).ok);
+    Renderer* renderer = &test->renderer;
+    REQUIRE(prepare_frame(renderer, 0.3).ok);
     for (double fraction : {0.02, 0.1, 0.5, 0.9}) {
       std::vector<Span> spans = random_spans(settings, rng, fraction);
       CAPTURE(threads);
       CAPTURE(fraction);
-      clear(r);
+      clear(renderer);
       SpanList list;
       list.spans = spans.data(), list.span_count = static_cast<std::uint32_t>(spans.size());
-      CHECK(trace_frame(r, list_source(&list)));
+      CHECK(trace_frame(renderer, list_source(&list)));
       CHECK(list.done_count == spans.size());
-      CHECK(same_picture(picture_of(*r), masked(settings, expected, spans)));
+      CHECK(same_picture(picture_of(*renderer), masked(settings, expected, spans)));
     }
   }
 }
@@ -110,15 +110,15 @@ struct Subject {
   std::unique_ptr<GeneratedScene> generated = generate_scene(kAllFeatures, 21);
   Picture expected;
   std::unique_ptr<TestRenderer> test;
-  Renderer* r;
+  Renderer* renderer;
 
   Subject() {
     settings = settings_for(kAllFeatures, 37, 29);
     expected = render_picture(generated->scene, settings, 0);
     test = make_renderer(generated->scene, settings);
-    r = &test->renderer;
-    REQUIRE(prepare_frame(r, 0).ok);
-    clear(r);
+    renderer = &test->renderer;
+    REQUIRE(prepare_frame(renderer, 0).ok);
+    clear(renderer);
   }
 };
 
@@ -180,10 +180,10 @@ TEST_CASE("sparse_spans_of_the_benchmark_have_the_fraction") {
 TEST_CASE("frame_loop_asks_on_after_empty_batches") {
   Subject subject;
   ByHand hand;
-  hand.renderer = subject.r, hand.empty_every = 3;
-  CHECK(trace_frame(subject.r, by_hand(&hand)));
+  hand.renderer = subject.renderer, hand.empty_every = 3;
+  CHECK(trace_frame(subject.renderer, by_hand(&hand)));
   CHECK(hand.next_count > subject.settings.height);
-  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+  CHECK(same_picture(picture_of(*subject.renderer), subject.expected));
 }
 
 // Goal: a deadline ends a call after at least one batch, by the source's clock and pace, and the next call continues; a
@@ -191,18 +191,18 @@ TEST_CASE("frame_loop_asks_on_after_empty_batches") {
 TEST_CASE("frame_loop_keeps_a_virtual_deadline_and_pace") {
   Subject subject;
   ByHand hand;
-  hand.renderer = subject.r, hand.pace_ns = 10;
+  hand.renderer = subject.renderer, hand.pace_ns = 10;
   SpanSource source = by_hand(&hand);
   source.deadline_ns = 0;  // long past
-  CHECK_FALSE(trace_frame(subject.r, source));
+  CHECK_FALSE(trace_frame(subject.renderer, source));
   CHECK(hand.row == 1);
   source.deadline_ns = hand.now_ns + 3 * 370;
-  CHECK_FALSE(trace_frame(subject.r, source));
+  CHECK_FALSE(trace_frame(subject.renderer, source));
   CHECK(hand.row == 4);
   source.deadline_ns = kNoDeadline;
-  CHECK(trace_frame(subject.r, source));
+  CHECK(trace_frame(subject.renderer, source));
   CHECK(hand.took_ns == 370 * subject.settings.height);
-  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+  CHECK(same_picture(picture_of(*subject.renderer), subject.expected));
 }
 
 // Goal: a stop ends the loop before the next batch, and a continued frame is the same. Method: a source that stops
@@ -210,36 +210,36 @@ TEST_CASE("frame_loop_keeps_a_virtual_deadline_and_pace") {
 TEST_CASE("frame_loop_stops_and_goes_on") {
   Subject subject;
   ByHand hand;
-  hand.renderer = subject.r, hand.stop_after = 5;
-  CHECK_FALSE(trace_frame(subject.r, by_hand(&hand)));
+  hand.renderer = subject.renderer, hand.stop_after = 5;
+  CHECK_FALSE(trace_frame(subject.renderer, by_hand(&hand)));
   CHECK(hand.row == 5);
   hand.stop = false, hand.stop_after = ~0u;
-  CHECK(trace_frame(subject.r, by_hand(&hand)));
-  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+  CHECK(trace_frame(subject.renderer, by_hand(&hand)));
+  CHECK(same_picture(picture_of(*subject.renderer), subject.expected));
 
-  clear(subject.r);
+  clear(subject.renderer);
   hand.stop = true;
-  SpanList list = whole_frame(subject.r);
+  SpanList list = whole_frame(subject.renderer);
   SpanSource source = list_source(&list);
   source.stop = &hand.stop;
-  CHECK_FALSE(trace_frame(subject.r, source));
+  CHECK_FALSE(trace_frame(subject.renderer, source));
   CHECK(list.done_count == 0);
   hand.stop = false;
-  CHECK(trace_frame(subject.r, source));
-  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+  CHECK(trace_frame(subject.renderer, source));
+  CHECK(same_picture(picture_of(*subject.renderer), subject.expected));
 }
 
 // Goal: bands report their progress and make the whole frame. Method: bands of five rows.
 TEST_CASE("bands_tell_their_progress") {
   Subject subject;
   std::vector<std::uint32_t> told;
-  SpanList bands = whole_frame(subject.r);
+  SpanList bands = whole_frame(subject.renderer);
   bands.batch_spans = 5;
   bands.progress_context = &told;
   bands.progress = [](void* context, std::uint32_t done) {
     static_cast<std::vector<std::uint32_t>*>(context)->push_back(done);
   };
-  CHECK(trace_frame(subject.r, list_source(&bands)));
+  CHECK(trace_frame(subject.renderer, list_source(&bands)));
   CHECK(told == std::vector<std::uint32_t>{5, 10, 15, 20, 25, 29});
-  CHECK(same_picture(picture_of(*subject.r), subject.expected));
+  CHECK(same_picture(picture_of(*subject.renderer), subject.expected));
 }

@@ -69,15 +69,15 @@ TEST_CASE("plan_memory_holds_in_a_run") {
     if (features % 3) continue;
     auto generated = generate_scene(features, features);
     auto test = make_renderer(generated->scene, settings_of(features));
-    Renderer& r = test->renderer;
-    REQUIRE(render_frame(&r, 0.5).ok);
+    Renderer& renderer = test->renderer;
+    REQUIRE(render_frame(&renderer, 0.5).ok);
     CAPTURE(features);
-    CHECK(r.persistent_arena.used_max <= r.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
-    CHECK(r.frame_arena.used_max <= r.memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
-    CHECK(r.frame_arena.used == 0);
+    CHECK(renderer.persistent_arena.used_max <= renderer.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)]);
+    CHECK(renderer.frame_arena.used_max <= renderer.memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);
+    CHECK(renderer.frame_arena.used == 0);
     // The accelerator's need is an upper bound; all else is exact.
-    std::size_t planned = r.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)];
-    CHECK(r.persistent_arena.used + part_bytes(r.memory, "accelerator") + kArenaAlignment >= planned);
+    std::size_t planned = renderer.memory.arena_bytes[static_cast<int>(ArenaKind::persistent)];
+    CHECK(renderer.persistent_arena.used + part_bytes(renderer.memory, "accelerator") + kArenaAlignment >= planned);
   }
 }
 

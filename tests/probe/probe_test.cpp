@@ -41,14 +41,14 @@ Picture render_all(const Scene& scene, Settings settings, double seconds) {
 }
 
 // The signal that ends a child which renders with a trap on one effect of the scene, or 0.
-int signal_of_render_without(Effect effect, Renderer* r) {
+int signal_of_render_without(Effect effect, Renderer* renderer) {
   pid_t child = fork();
   if (child == 0) {
     rlimit no_core = {0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     std::signal(SIGABRT, SIG_DFL);
     effect_probe.allowed = kAllEffects & ~bit(effect);
-    _exit(render_frame(r, 0.5).ok ? 0 : 1);
+    _exit(render_frame(renderer, 0.5).ok ? 0 : 1);
   }
   int status = 0;
   REQUIRE(waitpid(child, &status, 0) == child);
@@ -122,10 +122,11 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   for (const EffectRow& row : kEffectList) {
     if (!has(all, row.effect)) continue;
     CAPTURE(std::string(row.name));
-    Renderer* r = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer
-                  : row.effect == Effect::environment     ? &with_environment->renderer
-                  : row.effect == Effect::selective || row.effect == Effect::undersampling ? &interpolated->renderer
-                                                                                           : &test->renderer;
-    CHECK(signal_of_render_without(row.effect, r) == SIGABRT);
+    Renderer* renderer = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer
+                         : row.effect == Effect::environment     ? &with_environment->renderer
+                         : row.effect == Effect::selective || row.effect == Effect::undersampling
+                             ? &interpolated->renderer
+                             : &test->renderer;
+    CHECK(signal_of_render_without(row.effect, renderer) == SIGABRT);
   }
 }

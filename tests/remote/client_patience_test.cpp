@@ -134,12 +134,12 @@ TEST_CASE("client_counts_preparation") {
   for (std::uint64_t prepare_ns : {std::uint64_t(0), kPrepareNs}) {
     SplitRigOptions options;
     SplitRig rig(options);
-    Renderer* r = &rig.device->renderer;
+    Renderer* renderer = &rig.device->renderer;
     double alone_ns = options.device_ns * options.width * options.height;
     for (int i = 0; i < 8; ++i) {
-      REQUIRE(prepare_frame(r, 0).ok);
-      begin_client_frame(&rig.client, *r, 0, prepare_ns);
-      REQUIRE(advance_frame(r, &rig.client, ~std::uint64_t(0)));
+      REQUIRE(prepare_frame(renderer, 0).ok);
+      begin_client_frame(&rig.client, *renderer, 0, prepare_ns);
+      REQUIRE(advance_frame(renderer, &rig.client, ~std::uint64_t(0)));
     }
     const FrameShare& share = rig.client.share;
     rows[prepare_ns > 0] = share.device_rows;

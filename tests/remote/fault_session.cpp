@@ -105,13 +105,13 @@ std::string run_frame(FaultWorld* w, SessionResult* result) {
 std::string run_thin_frame(FaultWorld* w, SessionResult* result) {
   int second = w->frame % static_cast<int>(std::size(kFaultSeconds));
   device_picture(w->plan, second);
-  Renderer* r = device_renderer(w->plan);
+  Renderer* renderer = device_renderer(w->plan);
   Client* c = &w->client;
   begin_frame(w);
-  if (!begin_frame(r, c, kFaultSeconds[second]).ok) return fail(*w, "does not begin");
+  if (!begin_frame(renderer, c, kFaultSeconds[second]).ok) return fail(*w, "does not begin");
   std::uint64_t rows_come_ns = w->elapsed();
   std::uint32_t rows = 0;
-  while (!advance_frame(r, c, client_now_ns(*c) + 20 * kMs, nullptr)) {
+  while (!advance_frame(renderer, c, client_now_ns(*c) + 20 * kMs, nullptr)) {
     if (w->stuck) return fail(*w, "a server holds the device");
     if (c->merge.row_count_done != rows) rows = c->merge.row_count_done, rows_come_ns = w->elapsed();
     if (is_cut_off(*c)) break;

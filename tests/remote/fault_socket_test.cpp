@@ -113,17 +113,17 @@ struct Device {
   void frame() {
     static std::map<int, std::vector<std::uint8_t>> pictures;
     int second = frame_count++ % 4;
-    Renderer* r = &renderer->renderer;
+    Renderer* own = &renderer->renderer;
     std::vector<std::uint8_t>& expected = pictures[second];
     if (expected.empty()) {
-      REQUIRE(render_frame(r, 0.3 * second).ok);
+      REQUIRE(render_frame(own, 0.3 * second).ok);
       expected.resize(client.pixels.count);
-      pack_rows(r->image.data, kWidth, kHeight, 0, kHeight, r->exposure, kRgb888, Rotation::none, false,
+      pack_rows(own->image.data, kWidth, kHeight, 0, kHeight, own->exposure, kRgb888, Rotation::none, false,
                 expected.data(), kWidth * 3);
     }
     std::uint64_t begin = wall_ns();
     bool complete = false;
-    REQUIRE(render_frame(r, &client, 0.3 * second, nullptr, &complete).ok);
+    REQUIRE(render_frame(own, &client, 0.3 * second, nullptr, &complete).ok);
     worst_ns = std::max(worst_ns, static_cast<double>(wall_ns() - begin));
     if (!complete) failure = "a frame is not complete";
     if (!std::equal(expected.begin(), expected.end(), client.pixels.begin()))

@@ -49,13 +49,13 @@ const std::vector<std::uint8_t>& device_picture(const FaultPlan& plan, int secon
   bool small = plan.format == WireFormat::rgb565;
   std::vector<std::uint8_t>& pixels = device.pictures[second * 4 + small * 2 + plan.dither];
   if (!pixels.empty()) return pixels;
-  Renderer* r = &device.whole->renderer;
-  REQUIRE(render_frame(r, kFaultSeconds[second]).ok);
+  Renderer* renderer = &device.whole->renderer;
+  REQUIRE(render_frame(renderer, kFaultSeconds[second]).ok);
   int width = static_cast<int>(plan.width), height = static_cast<int>(plan.height);
   int line_bytes = width * static_cast<int>(pixel_bytes(plan.format));
   pixels.resize(static_cast<std::size_t>(line_bytes) * plan.height);
-  pack_rows(r->image.data, width, height, 0, height, r->exposure, small ? kRgb565 : kRgb888, Rotation::none,
-            plan.dither, pixels.data(), line_bytes);
+  pack_rows(renderer->image.data, width, height, 0, height, renderer->exposure, small ? kRgb565 : kRgb888,
+            Rotation::none, plan.dither, pixels.data(), line_bytes);
   return pixels;
 }
 

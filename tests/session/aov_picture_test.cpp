@@ -22,14 +22,14 @@ struct Colored {
     Settings settings;
     settings.width = width, settings.height = height, settings.threads = 1;
     test = make_renderer(scene->scene, settings);
-    Renderer& r = test->renderer;
-    r.exposure = 3;
-    REQUIRE(render_frame(&r, 0, aov).ok);
-    values.assign(r.image.begin(), r.image.end());
+    Renderer& renderer = test->renderer;
+    renderer.exposure = 3;
+    REQUIRE(render_frame(&renderer, 0, aov).ok);
+    values.assign(renderer.image.begin(), renderer.image.end());
     if (box.width == 0) box = {0, 0, static_cast<int>(width), static_cast<int>(height)};
-    picture = color_aov(aov, box, &r);
-    colors.assign(r.image.begin(), r.image.end());
-    CHECK(r.exposure == 1);
+    picture = color_aov(aov, box, &renderer);
+    colors.assign(renderer.image.begin(), renderer.image.end());
+    CHECK(renderer.exposure == 1);
   }
 };
 

@@ -39,7 +39,7 @@ struct Room {
 // directions. Returns how many of `ray_count` rays leave the room.
 int rays_that_escape(const Room& room, Rng* rng, int ray_count) {
   constexpr int kPath = 4;
-  const Renderer& r = *room.renderer;
+  const Renderer& renderer = *room.renderer;
   int escaped = 0;
   Ray ray;
   for (int i = 0; i < ray_count; ++i) {
@@ -48,22 +48,22 @@ int rays_that_escape(const Room& room, Rng* rng, int ray_count) {
       auto within = [&] { return room.inside.low + size * Vec3{next_float(rng), next_float(rng), next_float(rng)}; };
       Vec3 from = within(), to = within();
       std::uint32_t wall = next_u32(rng) % (room.first_walls + room.last_walls);
-      if (wall >= room.first_walls) wall = r.scene.triangles.count - 1 - (wall - room.first_walls);
-      const Triangle& triangle = r.scene.triangles[wall];
-      Vec3 a = r.scene.positions[triangle.vertex(i / kPath % 3)],
-           b = r.scene.positions[triangle.vertex((i / kPath + 1) % 3)];
+      if (wall >= room.first_walls) wall = renderer.scene.triangles.count - 1 - (wall - room.first_walls);
+      const Triangle& triangle = renderer.scene.triangles[wall];
+      Vec3 a = renderer.scene.positions[triangle.vertex(i / kPath % 3)],
+           b = renderer.scene.positions[triangle.vertex((i / kPath + 1) % 3)];
       if (i % (2 * kPath) == 0) to = i % (8 * kPath) == 0 ? a : a + (b - a) * next_float(rng);
       ray = {from, normalize(to - from), __builtin_inff()};
     }
     Hit hit;
-    r.accel_info->closest(r.accel, ray, nullptr, &hit, nullptr);
+    renderer.accel_info->closest(renderer.accel, ray, nullptr, &hit, nullptr);
     if (hit.triangle == kNoTriangle) {
       ++escaped;
       i += kPath - 1 - i % kPath;
       continue;
     }
     Surface surface;
-    r.frame.surface(r.frame, ray, hit, &surface);
+    renderer.frame.surface(renderer.frame, ray, hit, &surface);
     Vec3 out = random_direction(rng);
     if (dot(out, surface.geometric) < 0) out = -out;
     ray = {safe_origin(surface, 1), out, __builtin_inff()};

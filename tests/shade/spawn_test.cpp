@@ -51,27 +51,28 @@ int self_hits(GeneratedScene* s, int spawns) {
 // hit, which must hit nothing. Counts those that do.
 int body_hits(GeneratedScene* s, const Vec3& center, int spawns) {
   auto t = ray_renderer(s);
-  const Renderer& r = t->renderer;
+  const Renderer& renderer = t->renderer;
   Rng rng = make_rng(12);
   int wrong = 0;
-  float size = max_component(extent(r.accel.bounds));
+  float size = max_component(extent(renderer.accel.bounds));
   for (int i = 0; i < spawns; ++i) {
-    const Triangle& triangle = r.scene.triangles[next_u32(&rng) % r.scene.triangles.count];
-    Vec3 a = r.scene.positions[triangle.vertex(0)], b = r.scene.positions[triangle.vertex(1)];
+    const Triangle& triangle = renderer.scene.triangles[next_u32(&rng) % renderer.scene.triangles.count];
+    Vec3 a = renderer.scene.positions[triangle.vertex(0)], b = renderer.scene.positions[triangle.vertex(1)];
     float along = i % 6 == 0 ? 0.0f : next_float(&rng);
     Vec3 target = i % 3 == 0 ? a + (b - a) * along : center + random_vec3(&rng) * (0.3f * size);
     Vec3 origin = center + normalize(random_vec3(&rng)) * (2 * size);
     Ray ray = {origin, target - origin, __builtin_inff()};
     Hit hit, again;
-    r.accel_info->closest(r.accel, ray, nullptr, &hit, nullptr);
+    renderer.accel_info->closest(renderer.accel, ray, nullptr, &hit, nullptr);
     if (hit.triangle == kNoTriangle) continue;
     Surface surface;
-    r.frame.surface(r.frame, ray, hit, &surface);
+    renderer.frame.surface(renderer.frame, ray, hit, &surface);
     Vec3 outgoing = normalize(random_vec3(&rng));
     if (!surface.front) continue;  // at a vertex of the outline a hit on the back is equally valid
     if (dot(outgoing, surface.geometric) < 0) outgoing = -outgoing;
     if (!(dot(outgoing, surface.geometric) > 1e-6f)) continue;
-    r.accel_info->closest(r.accel, {safe_origin(surface, 1), outgoing, __builtin_inff()}, nullptr, &again, nullptr);
+    renderer.accel_info->closest(renderer.accel, {safe_origin(surface, 1), outgoing, __builtin_inff()}, nullptr, &again,
+                                 nullptr);
     wrong += again.triangle != kNoTriangle;
   }
   return wrong;

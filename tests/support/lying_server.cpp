@@ -21,8 +21,8 @@ Vec3 wrong(Vec3 radiance, float exposure) {
 
 void lie_about(Liar* liar, Session* s, const Slice& slice) {
   const FrameJob& job = s->job;
-  Renderer* r = &s->renderer;
-  std::uint32_t width = r->settings.width;
+  Renderer* renderer = &s->renderer;
+  std::uint32_t width = renderer->settings.width;
   bool in_row = slice.row_count == 0 || job.traced_columns > 0;
   std::uint32_t column_end = slice.column_end > 0 ? slice.column_end : width;
   RowRange ranges[kRunCountMax];
@@ -31,8 +31,8 @@ void lie_about(Liar* liar, Session* s, const Slice& slice) {
     for (std::uint32_t row = ranges[i].begin; row < ranges[i].end; ++row)
       for (std::uint32_t column = job.traced_columns; column < column_end; ++column) {
         if (!liar->lie(job.request.frame, row, column)) continue;
-        Vec3* pixel = &r->image[std::size_t(row) * width + column];
-        *pixel = wrong(*pixel, r->exposure);
+        Vec3* pixel = &renderer->image[std::size_t(row) * width + column];
+        *pixel = wrong(*pixel, renderer->exposure);
         ++told;
       }
 }

@@ -13,14 +13,14 @@ std::unique_ptr<TestRenderer> make_renderer(const Scene& scene, const Settings& 
   auto test = std::make_unique<TestRenderer>();
   std::size_t bytes = settings.memory_bytes;
   test->block.reset(new std::uint8_t[bytes]);
-  Renderer* r = &test->renderer;
-  start_renderer(test->block.get(), bytes, settings, r);
-  if (accel) r->accel_info = accel;
-  r->scene = scene;
-  Status result = plan_renderer(r, SceneStorage(), 0);
+  Renderer* renderer = &test->renderer;
+  start_renderer(test->block.get(), bytes, settings, renderer);
+  if (accel) renderer->accel_info = accel;
+  renderer->scene = scene;
+  Status result = plan_renderer(renderer, SceneStorage(), 0);
   if (result.ok) {
-    r->workers = start_workers(settings.threads);
-    result = build_renderer(r);
+    renderer->workers = start_workers(settings.threads);
+    result = build_renderer(renderer);
   }
   if (status) *status = result;
   if (result.ok) return test;

@@ -128,16 +128,16 @@ TEST_CASE("coherent_frame_in_slices_equals_whole_one") {
   Settings settings;
   settings.width = 64, settings.height = 48;
   Pair pair = make_pair("seesaw", settings);
-  Renderer* r = &pair.coherent->renderer;
+  Renderer* renderer = &pair.coherent->renderer;
   for (int frame = 0; frame < 3; ++frame) {
-    REQUIRE(prepare_frame(r, frame / 30.0).ok);
+    REQUIRE(prepare_frame(renderer, frame / 30.0).ok);
     CoherentFrame slices;
-    begin_coherent(r, &slices);
+    begin_coherent(renderer, &slices);
     int calls = 1;
-    while (!advance_coherent(r, 0, nullptr, &slices)) ++calls;
+    while (!advance_coherent(renderer, 0, nullptr, &slices)) ++calls;
     CHECK((frame > 0 || calls > 1));
     REQUIRE(render_frame(&pair.whole->renderer, frame / 30.0).ok);
-    CHECK(std::memcmp(r->image.data, pair.whole->renderer.image.data, r->image.bytes()) == 0);
+    CHECK(std::memcmp(renderer->image.data, pair.whole->renderer.image.data, renderer->image.bytes()) == 0);
   }
 }
 

@@ -57,30 +57,30 @@ TEST_CASE("dependence_on_camera_settings_and_surroundings_makes_whole_frames") {
   Pair pair = make_pair(generate_scene(features, 3), settings_for(features, 40, 30));
   struct Change {
     const char* because;
-    void (*apply)(Renderer* r);
+    void (*apply)(Renderer* renderer);
   };
   const Change changes[] = {
       {"no frame before", [](Renderer*) {}},
       {"the camera moved",
-       [](Renderer* r) {
-         Camera camera = r->camera;
+       [](Renderer* renderer) {
+         Camera camera = renderer->camera;
          camera.eye.x += 0.1f;
-         REQUIRE(set_camera(r, camera).ok);
+         REQUIRE(set_camera(renderer, camera).ok);
        }},
       {"the settings changed",
-       [](Renderer* r) {
-         Settings settings = r->settings;
+       [](Renderer* renderer) {
+         Settings settings = renderer->settings;
          settings.ray_depth = 2;
-         REQUIRE(change_settings(r, settings).ok);
+         REQUIRE(change_settings(renderer, settings).ok);
        }},
-      {"the exposure changed", [](Renderer* r) { r->exposure = 4; }},
+      {"the exposure changed", [](Renderer* renderer) { renderer->exposure = 4; }},
       {"the surroundings changed",
-       [](Renderer* r) {
-         r->scene.info.background = {0.4f, 0.3f, 0.2f};
+       [](Renderer* renderer) {
+         renderer->scene.info.background = {0.4f, 0.3f, 0.2f};
        }},
       {"the surroundings changed",
-       [](Renderer* r) {
-         r->scene.info.ambient = {0.3f, 0.1f, 0.2f};
+       [](Renderer* renderer) {
+         renderer->scene.info.ambient = {0.3f, 0.1f, 0.2f};
        }},
   };
   for (const Change& change : changes) {

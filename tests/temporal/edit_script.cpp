@@ -56,18 +56,18 @@ void edit_surroundings(EditScript* s) {
   const std::uint32_t kind = next_u32(&s->rng) % 9;
   const Vec3 color = next_vector(&s->rng, 0.1f) + Vec3{0.15f, 0.15f, 0.15f};
   const float x = next_in(&s->rng, 0, 1);
-  for (Renderer* r : {&s->whole->renderer, &s->coherent->renderer}) {
-    Settings settings = r->settings;
-    Camera camera = r->camera;
+  for (Renderer* renderer : {&s->whole->renderer, &s->coherent->renderer}) {
+    Settings settings = renderer->settings;
+    Camera camera = renderer->camera;
     switch (kind) {
       case 0:
-        r->scene.info.background = color;
+        renderer->scene.info.background = color;
         break;
       case 1:
-        r->scene.info.ambient = color;
+        renderer->scene.info.ambient = color;
         break;
       case 2:
-        r->exposure = 0.5f + x;
+        renderer->exposure = 0.5f + x;
         break;
       case 3:
         settings.ray_depth = static_cast<std::uint32_t>(x * 5);
@@ -87,8 +87,8 @@ void edit_surroundings(EditScript* s) {
       default:
         camera.eye.x += x - 0.5f;
     }
-    if (kind >= 3 && kind <= 7) (void)change_settings(r, settings);
-    if (kind == 8) (void)set_camera(r, camera);
+    if (kind >= 3 && kind <= 7) (void)change_settings(renderer, settings);
+    if (kind == 8) (void)set_camera(renderer, camera);
   }
 }
 
@@ -101,10 +101,11 @@ void edit(EditScript* s) {
   // Otherwise nothing changes.
 }
 
-bool is_stopped(Renderer* r, double seconds) {
+bool is_stopped(Renderer* renderer, double seconds) {
   std::atomic<bool> stop{true};
   bool complete = true;
-  return render_coherent(r, seconds, &stop, &complete).ok && (!complete || r->coherence_state.pixels_traced == 0);
+  return render_coherent(renderer, seconds, &stop, &complete).ok &&
+         (!complete || renderer->coherence_state.pixels_traced == 0);
 }
 
 // Lets a random run of the vertices move, or all of them: bodies, lamps, panes, cut-out and one-sided surfaces.

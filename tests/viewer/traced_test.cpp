@@ -146,47 +146,47 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
     stage.open("seesaw");
     OpenScene opened;
     Stage::load("seesaw", coherent ? "on" : "off", &opened);
-    Renderer* r = &opened.renderer;
+    Renderer* renderer = &opened.renderer;
     ViewerLoop loop;
-    loop.tile_spans = arena_array<Span>(&r->frame_arena, progressive_spans_max(r->settings));
+    loop.tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(renderer->settings));
     loop.finished = true;
-    finish_picture(1, &stage.viewer, r, &loop);
+    finish_picture(1, &stage.viewer, renderer, &loop);
     CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: whole frame: no frame before" : ""));
-    finish_picture(1.05, &stage.viewer, r, &loop);
+    finish_picture(1.05, &stage.viewer, renderer, &loop);
     if (coherent) {
-      const CoherenceState& state = r->coherence_state;
+      const CoherenceState& state = renderer->coherence_state;
       CHECK(state.pixels_traced > 0);
-      CHECK(state.pixels_traced < r->image.count);
+      CHECK(state.pixels_traced < renderer->image.count);
       char expected[100];
       std::snprintf(expected, sizeof expected, "coherence: %.1f %% traced, %.0fk rays to find them",
-                    100 * static_cast<double>(state.pixels_traced) / r->image.count,
+                    100 * static_cast<double>(state.pixels_traced) / renderer->image.count,
                     static_cast<double>(state.search.moving_rays + state.search.static_rays) / 1000);
       CHECK(hud_line(loop.hud, "coherence") == expected);
       CHECK(loop.coherent.spent_ns > 0);
     }
     CHECK(loop.prepare_ns > 0);
     CHECK(loop.progressive.trace_ns == loop.prepare_ns + loop.coherent.spent_ns);
-    CHECK(loop.progressive.pixels_traced == r->image.count);
+    CHECK(loop.progressive.pixels_traced == renderer->image.count);
     char frame_ms[40];
     std::snprintf(frame_ms, sizeof frame_ms, "%.1f ms/frame  ", static_cast<double>(loop.progressive.trace_ns) * 1e-6);
     CHECK(hud_line(loop.hud, frame_ms) != "");
     if (coherent) {  // a slow frame: until it is finished, the display tells of the one before
       const std::string before = hud_line(loop.hud, "coherence");
-      r->pace.ns_per_pixel = 1e8 / static_cast<double>(r->coherence_state.pixels_traced);
+      renderer->pace.ns_per_pixel = 1e8 / static_cast<double>(renderer->coherence_state.pixels_traced);
       loop.seconds = 1.1, loop.passed = true;
       int steps = 0;
       do {
         CHECK(hud_line(loop.hud, "coherence") == before);
-        REQUIRE(step_viewer(&stage.viewer, r, &loop).ok);
+        REQUIRE(step_viewer(&stage.viewer, renderer, &loop).ok);
         ++steps;
       } while (!loop.finished);
       CHECK(steps > 1);
       CHECK(loop.progressive.trace_ns > 50'000'000);
-      r->pace.ns_per_pixel = 0;
+      renderer->pace.ns_per_pixel = 0;
     } else {
-      finish_picture(1.1, &stage.viewer, r, &loop);
+      finish_picture(1.1, &stage.viewer, renderer, &loop);
     }
-    finish_picture(1.1, &stage.viewer, r, &loop);
+    finish_picture(1.1, &stage.viewer, renderer, &loop);
     CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: 0.0 % traced, 0k rays to find them" : ""));
   }
 }

@@ -50,15 +50,15 @@ void compare(const Array<Vec3>& ours, const std::vector<Vec3>& povray, FrameRow*
 }
 
 // Writes both pictures for inspection.
-Status write_pictures(const std::string& folder, const std::vector<Vec3>& povray, Renderer* r) {
-  std::string size = std::to_string(r->settings.width) + "x" + std::to_string(r->settings.height);
-  RETURN_IF_ERROR(write_picture((folder + "/statue-" + size + "-ours.png").c_str(), PictureOptions(), r));
-  std::vector<Vec3> ours(r->image.begin(), r->image.end());
-  std::copy(povray.begin(), povray.end(), r->image.begin());
-  r->frame_arena.used = 0;
-  Status status = write_picture((folder + "/statue-" + size + "-povray.png").c_str(), PictureOptions(), r);
-  std::copy(ours.begin(), ours.end(), r->image.begin());
-  r->frame_arena.used = 0;
+Status write_pictures(const std::string& folder, const std::vector<Vec3>& povray, Renderer* renderer) {
+  std::string size = std::to_string(renderer->settings.width) + "x" + std::to_string(renderer->settings.height);
+  RETURN_IF_ERROR(write_picture((folder + "/statue-" + size + "-ours.png").c_str(), PictureOptions(), renderer));
+  std::vector<Vec3> ours(renderer->image.begin(), renderer->image.end());
+  std::copy(povray.begin(), povray.end(), renderer->image.begin());
+  renderer->frame_arena.used = 0;
+  Status status = write_picture((folder + "/statue-" + size + "-povray.png").c_str(), PictureOptions(), renderer);
+  std::copy(ours.begin(), ours.end(), renderer->image.begin());
+  renderer->frame_arena.used = 0;
   return status;
 }
 
@@ -69,16 +69,16 @@ Status bench_size(const std::string& size, const PovrayOptions& options, std::ve
   RETURN_IF_ERROR(open_povray_scene(width, height, &scene));
   std::string path = options.folder + "/statue-" + size + ".pov";
   RETURN_IF_ERROR(write_povray_scene(scene, path));
-  Renderer* r = scene.renderer.get();
+  Renderer* renderer = scene.renderer.get();
   PovrayPicture picture;
   std::vector<double> ours, theirs, ratios;
   double ns = 1e9 / (static_cast<double>(width) * height);
   for (int round = 0; round < options.rounds; ++round) {
     Status status = success();
-    double before = thread_seconds_of([&] { status = render_frame(r, 0); });
+    double before = thread_seconds_of([&] { status = render_frame(renderer, 0); });
     RETURN_IF_ERROR(status);
     RETURN_IF_ERROR(run_povray(options.program, path, width, height, &picture));
-    double after = thread_seconds_of([&] { status = render_frame(r, 0); });
+    double after = thread_seconds_of([&] { status = render_frame(renderer, 0); });
     RETURN_IF_ERROR(status);
     ours.push_back((before + after) / 2 * ns);
     theirs.push_back(picture.trace_seconds * ns);
@@ -87,9 +87,9 @@ Status bench_size(const std::string& size, const PovrayOptions& options, std::ve
   FrameRow row = {
       size, median(&theirs), median(&ours), median(&ratios), percentile(&ratios, 0.1), percentile(&ratios, 0.9), 0, 0,
       0};
-  compare(r->image, picture.image, &row);
+  compare(renderer->image, picture.image, &row);
   rows->push_back(row);
-  return write_pictures(options.folder, picture.image, r);
+  return write_pictures(options.folder, picture.image, renderer);
 }
 
 void print_rows(const std::vector<FrameRow>& rows, const std::string& folder) {

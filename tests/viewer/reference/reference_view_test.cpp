@@ -15,7 +15,7 @@ namespace {
 struct Scenery {
   OpenScene opened;
   SideBySide* side_by_side = nullptr;
-  Renderer* r = &opened.renderer;
+  Renderer* renderer = &opened.renderer;
 
   Scenery(const char* scene, const char* reference, std::uint32_t threads) {
     CommonOptions common;
@@ -27,29 +27,29 @@ struct Scenery {
     REQUIRE(start_scene(&opened, common).ok);
     SideBySideOptions options;
     options.reference = reference;
-    side_by_side = kReferenceView.open(options, *r, 32, false);
+    side_by_side = kReferenceView.open(options, *renderer, 32, false);
     REQUIRE(side_by_side != nullptr);
   }
   ~Scenery() { kReferenceView.close(side_by_side); }
 
   // Refines until the reference has `samples` samples per seed; the deadlines are too short for a whole pass.
   void refine(std::uint32_t samples, double seconds, std::uint64_t slice_ns = 200'000) {
-    do REQUIRE(kReferenceView.advance(side_by_side, r, seconds, 1, clock_ns() + slice_ns).ok);
+    do REQUIRE(kReferenceView.advance(side_by_side, renderer, seconds, 1, clock_ns() + slice_ns).ok);
     while (kReferenceView.samples(*side_by_side) < 2 * samples);
   }
 };
 
 // The mean of both seeds, traced at once.
-std::vector<Vec3d> whole_reference(Renderer* r, Transport transport, std::uint32_t samples) {
-  std::vector<std::uint8_t> memory(reference_need(r->frame) + kArenaAlignment);
+std::vector<Vec3d> whole_reference(Renderer* renderer, Transport transport, std::uint32_t samples) {
+  std::vector<std::uint8_t> memory(reference_need(renderer->frame) + kArenaAlignment);
   Arena arena = make_arena("reference", memory.data(), memory.size());
-  Reference reference = make_reference(r->frame, &arena, transport == Transport::physical ? kGuidePathCount : 0);
+  Reference reference = make_reference(renderer->frame, &arena, transport == Transport::physical ? kGuidePathCount : 0);
   ReferenceOptions o;
   o.transport = transport, o.samples_per_pixel = samples;
-  std::vector<Vec3d> sum(r->image.count), mean(r->image.count);
+  std::vector<Vec3d> sum(renderer->image.count), mean(renderer->image.count);
   for (std::uint64_t seed : {1u, 2u}) {
     o.seed = seed;
-    trace_reference(reference, o, 0, r->settings.height, mean.data());
+    trace_reference(reference, o, 0, renderer->settings.height, mean.data());
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += mean[i] * 0.5;
   }
   return sum;
@@ -63,9 +63,9 @@ bool is_near(const Vec3& a, const Vec3d& b) {
 // Number of pixels in the right half that differ from the reference of the prepared frame.
 std::uint32_t unlike_reference(const Scenery& s, Transport transport, const Vec3* shown) {
   std::uint32_t samples = kReferenceView.samples(*s.side_by_side) / 2, count = 0;
-  std::vector<Vec3d> before = whole_reference(s.r, transport, samples),
-                     after = whole_reference(s.r, transport, samples + 1);
-  for (std::uint32_t i = 0; i < s.r->image.count;
+  std::vector<Vec3d> before = whole_reference(s.renderer, transport, samples),
+                     after = whole_reference(s.renderer, transport, samples + 1);
+  for (std::uint32_t i = 0; i < s.renderer->image.count;
        ++i)  // the upper rows may have one more sample from an unfinished pass
     if (i % 24 > 12) count += !is_near(shown[i], before[i]) && !is_near(shown[i], after[i]);
   return count;
@@ -80,19 +80,19 @@ TEST_CASE("side_by_side_shows_picture_and_reference") {
   for (const char* kind : {"model", "physical"})
     for (std::uint32_t threads : {1u, 3u}) {
       Scenery s("seesaw", kind, threads);
-      Settings plain = s.r->settings;
+      Settings plain = s.renderer->settings;
       plain.normals = NormalMode::flat, plain.ray_depth = 0;
-      REQUIRE(change_settings(s.r, plain).ok);
-      REQUIRE(render_frame(s.r, 0.4).ok);
-      std::vector<Vec3> picture(s.r->image.begin(), s.r->image.end());
+      REQUIRE(change_settings(s.renderer, plain).ok);
+      REQUIRE(render_frame(s.renderer, 0.4).ok);
+      std::vector<Vec3> picture(s.renderer->image.begin(), s.renderer->image.end());
       s.refine(3, 0.4);
-      CHECK(s.r->settings.normals == NormalMode::flat);
-      CHECK(s.r->settings.ray_depth == 0);
-      const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.r);
+      CHECK(s.renderer->settings.normals == NormalMode::flat);
+      CHECK(s.renderer->settings.ray_depth == 0);
+      const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.renderer);
       Settings own = plain;
       own.normals = NormalMode::as_scene;
-      REQUIRE(change_settings(s.r, own).ok);
-      REQUIRE(prepare_frame(s.r, 0.4).ok);
+      REQUIRE(change_settings(s.renderer, own).ok);
+      REQUIRE(prepare_frame(s.renderer, 0.4).ok);
       std::uint32_t other = 0;
       for (std::uint32_t y = 0; y < 16; ++y)
         for (std::uint32_t x = 0; x < 24; ++x) {
@@ -111,26 +111,27 @@ TEST_CASE("side_by_side_shows_picture_and_reference") {
 // restarts.
 TEST_CASE("side_by_side_begins_anew_when_the_view_changes") {
   Scenery s("seesaw", "model", 1);
-  REQUIRE(render_frame(s.r, 0).ok);
+  REQUIRE(render_frame(s.renderer, 0).ok);
   s.refine(40, 0);
   std::uint32_t before = kReferenceView.samples(*s.side_by_side);
-  REQUIRE(kReferenceView.advance(s.side_by_side, s.r, 0, 2, 0).ok);
+  REQUIRE(kReferenceView.advance(s.side_by_side, s.renderer, 0, 2, 0).ok);
   CHECK(kReferenceView.samples(*s.side_by_side) >= before);
-  Camera camera = s.r->camera;
+  Camera camera = s.renderer->camera;
   camera.eye.x += 0.5f;
-  REQUIRE(set_camera(s.r, camera).ok);
-  REQUIRE(kReferenceView.advance(s.side_by_side, s.r, 0, 3, 0).ok);
+  REQUIRE(set_camera(s.renderer, camera).ok);
+  REQUIRE(kReferenceView.advance(s.side_by_side, s.renderer, 0, 3, 0).ok);
   CHECK(kReferenceView.samples(*s.side_by_side) == 0);
   s.refine(4, 0);
-  const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.r);
-  REQUIRE(prepare_frame(s.r, 0).ok);
+  const Vec3* shown = kReferenceView.picture(s.side_by_side, *s.renderer);
+  REQUIRE(prepare_frame(s.renderer, 0).ok);
   CHECK(unlike_reference(s, Transport::model, shown) == 0);
   kReferenceView.forget(s.side_by_side);
-  shown = kReferenceView.picture(s.side_by_side, *s.r);
+  shown = kReferenceView.picture(s.side_by_side, *s.renderer);
   std::uint32_t other = 0;
-  for (std::size_t i = 0; i < s.r->image.count; ++i) other += i % 24 != 12 && shown[i].y != s.r->image[i].y;
+  for (std::size_t i = 0; i < s.renderer->image.count; ++i)
+    other += i % 24 != 12 && shown[i].y != s.renderer->image[i].y;
   CHECK(other == 0);
-  REQUIRE(kReferenceView.advance(s.side_by_side, s.r, 1.5, 4, 0).ok);
+  REQUIRE(kReferenceView.advance(s.side_by_side, s.renderer, 1.5, 4, 0).ok);
   CHECK(kReferenceView.samples(*s.side_by_side) == 0);
 }
 
