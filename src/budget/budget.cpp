@@ -19,7 +19,7 @@ namespace {
 // Factors by which prices may be wrong. Chosen: twice what builtin_front() claims for the ladder's guesses; for prices
 // measured on another machine and on this one, so that a trial corrects them.
 constexpr double kGuessDoubt = 4, kElsewhereDoubt = 1.5, kMeasuredDoubt = 1.25;
-constexpr double kPriceTolerance = 1.2;
+constexpr double kPriceTolerance = 1.2;  // of learnt prices that are not written back; chosen: within kMeasuredDoubt
 
 // The scene's front: from the named file, else from the cache, else the ladder.
 Status load_front(const Renderer& renderer, const FrontSource& source, const ContentHash* identity, OpenFront* f) {
@@ -186,7 +186,7 @@ void end_budget_frame(Budget* budget, std::uint64_t ns) {
   budget->last = budget->governor.current;
   CHECK_LT(budget->last, budget->governor.front.count);
   ++budget->uses[budget->last];
-  budget->late += ms > 1.1 * budget->ms;
+  budget->late += ms > 1.1 * budget->ms;  // kLate of governor.cpp
   if (budget->frame_ms.size() < budget->frame_ms.capacity()) budget->frame_ms.push_back(ms);
 }
 

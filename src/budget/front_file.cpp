@@ -11,7 +11,7 @@
 namespace pocketray {
 namespace {
 
-constexpr std::size_t kFileBytesMax = 1 << 20;  // comments included
+constexpr std::size_t kFileBytesMax = 1 << 20;  // comments included; chosen: many times kFrontTextMax
 
 }  // namespace
 

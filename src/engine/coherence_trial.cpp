@@ -8,6 +8,8 @@ namespace {
 
 // Derived: a frame that saves less than a thirtieth does not pay, and what a try in vain cost must be less than that of
 // the frames traced whole after it. Rests double, so that scenes in which everything moves forget the first tries.
+// After 31 frames, a try that cost most of one is within kMostLoss; after 255, one that cost seven. Longer rests,
+// chosen, would miss for seconds that a scene has calmed down.
 constexpr double kLeastGain = 0.97;
 constexpr double kMostLoss = 0.03;
 constexpr std::uint32_t kRestMax = 31, kLongRestMax = 255;

@@ -166,7 +166,7 @@ pocketray_result pocketray_begin(pocketray_instance* instance, double seconds) {
 }
 
 pocketray_result pocketray_refine(pocketray_instance* instance, double milliseconds, const pocketray_pixels* pixels) {
-  constexpr double kMillisecondsMax = 1e12;
+  constexpr double kMillisecondsMax = 1e12;  // 31 years; a deadline of 10¹⁸ ns fits into 64 bits
   Status status = check_instance(instance);
   if (status.ok && !(milliseconds >= 0 && milliseconds <= kMillisecondsMax))
     status = failure("milliseconds is %g: it must lie in 0 … %g", milliseconds, kMillisecondsMax);

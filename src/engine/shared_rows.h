@@ -32,7 +32,8 @@ struct SharedSpans {
 };
 std::uint32_t listed_rows_max(const Renderer& renderer);
 SharedSpans list_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end);
-// Of ranges of rows in any order, no row twice; several ranges have at most kRangesRowsMax rows together.
+// Of ranges of rows in any order, no row twice; several ranges have at most kRangesRowsMax rows together:
+// a server takes two rows per thread beyond the end of a run.
 constexpr std::uint32_t kRangesRowsMax = 2 * kThreadCountMax;
 SharedSpans list_ranges(Renderer* renderer, const RowRange* ranges, std::uint32_t range_count);
 SharedSpans list_part(Renderer* renderer, std::uint32_t row, std::uint32_t begin, std::uint32_t end);

@@ -18,11 +18,15 @@ constexpr double kReturn = 0.03;                           // and go to one expe
 constexpr double kUnsettled = 0.1;                         // added to the load while few frames have been seen
 constexpr double kDoubtGrowth = 0.001, kDoubtGrown = 0.2;  // per frame for candidates that do not run; its limit
 constexpr double kDoubtLeast = 0.02;                       // least doubt that makes a trial worthwhile
-constexpr double kCorrectionMax = 3.5;
+constexpr double kCorrectionMax = 3.5;                     // a factor of 33, far above the doubt of a guessed price
+// Of fewer than kFewFrames loads, the highest decides; from kManyFrames on, of which two are 5 %, more may exceed it.
 constexpr std::uint32_t kFewFrames = 4, kManyFrames = 40;
-constexpr std::uint32_t kAttributedFrames = 3,
-                        kLateFrames = 128;  // after a switch, in which a surprise is the candidate's
-constexpr std::uint32_t kTrialPause = 8, kAgainPauseMin = 64, kAgainPauseMax = 1024;  // frames
+// For kAttributedFrames after a switch, a surprise is the candidate's. Late frames are averaged over kLateFrames,
+// enough to tell 3 % from 5.
+constexpr std::uint32_t kAttributedFrames = 3, kLateFrames = 128;
+// In frames. Of candidates that never ran, one in kTrialPause frames is tried; those that ran and did not fit take up
+// at most one in kAgainPauseMin, and ever fewer.
+constexpr std::uint32_t kTrialPause = 8, kAgainPauseMin = 64, kAgainPauseMax = 1024;
 
 double log_price(const Governor& g, std::uint32_t i) {
   return det_log(static_cast<double>(g.front.candidates[i].ns_per_pixel) * g.pixel_count) + g.corrections[i];
@@ -33,7 +37,7 @@ double last_load(const Governor& g) { return g.loads[(g.load_count - 1) % kLoadF
 
 // Median of the last few loads.
 double middle_load(const Governor& g) {
-  constexpr std::uint32_t kCount = 5;
+  constexpr std::uint32_t kCount = 5;  // chosen: two outliers do not move it
   std::uint32_t count = std::min(g.load_count, kCount);
   if (count == 0) return 0;
   double values[kCount];
@@ -62,6 +66,7 @@ double high_load(const Governor& g) {
   std::uint32_t count = load_count(g);
   if (count == 0) return kUnsettled;
   if (count < kFewFrames) return highest(g.loads, count, 1) + kUnsettled;
+  // Of 64 loads, 3, 2 or 1 exceed it: 4.7, 3.1 or 1.6 %, the fewer the more frames have been late.
   std::uint32_t rank = count < kManyFrames ? 2 : g.late_share < 0.02 ? 4 : g.late_share < 0.03 ? 3 : 2;
   double high = highest(g.loads, count, rank);
   if (count >= kManyFrames) high = std::min(high, middle_load(g) + highest(g.rises, count, rank));
@@ -142,6 +147,7 @@ void center_corrections(Governor* g) {
 void attribute(Governor* g, double load) {
   std::uint32_t i = g->current;
   double surprise = load - std::max(g->reference_low, std::min(g->reference_high, load));
+  // Their mean at first, then a fifth of each: chosen, so that a price can still follow the scene.
   double share = std::max(0.2, 1.0 / (g->switches_to[i] + g->frames_at_current - 1));
   double moved =
       std::max(-kCorrectionMax, std::min(kCorrectionMax, g->corrections[i] + share * surprise)) - g->corrections[i];

@@ -11,7 +11,7 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kLoadFrameCount = 64;
+constexpr std::uint32_t kLoadFrameCount = 64;  // derived: three of them are 4.7 %, just within the 5 % that may be late
 
 struct Governor {
   Front front;
@@ -19,7 +19,7 @@ struct Governor {
   // All logarithms.
   double loads[kLoadFrameCount] = {};  // of the last frames, a ring
   double rises[kLoadFrameCount] = {};  // of each load over the median of those before it
-  double late_share = 0.03;            // over roughly the last hundred frames
+  double late_share = 0.03;            // over roughly the last hundred frames; at first, as if no more may be late
   std::uint32_t load_count = 0;        // frames seen; the ring holds the latest of them
   double load_sum = 0;                 // over all frames
   double corrections[kFrontCandidateMax] = {};

@@ -42,8 +42,8 @@ float facing_solid_angle(const Scene& scene, const Vec3& from) {
   return sum;
 }
 
-constexpr int kLooks = 26;  // to the neighbours in a cube of cubes
-constexpr int kWallsMin = 20;
+constexpr int kLooks = 26;     // to the neighbours in a cube of cubes
+constexpr int kWallsMin = 20;  // chosen: five pass through a missing wall (tests/plan/room_test.cpp); one more may miss
 
 struct Look {
   Ray ray;
@@ -63,7 +63,7 @@ void look_around(const Scene& scene, Array<Look> looks) {
       if (!intersect_triangle(look.sheared, a, b, c, &hit) || !(hit.t > 0 && hit.t < look.distance)) continue;
       const Vec3 normal = normalize(cross(b - a, c - a));
       look.distance = hit.t, look.is_front = dot(normal, look.ray.direction) < 0;
-      look.is_square = max_component(abs(normal)) > 0.99f;
+      look.is_square = max_component(abs(normal)) > 0.99f;  // within 8°
     }
   }
 }
@@ -84,7 +84,8 @@ float distance_to_sides(const Box& box, const Vec3& direction) {
 }
 
 // Whether nearly all rays from the middle meet the front of a surface; on average rather at the bounds than close by,
-// as in a thicket; and most of them a floor, a ceiling or a straight wall, unlike in a vessel.
+// as in a thicket; and most of them a floor, a ceiling or a straight wall, unlike in a vessel. The thresholds are
+// chosen; tests/plan/room_test.cpp has rooms and other things on either side.
 bool has_walls_around(const Scene& scene, const Box& bounds) {
   const Vec3 middle = center(bounds);
   if (!(facing_solid_angle(scene, middle) > 0.6f * 4 * kPiF)) return false;
@@ -139,6 +140,7 @@ Room find_room(const Scene& scene, const Box& bounds) {
   room.is_room = encloses || room.has_thick_walls;
   if (!encloses) return room;
   // The area vectors of a closed surface add up to zero; a remainder is the area vector of the missing side.
+  // Less than 0.3 of one, chosen, is a door or a window.
   const Vec3d area = shown_area(scene, bounds);
   const double side = length(area), box_side = static_cast<double>(half_area(bounds)) / 3;
   if (side > 0.3 * box_side)

@@ -14,6 +14,8 @@ enum class AnimationKind { none, gif, png, video };
 // By the ending of the path: .gif, .apng, .mp4.
 AnimationKind animation_kind(const std::string& path);
 
+// Chosen: from a slide every ten seconds to the fastest screens. GIF counts delays in hundredths of a second [GIF89a,
+// sec. 23], and browsers slow down delays of less than two.
 constexpr double kAnimationRateMin = 0.1, kAnimationRateMax = 240, kGifRateMax = 50;
 // Fails if the kind of file cannot play that many frames per second, if ffmpeg is missing, or it cannot encode pictures
 // of that size.

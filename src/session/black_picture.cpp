@@ -13,6 +13,8 @@
 namespace pocketray {
 namespace {
 
+// Chosen: a share of 1000 rays is within 3 % of the picture's, and costs next to nothing; fewer than 8 hits tell
+// nothing.
 constexpr std::uint32_t kRaysMax = 1000, kHitsMin = 8;
 
 enum Cause { kNoReflection, kBlackSurroundings, kBlocked, kUnlit, kCauseCount };

@@ -8,7 +8,8 @@
 namespace pocketray {
 
 // More of a picture's surfaces than this are exactly black only where something is amiss: materials, or light. Without
-// ambient light, shadows alone cover up to .38 of the sample models (EmissiveStrengthTest).
+// ambient light, shadows alone cover up to .38 of the sample models (EmissiveStrengthTest), so their limit is above
+// that. Chosen: lower limits would warn of pictures that are meant to be dark.
 constexpr double kBlackShareMax = 0.25, kShadowShareMax = 0.5;
 
 // Explains renderer.image, the last frame: the share of surfaces whose pixels are exactly black and the likely cause,

@@ -19,6 +19,7 @@ Vec3 turn(const Vec3& view, const Vec3& up, double yaw, double pitch) {
   if (is_zero(right)) return turned;
   Vec3 tilted = rotate(turned, right, pitch);
   float sine = dot(normalize(tilted), up);
+  // Within 8° of a pole.
   return sine > 0.99f || sine < -0.99f ? turned : tilted;
 }
 
@@ -56,6 +57,7 @@ bool move_camera(CameraControl* control, const CameraInput& in, float seconds) {
   if (control->mode == CameraMode::orbit) {
     Vec3 view = turn(c.target - c.eye, up, in.right * quarter, -in.up * quarter);
     float zoom = static_cast<float>(det_exp(-static_cast<double>(in.forward) * static_cast<double>(seconds)));
+    // Not closer than a thousandth of the scene, from where turning about the target still turns the view.
     if (length(view) * zoom > control->size * 1e-3f) view = view * zoom;
     c.eye = c.target - view;
     c.vertical_extent *= c.projection == Projection::orthographic ? zoom : 1;

@@ -10,6 +10,8 @@
 namespace pocketray {
 namespace {
 
+// Derived: five names of 64 bytes fit into the 400 of the message, which shows as much of the wanted one. Longer names
+// would make comparing, which is quadratic, dear.
 constexpr std::size_t kNamesShown = 5, kNameBytesCompared = 64;
 
 std::string lower_case(const std::string& text) {

@@ -17,7 +17,8 @@ struct HeapScene {
 #endif
 };
 
-// Options for importing models; see import/import.h.
+// Options for importing models; see import/import.h. Chosen: 512 texels are more than a row of a 320×240 picture shows.
+// Edges sharper than 40° stay sharp: those of a box and of a cylinder of eight sides.
 struct ModelOptions {
   std::uint32_t texture_side_max = 512;
   bool mip_maps = true;

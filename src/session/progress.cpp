@@ -21,6 +21,8 @@ Progress start_progress(const char* what, std::uint64_t total) {
 
 void show_progress(Progress* p, std::uint64_t done) {
   constexpr std::uint64_t kSecond = 1000000000;
+  // Chosen: ten times a second looks continuous, a line every 10 s keeps logs short, and what takes less than a second
+  // needs none.
   std::uint64_t now = clock_ns(), interval = p->terminal ? kSecond / 10 : 10 * kSecond;
   if (now - p->start_ns < kSecond || (p->shown && now - p->shown_ns < interval) || done == 0 || p->total == 0) return;
   p->shown_ns = now;

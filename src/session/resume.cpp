@@ -11,7 +11,7 @@ namespace pocketray {
 namespace {
 
 const char kHead[] = "pocketray-resume 1 ";
-constexpr std::size_t kJournalBytesMax = 16u << 20;  // of a million frames
+constexpr std::size_t kJournalBytesMax = 16u << 20;  // chosen: two million frames, in lines of at most 8 bytes
 
 Status load_lines(const std::string& path, std::string* text) {
   platform::FileReader file;

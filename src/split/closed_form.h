@@ -21,6 +21,6 @@ ClosedSplit closed_form_split(const PixelTimes& times);
 // The same with the server sending pixels while it renders others, which takes max(T_s, T_t) instead of the sum.
 ClosedSplit overlapped_split(const PixelTimes& times);
 
-constexpr double kPixelNsMax = 1e12;  // about a quarter of an hour per pixel
+constexpr double kPixelNsMax = 1e12;  // about a quarter of an hour per pixel; chosen: more is no measurement
 
 }  // namespace pocketray

@@ -7,8 +7,11 @@
 namespace pocketray {
 namespace {
 
-constexpr double kPartMin = 0.25;       // of a row's pixels: single pixels cost up to twice as much as packets of them
-constexpr double kUnitsOfCap = 0x1p30;  // the cap as an integer; costs of rows are rounded up
+// Of a row's pixels, from which the price of the whole row is extrapolated. Chosen: no more than fourfold, since single
+// pixels cost up to twice as much as packets of them; with a larger part, rows of moving scenes would keep old prices.
+constexpr double kPartMin = 0.25;
+// The cap as an integer. Costs of rows are rounded up, so kImageSideMax rows lose at most 2⁻¹⁷ of it.
+constexpr double kUnitsOfCap = 0x1p30;
 
 double value_of(const Smoothed& s, double unknown) { return is_known(s) ? static_cast<double>(s.value) : unknown; }
 
@@ -19,7 +22,7 @@ std::uint64_t table_entry(double x) {
   return x >= max ? kRowTableMax : static_cast<std::uint64_t>(std::ceil(x));
 }
 
-bool is_amount(double x) { return x >= 0 && x <= 1e30; }
+bool is_amount(double x) { return x >= 0 && x <= 1e30; }  // kSampleMax of smooth.cpp
 
 double mean_device_ns(const CostModel& model) {
   double sum = 0;

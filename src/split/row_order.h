@@ -7,7 +7,7 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kOrderRunsMax = 64, kRunRowsMax = 255;
+constexpr std::uint32_t kOrderRunsMax = 64, kRunRowsMax = 255;  // derived: as a request can express them (PROTOCOL.md)
 
 struct RowOrder {
   std::uint32_t run_count = 0;

@@ -9,8 +9,12 @@
 
 namespace pocketray {
 
+// Chosen; up to three are measured (tests/split_report/FIGURES.md). The tables and the effort of find_split() grow with
+// it.
 constexpr std::uint32_t kServerCountMax = 8;
-constexpr std::uint64_t kRowTableMax = std::uint64_t(1) << 40;  // of one row in any table; 18 minutes as nanoseconds
+// Of one row in any table; 18 minutes as nanoseconds. Derived: sums over kImageSideMax rows are at most 2⁵³, exact as
+// doubles.
+constexpr std::uint64_t kRowTableMax = std::uint64_t(1) << 40;
 
 // Prefix sums: table[r] is the sum over rows 0 … r − 1; row_count + 1 entries, at most kRowTableMax per row.
 using RowTable = const std::uint64_t*;
@@ -72,6 +76,8 @@ Split find_split(const SplitProblem& problem, SplitWorkspace* workspace);
 // more than a kDeadBandDivisor-th of the time.
 Split next_split(const SplitProblem& problem, const Split& previous, SplitWorkspace* workspace);
 
+// Chosen: more than any problem of tests/split/split_test.cpp needs. It bounds the effort; with less, more splits would
+// not be exact.
 constexpr std::uint32_t kSearchMax = 1024;
 constexpr std::uint64_t kDeadBandDivisor = 50;  // 2 %: measurement noise moves no rows, and it is less than half of the
                                                 // 5 % by which a split may miss the best

@@ -8,7 +8,8 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kSpotChecksMax = 1024;  // per frame
+// Per frame. Chosen: finds one wrong row of 216 in a single frame with 99 %, so more would only take memory and time.
+constexpr std::uint32_t kSpotChecksMax = 1024;
 
 // A server's pixels in a frame and how many of them are checked.
 struct SpotCheck {

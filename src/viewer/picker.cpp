@@ -17,10 +17,11 @@ namespace {
 
 using platform::Button;
 
-constexpr int kGap = 6, kTitleHeight = 14;  // pixels between cells, and for a title below a picture
+constexpr int kGap = 6, kTitleHeight = 14;  // pixels between cells, and for a title below a picture: a line and a gap
 constexpr int kStepX = kThumbnailWidth + kGap, kStepY = kThumbnailHeight + kTitleHeight + kGap;
-constexpr std::size_t kTitleLengthMax = 15;    // as wide as a picture
-constexpr std::uint64_t kRestNs = 30'000'000;  // between two looks at the buttons
+constexpr std::size_t kTitleLengthMax = 15;    // of 6 pixels each: 90, no wider than a picture
+constexpr std::uint64_t kRestNs = 30'000'000;  // between two looks at the buttons; chosen: feels immediate
+// Display levels. Chosen: dark, so that pictures stand out, and white.
 constexpr std::uint8_t kBackground = 16, kEmpty = 48, kFrame = 255;
 
 // A picture of bytes R, G, B as large as the screen.

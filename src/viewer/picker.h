@@ -7,7 +7,8 @@
 
 namespace pocketray {
 
-constexpr int kThumbnailWidth = 96, kThumbnailHeight = 72;  // pixels, at most
+// Pixels, at most. Derived: three by two fit on 320×240, with their titles and gaps.
+constexpr int kThumbnailWidth = 96, kThumbnailHeight = 72;
 
 struct PickerEntry {
   std::string scene, title;       // the scene as for `view`, and what to write below the picture

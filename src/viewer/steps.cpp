@@ -72,7 +72,8 @@ bool is_overlay_shown(const Viewer& viewer) {
 }
 
 // With a frame count, even a still is rendered again to reach it; with a reference, only once that has
-// kSideBySideSamples.
+// kSideBySideSamples. Chosen: few, so that runs with a frame count end soon; more would make the error shown with the
+// picture more certain.
 constexpr std::uint32_t kSideBySideSamples = 32;
 bool goes_on(const Viewer& viewer) { return viewer.options.frame_count > 0 && !shows_side_by_side(viewer); }
 
@@ -209,8 +210,9 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
-// A still is rendered again until its settings settle: kSteadyFrames with the same settings, longer than the governor
-// waits before it tries others. kStillFramesMax ends it if noise makes two candidates alternate.
+// A still is rendered again until its settings settle: kSteadyFrames with the same settings, twice as long as the
+// governor waits before it tries others (kTrialPause). kStillFramesMax, chosen, ends it if noise makes two candidates
+// alternate: after 4 s at 40 ms.
 constexpr std::uint32_t kSteadyFrames = 16, kStillFramesMax = 100;
 
 // Renders whole frames within a budget and shows each when complete.

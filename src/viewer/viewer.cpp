@@ -19,6 +19,8 @@ namespace {
 using platform::Button;
 
 constexpr std::uint64_t kMillisecond = 1000000;
+// Chosen: a file counts as changed after two equal looks, so a model appears about a second after it was saved; a note
+// stays long enough to be read.
 constexpr std::uint64_t kFileCheckNs = 500 * kMillisecond, kNoteNs = 4000 * kMillisecond;
 
 PixelFormat to_pixel_format(const platform::ScreenFormat& f) {
@@ -155,7 +157,7 @@ bool show_text(Viewer* viewer, const HudText& text) {
     viewer->hud_rows_shown = std::min(hud_rows(text), static_cast<std::uint32_t>(viewer->height));
     viewer->backend->end_frame(0, screen_height(*viewer));
   }
-  viewer->backend->sleep_ns(50 * kMillisecond);
+  viewer->backend->sleep_ns(50 * kMillisecond);  // chosen: 20 looks at the buttons a second feel immediate
   return true;
 }
 

@@ -33,6 +33,9 @@ struct ClientOptions {
   int check_count = kCheckCountAuto;  // servers' pixels to check per frame, at most kSpotChecksMax; 0: none
   // Random bytes that no server can predict, as in platform/entropy.h; null: a fixed sequence, for tests.
   bool (*entropy)(void* bytes, std::size_t byte_count) = nullptr;
+  // Chosen: TCP repeats a lost packet after 1 s [RFC 6298, sec. 2], so 3 s outlast one loss; the device renders
+  // meanwhile. A server that fails is retried after half a second, twice that and so on: soon after a short fault, and
+  // rarely enough to cost nothing where it lasts.
   std::uint64_t connect_timeout_ns = 3'000'000'000;
   std::uint64_t silence_timeout_ns = 3'000'000'000;  // without an answer; half a message is none
   std::uint64_t prepare_timeout_ns =

@@ -12,6 +12,8 @@
 namespace pocketray {
 
 struct InquiryOptions {
+  // Chosen: connecting as in client.h. The others are longer, since nothing else can be done without the answer; a
+  // piece of 32 KiB comes in time at 4.4 kbit/s or more.
   std::uint64_t connect_timeout_ns = 3'000'000'000;
   std::uint64_t silence_timeout_ns = 10'000'000'000;  // without a byte
   std::uint64_t answer_timeout_ns = 60'000'000'000;   // for a complete answer

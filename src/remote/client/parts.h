@@ -32,7 +32,7 @@ constexpr const char* kUnasked = "it sent an unrequested message";
 
 // ---- ping.cpp
 
-// Measured with the constants of ping.cpp.
+// Derived: above kScaledMax and kScaledAloneMax of ping.cpp, so that the link counts as doubtful.
 constexpr double kUnsound = 2;  // RemoteServer::scaled at which a link is measured again
 
 void send_ping(Client* client, RemoteServer* server, std::uint32_t reply_bytes);

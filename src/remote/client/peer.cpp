@@ -15,7 +15,9 @@ namespace {
 constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server without rows
 constexpr std::uint64_t kLastingWaits =
     10;  // a connection useful for this many times the wait before it was sound, so the next attempt comes soon
-constexpr std::uint32_t kLookMessages = 256;  // per server and poll, and no more rows than a picture has
+// Per server and poll, and no more rows than a picture has. Derived: about twice the messages of 240 rows in the
+// smallest chunks (kChunkRowsMin).
+constexpr std::uint32_t kLookMessages = 256;
 void tell(Client* client, const char* format, ...) __attribute__((format(printf, 2, 3)));
 void tell(Client* client, const char* format, ...) {
   if (!client->options.log) return;

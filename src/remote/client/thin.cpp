@@ -10,7 +10,8 @@ namespace {
 // Chosen; ClientOptions::connect_timeout_ns is 3 s.
 constexpr std::uint64_t kCutOffNs = 5'000'000'000;  // without rows; longer than connecting may take
 // A server silent for the time of kSilentChunks of its chunks counts as stopped, but not before kSilentNsMin, longer
-// than the pauses of a busy system.
+// than the pauses of a busy system. Chosen: after fewer chunks, rows that are only late would be requested twice; after
+// more, they would be missing for longer.
 constexpr double kSilentChunks = 4, kSilentNsMin = 30e6;
 
 // Number of servers asked for the row.

@@ -18,7 +18,7 @@ struct Client;
 struct Renderer;
 
 constexpr int kCheckCountAuto = -1;   // as many checks as fit in kCheckShare of the time
-constexpr double kCheckShare = 0.01;  // of the frames' time
+constexpr double kCheckShare = 0.01;  // of the frames' time: a fifth of what a network may cost (client.cpp)
 
 // Checks of a server since the client was made.
 struct ServerChecks {

@@ -10,7 +10,8 @@ namespace pocketray {
 namespace {
 
 // The device stops waiting for an answer after kLateAnswers times the usual time, but not before kAnswerNsMin.
-// Chosen: answers within one display frame or two are never late, however fast the usual ones.
+// Chosen: answers within one display frame or two are never late, however fast the usual ones; and four times is twice
+// what smooth.cpp takes for an outlier.
 constexpr double kLateAnswers = 4;
 constexpr double kAnswerNsMin = 50e6;
 

@@ -15,8 +15,8 @@ using platform::LinkResult;
 constexpr std::uint64_t kLingerNs = 2'000'000'000;    // for a leaving peer to read the reason
 constexpr std::uint64_t kMakeWayNs = 10'000'000'000;  // of silence after which a client makes way for another
 constexpr std::uint64_t kAcceptRestNs =
-    1'000'000'000;  // pause after a failed accept, since what was short will not be free at once
-constexpr int kAcceptsAtOnce = 16;
+    1'000'000'000;                  // pause after a failed accept, since what was short will not be free at once
+constexpr int kAcceptsAtOnce = 16;  // chosen: the guests of a server by default; more would only displace each other
 
 void queue(Guest* guest, const Message& message) { CHECK(send_message(&guest->messages, message)); }
 

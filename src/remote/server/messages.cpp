@@ -6,7 +6,8 @@
 namespace pocketray {
 namespace {
 
-// From one client before the others get their turn. Chosen: a tenth of a slice of rendering.
+// From one client before the others get their turn. Chosen: a tenth of a slice of rendering. The count is the limit
+// where the link's clock stands still meanwhile, as in simulations.
 constexpr int kMessagesAtOnce = 32;
 constexpr std::uint64_t kMessagesNs = 2'000'000;
 

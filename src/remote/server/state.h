@@ -9,8 +9,11 @@
 
 namespace pocketray {
 
+// Chosen: beside kServerClientsMax addresses in use, 192 that have gone keep their accounts. With fewer, a client could
+// shed its debt sooner by returning after others; more take longer to search.
 constexpr int kAddressCountMax = 256;
-constexpr std::size_t kGuestInputBytes = 272;  // any hello, even of another version
+// Any hello, even of another version. Derived: 8 + 256 bytes (PROTOCOL.md), rounded up to 16.
+constexpr std::size_t kGuestInputBytes = 272;
 
 // An address of connections and their combined CPU use; kept after they have gone.
 struct Address {
