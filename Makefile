@@ -122,7 +122,7 @@ demo-split: configure
 	@log=$$(mktemp); trap 'kill $$server 2>/dev/null; rm -f $$log' EXIT; \
 	$(POCKETRAY) serve --listen 127.0.0.1:0 >$$log & server=$$!; \
 	for i in $$(seq 100); do grep -q '^listening' $$log && break; kill -0 $$server 2>/dev/null || exit 1; sleep 0.1; done; \
-	cat $$log; address=$$(sed -n 's/^listening at \([^ ]*[0-9]\).*/\1/p' $$log); \
+	cat $$log; address=$$(sed -n 's/^listening on \([^ ]*[0-9]\).*/\1/p' $$log); \
 	if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
 	  $(POCKETRAY) view $(DEMO_SCENE) --emulate $(EMULATE) --server $$address; \
 	else \

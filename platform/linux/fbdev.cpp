@@ -106,7 +106,7 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
   fb->file = driver.open(path, O_RDWR);
   if (fb->file < 0) {
     snprintf(error->text, sizeof error->text, "cannot open %s: %s%s", path, strerror(errno),
-             errno == EACCES ? " (the user must be in the group video)" : "");
+             errno == EACCES ? " (the user must be in the video group)" : "");
     return false;
   }
   fb_fix_screeninfo fixed;
@@ -132,7 +132,7 @@ bool framebuffer_open(const Driver& driver, const ScreenOptions& options, Frameb
   fb->memory_line_bytes = (fb->width * fb->pixel_bytes + 3) / 4 * 4;
   if (!fb->memory ||
       options.memory_bytes / static_cast<unsigned>(fb->memory_line_bytes) < static_cast<unsigned>(fb->height)) {
-    snprintf(error->text, sizeof error->text, "the back page needs %d bytes, %zu were given",
+    snprintf(error->text, sizeof error->text, "the back page needs %d bytes but %zu were given",
              fb->memory_line_bytes * fb->height, options.memory_bytes);
     return fail(fb);
   }

@@ -68,7 +68,7 @@ void sleep_ns(std::uint64_t duration) { linux_driver->sleep_ns(duration); }
 
 const Driver* linux_driver = &kSystemDriver;
 
-const Backend kLinuxBackend = {"linux",     "a framebuffer, /dev/fb0, that this user may write",
+const Backend kLinuxBackend = {"linux",     "a framebuffer, /dev/fb0, that this user may write to",
                                usable,      open,
                                begin_frame, end_frame,
                                poll,        now_ns,

@@ -392,7 +392,7 @@ Link* shaped_link_open(Link* inner, const LinkOptions& options, const ShapedLink
   if (count < 1 || count > kLinkStreamsMax || !options.memory ||
       options.memory_bytes < shaped_link_need(count, settings)) {
     std::snprintf(error->text, sizeof error->text,
-                  "%d connections of at most %d by radio need %zu bytes, %zu were given", count, kLinkStreamsMax,
+                  "%d connections of at most %d by radio need %zu bytes but %zu were given", count, kLinkStreamsMax,
                   shaped_link_need(count, settings), options.memory_bytes);
     return nullptr;
   }

@@ -69,10 +69,10 @@ void tell(const char* peer, int number, Error* error) {
   const char* what = nullptr;
   switch (number) {
     case ECONNREFUSED:
-      what = "nothing listens there: start `pocketray serve`, or name another port";
+      what = "nothing is listening there: start `pocketray serve`, or name another port";
       break;
     case ETIMEDOUT:
-      what = "no answer: is it on and in reach, and does its firewall let this port through?";
+      what = "no answer: is it on and within reach, and does its firewall let this port through?";
       break;
     case ENETUNREACH:
     case EHOSTUNREACH:
@@ -87,7 +87,7 @@ void tell(const char* peer, int number, Error* error) {
       what = "the peer closed the connection: it was stopped, or rejected what it received";
       break;
     case EADDRINUSE:
-      what = "another program listens there: stop it, or use another port";
+      what = "another program is listening there: stop it, or use another port";
       break;
     case EACCES:
     case EPERM:
@@ -138,8 +138,8 @@ Link* open(const LinkOptions& options, Error* error) {
   if (count < 1 || count > kLinkStreamsMax || !options.now_ns || !options.memory ||
       options.memory_bytes < need(count)) {
     snprintf(error->text, sizeof error->text,
-             "%d connections of at most %d need %zu bytes and a clock, %zu bytes were given", count, kLinkStreamsMax,
-             need(count), options.memory_bytes);
+             "%d connections of at most %d need %zu bytes and a clock, but %zu bytes were given", count,
+             kLinkStreamsMax, need(count), options.memory_bytes);
     return nullptr;
   }
   memset(options.memory, 0, need(count));

@@ -39,7 +39,7 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   int line_bytes = screen.width * (screen.bits_per_pixel / 8) + settings.line_padding_bytes;
   std::size_t bytes = static_cast<std::size_t>(line_bytes) * static_cast<std::size_t>(screen.height);
   if (!options.memory || options.memory_bytes < bytes) {
-    std::snprintf(error->text, sizeof error->text, "the back page needs %zu bytes, %zu were given", bytes,
+    std::snprintf(error->text, sizeof error->text, "the back page needs %zu bytes but %zu were given", bytes,
                   options.memory_bytes);
     return false;
   }

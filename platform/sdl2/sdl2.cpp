@@ -284,7 +284,7 @@ bool open(const ScreenOptions& options, ScreenFormat* format, Error* error) {
   state.turn = options.upright ? (360 - options.rotation) % 360 : 0;
   std::size_t bytes = page_bytes_max(width, height);
   if (!options.memory || options.memory_bytes < bytes) {
-    std::snprintf(error->text, sizeof error->text, "the back page needs %zu bytes, %zu were given", bytes,
+    std::snprintf(error->text, sizeof error->text, "the back page needs %zu bytes but %zu were given", bytes,
                   options.memory_bytes);
     return false;
   }

@@ -130,7 +130,7 @@ void add_bake_command(Command program, int* exit_status) {
       .range(1u, kTextureSideMax);
   command.add_flag(
       "--no-mip-maps", options->no_mip_maps,
-      "store no smaller levels of textures: a quarter less memory for them, speckles where they are small");
+      "store no smaller levels of textures: they take a quarter less memory but show speckles where they appear small");
   command
       .add_option("--textures", options->textures,
                   "exact, or compressed: blocks of 4 to 12 bits a texel instead of 32; their errors are printed")
@@ -138,7 +138,7 @@ void add_bake_command(Command program, int* exit_status) {
       .capture_default_str();
   command
       .add_option("--crease-angle", options->model.crease_angle,
-                  "for models without normals: shade edges below this angle smooth, in degrees (glTF: always flat)")
+                  "for models without normals: shade edges below this angle smoothly, in degrees (glTF: always flat)")
       .capture_default_str()
       .range(0.0f, 180.0f);
   command.add_flag("--radiosity", options->radiosity,

@@ -82,7 +82,7 @@ void print_table(const CommonOptions& options, const Renderer& renderer, Measure
   std::printf("  %-22s %10.1f ms   (%.1f frames per second)\n", "per frame",
               pixel.median * pixel_count(renderer) * 1e-6, 1e9 / (pixel.median * pixel_count(renderer)));
   if (m->coherent)
-    std::printf("  %-22s %10.1f %%   (those that can have changed since the last frame)\n", "pixels traced",
+    std::printf("  %-22s %10.1f %%   (those that may have changed since the last frame)\n", "pixels traced",
                 100 * static_cast<double>(m->pixels_traced) / (pixel_count(renderer) * m->frame_count));
   print_whole_frames(renderer, *m);
   std::printf("  %-22s %10.2f million\n", "rays per second", rays_per_second(*m) * 1e-6);

@@ -36,7 +36,7 @@ Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequenc
 void print_coherence(const CoherentSequence& s) {
   if (s.frames < 2) return;
   std::printf("  coherence: %.1f %% of the pixels traced; %" PRIu64 " of %" PRIu64 " frames whole%s%s\n",
-              100 * share(s), s.whole_frames, s.frames, s.whole_because ? ", lately because " : "",
+              100 * share(s), s.whole_frames, s.frames, s.whole_because ? "; latest cause: " : "",
               s.whole_because ? s.whole_because : "");
 }
 

@@ -72,7 +72,7 @@ Option add_json_option(Command command, std::string* path) {
 
 Option add_isa_option(Command command, std::string* isa) {
   return command.add_option("--isa", *isa, "instruction set for tracing: baseline, avx2 or avx512")
-      .default_str("the best of this CPU");
+      .default_str("the best on this CPU");
 }
 
 Option add_server_option(Command command, std::vector<std::string>* addresses) {
@@ -138,7 +138,7 @@ void add_look_options(Command command, CommonOptions* o) {
       .excludes(command.get_option("--background"));
   command
       .add_option("--light", o->light,
-                  "light of a scene that brings none: key (a key and a fill light that follow the camera's side), sun "
+                  "light for a scene that has none: key (a key and a fill light that follow the camera's side), sun "
                   "(one from high above) or none (ambient alone)")
       .one_of({"key", "sun", "none"})
       .capture_default_str()
@@ -163,13 +163,13 @@ void add_coherence_options(Command command, CommonOptions* o, const char* usual)
   o->coherence = usual;
   command
       .add_option("--coherence", o->coherence,
-                  "trace only what can have changed since the last frame; the pictures stay the same: on, off, or "
+                  "trace only what may have changed since the last frame; the pictures stay the same: on, off, or "
                   "auto, where it pays")
       .capture_default_str();
   command
       .add_option("--coherence-table", o->coherence_table,
                   "N: rays behind mirrors and glass are kept in tables of NxN blocks of pixels; more blocks take "
-                  "memory and save rays")
+                  "more memory and save rays")
       .capture_default_str();
 }
 
@@ -218,7 +218,7 @@ void add_side_by_side_option(Command command, SideBySideOptions* o) {
   command
       .add_option("--side-by-side", o->reference,
                   "show the reference on the right half: model (the same lighting model, converged) or physical (full "
-                  "light transport). It is refined while nothing moves; animation is paused meanwhile")
+                  "light transport). It is refined while nothing moves; animation is paused while it is")
       .one_of({"model", "physical"});
 }
 

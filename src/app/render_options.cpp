@@ -237,7 +237,7 @@ void add_render_options(Command command, RenderOptions* o) {
           "numbered pictures, out-0000.png …, or one animation: .gif, .apng (all colours) or .mp4 (by ffmpeg). "
           "-: standard output")
       .capture_default_str();
-  command.add_option("--format", o->format, "what -o - writes: png, jpg, ppm, pfm, raw, gif, apng or mp4")
+  command.add_option("--format", o->format, "format for -o -: png, jpg, ppm, pfm, raw, gif, apng or mp4")
       .one_of({"png", "jpg", "ppm", "pfm", "raw", "gif", "apng", "mp4"})
       .default_str("png");
   Option frames = command.add_option("--frames", o->frames, "render a sequence, FIRST:LAST");
@@ -259,11 +259,10 @@ void add_render_options(Command command, RenderOptions* o) {
                    "leave out the frames that an earlier run of the same scene, version and options has finished; "
                    "OUT.resume lists them");
   command.add_option("--crop", o->crop,
-                     "X,Y,WxH: trace and write only these pixels of the picture, counted from its top left");
+                     "X,Y,WxH: trace and write only these pixels of the picture, counted from the top left");
   command
-      .add_option(
-          "--aov", o->aov,
-          "write depth, normal, triangle or cost in (false) colours instead of the picture; .pfm has the values")
+      .add_option("--aov", o->aov,
+                  "write depth, normal, triangle or cost in false colours instead of the picture; .pfm has the values")
       .capture_default_str();
   command.add_flag("--no-legend", o->no_legend, "leave out the legend at the bottom left of --aov");
   command.add_option("--rotate", o->rotation, "rotate .raw pictures clockwise: 0, 90, 180 or 270")

@@ -194,8 +194,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   auto o = std::make_shared<ViewCommand>();
   o->parts = parts;
   o->view.has_reference = parts.side_by_side != nullptr;
-  Command command =
-      program.add_subcommand("view", "show a scene in the emulator's window or on a device's framebuffer");
+  Command command = program.add_subcommand("view", "show a scene in a window or on a device's framebuffer");
   add_scene_options(command, &o->common, false);
   command.add_option("--scenes", o->scenes, "without SCENE: folder of .pray files to choose from")
       .capture_default_str();
@@ -222,8 +221,8 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
       .capture_default_str();
   command.footer(std::string("Keys, with a device's buttons in brackets:\n"
                              "  arrows [pad]          turn the camera\n"
-                             "  X, Z [A, B]           closer, away\n"
-                             "  Q, W [L, R]           sideways\n"
+                             "  X, Z [A, B]           move nearer, farther\n"
+                             "  Q, W [L, R]           move left, right\n"
                              "  right shift [select]  switch between orbit and fly\n"
                              "  return [start]        restore the scene's camera, and let --budget-ms choose again\n"
                              "  page up, page down    step through the settings of --budget-ms\n"

@@ -22,8 +22,8 @@ std::string image_space_csv(const CoherenceReport& report);
 std::string image_space_table(const CoherenceReport& report);  // markup
 constexpr char kImageSpaceText[] =
     "Badt traces a random sample of the pixels again and floods around those that changed. Chapman traces frames some "
-    "way apart and halves the time between where a pixel differs. Both see pixels alone and miss changes; pocketray "
-    "sees what moves, and misses none.";
+    "way apart and halves the time between where a pixel differs. Both look only at pixels and miss changes; pocketray "
+    "knows what moves, and misses none.";
 
 // Wrong pixels over pixels traced; ꟻLIP over time.
 Plot wrong_plot(const CoherenceReport& report);

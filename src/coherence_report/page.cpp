@@ -77,7 +77,7 @@ std::string plot_of(const ReportPictures& pictures, const std::string& name) {
 std::string retraced_of(const ReportPictures& pictures) {
   if (pictures.retraced_png.empty()) return "";
   std::string text =
-      "<h2>What is retraced</h2>\n<p>As in figure 4 of the paper: the retraced pixels of a frame, all others "
+      "<h2>Retraced pixels</h2>\n<p>As in figure 4 of the paper: the retraced pixels of a frame, all others "
       "black.</p>\n"
       "<div class=\"tiles\">\n";
   for (const auto& picture : pictures.retraced_png) {
@@ -102,7 +102,7 @@ std::string image_space_of(const CoherenceReport& report, const ReportPictures& 
 std::string page_of(const CoherenceReport& report, const ReportPictures& pictures) {
   const SequenceRun& run = report.ours;
   std::string title =
-      "What retracing only what changed saves: " + escaped(report.scene.substr(report.scene.rfind('/') + 1));
+      "The saving by retracing only what changed: " + escaped(report.scene.substr(report.scene.rfind('/') + 1));
   std::string text =
       page_begin(title) + "<header>\n<div>\n<h1>" + title + "</h1>\n<p class=\"soft\">" + escaped(report.scene) +
       format(", %u × %u pixels, ", run.width, run.height) + escaped(report.machine) +
@@ -115,7 +115,7 @@ std::string page_of(const CoherenceReport& report, const ReportPictures& picture
             table_of(report.papers_way, report.is_papers_scene) + notes_of(report.papers_way);
   return text + tables_of(report.tables, pictures) + image_space_of(report, pictures) + retraced_of(pictures) +
          "<h2>Method</h2>\n<p class=\"soft\">Two renderers, each in its own memory, render the sequence, one of "
-         "them whole frames, the other only what can have changed since its last frame; they take turns after a few "
+         "them whole frames, the other only what may have changed since its last frame; they take turns after a few "
          "frames. Times "
          "cover posing, refitting, placing lights, the search for changes and tracing. Rays are of all kinds, those of "
          "the search included if they pass through the whole scene. frames.csv has every frame, report.json every "

@@ -65,7 +65,7 @@ Status check_equal(const Vec3* whole, const Vec3* coherent, const SequenceRun& r
   CHECK_LT(pixel, pixels);
   return failure(
       "frame %u differs at column %zu, row %zu: traced coherently it is not the frame traced whole; this is a "
-      "fault of pocketray, please report it",
+      "bug in pocketray: please report it",
       frame, pixel % run.width, pixel / run.width);
 }
 

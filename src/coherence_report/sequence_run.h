@@ -28,7 +28,7 @@ struct FrameFigures {
   // first frame differs everywhere.
   std::uint64_t changed = 0, shown = 0;
   std::uint64_t retraced = 0;
-  const char* whole_because = nullptr;  // null: only what can have changed was traced
+  const char* whole_because = nullptr;  // null: only what may have changed was traced
 };
 
 // The levels of a frame's retraced pixels, the others black [Jevans92, fig. 4].

@@ -38,7 +38,7 @@ struct Quality {
   Resolution resolution = Resolution::full;
 };
 
-// Whether frames trace only what can have changed. automatic: where that pays.
+// Whether frames trace only what may have changed. automatic: where that pays.
 enum class CoherenceMode : std::uint8_t { off, automatic, on };
 
 struct Settings : Quality {

@@ -4,7 +4,7 @@
 
 namespace pocketray {
 
-// How a frame was traced: whole; whole, and recorded for the next; only the pixels that can have changed, recorded too.
+// How a frame was traced: whole; whole, and recorded for the next; only the pixels that may have changed, recorded too.
 enum class FrameKind : std::uint8_t { plain, recorded, coherent };
 
 struct CoherenceTrial {

@@ -1,4 +1,4 @@
-// Frames that trace only what can have changed since the last one.
+// Frames that trace only what may have changed since the last one.
 #pragma once
 #include "engine/frame.h"
 

@@ -113,7 +113,7 @@ std::uint32_t rows_done(const Renderer& renderer, const CoherentFrame& frame) {
   return frame.all ? renderer.settings.height : std::min(frame.tile_row * kChangeTileSide, renderer.settings.height);
 }
 
-// Renders the pixels that can have changed since the last frame.
+// Renders the pixels that may have changed since the last frame.
 Status render_changes(pocketray_instance* instance, double seconds) {
   const pocketray_progress progress = instance->progress;
   void* const user = instance->progress_user;

@@ -217,7 +217,8 @@ pocketray_result plan_request(const Request& q, const SceneStorage& storage, Ren
 }
 
 pocketray_result need_more(const char* what, std::size_t needed, std::size_t given) {
-  return refuse(POCKETRAY_ERROR_MEMORY, failure("%s needs %zu bytes of memory, %zu were given", what, needed, given));
+  return refuse(POCKETRAY_ERROR_MEMORY,
+                failure("%s needs %zu bytes of memory but %zu were given", what, needed, given));
 }
 
 // Gives the memory planned for the caller's lights and transforms to them. The first frame's pose was made without

@@ -127,7 +127,7 @@ typedef struct pocketray_part {
   uint32_t material;                   /* which no other material may use */
 } pocketray_part;
 
-/* Whether pocketray_render() traces only what can have changed since the last frame it rendered; the pictures stay the
+/* Whether pocketray_render() traces only what may have changed since the last frame it rendered; the pictures stay the
  * same. AUTO: where the scene moves, memory allows it and it pays. */
 enum { POCKETRAY_COHERENCE_OFF = 0, POCKETRAY_COHERENCE_AUTO = 1, POCKETRAY_COHERENCE_ON = 2 };
 
@@ -334,7 +334,7 @@ typedef struct pocketray_frame {
   uint32_t rows_done, row_count;    /* of a frame being refined: rows of its finest grid */
   /* Since 0.2.1. Of the last frame of pocketray_render(): */
   uint64_t pixels_traced;
-  const char* whole_because; /* why it was traced whole, never freed; null: only what can have changed was traced */
+  const char* whole_because; /* why it was traced whole, never freed; null: only what may have changed was traced */
 } pocketray_frame;
 #define POCKETRAY_FRAME_INIT \
   { sizeof(pocketray_frame), 0, 0, 0, 0, 0, 0, 0, 0, 0, NULL }

@@ -17,7 +17,7 @@ struct Timings {
 struct CoherenceState {
   bool planned = false;
   const char* unplanned_because = "coherence is off";
-  const char* whole_because = nullptr;  // all pixels were traced, and why; null: only those that can have changed
+  const char* whole_because = nullptr;  // all pixels were traced, and why; null: only those that may have changed
   std::uint64_t pixels_traced = 0;
   ChangeCounts search;  // rays traced to find them
   double follow_ms = 0, find_ms = 0, keep_ms = 0;
@@ -28,7 +28,7 @@ struct CoherenceState {
 struct SharedRows {
   std::uint32_t begin = 0, end = 0;
   bool records = false;             // the frame is followed
-  bool searched = false;            // for what can have changed
+  bool searched = false;            // for what may have changed
   std::uint32_t tile_row = 0;       // the next to search
   std::uint32_t known_rows = 0;     // of the last frame ...
   std::uint64_t known_changes = 0;  // ... and pixels to trace in these

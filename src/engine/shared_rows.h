@@ -1,5 +1,5 @@
 // Frames whose rows several machines share. This one traces some of the rows, and of those that it traced in the last
-// frame, too, only what can have changed. Which rows it traces need not be known in advance. The pixels are those of
+// frame, too, only what may have changed. Which rows it traces need not be known in advance. The pixels are those of
 // the frame traced whole, bit for bit.
 #pragma once
 #include "engine/frame.h"
@@ -11,7 +11,7 @@ namespace pocketray {
 // which must be called before prepare_frame(); without that call, all rows are traced whole.
 void begin_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end);
 
-// Searches rows of about that many pixels for what can have changed. True when all are searched, so that rows can be
+// Searches rows of about that many pixels for what may have changed. True when all are searched, so that rows can be
 // listed and traced.
 bool search_shared_rows(Renderer* renderer, std::uint32_t pixel_count_max);
 
@@ -28,7 +28,7 @@ std::uint32_t end_of_part(const Renderer& renderer, std::uint32_t row, std::uint
 // among the threads if it is whole.
 struct SharedSpans {
   const Span* spans;
-  std::uint32_t count;  // 0: no pixel of them can have changed
+  std::uint32_t count;  // 0: none of their pixels can have changed
 };
 std::uint32_t listed_rows_max(const Renderer& renderer);
 SharedSpans list_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end);

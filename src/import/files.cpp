@@ -21,7 +21,8 @@ Bytes read_file(const std::string& path, std::uint64_t byte_count_max) {
   // Non-blocking, since open() on a pipe would wait for a writer. Checks the open descriptor, so that the checked file
   // is the one read.
   int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (descriptor < 0) fail_import("cannot read %s: %s; check its name and place", path.c_str(), std::strerror(errno));
+  if (descriptor < 0)
+    fail_import("cannot read %s: %s; check its name and location", path.c_str(), std::strerror(errno));
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(fdopen(descriptor, "rb"), std::fclose);
   if (!file) close(descriptor);
   struct stat info;

@@ -101,7 +101,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
     if (plan->parts[i].bytes > largest->bytes) largest = &plan->parts[i];
   std::size_t fits = megabytes_up(plan->total_bytes);
   return failure(
-      "the scene needs %.1f MiB of memory, %.1f MiB are allowed; the largest part is %s with %.1f MiB%s; "
+      "the scene needs %.1f MiB of memory but %.1f MiB are allowed; the largest part is %s with %.1f MiB%s; "
       "%zu MiB would do",
       megabytes(plan->total_bytes), megabytes(plan->limit_bytes), largest->name, megabytes(largest->bytes),
       scene.accel.empty() && triangles > 1000 ? " (baking the scene saves the build's scratch)" : "", fits);
@@ -142,7 +142,7 @@ Status plan_output_memory(const Settings& settings, std::size_t output_bytes, Me
   align_arenas(plan);
   if (plan->total_bytes <= plan->limit_bytes) return success();
   return failure(
-      "pictures of %ux%u pixels need %.1f MiB of memory without a scene, %.1f MiB are allowed; %zu MiB would do, "
+      "pictures of %ux%u pixels need %.1f MiB of memory without a scene but %.1f MiB are allowed; %zu MiB would do, "
       "or a smaller picture",
       settings.width, settings.height, megabytes(plan->total_bytes), megabytes(plan->limit_bytes),
       megabytes_up(plan->total_bytes));

@@ -147,7 +147,7 @@ Status check_header(const std::uint8_t* bytes, std::size_t byte_count, FileHeade
   if (byte_count < sizeof(FileHeader)) return failure("cut short after %zu bytes: copy or bake it again", byte_count);
   std::memcpy(header, bytes, sizeof *header);
   if (header->version < kBakedVersionMin || header->version > kBakedVersion)
-    return failure("made by version %u, this program reads versions %u to %u: bake it again", header->version,
+    return failure("made by version %u, but this program reads versions %u to %u: bake it again", header->version,
                    kBakedVersionMin, kBakedVersion);
   if (header->byte_count != byte_count)
     return failure("%zu bytes long, it should be %llu: copy or bake it again", byte_count,

@@ -64,7 +64,7 @@ Status find_part(const SceneSource& source, const std::string& scene, const std:
   for (const auto& part : source.parts)
     if (part.first == name) *bounds = merge(*bounds, part.second);
   if (!is_empty(*bounds)) return success();
-  return failure("--focus: %.100s has no part '%.64s'; near ones: %.400s", scene.c_str(), name.c_str(),
+  return failure("--focus: %.100s has no part '%.64s'; similar ones: %.400s", scene.c_str(), name.c_str(),
                  nearest_names(source.parts, name).c_str());
 }
 

@@ -20,7 +20,7 @@ Status render_once(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel
   return success();
 }
 
-// The same, tracing what can have changed since the last frame.
+// The same, tracing what may have changed since the last frame.
 Status render_next(Renderer* renderer, std::uint32_t frame, double* ns_per_pixel) {
   double seconds = frame / static_cast<double>(renderer->scene.info.frames_per_second);
   RETURN_IF_ERROR(render_coherent(renderer, seconds, &interrupted));

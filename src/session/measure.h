@@ -19,7 +19,7 @@ struct Measurement {
   std::uint32_t frame_count_max;                                // capacity of row_ns
   std::vector<double> ns_per_pixel, pose_ms, refit_ms, row_ns;  // row_ns: frames of row 0, of row 1, …
   Tracer counts;                                                // of the last frame
-  bool coherent = false;                // only what can have changed is traced: times of rows are unknown
+  bool coherent = false;                // only what may have changed is traced: times of rows are unknown
   std::uint64_t pixels_traced = 0;      // of all frames
   std::uint32_t whole_frames = 0;       // of coherent frames, those that were traced whole after all ...
   const char* whole_because = nullptr;  // ... and why the last of them was; null: none was

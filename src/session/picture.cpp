@@ -113,8 +113,9 @@ Status check_picture_path(const std::string& path) {
         "-o is '%.200s': the name must end in .png, %s.ppm, .pfm or .raw, or .gif, .apng or .mp4 for animations",
         path.c_str(), has_jpeg() ? ".jpg, " : "");
   if (kind == Kind::jpeg && !has_jpeg())
-    return failure("-o is '%.200s', and this build has no JPEG: write .png, or build with stb and the importers",
-                   path.c_str());
+    return failure(
+        "-o is '%.200s', but this build has no JPEG support: write .png, or build with stb and the importers",
+        path.c_str());
   return success();
 }
 

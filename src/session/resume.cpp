@@ -21,7 +21,7 @@ Status load_lines(const std::string& path, std::string* text) {
   if (ok) text->resize(static_cast<std::size_t>(file.byte_count));
   ok = ok && platform::read_bytes(&file, &(*text)[0], text->size(), &error);
   platform::close_reader(&file);
-  return ok ? success() : failure("%.300s is no list of finished frames: delete it, or drop --resume", path.c_str());
+  return ok ? success() : failure("%.300s is not a list of finished frames: delete it, or drop --resume", path.c_str());
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ Status read_journal(const std::string& path, const std::string& identity, std::v
   RETURN_IF_ERROR(load_lines(path, &text));
   const std::string head = kHead + identity + "\n";
   if (text.compare(0, sizeof kHead - 1, kHead) != 0)
-    return failure("%.300s is no list of finished frames: delete it, or drop --resume", path.c_str());
+    return failure("%.300s is not a list of finished frames: delete it, or drop --resume", path.c_str());
   if (text.compare(0, head.size(), head) != 0)
     return failure(
         "--resume: %.300s is of pictures with another scene, version or options: drop --resume to render all",

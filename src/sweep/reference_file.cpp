@@ -58,7 +58,7 @@ Status load_accumulation(const std::string& path, Accumulation* accumulation, Tr
   Json key = Json::parse(accumulation->key, nullptr, false);
   bool named = key.is_object() && key.contains("kind") && key["kind"].is_string();
   if (!named || (key["kind"] != "model" && key["kind"] != "physical"))
-    return failure("%.300s is a reference of no known kind: remove it, or take another copy", path.c_str());
+    return failure("%.300s is a reference of unknown kind: remove it, or take another copy", path.c_str());
   *transport = key["kind"] == "model" ? Transport::model : Transport::physical;
   return success();
 }

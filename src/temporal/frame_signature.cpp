@@ -42,7 +42,7 @@ FrameSignature signature_of(const FrameData& frame) {
 }
 
 const char* difference(const FrameSignature& a, const FrameSignature& b) {
-  if (!a.known || !b.known) return "no frame before";
+  if (!a.known || !b.known) return "no previous frame";
   if (!same_camera(a.camera, b.camera)) return "the camera moved";
   if (!same_quality(a.quality, b.quality) || a.mask != b.mask) return "the settings changed";
   if (a.left_out_max != b.left_out_max) return "the exposure changed";

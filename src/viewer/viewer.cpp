@@ -95,13 +95,13 @@ void answer_traced(Viewer* viewer, const Renderer& renderer) {
   if (!coherence.planned) {
     viewer->traced = false;
     bool can_be_on = renderer.settings.coherence != CoherenceMode::on;
-    std::snprintf(told, sizeof told, "T dims what was not traced again, but all of it was, as %.80s%s",
+    std::snprintf(told, sizeof told, "T dims pixels that were not traced again, but all were, as %.80s%s",
                   coherence.unplanned_because, can_be_on ? ": start with --coherence on to use it" : "");
     tell(viewer, told);
   } else if (viewer->picture_merged) {
-    tell(viewer, "T dims what was not traced again, but not in frames that are shared with servers");
+    tell(viewer, "T dims pixels that were not traced again, but not in frames shared with servers");
   } else if (shows_side_by_side(*viewer)) {
-    tell(viewer, "T dims what was not traced again: hide the reference with V to see it");
+    tell(viewer, "T dims pixels that were not traced again: hide the reference with V to see it");
   } else if (viewer->traced_presses % 2 != 0) {
     viewer->traced = !viewer->traced;
   }

@@ -72,7 +72,7 @@ if "${run[@]}" render --help | grep -q glTF; then
   check focus_turntable test -z "$(render two.obj turn.ppm --focus far --turntable 4 --background '#ff00ff' | grep -v 'no camera')"
   check turntable_stays_on_it test "$(background_pixels turn-0002.ppm)" -lt 650
   expect focus_in_view 0 '' view two.obj "${small[@]}" --screen null --frames 1 --focus far
-  expect focus_on_nothing 1 "no part 'fat'; near ones: 'far', 'near'" render two.obj "${small[@]}" --focus fat -o refused.ppm
+  expect focus_on_nothing 1 "no part 'fat'; similar ones: 'far', 'near'" render two.obj "${small[@]}" --focus fat -o refused.ppm
   expect focus_in_view_on_nothing 1 "no part 'fat'" view two.obj "${small[@]}" --screen null --frames 1 --focus fat
   expect focus_or_camera 2 'excludes' render two.obj "${small[@]}" --focus far --camera "0,0,5 0,0,0 0,1,0 40" -o refused.ppm
   "${run[@]}" bake two.obj -o two.pray >/dev/null

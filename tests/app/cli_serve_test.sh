@@ -24,7 +24,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   until grep -q '^listening' serve.out || ! kill -0 $server; do sleep 0.1; done
   check serve_lists_its_scenes grep -q '^ *d.pray ' serve.out
   check serve_leaves_out_what_is_broken test "$(grep -c '^pocketray: cut.pray is skipped: ' serve.err)" = 1
-  address=$(sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' serve.out)
+  address=$(sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' serve.out)
   check serve_says_where_it_listens grep -qE '^127\.0\.0\.1:[0-9]+$' <<<"$address"
 
   # Goal: a device without the scene fetches it, and one without room for it shows the server's rendering: the same
@@ -76,7 +76,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   "${run[@]}" serve --listen 127.0.0.1:0 --threads 1 >sharing.out 2>sharing.err &
   server=$!
   until grep -q '^listening' sharing.out || ! kill -0 $server; do sleep 0.1; done
-  address=$(sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' sharing.out)
+  address=$(sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' sharing.out)
 
   # Goal: pictures with and without a server are equal, byte for byte, in every format and split. Method: sequences, so
   # that the server comes into use; sealed, like everything here.

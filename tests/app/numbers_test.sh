@@ -71,7 +71,7 @@ if "$program" --help | grep -q ' serve '; then
     grep -q '^listening' log && break
     sleep 0.1
   done
-  address=$(sed -n 's/^listening at \([^:]*:[0-9]*\):.*/\1/p' log)
+  address=$(sed -n 's/^listening on \([^:]*:[0-9]*\):.*/\1/p' log)
   thin=(render cornell --size 8x6 --threads 1 --memory 500K --server "$address" -o a.ppm)
   try 0 "${thin[@]}" && [ -s a.ppm ] || { echo "FAILED no frame from $address: $(cat log)"; failed=$((failed + 1)); }
   sweep "--time --exposure --camera-index --cut-off --samples --depth --area-lights" "${thin[@]}"

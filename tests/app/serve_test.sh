@@ -24,7 +24,7 @@ wait_for() {  # PATTERN FILE
   done
   return 1
 }
-address_in() { sed -n 's/^listening at \([0-9.:]*\): .*/\1/p' "$1"; }
+address_in() { sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' "$1"; }
 offers_scenes() { timeout 60 "$program" scenes --server "$1" 2>&1 | grep -q '^ *cornell '; }
 end_server() {  # EXPECTED STATUS
   kill -INT "$server" 2>/dev/null

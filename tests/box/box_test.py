@@ -188,7 +188,7 @@ class Server:
         self.process = subprocess.Popen([box.desktop, "serve", "--listen", f"127.0.0.1:{port}"],
                                         stdout=open(log, "w"), stderr=subprocess.STDOUT)
         for _ in range(600):
-            match = re.search(r"^listening at [^ ]*:(\d+)", open(log).read(), re.M)
+            match = re.search(r"^listening on [^ ]*:(\d+)", open(log).read(), re.M)
             if match:
                 self.port = int(match[1])
                 return

@@ -63,7 +63,7 @@ SequenceRun invented_run(std::uint32_t frame_count) {
     f.coherent = frame == 0 ? RenderCost{4000, 11, 11} : RenderCost{1000, 5, 5};
     f.retraced = frame == 0 ? kPixels : kPixels / 4;
     f.changed = f.retraced / 2, f.shown = f.retraced / 4;
-    f.whole_because = frame == 0 ? "no frame before" : nullptr;
+    f.whole_because = frame == 0 ? "no previous frame" : nullptr;
     run.frames.push_back(f);
   }
   return run;
@@ -229,7 +229,7 @@ TEST_CASE("coherence_report_files_have_the_figures") {
   CHECK(csv.find("\"lights, \"\"all\"\"\"\n") != std::string::npos);
   std::vector<std::string> whole = whole_frames(report.ours);
   REQUIRE(whole.size() == 2);
-  CHECK(whole[0] == "frame 0: no frame before");
+  CHECK(whole[0] == "frame 0: no previous frame");
   CHECK(whole[1] == "frames 2 to 3: lights, \"all\"");
 }
 

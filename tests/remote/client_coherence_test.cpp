@@ -1,4 +1,4 @@
-// Shared frames of which device and servers trace only what can have changed.
+// Shared frames of which device and servers trace only what may have changed.
 #include <doctest/doctest.h>
 
 #include "split_rig.h"

@@ -265,7 +265,7 @@ TEST_CASE("faults_over_sockets_nobody_answers") {
       for (int i = 0; i < 8; ++i) device.frame();
       CHECK(device.failure == "");
       CHECK(device.log.size() == 1);
-      CHECK(device.lines_with(listens ? "does not answer" : "nothing listens there") == 1);
+      CHECK(device.lines_with(listens ? "does not answer" : "nothing is listening there") == 1);
       failure = device.is_late() ? "late" : "";
       if (failure.empty()) break;
     }

@@ -383,7 +383,7 @@ TEST_CASE("server_shares_its_time_fairly") {
   for (std::uint64_t count : pixels) CHECK(static_cast<double>(count) == doctest::Approx(50'000).epsilon(0.1));
 }
 
-// Goal: a server traces of a client's frames what can have changed since it traced these rows for the last frame, as
+// Goal: a server traces of a client's frames what may have changed since it traced these rows for the last frame, as
 // the chunks tell; pixels are those of whole frames. Method: seesaw: the same frame again, the next frame, rows it did
 // not have, a frame cancelled half-way; with coherence off, all of it.
 TEST_CASE("server_traces_what_changes_for_a_client") {

@@ -30,10 +30,10 @@ TEST_CASE("focus_finds_parts_by_name") {
   CHECK(box.low == Vec3{5, 0, 0});
   CHECK(box.high == Vec3{6, 1, 5});
   auto told = [&](const char* name) { return std::string(find_part(model(), "car.glb", name, &box).message); };
-  CHECK(told("Bodi") == "--focus: car.glb has no part 'Bodi'; near ones: 'Body', 'Wheel.Back', 'Wheel.Front'");
-  CHECK(told("back").find("near ones: 'Wheel.Back'") != std::string::npos);
-  CHECK(told("WHEEL.FROMT").find("near ones: 'Wheel.Front'") != std::string::npos);
-  CHECK(told(std::string(100'000, 'x').c_str()).find("near ones: 'Body'") != std::string::npos);
+  CHECK(told("Bodi") == "--focus: car.glb has no part 'Bodi'; similar ones: 'Body', 'Wheel.Back', 'Wheel.Front'");
+  CHECK(told("back").find("similar ones: 'Wheel.Back'") != std::string::npos);
+  CHECK(told("WHEEL.FROMT").find("similar ones: 'Wheel.Front'") != std::string::npos);
+  CHECK(told(std::string(100'000, 'x').c_str()).find("similar ones: 'Body'") != std::string::npos);
   CHECK(std::strstr(find_part(SceneSource(), "a.pray", "Body", &box).message, "a .pray file keeps no names"));
   CHECK(std::strstr(find_part(SceneSource(), "cornell", "Body", &box).message, "cornell has none"));
 }

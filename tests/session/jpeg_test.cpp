@@ -19,7 +19,7 @@ TEST_CASE("jpeg_is_there_or_refused") {
   for (const char* path : {"a.jpg", "a.jpeg"}) {
     const Status status = check_picture_path(path);
     CHECK(status.ok == has_jpeg());
-    if (!status.ok) CHECK(std::string(status.message).find("has no JPEG: write .png") != std::string::npos);
+    if (!status.ok) CHECK(std::string(status.message).find("has no JPEG support: write .png") != std::string::npos);
   }
   CHECK_FALSE(check_picture_path("a.jpe").ok);
 }

@@ -82,7 +82,7 @@ TEST_CASE("journal_of_a_crashed_run_lists_whole_lines") {
   CHECK(frames_in(head + "1\n99999999999\n3\n", &told) == Frames{1});
   CHECK(frames_in(head + std::string("1\n\0\n2\n", 6), &told) == Frames{1});
   frames_in("PNG", &told);
-  CHECK(told.find("is no list of finished frames: delete it") != std::string::npos);
+  CHECK(told.find("is not a list of finished frames: delete it") != std::string::npos);
   frames_in("pocketray-resume 1 other\n0\n", &told);
   CHECK(told.find("another scene, version or options") != std::string::npos);
 }

@@ -237,7 +237,7 @@ TEST_CASE("cost_model_need_is_what_it_takes") {
     }
 }
 
-// Goal: a row costs its holder the part that can have changed, and anyone else all of it; small parts do not change
+// Goal: a row costs its holder the part that may have changed, and anyone else all of it; small parts do not change
 // what a whole row is known to cost. Method: a server as fast as the device; shares by hand.
 TEST_CASE("cost_model_prices_what_can_have_changed") {
   OwnModel own(100, 40, 1);

@@ -60,7 +60,7 @@ TEST_CASE("dependence_on_camera_settings_and_surroundings_makes_whole_frames") {
     void (*apply)(Renderer* renderer);
   };
   const Change changes[] = {
-      {"no frame before", [](Renderer*) {}},
+      {"no previous frame", [](Renderer*) {}},
       {"the camera moved",
        [](Renderer* renderer) {
          Camera camera = renderer->camera;

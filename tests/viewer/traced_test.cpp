@@ -151,7 +151,7 @@ TEST_CASE("viewer_shows_what_coherence_saves") {
     loop.tile_spans = arena_array<Span>(&renderer->frame_arena, progressive_spans_max(renderer->settings));
     loop.finished = true;
     finish_picture(1, &stage.viewer, renderer, &loop);
-    CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: whole frame: no frame before" : ""));
+    CHECK(hud_line(loop.hud, "coherence") == (coherent ? "coherence: whole frame: no previous frame" : ""));
     finish_picture(1.05, &stage.viewer, renderer, &loop);
     if (coherent) {
       const CoherenceState& state = renderer->coherence_state;

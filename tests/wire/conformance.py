@@ -20,7 +20,7 @@ class Server:
         self.process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
         self.address = None
         for line in self.process.stdout:
-            found = re.match(r"listening at (\S+):", line)
+            found = re.match(r"listening on (\S+):", line)
             if found:
                 self.address = found.group(1)
                 break

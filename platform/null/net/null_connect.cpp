@@ -95,8 +95,8 @@ int listen(Link* base, const LinkAddress& address, Error* error) {
   int port = port_of(address);
   if (port == 0) port = ++link->port_last;
   if (listener_at(link, port)) {
-    std::snprintf(error->text, sizeof error->text, "%s: another program listens there: stop it, or use another port",
-                  address.text);
+    std::snprintf(error->text, sizeof error->text,
+                  "%s: another program is listening there: stop it, or use another port", address.text);
     return -1;
   }
   Slot* slot = take_slot(link, Phase::listening, error);

@@ -205,7 +205,7 @@ Link* null_link_open(const LinkOptions& options, const NullLinkSettings& setting
   if (count < 1 || count > kLinkStreamsMax || !options.memory || settings.fault_count > kNullFaultsMax ||
       settings.pipe_bytes == 0 || options.memory_bytes < null_link_need(count, settings)) {
     std::snprintf(error->text, sizeof error->text,
-                  "%d connections of at most %d need %zu bytes, %zu were given; at most %d faults", count,
+                  "%d connections of at most %d need %zu bytes but %zu were given; at most %d faults", count,
                   kLinkStreamsMax, null_link_need(count, settings), options.memory_bytes, kNullFaultsMax);
     return nullptr;
   }

@@ -60,8 +60,9 @@ inline LinkResult fail(Slot* slot, const char* text, Error* error) {
   return LinkResult::failed;
 }
 
-constexpr const char* kRefusedText = "nothing listens there: start `pocketray serve`, or name another port";
-constexpr const char* kSilentText = "no answer: is it on and in reach, and does its firewall let this port through?";
+constexpr const char* kRefusedText = "nothing is listening there: start `pocketray serve`, or name another port";
+constexpr const char* kSilentText =
+    "no answer: is it on and within reach, and does its firewall let this port through?";
 constexpr const char* kBrokenText = "the peer closed the connection: it was stopped, or rejected what it received";
 
 inline bool meant_for(const NullFault& fault, const Slot& slot) {

@@ -59,18 +59,15 @@ int run(AccuracyOptions options) {
 void add_accuracy_command(Command program, int* exit_status) {
   auto o = std::make_shared<AccuracyOptions>();
   o->starts_valgrind = true;
-  Command command = program.add_subcommand("accuracy", "measure what accuracy costs in time: sweep every setting");
+  Command command = program.add_subcommand("accuracy", "measure the time cost of accuracy: sweep every setting");
   command.footer(
       "Varies one setting at a time (samples, depth, points per area light, …), then several at once. Times each\n"
       "configuration in rounds of random order and compares its picture with a reference, by ꟻLIP and other metrics.\n"
-      "The scene's options set the baseline. The output folder gets index.html with all results, its plots and "
-      "strips,\n"
-      "accuracy.csv and the references, which are also kept per scene and camera in the cache. If interrupted, samples "
-      "of\n"
-      "references and finished rounds are kept, and the same command continues. Times are of whole frames (pose, "
-      "refit, lights, tracing, packing) after a warm-up "
-      "frame\n"
-      "with the same settings; \"arithmetic double\" is timed with the reference's own tracer.\n"
+      "The scene's options set the baseline. The output folder gets index.html with all results, its plots and\n"
+      "strips, accuracy.csv and the references, which are also kept per scene and camera in the cache. If\n"
+      "interrupted, samples of references and finished rounds are kept, and the same command continues. Times are of\n"
+      "whole frames (pose, refit, lights, tracing, packing) after a warm-up frame with the same settings;\n"
+      "\"arithmetic double\" is timed with the reference's own tracer.\n"
       "Confidence intervals are 95 %, given at least six rounds.");
   add_scene_options(command, &o->common);
   command.add_option("-o,--output-folder", o->folder, "folder to write to; created if missing").required();
@@ -84,7 +81,7 @@ void add_accuracy_command(Command program, int* exit_status) {
       .capture_default_str();
   command.add_option("--reference-samples", o->reference_samples, "samples per pixel of the reference")
       .default_str("2048 for model, 256 for physical");
-  command.add_option("--rounds", o->rounds, "how often to time each configuration").capture_default_str();
+  command.add_option("--rounds", o->rounds, "number of times to measure each configuration").capture_default_str();
   command.add_option("--ppd", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
       .capture_default_str();
   command.add_option("--time", o->seconds, "seconds into the animation").capture_default_str();

@@ -1,4 +1,4 @@
-// pocketray coherence-report: measures what retracing only what changed saves, next to the paper's table.
+// pocketray coherence-report: measures the saving by retracing only what changed, next to the paper's table.
 #include <nlohmann/json.hpp>
 
 #include "accuracy/gnuplot.h"
@@ -41,7 +41,7 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
                       coherence_scratch_need(renderer->scene, renderer->effects.mask);
-  return failure("coherence does not fit in --memory: --memory %zuM", (bytes >> 20) + 1);
+  return failure("coherence does not fit in --memory: try --memory %zuM", (bytes >> 20) + 1);
 }
 
 // `table`: side of the tables.
@@ -169,14 +169,14 @@ int run(const ReportOptions& o) {
 
 void add_coherence_report_command(Command program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
-  Command command = program.add_subcommand("coherence-report", "measure what retracing only what changed saves");
+  Command command = program.add_subcommand("coherence-report", "measure the saving by retracing only what changed");
   command.footer(
       "Renders a sequence twice, frame by frame and by tracing only the pixels that can differ from the last frame, "
       "and\n"
       "compares every bit of every frame: a difference is an error. Prints rays and time of both, next to Table 2 of\n"
       "Jevans 1992 if the scene is seesaw, which follows its sequence. Then does the same the paper's way, with a "
       "table\n"
-      "of rays in every voxel. --compare adds two methods that see pixels alone and miss changes, Badt 1988 and\n"
+      "of rays in every voxel. --compare adds two methods that look only at pixels and miss changes, Badt 1988 and\n"
       "Chapman 1990: pixels traced, time, wrong pixels and FLIP, as a table and plots beside ours.\n"
       "If interrupted, keeps the finished frames.\n"
       "Try:  pocketray coherence-report seesaw -o report\n"
@@ -188,10 +188,10 @@ void add_coherence_report_command(Command program, int* exit_status) {
       .default_str("the whole animation");
   command
       .add_option("--table", o->table,
-                  "blocks of pixels along each side of the picture, a bit of each in every voxel's table of rays")
+                  "blocks of pixels along each side of the picture, each with a bit in every voxel's table of rays")
       .range(1u, kCoherenceTableSideMax)
       .capture_default_str();
-  command.add_flag("--no-paper", o->no_paper, "skip the sequence in the paper's way");
+  command.add_flag("--no-paper", o->no_paper, "skip rendering the sequence the paper's way");
   command.add_flag("--sweep-table", o->sweep_table,
                    "also measure sides from 1 to 128: memory, time and pixels traced; no side changes a picture");
   command.add_flag("--compare", o->compare, "also run the image-space methods of Badt and Chapman");

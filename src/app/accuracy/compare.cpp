@@ -43,7 +43,7 @@ Status read_ppm(const platform::LoadedFile& file, const char* path, Levels* pict
   for (std::size_t& number : size) number = read_header_number(file, &at);
   const std::size_t width = size[0], height = size[1];
   if (width == 0 || height == 0 || width > kComparedPixelsMax / height || size[2] != 255)
-    return failure("%.300s is no PPM of 8 bits and at most 4096×4096 pixels: convert it or scale it down", path);
+    return failure("%.300s is not a PPM of 8 bits and at most 4096×4096 pixels: convert it or scale it down", path);
   ++at;  // one white-space character ends the header
   const std::size_t byte_count = 3 * width * height;
   if (at > file.byte_count || file.byte_count - at < byte_count)

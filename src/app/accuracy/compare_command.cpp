@@ -94,7 +94,7 @@ void add_compare_command(Command program, int* exit_status) {
       "Try:  pocketray compare expected.png out.png -o map.png --fail-above 0.01");
   command.add_option("A", o->reference, "the reference: .png, .jpg or .ppm").required();
   command.add_option("B", o->test, "the picture to judge, of the same size").required();
-  command.add_option("-o,--output", o->map, "also write the map of ꟻLIP, .png");
+  command.add_option("-o,--output", o->map, "also write the ꟻLIP map, .png");
   command.add_option("--fail-above", o->fail_above, "exit with status 1 if the mean ꟻLIP exceeds this")
       .range(0.0, 1.0)
       .default_str("never");

@@ -121,12 +121,12 @@ int run(ReferenceCommand command) {
 
 void add_reference_command(Command program, int* exit_status) {
   auto c = std::make_shared<ReferenceCommand>();
-  Command command = program.add_subcommand("reference", "render the picture that others are judged by");
+  Command command = program.add_subcommand("reference", "render a reference picture to judge others by");
   command.footer(
       "Traces paths in double precision and adds them up in a .pfm file: a picture of linear light, followed by the\n"
       "sums. The file is saved every minute and when interrupted; the same command continues it. Runs on several\n"
-      "machines take one part each, and --merge adds their files; the result is the same, bit for bit, as of one run.\n"
-      "Two halves of the samples are independent, and their difference tells the error: as ꟻLIP and RMSE, and per\n"
+      "machines take one part each, and --merge adds their files; the result equals that of one run, bit for bit.\n"
+      "Two halves of the samples are independent, and their difference gives the error: as ꟻLIP and RMSE, and per\n"
       "region. Cornell's sphere has 256 columns here, as in the references of `accuracy`.\n"
       "Try:  pocketray reference cornell -o cornell.pfm --until 0.02\n"
       "      pocketray accuracy cornell -o DIR --reference cornell.pfm");
@@ -140,7 +140,8 @@ void add_reference_command(Command program, int* exit_status) {
   command.add_option("--samples", c->goal.samples, "samples per pixel, of all parts together")
       .range(2u, kReferenceHalfCount * kReferenceSampleMax)
       .default_str("2048 for model, 256 for physical, none with --until");
-  command.add_option("--until", c->goal.until, "stop when its own error is at most this, as ꟻLIP").range(1e-6, 1.0);
+  command.add_option("--until", c->goal.until, "stop when the reference's own error, as ꟻLIP, is at most this")
+      .range(1e-6, 1.0);
   command.add_option("--part", c->part, "take only part K of N of the samples, K/N");
   command.add_option("--merge", c->merged, "add the samples of another file").allow_extra_args(true);
   command.add_option("--ppd", c->goal.pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")

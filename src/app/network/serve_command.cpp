@@ -68,7 +68,7 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
   if (address->loopback || o.insecure_lan) return success();
   return failure(
       "--listen %s is open to other machines and there is no authentication: anyone who reaches the port can use the "
-      "CPU and see the scenes. Listen at 127.0.0.1:7411 and connect through an SSH tunnel, or trust the network with "
+      "CPU and see the scenes. Listen on 127.0.0.1:7411 and connect through an SSH tunnel, or trust the network with "
       "--insecure-lan",
       o.listen.c_str());
 }
@@ -120,7 +120,7 @@ void print_start(const Serving& serving, const ServerOptions& options) {
   for (const StoredScene& scene : serving.store.scenes)
     std::printf("  %-24s %9s triangles %8.1f MiB\n", scene.name, grouped(scene.scene.triangles.count).c_str(),
                 static_cast<double>(scene.byte_count) / (1 << 20));
-  std::printf("listening at %s: %zu scenes, %u thread%s, %d clients of %.0f MiB each; Ctrl-C stops it\n",
+  std::printf("listening on %s: %zu scenes, %u thread%s, %d clients of %.0f MiB each; Ctrl-C stops it\n",
               server_address(*serving.server), serving.store.scenes.size(), options.thread_count,
               options.thread_count == 1 ? "" : "s", options.client_count_max,
               static_cast<double>(options.client_memory_bytes) / (1 << 20));
@@ -156,7 +156,7 @@ void add_serve_command(Command program, int* exit_status) {
   Command command = program.add_subcommand("serve", "run a render server that traces part of each frame for devices");
   command
       .add_option("--listen", o->listen,
-                  "HOST:PORT to listen at; port 0 takes any free one; addresses that other machines can reach need "
+                  "HOST:PORT to listen on; port 0 takes any free one; addresses that other machines can reach need "
                   "--insecure-lan")
       .capture_default_str();
   command.add_flag("--insecure-lan", o->insecure_lan,
@@ -180,7 +180,7 @@ void add_serve_command(Command program, int* exit_status) {
       .capture_default_str();
   command
       .add_option("--coherence", o->coherence,
-                  "trace only what can have changed since a client's last frame: on, off, or auto, where it pays and "
+                  "trace only what may have changed since a client's last frame: on, off, or auto, where it pays and "
                   "its memory allows it")
       .capture_default_str();
   add_isa_option(command, &o->isa);

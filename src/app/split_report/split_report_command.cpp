@@ -225,7 +225,7 @@ void add_split_report_command(Command program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
   o->common.emulate = "tablet";
   Command command = program.add_subcommand(
-      "split-report", "measure the speed-up by render servers over the device's share of the rows");
+      "split-report", "measure the speed-up by render servers against the device's share of the rows");
   command.footer(
       "Device, link and servers are simulated on a virtual clock, so you need not start any. A busy machine affects "
       "only\n"

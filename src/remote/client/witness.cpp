@@ -134,7 +134,7 @@ void tell_dispute(Client* client) {
     char line[400];
     std::snprintf(line, sizeof line,
                   "servers %s and %s sent different pixels for row %u of frame %u, and without the scene this device "
-                  "cannot tell which are right: add a third --server, or enough --memory for the scene",
+                  "cannot tell which is right: add a third --server, or enough --memory for the scene",
                   client->servers[v->dispute.server].address.text, client->servers[v->dispute.other].address.text,
                   v->dispute.row, client->request.frame);
     client->options.log(client->options.log_context, line);

@@ -36,7 +36,7 @@ enum class JobStage : std::uint8_t {
   plan,           // codec and renderer
   own_exposure,   // of the scene, if it must be measured
   aim,            // camera, time, lights
-  search,         // for what can have changed since the last frame
+  search,         // for what may have changed since the last frame
   view_exposure,  // of a view_query, answered afterwards
   rows,
 };

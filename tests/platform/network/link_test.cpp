@@ -61,7 +61,7 @@ TEST_CASE("link_refused_is_told_at_once") {
       CHECK(net->write(rig.link, stream, &byte, 1, &count, &rig.error) == LinkResult::failed);
     }
     CHECK(std::strstr(rig.error.text, rig.address.text) == rig.error.text);
-    CHECK(std::strstr(rig.error.text, "nothing listens there: start") != nullptr);
+    CHECK(std::strstr(rig.error.text, "nothing is listening there: start") != nullptr);
   }
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("link_listens_once_on_a_port") {
     CAPTURE(net->name);
     LinkRig rig(*net);
     CHECK(net->listen(rig.link, rig.address, &rig.error) == -1);
-    CHECK(std::strstr(rig.error.text, "another program listens there") != nullptr);
+    CHECK(std::strstr(rig.error.text, "another program is listening there") != nullptr);
     net->close(rig.link, rig.listener);
     CHECK(net->listen(rig.link, rig.address, &rig.error) >= 0);
   }

@@ -136,7 +136,7 @@ TEST_CASE("tcp_tries_every_place_of_an_address") {
     CHECK(rig.wait(stream, false, true));
     CHECK(kTcpLink.connected(rig.link, stream, &rig.error) == LinkResult::failed);
   }
-  CHECK(std::strstr(rig.error.text, "nothing listens there") != nullptr);
+  CHECK(std::strstr(rig.error.text, "nothing is listening there") != nullptr);
 }
 
 // Goal: a peer that has finished sending still receives. Method: one half of a socket is shut down.
