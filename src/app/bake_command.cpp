@@ -88,12 +88,11 @@ Status bake(const BakeOptions& o) {
   RETURN_IF_ERROR(status);
   if (!heap.warning.empty()) print_note(heap.warning);
   if (o.json != "-")
-    std::printf(
-        "%s: %s triangles, %u materials, %u textures, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f "
-        "ms\n",
-        o.output == "-" ? "standard output" : o.output.c_str(), grouped(scene.triangles.count).c_str(),
-        scene.materials.count, scene.textures.count, static_cast<double>(byte_count) / (1 << 20),
-        static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);
+    std::printf("%s: %s, %s, %s, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n",
+                o.output == "-" ? "standard output" : o.output.c_str(),
+                counted(scene.triangles.count, "triangle").c_str(), counted(scene.materials.count, "material").c_str(),
+                counted(scene.textures.count, "texture").c_str(), static_cast<double>(byte_count) / (1 << 20),
+                static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);
   if (o.radiosity && o.json != "-")
     std::printf("radiosity: %s, %.2f MiB, solved in %.1f s\n", solved.summary.c_str(),
                 static_cast<double>(solved.memory.size()) / (1 << 20), solve_ms * 1e-3);

@@ -1,6 +1,7 @@
 #include "app/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -15,6 +16,59 @@ namespace {
 std::string refuse_meaningless(const std::string& text, bool is_real) {
   if (text.empty()) return "must not be empty";
   return is_real && !std::isfinite(std::strtod(text.c_str(), nullptr)) ? "must be a finite number" : "";
+}
+
+// How many letters to insert, delete or replace to make one word of the other [Wagner & Fischer 1974].
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t corner = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = corner + (a[i] != b[j]);
+      corner = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, corner + 1});
+    }
+  }
+  return row.back();
+}
+
+// ", did you mean 'render'?", or nothing if no name is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  std::string nearest;
+  std::size_t least = 1 + std::min<std::size_t>(word.size() / 3, 3);
+  for (const std::string& name : names) {
+    const std::size_t distance = edit_distance(word, name);
+    if (distance < least) least = distance, nearest = name;
+  }
+  return nearest.empty() ? "" : ", did you mean '" + nearest + "'?";
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// Says which word is wrong, if one is: an unknown command, or an unknown option of a command.
+std::string unknown_word(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty()) return "";
+  const CLI::App* command = nullptr;
+  std::vector<std::string> names;
+  for (const CLI::App* each : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(each->get_name());
+    if (each->get_name() == words[0]) command = each;
+  }
+  if (!command && words[0][0] != '-') return "there is no command '" + words[0] + "'" + suggestion(words[0], names);
+  const std::vector<std::string> options = option_names(command ? *command : app);
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.compare(0, 2, "--") == 0 && std::find(options.begin(), options.end(), name) == options.end())
+      return "there is no option " + name + suggestion(name, options);
+  }
+  return "";
 }
 
 }  // namespace
@@ -119,9 +173,15 @@ ParseResult CommandLine::parse(const std::vector<std::string>& words) {
   ParseResult result;
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last word first
+  } catch (const CLI::ValidationError& error) {
+    result.error = error.what();
+  } catch (const CLI::ConversionError& error) {
+    result.error = error.what();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) {
-      result.error = error.what();
+      result.usage = true;
+      result.error = unknown_word(*app_, words);
+      if (result.error.empty()) result.error = error.what();
     } else {
       std::ostringstream help;
       app_->exit(error, help);

@@ -79,8 +79,9 @@ class Command {
 };
 
 struct ParseResult {
-  std::string error;  // what is wrong with the usage; empty: nothing
-  std::string help;   // the help or version to print, if the user asked for it; otherwise empty
+  std::string error;   // what is wrong; empty: nothing
+  bool usage = false;  // the usage is wrong; otherwise the value of an option
+  std::string help;    // the help or version to print, if the user asked for it; otherwise empty
 };
 
 // A program's command line; owns its commands and options.

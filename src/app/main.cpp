@@ -65,7 +65,7 @@ int run(int argument_count, char** arguments) {
     ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
     if (!parsed.error.empty()) {
       std::fprintf(stderr, "pocketray: %s (see --help)\n", parsed.error.c_str());
-      return kExitUsage;
+      return parsed.usage ? kExitUsage : kExitInput;
     }
     std::fputs(parsed.help.c_str(), stdout);
   } catch (const std::exception& error) {

@@ -1,4 +1,5 @@
 // pocketray plan: shows the effects a scene needs, why, and its memory map.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,17 @@ Status print_prices(const CommonOptions& options, OpenScene* opened) {
   return success();
 }
 
+void print_contents(const std::string& name, const Renderer& renderer) {
+  const Scene& scene = renderer.scene;
+  const auto emitting = std::count_if(scene.materials.begin(), scene.materials.end(),
+                                      [](const Material& material) { return !is_zero(material.emission); });
+  std::printf("%s: %s, %s, %s, %s", name.c_str(), counted(scene.triangles.count, "triangle").c_str(),
+              counted(scene.materials.count, "material").c_str(), counted(scene.textures.count, "texture").c_str(),
+              counted(scene.lights.count, "light").c_str());
+  if (emitting > 0) std::printf(", %s", counted(static_cast<std::uint64_t>(emitting), "emitting material").c_str());
+  std::printf("; accelerator %s\n", renderer.accel_info->name);
+}
+
 int run(const CommonOptions& options, bool prices) {
   OpenScene opened;
   Status status = check_outputs({{"SCENE", options.scene}}, {{"--json", options.json}});
@@ -34,9 +46,7 @@ int run(const CommonOptions& options, bool prices) {
   if (renderer.memory.total_bytes > 0) {  // planned, even if it does not fit
     print_notes(opened);
     if (options.json != "-") {
-      std::printf("%s: %s triangles, %u materials, %u textures, %u lights; accelerator %s\n", options.scene.c_str(),
-                  grouped(renderer.scene.triangles.count).c_str(), renderer.scene.materials.count,
-                  renderer.scene.textures.count, renderer.scene.lights.count, renderer.accel_info->name);
+      print_contents(options.scene, renderer);
       print_effects(renderer.effects);
       print_memory(renderer.memory);
       const char* without = renderer.coherence_state.unplanned_because;

@@ -131,6 +131,12 @@ Status read_crop(const RenderOptions& o, RenderRequest* request) {
   return success();
 }
 
+Status check_raw(const RenderOptions& o, const RenderRequest& request) {
+  if (has_suffix(request.kind.c_str(), ".raw")) return success();
+  const char* option = o.rotation != 0 ? "--rotate" : o.dither ? "--dither" : nullptr;
+  return option ? failure("%s is for .raw pictures: drop it, or write .raw", option) : success();
+}
+
 Status check_resume(const RenderOptions& o, const RenderRequest& request) {
   if (keeps_journal(o, request))
     return check_outputs({{"SCENE", o.common.scene}}, {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
@@ -214,6 +220,7 @@ Status read_render_options(RenderOptions* o, RenderRequest* request) {
   RETURN_IF_ERROR(check_paths(*o, request));
   if (!rotation_from_degrees(o->rotation, &request->picture.rotation))
     return failure("--rotate is %d: it must be 0, 90, 180 or 270", o->rotation);
+  RETURN_IF_ERROR(check_raw(*o, *request));
   request->picture.dither = o->dither;
   RETURN_IF_ERROR(read_crop(*o, request));
   RETURN_IF_ERROR(check_resume(*o, *request));

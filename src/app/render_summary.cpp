@@ -42,7 +42,8 @@ void print_summary(const RenderSummary& s) {
   if (s.files.size() > 1) std::printf("%s … ", s.files.front().c_str());
   std::printf("%s: ", s.files.back() == "-" ? "standard output" : s.files.back().c_str());
   if (s.frame_count > s.files.size())
-    std::printf("%u frames at %g per second, ", s.frame_count, frame_rate(*s.options, renderer.scene.info));
+    std::printf("%s at %g per second, ", counted(s.frame_count, "frame").c_str(),
+                frame_rate(*s.options, renderer.scene.info));
   std::printf("%d×%d, %s triangles, %.1f ms%s, %.0f ns per pixel, %u thread%s%s\n", s.box.width, s.box.height,
               grouped(triangle_count(s.servers, renderer)).c_str(), s.trace_ms / s.frame_count,
               s.frame_count > 1 ? " per frame" : "", s.trace_ms * 1e6 / pixels, renderer.settings.threads,

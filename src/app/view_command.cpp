@@ -147,6 +147,8 @@ Status check_options(const ViewCommand& o) {
     if (!o.side_by_side.reference.empty())
       return failure("--side-by-side works only without render servers: drop --side-by-side or --server");
   }
+  if (o.common.scene.empty() && o.view.backend == "null")
+    return failure("nothing can be chosen on --screen null: name a SCENE");
   bool asked = o.view.screenshot_folder != ViewOptions().screenshot_folder;
   return asked ? make_output_folder(o.view.screenshot_folder) : success();
 }

@@ -26,9 +26,10 @@ void rest_for(CoherenceTrial* trial, std::uint32_t frames) {
 void rest_after(CoherenceTrial* trial, bool did_pay) { rest_for(trial, did_pay ? 0 : trial->rest_next); }
 
 bool rests(CoherenceTrial* trial) {
-  if (trial->rest == 0) return false;
-  --trial->rest;
-  return true;
+  trial->tries_again = trial->rest == 0 && trial->was_resting;
+  trial->was_resting = trial->rest > 0;
+  trial->rest -= trial->was_resting;
+  return trial->was_resting;
 }
 
 void weigh_frame(CoherenceTrial* trial, FrameKind kind, double ns) {

@@ -11,6 +11,8 @@ struct CoherenceTrial {
   double plain_ns = 0, recorded_ns = 0;   // the last frame of the kind; 0: none yet
   bool was_recorded = false;              // the last frame, whole
   std::uint32_t rest = 0, rest_next = 1;  // frames to trace whole before coherence is tried again
+  bool was_resting = false;               // for the last frame
+  bool tries_again = false;               // after a rest
 };
 
 // Weighs a frame that took `ns`.

@@ -65,6 +65,7 @@ bool begin_following(Renderer* renderer) {
     state->whole_because = "tracing only what changed did not pay";
   } else {
     follow_frame(c, renderer->frame, &state->whole_because);
+    if (state->whole_because && state->trial.tries_again) state->whole_because = "coherence is tried again";
     return true;
   }
   forget_frame(c);

@@ -201,7 +201,7 @@ pocketray_result plan_request(const Request& q, const SceneStorage& storage, Ren
   std::uint32_t index = q.options.camera_index;
   if (index > 0 && index >= scene.cameras.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT,
-                  failure("there is no camera %u: the scene has %u", index, scene.cameras.count));
+                  failure("there is no camera %u: the scene has %u, counted from 0", index, scene.cameras.count));
   renderer->camera_index = index;
   renderer->accel_info = q.accel;
   renderer->light_count_max = q.options.light_count_max;

@@ -142,7 +142,7 @@ pocketray_result pocketray_use_scene_camera(pocketray_instance* instance, std::u
   Array<const Camera> cameras = renderer->scene.cameras;
   if (camera_index > 0 && camera_index >= cameras.count)
     return refuse(POCKETRAY_ERROR_ARGUMENT,
-                  failure("there is no camera %u: the scene has %u", camera_index, cameras.count));
+                  failure("there is no camera %u: the scene has %u, counted from 0", camera_index, cameras.count));
   float aspect = static_cast<float>(renderer->settings.width) / static_cast<float>(renderer->settings.height);
   renderer->camera = cameras.empty() ? default_camera(renderer->scene, aspect) : cameras[camera_index];
   renderer->camera_index = camera_index;

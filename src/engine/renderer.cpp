@@ -121,7 +121,8 @@ void start_renderer(void* block, std::size_t block_bytes, const Settings& settin
 Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
   RETURN_IF_ERROR(validate_settings(renderer->settings));
   if (renderer->camera_index > 0 && renderer->camera_index >= renderer->scene.cameras.count)
-    return failure("there is no camera %u: the scene has %u", renderer->camera_index, renderer->scene.cameras.count);
+    return failure("there is no camera %u: the scene has %u, counted from 0", renderer->camera_index,
+                   renderer->scene.cameras.count);
   for (const Material& m : renderer->scene.materials)  // the file's program may have had more lobes
     if (m.brdf >= kBrdfCount)
       return failure("a material uses glossy lobe %u, this program has %u: bake the scene again", m.brdf, kBrdfCount);

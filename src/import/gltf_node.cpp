@@ -119,7 +119,9 @@ void gltf_visit_nodes(GltfFile* file) {
     int chosen = model.defaultScene < 0 ? 0 : model.defaultScene;
     if (static_cast<std::size_t>(chosen) >= model.scenes.size())
       fail_import("scene %d does not exist; export the file again", chosen);
-    if (model.scenes.size() > 1) note_unused(file->builder, std::to_string(model.scenes.size() - 1) + " other scenes");
+    if (model.scenes.size() > 1)
+      note_unused(file->builder, std::to_string(model.scenes.size() - 1) +
+                                     (model.scenes.size() == 2 ? " other scene" : " other scenes"));
     for (int root : model.scenes[static_cast<std::size_t>(chosen)].nodes) visit_tree(file, root);
   }
   file->visible_count = file->order.size();

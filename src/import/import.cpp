@@ -49,6 +49,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   bool gltf = is_gltf(ending, bytes);
   if (!gltf && ending != "obj" && ending != "ply") {
     if (assimp_reads(ending)) return import_by_assimp(path, ending, bytes, options, result);
+    if (ending == "pray") fail_import("it is baked already; bake the model it was made from");
     fail_import("no reader for '.%.20s' files; convert to one of: %s", ending.c_str(), import_formats().c_str());
   }
   SceneBuilder builder;
@@ -64,7 +65,8 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
 
 // A Status is one line, but library messages may contain line feeds and other control characters.
 Status one_line_failure(const std::string& path, const char* message) {
-  Status status = failure("%.180s: %s", path.c_str(), message);
+  const bool named = std::strstr(message, path.c_str()) != nullptr;
+  Status status = named ? failure("%s", message) : failure("%.180s: %s", path.c_str(), message);
   char* end = status.message;
   bool space = false;
   for (const char* c = status.message; *c; ++c) {

@@ -126,6 +126,12 @@ void print_notes(const OpenScene& opened) {
     std::fprintf(stderr, "pocketray: the scene has no light: %s\n", added);
   if (info.default_lights == 0 && light != LightChoice::key)
     std::fprintf(stderr, "pocketray: --light changes nothing: the scene has light of its own\n");
+  const Renderer& renderer = opened.renderer;
+  if (renderer.settings.coherence == CoherenceMode::on && !renderer.coherence_state.planned)
+    std::fprintf(stderr, "pocketray: --coherence on has no effect: %s\n", renderer.coherence_state.unplanned_because);
+  const EffectDecision& selective = renderer.effects.decisions[static_cast<int>(Effect::selective)];
+  if (renderer.settings.selective_contrast > 0 && !selective.on && selective.reason[0])
+    std::fprintf(stderr, "pocketray: --selective has no effect: %s\n", selective.reason);
 }
 
 }  // namespace pocketray

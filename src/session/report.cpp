@@ -60,7 +60,8 @@ Json memory_json(const MemoryPlan& plan) {
 std::string emulation_text(const Pace& pace) {
   if (!pace.device) return "";
   char text[80];
-  std::snprintf(text, sizeof text, ", emulating %.40s: %.3g times slower", pace.device, pace.slowdown);
+  std::snprintf(text, sizeof text, ", emulating %.40s: %.*g times slower", pace.device, pace.slowdown < 1000 ? 3 : 6,
+                pace.slowdown);
   return text;
 }
 
@@ -68,6 +69,10 @@ std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");
   return digits;
+}
+
+std::string counted(std::uint64_t value, const char* noun) {
+  return grouped(value) + " " + noun + (value == 1 ? "" : "s");
 }
 
 }  // namespace pocketray

@@ -28,5 +28,7 @@ std::string emulation_text(const Pace& pace);
 
 // Groups digits: "12 345 678".
 std::string grouped(std::uint64_t value);
+// The same with a noun: "1 light", "12 345 lights".
+std::string counted(std::uint64_t value, const char* noun);
 
 }  // namespace pocketray

@@ -127,7 +127,7 @@ Status scene_too_large(const std::string& name, std::uint64_t need, std::size_t 
   double needed = static_cast<double>(need) / (1 << 20), allowed = static_cast<double>(limit) / (1 << 20);
   if (hopeless)
     return failure("%.200s needs %.1f MiB for the scene alone, more than --memory can be", name.c_str(), needed);
-  return failure("%.200s needs %.1f MiB for the scene alone but --memory allows %.1f MiB: try --memory %lluM",
+  return failure("%.200s needs %.2f MiB for the scene alone but --memory allows %.2f MiB: try --memory %lluM",
                  name.c_str(), needed, allowed, static_cast<unsigned long long>(megabytes));
 }
 

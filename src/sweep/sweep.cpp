@@ -240,7 +240,7 @@ Status check_options(const AccuracyOptions& o) {
   if (o.reference_file.empty() && (o.reference_samples == 1 || o.reference_samples > 1000000))
     return failure("--reference-samples is %u: it must lie in 2 … 1000000", o.reference_samples);
   if (!(o.pixels_per_degree >= 1 && o.pixels_per_degree <= 1000))
-    return failure("--ppd is %g: it must lie in 1 … 1000", o.pixels_per_degree);
+    return failure("--pixels-per-degree is %g: it must lie in 1 … 1000", o.pixels_per_degree);
   return success();
 }
 

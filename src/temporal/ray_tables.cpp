@@ -82,10 +82,12 @@ void reset_tables(const Box& scene_bounds, RayTables* t) {
   CHECK_EQ(t->words.count, kVoxelCount * t->words_per_voxel);
   const Box b = is_empty(scene_bounds) ? Box{{0, 0, 0}, {0, 0, 0}} : scene_bounds;
   const bool is_placed = !is_empty(t->bounds) && contains(t->bounds, b);
-  // Room for motion: an eighth on each side. A grid that has grown shrinks once it is 8 times as large as the scene.
+  // Room for motion: an eighth on each side, and half of it once the scene has outgrown the grid, so that few frames
+  // do. A grid that has grown shrinks once it is 8 times as large as the scene.
   const bool is_far_larger = max_component(extent(t->bounds)) > 8 * max_component(extent(b));
   if (!is_placed || is_far_larger) {
-    const Vec3 room = extent(b) * 0.125f;
+    const bool outgrown = !is_empty(t->bounds) && !is_far_larger;
+    const Vec3 room = extent(b) * (outgrown ? 0.5f : 0.125f);
     const Box place = {b.low - room, b.high + room};
     t->bounds = is_far_larger ? place : merge(t->bounds, place);
   }

@@ -8,9 +8,9 @@ if "${run[@]}" --help | grep -q '^ *coherence-report '; then
   tiny=(--size 16x12 --threads 2)
   expect coherence_of_a_still_scene 1 'cube does not move.*choose a scene' coherence-report cube "${tiny[@]}" -o still
   expect coherence_without_animation 1 'does not move' coherence-report seesaw "${tiny[@]}" --effects auto,-animation
-  expect coherence_frames 1 'first:last' coherence-report seesaw "${tiny[@]}" --frames 3:1
-  expect coherence_table 2 'table' coherence-report seesaw "${tiny[@]}" --table 0
-  expect coherence_memory 1 'coherence does not fit in --memory: --memory [0-9]+M' \
+  expect coherence_frames 1 'last frame comes before' coherence-report seesaw "${tiny[@]}" --frames 3:1
+  expect coherence_table 1 'table' coherence-report seesaw "${tiny[@]}" --table 0
+  expect coherence_memory 1 'coherence does not fit in --memory: try --memory [0-9]+M' \
     coherence-report seesaw --size 320x240 --threads 1 --memory 2M --frames 0:1
   expect coherence 0 'equal in every bit' coherence-report seesaw "${tiny[@]}" --frames 0:2 -o reported
   for file in index.html report.json frames.csv frames_papers_way.csv rays.gnuplot; do

@@ -9,7 +9,7 @@ first_pixel() { tail -c $((32 * 24 * 3)) "$1" | head -c 3 | od -An -tx1 | tr -d 
 for color in '#ff80' '#ff80gg' red 1,2 1,2,3,4 -1,0,0 nan,0,0 1e38,0,0 '#'; do
   expect "background_$color" 1 'background' render cube "${small[@]}" "--background=$color" -o refused.ppm
 done
-expect light_name 2 'light.*moon' render cube "${small[@]}" --light moon -o refused.ppm
+expect light_name 1 'light.*moon' render cube "${small[@]}" --light moon -o refused.ppm
 for degrees in 0 -5 180 nan inf 40x wide; do
   expect "fov_$degrees" 1 "fov is '$degrees': it must lie in 0.001 … 179" render cube "${small[@]}" "--fov=$degrees" -o refused.ppm
 done

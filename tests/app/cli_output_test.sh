@@ -73,7 +73,7 @@ if command -v script >/dev/null; then
 fi
 expect sequence_to_stdout 1 'add --format gif' render cube --size 8x6 --frames 0:3 -o -
 expect format_of_a_file 1 'is for -o -' render cube --size 8x6 --format ppm -o refused.png
-expect format_name 2 'format' render cube --size 8x6 --format bmp -o -
+expect format_name 1 'format' render cube --size 8x6 --format bmp -o -
 expect nowhere 0 'effects' plan cube --json /dev/null
 
 # Goal: a failed write to standard output is reported and breaks nothing else. Method: a full device and a closed output, with

@@ -113,7 +113,7 @@ expect resume_from_the_begin 0 '^new-0000.ppm … new-0005.ppm' render other.pra
 "${run[@]}" bake cube -o other.pray >/dev/null
 expect resume_a_changed_file 1 'another scene' render other.pray "${small[@]}" --frames 0:5 --resume -o new.ppm
 echo nonsense >bad.ppm.resume
-expect resume_nonsense 1 'no list of finished frames' render cube "${small[@]}" --frames 0:5 --resume -o bad.ppm
+expect resume_nonsense 1 'not a list of finished frames' render cube "${small[@]}" --frames 0:5 --resume -o bad.ppm
 mkdir taken.ppm.resume
 expect resume_taken 1 'taken.ppm.resume is a folder' render cube "${small[@]}" --frames 0:5 -o taken.ppm
 expect resume_a_still 1 'for sequences of numbered pictures' render cube "${small[@]}" --resume -o refused.ppm
@@ -124,7 +124,7 @@ expect resume_a_budget 1 'drop it' render seesaw "${small[@]}" --frames 0:3 --bu
 expect turntable_and_frames 2 'excludes' render cube "${small[@]}" --turntable 4 --frames 0:3 -o refused.ppm
 expect turntable_and_orbit 2 'excludes' render cube "${small[@]}" --turntable 4 --orbit 3 -o refused.ppm
 for count in 0 1 -4 3601 2.5 many; do
-  expect "turntable_$count" 2 'turntable' render cube "${small[@]}" "--turntable=$count" -o refused.ppm
+  expect "turntable_$count" 1 'turntable' render cube "${small[@]}" "--turntable=$count" -o refused.ppm
 done
 expect turntable_is_not_coherent 1 'drop --coherence' render cube "${small[@]}" --turntable 4 --coherence on -o refused.ppm
 for kind in gif apng mp4; do expect "still_$kind" 1 'add --frames' render cube "${small[@]}" -o refused.$kind; done
@@ -132,7 +132,7 @@ expect gif_too_fast 1 'at most 50 .* --fps 50' render cube "${small[@]}" --turnt
 expect mp4_of_odd_size 1 'even .* try 34x24' render cube --size 33x24 --turntable 4 -o refused.mp4
 expect fps_of_a_still 1 'for sequences' render cube "${small[@]}" --fps 10 -o refused.ppm
 expect fps_of_pictures 1 'changes nothing' render cube "${small[@]}" --turntable 4 --fps 10 -o refused.ppm
-for rate in 0 -1 241 nan fast; do expect "fps_$rate" 2 'fps' render cube "${small[@]}" --turntable 4 "--fps=$rate" -o refused.gif; done
+for rate in 0 -1 241 nan fast; do expect "fps_$rate" 1 'fps' render cube "${small[@]}" --turntable 4 "--fps=$rate" -o refused.gif; done
 mkdir folder.gif
 expect gif_is_a_folder 1 'is a folder' render seesaw "${small[@]}" --frames 0:99999 -o folder.gif
 expect gif_nowhere 1 'cannot be written' render seesaw "${small[@]}" --frames 0:99999 -o no/such/a.gif

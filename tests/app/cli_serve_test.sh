@@ -11,7 +11,7 @@ if "${run[@]}" --help | grep -q '^ *serve '; then
   expect serve_without_folder 1 'no/such/folder' serve --listen :0 --scenes no/such/folder
   expect serve_memory 1 'memory' serve --listen :0 --memory 1M
   expect serve_scene_memory 1 '--scene-memory is' serve --listen :0 --scene-memory much
-  expect serve_clients 2 'clients' serve --clients 0
+  expect serve_clients 1 'clients' serve --clients 0
   expect serve_threads 1 '--threads is 4000000000: it must lie in 0 … 64' serve --listen :0 --threads 4000000000
 fi
 if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under an emulated CPU
@@ -31,7 +31,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   # pixels.
   expect scenes 0 '^ *d\.pray +45 109 triangles' scenes --server "$address"
   expect scenes_json 0 '"triangles": 45109' scenes --server "$address" --json -
-  expect scenes_of_nobody 1 '127.0.0.1:1: nothing listens' scenes --server 127.0.0.1:1
+  expect scenes_of_nobody 1 '127.0.0.1:1: nothing is listening' scenes --server 127.0.0.1:1
   expect scenes_without_server 2 'server' scenes
   remote=(--size 32x24 --server "$address")
   expect fetch 0 'device rendered [1-9]' render d "${remote[@]}" -o fetched.ppm
@@ -42,7 +42,7 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   expect fetch_from_the_one_that_has_it 0 'ns per pixel' render d --server 127.0.0.1:1 "${remote[@]}" -o second.ppm
   check second_server_gives_the_same_picture cmp -s one.ppm second.ppm
   expect fetch_unknown 1 'no_such is neither a file.* 127.*: it has cornell, ' render no_such "${remote[@]}" -o b.ppm
-  expect fetch_from_nobody 1 'nothing listens' render no_such --server 127.0.0.1:1 -o b.ppm
+  expect fetch_from_nobody 1 'nothing is listening' render no_such --server 127.0.0.1:1 -o b.ppm
   for scene in cornell d d.pray; do
     expect "thin_$scene" 0 'device rendered 0 %' \
       render $scene "${remote[@]}" --memory 700K -o "thin_$scene.ppm"
@@ -61,13 +61,13 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   expect thin_sequence 0 'rendered 0 %' render seesaw "${remote[@]}" --memory 400K --frames 3:5 -o thin.ppm
   for n in 3 4 5; do check "thin_frame_$n" cmp -s alone-000$n.ppm thin-000$n.ppm; done
   expect thin_view 0 '' view seesaw "${remote[@]}" --memory 500K --screen null --frames 3
-  expect thin_without_server 1 'no server can render it; 127.*nothing listens' \
+  expect thin_without_server 1 'no server can render it; 127.*nothing is listening' \
     render cornell --server 127.0.0.1:1 --memory 700K -o b.ppm
   expect thin_camera_index 1 'cannot render with these settings' \
     render cornell "${remote[@]}" --memory 700K --camera-index 7 -o b.ppm
   expect thin_without_room 1 'MiB of memory without a scene' render cornell "${remote[@]}" --memory 64K -o b.ppm
   check no_picture_of_what_failed test ! -e b.ppm
-  expect serve_port_is_taken 1 'another program listens' serve --listen "$address"
+  expect serve_port_is_taken 1 'another program is listening' serve --listen "$address"
   kill -INT $server
   wait $server
   check serve_is_interrupted test $? -eq 3
@@ -123,12 +123,12 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   expect_in_use verify_prints_its_odds 'of their pixels per frame checked, which catches one wrong row per frame with a probability of' \
     render seesaw "${shared[@]}" --server "$address" --verify 9 -o verified.ppm
   for value in 1.5 -0.5; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done
-  expect share_nan 2 'finite number' "${one[@]}" --server "$address" --share=nan
+  expect share_nan 1 'finite number' "${one[@]}" --server "$address" --share=nan
   for option in price energy-pixel energy-byte cost-weight cost-cap; do
     expect "${option}_below_0" 1 'negative' "${one[@]}" --server "$address" --$option=-1
     expect "${option}_without_a_server" 1 '--server' "${one[@]}" --$option=1
   done
-  expect price_is_no_number 2 'price' "${one[@]}" --server "$address" --price cheap
+  expect price_is_no_number 1 'price' "${one[@]}" --server "$address" --price cheap
   expect cost_weight_and_cap 1 'exclude' "${one[@]}" --server "$address" --cost-weight 1 --cost-cap 1
   expect share_without_a_server 1 '--server' "${one[@]}" --share 0.5
   check nothing_refused_is_written test ! -e refused.ppm -a ! -e refused.pfm
@@ -171,8 +171,8 @@ keys = {"times_of", "processors", "share", "ns_per_pixel", "our_share", "our_ns_
 assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])'
     fi
     expect split_report_device 1 'gp2x' split-report cube --emulate toaster
-    expect split_report_no_server 2 'servers' "${report[@]}" --servers 0
-    expect split_report_many_servers 2 'servers' "${report[@]}" --servers 9
+    expect split_report_no_server 1 'servers' "${report[@]}" --servers 0
+    expect split_report_many_servers 1 'servers' "${report[@]}" --servers 9
     "${run[@]}" split-report cube --device-ns 5000 --server-ns 500 --frames 100 >/dev/null 2>interrupted.err &
     reporting=$!
     # The process is no longer the shell, and SIGINT, signal 2, is caught: the program is running.

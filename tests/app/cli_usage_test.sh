@@ -8,6 +8,25 @@ expect help_of_command 0 '--area-lights' render --help
 expect version 0 '[0-9]+\.[0-9]+' --version
 expect no_command 2 'subcommand' 
 expect unknown_option 2 'nonsense' render cornell --nonsense
+expect near_option 2 "no option --sise, did you mean '--size'" render cornell --sise 3x4
+expect near_version 2 "did you mean '--version'" --verson
+expect near_command 2 "no command 'rendr', did you mean 'render'" rendr cornell
+expect far_command 2 "no command 'scientific' \\(see" scientific
+expect bad_value 1 'budget-ms' render cornell --budget-ms -3
+expect bad_number 1 'threads' render cornell --threads many
+expect last_before_first 1 'the last frame comes before the first' render cube "${small[@]}" --frames 5:3 -o refused.ppm
+expect no_such_camera 1 'counted from 0' render cube "${small[@]}" --camera-index 7 -o refused.ppm
+expect rotated_picture 1 '--rotate is for .raw' render cube "${small[@]}" --rotate 90 -o refused.ppm
+expect dithered_picture 1 '--dither is for .raw' render cube "${small[@]}" --dither -o refused.ppm
+expect bake_baked 1 'pray' bake refused.pray -o again.pray
+expect coherence_of_neighbours 0 'coherence on has no effect: ' \
+  render seesaw "${small[@]}" --frames 0:1 --coherence on --selective .2 -o ignored.ppm
+expect selective_is_ignored 0 'selective has no effect: instant radiosity' \
+  render cornell "${small[@]}" --selective .2 --indirect instant-radiosity -o ignored.ppm
+expect plan_counts_lamps 0 '1 emitting material;' plan cornell "${small[@]}"
+if "${run[@]}" view --help >/dev/null 2>&1; then
+  expect nothing_to_choose 1 'name a SCENE' view --screen null --frames 1
+fi
 expect unknown_scene 1 'no_such_scene' render no_such_scene -o a.ppm
 expect bad_size 1 '320x240' render cube --size 0y3 -o a.ppm
 expect bad_size_zero 1 'width' render cube --size 0x3 -o a.ppm
@@ -27,7 +46,7 @@ expect emulate_and_another_device 1 'give only one of them' render cube "${small
 expect emulate_memory 0 'of 16.0 MiB' plan cube --emulate gp2x
 expect isa_name 1 'this CPU has baseline' render cube "${small[@]}" --isa sse9 -o a.ppm
 expect isa_in_report 0 '2 threads, baseline' bench cube "${small[@]}" --frames 1 --no-prices --isa baseline
-expect frames_format 1 'first:last' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
+expect frames_format 1 'last frame comes before' render seesaw "${small[@]}" --frames 9:3 -o a.ppm
 
 # Goal: a corrupt file is refused in one line.
 "${run[@]}" bake "$subject" -o c.pray >/dev/null

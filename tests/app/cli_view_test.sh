@@ -72,7 +72,7 @@ if "${run[@]}" view --help | grep -q side-by-side; then
   done
   expect side_by_side_budget 0 'from the model reference' \
     view cube "${small[@]}" --screen null --frames 2 --side-by-side model --budget-ms 1000000
-  expect side_by_side_unknown 2 'side-by-side' view cube --screen null --side-by-side none
+  expect side_by_side_unknown 1 'side-by-side' view cube --screen null --side-by-side none
   ! "${run[@]}" view --help | grep -q -- --server ||
     expect side_by_side_of_servers 1 'drop --side-by-side or --server' \
       view cube --screen null --side-by-side model --server 127.0.0.1:1

@@ -187,7 +187,7 @@ TEST_CASE("gltf_default_scene_alone_is_read") {
   ImportedScene imported = load_text(document);
   CHECK(imported.scene.triangles.count == 1);
   CHECK(imported.scene.positions[0].x == 5);
-  CHECK(imported.warning == "not used: 1 other scenes");
+  CHECK(imported.warning == "not used: 1 other scene");
 }
 
 // Goal: a .glb is read like the .gltf it wraps.
@@ -209,7 +209,7 @@ TEST_CASE("gltf_samples_scenes_instances_and_negative_scales") {
   if (have(multiple)) {
     ImportedScene imported = load(multiple);
     CHECK(imported.scene.triangles.count == 2);  // scene 0, a square; scene 1 would be a triangle
-    CHECK(contains(imported.warning, "1 other scenes"));
+    CHECK(contains(imported.warning, "1 other scene"));
   }
   std::string instancing = shared_scene("gltf/SimpleInstancing.glb");
   if (have(instancing)) CHECK(load(instancing).scene.triangles.count == 125 * 12);

@@ -29,7 +29,7 @@ Measurement measure(Renderer* renderer, std::uint32_t frame_count) {
 }  // namespace
 
 // Goal: the frames that coherence traces whole are counted. Method: on, after the first frame none is; while it rests
-// for three frames, of which one warms up, two are, and so is the next, which has no frame before it.
+// for three frames, of which one warms up, two are, and so is the next, which follows none.
 TEST_CASE("measure_counts_frames_traced_whole") {
   std::unique_ptr<TestRenderer> renderer = make_seesaw(CoherenceMode::on);
   Measurement m = measure(&renderer->renderer, 4);
@@ -45,7 +45,7 @@ TEST_CASE("measure_counts_frames_traced_whole") {
   renderer->renderer.coherence_state.trial.rest = 3;
   m = measure(&renderer->renderer, 3);
   CHECK(m.whole_frames == 3);
-  CHECK(std::strstr(m.whole_because, "no previous frame") != nullptr);
+  CHECK(std::strstr(m.whole_because, "tried again") != nullptr);
   CHECK(m.pixels_traced == 3 * 32 * 24);
 }
 

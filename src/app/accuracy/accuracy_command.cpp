@@ -82,7 +82,7 @@ void add_accuracy_command(Command program, int* exit_status) {
   command.add_option("--reference-samples", o->reference_samples, "samples per pixel of the reference")
       .default_str("2048 for model, 256 for physical");
   command.add_option("--rounds", o->rounds, "number of times to measure each configuration").capture_default_str();
-  command.add_option("--ppd", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
+  command.add_option("--pixels-per-degree,--ppd", o->pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
       .capture_default_str();
   command.add_option("--time", o->seconds, "seconds into the animation").capture_default_str();
   command

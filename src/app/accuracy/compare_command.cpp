@@ -98,7 +98,8 @@ void add_compare_command(Command program, int* exit_status) {
   command.add_option("--fail-above", o->fail_above, "exit with status 1 if the mean ꟻLIP exceeds this")
       .range(0.0, 1.0)
       .default_str("never");
-  command.add_option("--pixels-per-degree", o->pixels_per_degree, "resolution as seen: pixels per degree of vision")
+  command
+      .add_option("--pixels-per-degree,--ppd", o->pixels_per_degree, "resolution as seen: pixels per degree of vision")
       .range(4.0, 400.0)
       .default_str("23.6, a handheld's; 67 is usual for desktops");
   add_json_option(command, &o->json);

@@ -144,7 +144,8 @@ void add_reference_command(Command program, int* exit_status) {
       .range(1e-6, 1.0);
   command.add_option("--part", c->part, "take only part K of N of the samples, K/N");
   command.add_option("--merge", c->merged, "add the samples of another file").allow_extra_args(true);
-  command.add_option("--ppd", c->goal.pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
+  command
+      .add_option("--pixels-per-degree,--ppd", c->goal.pixels_per_degree, "pixels per degree of visual angle, for ꟻLIP")
       .range(1.0, 1000.0)
       .capture_default_str();
   command.add_option("--time", c->options.seconds, "seconds into the animation").capture_default_str();

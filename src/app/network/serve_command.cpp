@@ -161,8 +161,10 @@ void add_serve_command(Command program, int* exit_status) {
       .capture_default_str();
   command.add_flag("--insecure-lan", o->insecure_lan,
                    "allow addresses that other machines can reach; there is no authentication");
-  command.add_option("--scenes", o->scenes,
-                     "folder of scenes to offer besides the built-in ones: .pray files and, on a desktop, models");
+  command.add_option(
+      "--scenes", o->scenes,
+      "folder of scenes to offer besides the built-in ones, without its subfolders: .pray files and, on a desktop, "
+      "models");
   command.add_option("--threads", o->threads, "tracing threads, shared by all clients; 0: one per core")
       .capture_default_str();
   command

@@ -106,7 +106,7 @@ TEST_CASE("null_link_faults_strike_where_they_should") {
         CHECK(rig.wait(device, false, true));
         CHECK(elapsed_ns(rig) == (refused ? 2 * kMs : 70 * kMs));
         CHECK(rig.net->connected(rig.link, device, &rig.error) == LinkResult::failed);
-        CHECK(std::strstr(rig.error.text, refused ? "nothing listens" : "no answer") != nullptr);
+        CHECK(std::strstr(rig.error.text, refused ? "nothing is listening" : "no answer") != nullptr);
         CHECK(null_link_record(rig.link).faults_struck == 1);
         continue;
       }

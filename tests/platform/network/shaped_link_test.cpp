@@ -203,7 +203,7 @@ TEST_CASE("shaped_link_connecting_takes_a_round_trip_at_least") {
   REQUIRE(rig.wait(device, false, true));
   CHECK(elapsed_ns(rig) == 170 * kMs);
   CHECK(rig.net->connected(rig.link, device, &rig.error) == LinkResult::failed);
-  CHECK(std::strstr(rig.error.text, "nothing listens") != nullptr);
+  CHECK(std::strstr(rig.error.text, "nothing is listening") != nullptr);
 }
 
 // Goal: a clock set back costs no more than sending the data in transit again. Method: the fault of the inner link.
