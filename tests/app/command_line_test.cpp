@@ -95,6 +95,32 @@ TEST_CASE("command_line_refuses_wrong_usage") {
   }
 }
 
+// Goal: a misspelt command or option is named with the nearest known one, if any is near; a bad value is told from
+// wrong usage.
+TEST_CASE("command_line_suggests_the_nearest_word") {
+  struct Misspelt {
+    std::vector<std::string> words;
+    const char* error;
+  };
+  const Misspelt lines[] = {
+      {{"comand", "b"}, "there is no command 'comand', did you mean 'command'?"},
+      {{"something"}, "there is no command 'something'"},
+      {{"--verson"}, "there is no option --verson, did you mean '--version'?"},
+      {{"command", "b", "--reel=1"}, "there is no option --reel, did you mean '--real'?"},
+      {{"command", "b", "--count", "3", "--lits", "c"}, "there is no option --lits, did you mean '--list'?"},
+      {{"command", "b", "--nonsense"}, "there is no option --nonsense"}};
+  for (const Misspelt& line : lines) {
+    Program program;
+    const ParseResult parsed = program.line.parse(line.words);
+    CHECK(parsed.error == line.error);
+    CHECK(parsed.usage);
+  }
+  Program program;
+  CHECK_FALSE(program.line.parse({"command", "b", "--count", "6"}).usage);
+  CHECK_FALSE(program.line.parse({"command", "b", "--count", "x"}).usage);
+  CHECK(program.line.parse({"command"}).usage);
+}
+
 // Goal: help and version are returned and are no error; no command is called. Method: both; the help of the program
 // and of its command.
 TEST_CASE("command_line_returns_help") {
