@@ -101,3 +101,37 @@ TEST_CASE("client_receives_unchanged_rows_in_a_few_bytes") {
   }
   CHECK(quiet >= 10);
 }
+
+// Goal: a server that comes while frames of changes are shorter than its round trip is in use as soon as frames are
+// long again, and costs nothing until then. Method: its first rows come too late for every frame of an animation; then
+// the camera moves, and frames are traced whole.
+TEST_CASE("client_uses_a_server_that_came_during_short_frames") {
+  SplitRigOptions options = moving_scene(1);
+  options.line.latency_ns = 3 * kMs;
+  options.device_ns = 10000;
+  SplitRig rig(options);
+  rig.stop_server(0);
+  double before = 0, during = 0;
+  for (int i = 0; i < 60; ++i) {
+    if (i == 20) rig.start_server(0);
+    const FrameShare& share = rig.frame(7 + i / 300.0);
+    rig.idle(10 * kMs);
+    if (i >= 10 && i < 20) before += share.measured_ns;
+    if (i >= 50) during += share.measured_ns;
+  }
+  CHECK(during <= 1.05 * before);
+  REQUIRE(rig.client.servers[0].phase == ServerPhase::probing);
+  Camera camera = rig.device->renderer.camera;
+  int first_used = -1;
+  for (int i = 0; i < 8; ++i) {
+    camera.eye.x += 0.05f;
+    REQUIRE(set_camera(&rig.device->renderer, camera).ok);
+    const FrameShare& share = rig.frame(7.2);
+    const bool is_ready = rig.client.servers[0].phase == ServerPhase::ready;
+    if (first_used < 0 && is_ready && share.server_rows[0] > 0) first_used = i;
+    rig.idle(10 * kMs);
+  }
+  CAPTURE(first_used);
+  CHECK(first_used >= 0);
+  CHECK(first_used <= 1);
+}
