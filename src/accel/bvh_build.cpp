@@ -20,8 +20,8 @@ struct Task {
   std::uint32_t node, depth;
 };
 
-constexpr std::uint32_t kTrianglesPerSpareLeaf =
-    128;  // spare leaves, because not all hold four; measured with bench_embree
+// Spare leaves, because not all hold four; measured with bench_embree.
+constexpr std::uint32_t kTrianglesPerSpareLeaf = 128;
 
 constexpr std::size_t leaf_count_max(std::size_t triangles) {
   return leaves_for(static_cast<std::uint32_t>(triangles)) + triangles / kTrianglesPerSpareLeaf;

@@ -113,8 +113,8 @@ double exp2_32nds(int k) {
 struct LogEntry {
   double reciprocal, log2;
 };
-constexpr std::uint32_t kLogOffset =
-    0x3F330000;  // bits of the least significand, 0.699: keeps 1 away from an interval's end
+// Bits of the least significand, 0.699: keeps 1 away from an interval's end.
+constexpr std::uint32_t kLogOffset = 0x3F330000;
 constexpr LogEntry kLogTable[16] = {
     {1.398895263671875, -0.48428795089607085}, {1.340301513671875, -0.42255758527085646},
     {1.28643798828125, -0.3633819147822816},   {1.236724853515625, -0.30652456529226624},

@@ -9,8 +9,8 @@ constexpr std::uint64_t kMemoryBytesMin = 1u << 16;
 constexpr std::uint64_t kMemoryBytesMax = sizeof(void*) == 4 ? 0x7FFFFFFFu : std::uint64_t(1) << 36;
 constexpr std::uint32_t kImageSideMax = 8192;          // pixels; spans keep their columns in 16 bits
 constexpr std::uint32_t kTriangleCountMax = 1u << 26;  // leaves room for tag bits in 32-bit child references
-constexpr std::uint32_t kVertexIndexBits =
-    26;  // of a triangle's words; the bits above hold a share of its material index
+// Of a triangle's words; the bits above hold a share of its material index.
+constexpr std::uint32_t kVertexIndexBits = 26;
 constexpr std::uint32_t kVertexCountMax = 1u << kVertexIndexBits;
 constexpr std::uint32_t kMaterialCountMax = 1u << 16;
 constexpr std::uint32_t kTextureCountMax = 4096;

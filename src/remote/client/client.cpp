@@ -19,8 +19,8 @@ constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the 
 constexpr double kWaitShare = 0.03;  // of a frame's time that the device may wait in vain: within the 5 % a network may
                                      // cost, of which spot checks take 1 %
 constexpr double kCertainPart = 0.5;  // of a row's estimated time, since rows are measured several at a time
-constexpr double kLateFactor =
-    1.03;  // of a frame's predicted time, and of the device's alone, after which the device waits for no more rows
+// Of a frame's predicted time, and of the device's alone, after which the device waits for no more rows.
+constexpr double kLateFactor = 1.03;
 constexpr double kLookNs = 20e6;      // between two polls of the link: about a display frame
 constexpr double kLooksWatched = 16;  // polls in a watched frame. They slow the device's packets,
 constexpr std::uint64_t kWatchedFirst = 4,

@@ -13,8 +13,8 @@ namespace {
 // Chosen: seldom enough to cost nothing, often enough that a server returns within a second. `make faults` tests that a
 // flapping server is retried ever less often.
 constexpr std::uint64_t kIdlePingNs = 500'000'000;  // between pings of a server without rows
-constexpr std::uint64_t kLastingWaits =
-    10;  // a connection useful for this many times the wait before it was sound, so the next attempt comes soon
+// A connection useful for this many times the wait before it was sound, so the next attempt comes soon.
+constexpr std::uint64_t kLastingWaits = 10;
 // Per server and poll, and no more rows than a picture has. Derived: about twice the messages of 240 rows in the
 // smallest chunks (kChunkRowsMin).
 constexpr std::uint32_t kLookMessages = 256;

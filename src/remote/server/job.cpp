@@ -14,8 +14,8 @@ namespace {
 // Chosen: all of a 320×240 picture, a 32nd of the largest that a server takes by default. With more, searching a large
 // picture would delay other clients.
 constexpr std::uint32_t kSearchPixels = 1u << 17;  // searched at once
-constexpr std::uint32_t kFirstPixels =
-    8;  // first pixels of an exposure, while their cost is unknown; as in session.cpp
+// First pixels of an exposure, while their cost is unknown; as in session.cpp.
+constexpr std::uint32_t kFirstPixels = 8;
 // A chunk is packed and deflated at once. Derived: at the 400 to 700 ns per pixel of client/plan.cpp that takes 13 to
 // 23 ms, about a slice.
 constexpr std::uint32_t kServerChunkPixels = 1u << 15;

@@ -12,8 +12,8 @@ namespace {
 // Chosen: pixels of 0.65 ms (below) then take 5 ms, a quarter of a slice. More could overrun it before the first price
 // is known; fewer would mostly measure overhead.
 constexpr std::uint32_t kFirstPixels = 8;  // per thread, while the cost of pixels is unknown
-constexpr double kLightPointNs =
-    80;  // per light point and sample; measured: 512 points, 16 samples, 0.65 ms per pixel of cornell
+// Per light point and sample; measured: 512 points, 16 samples, 0.65 ms per pixel of cornell.
+constexpr double kLightPointNs = 80;
 
 PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 

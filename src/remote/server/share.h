@@ -16,8 +16,8 @@ namespace pocketray {
 constexpr std::uint64_t kLightNs = 250'000'000;   // later pictures are too late for interactive steering
 constexpr std::uint64_t kCreditNs = 100'000'000;  // one frame at ten per second
 constexpr std::uint64_t kHeavyPart = 4;           // the heavy lane gets one of this many parts under contention
-constexpr std::uint64_t kOwedNsMax =
-    2 * kLightNs;  // so at most 4 s times the connections until an account is light again
+// So at most 4 s times the connections until an account is light again.
+constexpr std::uint64_t kOwedNsMax = 2 * kLightNs;
 // Debt is forgiven over this many times the time it took, times the number of connections, so all of them together can
 // use at most one part in this many without becoming heavy.
 constexpr std::uint64_t kForgiveFactor = 16;
