@@ -61,7 +61,8 @@ std::string unknown_word(const CLI::App& app, const std::vector<std::string>& wo
     names.push_back(each->get_name());
     if (each->get_name() == words[0]) command = each;
   }
-  if (!command && words[0][0] != '-') return "there is no command '" + words[0] + "'" + suggestion(words[0], names);
+  if (!names.empty() && !command && words[0][0] != '-')
+    return "there is no command '" + words[0] + "'" + suggestion(words[0], names);
   const std::vector<std::string> options = option_names(command ? *command : app);
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
