@@ -42,6 +42,7 @@ Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<flo
 // What lights are placed by must not follow every movement of the scene, or each would change all of the light: six
 // bits of a length or an area, and a box that changes in steps of a sixteenth to a thirty-second of its longest edge.
 double rounded(double v) {
+  CHECK(v >= 0);
   int exponent;
   const double fraction = std::frexp(v, &exponent);
   return std::ldexp(std::floor(fraction * 64 + 0.5), exponent - 6);
@@ -186,6 +187,7 @@ std::uint32_t morton_code(const Surroundings& s, const Vec3& p) {
 // Puts lights that are close together next to each other, by insertion, which keeps the order of equal ones.
 void sort_lights(const FrameData& frame, VirtualLights* lights) {
   const Surroundings surroundings = surroundings_of(frame.accel.bounds);
+  CHECK_LE(lights->count, kVirtualLightMax);
   std::uint32_t code[kVirtualLightMax];
   for (std::uint32_t i = 0; i < lights->count; ++i) {
     VirtualLight light = lights->light[i];
