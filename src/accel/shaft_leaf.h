@@ -1,8 +1,9 @@
 // The rays of a bundle against a few leaves. Part of the kernels: see bvh_shaft.h.
 //
-// First find which rays pass through the box of which leaf; then run the float test of cross_triangle() on these, four
-// triangles of a leaf and kLanes/4 rays at once; last settle the remaining doubts with the full test. The loops do not
-// wait for each other's results, as they would leaf by leaf.
+// First find which rays pass through the box of which leaf; then run the float test of cross_triangle() on these: four
+// triangles of a leaf and kLanes/4 rays at once, or one triangle and kLanes rays, whichever takes fewer tests; last
+// settle the remaining doubts with the full test. The loops do not wait for each other's results, as they would leaf by
+// leaf.
 #pragma once
 #include "accel/leaf_projection.h"
 #include "accel/shaft.h"
@@ -11,13 +12,14 @@ namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
 constexpr int kShaftLeaves = 8;  // searched at once
-constexpr int kFewTests = 6;     // tests of a leaf: so few are faster than meet_window()
+constexpr int kFewTests = 6;     // tests of four triangles of a leaf: so few are faster than meet_window()
 
 struct ShaftBatch {
   int count = 0;
   std::uint32_t child[kShaftLeaves];
   const TriangleBlock* block[kShaftLeaves];  // of the leaves to test some rays against
   unsigned in_use[kShaftLeaves];             // triangles that those rays may hit
+  int in_use_count[kShaftLeaves];
   TriangleBlock scratch[kShaftLeaves];
   Window window[kShaftLeaves];  // of the leaf's box
   float near[kShaftLeaves];     // its nearest depth
@@ -53,46 +55,67 @@ inline unsigned meet_window(const Bundle& b, const TriangleBlock& block) {
   return bits((zero <= high_min) | (low_max <= zero));
 }
 
+// Tests that rays take if each test has four triangles: the rays of a mask of kLanes bits, by kLanes/4.
+template <int kLanes>
+int tests_by_rays(unsigned rays) {
+  constexpr int kAtOnce = kLanes / 4;
+  constexpr unsigned kSome = (1u << kAtOnce) - 1;
+  int count = 0;
+  for (int i = 0; i < kLanes; i += kAtOnce) count += (rays >> i & kSome) != 0;
+  return count;
+}
+
+// The rays of a mask of kLanes bits pass through the box of a leaf.
 struct ShaftTest {
-  std::uint8_t leaf, first;  // first ray
+  std::uint8_t leaf, first;  // first ray of the mask
+  std::uint16_t rays;
 };
+
+// Mask of the sixteen rays of a block that pass through a box.
+inline unsigned rays_through(const Bundle& b, const Bounds4& bounds, Float4 near, int block) {
+  unsigned groups = bits(meets(bounds, b.group[block]) & (near <= Float4::load(b.group_depth + 4 * block))), rays = 0;
+  for (; groups; groups &= groups - 1) {
+    int begin = 4 * __builtin_ctz(groups), first = 16 * block + begin;
+    Float4 x = Float4::load(b.x + first), y = Float4::load(b.y + first);
+    rays |= bits((bounds.x_low <= x) & (x <= bounds.x_high) & (bounds.y_low <= y) & (y <= bounds.y_high) &
+                 (near <= Float4::load(b.depth + first)))
+            << begin;
+  }
+  return rays & static_cast<unsigned>(b.open >> 16 * block);
+}
 
 template <int kLanes, class Tree>
 int list_shaft_tests(const Tree& bvh, const Bundle& b, ShaftBatch* leaves, ShaftTest* tests) {
-  constexpr int kAtOnce = kLanes / 4;
+  constexpr unsigned kAllLanes = (1u << kLanes) - 1;
   int count = 0;
   for (int leaf = 0; leaf < leaves->count; ++leaf) {
-    int begin = count;
+    int begin = count, by_rays = 0;
     const Window& w = leaves->window[leaf];
     Bounds4 bounds = {Float4::splat(w.x_low), Float4::splat(w.x_high), Float4::splat(w.y_low), Float4::splat(w.y_high)};
     Float4 near = Float4::splat(leaves->near[leaf]);
     for (unsigned blocks = bits(meets(bounds, b.block)); blocks; blocks &= blocks - 1) {
-      int block = __builtin_ctz(blocks);
-      unsigned groups = bits(meets(bounds, b.group[block]) & (near <= Float4::load(b.group_depth + 4 * block)));
-      for (; groups; groups &= groups - 1) {
-        int first = 16 * block + 4 * __builtin_ctz(groups);
-        Float4 x = Float4::load(b.x + first), y = Float4::load(b.y + first);
-        unsigned rays = bits((bounds.x_low <= x) & (x <= bounds.x_high) & (bounds.y_low <= y) & (y <= bounds.y_high) &
-                             (near <= Float4::load(b.depth + first)));
-        rays &= static_cast<unsigned>(b.open >> first);
-        while (rays) {
-          int i = __builtin_ctz(rays) & ~(kAtOnce - 1);
-          tests[count++] = {static_cast<std::uint8_t>(leaf), static_cast<std::uint8_t>(first + i)};
-          rays &= ~(((1u << kAtOnce) - 1) << i);
-        }
+      const int block = __builtin_ctz(blocks);
+      for (unsigned rays = rays_through(b, bounds, near, block); rays;) {
+        const int place = __builtin_ctz(rays) & ~(kLanes - 1);
+        const unsigned some = rays >> place & kAllLanes;
+        rays &= ~(kAllLanes << place);
+        tests[count++] = {static_cast<std::uint8_t>(leaf), static_cast<std::uint8_t>(16 * block + place),
+                          static_cast<std::uint16_t>(some)};
+        by_rays += tests_by_rays<kLanes>(some);
       }
     }
     if (count == begin) continue;
     leaves->block[leaf] = &bvh.leaf(leaves->child[leaf], &leaves->scratch[leaf]);
-    leaves->in_use[leaf] = (1u << leaf_triangle_count(leaves->child[leaf])) - 1;
-    if (count - begin < kFewTests || !b.cubes_are_finite) continue;
-    leaves->in_use[leaf] &= meet_window(b, *leaves->block[leaf]);
-    if (!leaves->in_use[leaf]) count = begin;
+    unsigned in_use = (1u << leaf_triangle_count(leaves->child[leaf])) - 1;
+    if (by_rays >= kFewTests && b.cubes_are_finite) in_use &= meet_window(b, *leaves->block[leaf]);
+    if (!in_use) count = begin;
+    leaves->in_use[leaf] = in_use;
+    leaves->in_use_count[leaf] = tests_by_rays<4>(in_use);
   }
   return count;
 }
 
-// Bit masks: four triangles for each of kLanes/4 segments.
+// A bit for each lane: a triangle and a segment.
 struct ShaftPassing {
   unsigned pass;  // a hit that counts is possible
   unsigned sure;  // certain
@@ -113,33 +136,52 @@ unsigned surely_behind(const EdgeValues<F>& e, F low, F high, const F (&x)[3], c
   return bits(((error < high) & (depth < zero - depth_error)) | ((low < zero - error) & (depth_error < depth)));
 }
 
-// The float test of cross_triangle(), and conclusions from the triangles' depths.
-template <int kLanes>
-ShaftPassing test_segments(const Bundle& b, const TriangleBlock& block, int first) {
-  using F = typename Lanes<kLanes>::Floats;
-  F origin_x = F::spread(b.origin[0] + first), origin_y = F::spread(b.origin[1] + first);
-  F origin_z = F::spread(b.origin[2] + first);
-  F shear_x = F::spread(b.shear_x + first), shear_y = F::spread(b.shear_y + first), x[3], y[3], z[3];
+// The float test of cross_triangle(), and conclusions from the triangles' depths. ray() returns the lanes' values from
+// a row of the bundle, vertex() those of a vertex along an axis.
+template <class F, class Ray, class Vertex>
+ShaftPassing test_lanes(const Bundle& b, Ray ray, Vertex vertex) {
+  F origin_x = ray(b.origin[0]), origin_y = ray(b.origin[1]), origin_z = ray(b.origin[2]);
+  F shear_x = ray(b.shear_x), shear_y = ray(b.shear_y), x[3], y[3], z[3];
   for (int k = 0; k < 3; ++k) {
-    z[k] = F::repeat(Float4::load(block.vertex[k][b.kz])) - origin_z;
-    x[k] = (F::repeat(Float4::load(block.vertex[k][b.kx])) - origin_x) - shear_x * z[k];
-    y[k] = (F::repeat(Float4::load(block.vertex[k][b.ky])) - origin_y) - shear_y * z[k];
+    z[k] = vertex(k, b.kz) - origin_z;
+    x[k] = (vertex(k, b.kx) - origin_x) - shear_x * z[k];
+    y[k] = (vertex(k, b.ky) - origin_y) - shear_y * z[k];
   }
   EdgeValues<F> e = edge_values<F>(x[0], y[0], x[1], y[1], x[2], y[2]);
   F zero = F::splat(0), low = min(min(e.a, e.b), e.c), high = max(max(e.a, e.b), e.c);
   F nearest = min(min(z[0], z[1]), z[2]), farthest = max(max(z[0], z[1]), z[2]);
-  unsigned pass = bits(((zero <= low) | (high <= zero)) & (nearest <= F::spread(b.hit_high + first)) &
-                       (F::spread(b.hit_low + first) <= farthest));
+  unsigned pass = bits(((zero <= low) | (high <= zero)) & (nearest <= ray(b.hit_high)) & (ray(b.hit_low) <= farthest));
   if (!pass) return {0, 0};
-  unsigned sure = bits(((zero < low) | (high < zero)) & (F::spread(b.sure_low + first) <= nearest) &
-                       (farthest <= F::spread(b.sure_high + first)));
+  unsigned sure = bits(((zero < low) | (high < zero)) & (ray(b.sure_low) <= nearest) & (farthest <= ray(b.sure_high)));
   if (b.cubes_are_finite && (pass & ~sure))
     pass &= ~surely_behind(e, low, high, x, y, z, nearest, farthest, F::splat(b.sign));
   return {pass, sure & pass};
 }
 
-// Full test whether a triangle blocks a segment.
-inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int lane, int i) {
+// kLanes/4 rays from `first` on against the four triangles of a leaf; lane 4 i + k has ray i and triangle k.
+template <int kLanes>
+ShaftPassing test_leaf_triangles(const Bundle& b, const TriangleBlock& block, int first) {
+  using F = typename Lanes<kLanes>::Floats;
+  return test_lanes<F>(
+      b, [&](const float* row) { return F::spread(row + first); },
+      [&](int k, int axis) { return F::repeat(Float4::load(block.vertex[k][axis])); });
+}
+
+// kLanes rays from `first` on against one triangle.
+template <int kLanes>
+ShaftPassing test_rays_of(const Bundle& b, const TriangleBlock& block, int triangle, int first) {
+  using F = typename Lanes<kLanes>::Floats;
+  return test_lanes<F>(
+      b, [&](const float* row) { return F::load(row + first); },
+      [&](int k, int axis) { return F::splat(block.vertex[k][axis][triangle]); });
+}
+
+// Whether a triangle that may cross a segment, or certainly does, blocks it. A filter that does not read the point is
+// asked first: its answer is cheaper than the full test.
+inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int lane, int i, bool sure) {
+  const bool early = b.filter && !b.filter->reads_point;
+  if (early && !b.filter->accept(b.filter->context, block.triangle[lane], 0, 0)) return false;
+  if (early && sure) return true;
   ShearedRay ray = {{}, {}, b.kx, b.ky, b.kz, b.shear_x[i], b.shear_y[i]};
   const int axes[] = {b.kx, b.ky, b.kz};
   for (int k = 0; k < 3; ++k) ray.origin[axes[k]] = b.origin[k][i], ray.direction[axes[k]] = b.direction[k][i];
@@ -148,29 +190,64 @@ inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int lane
                       &crossing))
     return false;
   if (!(crossing.t > 0 && crossing.t < b.t_max[i])) return false;
-  return !b.filter ||
+  return !b.filter || early ||
          b.filter->accept(b.filter->context, block.triangle[lane], static_cast<float>(crossing.b / crossing.sum),
                           static_cast<float>(crossing.c / crossing.sum));
+}
+
+inline bool is_open(const Bundle& b, int i) { return b.open >> i & 1; }
+inline void close_ray(Bundle* b, int i) { b->open &= ~(std::uint64_t(1) << i); }
+
+// Closes the rays that are blocked by four triangles; lane 4 i + k has ray first + i and triangle k.
+inline void settle_leaf_triangles(Bundle* b, const TriangleBlock& block, ShaftPassing found, int first) {
+  if (!b->filter)
+    for (unsigned sure = found.sure; sure; sure &= sure - 1) close_ray(b, first + __builtin_ctz(sure) / 4);
+  for (unsigned pass = found.pass; pass; pass &= pass - 1) {
+    int lane = __builtin_ctz(pass), i = first + lane / 4;
+    if (is_open(*b, i) && blocks_segment(*b, block, lane % 4, i, found.sure >> lane & 1)) close_ray(b, i);
+  }
+}
+
+// Closes the rays that are blocked by one triangle; lane i has ray first + i.
+inline void settle_rays_of(Bundle* b, const TriangleBlock& block, int triangle, ShaftPassing found, int first) {
+  if (!found.pass) return;
+  if (!b->filter || !b->filter->reads_point) {
+    if (b->filter && !b->filter->accept(b->filter->context, block.triangle[triangle], 0, 0)) return;
+    b->open &= ~(std::uint64_t{found.sure} << first);
+    found.pass &= ~found.sure;
+  }
+  for (unsigned pass = found.pass; pass; pass &= pass - 1) {
+    int lane = __builtin_ctz(pass), i = first + lane;
+    if (blocks_segment(*b, block, triangle, i, found.sure >> lane & 1)) close_ray(b, i);
+  }
 }
 
 // Searches the leaves of the batch and empties it.
 template <int kLanes, class Tree>
 void search_shaft_leaves(const Tree& bvh, Bundle* b, ShaftBatch* batch) {
+  constexpr int kAtOnce = kLanes / 4;
   constexpr unsigned kEach = 0x1111;
-  ShaftTest tests[kShaftLeaves * kPacketMax];
+  ShaftTest tests[kShaftLeaves * kPacketMax / kLanes];
   int count = list_shaft_tests<kLanes>(bvh, *b, batch, tests);
   for (int n = 0; n < count; ++n) {
-    const ShaftTest& test = tests[n];
-    const TriangleBlock& block = *batch->block[test.leaf];
-    ShaftPassing found = test_segments<kLanes>(*b, block, test.first);
-    unsigned in_use = batch->in_use[test.leaf] * kEach;
-    if (!b->filter) {
-      for (unsigned sure = found.sure & in_use; sure; sure &= sure - 1)
-        b->open &= ~(std::uint64_t(1) << (test.first + __builtin_ctz(sure) / 4));
+    const int leaf = tests[n].leaf, first = tests[n].first;
+    const TriangleBlock& block = *batch->block[leaf];
+    unsigned rays = tests[n].rays & static_cast<unsigned>(b->open >> first);
+    if (batch->in_use_count[leaf] < tests_by_rays<kLanes>(rays)) {
+      for (unsigned in_use = batch->in_use[leaf]; in_use; in_use &= in_use - 1) {
+        int triangle = __builtin_ctz(in_use);
+        unsigned open = rays & static_cast<unsigned>(b->open >> first);
+        ShaftPassing found = test_rays_of<kLanes>(*b, block, triangle, first);
+        settle_rays_of(b, block, triangle, {found.pass & open, found.sure & open}, first);
+      }
+      continue;
     }
-    for (unsigned pass = found.pass & in_use; pass; pass &= pass - 1) {
-      int bit = __builtin_ctz(pass), i = test.first + bit / 4;
-      if ((b->open >> i & 1) && blocks_segment(*b, block, bit % 4, i)) b->open &= ~(std::uint64_t(1) << i);
+    while (rays) {
+      int i = __builtin_ctz(rays) & ~(kAtOnce - 1);
+      rays &= ~(((1u << kAtOnce) - 1) << i);
+      ShaftPassing found = test_leaf_triangles<kLanes>(*b, block, first + i);
+      unsigned in_use = batch->in_use[leaf] * kEach;
+      settle_leaf_triangles(b, block, {found.pass & in_use, found.sure & in_use}, first + i);
     }
   }
   batch->count = 0;

@@ -226,11 +226,9 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
     if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) return sum + carried * radiance_behind<mask>(frame, ray.direction);
     if constexpr (has(mask, Effect::mip_map)) path.distance += hit.t;
-    Surface s;
-    if (layer == 0 && first)
-      s = *first;
-    else
-      frame.surface(frame, ray, on_path(hit, path), &s);
+    Surface found;
+    const Surface* s = first;
+    if (layer > 0 || !first) frame.surface(frame, ray, on_path(hit, path), &found), s = &found;
     if constexpr (has(mask, Effect::absorption)) {
       if (path.media.depth) {
         effect_entered<Effect::absorption>();
@@ -241,25 +239,25 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
     }
     if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend) ||
                   has(mask, Effect::back_face_culling)) {
-      bool culled = culls(*s.material, s.front, mask);
+      bool culled = culls(*s->material, s->front, mask);
       if (culled) effect_entered<Effect::back_face_culling>();
-      if (culled || transmits(*s.material, mask) || blends(*s.material, mask)) {
+      if (culled || transmits(*s->material, mask) || blends(*s->material, mask)) {
         Contact contact;
-        gather_contact(frame, s, hit, filter, &contact, &tracer->stats);
+        gather_contact(frame, *s, hit, filter, &contact, &tracer->stats);
         if constexpr (has(mask, Effect::alpha_blend)) {
           if (!blend_layers<mask>(tracer, ray, contact, &sum, &carried, &path)) return sum;
         }
         const Face* next = face_behind_layers(scene, contact, mask);
         if (!next) {
           if (!culled) ++tracer->rays[static_cast<int>(RayKind::blend)];
-          ray.origin = safe_origin(s, -1);
+          ray.origin = safe_origin(*s, -1);
           continue;
         }
-        if (next->hit.triangle != hit.triangle) frame.surface(frame, ray, on_path(next->hit, path), &s);
-        return sum + carried * shade<mask>(tracer, ray, s, &contact, path);
+        if (next->hit.triangle != hit.triangle) frame.surface(frame, ray, on_path(next->hit, path), &found), s = &found;
+        return sum + carried * shade<mask>(tracer, ray, *s, &contact, path);
       }
     }
-    return sum + carried * shade<mask>(tracer, ray, s, nullptr, path);
+    return sum + carried * shade<mask>(tracer, ray, *s, nullptr, path);
   }
   return sum;
 }

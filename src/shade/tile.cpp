@@ -56,12 +56,20 @@ void add_sample(Tracer* tracer, const Tile& tile, const RayPacket& packet, const
     frame.find_shadows(frame, packet, hits, &shadows, &tracer->stats);
     tracer->tile_shadows = &shadows;
   }
+  const bool has_plain_background = !has(frame.mask, Effect::environment);
+  std::uint32_t missed = 0;
   for (std::uint32_t i = 0; i < tile.count; ++i) {
+    if (hits[i].triangle == kNoTriangle && has_plain_background) {
+      sum[i] += frame.scene->info.background;
+      ++missed;
+      continue;
+    }
     tracer->tile_pixel = i;
     tracer->first_surface = frame.find_shadows && hits[i].triangle != kNoTriangle ? &shadows.surface[i] : nullptr;
     observe_pixel(tracer, tile.column[i], tile.row[i]);
     sum[i] += sample_radiance(tracer, ray_of(packet, i), hits[i], tracer->first_surface);
   }
+  tracer->rays[static_cast<int>(RayKind::primary)] += missed;
   tracer->first_surface = nullptr;
   tracer->tile_shadows = nullptr;
 }

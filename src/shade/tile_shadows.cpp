@@ -42,29 +42,31 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
     const LightRun& run = frame.light_runs[r];
     for (std::uint32_t i = run.begin; i < run.end && i < kTileLightMax; ++i) {
       const LightPoint& light = frame.lights[i];
-      shadows->lit[i] = shadows->traced[i] = shadows->blocked[i] = 0;
+      const bool keeps_sample = i < kTileSampleMax;
+      TileMask lit = {}, traced = {}, hidden = {};
       packet.count = 0;
       for (std::uint32_t k = 0; k < receiver_count; ++k) {
-        const Surface& s = shadows->surface[receivers[k]];
+        const std::uint32_t place = receivers[k];
+        const Surface& s = shadows->surface[place];
         LightSample sample;
         if (!lights_up(frame, s, run, light, &sample)) continue;
-        shadows->lit[i] |= std::uint64_t(1) << receivers[k];
-        if (i < kTileSampleMax) shadows->sample[i][receivers[k]] = {sample.direction, sample.irradiance};
+        lit.set(place);
+        if (keeps_sample) shadows->sample[i][place] = {sample.direction, sample.irradiance};
         if (!(dot(s.geometric, sample.direction) > 0)) continue;
         if (cannot_matter(frame, s, sample)) continue;
+        traced.set(place);
         pixel[packet.count] = receivers[k];
-        set_ray(&packet, packet.count++, {origins[receivers[k]], sample.to_light, sample.t_max});
+        set_ray(&packet, packet.count++, {origins[place], sample.to_light, sample.t_max});
       }
-      if (packet.count == 0) continue;
-      ShadowContext context = {&frame, light.material};
-      HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-      bool filtered = frame.filter_every_shadow || light.material != kNone;
-      std::uint64_t blocked =
-          frame.first_rays->occluded_packet(frame.accel, packet, filtered ? &opaque : nullptr, stats);
-      for (std::uint32_t k = 0; k < packet.count; ++k) {
-        shadows->traced[i] |= std::uint64_t(1) << pixel[k];
-        shadows->blocked[i] |= (blocked >> k & 1) << pixel[k];
+      if (packet.count > 0) {
+        ShadowContext context = {&frame, light.material};
+        HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
+        bool filtered = frame.filter_every_shadow || light.material != kNone;
+        std::uint64_t blocked =
+            frame.first_rays->occluded_packet(frame.accel, packet, filtered ? &opaque : nullptr, stats);
+        for (; blocked; blocked &= blocked - 1) hidden.set(pixel[__builtin_ctzll(blocked)]);
       }
+      shadows->lit[i] = lit, shadows->traced[i] = traced, shadows->blocked[i] = hidden;
     }
   }
 }

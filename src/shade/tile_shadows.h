@@ -1,5 +1,7 @@
 // Shadow rays of a tile's first hits, traced in packets before shading needs them.
 #pragma once
+#include <type_traits>
+
 #include "shade/surface.h"
 
 namespace pocketray {
@@ -12,12 +14,23 @@ struct TileSample {
   Vec3 direction, irradiance;
 };
 
+// A bit for each pixel of a tile, in words that the CPU shifts in one instruction.
+struct TileMask {
+  using Word = std::conditional_t<sizeof(void*) == 8, std::uint64_t, std::uint32_t>;
+  static constexpr std::uint32_t kBits = 8 * sizeof(Word), kWords = kPacketMax / kBits;
+  Word word[kWords];
+
+  static constexpr std::uint32_t place(std::uint32_t pixel) { return kWords == 1 ? 0 : pixel / kBits; }
+  void set(std::uint32_t pixel) { word[place(pixel)] |= Word{1} << pixel % kBits; }
+  bool operator[](std::uint32_t pixel) const { return word[place(pixel)] >> pixel % kBits & 1; }
+};
+
 // For each pixel of a tile the surface at its first hit, if any. For each light, which of the pixels it lights up,
-// whose shadow rays were traced, and which of these are blocked by something opaque: bit i for pixel i.
+// whose shadow rays were traced, and which of these are blocked by something opaque.
 struct TileShadows {
   Surface surface[kPacketMax];
   TileSample sample[kTileSampleMax][kPacketMax];  // of the pixels that are lit up
-  std::uint64_t lit[kTileLightMax], traced[kTileLightMax], blocked[kTileLightMax];
+  TileMask lit[kTileLightMax], traced[kTileLightMax], blocked[kTileLightMax];
 };
 
 // Fills `shadows` for the rays of a packet and their first hits.
@@ -29,7 +42,7 @@ void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit*
 inline bool is_sampled(const Tracer& tracer, std::uint32_t light, const TileSample** sample) {
   if (!tracer.tile_shadows || light >= kTileSampleMax) return false;
   const TileShadows& tile = *tracer.tile_shadows;
-  *sample = tile.lit[light] >> tracer.tile_pixel & 1 ? &tile.sample[light][tracer.tile_pixel] : nullptr;
+  *sample = tile.lit[light][tracer.tile_pixel] ? &tile.sample[light][tracer.tile_pixel] : nullptr;
   return true;
 }
 
@@ -37,8 +50,8 @@ inline bool is_sampled(const Tracer& tracer, std::uint32_t light, const TileSamp
 // below the surface.)
 inline bool is_known(const Tracer& tracer, std::uint32_t light, bool* blocked) {
   if (!tracer.tile_shadows || light >= kTileLightMax) return false;
-  if (!(tracer.tile_shadows->traced[light] >> tracer.tile_pixel & 1)) return false;
-  *blocked = tracer.tile_shadows->blocked[light] >> tracer.tile_pixel & 1;
+  if (!tracer.tile_shadows->traced[light][tracer.tile_pixel]) return false;
+  *blocked = tracer.tile_shadows->blocked[light][tracer.tile_pixel];
   return true;
 }
 

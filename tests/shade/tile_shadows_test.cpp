@@ -59,7 +59,7 @@ TEST_CASE("tile_shadows_change_no_pixel") {
 // others, beyond those known, too; surfaces that differ in one respect.
 TEST_CASE("tile_shadows_are_known_at_first_hits_alone") {
   TileShadows shadows = {};
-  shadows.traced[2] = shadows.blocked[2] = 1u << 5, shadows.traced[3] = 1u << 5;
+  shadows.traced[2].set(5), shadows.blocked[2].set(5), shadows.traced[3].set(5);
   Tracer tracer;
   bool blocked = false;
   CHECK_FALSE(is_known(tracer, 2, &blocked));
