@@ -117,8 +117,9 @@ int list_shaft_tests(const Tree& bvh, const Bundle& b, ShaftBatch* leaves, Shaft
 
 // A bit for each lane: a triangle and a segment.
 struct ShaftPassing {
-  unsigned pass;  // a hit that counts is possible
-  unsigned sure;  // certain
+  unsigned pass;     // a hit that counts is possible
+  unsigned sure;     // certain
+  unsigned crosses;  // the segment's line certainly crosses the triangle
 };
 
 // Mask of the lanes where the segment certainly has t ≤ 0, since it starts beyond the triangle, most often on leaving
@@ -151,11 +152,12 @@ ShaftPassing test_lanes(const Bundle& b, Ray ray, Vertex vertex) {
   F zero = F::splat(0), low = min(min(e.a, e.b), e.c), high = max(max(e.a, e.b), e.c);
   F nearest = min(min(z[0], z[1]), z[2]), farthest = max(max(z[0], z[1]), z[2]);
   unsigned pass = bits(((zero <= low) | (high <= zero)) & (nearest <= ray(b.hit_high)) & (ray(b.hit_low) <= farthest));
-  if (!pass) return {0, 0};
-  unsigned sure = bits(((zero < low) | (high < zero)) & (ray(b.sure_low) <= nearest) & (farthest <= ray(b.sure_high)));
+  if (!pass) return {0, 0, 0};
+  unsigned crosses = bits((zero < low) | (high < zero));
+  unsigned sure = crosses & bits((ray(b.sure_low) <= nearest) & (farthest <= ray(b.sure_high)));
   if (b.cubes_are_finite && (pass & ~sure))
     pass &= ~surely_behind(e, low, high, x, y, z, nearest, farthest, F::splat(b.sign));
-  return {pass, sure & pass};
+  return {pass, sure & pass, crosses & pass};
 }
 
 // kLanes/4 rays from `first` on against the four triangles of a leaf; lane 4 i + k has ray i and triangle k.
@@ -176,22 +178,26 @@ ShaftPassing test_rays_of(const Bundle& b, const TriangleBlock& block, int trian
       [&](int k, int axis) { return F::splat(block.vertex[k][axis][triangle]); });
 }
 
-// Whether a triangle that may cross a segment, or certainly does, blocks it. A filter that does not read the point is
-// asked first: its answer is cheaper than the full test.
-inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int lane, int i, bool sure) {
+// Whether a triangle that may cross a segment blocks it, given what is known of the lane that tested both. A filter
+// that does not read the point is asked first: its answer is cheaper than the full test.
+inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int triangle, int i, ShaftPassing found,
+                           int lane) {
   const bool early = b.filter && !b.filter->reads_point;
-  if (early && !b.filter->accept(b.filter->context, block.triangle[lane], 0, 0)) return false;
-  if (early && sure) return true;
+  if (early && !b.filter->accept(b.filter->context, block.triangle[triangle], 0, 0)) return false;
+  if (early && (found.sure >> lane & 1)) return true;
   ShearedRay ray = {{}, {}, b.kx, b.ky, b.kz, b.shear_x[i], b.shear_y[i]};
   const int axes[] = {b.kx, b.ky, b.kz};
   for (int k = 0; k < 3; ++k) ray.origin[axes[k]] = b.origin[k][i], ray.direction[axes[k]] = b.direction[k][i];
+  const Vec3 v[] = {block_vertex(block, 0, triangle), block_vertex(block, 1, triangle),
+                    block_vertex(block, 2, triangle)};
   Crossing crossing;
-  if (!cross_triangle(ray, block_vertex(block, 0, lane), block_vertex(block, 1, lane), block_vertex(block, 2, lane),
-                      &crossing))
+  if (found.crosses >> lane & 1)
+    cross_decided(ray, v[0], v[1], v[2], &crossing);
+  else if (!cross_triangle(ray, v[0], v[1], v[2], &crossing))
     return false;
   if (!(crossing.t > 0 && crossing.t < b.t_max[i])) return false;
   return !b.filter || early ||
-         b.filter->accept(b.filter->context, block.triangle[lane], static_cast<float>(crossing.b / crossing.sum),
+         b.filter->accept(b.filter->context, block.triangle[triangle], static_cast<float>(crossing.b / crossing.sum),
                           static_cast<float>(crossing.c / crossing.sum));
 }
 
@@ -204,7 +210,7 @@ inline void settle_leaf_triangles(Bundle* b, const TriangleBlock& block, ShaftPa
     for (unsigned sure = found.sure; sure; sure &= sure - 1) close_ray(b, first + __builtin_ctz(sure) / 4);
   for (unsigned pass = found.pass; pass; pass &= pass - 1) {
     int lane = __builtin_ctz(pass), i = first + lane / 4;
-    if (is_open(*b, i) && blocks_segment(*b, block, lane % 4, i, found.sure >> lane & 1)) close_ray(b, i);
+    if (is_open(*b, i) && blocks_segment(*b, block, lane % 4, i, found, lane)) close_ray(b, i);
   }
 }
 
@@ -218,7 +224,7 @@ inline void settle_rays_of(Bundle* b, const TriangleBlock& block, int triangle, 
   }
   for (unsigned pass = found.pass; pass; pass &= pass - 1) {
     int lane = __builtin_ctz(pass), i = first + lane;
-    if (blocks_segment(*b, block, triangle, i, found.sure >> lane & 1)) close_ray(b, i);
+    if (blocks_segment(*b, block, triangle, i, found, lane)) close_ray(b, i);
   }
 }
 
@@ -238,7 +244,8 @@ void search_shaft_leaves(const Tree& bvh, Bundle* b, ShaftBatch* batch) {
         int triangle = __builtin_ctz(in_use);
         unsigned open = rays & static_cast<unsigned>(b->open >> first);
         ShaftPassing found = test_rays_of<kLanes>(*b, block, triangle, first);
-        settle_rays_of(b, block, triangle, {found.pass & open, found.sure & open}, first);
+        found.pass &= open, found.sure &= open;
+        settle_rays_of(b, block, triangle, found, first);
       }
       continue;
     }
@@ -247,7 +254,8 @@ void search_shaft_leaves(const Tree& bvh, Bundle* b, ShaftBatch* batch) {
       rays &= ~(((1u << kAtOnce) - 1) << i);
       ShaftPassing found = test_leaf_triangles<kLanes>(*b, block, first + i);
       unsigned in_use = batch->in_use[leaf] * kEach;
-      settle_leaf_triangles(b, block, {found.pass & in_use, found.sure & in_use}, first + i);
+      found.pass &= in_use, found.sure &= in_use;
+      settle_leaf_triangles(b, block, found, first + i);
     }
   }
   batch->count = 0;

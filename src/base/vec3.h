@@ -62,12 +62,10 @@ inline T length(const Vec3T<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
-// Unit vector along a. Scales by the largest component where squares could underflow or overflow, so that 1e-30 and
-// 1e30 both work (HARDCASES row 30). The zero vector and non-finite vectors give the zero vector.
+// normalize() where squares could underflow or overflow: scales by the largest component. Out of line, so that
+// normalize() is inlined.
 template <class T>
-inline Vec3T<T> normalize(const Vec3T<T>& a) {
-  T square = dot(a, a);
-  if (square > T(0x1p-80) && square < T(0x1p80)) return a / std::sqrt(square);
+[[gnu::noinline, gnu::cold]] Vec3T<T> normalize_extreme(const Vec3T<T>& a) {
   T size = max_component(Vec3T<T>{std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
   if (!(size > 0) || !std::isfinite(size)) return {0, 0, 0};
   int exponent;
@@ -75,6 +73,15 @@ inline Vec3T<T> normalize(const Vec3T<T>& a) {
   Vec3T<T> scaled = {std::ldexp(a.x, -exponent), std::ldexp(a.y, -exponent), std::ldexp(a.z, -exponent)};
   Vec3T<T> unit = scaled / std::sqrt(dot(scaled, scaled));
   return is_finite(unit) ? unit : Vec3T<T>{0, 0, 0};
+}
+
+// Unit vector along a; both 1e-30 and 1e30 work (HARDCASES row 30). The zero vector and non-finite vectors give the
+// zero vector.
+template <class T>
+inline Vec3T<T> normalize(const Vec3T<T>& a) {
+  T square = dot(a, a);
+  if (square > T(0x1p-80) && square < T(0x1p80)) return a / std::sqrt(square);
+  return normalize_extreme(a);
 }
 
 // Two unit vectors that span the plane normal to the unit vector n [Duff et al. 2017, listing 3].
