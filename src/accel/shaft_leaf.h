@@ -191,10 +191,7 @@ inline bool blocks_segment(const Bundle& b, const TriangleBlock& block, int tria
   const Vec3 v[] = {block_vertex(block, 0, triangle), block_vertex(block, 1, triangle),
                     block_vertex(block, 2, triangle)};
   Crossing crossing;
-  if (found.crosses >> lane & 1)
-    cross_decided(ray, v[0], v[1], v[2], &crossing);
-  else if (!cross_triangle(ray, v[0], v[1], v[2], &crossing))
-    return false;
+  if (!(found.crosses >> lane & 1 ? cross_decided : cross_triangle)(ray, v[0], v[1], v[2], &crossing)) return false;
   if (!(crossing.t > 0 && crossing.t < b.t_max[i])) return false;
   return !b.filter || early ||
          b.filter->accept(b.filter->context, block.triangle[triangle], static_cast<float>(crossing.b / crossing.sum),

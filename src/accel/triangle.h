@@ -136,14 +136,12 @@ inline bool cross_triangle(const ShearedRay& ray, const Vec3& a, const Vec3& b, 
   return true;
 }
 
-// Where a ray crosses a triangle if it certainly does: none of the float edge functions is zero, and all have one sign.
-inline void cross_decided(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
+// The same for a ray whose float edge functions are known to have one sign, none of them zero.
+inline bool cross_decided(const ShearedRay& ray, const Vec3& a, const Vec3& b, const Vec3& c, Crossing* crossing) {
   EdgeValues<double> w = exact_weights(ray, a, b, c);
-  if (signs_differ(w) || all_zero(w)) {
-    cross_triangle(ray, a, b, c, crossing);
-    return;
-  }
+  if (signs_differ(w) || all_zero(w)) return cross_triangle(ray, a, b, c, crossing);
   *crossing = place_crossing(ray, a, b, c, w);
+  return true;
 }
 
 // The same as cross_triangle(), as a Hit. hit->triangle is unchanged, and so is all of hit without a crossing.
