@@ -81,7 +81,7 @@ test: setup-tests configure
 # kernel.
 MACHINES ?= arm926 cortex-a7 aarch64
 test-box: configure
-	@toolchains/setup.sh box armel
+	@toolchains/setup.sh box $(if $(filter arm926,$(MACHINES)),box-kernel armel)
 	@cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	@tests/box/run.sh $(POCKETRAY) $(MACHINES) || [ $$? = 77 ]
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # setup.sh GROUP... : installs the packages that a build needs and this machine lacks. Silent if none is missing.
-# Groups: desktop tests ci box bench-embree bench-povray clang format tidy package x86-32, and the CPU classes. Run by the Makefile and by .ci/run.
+# Groups: desktop tests ci box box-kernel bench-embree bench-povray clang format tidy package x86-32, and the CPU classes. Run by the Makefile and by .ci/run.
 set -eu
 
 # Required packages of each group. "command=package" is installed if the command exists; a plain name is a Debian package.
@@ -9,8 +9,9 @@ required() {
   case $1 in
     desktop) echo $common c++=g++ pkg-config=pkg-config zlib1g-dev ;;
     tests | ci) ;;
+    box) echo qemu-system-arm=qemu-system-arm python3=python3 ;;
     # The kernel for an ARM926 is built, as Debian has none for a machine that qemu emulates.
-    box) echo qemu-system-arm=qemu-system-arm python3=python3 fdtput=device-tree-compiler bc=bc flex=flex bison=bison linux-source ;;
+    box-kernel) echo fdtput=device-tree-compiler bc=bc flex=flex bison=bison linux-source ;;
     bench-embree) echo libembree-dev unzip=unzip ;;
     bench-povray) echo povray=povray ;;
     clang) echo clang++=clang ;;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# prepare.sh : makes what the machines boot, once, and prints the folder with it: Debian's kernels and busybox for ARMv7 and
-# 64-bit ARM, busybox and a kernel of Debian's source for an ARM926, a device tree with a screen of 320×240.
+# prepare.sh MACHINE... : makes what the machines boot, once, and prints the folder with it: Debian's kernels and busybox for
+# ARMv7 and 64-bit ARM; for an ARM926 busybox, a kernel of Debian's source and a device tree with a screen of 320×240.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 . /etc/os-release
@@ -16,8 +16,14 @@ unpack() {  # ARCH PACKAGE...
   "$here/../../toolchains/unpack_packages.sh" "$1" "$folder/$1.part" "${@:2}"
   mv "$folder/$1.part" "$folder/$1"
 }
-unpack armhf busybox-static @linux-image-armmp
-unpack arm64 busybox-static @linux-image-arm64
+wanted() { case " $machines " in *" $1 "*) ;; *) return 1 ;; esac; }
+machines=$*
+if wanted cortex-a7; then unpack armhf busybox-static @linux-image-armmp; fi
+if wanted aarch64; then unpack arm64 busybox-static @linux-image-arm64; fi
+if ! wanted arm926; then
+  echo "$folder"
+  exit
+fi
 unpack armel busybox-static
 
 build_kernel() {

@@ -9,7 +9,7 @@ shift
 for program in qemu-system-arm qemu-system-aarch64 python3; do
   command -v $program >/dev/null || { echo "test-box: skipped: no $program here" >&2; exit 77; }
 done
-kernels=$("$here/prepare.sh") || exit $?
+kernels=$("$here/prepare.sh" "$@") || exit $?
 machines=()
 for machine in "$@"; do
   case $machine in
