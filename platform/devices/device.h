@@ -12,11 +12,11 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
                         kRight = 106, kDown = 108;
 }
 
-// Where nobody has measured `slowdown`, it is estimated: instructions per pixel × clocks per instruction / clock rate,
-// divided by 690 and 1010 ns, the cost of the scenes cornell and seesaw at 320 × 240 on one core of a 2.8 GHz Xeon
-// (tests/bench/FIGURES.md), as the geometric mean of both. A plugin of qemu-arm 7.2 counted the instructions per pixel:
-// 162,000 and 326,000 in the armel build, whose floats are software, 17,400 and 22,100 in the armhf build. Clocks per
-// instruction are guesses, as noted at each number; so are latency and jitter where no source is named.
+// Where nobody has measured `slowdown`, it is estimated: clocks per pixel / clock rate, divided by 488 and 515 ns, the
+// cost of the scenes cornell and seesaw at 320 × 240 on one core of an AMD EPYC (README.md), as the geometric mean of
+// both. `make bench-device` counts the clocks, as instructions weighted by class: 46,100 and 88,500 in the armel build,
+// whose floats are software, 7,550 and 10,500 in the armhf build (tests/bench/device/expected.json). The weights are
+// guesses and leave out cache misses; latency and jitter are guesses where no source is named.
 struct Device {
   const char* name;         // as on the command line
   const char* description;  // one line

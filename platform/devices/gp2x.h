@@ -5,11 +5,11 @@ namespace platform {
 
 // MagicEyes MMSP2: ARM920T at 200 MHz without FPU, 64 MiB, 32 of which the stock firmware leaves to Linux; LCD 320 ×
 // 240 RGB565. Shown in [Aranha07] fig. 1. Its ARMv4T core is older than Debian's armel (ARMv5TE) and needs its own
-// compiler. The stock kernel 2.4 has the stick at /dev/GPIO; third-party 2.6 kernels have evdev. CPU: 2 clocks per
-// instruction, a guess: 1.1 DMIPS/MHz (ARM) while everything fits its 16 KiB caches, which a scene does not. Link: it
-// has no radio, but can be a USB network card. USB 1.1 carries at most 19 packets of 64 bytes per millisecond (USB 2.0
-// specification, sec. 5.8.4), 1.2 MB/s, of which headers and host leave about 1. Its successor, the Wiz, answers a ping
-// with the same Linux driver in 0.98 ms (gp32x.com, topic 50468, 2009).
+// compiler. The stock kernel 2.4 has the stick at /dev/GPIO; third-party 2.6 kernels have evdev. CPU: the clocks of the
+// armel build; its caches have 16 KiB each, less than a scene. Link: it has no radio, but can be a USB network card.
+// USB 1.1 carries at most 19 packets of 64 bytes per millisecond (USB 2.0 specification, sec. 5.8.4), 1.2 MB/s, of
+// which headers and host leave about 1. Its successor, the Wiz, answers a ping with the same Linux driver in 0.98 ms
+// (gp32x.com, topic 50468, 2009).
 constexpr Device kGp2x = {"gp2x",
                           "GamePark GP2X: ARM920T 200 MHz, no FPU",
                           "armv4t",
@@ -21,7 +21,7 @@ constexpr Device kGp2x = {"gp2x",
                           mebibytes(16),
                           nullptr,
                           1,
-                          2800,
+                          637,
                           1'000'000,
                           microseconds(500),
                           microseconds(500)};

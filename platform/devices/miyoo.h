@@ -10,7 +10,7 @@ constexpr std::uint16_t kMiyooKeys[] = {key::kUp,          key::kDown,      key:
 
 // Allwinner F1C100s: ARM926EJ-S, 32 MiB in the package (F1C100s datasheet, ch. 1); LCD 320 × 240 RGB565. 408 MHz and
 // up. Also covers BittBoy, PocketGo and PowKiddy V90.
-// CPU: 408 MHz, 2 clocks per instruction as on the GP2X, a guess: the same DMIPS/MHz.
+// CPU: the armel build at 408 MHz.
 // Link: a USB stick for 802.11n with one antenna. 16 Mbit/s, from the 10 to 20 that consumer 802.11g and n devices
 // reached in an office (web.luchs.at, "Using 802.11n and WPA2"): its CPU is as slow as theirs. Latency and jitter are
 // guesses.
@@ -25,7 +25,7 @@ constexpr Device kMiyoo = {"miyoo",
                            mebibytes(16),
                            kMiyooKeys,
                            1,
-                           1350,
+                           312,
                            2'000'000,
                            microseconds(1500),
                            microseconds(2000)};

@@ -10,7 +10,7 @@ constexpr std::uint16_t kMiyooMiniKeys[] = {key::kUp,    key::kDown,        key:
 
 // SigmaStar SSD202D: two Cortex-A7 at 1.2 GHz with NEON, 128 MiB in the package; LCD 640 × 480, 32 bits, mounted upside
 // down (its SDL port turns every frame by 180 degrees).
-// CPU: 1.5 clocks per instruction, a guess: 1.9 DMIPS/MHz (ARM), but vectors of four floats take two.
+// CPU: the armhf build.
 // Link: as in the Miyoo Mini Plus, 802.11n at 2.4 GHz with one antenna: 37 Mbit/s, typical of its kind in a channel of
 // 20 MHz, out of at most 50 (tanaza.com, "Bitrate, throughput, bandwidth", 2014). Latency and jitter are guesses.
 constexpr Device kMiyooMini = {"miyoo-mini",
@@ -24,7 +24,7 @@ constexpr Device kMiyooMini = {"miyoo-mini",
                                mebibytes(64),
                                kMiyooMiniKeys,
                                2,
-                               30,
+                               15,
                                4'625'000,
                                microseconds(1500),
                                microseconds(2000)};

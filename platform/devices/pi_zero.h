@@ -5,9 +5,8 @@ namespace platform {
 
 // Broadcom BCM2835: ARM1176JZF-S at 1 GHz, 512 MiB (Raspberry Pi documentation). It has an FPU, but Debian's armhf is
 // for ARMv7: the armv6 build uses the FPU with the libraries of armel. The screen is common in hobby cases: an ILI9341
-// panel on SPI, 320 × 240 RGB565, driven by fbtft. CPU: 2 clocks per instruction of the soft-float armel build, a guess
-// and an upper bound: 1.25 DMIPS/MHz (ARM), and memory is slow relative to 1 GHz. Link: as in the Zero W, 802.11n
-// at 2.4 GHz with one antenna: 37 Mbit/s, see miyoo_mini.h.
+// panel on SPI, 320 × 240 RGB565, driven by fbtft. CPU: the clocks of the soft-float armel build, an upper bound. Link:
+// as in the Zero W, 802.11n at 2.4 GHz with one antenna: 37 Mbit/s, see miyoo_mini.h.
 constexpr Device kPiZero = {"pi-zero",
                             "Raspberry Pi Zero with an SPI panel: ARM1176 1 GHz",
                             "armv6",
@@ -19,7 +18,7 @@ constexpr Device kPiZero = {"pi-zero",
                             mebibytes(256),
                             nullptr,
                             1,
-                            550,
+                            127,
                             4'625'000,
                             microseconds(1500),
                             microseconds(2000)};

@@ -72,6 +72,8 @@ TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
     if (kEffortDivisor > 1 && &c != &cases[0]) break;
     Reporting r;
     make_reporting(builtin_store(), c.scene, c.device, c.server_count, &r);
+    // The best of a sweep has the least jitter, too: with several links, 4 frames differ by up to 8 % for that alone.
+    if (c.server_count > 1) r.setup.frame_count = 16;
     SplitFigures figures;
     Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
     Status status = measure_split(r.setup, kSteps, &progress, &figures);
