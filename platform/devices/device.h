@@ -30,8 +30,8 @@ struct Device {
       keys;  // key codes of up, down, left, right, A, B, X, Y, L, R, start, select; null: those of a keyboard
 
   // For emulation on a desktop.
-  int core_count;   // of its CPU; 0: as many as this machine has
-  double slowdown;  // time per pixel on one of them over that on one x86-64 core of 2.8 to 3 GHz, same program
+  int core_count;                       // of its CPU; 0: as many as this machine has
+  double slowdown;                      // time per pixel on one of them over that on one x86-64 core, same program
   std::uint64_t link_bytes_per_second;  // each way, TCP payload
   std::uint64_t link_latency_ns;        // one way
   std::uint64_t link_jitter_ns;         // maximum addition to the latency

@@ -77,7 +77,7 @@ constexpr std::size_t front_line_bytes() {
 
 // Writes the file into `text`, always terminated; kFrontTextMax bytes hold any front. Returns its length without the
 // terminator. parse_front() reads the same bits back.
-constexpr std::size_t kFrontLineMax = front_line_bytes() > 192 ? front_line_bytes() : 192;
+constexpr std::size_t kFrontLineMax = front_line_bytes();
 constexpr std::size_t kFrontTextMax = (kFrontCandidateMax + 1) * kFrontLineMax;
 std::size_t format_front(const Front& front, char* text, std::size_t size);
 // The quality alone, as in the file: "samples=4 depth=8 …". Terminated.

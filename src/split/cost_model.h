@@ -24,7 +24,7 @@ struct ServerModel {
   Smoothed ns_per_byte;           // to send from it
   Smoothed start_ns;              // from the request to the first chunk, without that chunk's rendering and sending
   double cost_per_megabyte = 0;   // price of 10⁶ bytes from it, in the caller's unit
-  std::uint32_t chunk_rows = 16;  // rows it sends at once
+  std::uint32_t chunk_rows = 16;  // rows it sends at once; chosen: a fifteenth of 240
   ByteTimes transfer_seen;        // in the current frame
 };
 
