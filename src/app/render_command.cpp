@@ -282,6 +282,8 @@ int run(RenderOptions options) {
   if (!status.ok && interrupted) return kExitInterrupted;
   if (!status.ok) return report(status);
   print_notes(opened);
+  if (!job.servers)
+    for (std::string& note : unexpected(options, job.asked, opened.renderer)) print_note(std::move(note));
   job.source = &opened.source;
   bool stopped = false;
   CoherentSequence coherent;

@@ -212,6 +212,28 @@ double time_of(const RenderOptions& o, const RenderRequest& request, std::uint32
   return o.turntable > 0 || !request.sequence.given ? o.seconds : frame / frame_rate(o, scene);
 }
 
+std::vector<std::string> unexpected(const RenderOptions& o, const RenderRequest& request, const Renderer& renderer) {
+  const Scene& scene = renderer.scene;
+  std::vector<std::string> notes;
+  const bool sequence = request.sequence.given && o.turntable == 0;
+  const double last = sequence ? time_of(o, request, request.sequence.last, scene.info) : o.seconds;
+  if (!is_animated(scene)) {
+    if (o.seconds != 0) notes.push_back("--time has no effect: the scene does not move");
+    if (sequence && !moves_camera(o) && request.sequence.last > request.sequence.first)
+      notes.push_back(
+          "all frames are equal: the scene does not move; --turntable N or --orbit DEGREES moves the camera");
+  } else if (const double duration = static_cast<double>(scene.animations[0].duration); last >= duration && last > 0) {
+    char text[160];
+    std::snprintf(text, sizeof text, "the animation lasts %g s and begins anew then: %s %g s shows its %g s", duration,
+                  sequence ? "the last frame, at" : "--time", last, duration > 0 ? std::fmod(last, duration) : 0);
+    notes.push_back(text);
+  }
+  const bool many = renderer.settings.samples_per_pixel > 1;
+  if (many && request.aov != Aov::none && request.aov != Aov::cost)
+    notes.push_back("--samples has no effect on --aov " + o.aov + ", which is that of the pixels' centres");
+  return notes;
+}
+
 Status read_render_options(RenderOptions* o, RenderRequest* request) {
   RETURN_IF_ERROR(parse_frames(o->frames, &request->sequence));
   if (o->turntable > 0) request->sequence = {0, o->turntable - 1, true};

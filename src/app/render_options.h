@@ -48,5 +48,7 @@ std::string identity_of(const RenderOptions& options, const RenderRequest& reque
 double frame_rate(const RenderOptions& options, const SceneInfo& scene);
 // Time of a frame, in seconds.
 double time_of(const RenderOptions& options, const RenderRequest& request, std::uint32_t frame, const SceneInfo& scene);
+// Options that do not do with this scene what their user may expect, a note each.
+std::vector<std::string> unexpected(const RenderOptions& options, const RenderRequest& request, const Renderer& renderer);
 
 }  // namespace pocketray

@@ -9,139 +9,15 @@
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
 #include "indirect/environment.h"
+#include "plan/area_light.h"
 #include "scene/metallic_roughness.h"
-#include "shade/even_points.h"
 #include "shade/lights.h"
-#include "shade/texture.h"
 
 namespace pocketray {
 namespace {
 
 constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
 static_assert(sizeof kKinds / sizeof kKinds[0] == sizeof FrameData::light_runs / sizeof(LightRun), "a run for each");
-
-// A piece of an area light: a triangle, or two that form a parallelogram, (a, b, c) and (a, c, d) with b − a = c − d.
-struct Emitter {
-  std::uint32_t triangle;
-  bool parallelogram;
-  double area;
-  std::uint32_t first_vertex[2];  // of each triangle, the vertex that is a
-};
-
-double triangle_area(const FrameData& frame, std::uint32_t triangle) {
-  const Triangle& t = frame.scene->triangles[triangle];
-  Vec3 e1 = frame.positions[t.vertex(1)] - frame.positions[t.vertex(0)];
-  Vec3 e2 = frame.positions[t.vertex(2)] - frame.positions[t.vertex(0)];
-  // Scaled by a power of two, which is exact, so that edges of any length stay in range.
-  int exponent;
-  std::frexp(max_component(max(abs(e1), abs(e2))), &exponent);
-  for (int axis = 0; axis < 3; ++axis)
-    e1[axis] = std::ldexp(e1[axis], -exponent), e2[axis] = std::ldexp(e2[axis], -exponent);
-  return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
-}
-
-// The emitter that starts at a triangle. The halves of a parallelogram may begin at any of their vertices.
-Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
-  const Scene& scene = *frame.scene;
-  Emitter e = {triangle, false, triangle_area(frame, triangle), {0, 0}};
-  if (triangle + 1 >= scene.triangles.count) return e;
-  const Triangle &t = scene.triangles[triangle], &next = scene.triangles[triangle + 1];
-  if (next.material() != t.material()) return e;
-  auto corner = [&](const Triangle& of, std::uint32_t i) -> const Vec3& { return frame.positions[of.vertex(i % 3)]; };
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const Vec3 &a = corner(t, i), &b = corner(t, i + 1), &c = corner(t, i + 2);
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      if (!(corner(next, k) == a && corner(next, k + 1) == c)) continue;
-      const Vec3 skew = (b - a) - (c - corner(next, k + 2));
-      if (length(skew) > length(b - a) * 1e-3f) continue;
-      e.parallelogram = true;
-      e.first_vertex[0] = i, e.first_vertex[1] = k;
-      e.area += triangle_area(frame, triangle + 1);
-      return e;
-    }
-  }
-  return e;
-}
-
-// Visits the emitters of one material in order.
-template <class Visit>
-void each_emitter(const FrameData& frame, std::uint32_t material, Visit visit) {
-  const Scene& scene = *frame.scene;
-  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
-    if (scene.triangles[i].material() != material) continue;
-    Emitter e = emitter_at(frame, i);
-    if (e.area > 0) visit(e);
-    if (e.parallelogram) ++i;
-  }
-}
-
-// Position of a cell's point on the emitter: barycentrics in the triangle, or in one half of the parallelogram. It is
-// the centroid of the cell's image, so that the mean of the points is the emitter's own centroid.
-void place_on_emitter(const Emitter& e, const Cell& cell, std::uint32_t* triangle, float* u, float* v) {
-  *triangle = e.triangle;
-  float x = static_cast<float>(0.5 * (cell.x_begin + cell.x_end)), y = static_cast<float>(cell.y);
-  if (!e.parallelogram) {
-    // Points (√x(1 − y), √xy) are uniform if x and y are [Turk 1990, "Generating random points in triangles", method
-    // 1]; √x is averaged over the cell.
-    double begin = cell.x_begin * std::sqrt(cell.x_begin), end = cell.x_end * std::sqrt(cell.x_end);
-    double root = 2 * (end - begin) / (3 * (cell.x_end - cell.x_begin));
-    *u = static_cast<float>(root * (1 - cell.y));
-    *v = static_cast<float>(root * cell.y);
-  } else {  // a + x(b − a) + y(d − a), with c = b + d − a
-    const bool second = x < y;
-    *triangle += second;
-    // Weights of a, the vertex after it and the one before it.
-    const float weights[3] = {1 - (second ? y : x), second ? x : x - y, second ? y - x : y};
-    const std::uint32_t a = e.first_vertex[second];
-    *u = weights[(1 + 3 - a) % 3];
-    *v = weights[(2 + 3 - a) % 3];
-  }
-}
-
-LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, float v, double area) {
-  const Scene& scene = *frame.scene;
-  const Triangle& t = scene.triangles[triangle];
-  const Material& m = scene.materials[t.material()];
-  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
-  LightPoint p = {};
-  p.position = a * (1 - u - v) + b * u + c * v;
-  p.direction = normalize(cross(b - a, c - a));
-  Vec3 emission = m.emission;
-  if (m.emission_texture.texture != kNone && scene.uvs.count)
-    emission *=
-        sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
-  constexpr float most = std::numeric_limits<float>::max();
-  p.intensity = min(emission * static_cast<float>(area), Vec3{most, most, most});
-  p.material = t.material();
-  p.two_sided = m.double_sided;
-  return p;
-}
-
-// The points that represent one emissive material, each with an equal share of its area.
-std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, LightPoint* points) {
-  std::uint32_t n = frame.settings.points_per_area_light;
-  CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
-  double total = 0;
-  each_emitter(frame, material, [&](const Emitter& e) { total += e.area; });
-  if (!(total > 0)) return 0;
-  double before = 0;
-  std::uint32_t placed = 0;
-  each_emitter(frame, material, [&](const Emitter& e) {
-    before += e.area;
-    // Shares whose middle (i + ½)/n of the area lies before the end of this emitter.
-    double end = std::floor(before / total * n + 0.5);
-    std::uint32_t last = end < n ? static_cast<std::uint32_t>(end) : n;
-    std::uint32_t first = placed, here = last > first ? last - first : 0;
-    for (std::uint32_t j = 0; j < here; ++j) {
-      float u, v;
-      std::uint32_t triangle;
-      place_on_emitter(e, equal_cell(j, here), &triangle, &u, &v);
-      points[placed++] = point_on(frame, triangle, u, v, total / n);
-    }
-  });
-  CHECK_LE(placed, n);
-  return placed;
-}
 
 bool is_emissive(const Scene& scene, std::uint32_t material) { return !is_zero(scene.materials[material].emission); }
 

@@ -230,7 +230,7 @@ Status render_references(Run* run, Sweep* sweep, bool* whole) {
 
 Status check_options(const AccuracyOptions& o) {
   if (find_output_format(o.output) < 0)
-    return failure("--output is '%s': it must be rgb565, rgb565-dithered or rgb888", o.output.c_str());
+    return failure("--pixel-format is '%s': it must be rgb565, rgb565-dithered or rgb888", o.output.c_str());
   CHECK(o.reference == "model" || o.reference == "physical");  // named
   if (o.rounds < 1 || o.rounds > kRoundsMax)
     return failure("--rounds is %u: it must lie in 1 … %u", o.rounds, kRoundsMax);

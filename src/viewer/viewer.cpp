@@ -213,8 +213,9 @@ Status open_screen(const platform::ScreenOptions& options, Viewer* viewer, platf
   if (!viewer->backend) return failure("--screen is '%s': it must be sdl2, linux or null, if built in", name.c_str());
   platform::Error error;
   if (viewer->backend->open(options, format, &error)) return success();
+  const bool is_default = viewer->backend == platform::platform_find("linux") && !options.device;
   viewer->backend = nullptr;
-  return failure("%s", error.text);
+  return failure("%s%s", error.text, is_default ? "; --framebuffer FILE uses another one" : "");
 }
 
 // Advances camera and time; marks the picture as changed.

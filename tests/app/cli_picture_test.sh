@@ -18,6 +18,11 @@ expect aov_raw_legend 0 '' render "$subject" --size 160x48 --threads 2 --aov cos
 expect sequence 0 'per frame' render seesaw "${small[@]}" --frames 3:5 -o s.ppm
 for n in 3 4 5; do check "sequence_file_$n" test -s s-000$n.ppm; done
 check no_part_file_is_left test -z "$(ls ./*.part 2>/dev/null)"
+expect still_sequence 0 'all frames are equal: the scene does not move' render cube "${small[@]}" --frames 0:1 -o s.ppm
+expect still_time 0 'time has no effect: the scene does not move' render cube "${small[@]}" --time 2 -o s.ppm
+expect time_beyond_the_animation 0 'begins anew then: --time 12 s shows' render seesaw "${small[@]}" --time 12 -o s.ppm
+expect samples_of_aov 0 'samples has no effect on --aov depth' render cube "${small[@]}" --samples 4 --aov depth -o s.ppm
+check no_note_without_need bash -c '! "$@" 2>&1 | grep -q pocketray:' _ "${run[@]}" render seesaw "${small[@]}" --frames 3:4 -o s.ppm
 expect render_png 0 'ns per pixel' render "$subject" "${small[@]}" -o a.png
 check png_magic test "$(head -c 8 a.png | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a
 

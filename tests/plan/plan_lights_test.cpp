@@ -142,6 +142,50 @@ TEST_CASE("plan_lights_points_do_not_depend_on_the_first_vertices_of_a_square") 
   }
 }
 
+// Goal: a lamp of many triangles shines from its centre, whatever the number of points, even below that of its
+// triangles. Method: closed form, squares cut into 3×3, 5×7 and 8×8 quads of unequal widths or triangles that form
+// none, one of them so small that fourth powers of its lengths leave the range of float; every point lies on the lamp.
+TEST_CASE("plan_lights_points_keep_the_centre_of_a_mesh") {
+  for (float scale : {1.0f, 0x1p-40f})
+    for (int cuts : {3, 5, 8})
+      for (bool bent : {false, true}) {
+        auto s = lamp_scene();
+        const std::uint32_t m = add_material(s.get(), lamp(1));
+        const int rows = cuts == 5 ? 7 : cuts;
+        auto at = [&](int i, int of) {  // from −1 to 1
+          const float x = static_cast<float>(i) / static_cast<float>(of);
+          return (x + 0.4f * x * (1 - x)) * 2 - 1;
+        };
+        for (int row = 0; row < rows; ++row)
+          for (int column = 0; column < cuts; ++column) {
+            const float x0 = at(column, cuts), x1 = at(column + 1, cuts), y0 = at(row, rows), y1 = at(row + 1, rows);
+            const Vec3 middle = {x0 + 0.3f * (x1 - x0), y0 + 0.6f * (y1 - y0), 0};
+            const Vec3 corners[4] = {{x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}};
+            if (!bent)
+              add_quad(s.get(), corners[0] * scale, corners[1] * scale, corners[2] * scale, corners[3] * scale, m);
+            for (int side = 0; bent && side < 4; ++side) {
+              const std::uint32_t a = add_vertex(s.get(), middle * scale);
+              const std::uint32_t b = add_vertex(s.get(), corners[side] * scale);
+              add_triangle(s.get(), a, b, add_vertex(s.get(), corners[(side + 1) % 4] * scale), m);
+            }
+          }
+        s->bind();
+        for (std::uint32_t n : kCounts) {
+          Vec3 sum = {0, 0, 0};
+          for (const LightPoint& p : points_of(*s, n)) {
+            CHECK(max_component(abs(p.position)) <= scale * 1.000001f);
+            CHECK(p.direction == Vec3{0, 0, 1});
+            sum += p.position / scale;
+          }
+          CAPTURE(scale);
+          CAPTURE(cuts);
+          CAPTURE(bent);
+          CAPTURE(n);
+          CHECK(length(sum / static_cast<float>(n)) < 0.001f);
+        }
+      }
+}
+
 // Goal: points are distributed by area. Method: closed form, two squares of one material, one nine times the other.
 TEST_CASE("plan_lights_points_follow_the_area") {
   auto s = lamp_scene();

@@ -70,8 +70,10 @@ void add_accuracy_command(Command program, int* exit_status) {
       "\"arithmetic double\" is timed with the reference's own tracer.\n"
       "Confidence intervals are 95 %, given at least six rounds.");
   add_scene_options(command, &o->common);
-  command.add_option("-o,--output-folder", o->folder, "folder to write to; created if missing").required();
-  command.add_option("--output", o->output, "pixel format of the baseline's screen: rgb565, rgb565-dithered or rgb888")
+  command.add_option("-o,--output", o->folder, "folder to write to; created if missing").required();
+  command
+      .add_option("--pixel-format", o->output,
+                  "pixel format of the baseline's screen: rgb565, rgb565-dithered or rgb888")
       .capture_default_str();
   command
       .add_option(

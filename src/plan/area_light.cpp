@@ -1,0 +1,259 @@
+#include "plan/area_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "base/limits.h"
+#include "shade/even_points.h"
+#include "shade/texture.h"
+
+namespace pocketray {
+namespace {
+
+// A piece of an area light: a triangle, or two that form a parallelogram, (a, b, c) and (a, c, d) with b − a = c − d.
+struct Emitter {
+  std::uint32_t triangle;
+  bool parallelogram;
+  double area;
+  std::uint32_t first_vertex[2];  // of each triangle, the vertex that is a
+};
+
+double triangle_area(const FrameData& frame, std::uint32_t triangle) {
+  const Triangle& t = frame.scene->triangles[triangle];
+  Vec3 e1 = frame.positions[t.vertex(1)] - frame.positions[t.vertex(0)];
+  Vec3 e2 = frame.positions[t.vertex(2)] - frame.positions[t.vertex(0)];
+  // Scaled by a power of two, which is exact, so that edges of any length stay in range.
+  int exponent;
+  std::frexp(max_component(max(abs(e1), abs(e2))), &exponent);
+  for (int axis = 0; axis < 3; ++axis)
+    e1[axis] = std::ldexp(e1[axis], -exponent), e2[axis] = std::ldexp(e2[axis], -exponent);
+  return std::ldexp(0.5 * static_cast<double>(length(cross(e1, e2))), 2 * exponent);
+}
+
+// The emitter that starts at a triangle. The halves of a parallelogram may begin at any of their vertices.
+Emitter emitter_at(const FrameData& frame, std::uint32_t triangle) {
+  const Scene& scene = *frame.scene;
+  Emitter e = {triangle, false, triangle_area(frame, triangle), {0, 0}};
+  if (triangle + 1 >= scene.triangles.count) return e;
+  const Triangle &t = scene.triangles[triangle], &next = scene.triangles[triangle + 1];
+  if (next.material() != t.material()) return e;
+  auto corner = [&](const Triangle& of, std::uint32_t i) -> const Vec3& { return frame.positions[of.vertex(i % 3)]; };
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const Vec3 &a = corner(t, i), &b = corner(t, i + 1), &c = corner(t, i + 2);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (!(corner(next, k) == a && corner(next, k + 1) == c)) continue;
+      const Vec3 skew = (b - a) - (c - corner(next, k + 2));
+      if (length(skew) > length(b - a) * 1e-3f) continue;
+      e.parallelogram = true;
+      e.first_vertex[0] = i, e.first_vertex[1] = k;
+      e.area += triangle_area(frame, triangle + 1);
+      return e;
+    }
+  }
+  return e;
+}
+
+// Visits the emitters of one material in order.
+template <class Visit>
+void each_emitter(const FrameData& frame, std::uint32_t material, Visit visit) {
+  const Scene& scene = *frame.scene;
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
+    if (scene.triangles[i].material() != material) continue;
+    Emitter e = emitter_at(frame, i);
+    if (e.area > 0) visit(e);
+    if (e.parallelogram) ++i;
+  }
+}
+
+// Position of a cell's point on the emitter: barycentrics in the triangle, or in one half of the parallelogram. It is
+// the centroid of the cell's image, so that the mean of the points is the emitter's own centroid.
+void place_on_emitter(const Emitter& e, const Cell& cell, std::uint32_t* triangle, float* u, float* v) {
+  *triangle = e.triangle;
+  float x = static_cast<float>(0.5 * (cell.x_begin + cell.x_end)), y = static_cast<float>(cell.y);
+  if (!e.parallelogram) {
+    // Points (√x(1 − y), √xy) are uniform if x and y are [Turk 1990, "Generating random points in triangles", method
+    // 1]; √x is averaged over the cell.
+    double begin = cell.x_begin * std::sqrt(cell.x_begin), end = cell.x_end * std::sqrt(cell.x_end);
+    double root = 2 * (end - begin) / (3 * (cell.x_end - cell.x_begin));
+    *u = static_cast<float>(root * (1 - cell.y));
+    *v = static_cast<float>(root * cell.y);
+  } else {  // a + x(b − a) + y(d − a), with c = b + d − a
+    const bool second = x < y;
+    *triangle += second;
+    // Weights of a, the vertex after it and the one before it.
+    const float weights[3] = {1 - (second ? y : x), second ? x : x - y, second ? y - x : y};
+    const std::uint32_t a = e.first_vertex[second];
+    *u = weights[(1 + 3 - a) % 3];
+    *v = weights[(2 + 3 - a) % 3];
+  }
+}
+
+Vec3 surface_point(const FrameData& frame, std::uint32_t triangle, float u, float v) {
+  const Triangle& t = frame.scene->triangles[triangle];
+  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  return a * (1 - u - v) + b * u + c * v;
+}
+
+// Barycentric coordinates of the point of a triangle nearest to p [Ericson 2005, "Real-Time Collision Detection",
+// sec. 5.1.5], in double precision as the fourth powers of lengths exceed the range of float. Returns the squared
+// distance.
+double nearest_point(const FrameData& frame, std::uint32_t triangle, const Vec3& p, float* u, float* v) {
+  const Triangle& t = frame.scene->triangles[triangle];
+  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  auto product = [](const Vec3& l, const Vec3& r) {
+    return static_cast<double>(l.x) * r.x + static_cast<double>(l.y) * r.y + static_cast<double>(l.z) * r.z;
+  };
+  const double d1 = product(ab, ap), d2 = product(ac, ap), d3 = product(ab, bp), d4 = product(ac, bp),
+               d5 = product(ab, cp), d6 = product(ac, cp);
+  const double of_a = d3 * d6 - d5 * d4, of_b = d5 * d2 - d1 * d6, of_c = d1 * d4 - d3 * d2;
+  double x = 0, y = 0;
+  if (d1 <= 0 && d2 <= 0) {  // at a
+  } else if (d3 >= 0 && d4 <= d3) {
+    x = 1;  // at b
+  } else if (of_c <= 0 && d1 >= 0 && d3 <= 0) {
+    x = d1 / (d1 - d3);  // on ab
+  } else if (d6 >= 0 && d5 <= d6) {
+    y = 1;  // at c
+  } else if (of_b <= 0 && d2 >= 0 && d6 <= 0) {
+    y = d2 / (d2 - d6);  // on ac
+  } else if (of_a <= 0 && d4 >= d3 && d5 >= d6) {
+    y = (d4 - d3) / ((d4 - d3) + (d5 - d6));  // on bc
+    x = 1 - y;
+  } else {
+    const double sum = of_a + of_b + of_c;
+    x = of_b / sum, y = of_c / sum;
+  }
+  *u = static_cast<float>(x), *v = static_cast<float>(y);
+  const Vec3 offset = surface_point(frame, triangle, *u, *v) - p;
+  return product(offset, offset);
+}
+
+LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, float v, double area) {
+  const Scene& scene = *frame.scene;
+  const Triangle& t = scene.triangles[triangle];
+  const Material& m = scene.materials[t.material()];
+  const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+  LightPoint p = {};
+  p.position = surface_point(frame, triangle, u, v);
+  p.direction = normalize(cross(b - a, c - a));
+  Vec3 emission = m.emission;
+  if (m.emission_texture.texture != kNone && scene.uvs.count)
+    emission *=
+        sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
+  constexpr float most = std::numeric_limits<float>::max();
+  p.intensity = min(emission * static_cast<float>(area), Vec3{most, most, most});
+  p.material = t.material();
+  p.two_sided = m.double_sided;
+  return p;
+}
+
+// The points of a light stand for equal shares of its area, taken in the order of its emitters. A slice of an emitter
+// is a part of one share, or of several shares whole. Its x is the first coordinate of a Cell, in which area is
+// uniform.
+struct Slice {
+  std::uint32_t share, share_count;
+  bool whole;
+  double share_part;  // of one share
+  double x_begin, x_end;
+};
+
+template <class Visit>
+void each_slice(const FrameData& frame, std::uint32_t material, double area_total, std::uint32_t n, Visit visit) {
+  // A border that misses one between shares by no more than the sums' rounding is taken as that border.
+  auto in_shares = [&](double area) {
+    const double shares = area / area_total * n, nearest = std::floor(shares + 0.5);
+    return std::fabs(shares - nearest) < 1e-6 ? nearest : shares;
+  };
+  double area = 0;
+  each_emitter(frame, material, [&](const Emitter& e) {
+    const double begin = in_shares(area), end = in_shares(area += e.area);
+    for (double from = begin, to; from < end; from = to) {
+      const double share = std::floor(from);
+      const bool whole = from == share && std::floor(end) > from;
+      to = whole ? std::floor(end) : std::min(end, share + 1);
+      Slice slice = {static_cast<std::uint32_t>(share), 1, whole, to - from, 0, 0};
+      if (whole) slice.share_count = static_cast<std::uint32_t>(to - from);
+      slice.x_begin = (from - begin) / (end - begin), slice.x_end = (to - begin) / (end - begin);
+      visit(e, slice);
+    }
+  });
+}
+
+// The point of the surface nearest to the centroid of a share that several emitters make up.
+struct NearestPoint {
+  Vec3 centroid;
+  std::uint32_t triangle;
+  float u, v;
+  double square;  // of its distance
+};
+
+void approach(const FrameData& frame, const Emitter& e, NearestPoint* nearest) {
+  for (std::uint32_t triangle = e.triangle; triangle <= e.triangle + e.parallelogram; ++triangle) {
+    float u, v;
+    const double square = nearest_point(frame, triangle, nearest->centroid, &u, &v);
+    if (square < nearest->square) *nearest = {nearest->centroid, triangle, u, v, square};
+  }
+}
+
+// Points of the shares that a slice covers whole.
+void place_whole_shares(const FrameData& frame, const Emitter& e, const Slice& slice, double area, LightPoint* points) {
+  const double width = slice.x_end - slice.x_begin;
+  for (std::uint32_t j = 0; j < slice.share_count; ++j) {
+    Cell cell = equal_cell(j, slice.share_count);
+    cell.x_begin = slice.x_begin + cell.x_begin * width, cell.x_end = slice.x_begin + cell.x_end * width;
+    std::uint32_t triangle;
+    float u, v;
+    place_on_emitter(e, cell, &triangle, &u, &v);
+    points[slice.share + j] = point_on(frame, triangle, u, v, area);
+  }
+}
+
+}  // namespace
+
+// A share that several emitters make up has the point of its surface nearest to its centroid. Where the centroid lies
+// on another share, as it may in a flat lamp, the point is there: flat lamps keep their centre.
+std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, LightPoint* points) {
+  const std::uint32_t n = frame.settings.points_per_area_light;
+  CHECK(n >= 1 && n <= kPointsPerAreaLightMax);
+  double total = 0;
+  each_emitter(frame, material, [&](const Emitter& e) { total += e.area; });
+  if (!(total > 0)) return 0;
+  const double area = total / n;
+  // 1. The centroids of shares in parts.
+  for (std::uint32_t i = 0; i < n; ++i) points[i].position = {0, 0, 0};
+  each_slice(frame, material, total, n, [&](const Emitter& e, const Slice& slice) {
+    if (slice.whole) return place_whole_shares(frame, e, slice, area, points);
+    std::uint32_t triangle;
+    float u, v;
+    place_on_emitter(e, {slice.x_begin, slice.x_end, 0.5}, &triangle, &u, &v);
+    points[slice.share].position += surface_point(frame, triangle, u, v) * static_cast<float>(slice.share_part);
+  });
+  // 2. Their nearest points, of their own surface and if that is not where the centroid is, of all of it.
+  const double there = area * 1e-6;  // chosen: a thousandth of the share's size
+  NearestPoint nearest = {};
+  auto settle = [&](std::uint32_t share) {
+    if (nearest.square > there) {
+      NearestPoint other = nearest;
+      each_emitter(frame, material, [&](const Emitter& e) { approach(frame, e, &other); });
+      if (other.square <= there) nearest = other;
+    }
+    points[share] = point_on(frame, nearest.triangle, nearest.u, nearest.v, area);
+  };
+  std::uint32_t share = kNone;
+  each_slice(frame, material, total, n, [&](const Emitter& e, const Slice& slice) {
+    if (slice.whole) return;
+    if (slice.share != share) {
+      if (share != kNone) settle(share);
+      share = slice.share;
+      nearest = {points[share].position, 0, 0, 0, std::numeric_limits<double>::infinity()};
+    }
+    approach(frame, e, &nearest);
+  });
+  if (share != kNone) settle(share);
+  return n;
+}
+
+}  // namespace pocketray
