@@ -34,8 +34,9 @@ enum class Effect : std::uint8_t {
   selective,
   environment,
   undersampling,
+  source_selection,
 };
-constexpr int kEffectCount = 29;
+constexpr int kEffectCount = 30;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

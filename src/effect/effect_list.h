@@ -40,6 +40,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::selective, "selective", "--selective above 0"},
     {Effect::environment, "environment", "a stored environment: light from every direction"},
     {Effect::undersampling, "undersampling", "--resolution checkerboard or half"},
+    {Effect::source_selection, "source-selection", "many lights"},
 };
 
 constexpr bool effects_in_order() {

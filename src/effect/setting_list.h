@@ -182,6 +182,19 @@ inline constexpr SettingRow kSettingList[] = {
      {double(Resolution::half), double(Resolution::checkerboard), double(Resolution::full)},
      nullptr,
      ""},
+    {"light-tolerance",
+     "of many lights, share of a surface's light that needs no shadow rays",
+     "the strongest lights are tested; 0: all",
+     "light tolerance",
+     real_field<&Quality::light_tolerance>(Quantity::light_tolerance),
+     4,
+     bit(Effect::source_selection),
+     bit(Effect::source_selection),
+     false,
+     0,
+     {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0},
+     nullptr,
+     ""},
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];
 

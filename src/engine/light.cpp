@@ -4,6 +4,7 @@
 #include "effect/setting_list.h"
 #include "engine/prepare.h"
 #include "indirect/surroundings.h"
+#include "plan/place_light_tree.h"
 #include "plan/place_virtual_lights.h"
 #include "plan/plan_lights.h"
 #include "shade/ambient_gloss.h"
@@ -16,6 +17,7 @@
 #include "shade/media.h"
 #include "shade/selective.h"
 #include "shade/shade.h"
+#include "shade/source_selection.h"
 #include "shade/surface.h"
 #include "shade/tile_shadows.h"
 
@@ -58,7 +60,9 @@ void choose_kernels(Renderer* renderer) {
     renderer->frame.trace_strip = trace_lattice;
   }
   renderer->frame.radiance = find_radiance_function(renderer->effects.mask);
-  renderer->frame.find_shadows = has(renderer->effects.mask, Effect::shadow) ? find_tile_shadows : nullptr;
+  renderer->frame.find_shadows = !has(renderer->effects.mask, Effect::shadow)            ? nullptr
+                                 : has(renderer->effects.mask, Effect::source_selection) ? find_tile_surfaces
+                                                                                         : find_tile_shadows;
   CHECK(renderer->frame.surface != nullptr && renderer->frame.radiance != nullptr);
   make_filters(&renderer->frame);
 }
@@ -71,6 +75,8 @@ void light_scene(Renderer* renderer) {
     place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
                  renderer->light_points, &renderer->frame);
     CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
+    if (has(renderer->effects.mask, Effect::source_selection))
+      place_light_tree(renderer->light_nodes, renderer->light_order, &renderer->frame);
     if (has(renderer->effects.mask, Effect::instant_radiosity)) place_virtual_lights(&renderer->frame);
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
@@ -91,6 +97,10 @@ void make_tracers(Renderer* renderer) {
     if (has(renderer->effects.mask, Effect::undersampling))
       keep_window({&renderer->window_pixels[i * pixels], pixels}, {&renderer->window_states[i * pixels], pixels},
                   &renderer->tracers[i]);
+    if (renderer->light_entries.count) {
+      const std::uint32_t entries = search_entry_count(renderer->selected_light_max);
+      renderer->tracers[i].light_entries = {&renderer->light_entries[i * entries], entries};
+    }
     if (has(renderer->effects.mask, Effect::selective) && corners > 0)
       keep_corner_rows({&renderer->corners[i * corners], corners}, &renderer->tracers[i]);
   }

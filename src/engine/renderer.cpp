@@ -15,6 +15,7 @@
 #include "shade/camera.h"
 #include "shade/lattice.h"
 #include "shade/selective.h"
+#include "shade/source_selection.h"
 
 namespace pocketray {
 namespace {
@@ -81,9 +82,9 @@ Status adopt_or_build(Renderer* renderer) {
 Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, std::size_t output_bytes) {
   renderer->accel_info = &accel;
   CoherenceState* coherence = &renderer->coherence_state;
-  Status status =
-      plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, storage, renderer->light_points.count,
-                  output_bytes, &renderer->memory, &coherence->unplanned_because);
+  Status status = plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, storage,
+                              {renderer->light_points.count, renderer->selected_light_max}, output_bytes,
+                              &renderer->memory, &coherence->unplanned_because);
   coherence->planned = !coherence->unplanned_because;
   return status;
 }
@@ -133,6 +134,10 @@ Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_
   if (renderer->light_count_max > renderer->scene.lights.count)
     point_count += renderer->light_count_max - renderer->scene.lights.count;
   renderer->light_points.count = renderer->light_point_count_max = point_count;
+  const std::uint64_t light_count_max = std::uint64_t(renderer->light_count_max) + renderer->scene.materials.count;
+  const bool may_select =
+      renderer->light_count_max > 0 && renderer->settings.light_tolerance > 0 && light_count_max >= kSelectedLightsMin;
+  renderer->selected_light_max = may_select || has(renderer->effects.mask, Effect::source_selection) ? point_count : 0;
   return choose_accel(renderer, storage, output_bytes);
 }
 
@@ -157,6 +162,12 @@ Status build_renderer_unexposed(Renderer* renderer) {
   CHECK_LE(renderer->persistent_arena.used - used, indirect_need(renderer->scene, renderer->effects.mask));
   if (renderer->light_points.count)
     renderer->light_points = arena_array<LightPoint>(&renderer->persistent_arena, renderer->light_points.count);
+  if (const std::uint32_t lights = renderer->selected_light_max) {
+    const std::uint32_t entries = renderer->settings.threads * search_entry_count(lights);
+    renderer->light_nodes = arena_array<LightNode>(&renderer->persistent_arena, lights);
+    renderer->light_order = arena_array<std::uint32_t>(&renderer->persistent_arena, lights);
+    renderer->light_entries = arena_array<LightEntry>(&renderer->persistent_arena, entries);
+  }
   renderer->tracers = arena_array<Tracer>(&renderer->persistent_arena, renderer->settings.threads);
   if (has(renderer->effects.mask, Effect::selective))
     renderer->corners =
@@ -211,6 +222,8 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
                    renderer->light_point_count_max);
   if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
     return failure("memory is planned without virtual lights: plan with --indirect instant-radiosity");
+  if (has(effects.mask, Effect::source_selection) && renderer->light_entries.empty())
+    return failure("memory is planned for shadow rays to all lights: plan with a --light-tolerance above 0");
   if (has(effects.mask, Effect::undersampling) && renderer->window_pixels.empty())
     return failure("memory is planned for all pixels to be traced: plan with --resolution half");
   std::size_t memory_bytes = now.memory_bytes;

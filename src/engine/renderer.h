@@ -57,7 +57,11 @@ struct Renderer {
   Pose pose;
   Array<LightPoint> light_points;
   std::uint32_t light_point_count_max = 0;  // as planned
-  std::uint32_t light_count_max = 0;        // lights that may be set later; their points are planned for
+  std::uint32_t selected_light_max = 0;     // the same if source selection is planned, otherwise 0
+  Array<LightNode> light_nodes;             // of source selection
+  Array<std::uint32_t> light_order;
+  Array<LightEntry> light_entries;    // search_entry_count() of them per thread
+  std::uint32_t light_count_max = 0;  // lights that may be set later; their points are planned for
   FrameData frame;
   Array<Span> spans;            // one per scanline
   Array<std::uint64_t> row_ns;  // cost of each in the last frame

@@ -98,10 +98,11 @@ Front builtin_front() {
     std::uint32_t samples, depth, area_lights;
     float cut_off, contrast;
     Resolution resolution = Resolution::full;
-  } kLadder[] = {{1, 0, 1, 4, 0.5f, Resolution::half},
-                 {1, 0, 1, 4, 0.5f},
-                 {1, 1, 1, 4, 0.25f},
-                 {1, 2, 2, 0.5f, 0.25f},
+    float light_tolerance = 0.05f;
+  } kLadder[] = {{1, 0, 1, 4, 0.5f, Resolution::half, 0.5f},
+                 {1, 0, 1, 4, 0.5f, Resolution::full, 0.5f},
+                 {1, 1, 1, 4, 0.25f, Resolution::full, 0.2f},
+                 {1, 2, 2, 0.5f, 0.25f, Resolution::full, 0.1f},
                  {1, 8, 4, 0.5f, 0.25f},
                  {1, 8, 4, 0.5f, 0.125f},
                  {1, 8, 4, 0.5f, 0},
@@ -112,7 +113,7 @@ Front builtin_front() {
                  {8, 8, 16, 0.5f, 0},
                  {16, 8, 16, 0.5f, 0},
                  {16, 8, 64, 0.5f, 0},
-                 {16, 16, 64, 0, 0}};
+                 {16, 16, 64, 0, 0, Resolution::full, 0}};
   static_assert(sizeof kLadder / sizeof kLadder[0] <= kFrontCandidateMax, "a front holds them");
   Front front;
   Candidate c;
@@ -124,6 +125,7 @@ Front builtin_front() {
     c.cut_off_levels = row.cut_off;
     c.selective_contrast = row.contrast;
     c.resolution = row.resolution;
+    c.light_tolerance = row.light_tolerance;
     // Guesses within a factor of two of `pocketray bench` on the built-in scenes.
     double reach = row.depth < 4 ? row.depth : 4, points = row.area_lights;
     double exact = row.cut_off == 0 ? 1.2 : row.cut_off > 1 ? 0.95 : 1.0;

@@ -172,6 +172,8 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
                                        : settings.indirect == IndirectChoice::none
                                            ? kIndirectEffects | bit(Effect::ambient_gloss)
                                            : bit(Effect::instant_radiosity);
+  const std::uint32_t light_count = c.emissive + scene.lights.count;
+  const bool selects = settings.light_tolerance > 0 && light_count >= kSelectedLightsMin;
   if (const EnvironmentInfo* environment = environment_of(scene))
     w.set(Effect::environment, true, "%u×%u texels, radiance at most %.3g", environment->side, environment->side,
           static_cast<double>(max_component(environment->radiance_max)));
@@ -209,6 +211,11 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
           full                                      ? "all"
           : settings.resolution == Resolution::half ? "a quarter"
                                                     : "half");
+  if (settings.light_tolerance == 0)
+    w.set(Effect::source_selection, false, "every light tested for shadows");
+  else
+    w.set(Effect::source_selection, selects, "%u light%s: %s tested for shadows", light_count,
+          light_count == 1 ? "" : "s", selects ? "the strongest" : "each");
   bool animated = is_animated(scene);
   w.set(Effect::animation, animated, animated ? "%u animation%s" : "nothing moves", scene.animations.count,
         scene.animations.count == 1 ? "" : "s");
@@ -218,6 +225,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     EffectDecision& d = plan.decisions[i];
     CHECK(d.reason[0] != 0);  // every effect has been decided
     EffectMask forced_on = settings.forced_on & ~excluded_indirect;
+    if (!selects) forced_on &= ~bit(Effect::source_selection);
     bool on = (d.on || has(forced_on, effect)) && !has(settings.forced_off, effect);
     if (on != d.on) {
       char reason[sizeof d.reason];

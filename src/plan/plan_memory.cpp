@@ -9,6 +9,7 @@
 #include "scene/animate.h"
 #include "shade/lattice.h"
 #include "shade/selective.h"
+#include "shade/source_selection.h"
 
 namespace pocketray {
 namespace {
@@ -50,7 +51,7 @@ CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point
 namespace {
 
 Status plan_memory_with(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                        const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
+                        const SceneStorage& storage, const PlannedLights& lights, std::size_t output_bytes,
                         bool with_coherence, MemoryPlan* plan) {
   CHECK(plan != nullptr);
   CHECK(settings.threads >= 1 && settings.threads <= kThreadCountMax);
@@ -74,7 +75,8 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
   add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
-  add_part(plan, "lights", ArenaKind::persistent, light_point_count ? arena_need<LightPoint>(light_point_count) : 0);
+  add_part(plan, "lights", ArenaKind::persistent, lights.points ? arena_need<LightPoint>(lights.points) : 0);
+  add_part(plan, "source selection", ArenaKind::persistent, selection_need(settings, lights.selected));
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
   add_part(plan, "selective", ArenaKind::persistent,
            has(effects.mask, Effect::selective) ? selective_need(settings) : 0);
@@ -85,7 +87,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
   if (with_coherence) {
     add_part(plan, "coherence", ArenaKind::persistent,
-             coherence_need(scene, effects.mask, coherence_plan(settings, light_point_count)));
+             coherence_need(scene, effects.mask, coherence_plan(settings, lights.points)));
     scratch = std::max(scratch, coherence_scratch_need(scene, effects.mask));
   }
   // The scratch of a single build is free again when the first frame is shown, so output shares its part of the frame
@@ -110,8 +112,8 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
 }  // namespace
 
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
-                   MemoryPlan* plan, const char** without_coherence) {
+                   const SceneStorage& storage, const PlannedLights& lights, std::size_t output_bytes, MemoryPlan* plan,
+                   const char** without_coherence) {
   const bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
   const char* mixes = has(effects.mask, Effect::instant_radiosity) ? "instant radiosity mixes neighbouring pixels' rays"
@@ -123,12 +125,11 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                     : settings.coherence == CoherenceMode::off ? "coherence is off"
                     : wanted                                   ? nullptr
                                                                : "nothing moves";
-  Status status =
-      plan_memory_with(scene, settings, effects, accel, storage, light_point_count, output_bytes, wanted, plan);
+  Status status = plan_memory_with(scene, settings, effects, accel, storage, lights, output_bytes, wanted, plan);
   if (wanted && !status.ok) {
     wanted = false;
     why = "coherence does not fit into memory";
-    status = plan_memory_with(scene, settings, effects, accel, storage, light_point_count, output_bytes, wanted, plan);
+    status = plan_memory_with(scene, settings, effects, accel, storage, lights, output_bytes, wanted, plan);
   }
   if (without_coherence) *without_coherence = why;
   return status;

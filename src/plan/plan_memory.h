@@ -34,14 +34,20 @@ struct SceneStorage {
   std::size_t arena_bytes = 0;  // already taken from the scene arena
 };
 
+// At most.
+struct PlannedLights {
+  std::uint32_t points = 0;
+  std::uint32_t selected = 0;  // points among which source selection chooses; 0: it is not planned
+};
+
 // Plans the block. `output_bytes` is what the caller needs to show or write a frame (packed pixels, PNG encoder).
 // Fails with the figures and a setting that would fit if the total exceeds settings.memory_bytes; fills the plan in
 // either case.
 // Memory to trace only what changes is planned as requested, and left out if everything else fits without it:
 // *without_coherence (may be null) receives why it is left out, or null.
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                   const SceneStorage& storage, std::uint32_t light_point_count, std::size_t output_bytes,
-                   MemoryPlan* plan, const char** without_coherence = nullptr);
+                   const SceneStorage& storage, const PlannedLights& lights, std::size_t output_bytes, MemoryPlan* plan,
+                   const char** without_coherence = nullptr);
 CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count);
 
 // The same for a device that only shows what others render: its plan has only the output.

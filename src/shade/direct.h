@@ -14,6 +14,13 @@
 
 namespace pocketray {
 
+// The effects that are simulated. Source selection has few instances, which hold the code of all other effects.
+template <EffectMask mask>
+constexpr EffectMask plan_of(const FrameData& frame) {
+  if constexpr (has(mask, Effect::source_selection)) return frame.mask;
+  return mask;
+}
+
 // Whether to skip a contribution of at most `bound`: all that is skipped of a sample stays below half the narrowest
 // display level, so no pixel changes by more than one level.
 inline bool leave_out(Tracer* tracer, float bound) {
@@ -56,6 +63,7 @@ inline float optical_depth(float begin, float end, float open, float distance) {
 template <EffectMask mask>
 Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, bool at_first_hit) {
   const FrameData& frame = *tracer->frame;
+  const EffectMask plan = plan_of<mask>(frame);
   HitFilter filter = {frame.accept_clear, &context, frame.filters_read_point};
   Vec3 result = {1, 1, 1};
   Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and exits
@@ -69,7 +77,7 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
     const AccelTraversal& rays = at_first_hit && layer == 0 ? *frame.first_rays : *frame.accel_info;
     rays.closest(frame.accel, ray, &filter, &hit, &tracer->stats);
     if (hit.triangle == kNoTriangle) {
-      if constexpr (has(mask, Effect::absorption)) {
+      if (has(plan, Effect::absorption)) {
         float end = (passed + ray.t_max) * unit;
         if (open_count <= 0) open = {0, 0, 0};
         Vec3 inside;
@@ -82,9 +90,9 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
     frame.surface(frame, ray, hit, &s);
     Contact contact;
     gather_contact(frame, s, hit, &filter, &contact, &tracer->stats);
-    if constexpr (has(mask, Effect::refraction)) {
+    if (has(plan, Effect::refraction)) {
       result *= interface_transmittance(frame, contact, std::fabs(dot(s.normal, ray.direction)) / unit);
-      if constexpr (has(mask, Effect::absorption)) {
+      if (has(plan, Effect::absorption)) {
         float distance = (passed + hit.t) * unit;
         for (std::uint32_t i = 0; i < contact.count; ++i) {
           const Material& m = frame.scene->materials[contact.face[i].material];
@@ -97,7 +105,7 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
         }
       }
     }
-    if constexpr (has(mask, Effect::alpha_blend)) {
+    if (has(plan, Effect::alpha_blend)) {
       for (std::uint32_t i = 0; i < contact.count; ++i) {
         const Face& face = contact.face[i];
         const Material& m = frame.scene->materials[face.material];
@@ -136,7 +144,10 @@ Vec3 shadow(Tracer* tracer, FindRay find_ray, std::uint32_t light, bool at_first
     blocked = rays.occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
   }
   if (blocked) return {0, 0, 0};
-  if constexpr (kClear) return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
+  if constexpr (kClear) {
+    constexpr EffectMask clear = bit(Effect::refraction) | bit(Effect::alpha_blend);
+    if (plan_of<mask>(frame) & clear) return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
+  }
   return {1, 1, 1};
 }
 

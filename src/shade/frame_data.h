@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "accel/accel.h"
+#include "base/box.h"
 #include "base/limits.h"
 #include "effect/effect.h"
 #include "effect/settings.h"
@@ -21,6 +22,20 @@ struct LightPoint {
   float cos_inner, cos_outer;
   std::uint32_t material;   // of the emitter, which casts no shadow and does not light itself; otherwise kNone
   std::uint32_t two_sided;  // area: emits on both sides
+};
+
+// A group of lights of one kind.
+struct LightNode {
+  Box box;                   // of their positions
+  float intensity;           // sum of their brightest channels
+  std::uint32_t begin, end;  // in LightTree::order
+  std::uint32_t right;       // its second half, the first being the next node; kNone: not divided
+  LightPoint mean;           // a light that stands for all of them
+};
+struct LightTree {
+  Array<const LightNode> nodes;
+  Array<const std::uint32_t> order;  // indices of lights
+  std::uint32_t roots[4];            // of FrameData::light_runs; kNone: the run has no tree
 };
 
 struct LightSample {
@@ -109,6 +124,7 @@ struct FrameData {
   Array<const LightPoint> lights;
   LightRun light_runs[4];
   int light_run_count = 0;
+  LightTree light_tree = {};  // set with Effect::source_selection
   Settings settings;
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;
@@ -155,6 +171,15 @@ struct LatticeWindow {
   std::uint32_t row = ~0u;  // of the row of tiles that it is about; ~0: none
 };
 
+// A light that source selection looks at, or a group of lights: the other is kNone.
+struct LightEntry {
+  Vec3 radiance;  // of a light: what it contributes unblocked
+  float most;     // upper bound of the contribution's brightest channel
+  std::uint32_t light, node;
+  std::uint16_t run;
+  std::uint16_t next;  // in the list of entries about as strong
+};
+
 // One thread's state; counters accumulate. Aligned so that threads do not share a cache line.
 struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
@@ -168,6 +193,7 @@ struct alignas(64) Tracer {
   CornerRow corner_rows[4];                   // of selective rendering
   std::uint32_t corner_row_count = 0;         // that are kept: 0, 2 or 4
   LatticeWindow window;                       // empty: not planned
+  Array<LightEntry> light_entries;            // scratch of source selection; empty: not planned
   float left_out_max = 0;                     // largest sum skipped of one sample so far
 };
 

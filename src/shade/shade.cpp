@@ -10,6 +10,7 @@
 #include "shade/direct.h"
 #include "shade/instantiate.h"
 #include "shade/material_maps.h"
+#include "shade/selected_light.h"
 
 namespace pocketray {
 namespace {
@@ -117,7 +118,8 @@ Vec3 dielectric(Tracer* tracer, const Ray& ray, const Surface& s, const Contact&
     Vec3 tint = {1, 1, 1};
     for (std::uint32_t i = 0; i < contact.count; ++i) {
       const Material& entered = scene.materials[contact.face[i].material];
-      if (transmits(entered, mask) && (contact.face[i].front || entered.thin)) tint *= entered.transmission;
+      if (transmits(entered, plan_of<mask>(*tracer->frame)) && (contact.face[i].front || entered.thin))
+        tint *= entered.transmission;
     }
     Vec3 direction = m.thin ? ray.direction : normalize(refract(ray.direction, n, eta, cos_i, cos_t));
     if (!(dot(direction, s.geometric) < 0)) direction = ray.direction;  // the shading normal deviates too far
@@ -133,7 +135,12 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
   Vec3 sum = s.glow;
   bool scatters = !is_zero(s.diffuse);
   if constexpr (has(mask, Effect::specular)) scatters |= !is_zero(m.specular);
-  if (scatters) sum += direct_light<mask>(tracer, s, m, -ray.direction, path.weight);
+  if (scatters) {
+    if constexpr (has(mask, Effect::source_selection))
+      sum += selected_light<mask>(tracer, s, m, -ray.direction, path.weight);
+    else
+      sum += direct_light<mask>(tracer, s, m, -ray.direction, path.weight);
+  }
   Vec3 mirrored = {0, 0, 0};
   if constexpr (has(mask, Effect::mirror)) {
     if (!is_zero(m.mirror)) {
@@ -153,7 +160,8 @@ inline Vec3 shade_lobes(Tracer* tracer, const Ray& ray, const Surface& s, const 
 // The same. `contact` is required if it transmits.
 template <EffectMask mask>
 Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* contact, const Path<mask>& path) {
-  if constexpr (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map)) {
+  if constexpr (has(mask, Effect::metallic_roughness) || has(mask, Effect::mip_map) ||
+                has(mask, Effect::source_selection)) {
     const EffectMask plan = tracer->frame->mask;
     Material mapped;
     const Material* m = s.material;
@@ -161,8 +169,11 @@ Vec3 shade(Tracer* tracer, const Ray& ray, const Surface& s, const Contact* cont
     // reduced() has added them
     const bool shines = !has(plan, Effect::specular) && !is_zero(m->specular);
     const bool mirrors = !has(plan, Effect::mirror) && !is_zero(m->mirror);
-    if (shines || mirrors) {
+    const bool transmits =
+        has(mask, Effect::source_selection) && !has(plan, Effect::refraction) && !is_zero(m->transmission);
+    if (shines || mirrors || transmits) {
       if (m != &mapped) mapped = *m;
+      if (transmits) mapped.transmission = {0, 0, 0};
       if (shines) mapped.specular = {0, 0, 0};
       if (mirrors) mapped.mirror = {0, 0, 0};
       m = &mapped;
@@ -178,11 +189,12 @@ template <EffectMask mask>
 bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* sum, Vec3* carried, Path<mask>* path) {
   const FrameData& frame = *tracer->frame;
   const Scene& scene = *frame.scene;
+  const EffectMask plan = plan_of<mask>(frame);
   bool any = false;
   for (std::uint32_t i = 0; i < contact.count; ++i) {
     const Face& face = contact.face[i];
     const Material& m = scene.materials[face.material];
-    if (!blends(m, mask) || culls(m, face.front, mask)) continue;
+    if (!blends(m, plan) || culls(m, face.front, plan)) continue;
     any = true;
     Surface s;
     frame.surface(frame, ray, on_path(face.hit, *path), &s);
@@ -221,6 +233,7 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
   const FrameData& frame = *tracer->frame;
   const Scene& scene = *frame.scene;
   const HitFilter* filter = visible_filter(frame);
+  const EffectMask plan = plan_of<mask>(frame);
   Vec3 sum = {0, 0, 0}, carried = {1, 1, 1};  // throughput of the blended surfaces
   for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
     if (layer > 0) frame.accel_info->closest(frame.accel, ray, filter, &hit, &tracer->stats);
@@ -230,7 +243,7 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
     const Surface* s = first;
     if (layer > 0 || !first) frame.surface(frame, ray, on_path(hit, path), &found), s = &found;
     if constexpr (has(mask, Effect::absorption)) {
-      if (path.media.depth) {
+      if (path.media.depth && has(plan, Effect::absorption)) {
         effect_entered<Effect::absorption>();
         Vec3 passed = transmittance(scene.materials[path.media.material[path.media.depth - 1]].absorption, hit.t);
         carried *= passed;
@@ -239,15 +252,15 @@ Vec3 radiance_from(Tracer* tracer, Ray ray, Hit hit, const Surface* first, Path<
     }
     if constexpr (has(mask, Effect::refraction) || has(mask, Effect::alpha_blend) ||
                   has(mask, Effect::back_face_culling)) {
-      bool culled = culls(*s->material, s->front, mask);
+      bool culled = culls(*s->material, s->front, plan);
       if (culled) effect_entered<Effect::back_face_culling>();
-      if (culled || transmits(*s->material, mask) || blends(*s->material, mask)) {
+      if (culled || transmits(*s->material, plan) || blends(*s->material, plan)) {
         Contact contact;
         gather_contact(frame, *s, hit, filter, &contact, &tracer->stats);
         if constexpr (has(mask, Effect::alpha_blend)) {
           if (!blend_layers<mask>(tracer, ray, contact, &sum, &carried, &path)) return sum;
         }
-        const Face* next = face_behind_layers(scene, contact, mask);
+        const Face* next = face_behind_layers(scene, contact, plan);
         if (!next) {
           if (!culled) ++tracer->rays[static_cast<int>(RayKind::blend)];
           ray.origin = safe_origin(*s, -1);
@@ -308,10 +321,26 @@ struct RadiancePart {
   }
 };
 
+// Among many lights, everything else costs little: few instances hold the code of all effects but those that need more
+// of a surface, and look up the plan.
+struct SelectingRadiancePart {
+  using Function = RadianceFunction;
+  static constexpr Effect kEffects[] = {Effect::metallic_roughness, Effect::mip_map, Effect::environment};
+  static constexpr EffectMask kRest = bit(Effect::source_selection) | bit(Effect::shadow) | bit(Effect::specular) |
+                                      bit(Effect::mirror) | bit(Effect::refraction) | bit(Effect::absorption) |
+                                      bit(Effect::alpha_blend) | bit(Effect::back_face_culling);
+  template <EffectMask mask>
+  static constexpr Function instance() {
+    return primary_radiance<RadiancePart::reduced(mask | kRest)>;
+  }
+};
+
 }  // namespace
 
 RadianceFunction find_radiance_function(EffectMask mask) {
   CHECK_EQ(mask & ~kAllEffects, 0u);
+  if constexpr (has(kAllEffects, Effect::source_selection))
+    if (has(mask, Effect::source_selection)) return Instantiations<SelectingRadiancePart>::find(mask);
   return Instantiations<RadiancePart>::find(mask);
 }
 

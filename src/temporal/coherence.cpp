@@ -90,6 +90,10 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   bool lights_changed =
       !*why && frame.lights.count > 0 &&
       std::memcmp(static_cast<const void*>(c->lights.data), frame.lights.data, frame.lights.bytes()) != 0;
+  if (lights_changed && has(frame.mask, Effect::source_selection)) {
+    *why = "a light changed, and with it the selection of the others";
+    lights_changed = false;
+  }
   c->search = {&frame,
                &c->moving,
                c->tables.words.count ? &c->tables : nullptr,

@@ -107,4 +107,12 @@ TEST_CASE("change_settings_refuses_what_was_not_planned") {
   CHECK(std::strstr(refused.message, "plan with --resolution half") != nullptr);
   CHECK(test->renderer.settings.points_per_area_light == 4);
   CHECK(same_bits(picture_of(&test->renderer), before));
+  generated->lights.assign(30, Light());
+  generated->bind();
+  settings.light_tolerance = 0;
+  test = make_renderer(generated->scene, settings);
+  settings.light_tolerance = 0.1f;
+  refused = change_settings(&test->renderer, settings);
+  CHECK_FALSE(refused.ok);
+  CHECK(std::strstr(refused.message, "--light-tolerance above 0") != nullptr);
 }

@@ -65,7 +65,7 @@ TEST_CASE("rebuild_scratch_is_planned_beside_the_output") {
     settings.memory_bytes = 4u << 20;
     auto test = make_renderer(generated->scene, settings, &rebuilt);
     MemoryPlan plan;
-    REQUIRE(plan_memory(generated->scene, settings, test->renderer.effects, rebuilt, {}, 0, kOutput, &plan).ok);
+    REQUIRE(plan_memory(generated->scene, settings, test->renderer.effects, rebuilt, {}, {}, kOutput, &plan).ok);
     std::size_t scratch = kBvhAccel.scratch_need(generated->scene.triangles.count);
     std::size_t bytes = plan.arena_bytes[static_cast<int>(ArenaKind::frame)];
     CHECK(scratch > 0);

@@ -73,7 +73,7 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       // Stored, or by request.
       {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective) &
-                         ~bit(E::environment) & ~bit(E::undersampling)},
+                         ~bit(E::environment) & ~bit(E::undersampling) & ~bit(E::source_selection)},
   };
   for (const Row& row : rows) {
     CAPTURE(row.features);
@@ -121,6 +121,31 @@ TEST_CASE("plan_effects_give_reasons") {
   CHECK(reason(plan, Effect::undersampling) == "instant radiosity needs every pixel");
   CHECK_FALSE(has(plan.mask, Effect::selective));
   CHECK_FALSE(has(plan.mask, Effect::undersampling));
+}
+
+// Goal: source selection is on where there are many lights, never forced. Method: one light fewer, and as many as it
+// takes; forced on and off; no tolerance.
+TEST_CASE("plan_effects_select_among_many_lights") {
+  auto s = generate_scene(bit(Feature::emission), 1);
+  auto plan_with = [&](std::uint32_t lights, float tolerance, EffectMask on, EffectMask off) {
+    s->lights.assign(lights, Light());
+    s->bind();
+    Settings settings = settings_for(0, 8, 6);
+    settings.points_per_area_light = 64;
+    settings.light_tolerance = tolerance, settings.forced_on = on, settings.forced_off = off;
+    return plan_effects(s->scene, settings);
+  };
+  const EffectMask selection = bit(Effect::source_selection);
+  EffectPlan plan = plan_with(kSelectedLightsMin - 2, 0.1f, 0, 0);
+  CHECK(reason(plan, Effect::source_selection) == "15 lights: each tested for shadows");
+  CHECK_FALSE(has(plan.mask, Effect::source_selection));
+  CHECK_FALSE(has(plan_with(kSelectedLightsMin - 2, 0.1f, selection, 0).mask, Effect::source_selection));
+  plan = plan_with(kSelectedLightsMin - 1, 0.1f, 0, 0);
+  CHECK(reason(plan, Effect::source_selection) == "16 lights: the strongest tested for shadows");
+  CHECK(has(plan.mask, Effect::source_selection));
+  CHECK_FALSE(has(plan_with(kSelectedLightsMin - 1, 0.1f, 0, selection).mask, Effect::source_selection));
+  CHECK_FALSE(has(plan_with(kSelectedLightsMin - 1, 0, selection, 0).mask, Effect::source_selection));
+  CHECK(reason(plan_with(90, 0, 0, 0), Effect::source_selection) == "every light tested for shadows");
 }
 
 // Goal: --indirect chooses the method, --effects cannot add another to it. Method: an ambient scene and a scene without

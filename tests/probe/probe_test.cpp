@@ -116,14 +116,19 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
   Scene under_environment = generated->scene;
   even.give(&under_environment);
   auto with_environment = make_renderer(under_environment, settings_for(kAllFeatures, 24, 18));
-  const EffectMask all = interpolated->renderer.effects.mask | with_virtual_lights->renderer.effects.mask |
-                         with_environment->renderer.effects.mask;
+  auto street = generate_scene(kAllFeatures, 1);
+  street->lights.resize(kSelectedLightsMin, street->lights[0]);
+  street->bind();
+  auto with_many_lights = make_renderer(street->scene, settings_for(kAllFeatures, 24, 18));
+  const EffectMask all = with_many_lights->renderer.effects.mask | interpolated->renderer.effects.mask |
+                         with_virtual_lights->renderer.effects.mask | with_environment->renderer.effects.mask;
   REQUIRE(all == (kAllEffects & ~bit(Effect::radiosity)));  // nothing is stored
   for (const EffectRow& row : kEffectList) {
     if (!has(all, row.effect)) continue;
     CAPTURE(std::string(row.name));
-    Renderer* renderer = row.effect == Effect::instant_radiosity ? &with_virtual_lights->renderer
-                         : row.effect == Effect::environment     ? &with_environment->renderer
+    Renderer* renderer = row.effect == Effect::instant_radiosity  ? &with_virtual_lights->renderer
+                         : row.effect == Effect::environment      ? &with_environment->renderer
+                         : row.effect == Effect::source_selection ? &with_many_lights->renderer
                          : row.effect == Effect::selective || row.effect == Effect::undersampling
                              ? &interpolated->renderer
                              : &test->renderer;

@@ -119,6 +119,43 @@ TEST_CASE("dependence_on_the_radiance_bound_makes_a_whole_frame") {
   CHECK(whole_because(pair) == "the brightest light on a surface changed");
 }
 
+// Goal: among many lights, one that no surface faces still counts, as its group's bound depends on it. Method: it moves
+// below a floor, to places of which some change pixels and some do not.
+TEST_CASE("dependence_on_the_selection_of_lights_makes_a_whole_frame") {
+  auto s = std::make_unique<GeneratedScene>();
+  add_quad(s.get(), {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, add_material(s.get(), matte(0.5f)));
+  const std::uint32_t first = vertex_count(*s);
+  add_box(s.get(), {1, 0, 0}, {2, 1, 1}, add_material(s.get(), matte(0.5f)));
+  let_move(s.get(), first);
+  Rng rng = make_rng(1);
+  for (int i = 0; i < 40; ++i) {
+    Light light;
+    light.position = {next_float(&rng) * 8 - 4, 0.5f + next_float(&rng), next_float(&rng) * 8 - 4};
+    light.intensity = {1, 1, 1};
+    s->lights.push_back(light);
+  }
+  s->lights.back().position.y = -1;
+  aim(s.get(), {0, 3, 6}, {0, 0, 0}, 60);
+  s->bind();
+  Settings settings = settings_for(0, 40, 30);
+  settings.light_tolerance = 0.3f;
+  Pair pair = make_pair(std::move(s), settings);
+  CHECK(same_frames(pair));
+  int changed = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Array<Vec3>& image = pair.whole->renderer.image;
+    const std::vector<Vec3> before(image.begin(), image.end());
+    pair.scene->lights.back().position = {static_cast<float>(i), -1 - static_cast<float>(i), 0};
+    CHECK(same_frames(pair));
+    CHECK(whole_because(pair) == "a light changed, and with it the selection of the others");
+    changed += std::memcmp(before.data(), image.data, image.bytes()) != 0;
+  }
+  CHECK(changed > 0);
+  move_by(pair.scene.get(), {0.1f, 0, 0});
+  CHECK(same_frames(pair));
+  CHECK(whole_because(pair) == "");
+}
+
 // Goal: a mirror shows shadows that move. Method: it shows a wall; what casts the shadow is seen neither directly nor
 // in the mirror.
 TEST_CASE("dependence_on_shadows_in_a_mirror") {

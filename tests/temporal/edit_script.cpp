@@ -136,12 +136,23 @@ float place_anywhere(GeneratedScene* g, Rng* rng) {
   return scale;
 }
 
+// As many as source selection takes.
+void add_many_lights(GeneratedScene* s, Rng* rng) {
+  for (int i = 0; i < 24; ++i) {
+    Light light;
+    light.position = next_vector(rng, 5) + Vec3{0, 5, 0};
+    light.intensity = next_vector(rng, 0.5f) + Vec3{0.5f, 0.5f, 0.5f};
+    s->lights.push_back(light);
+  }
+}
+
 }  // namespace
 
 EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
   EditScript s;
   s.rng = make_rng(seed, 58);
   s.generated = generate_scene(features | bit(Feature::animation), seed);
+  if (next_u32(&s.rng) % 4 == 0) add_many_lights(s.generated.get(), &s.rng);
   if (next_u32(&s.rng) % 2) let_any_move(s.generated.get(), &s.rng);
   if (next_u32(&s.rng) % 2) s.scale = place_anywhere(s.generated.get(), &s.rng);
   if (next_u32(&s.rng) % 4 == 0) {

@@ -1,0 +1,176 @@
+#include "shade/source_selection.h"
+
+#include <cstring>
+
+#include "base/check.h"
+#include "base/limits.h"
+#include "brdf/brdf_list.h"
+#include "shade/lights.h"
+#include "shade/tile_shadows.h"
+
+namespace pocketray {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+constexpr std::uint16_t kEnd = 0xFFFF;
+
+// The number of an entry's list: greater bounds, and infinite ones, in later lists.
+std::uint32_t strength_of(float most) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &most, sizeof bits);
+  return bits >> 22;
+}
+
+}  // namespace
+
+SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Material& m, const Vec3& to_viewer)
+    : frame_(*tracer->frame),
+      surface_(surface),
+      material_(m),
+      to_viewer_(to_viewer),
+      diffuse_(surface.diffuse * (1 / kPiF)),
+      specular_({0, 0, 0}),
+      shines_(has(tracer->frame->mask, Effect::specular) && !is_zero(m.specular)),
+      diffuse_most_(max_component(diffuse_)),
+      specular_most_(0),
+      entries_(tracer->light_entries) {
+  CHECK_LE(search_entry_count(frame_.lights.count), entries_.count);
+  if (shines_) {
+    effect_entered<Effect::specular>();
+    specular_ = reflectance_at(surface, m.specular, m.specular_tinted);
+    diffuse_most_ *= kBrdfList[m.brdf]->diffuse_max;
+    specular_most_ = max_component(kBrdfList[m.brdf]->peak(m));
+  }
+  for (std::uint16_t run = 0; run < frame_.light_run_count; ++run) {
+    const std::uint32_t root = frame_.light_tree.roots[run];
+    if (root != kNone) {
+      add_node(root, run);
+      continue;
+    }
+    for (std::uint32_t i = frame_.light_runs[run].begin; i < frame_.light_runs[run].end; ++i) add_light(i, run);
+  }
+}
+
+bool SourceSearch::radiance(const LightPoint& light, std::uint32_t run, Vec3* radiance) const {
+  LightSample sample;
+  if (!lights_up(frame_, surface_, frame_.light_runs[run], light, &sample)) return false;
+  if (!has(frame_.mask, Effect::shadow) && is_below(surface_, sample.direction)) return false;
+  const float cosine = dot(surface_.normal, sample.direction);
+  const Vec3 f = shines_ ? kBrdfList[material_.brdf]->value(material_, specular_, diffuse_, surface_.normal, to_viewer_,
+                                                            sample.direction)
+                         : diffuse_;
+  *radiance = f * sample.irradiance * cosine;
+  return true;
+}
+
+void SourceSearch::add(const LightEntry& entry) {
+  CHECK_LT(entry_count_, entries_.count);
+  const std::uint32_t strength = strength_of(entry.most), word = strength / 32, mark = 1u << strength % 32;
+  const std::uint16_t index = static_cast<std::uint16_t>(entry_count_++);
+  entries_[index] = entry;
+  entries_[index].next = marks_[word] & mark ? first_[strength] : kEnd;
+  first_[strength] = index;
+  marks_[word] |= mark, strengths_ |= 1u << word;
+  if (entry.most < kInfinity)
+    remaining_ += static_cast<double>(entry.most);
+  else
+    ++unbounded_;
+  if (remaining_ > remaining_max_) remaining_max_ = remaining_;
+}
+
+// From the strongest to the weakest list.
+template <class Visit>
+void SourceSearch::each_entry(Visit visit) const {
+  for (std::uint32_t word = kListCount / 32; word-- > 0;)
+    for (std::uint32_t marks = marks_[word], place; marks; marks &= ~(1u << place)) {
+      place = 31u - static_cast<std::uint32_t>(__builtin_clz(marks));
+      for (std::uint32_t i = first_[32 * word + place]; i != kEnd; i = entries_[i].next) visit(entries_[i]);
+    }
+}
+
+void SourceSearch::sum_up() {
+  double sum = 0;
+  each_entry([&](const LightEntry& entry) { sum += static_cast<double>(entry.most); });
+  remaining_ = remaining_max_ = sum;
+}
+
+void SourceSearch::add_light(std::uint32_t light, std::uint16_t run) {
+  LightEntry entry;
+  if (!radiance(frame_.lights[light], run, &entry.radiance)) return;
+  entry.most = max_component(entry.radiance);
+  if (!(entry.most > 0)) return;
+  entry.light = light, entry.node = kNone, entry.run = run;
+  add(entry);
+}
+
+// The bound: all lights of the group at the point of its box nearest to the surface, at the steepest angle of any.
+void SourceSearch::add_node(std::uint32_t index, std::uint16_t run) {
+  const LightNode& node = frame_.light_tree.nodes[index];
+  const Vec3 low = node.box.low - surface_.point, high = node.box.high - surface_.point, &n = surface_.normal;
+  const Vec3 near = max(max(low, -high), Vec3{0, 0, 0}), above = max(n * low, n * high);
+  constexpr float kRounding = 1e-5f;  // chosen: some times the rounding of what follows
+  const float height = above.x + above.y + above.z + kRounding * dot(abs(n), max(abs(low), abs(high)));
+  if (!(height > 0)) return;
+  const float square = dot(near, near);
+  LightEntry entry;
+  entry.most = kInfinity;
+  if (square > 0) {
+    const float distance = std::sqrt(square), cosine = height < distance ? height / distance : 1;
+    entry.most = (node.intensity / square) * (diffuse_most_ * cosine + specular_most_) * (1 + kRounding);
+    if (!(entry.most < kInfinity)) entry.most = kInfinity;
+    if (!(entry.most > 0)) return;  // nothing reflects, or nothing shines
+  }
+  entry.light = kNone, entry.node = index, entry.run = run;
+  add(entry);
+}
+
+bool SourceSearch::take(LightEntry* light) {
+  CHECK(strengths_ != 0);
+  const std::uint32_t word = 31u - static_cast<std::uint32_t>(__builtin_clz(strengths_)),
+                      place = 31u - static_cast<std::uint32_t>(__builtin_clz(marks_[word])),
+                      strength = 32 * word + place;
+  const LightEntry& entry = entries_[first_[strength]];
+  first_[strength] = entry.next;
+  if (entry.next == kEnd && !(marks_[word] &= ~(1u << place))) strengths_ &= ~(1u << word);
+  if (entry.most < kInfinity)
+    remaining_ -= static_cast<double>(entry.most);
+  else
+    --unbounded_;
+  if (entry.node == kNone) {
+    *light = entry;
+    return true;
+  }
+  const std::uint32_t index = entry.node;
+  const std::uint16_t run = entry.run;
+  const LightNode& node = frame_.light_tree.nodes[index];
+  if (node.right == kNone) {
+    for (std::uint32_t i = node.begin; i < node.end; ++i) add_light(frame_.light_tree.order[i], run);
+  } else {
+    add_node(index + 1, run);
+    add_node(node.right, run);
+  }
+  return false;
+}
+
+Vec3 SourceSearch::estimate() const {
+  Vec3 sum = {0, 0, 0};
+  each_entry([&](const LightEntry& entry) {
+    Vec3 unblocked = entry.radiance;
+    if (entry.node != kNone) {
+      if (!radiance(frame_.light_tree.nodes[entry.node].mean, entry.run, &unblocked)) return;
+      unblocked = min(unblocked, Vec3{entry.most, entry.most, entry.most});
+    }
+    sum += unblocked;
+  });
+  return sum;
+}
+
+void find_tile_surfaces(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
+                        TraceStats*) {
+  for (std::uint32_t i = 0; i < rays.count; ++i)
+    if (hits[i].triangle != kNoTriangle) frame.first_surface(frame, ray_of(rays, i), hits[i], &shadows->surface[i]);
+  std::memset(shadows->traced, 0, sizeof shadows->traced);
+}
+
+}  // namespace pocketray

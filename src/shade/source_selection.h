@@ -1,0 +1,75 @@
+// LightEntry selection: of many lights, those that deserve shadow rays [Jansen92, sec. 3; Kok91]. A surface's lights
+// are tested strongest first until what the others could add is within the tolerance [Ward91, "Adaptive Shadow Testing
+// for Ray Tracing"]; these are taken to be as visible as those tested. Groups of lights that are far away or weak are
+// bounded and estimated as one [Walter05, "Lightcuts", sec. 3], so that the cost grows slower than the number of
+// lights. The true sum and the result lie in the same interval: they differ by at most the tolerance times the true
+// sum, glow included, in the brightest channel.
+#pragma once
+#include "base/arena.h"
+#include "effect/effect_probe.h"
+#include "shade/frame_data.h"
+#include "shade/surface.h"
+
+namespace pocketray {
+
+// In a search, a node has no more than one entry, and so does a light.
+static_assert(2 * kPointLightCountMax < 0xFFFF, "LightEntry::next");
+constexpr std::uint32_t search_entry_count(std::uint32_t light_points) { return 2 * light_points; }
+inline std::size_t selection_need(const Settings& settings, std::uint32_t light_points) {
+  if (light_points == 0) return 0;
+  return arena_need<LightNode>(light_points) + arena_need<std::uint32_t>(light_points) +
+         arena_need<LightEntry>(std::size_t(settings.threads) * search_entry_count(light_points));
+}
+
+// Finds the lights of a surface from the strongest to the weakest, to half an octave. Material `m` has the lobes there.
+class SourceSearch {
+ public:
+  SourceSearch(Tracer* tracer, const Surface& surface, const Material& m, const Vec3& to_viewer);
+  // Upper bound of the sum of all lights not yet taken, in their brightest channels; may be infinite.
+  double remaining() {
+    if (unbounded_ > 0) return static_cast<double>(__builtin_inff());
+    if (remaining_ < remaining_max_ * 0x1p-26) sum_up();  // half its bits are lost
+    return remaining_;
+  }
+  // Takes one of the strongest entries left. A light returns true; a group is divided into entries, and returns false.
+  bool take(LightEntry* light);
+  bool is_empty() const { return strengths_ == 0; }
+  // What the lights not taken contribute if nothing blocks them: an estimate for groups.
+  Vec3 estimate() const;
+
+ private:
+  // Entries in lists by the exponent and the first bit of the mantissa of their bound, marked if there are any; a mark
+  // for each word of marks that has any.
+  static constexpr std::uint32_t kListCount = 512;
+
+  void add_light(std::uint32_t light, std::uint16_t run);
+  void add_node(std::uint32_t node, std::uint16_t run);
+  void add(const LightEntry& entry);
+  template <class Visit>
+  void each_entry(Visit visit) const;
+  void sum_up();
+  bool radiance(const LightPoint& light, std::uint32_t run, Vec3* radiance) const;
+
+  const FrameData& frame_;
+  const Surface& surface_;
+  const Material& material_;
+  Vec3 to_viewer_, diffuse_, specular_;
+  bool shines_;
+  float diffuse_most_, specular_most_;  // upper bounds of the lobes; × cosine in the second
+  Array<LightEntry> entries_;
+  std::uint32_t entry_count_ = 0;
+  std::uint16_t first_[kListCount];
+  std::uint32_t marks_[kListCount / 32] = {};
+  std::uint32_t strengths_ = 0;
+  double remaining_ = 0, remaining_max_ = 0;  // the sum, and the largest since it was summed up
+  std::uint32_t unbounded_ = 0;
+};
+
+// Lights reach a surface that they see at an angle, or from below its plane if its normals are curved.
+inline bool is_below(const Surface& s, const Vec3& to_light) { return !(dot(s.geometric, to_light) > 0); }
+
+// Fills the surfaces of a tile's first hits; no shadow ray is traced before its light is selected.
+void find_tile_surfaces(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
+                        TraceStats* stats);
+
+}  // namespace pocketray
