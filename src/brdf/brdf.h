@@ -22,8 +22,10 @@ struct BrdfInfo {
   // over the sphere, positive wherever the value is.
   Vec3d (*sample)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, double u, double v);
   double (*density)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light);
-  // The share of uniform light that the lobe reflects to the viewer. Null: it reflects lights only.
+  // The share of uniform light that the lobe reflects to the viewer: once, about mirrored; and scattered more than
+  // once, from all directions alike. Null, both: it reflects lights only.
   Vec3 (*albedo)(const Material& material, const Vec3& specular, float cos_viewer);
+  Vec3 (*scattered)(const Material& material, const Vec3& specular, float cos_viewer);
   float diffuse_max;  // upper bound of what remains of `diffuse`, as a factor
 };
 

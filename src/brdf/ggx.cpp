@@ -6,8 +6,8 @@
 // Below it lies the diffuse lobe × 21/20 (1 − R)(1 − (1 − n·l)⁵)(1 − (1 − n·v)⁵), where R is a dielectric's reflectance
 // at normal incidence: what remains of uniform light is 1 − F(n·v) [Shirley et al. 1997, "A practitioner's assessment
 // of light reflection models"]. With glTF's 1 − F(v·h), a white plastic of α = 0.1 would reflect 121 % of it at 80°.
-// Light scattered more than once between microfacets is left out: at α = 1 and F = 1 the lobe reflects
-// 1 − n·v ln(1 + 1/n·v) of it, 31 % at normal incidence.
+// At α = 1 and F = 1 the lobe reflects 1 − n·v ln(1 + 1/n·v) of uniform light, 31 % at normal incidence; the light
+// scattered more than once between microfacets is a second lobe, see ggx_albedo.h.
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
@@ -54,6 +54,15 @@ T fifth_power(T x) {
   return square * square * x;
 }
 
+// The lobe of light scattered more than once.
+template <class T>
+Vec3T<T> scattered(const Material& material, const Vec3T<T>& specular, T cos_viewer, T cos_light) {
+  const GgxCell<T> row = ggx_row(static_cast<T>(material.roughness));
+  const T loss = (1 - ggx_energy(row, ggx_column(cos_viewer))) * (1 - ggx_energy(row, ggx_column(cos_light)));
+  return ggx_scattered_color(row, specular, static_cast<T>(material.grazing)) *
+         (loss * static_cast<T>(1 / kPi) / ggx_mean_loss(row));
+}
+
 template <class T>
 Vec3T<T> value_of(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& diffuse, const Vec3T<T>& normal,
                   const Vec3T<T>& viewer, const Vec3T<T>& to_light) {
@@ -71,7 +80,8 @@ Vec3T<T> value_of(const Material& material, const Vec3T<T>& specular, const Vec3
   const Vec3T<T> fresnel = specular + (Vec3T<T>{grazing, grazing, grazing} - specular) * rise;
   const T passes =
       static_cast<T>(kDiffuseMax) * (1 - normal_reflectance) * (1 - fifth_power(1 - l)) * (1 - fifth_power(1 - v));
-  return diffuse * passes + fresnel * (square * static_cast<T>(0.5 / kPi) / (slope * slope * masking));
+  return diffuse * passes + fresnel * (square * static_cast<T>(0.5 / kPi) / (slope * slope * masking)) +
+         scattered(material, specular, v, l);
 }
 
 Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, const Vec3& normal,
@@ -79,11 +89,13 @@ Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, 
   return value_of(material, specular, diffuse, normal, to_viewer, to_light);
 }
 
-// D ≤ 1/πα², and n·l V < 1/2α, which it approaches where n·v ≪ n·l ≪ α.
+// D ≤ 1/πα², and n·l V < 1/2α, which it approaches where n·v ≪ n·l ≪ α. Light scattered more than once loses most at
+// normal incidence.
 Vec3 peak(const Material& material) {
   const float square = alpha_square<float>(material), f = material.grazing;
   const Vec3 most = max(material.specular, {f, f, f});
-  return most * (0.5f / kPiF / (square * std::sqrt(square)) * 1.00001f);  // covers rounding
+  const Vec3 rest = max(scattered(material, most, 1.0f, 1.0f), scattered(material, material.specular, 1.0f, 1.0f));
+  return (most * (0.5f / kPiF / (square * std::sqrt(square))) + rest) * 1.00001f;  // covers rounding
 }
 
 Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const Vec3d& normal,
@@ -91,13 +103,25 @@ Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& 
   return value_of(material, specular, diffuse, normal, to_viewer, to_light);
 }
 
-// Mirrors the viewer in a normal visible to it [Dupuy & Benyoub 2023, "Sampling visible GGX normals with spherical
-// caps", listing 1].
+// The share of samples for the light scattered more than once: as much as is scattered.
+double scattered_share(const Material& material, const Vec3d& normal, const Vec3d& to_viewer) {
+  const GgxCell<double> row = ggx_row(static_cast<double>(material.roughness));
+  return 1 - ggx_energy(row, ggx_column(dot(normal, to_viewer)));
+}
+
+// In that share, by the cosine. Otherwise mirrors the viewer in a normal visible to it [Dupuy & Benyoub 2023, "Sampling
+// visible GGX normals with spherical caps", listing 1].
 Vec3d sample(const Material& material, const Vec3d& normal, const Vec3d& viewer, double u, double v) {
   const double alpha = std::sqrt(alpha_square<double>(material));
   const Vec3d to_viewer = above_horizon(normal, viewer);
   Vec3d tangent, bitangent;
   make_basis(normal, &tangent, &bitangent);
+  const double once = 1 - scattered_share(material, normal, to_viewer);
+  if (u >= once) {
+    const double square = (u - once) / (1 - once), radius = std::sqrt(square), turn = 2 * kPi * v;
+    return tangent * (radius * det_cos(turn)) + bitangent * (radius * det_sin(turn)) + normal * std::sqrt(1 - square);
+  }
+  u /= once;
   const Vec3d stretched = normalize(
       Vec3d{alpha * dot(tangent, to_viewer), alpha * dot(bitangent, to_viewer), std::fmax(dot(normal, to_viewer), 0)});
   const double z = (1 - u) * (1 + stretched.z) - stretched.z, phi = 2 * kPi * v;
@@ -107,22 +131,28 @@ Vec3d sample(const Material& material, const Vec3d& normal, const Vec3d& viewer,
   return half * (2 * dot(half, to_viewer)) - to_viewer;
 }
 
-// The density of visible normals, D G₁(v) v·h / n·v, over 4 v·h [Heitz 2018, eq. 17].
+// That of the cosine, and that of visible normals, D G₁(v) v·h / n·v, over 4 v·h [Heitz 2018, eq. 17].
 double density(const Material& material, const Vec3d& normal, const Vec3d& viewer, const Vec3d& to_light) {
   const double square = alpha_square<double>(material);
   const Vec3d to_viewer = above_horizon(normal, viewer), sum = to_viewer + to_light;
   const double cosine = dot(normal, to_viewer), sum_square = dot(sum, sum);
-  if (!(dot(normal, sum) > 0)) return 0;
+  const double share = scattered_share(material, normal, to_viewer), cos_light = dot(normal, to_light);
+  const double scattered = cos_light > 0 ? share * cos_light / kPi : 0;
+  if (!(dot(normal, sum) > 0)) return scattered;
   const double slope = slope_term(normal, sum, sum_square, square);
-  return square / (kPi * slope * slope) / (2 * (cosine + root_term(cosine, square)));
+  return scattered + (1 - share) * square / (kPi * slope * slope) / (2 * (cosine + root_term(cosine, square)));
 }
 
 Vec3 albedo(const Material& material, const Vec3& specular, float cos_viewer) {
   return ggx_albedo(material.roughness, specular, material.grazing, std::fabs(cos_viewer));
 }
 
+Vec3 scattered_albedo(const Material& material, const Vec3& specular, float cos_viewer) {
+  return ggx_scattered_albedo(material.roughness, specular, material.grazing, std::fabs(cos_viewer));
+}
+
 }  // namespace
 
-const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density, albedo, kDiffuseMax};
+const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density, albedo, scattered_albedo, kDiffuseMax};
 
 }  // namespace pocketray

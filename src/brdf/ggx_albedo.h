@@ -1,5 +1,5 @@
-// The share of uniform light that the GGX lobe reflects to the viewer: specular · A + grazing · B [Karis 2013, "Real
-// shading in Unreal Engine 4", split sum], where A + B is the albedo for F = 1 and B that of the rise (1 − v·h)⁵.
+// The share of uniform light that the GGX lobe reflects to the viewer at once: specular · A + grazing · B [Karis 2013,
+// "Real shading in Unreal Engine 4", split sum], where A + B is the albedo for F = 1 and B that of the rise (1 − v·h)⁵.
 // Tabulated from the lobe's samples; ggx_reflects_the_integral_of_its_value holds it to .035, 5e-3 in the root mean
 // square.
 #pragma once
@@ -160,27 +160,84 @@ constexpr std::uint16_t kGgxAlbedo[kGgxAlbedoSide][kGgxAlbedoSide][2] = {
 };
 
 // Position between two of the table's rows or columns; x in [0, 1].
+template <class T>
 struct GgxCell {
   int index;
-  float rest;
-  explicit GgxCell(float x) {
-    float place = (x > 0 ? x < 1 ? x : 1.0f : 0.0f) * (kGgxAlbedoSide - 1);
+  T rest;
+  explicit GgxCell(T x) {
+    T place = (x > 0 ? x < 1 ? x : T(1) : T(0)) * (kGgxAlbedoSide - 1);
     index = static_cast<int>(place);
     if (index > kGgxAlbedoSide - 2) index = kGgxAlbedoSide - 2;
-    rest = place - static_cast<float>(index);
+    rest = place - static_cast<T>(index);
   }
 };
+template <class T>
+GgxCell<T> ggx_row(T alpha) {
+  return GgxCell<T>((std::sqrt(alpha) - T(0.1)) * T(1 / 0.9));
+}
+template <class T>
+GgxCell<T> ggx_column(T cosine) {
+  return GgxCell<T>(std::sqrt(cosine > 0 ? cosine : T(0)));
+}
+
+// A or B, or with both the albedo for F = 1.
+template <class T, class Entry>
+T ggx_between(const GgxCell<T>& row, const GgxCell<T>& column, Entry entry) {
+  auto at = [&](int r, int c) { return static_cast<T>(entry(kGgxAlbedo[row.index + r][column.index + c])); };
+  T low = at(0, 0) + (at(0, 1) - at(0, 0)) * column.rest, high = at(1, 0) + (at(1, 1) - at(1, 0)) * column.rest;
+  return (low + (high - low) * row.rest) * T(1.0 / 65535.0);
+}
+template <class T>
+T ggx_energy(const GgxCell<T>& row, const GgxCell<T>& column) {
+  return ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0] + e[1]; });
+}
+
+// The mean energy of a row over the hemisphere, 2 ∫ E(μ) μ dμ = 4 ∫ E t³ dt with t = √μ, in which E is piecewise
+// linear.
+struct GgxMeans {
+  double row[kGgxAlbedoSide] = {};
+  constexpr GgxMeans() {
+    for (int r = 0; r < kGgxAlbedoSide; ++r)
+      for (int c = 0; c + 1 < kGgxAlbedoSide; ++c) {
+        const double step = 1.0 / (kGgxAlbedoSide - 1), a = c * step, b = (c + 1) * step;
+        const double low = (kGgxAlbedo[r][c][0] + kGgxAlbedo[r][c][1]) / 65535.0,
+                     high = (kGgxAlbedo[r][c + 1][0] + kGgxAlbedo[r][c + 1][1]) / 65535.0;
+        const double slope = (high - low) / step, offset = low - slope * a;
+        row[r] += offset * (b * b * b * b - a * a * a * a) + 0.8 * slope * (b * b * b * b * b - a * a * a * a * a);
+      }
+  }
+};
+inline constexpr GgxMeans kGgxMeans;
+
+// Light scattered more than once between microfacets [Kulla & Conty 2017, "Revisiting physically based shading at
+// Imageworks", pp. 16–20]: a lobe F (1 − E(n·v)) (1 − E(n·l)) / (π (1 − Ē)), which for F = 1 reflects all that the
+// lobe loses. F is the colour of all orders of scattering, from Schlick's mean, specular + (grazing − specular) / 21.
+template <class T>
+Vec3T<T> ggx_scattered_color(const GgxCell<T>& row, const Vec3T<T>& specular, T grazing) {
+  const T low = static_cast<T>(kGgxMeans.row[row.index]), high = static_cast<T>(kGgxMeans.row[row.index + 1]);
+  const T energy = low + (high - low) * row.rest;
+  Vec3T<T> color;
+  for (int c = 0; c < 3; ++c) {
+    const T mean = specular[c] + (grazing - specular[c]) * T(1.0 / 21);
+    color[c] = mean * mean * energy / (1 - mean * (1 - energy));
+  }
+  return color;
+}
+template <class T>
+T ggx_mean_loss(const GgxCell<T>& row) {
+  const T low = static_cast<T>(kGgxMeans.row[row.index]), high = static_cast<T>(kGgxMeans.row[row.index + 1]);
+  return 1 - (low + (high - low) * row.rest);
+}
 
 inline Vec3 ggx_albedo(float alpha, const Vec3& specular, float grazing, float cos_viewer) {
-  const GgxCell row((std::sqrt(alpha) - 0.1f) * (1 / 0.9f)), column(std::sqrt(cos_viewer > 0 ? cos_viewer : 0.0f));
-  float part[2];
-  for (int i = 0; i < 2; ++i) {
-    auto at = [&](int r, int c) { return static_cast<float>(kGgxAlbedo[row.index + r][column.index + c][i]); };
-    float low = at(0, 0) + (at(0, 1) - at(0, 0)) * column.rest, high = at(1, 0) + (at(1, 1) - at(1, 0)) * column.rest;
-    part[i] = (low + (high - low) * row.rest) * (1.0f / 65535.0f);
-  }
-  const float rise = grazing * part[1];
-  return specular * part[0] + Vec3{rise, rise, rise};
+  const GgxCell<float> row = ggx_row(alpha), column = ggx_column(cos_viewer);
+  const float scale = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0]; }),
+              rise = grazing * ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[1]; });
+  return specular * scale + Vec3{rise, rise, rise};
+}
+inline Vec3 ggx_scattered_albedo(float alpha, const Vec3& specular, float grazing, float cos_viewer) {
+  const GgxCell<float> row = ggx_row(alpha);
+  return ggx_scattered_color(row, specular, grazing) * (1 - ggx_energy(row, ggx_column(cos_viewer)));
 }
 
 }  // namespace pocketray

@@ -267,6 +267,7 @@ bool probe_exposure(Renderer* renderer, ExposureProbe* p, std::uint32_t pixel_co
   FrameData frame = renderer->frame;
   if (frame.mask & (bit(Effect::selective) | bit(Effect::undersampling))) frame.trace_strip = nullptr;
   Tracer tracer = make_tracer(frame);
+  tracer.light_entries = renderer->tracers[0].light_entries;
   for (; p->next < count && p->next - begin < pixel_count_max; ++p->next) {
     std::uint32_t row = kStep / 2 + p->next / columns * kStep, column = kStep / 2 + p->next % columns * kStep;
     Span one = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column),

@@ -74,8 +74,9 @@ inline Vec3T<T> environment_irradiance(const EnvironmentInfo& info, const Vec3T<
 inline Vec3 reflected_environment(const Scene& scene, const Material& m, const Vec3& specular, const Vec3& normal,
                                   const Vec3& way) {
   const float cosine = dot(normal, way);
-  return kBrdfList[m.brdf]->albedo(m, specular, cosine) *
-         environment_gloss(scene, way - normal * (2 * cosine), m.roughness);
+  const BrdfInfo& brdf = *kBrdfList[m.brdf];
+  return brdf.albedo(m, specular, cosine) * environment_gloss(scene, way - normal * (2 * cosine), m.roughness) +
+         brdf.scattered(m, specular, cosine) * environment_irradiance(scene.environment_info[0], normal);
 }
 
 // Whether the environment lights surfaces, besides being seen by rays. Stored radiosity holds its diffuse part.
@@ -91,7 +92,7 @@ inline float environment_bound(const Scene& scene, const Material& m, EffectMask
   if (reflects_surroundings(m)) {
     float reflectance = max_component(m.specular);
     if (m.grazing > reflectance) reflectance = m.grazing;
-    bound += reflectance * max_component(most);
+    bound += reflectance * max_component(most) * 1.00001f;  // covers rounding
   }
   return bound;
 }

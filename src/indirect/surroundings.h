@@ -21,7 +21,9 @@ inline bool reflects_surroundings(const Material& m) {
 
 // Radiance to a viewer at a cosine from the normal; `specular` as in brdf.h. The material reflects the surroundings.
 inline Vec3 reflected_surroundings(const SceneInfo& info, const Material& m, const Vec3& specular, float cos_viewer) {
-  return kBrdfList[m.brdf]->albedo(m, specular, cos_viewer) * radiance_of_surroundings(info);
+  const BrdfInfo& brdf = *kBrdfList[m.brdf];
+  return (brdf.albedo(m, specular, cos_viewer) + brdf.scattered(m, specular, cos_viewer)) *
+         radiance_of_surroundings(info);
 }
 
 // Upper bound of it, per component.
@@ -29,7 +31,7 @@ inline float reflected_surroundings_bound(const SceneInfo& info, const Material&
   if (!reflects_surroundings(m)) return 0;
   float reflectance = max_component(m.specular);
   if (m.grazing > reflectance) reflectance = m.grazing;
-  return reflectance * max_component(radiance_of_surroundings(info));
+  return reflectance * max_component(radiance_of_surroundings(info)) * 1.00001f;  // covers rounding
 }
 
 }  // namespace pocketray

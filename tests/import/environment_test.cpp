@@ -218,11 +218,13 @@ TEST_CASE("environment_levels_are_the_lobes_means") {
            {Vec3d{0, 1, 0}, Vec3d{1, 0, 0}, normalize(Vec3d{0.3, -0.9, 0.2}), normalize(Vec3d{1, 1, -1})}) {
         Material m;
         const float r = kGlossRoughness[level];
-        m.roughness = r * r;
+        m.roughness = r * r, m.grazing = 1;
+        // The first samples are those of light scattered once.
+        const double once = double(kGgxBrdf.albedo(m, {1, 1, 1}, 1).x) * (1 - 1e-6);
         Vec3d sum = {0, 0, 0};
         double weights = 0;
         for (int i = 0; i < 20000; ++i) {
-          const Vec3d d = kGgxBrdf.sample(m, n, n, next_double(&rng), next_double(&rng));
+          const Vec3d d = kGgxBrdf.sample(m, n, n, once * next_double(&rng), next_double(&rng));
           // Visible normals at normal incidence are distributed as all are: D n·h.
           const double cosine = dot(d, n);
           if (cosine > 0) sum += radiance(d) * cosine, weights += cosine;

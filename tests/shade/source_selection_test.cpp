@@ -147,6 +147,17 @@ TEST_CASE("source_selection_is_independent_of_tiles_and_threads") {
   CHECK(same_picture(single, expected));
 }
 
+// Goal: the exposure is measured with the selection, too. Method: a scene that asks for it, against a renderer that has
+// rendered its frame.
+TEST_CASE("source_selection_serves_the_exposure") {
+  auto s = lit_scene(kDirect, 4, 40);
+  s->scene.info.auto_exposure = 1;
+  auto test = make_renderer(s->scene, settings_of(kDirect, 0.1f));
+  REQUIRE(has(test->renderer.effects.mask, Effect::source_selection));
+  REQUIRE(render_frame(&test->renderer, 0).ok);
+  CHECK(measure_exposure(&test->renderer) == test->renderer.exposure);
+}
+
 // Goal: a scene scaled by a power of two gives the same picture. Method: bit for bit.
 TEST_CASE("source_selection_is_independent_of_scale") {
   auto s = lit_scene(kDirect, 8, 40);

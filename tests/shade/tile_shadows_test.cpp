@@ -42,7 +42,9 @@ TEST_CASE("tile_shadows_change_no_pixel") {
       scene->bind();
     }
     Status status;
-    auto test = make_renderer(scene->scene, settings_for(seed, 48, 40), nullptr, &status);
+    Settings settings = settings_for(seed, 48, 40);
+    settings.light_tolerance = 0;
+    auto test = make_renderer(scene->scene, settings, nullptr, &status);
     REQUIRE_MESSAGE(status.ok, status.message);
     REQUIRE(render_frame(&test->renderer, 0, Aov::none).ok);
     FrameData frame = test->renderer.frame;

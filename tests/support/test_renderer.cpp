@@ -53,6 +53,7 @@ std::uint32_t picture_hash(const Vec3* image, std::size_t pixel_count) {
 
 Vec3 trace_ray(const Renderer& renderer, const Vec3& origin, const Vec3& direction, Tracer* tracer) {
   Tracer own = make_tracer(renderer.frame);
+  own.light_entries = renderer.tracers[0].light_entries;
   if (!tracer) tracer = &own;
   const FrameData& frame = renderer.frame;
   Ray ray = {origin, direction, __builtin_inff()};
