@@ -1,4 +1,4 @@
-// LightEntry selection: of many lights, those that deserve shadow rays [Jansen92, sec. 3; Kok91]. A surface's lights
+// Source selection: of many lights, those that deserve shadow rays [Jansen92, sec. 3; Kok91]. A surface's lights
 // are tested strongest first until what the others could add is within the tolerance [Ward91, "Adaptive Shadow Testing
 // for Ray Tracing"]; these are taken to be as visible as those tested. Groups of lights that are far away or weak are
 // bounded and estimated as one [Walter05, "Lightcuts", sec. 3], so that the cost grows slower than the number of

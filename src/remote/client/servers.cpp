@@ -222,7 +222,7 @@ void add_share_lines(const ConnectedServers& s, HudText* text) {
     if (f.server_rows[i] > 0) caught = std::min(caught, client.servers[i].checks.caught_row_last);
   }
   if (checked > 0)
-    add_hud_line(text, "%llu %s checked: finds a wrong row with %.2g %%", static_cast<unsigned long long>(checked),
+    add_hud_line(text, "%llu %s checked: finds a wrong row with %.3g %%", static_cast<unsigned long long>(checked),
                  s.is_thin ? "rows" : "pixels", 100 * caught);
 }
 
