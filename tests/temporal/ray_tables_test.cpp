@@ -139,3 +139,20 @@ TEST_CASE("ray_tables_grid_grows_and_shrinks_with_the_scene") {
   reset_tables({{-1, -1, -1}, {1, 1, 1}}, t);
   CHECK(t->bounds.low.x > -2);
 }
+
+// Goal: a scene that keeps growing outgrows its grid in few frames. Method: closed form: it grows by a step a frame to
+// ten times its size; each new grid has half of its size to spare, so the next is needed after that much, not a step.
+TEST_CASE("ray_tables_grid_grows_by_halves") {
+  OwnTables own = own_tables(4, {{0, 0, 0}, {1, 1, 1}});
+  RayTables* t = &own.tables;
+  CHECK(t->bounds.high.x == 1.125f);
+  int outgrown = 0;
+  for (int frame = 1; frame <= 900; ++frame) {
+    const Box scene = {{0, 0, 0}, {1 + 0.01f * static_cast<float>(frame), 1, 1}};
+    if (contains(t->bounds, scene)) continue;
+    ++outgrown;
+    reset_tables(scene, t);
+    CHECK(t->bounds.high.x == doctest::Approx(1.5 * double(scene.high.x)));
+  }
+  CHECK(outgrown == 6);  // at 1.13, 1.70, 2.55, 3.83, 5.74 and 8.61
+}
