@@ -192,7 +192,7 @@ inline constexpr SettingRow kSettingList[] = {
      bit(Effect::source_selection),
      false,
      0,
-     {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0},
+     {0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625, 0},
      nullptr,
      ""},
 };

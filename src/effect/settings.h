@@ -36,7 +36,7 @@ struct Quality {
   std::uint32_t virtual_lights = 64;  // of instant radiosity; a pixel traces a shadow ray to a sixteenth of them
   float selective_contrast = 0;       // up to which pixels are interpolated, as displayed; 0: all are traced
   Resolution resolution = Resolution::full;
-  float light_tolerance = 0.05f;  // of many lights, the share that may go untested for shadows; 0: all are tested
+  float light_tolerance = 0.0625f;  // of many lights, the share that may go untested for shadows; 0: all are tested
 };
 
 // Whether frames trace only what may have changed. automatic: where that pays.

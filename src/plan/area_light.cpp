@@ -162,6 +162,8 @@ struct Slice {
 
 template <class Visit>
 void each_slice(const FrameData& frame, std::uint32_t material, double area_total, std::uint32_t n, Visit visit) {
+  CHECK(area_total > 0);
+  CHECK_GE(n, 1u);
   // A border that misses one between shares by no more than the sums' rounding is taken as that border.
   auto in_shares = [&](double area) {
     const double shares = area / area_total * n, nearest = std::floor(shares + 0.5);
@@ -176,6 +178,7 @@ void each_slice(const FrameData& frame, std::uint32_t material, double area_tota
       to = whole ? std::floor(end) : std::min(end, share + 1);
       Slice slice = {static_cast<std::uint32_t>(share), 1, whole, to - from, 0, 0};
       if (whole) slice.share_count = static_cast<std::uint32_t>(to - from);
+      CHECK_LT(slice.share, n);
       slice.x_begin = (from - begin) / (end - begin), slice.x_end = (to - begin) / (end - begin);
       visit(e, slice);
     }
@@ -191,6 +194,7 @@ struct NearestPoint {
 };
 
 void approach(const FrameData& frame, const Emitter& e, NearestPoint* nearest) {
+  CHECK(nearest != nullptr);
   for (std::uint32_t triangle = e.triangle; triangle <= e.triangle + e.parallelogram; ++triangle) {
     float u, v;
     const double square = nearest_point(frame, triangle, nearest->centroid, &u, &v);
@@ -200,6 +204,7 @@ void approach(const FrameData& frame, const Emitter& e, NearestPoint* nearest) {
 
 // Points of the shares that a slice covers whole.
 void place_whole_shares(const FrameData& frame, const Emitter& e, const Slice& slice, double area, LightPoint* points) {
+  CHECK(slice.whole);
   const double width = slice.x_end - slice.x_begin;
   for (std::uint32_t j = 0; j < slice.share_count; ++j) {
     Cell cell = equal_cell(j, slice.share_count);

@@ -98,11 +98,11 @@ Front builtin_front() {
     std::uint32_t samples, depth, area_lights;
     float cut_off, contrast;
     Resolution resolution = Resolution::full;
-    float light_tolerance = 0.05f;
+    float light_tolerance = 0.0625f;
   } kLadder[] = {{1, 0, 1, 4, 0.5f, Resolution::half, 0.5f},
                  {1, 0, 1, 4, 0.5f, Resolution::full, 0.5f},
-                 {1, 1, 1, 4, 0.25f, Resolution::full, 0.2f},
-                 {1, 2, 2, 0.5f, 0.25f, Resolution::full, 0.1f},
+                 {1, 1, 1, 4, 0.25f, Resolution::full, 0.25f},
+                 {1, 2, 2, 0.5f, 0.25f, Resolution::full, 0.125f},
                  {1, 8, 4, 0.5f, 0.25f},
                  {1, 8, 4, 0.5f, 0.125f},
                  {1, 8, 4, 0.5f, 0},

@@ -76,6 +76,12 @@ TEST_CASE("server_frames_follow_every_setting") {
   generated->cameras.assign(3, generated->cameras[0]);
   generated->cameras[1].eye = {-2, 2.5f, 3};
   generated->cameras[2].node = 0;
+  for (int i = 0; i < 24; ++i) {  // as many as source selection takes
+    Light light;
+    light.position = {static_cast<float>(i % 5) - 2, 2 + static_cast<float>(i % 3), static_cast<float>(i % 7) - 3};
+    light.intensity = {0.1f, 0.1f, 0.1f};
+    generated->lights.push_back(light);
+  }
   generated->bind();
   std::vector<std::uint8_t> bytes(baked_size(generated->scene));
   baked_write(generated->scene, bytes.data());

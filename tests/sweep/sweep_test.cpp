@@ -353,7 +353,7 @@ TEST_CASE("accuracy_refuses_the_state_of_another_sweep") {
   for (const SettingRow& row : kSettingList)
     cases.push_back({[&row](AccuracyOptions* a) {
                        SettingOption* option = &a->common.settings[row.name];
-                       option->count += 1, option->real += 1;
+                       option->count += 1, option->real = row.sweep.values[0];
                        if (row.field.names) option->choice = row.field.names[1];
                      },
                      row.name});
