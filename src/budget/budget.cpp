@@ -56,8 +56,8 @@ Status load_front(const Renderer& renderer, const FrontSource& source, const Con
 
 constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_radiosity);
 
-// Plans with virtual lights and for undersampling, if a candidate has them, and the most points per area light that
-// fit; drops candidates that need more.
+// Plans with virtual lights, for undersampling and source selection, if a candidate has them, and the most points per
+// area light that fit; drops candidates that need more.
 Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
   renderer->settings.points_per_area_light = 1;

@@ -253,7 +253,7 @@ std::uint32_t place_area_light(const FrameData& frame, std::uint32_t material, L
     if (slice.share != share) {
       if (share != kNone) settle(share);
       share = slice.share;
-      nearest = {points[share].position, 0, 0, 0, std::numeric_limits<double>::infinity()};
+      nearest = {points[share].position, e.triangle, 0, 0, std::numeric_limits<double>::infinity()};
     }
     approach(frame, e, &nearest);
   });

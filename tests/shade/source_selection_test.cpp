@@ -176,9 +176,9 @@ TEST_CASE("source_selection_is_independent_of_scale") {
 // grows with their number, as that of a town does; shadow rays, which are counted.
 TEST_CASE("source_selection_grows_slower_than_the_number_of_lights") {
   const std::uint32_t features = bit(Feature::ambient);
-  std::uint64_t rays[4];
-  int i = 0;
+  std::vector<std::uint64_t> rays;
   for (std::uint32_t count : {25u, 100u, 400u, 1600u}) {
+    if (count > 100 && kEffortDivisor > 1) break;
     auto s = generate_scene(features, 2);
     Rng rng = make_rng(count);
     const float side = 2 * std::sqrt(static_cast<float>(count));
@@ -194,8 +194,8 @@ TEST_CASE("source_selection_grows_slower_than_the_number_of_lights") {
     const Traced some = trace(s->scene, settings_of(features, 0.1f), true);
     CHECK(largest_error(some.picture, all.picture) <= 0.1);
     MESSAGE(count << " lights: " << some.shadow_rays << " shadow rays of " << all.shadow_rays);
-    rays[i++] = some.shadow_rays;
+    rays.push_back(some.shadow_rays);
   }
-  for (i = 1; i < 4; ++i) CHECK(4 * rays[i] < 14 * rays[i - 1]);  // of four times the lights
-  CHECK(rays[3] < 32 * rays[0]);                                  // of 64 times the lights
+  for (std::size_t i = 1; i < rays.size(); ++i) CHECK(4 * rays[i] < 14 * rays[i - 1]);  // of four times the lights
+  if (kEffortDivisor == 1) CHECK(rays.back() < 32 * rays[0]);                           // of 64 times the lights
 }
