@@ -19,10 +19,10 @@ constexpr std::uint32_t kRadiositySideMax = 256;     // nodes along a side of a 
 constexpr std::uint32_t kEnvironmentSideMax = 1024;  // texels; the bilinear filter counts in int
 constexpr float kEnvironmentScaleMin = 0x1p-40f, kEnvironmentScaleMax = 0x1p40f;
 constexpr std::uint32_t kLightCountMax = 4096;       // lights of a scene
-// Fewer lights are all tested for shadows. Chosen: among few lights, hardly any are weak enough to go untested.
-constexpr std::uint32_t kSelectedLightsMin = 16;
 constexpr std::uint32_t kPointLightCountMax = 4096;  // after area lights have become points
 constexpr std::uint32_t kPointsPerAreaLightMax = 256;
+// Fewer lights are all tested for shadows. Chosen: among few lights, hardly any are weak enough to go untested.
+constexpr std::uint32_t kSelectedLightsMin = 16;
 constexpr std::uint32_t kVirtualLightMax = 512;  // of instant radiosity
 constexpr std::uint32_t kCameraCountMax = 256;
 constexpr std::uint32_t kNodeCountMax = 1u << 16;

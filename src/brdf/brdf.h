@@ -5,6 +5,12 @@
 
 namespace pocketray {
 
+// The share of uniform light that a lobe reflects to the viewer: once, from about the mirrored direction; and scattered
+// more than once, from all directions alike.
+struct BrdfAlbedo {
+  Vec3 once, scattered;
+};
+
 // All vectors are unit. Values and densities are in 1/sr. `specular` is the material's at the point, tinted by texture
 // and vertex colour; it is at most Material::specular.
 struct BrdfInfo {
@@ -22,10 +28,8 @@ struct BrdfInfo {
   // over the sphere, positive wherever the value is.
   Vec3d (*sample)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, double u, double v);
   double (*density)(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light);
-  // The share of uniform light that the lobe reflects to the viewer: once, about mirrored; and scattered more than
-  // once, from all directions alike. Null, both: it reflects lights only.
-  Vec3 (*albedo)(const Material& material, const Vec3& specular, float cos_viewer);
-  Vec3 (*scattered)(const Material& material, const Vec3& specular, float cos_viewer);
+  // Null: the lobe reflects lights only.
+  BrdfAlbedo (*albedo)(const Material& material, const Vec3& specular, float cos_viewer);
   float diffuse_max;  // upper bound of what remains of `diffuse`, as a factor
 };
 

@@ -60,7 +60,7 @@ Vec3T<T> scattered(const Material& material, const Vec3T<T>& specular, T cos_vie
   const GgxCell<T> row = ggx_row(static_cast<T>(material.roughness));
   const T loss = (1 - ggx_energy(row, ggx_column(cos_viewer))) * (1 - ggx_energy(row, ggx_column(cos_light)));
   return ggx_scattered_color(row, specular, static_cast<T>(material.grazing)) *
-         (loss * static_cast<T>(1 / kPi) / ggx_mean_loss(row));
+         (loss * static_cast<T>(1 / kPi) / ggx_between_rows(row, kGgxRows.lost));
 }
 
 template <class T>
@@ -89,12 +89,14 @@ Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, 
   return value_of(material, specular, diffuse, normal, to_viewer, to_light);
 }
 
-// D ≤ 1/πα², and n·l V < 1/2α, which it approaches where n·v ≪ n·l ≪ α. Light scattered more than once loses most at
-// normal incidence.
+// D ≤ 1/πα², and n·l V < 1/2α, which it approaches where n·v ≪ n·l ≪ α. What is scattered more than once is bounded by
+// the most that the lobe loses in any direction.
 Vec3 peak(const Material& material) {
   const float square = alpha_square<float>(material), f = material.grazing;
   const Vec3 most = max(material.specular, {f, f, f});
-  const Vec3 rest = max(scattered(material, most, 1.0f, 1.0f), scattered(material, material.specular, 1.0f, 1.0f));
+  const GgxCell<float> row = ggx_row(material.roughness);
+  const float loss = ggx_between_rows(row, kGgxRows.most_lost);
+  const Vec3 rest = ggx_scattered_color(row, most, f) * (loss * loss / (kPiF * ggx_between_rows(row, kGgxRows.lost)));
   return (most * (0.5f / kPiF / (square * std::sqrt(square))) + rest) * 1.00001f;  // covers rounding
 }
 
@@ -143,16 +145,12 @@ double density(const Material& material, const Vec3d& normal, const Vec3d& viewe
   return scattered + (1 - share) * square / (kPi * slope * slope) / (2 * (cosine + root_term(cosine, square)));
 }
 
-Vec3 albedo(const Material& material, const Vec3& specular, float cos_viewer) {
+BrdfAlbedo albedo(const Material& material, const Vec3& specular, float cos_viewer) {
   return ggx_albedo(material.roughness, specular, material.grazing, std::fabs(cos_viewer));
-}
-
-Vec3 scattered_albedo(const Material& material, const Vec3& specular, float cos_viewer) {
-  return ggx_scattered_albedo(material.roughness, specular, material.grazing, std::fabs(cos_viewer));
 }
 
 }  // namespace
 
-const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density, albedo, scattered_albedo, kDiffuseMax};
+const BrdfInfo kGgxBrdf = {"ggx", value, peak, exact_value, sample, density, albedo, kDiffuseMax};
 
 }  // namespace pocketray

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/vec3.h"
+#include "brdf/brdf.h"
 
 namespace pocketray {
 
@@ -192,52 +192,53 @@ T ggx_energy(const GgxCell<T>& row, const GgxCell<T>& column) {
   return ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0] + e[1]; });
 }
 
-// The mean energy of a row over the hemisphere, 2 ∫ E(μ) μ dμ = 4 ∫ E t³ dt with t = √μ, in which E is piecewise
-// linear.
-struct GgxMeans {
-  double row[kGgxAlbedoSide] = {};
-  constexpr GgxMeans() {
-    for (int r = 0; r < kGgxAlbedoSide; ++r)
-      for (int c = 0; c + 1 < kGgxAlbedoSide; ++c) {
-        const double step = 1.0 / (kGgxAlbedoSide - 1), a = c * step, b = (c + 1) * step;
-        const double low = (kGgxAlbedo[r][c][0] + kGgxAlbedo[r][c][1]) / 65535.0,
-                     high = (kGgxAlbedo[r][c + 1][0] + kGgxAlbedo[r][c + 1][1]) / 65535.0;
+// Of each row, what a lobe of F = 1 loses: the mean over the hemisphere, 1 − Ē with Ē = 2 ∫ E(μ) μ dμ = 4 ∫ E t³ dt and
+// t = √μ, in which E is piecewise linear; and the most in any direction.
+struct GgxRows {
+  double lost[kGgxAlbedoSide] = {}, most_lost[kGgxAlbedoSide] = {};
+  constexpr GgxRows() {
+    constexpr double step = 1.0 / (kGgxAlbedoSide - 1);
+    auto energy = [](int r, int c) { return (kGgxAlbedo[r][c][0] + kGgxAlbedo[r][c][1]) / 65535.0; };
+    for (int r = 0; r < kGgxAlbedoSide; ++r) {
+      lost[r] = 1;
+      for (int c = 0; c < kGgxAlbedoSide; ++c) {
+        if (1 - energy(r, c) > most_lost[r]) most_lost[r] = 1 - energy(r, c);
+        if (c + 1 == kGgxAlbedoSide) break;
+        const double a = c * step, b = (c + 1) * step, low = energy(r, c), high = energy(r, c + 1);
         const double slope = (high - low) / step, offset = low - slope * a;
-        row[r] += offset * (b * b * b * b - a * a * a * a) + 0.8 * slope * (b * b * b * b * b - a * a * a * a * a);
+        lost[r] -= offset * (b * b * b * b - a * a * a * a) + 0.8 * slope * (b * b * b * b * b - a * a * a * a * a);
       }
+    }
   }
 };
-inline constexpr GgxMeans kGgxMeans;
+inline constexpr GgxRows kGgxRows;
+
+template <class T>
+T ggx_between_rows(const GgxCell<T>& row, const double (&values)[kGgxAlbedoSide]) {
+  const T low = static_cast<T>(values[row.index]), high = static_cast<T>(values[row.index + 1]);
+  return low + (high - low) * row.rest;
+}
 
 // Light scattered more than once between microfacets [Kulla & Conty 2017, "Revisiting physically based shading at
 // Imageworks", pp. 16–20]: a lobe F (1 − E(n·v)) (1 − E(n·l)) / (π (1 − Ē)), which for F = 1 reflects all that the
 // lobe loses. F is the colour of all orders of scattering, from Schlick's mean, specular + (grazing − specular) / 21.
 template <class T>
 Vec3T<T> ggx_scattered_color(const GgxCell<T>& row, const Vec3T<T>& specular, T grazing) {
-  const T low = static_cast<T>(kGgxMeans.row[row.index]), high = static_cast<T>(kGgxMeans.row[row.index + 1]);
-  const T energy = low + (high - low) * row.rest;
+  const T lost = ggx_between_rows(row, kGgxRows.lost);
   Vec3T<T> color;
   for (int c = 0; c < 3; ++c) {
     const T mean = specular[c] + (grazing - specular[c]) * T(1.0 / 21);
-    color[c] = mean * mean * energy / (1 - mean * (1 - energy));
+    color[c] = mean * mean * (1 - lost) / (1 - mean * lost);
   }
   return color;
 }
-template <class T>
-T ggx_mean_loss(const GgxCell<T>& row) {
-  const T low = static_cast<T>(kGgxMeans.row[row.index]), high = static_cast<T>(kGgxMeans.row[row.index + 1]);
-  return 1 - (low + (high - low) * row.rest);
-}
 
-inline Vec3 ggx_albedo(float alpha, const Vec3& specular, float grazing, float cos_viewer) {
+inline BrdfAlbedo ggx_albedo(float alpha, const Vec3& specular, float grazing, float cos_viewer) {
   const GgxCell<float> row = ggx_row(alpha), column = ggx_column(cos_viewer);
   const float scale = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[0]; }),
-              rise = grazing * ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[1]; });
-  return specular * scale + Vec3{rise, rise, rise};
-}
-inline Vec3 ggx_scattered_albedo(float alpha, const Vec3& specular, float grazing, float cos_viewer) {
-  const GgxCell<float> row = ggx_row(alpha);
-  return ggx_scattered_color(row, specular, grazing) * (1 - ggx_energy(row, ggx_column(cos_viewer)));
+              rise = ggx_between(row, column, [](const std::uint16_t(&e)[2]) { return e[1]; });
+  return {specular * scale + Vec3{1, 1, 1} * (grazing * rise),
+          ggx_scattered_color(row, specular, grazing) * (1 - scale - rise)};
 }
 
 }  // namespace pocketray

@@ -43,6 +43,6 @@ double density(const Material& material, const Vec3d& normal, const Vec3d& to_vi
 
 }  // namespace
 
-const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr, nullptr, 1};
+const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr, 1};
 
 }  // namespace pocketray

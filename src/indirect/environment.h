@@ -70,13 +70,14 @@ inline Vec3T<T> environment_irradiance(const EnvironmentInfo& info, const Vec3T<
 }
 
 // Radiance to a viewer from a glossy lobe under the environment: the split sum [Karis 2013]. `specular` as in brdf.h;
-// the material reflects its surroundings. `way` goes from the viewer to the surface.
+// the material reflects its surroundings. `way` goes from the viewer to the surface, `irradiance` is
+// environment_irradiance() there.
 inline Vec3 reflected_environment(const Scene& scene, const Material& m, const Vec3& specular, const Vec3& normal,
-                                  const Vec3& way) {
+                                  const Vec3& way, const Vec3& irradiance) {
   const float cosine = dot(normal, way);
-  const BrdfInfo& brdf = *kBrdfList[m.brdf];
-  return brdf.albedo(m, specular, cosine) * environment_gloss(scene, way - normal * (2 * cosine), m.roughness) +
-         brdf.scattered(m, specular, cosine) * environment_irradiance(scene.environment_info[0], normal);
+  const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, cosine);
+  return albedo.once * environment_gloss(scene, way - normal * (2 * cosine), m.roughness) +
+         albedo.scattered * irradiance;
 }
 
 // Whether the environment lights surfaces, besides being seen by rays. Stored radiosity holds its diffuse part.

@@ -21,9 +21,8 @@ inline bool reflects_surroundings(const Material& m) {
 
 // Radiance to a viewer at a cosine from the normal; `specular` as in brdf.h. The material reflects the surroundings.
 inline Vec3 reflected_surroundings(const SceneInfo& info, const Material& m, const Vec3& specular, float cos_viewer) {
-  const BrdfInfo& brdf = *kBrdfList[m.brdf];
-  return (brdf.albedo(m, specular, cos_viewer) + brdf.scattered(m, specular, cos_viewer)) *
-         radiance_of_surroundings(info);
+  const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, cos_viewer);
+  return (albedo.once + albedo.scattered) * radiance_of_surroundings(info);
 }
 
 // Upper bound of it, per component.

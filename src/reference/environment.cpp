@@ -167,8 +167,9 @@ Vec3d environment_light_as_rendered(const FrameData& frame, const ReferenceSurfa
     auto to_float = [](const Vec3d& a) {
       return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
     };
-    sum += to_double(
-        reflected_environment(scene, lobes_of(s), to_float(s.specular), to_float(s.normal), to_float(-to_viewer)));
+    const Vec3 normal = to_float(s.normal);
+    sum += to_double(reflected_environment(scene, lobes_of(s), to_float(s.specular), normal, to_float(-to_viewer),
+                                           environment_irradiance(scene.environment_info[0], normal)));
   }
   return sum * s.open;
 }

@@ -18,12 +18,15 @@ Vec3 even_light(const FrameData& frame, const Ray& ray, const Material& m, const
 Vec3 environment_light(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s) {
   effect_entered<Effect::environment>();
   const Scene& scene = *frame.scene;
+  const bool scatters = environment_lights_diffuse(frame.mask) && !is_zero(s.diffuse),
+             shines = reflects_surroundings(m);
   Vec3 sum = {0, 0, 0};
-  if (environment_lights_diffuse(frame.mask) && !is_zero(s.diffuse))
-    sum = s.diffuse * environment_irradiance(scene.environment_info[0], s.normal);
-  if (!reflects_surroundings(m)) return sum;
+  if (!scatters && !shines) return sum;
+  const Vec3 irradiance = environment_irradiance(scene.environment_info[0], s.normal);
+  if (scatters) sum = s.diffuse * irradiance;
+  if (!shines) return sum;
   const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
-  return sum + reflected_environment(scene, m, specular, s.normal, ray.direction);
+  return sum + reflected_environment(scene, m, specular, s.normal, ray.direction, irradiance);
 }
 
 template <SurroundingsFunction light>

@@ -124,6 +124,11 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
   return {0, 0, 0};
 }
 
+inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSample& sample) {
+  const bool below = is_below(s, sample.direction);
+  return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
+}
+
 // The fraction of a light that arrives: zero or one, or between if something transparent is in the way. find_ray()
 // returns the shadow ray.
 template <EffectMask mask, class FindRay>
@@ -172,8 +177,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
         continue;
       }
       float cosine = dot(s.normal, sample.direction);
-      bool below = !(dot(s.geometric, sample.direction) > 0);
-      if (below && !has(mask, Effect::shadow)) continue;
+      if (!has(mask, Effect::shadow) && is_below(s, sample.direction)) continue;
       Vec3 f = diffuse;
       if constexpr (has(mask, Effect::specular)) {
         if (!is_zero(m.specular)) {
@@ -187,11 +191,11 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
       if (!(bound > 0)) continue;
       if constexpr (has(mask, Effect::shadow)) {
         if (leave_out(tracer, bound)) continue;
-        auto shadow_ray = [&]() -> Ray {
+        auto find_ray = [&] {
           if (kept) run.sample(light, s.point, &sample);
-          return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
+          return shadow_ray(frame, s, sample);
         };
-        light_out *= shadow<mask>(tracer, shadow_ray, i, at_first_hit);
+        light_out *= shadow<mask>(tracer, find_ray, i, at_first_hit);
       }
       sum += light_out;
     }

@@ -27,13 +27,12 @@ Vec3 selected_light(Tracer* tracer, const Surface& s, const Material& m, const V
       seen += entry.radiance;
       continue;
     }
-    auto shadow_ray = [&]() -> Ray {
+    auto find_ray = [&] {
       LightSample sample;
       frame.light_runs[entry.run].sample(frame.lights[entry.light], s.point, &sample);
-      return {is_below(s, sample.direction) ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light,
-              sample.t_max};
+      return shadow_ray(frame, s, sample);
     };
-    seen += entry.radiance * shadow<mask>(tracer, shadow_ray, entry.light, at_first_hit);
+    seen += entry.radiance * shadow<mask>(tracer, find_ray, entry.light, at_first_hit);
   }
   const float all = max_component(tested);
   // With nothing tested, the middle of the interval.

@@ -1,9 +1,9 @@
-// Source selection: of many lights, those that deserve shadow rays [Jansen92, sec. 3; Kok91]. A surface's lights
-// are tested strongest first until what the others could add is within the tolerance [Ward91, "Adaptive Shadow Testing
-// for Ray Tracing"]; these are taken to be as visible as those tested. Groups of lights that are far away or weak are
-// bounded and estimated as one [Walter05, "Lightcuts", sec. 3], so that the cost grows slower than the number of
-// lights. The true sum and the result lie in the same interval: they differ by at most the tolerance times the true
-// sum, glow included, in the brightest channel.
+// Source selection: of many lights, those that deserve shadow rays [Kok91; Chen et al. 1991; both in Jansen92]. A
+// surface's lights are tested strongest first until what the others could add is within the tolerance [Ward91,
+// "Adaptive Shadow Testing for Ray Tracing"]; these are taken to be as visible as those tested. Groups of lights that
+// are far away or weak are bounded and estimated as one [Walter05, "Lightcuts", sec. 3], so that the cost grows slower
+// than the number of lights. The true sum and the result lie in the same interval: they differ by at most the tolerance
+// times the true sum, glow included, in the brightest channel.
 #pragma once
 #include "base/arena.h"
 #include "effect/effect_probe.h"
@@ -64,9 +64,6 @@ class SourceSearch {
   double remaining_ = 0, remaining_max_ = 0;  // the sum, and the largest since it was summed up
   std::uint32_t unbounded_ = 0;
 };
-
-// Lights reach a surface that they see at an angle, or from below its plane if its normals are curved.
-inline bool is_below(const Surface& s, const Vec3& to_light) { return !(dot(s.geometric, to_light) > 0); }
 
 // Fills the surfaces of a tile's first hits; no shadow ray is traced before its light is selected.
 void find_tile_surfaces(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,

@@ -71,6 +71,9 @@ inline Vec3 safe_origin(const Surface& s, float side) {
           away_from(s.point.z, s.offset.z * side)};
 }
 
+// Whether a light is below the plane of the triangle. It may still light the curved surface that the normals describe.
+inline bool is_below(const Surface& s, const Vec3& to_light) { return !(dot(s.geometric, to_light) > 0); }
+
 // Origin of a shadow ray that starts below the flat triangle but above the curved surface that the vertex normals
 // describe: the point is moved onto the planes through the vertices [Hanika 2021, Ray Tracing Gems II ch. 4]. On a flat
 // or concave surface it does not move, and the ray meets the triangle itself.

@@ -220,7 +220,7 @@ TEST_CASE("environment_levels_are_the_lobes_means") {
         const float r = kGlossRoughness[level];
         m.roughness = r * r, m.grazing = 1;
         // The first samples are those of light scattered once.
-        const double once = double(kGgxBrdf.albedo(m, {1, 1, 1}, 1).x) * (1 - 1e-6);
+        const double once = double(kGgxBrdf.albedo(m, {1, 1, 1}, 1).once.x) * (1 - 1e-6);
         Vec3d sum = {0, 0, 0};
         double weights = 0;
         for (int i = 0; i < 20000; ++i) {

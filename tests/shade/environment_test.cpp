@@ -88,10 +88,10 @@ TEST_CASE("environment_colors_metals") {
   for (float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
     const Material m = metal(alpha);
     const Vec3 found = seen(&sky, m, {0.6f, 0, 0.8f});
-    const Vec3 albedo = kGgxBrdf.albedo(m, m.specular, 0.8f), mirrored = {0.4f, 1, 1.8f};
-    const Vec3 more = kGgxBrdf.scattered(m, m.specular, 0.8f), mean = {0.5f, 0.5f, 0.5f};
+    const BrdfAlbedo albedo = kGgxBrdf.albedo(m, m.specular, 0.8f);
+    const Vec3 mirrored = {0.4f, 1, 1.8f}, mean = {0.5f, 0.5f, 0.5f};
     for (int c = 0; c < 3; ++c)
-      CHECK(found[c] == doctest::Approx(albedo[c] * mirrored[c] + more[c] * mean[c]).epsilon(0.05));
+      CHECK(found[c] == doctest::Approx(albedo.once[c] * mirrored[c] + albedo.scattered[c] * mean[c]).epsilon(0.05));
     CHECK(found.z > 0.1f);
   }
 }
