@@ -24,12 +24,6 @@ constexpr const AccelTraversal* kBlockKernels[kIsaCount] = {&kBaselineKernels};
 constexpr const AccelTraversal* kCompactKernels[kIsaCount] = {&kBaselineCompactKernels};
 #endif
 
-#if defined(__SOFTFP__)
-constexpr bool kPacketsByRays = true;  // in integers
-#else
-constexpr bool kPacketsByRays = false;
-#endif
-
 // The functions of AccelInfo for one kind of leaves, with the kernels of every instruction set.
 template <const LeafKind& kLeaves, const auto& kKernels>
 struct Hierarchy {
@@ -64,8 +58,7 @@ struct Hierarchy {
             build,
             refit,
             adopt,
-            largest,
-            kPacketsByRays};
+            largest};
   }
 };
 

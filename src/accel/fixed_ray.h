@@ -50,15 +50,18 @@ inline int greatest_exponent(const Vec3& a) {
   return static_cast<int>((most > z ? most : z) >> 23);
 }
 
-// False if the ray hits nothing: make_sheared_ray() and start_search() of bvh_single.h agree.
-inline bool prepare_exact_ray(const Ray& ray, ExactRay* exact) {
-  std::uint32_t x = magnitude_bits(ray.direction.x), y = magnitude_bits(ray.direction.y),
-                z = magnitude_bits(ray.direction.z);
+// axis_class() in integers.
+inline int fixed_class(const Vec3& direction) {
+  std::uint32_t x = magnitude_bits(direction.x), y = magnitude_bits(direction.y), z = magnitude_bits(direction.z);
   std::uint32_t most = x > y ? x : y;
   if (z > most) most = z;
-  if (most == 0 || most >= kInfinityBits) return false;
-  make_exact_ray(ray, z == most ? &kAxesZ : y == most ? &kAxesY : &kAxesX, exact);
-  return true;
+  if (most == 0 || most >= kInfinityBits) return -1;
+  int kz = z == most ? 2 : y == most ? 1 : 0;
+  return 2 * kz + static_cast<int>(float_bits(direction[kz]) >> 31);
+}
+constexpr const Axes* kAxesOfClass[6] = {&kAxesX, &kAxesX, &kAxesY, &kAxesY, &kAxesZ, &kAxesZ};
+inline FixedFrame fixed_frame(int of_class, int exponent) {
+  return {exponent, kAxesOfClass[of_class], -(of_class & 1)};
 }
 
 inline FixedRay fixed_ray(const ExactRay& exact, const FixedFrame& frame) {

@@ -106,7 +106,9 @@ inline LeafLanes test_leaf(const LeafRay& ray, const SureDepths* sure, const Tri
   return lanes;
 }
 
-// exact_weights() and place_crossing() of a triangle of the leaf. False if the weights differ in sign.
+// exact_weights() and place_crossing() of a triangle of the leaf. False if the weights differ in sign. kSigned: they
+// are known not to.
+template <bool kSigned = false>
 inline bool place_in_leaf(const ExactRay& ray, const TriangleBlock& block, int lane, Crossing* crossing) {
   double ox = ray.origin[0], oy = ray.origin[1], oz = ray.origin[2];
   double dx = ray.direction[0], dy = ray.direction[1], dz = ray.direction[2];
@@ -118,9 +120,11 @@ inline bool place_in_leaf(const ExactRay& ray, const TriangleBlock& block, int l
   };
   Corner<double> p = corner(0), q = corner(1), r = corner(2);
   EdgeValues<double> w = edge_values<double>(p.x, p.y, q.x, q.y, r.x, r.y);
-  // One branch: which side of a triangle a ray meets is unpredictable.
-  bool above = (w.a >= 0) & (w.b >= 0) & (w.c >= 0), below = (w.a <= 0) & (w.b <= 0) & (w.c <= 0);
-  if (above == below) return false;
+  if constexpr (!kSigned) {
+    // One branch: which side of a triangle a ray meets is unpredictable.
+    bool above = (w.a >= 0) & (w.b >= 0) & (w.c >= 0), below = (w.a <= 0) & (w.b <= 0) & (w.c <= 0);
+    if (above == below) return false;
+  }
   double sum = w.a + w.b + w.c;
   *crossing = {w.b, w.c, sum, static_cast<float>((w.a * p.z + w.b * q.z + w.c * r.z) / (sum * dz))};
   return true;

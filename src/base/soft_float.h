@@ -1,5 +1,6 @@
-// Division, square root and comparison of floats in integers, rounded as IEEE prescribes: for CPUs without floating
-// point, a fraction of the instructions of the compiler's and the C library's own. Floats are given by their bits.
+// Division, square root and comparison of floats and division of doubles in integers, rounded as IEEE prescribes: for
+// CPUs without floating point, a fraction of the instructions of the compiler's and the C library's own. Numbers are
+// given by their bits.
 // soft_float_arm.cpp puts them in the place of those; the tests compare them with the hardware of other CPUs.
 #pragma once
 #include <cstdint>
@@ -47,6 +48,38 @@ inline bool soft_divide(std::uint32_t a, std::uint32_t b, std::uint32_t* result)
   for (; rest >= divided; ++q) rest -= divided;
   std::uint32_t rounded = (q >> 1) + (q & ((q >> 1 & 1) | (rest != 0)));
   *result = ((a ^ b) & 1u << 31) + (static_cast<std::uint32_t>(exponent - 1) << 23) + rounded;
+  return true;
+}
+
+// a/b of doubles. False, and no result, unless operands and result are normal numbers.
+inline bool soft_divide(std::uint64_t a, std::uint64_t b, std::uint64_t* result) {
+  constexpr std::uint64_t kOne = std::uint64_t{1} << 52;
+  std::uint32_t exponent_a = static_cast<std::uint32_t>(a >> 52) & 2047;
+  std::uint32_t exponent_b = static_cast<std::uint32_t>(b >> 52) & 2047;
+  if (exponent_a - 1 >= 2046 || exponent_b - 1 >= 2046) return false;
+  std::uint64_t m = (a & (kOne - 1)) | kOne, d = (b & (kOne - 1)) | kOne;
+  bool less = m < d;
+  std::int32_t exponent = static_cast<std::int32_t>(exponent_a - exponent_b) + 1023 - less;
+  if (exponent < 1 || exponent > 2046) return false;
+  // The reciprocal as for floats, with the upper 32 bits of the divisor and an iteration more.
+  std::uint32_t divisor = static_cast<std::uint32_t>(d >> 21);
+  std::uint32_t r = (128u + kSoftTables.reciprocal[divisor >> 24 & 127]) << 24;
+  for (int i = 0; i < 3; ++i) {
+    std::uint32_t e = (1u << 31) - high_product(divisor, r);
+    r += high_product(r, e) << 1;
+  }
+  // A quotient of 54 bits, the last one for rounding, in two digits of 27. The rest wraps around on the way.
+  std::uint64_t rest = m << less, q = 0;
+  std::int64_t divided = static_cast<std::int64_t>(d);
+  for (int shift = 26; shift < 28; ++shift) {
+    std::uint32_t digit = high_product(static_cast<std::uint32_t>(rest >> 23), r) >> (29 - shift);
+    std::int64_t left = static_cast<std::int64_t>((rest << shift) - digit * d);
+    for (; left < 0; --digit) left += divided;
+    for (; left >= divided; ++digit) left -= divided;
+    q = (q << 27) + digit, rest = static_cast<std::uint64_t>(left);
+  }
+  std::uint64_t rounded = (q >> 1) + (q & ((q >> 1 & 1) | (rest != 0)));
+  *result = ((a ^ b) & std::uint64_t{1} << 63) + (static_cast<std::uint64_t>(exponent - 1) << 52) + rounded;
   return true;
 }
 

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "accel/accel_world.h"
-#include "accel/fixed_leaf.h"
-#include "accel/fixed_node.h"
+#include "accel/fixed_bundle.h"
 #include "base/rng.h"
 
 using namespace pocketray;
@@ -40,7 +39,8 @@ struct Case {
 };
 Case random_case(Rng* rng, float scale) {
   Case c;
-  float size = next_below(rng, 2) ? scale : scale * 0x1p-9f;
+  constexpr float kSizes[] = {1, 0x1p-9f, 0x1p-12f};
+  float size = scale * kSizes[next_below(rng, 3)];
   Vec3 middle = point(rng, scale - size);
   for (Vec3& corner : c.corner) corner = middle + point(rng, size);
   if (next_below(rng, 8) == 0) c.corner[2] = c.corner[0] * 0.5f + c.corner[1] * 0.5f;  // a sliver
@@ -61,21 +61,23 @@ struct Prepared {
   FixedFrame frame;
   ExactRay exact;
   FixedRay ray;
-  FixedLeaf leaf;
+  FixedTriangle triangle;
   TriangleBlock block;
 };
 // False if the ray hits nothing.
 bool prepare(const Case& c, Prepared* p) {
-  if (!prepare_exact_ray(c.ray, &p->exact)) return false;
+  int of_class = fixed_class(c.ray.direction);
+  if (of_class < 0) return false;
   int exponent = greatest_exponent(c.ray.origin);
   for (const Vec3& corner : c.corner) exponent = std::max(exponent, greatest_exponent(corner));
   if (exponent < kFixedExponentMin) return false;
-  p->frame = {exponent, p->exact.axes, p->exact.direction[2] < 0 ? -1 : 0};
+  p->frame = fixed_frame(of_class, exponent);
+  make_exact_ray(c.ray, p->frame.axes, &p->exact);
   p->ray = fixed_ray(p->exact, p->frame);
   for (int i = 0; i < 3; ++i)
     for (int axis = 0; axis < 3; ++axis)
       for (float& lane : p->block.vertex[i][axis]) lane = c.corner[i][axis];
-  convert_leaf(p->block, 1, p->frame, &p->leaf);
+  p->triangle = fixed_triangle(p->block, 0, p->frame);
   return true;
 }
 
@@ -114,12 +116,12 @@ TEST_CASE("fixed_triangles_decide_as_floats") {
   for (float scale : {1.0f, 0x1p-50f, 1000.0f, kCoordinateMax}) {
     INFO("scale " << scale);
     Rng rng = make_rng(502);
-    int missed = 0, crossed = 0, doubtful = 0, behind = 0, sure = 0, before = 0, wrong = 0;
+    int missed = 0, crossed = 0, doubtful = 0, sure = 0, outside = 0, inside = 0, before = 0, wrong = 0;
     for (int i = 0; i < count; ++i) {
       Case c = random_case(&rng, scale);
       Prepared p;
       if (!prepare(c, &p)) continue;
-      const std::int32_t* v = p.leaf.vertex[0];
+      const FixedTriangle& v = p.triangle;
       FixedRow z = depth_row(p.ray, v);
       bool positive = false;
       FixedVerdict verdict = cross_fixed(p.ray, v, z, &positive);
@@ -129,22 +131,27 @@ TEST_CASE("fixed_triangles_decide_as_floats") {
       bool crosses = valid && cross_triangle(sheared, c.corner[0], c.corner[1], c.corner[2], &crossing);
       bool hits = crosses && crossing.t > 0 && crossing.t < c.ray.t_max;
       before += hits;
-      if (z.high < -4 || z.low > depth_limit(c.ray.t_max, p.exact.direction[2], p.frame.exponent)) wrong += hits;
+      const std::int32_t limit = depth_limit(c.ray.t_max, p.exact.direction[2], p.frame.exponent);
+      if (z.high < -4 || z.low > limit) wrong += hits;
       if (verdict == FixedVerdict::missed) ++missed, wrong += crosses;
       if (verdict == FixedVerdict::doubtful) ++doubtful;
       if (verdict != FixedVerdict::crossed) continue;
       ++crossed, wrong += !crosses;
-      if (surely_behind(p.ray, v, z, positive)) ++behind, wrong += crossing.t > 0;
       FixedDepths depths = fixed_sure_depths(c.ray.t_max, p.exact.direction[2], p.frame.exponent);
       if (depths.low <= z.low && z.high <= depths.high) ++sure, wrong += !hits;
+      FixedPlane plane;
+      if (!fixed_plane(p.ray, v, z, positive, &plane)) continue;
+      if (surely_outside(plane, p.ray, z, limit)) ++outside, wrong += hits;
+      if (surely_inside(plane, p.ray, z, depths)) ++inside, wrong += !hits;
     }
     CHECK(wrong == 0);
     CHECK(missed > count / 16);
     CHECK(crossed > count / 8);
     CHECK(doubtful > count / 100);
     CHECK(doubtful < count / 2);
-    CHECK(behind > count / 50);
     CHECK(sure > count / 50);
+    CHECK(outside > count / 10);
+    CHECK(inside > count / 10);
     CHECK(before > count / 10);
   }
 }
@@ -167,18 +174,75 @@ TEST_CASE("fixed_boxes_hide_no_hit") {
     for (int lane = 0; lane < 4; ++lane) node.child[lane] = kNoChild, set_child_box(&node, lane, no_child_box());
     node.child[0] = 1;
     set_child_box(&node, 0, box);
-    FixedNode fixed;
-    convert_node(node, p.frame, &fixed);
-    REQUIRE(fixed.count == 1);
+    FixedBox kept;
     Crossing crossing;
     bool hits = cross_triangle(sheared, c.corner[0], c.corner[1], c.corner[2], &crossing) && crossing.t > 0 &&
                 crossing.t < c.ray.t_max;
     float t = hits ? crossing.t : c.ray.t_max;  // as the best hit so far
     std::int32_t near, limit = depth_limit(t, p.exact.direction[2], p.frame.exponent);
-    bool miss = misses(p.ray, fixed.box[0], limit, &near);
+    bool miss = misses(p.ray, ChildSlabs{node, 0, p.frame, &kept}, limit, &near);
     hit_count += hits, missed += miss, wrong += hits && (miss || near > limit);
   }
   CHECK(wrong == 0);
   CHECK(hit_count > count / 20);
   CHECK(missed > count / 4);
+}
+
+// Goal: the hull of some rays misses no box with a triangle that one of them hits, and begins before the hit; it misses
+// most other boxes. Method: rays of a class from near points to near points, or from and to anywhere, against triangles
+// around a point of one of them.
+TEST_CASE("fixed_hulls_hide_no_hit") {
+  Rng rng = make_rng(504);
+  int hit_count = 0, missed = 0, wrong = 0, count = 0;
+  for (int k = 0; k < 100000; ++k) {
+    float from_size = next_below(&rng, 2) ? 1.0f : 0x1p-6f, to_size = next_below(&rng, 2) ? 1.0f : 0x1p-6f;
+    Vec3 from = point(&rng, 1), to = point(&rng, 1);
+    FixedBundle b;
+    Ray rays[kPacketMax];
+    std::int32_t limits[kPacketMax];
+    int of_class = -1, ray_count = 1 + static_cast<int>(next_below(&rng, 24));
+    for (int i = 0; i < ray_count; ++i) {
+      Ray ray = {from + point(&rng, from_size), {}, next_below(&rng, 4) ? 1.0f : kInf};
+      ray.direction = to + point(&rng, to_size) - ray.origin;
+      int its_class = fixed_class(ray.direction);
+      if (its_class < 0 || (b.count > 0 && its_class != of_class)) continue;
+      if (b.count == 0) of_class = its_class, b.frame = fixed_frame(of_class, 126 + 3);
+      rays[b.count] = ray;
+      add_ray(&b, ray, 0);
+      limits[b.count - 1] = depth_limit(ray.t_max, b.ray[b.count - 1].exact.direction[2], b.frame.exponent);
+    }
+    if (b.count == 0) continue;
+    set_hulls(&b, limits);
+    for (int n = 0; n < 8; ++n) {
+      const int aimed = static_cast<int>(next_below(&rng, static_cast<std::uint32_t>(b.count)));
+      Vec3 middle = rays[aimed].origin + rays[aimed].direction * (next_float(&rng) * 1.25f), corner[3];
+      Box box = empty_box();
+      float size = next_below(&rng, 2) ? 0.5f : 0x1p-7f, aside = next_below(&rng, 2) ? 0 : 0.5f;
+      for (Vec3& at : corner) at = middle + point(&rng, size) + Vec3{aside, aside, aside}, box = merge(box, at);
+      BvhNode node = {};
+      set_child_box(&node, 0, box);
+      FixedBox kept;
+      const ChildSlabs slabs = {node, 0, b.frame, &kept};
+      slabs.z(), slabs.x(), slabs.y();
+      std::int32_t near;
+      bool miss = misses(b.all, slabs, b.all.length, &near);
+      ++count, missed += miss;
+      for (int i = 0; i < b.count; ++i) {
+        ShearedRay sheared;
+        Crossing crossing;
+        if (!make_sheared_ray(rays[i], &sheared)) continue;
+        if (!cross_triangle(sheared, corner[0], corner[1], corner[2], &crossing)) continue;
+        if (!(crossing.t > 0 && crossing.t < rays[i].t_max)) continue;
+        const std::int32_t limit = depth_limit(crossing.t, b.ray[i].exact.direction[2], b.frame.exponent);
+        ++hit_count, wrong += miss || near > limit - b.start[i];
+        std::int32_t begin;
+        wrong += misses(b.group[i / kFixedGroup], KeptSlabs{kept}, b.all.length, &begin);
+        wrong += misses(b.ray[i].fixed, KeptSlabs{kept}, limit, &begin);
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(count > 400000);
+  CHECK(hit_count > count / 4);
+  CHECK(missed > count / 8);
 }

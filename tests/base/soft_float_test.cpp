@@ -77,6 +77,50 @@ TEST_CASE("soft_float_quotients_and_comparisons_are_the_hardwares") {
   CHECK(divided > count / 2);
 }
 
+// Goal: quotients of doubles are the hardware's. Method: all pairs of special values, with neighbours and signs; random
+// pairs, half of them with exponents close together, some with few bits; products of one factor, which divide evenly.
+TEST_CASE("soft_float_quotients_of_doubles_are_the_hardwares") {
+  std::uint64_t wrong = 0, divided = 0, count = pair_count();
+  auto compare = [&](std::uint64_t a, std::uint64_t b) {
+    double x, y;
+    std::memcpy(&x, &a, sizeof x), std::memcpy(&y, &b, sizeof y);
+    double expected = x / y;
+    std::uint64_t quotient, bits;
+    std::memcpy(&bits, &expected, sizeof bits);
+    if (soft_divide(a, b, &quotient))
+      ++divided, wrong += quotient != bits;
+    else
+      wrong += std::isnormal(x) && std::isnormal(y) && std::isnormal(expected) && (bits << 1) > std::uint64_t{1} << 54;
+  };
+  std::uint64_t special[2 * std::size(kSpecial)];
+  for (std::size_t i = 0; i < std::size(kSpecial); ++i) {
+    // The pattern's exponent and significand at either end of a double's, the rest filled with its last bit.
+    std::uint64_t wide = kSpecial[i], sign_kept = wide & 1 ? (std::uint64_t{1} << 29) - 1 : 0;
+    special[2 * i] = (wide + (wide >= 0x800000 ? 896u << 23 : 0)) << 29 | sign_kept;
+    special[2 * i + 1] = wide << 32 | (wide & 1 ? 0xFFFFFFFF : 0);
+  }
+  for (std::uint64_t a : special)
+    for (std::uint64_t b : special)
+      for (unsigned signs = 0; signs < 4; ++signs)
+        for (std::uint64_t da = 0; da < 5; ++da)
+          for (std::uint64_t db = 0; db < 5; ++db)
+            compare((a + da - 2) ^ std::uint64_t{signs & 1} << 63, (b + db - 2) ^ std::uint64_t{signs >> 1} << 63);
+  CHECK(divided > 10000);
+  Rng rng = make_rng(512);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    std::uint64_t a = std::uint64_t{next_u32(&rng)} << 32 | next_u32(&rng);
+    std::uint64_t b = std::uint64_t{next_u32(&rng)} << 32 | next_u32(&rng);
+    if (i & 1) b = (b & ~(std::uint64_t{0x7F8} << 52)) | (a & std::uint64_t{0x7F8} << 52);
+    if (i % 8 == 3) b &= ~std::uint64_t{0} << next_u32(&rng) % 53;
+    compare(a, b);
+    double factor = 1 + next_u32(&rng), product = factor * (1 + (next_u32(&rng) >> 11));
+    std::memcpy(&a, &product, sizeof a), std::memcpy(&b, &factor, sizeof b);
+    compare(a, b), compare(a + 1, b), compare(a - 1, b);
+  }
+  CHECK(wrong == 0);
+  CHECK(divided > 3 * count);
+}
+
 // Goal: roots are the hardware's. Method: every significand with an even and an odd exponent, some with others; special
 // values.
 TEST_CASE("soft_float_roots_are_the_hardwares") {
