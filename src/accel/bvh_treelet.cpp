@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/float_bits.h"
 
 namespace pocketray {
 namespace {
@@ -58,9 +59,7 @@ struct SweepDivision {
 
 // Unsigned integers that sort like floats.
 std::uint32_t sort_key(float f) {
-  std::uint32_t bits;
-  f += 0.0f;  // -0 is 0
-  std::memcpy(&bits, &f, sizeof bits);
+  std::uint32_t bits = float_bits(f + 0.0f);  // -0 is 0
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 

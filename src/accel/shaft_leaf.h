@@ -122,20 +122,44 @@ struct ShaftPassing {
   unsigned crosses;  // the segment's line certainly crosses the triangle
 };
 
-// Mask of the lanes where the segment certainly has t ≤ 0, since it starts beyond the triangle, most often on leaving
-// it. With D the largest depth, edge functions err by up to w (see edge_error() in leaf_projection.h), and the sum of
-// their products with the depths by 4wD. If one edge function is beyond w, the sum of the weights has its sign, or
-// cross_triangle() falls back on weights that do.
+// Where segments meet triangles that they certainly cross. Edge functions err by up to w (see edge_error() in
+// leaf_projection.h). With D the largest depth, the sum of their products with the depths errs by less than 4wD, and so
+// does the product of their sum with a depth up to D. Their sum has the sign of the edge function that is beyond w, or
+// cross_triangle() falls back on weights that do. Depths are differences from the origin along the dominant axis.
 template <class F>
-unsigned surely_behind(const EdgeValues<F>& e, F low, F high, const F (&x)[3], const F (&y)[3], const F (&z)[3],
-                       F nearest, F farthest, F sign) {
-  F aside = max(max(abs(x[0]) + abs(y[0]), abs(x[1]) + abs(y[1])), abs(x[2]) + abs(y[2]));
-  F along = max(abs(nearest), abs(farthest)), zero = F::splat(0);
-  F error = aside * (aside + along * F::splat(4)) * F::splat(0x1p-19f) + F::splat(kUnderflow);
-  F depth = (e.a * z[0] + e.b * z[1] + e.c * z[2]) * sign,
-    depth_error = error * along * F::splat(4) + F::splat(kUnderflow);
-  return bits(((error < high) & (depth < zero - depth_error)) | ((low < zero - error) & (depth_error < depth)));
-}
+class ShaftCrossings {
+ public:
+  ShaftCrossings(const EdgeValues<F>& e, F low, F high, const F (&x)[3], const F (&y)[3], const F (&z)[3], F nearest,
+                 F farthest) {
+    F aside = max(max(abs(x[0]) + abs(y[0]), abs(x[1]) + abs(y[1])), abs(x[2]) + abs(y[2]));
+    along_ = max(abs(nearest), abs(farthest));
+    error_ = aside * (aside + along_ * F::splat(4)) * F::splat(0x1p-19f) + F::splat(kUnderflow);
+    low_ = low, high_ = high, sum_ = e.a + e.b + e.c, depth_ = e.a * z[0] + e.b * z[1] + e.c * z[2];
+    bound_ = error_ * along_ * F::splat(4) + F::splat(kUnderflow);
+  }
+  // Masks of the lanes whose crossing certainly lies behind the origin, or above or below a depth.
+  auto behind(float sign) const { return agrees(depth_ * F::splat(-sign), bound_); }
+  auto above(F at) const { return agrees(depth_ - sum_ * limited(at), bound_ + bound_); }
+  auto below(F at) const { return agrees(sum_ * limited(at) - depth_, bound_ + bound_); }
+
+ private:
+  F limited(F at) const { return max(min(at, along_), F::splat(0) - along_); }
+  // Whether a value with an error below `bound` certainly has the sign of the sum.
+  auto agrees(F value, F bound) const {
+    F zero = F::splat(0);
+    return ((error_ < high_) & (bound < value)) | ((low_ < zero - error_) & (value < zero - bound));
+  }
+
+  F low_, high_, along_, error_, bound_, sum_, depth_;
+};
+
+// Crossings beyond the end of a segment cost less in float than to locate: 3 % of a frame of seesaw. But the values
+// must be kept at hand, which costs a Cortex-A7 2 % of most frames.
+#if defined(__arm__)
+constexpr bool kPlacesEnds = false;
+#else
+constexpr bool kPlacesEnds = true;
+#endif
 
 // The float test of cross_triangle(), and conclusions from the triangles' depths. ray() returns the lanes' values from
 // a row of the bundle, vertex() those of a vertex along an axis.
@@ -155,8 +179,16 @@ ShaftPassing test_lanes(const Bundle& b, Ray ray, Vertex vertex) {
   if (!pass) return {0, 0, 0};
   unsigned crosses = bits((zero < low) | (high < zero));
   unsigned sure = crosses & bits((ray(b.sure_low) <= nearest) & (farthest <= ray(b.sure_high)));
-  if (b.cubes_are_finite && (pass & ~sure))
-    pass &= ~surely_behind(e, low, high, x, y, z, nearest, farthest, F::splat(b.sign));
+  if (b.cubes_are_finite && (pass & ~sure)) {
+    const ShaftCrossings<F> at(e, low, high, x, y, z, nearest, farthest);
+    pass &= ~bits(at.behind(b.sign));  // most often on leaving a triangle
+    if (kPlacesEnds && (pass & ~sure)) {
+      F sure_low = ray(b.sure_low), sure_high = ray(b.sure_high);
+      pass &= ~bits(b.sign < 0 ? at.below(ray(b.hit_low)) : at.above(ray(b.hit_high)));
+      sure |= crosses &
+              bits(((sure_low <= nearest) | at.above(sure_low)) & ((farthest <= sure_high) | at.below(sure_high)));
+    }
+  }
   return {pass, sure & pass, crosses & pass};
 }
 

@@ -1,19 +1,9 @@
 // Floats as integers with a common scale, for CPUs without floating point. A fixed-point number counts units of
 // 2^-28 of the power of two above all coordinates, so coordinates have magnitudes below 2^28, differences below 2^29.
 #pragma once
-#include <cstdint>
-#include <cstring>
+#include "base/float_bits.h"
 
 namespace pocketray {
-
-inline std::uint32_t float_bits(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-// Bits of |value|, which sort like magnitudes; above kInfinityBits for a NaN.
-inline std::uint32_t magnitude_bits(float value) { return float_bits(value) & 0x7FFFFFFFu; }
-constexpr std::uint32_t kInfinityBits = 0x7F800000u;
 
 // The exponent of a scale is the biased one of the largest coordinate. Below this, denormals would count.
 constexpr int kFixedExponentMin = 32;

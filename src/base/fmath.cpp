@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/float_bits.h"
+
 namespace pocketray {
 namespace {
 
@@ -130,9 +132,7 @@ constexpr LogEntry kLogTable[16] = {
 double log2_float(float x) {
   int k = 0;
   if (x < std::numeric_limits<float>::min()) x *= 0x1p23f, k = -23;
-  std::uint32_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  std::uint32_t above = bits - kLogOffset;
+  std::uint32_t bits = float_bits(x), above = bits - kLogOffset;
   int exponent = static_cast<int>(above & 0xFF800000u) / (1 << 23);
   std::uint32_t z_bits = bits - (above & 0xFF800000u);
   float z;

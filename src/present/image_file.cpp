@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/float_bits.h"
 
 namespace pocketray {
 namespace {
@@ -11,8 +12,7 @@ namespace {
 void write_text(const ByteSink& sink, const char* text) { sink.write(sink.user, text, std::strlen(text)); }
 
 void put_little_endian(float value, unsigned char* bytes) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
+  std::uint32_t bits = float_bits(value);
   for (int i = 0; i < 4; ++i) bytes[i] = static_cast<unsigned char>(bits >> (8 * i));
 }
 

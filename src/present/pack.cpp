@@ -3,6 +3,8 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/float_bits.h"
+#include "base/limits.h"
 
 namespace pocketray {
 namespace {
@@ -96,6 +98,14 @@ inline void store_unaligned(unsigned char* at, std::uint32_t pixel, int bytes) {
   if (bytes == 4) std::memcpy(at, &pixel, sizeof pixel);
 }
 
+// Whether the pixels are the same, with nothing to count at any exposure: neither negative nor infinite nor NaN.
+inline bool looks_alike(const Vec3& a, const Vec3& b) {
+  const std::uint32_t most = float_bits(kRadianceMax);
+  for (int i = 0; i < 3; ++i)
+    if (float_bits(a[i]) != float_bits(b[i]) || float_bits(b[i]) > most) return false;
+  return true;
+}
+
 // One pixel of a row of the picture, with the row's dither thresholds.
 template <bool kDither>
 inline std::uint32_t packed(const Packer& packer, Vec3 c, const std::uint16_t* thresholds, int column,
@@ -123,8 +133,12 @@ ToneCounts pack_rows_of(const Vec3* radiance, int width, int height, int row_beg
     ScreenPosition at = screen_position(0, row, width, height, rotation);
     unsigned char* out = pixels + static_cast<std::ptrdiff_t>(at.y) * line_bytes + at.x * kBytes;
     const std::uint16_t* thresholds = kBayer.offset[row & 7];
-    for (int column = 0; column < width; ++column, out += step)
-      store<kBytes>(out, packed<kDither>(packer, in[column] * exposure, thresholds, column, &counts));
+    std::uint32_t pixel = 0;
+    for (int column = 0; column < width; ++column, out += step) {
+      if (kDither || column == 0 || !looks_alike(in[column - 1], in[column]))
+        pixel = packed<kDither>(packer, in[column] * exposure, thresholds, column, &counts);
+      store<kBytes>(out, pixel);
+    }
   }
   return counts;
 }

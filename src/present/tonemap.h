@@ -3,9 +3,9 @@
 // so narrow that each contains at most one threshold of an 8-bit level.
 #pragma once
 #include <cstdint>
-#include <cstring>
 
 #include "base/color.h"
+#include "base/float_bits.h"
 
 namespace pocketray {
 
@@ -31,12 +31,6 @@ struct ToneTables {
   std::uint16_t fine[kToneBucketCount + 1];  // 16-bit display value at the lower edge of a bucket
 };
 extern const ToneTables kToneTables;
-
-inline std::uint32_t float_bits(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
 
 // Values outside [0, 1): returns 0 or 1 as displayed, and counts them. Not inlined, because they are rare.
 bool tone_saturates(std::uint32_t bits, ToneCounts* counts);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/float_bits.h"
 #include "base/limits.h"
 #include "reference/accumulation.h"
 #include "scene/content_hash.h"
@@ -26,9 +27,7 @@ void put(std::uint64_t value, std::size_t byte_count, std::vector<std::uint8_t>*
   for (std::size_t i = 0; i < byte_count; ++i) bytes->push_back(static_cast<std::uint8_t>(value >> 8 * i));
 }
 void put_float(float value, std::vector<std::uint8_t>* bytes) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  put(bits, 4, bytes);
+  put(float_bits(value), 4, bytes);
 }
 void put_text(const char* text, std::size_t byte_count, std::vector<std::uint8_t>* bytes) {
   bytes->insert(bytes->end(), text, text + byte_count);

@@ -1,9 +1,9 @@
 // Checks shared by validate_*.cpp. Bounds are tested on the bits of a float, which is fast on a CPU without FPU.
 #pragma once
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
+#include "base/float_bits.h"
 #include "base/limits.h"
 #include "base/status.h"
 #include "scene/scene.h"
@@ -11,12 +11,7 @@
 namespace pocketray {
 
 // |x| ≤ limit; false for NaN and infinities.
-inline bool magnitude_at_most(float x, float limit) {
-  std::uint32_t bits, limit_bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  std::memcpy(&limit_bits, &limit, sizeof limit_bits);
-  return (bits & 0x7FFFFFFFu) <= limit_bits;
-}
+inline bool magnitude_at_most(float x, float limit) { return magnitude_bits(x) <= float_bits(limit); }
 inline bool is_coordinate(float x) { return magnitude_at_most(x, kCoordinateMax); }
 inline bool is_coordinate(const Vec2& p) { return is_coordinate(p.x) && is_coordinate(p.y); }
 inline bool is_coordinate(const Vec3& p) { return is_coordinate(p.x) && is_coordinate(p.y) && is_coordinate(p.z); }

@@ -9,17 +9,20 @@ namespace pocketray {
 // another up vector.
 Status make_camera_rays(const Camera& camera, std::uint32_t width, std::uint32_t height, CameraRays* rays);
 
+// What a column x and a row y of the image, in pixels, add to the direction of a perspective ray.
+inline Vec3 column_part(const CameraRays& c, float x) { return c.forward + c.right * (2 * x / c.width - 1); }
+inline Vec3 row_part(const CameraRays& c, float y) { return c.up * (1 - 2 * y / c.height); }
+
 // The ray through the image point (x, y) in pixels. Its direction is unit, so t is a distance.
 inline Ray camera_ray(const CameraRays& c, float x, float y) {
-  float sx = 2 * x / c.width - 1, sy = 1 - 2 * y / c.height;
   Ray ray;
   ray.t_max = __builtin_inff();
   if (c.orthographic) {
-    ray.origin = c.eye + c.right * sx + c.up * sy;
+    ray.origin = c.eye + c.right * (2 * x / c.width - 1) + row_part(c, y);
     ray.direction = c.forward;
   } else {
     ray.origin = c.eye;
-    ray.direction = normalize(c.forward + c.right * sx + c.up * sy);
+    ray.direction = normalize(column_part(c, x) + row_part(c, y));
   }
   return ray;
 }

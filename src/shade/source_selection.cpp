@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/float_bits.h"
 #include "base/limits.h"
 #include "brdf/brdf_list.h"
 #include "shade/lights.h"
@@ -16,11 +17,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint16_t kEnd = 0xFFFF;
 
 // The number of an entry's list: greater bounds, and infinite ones, in later lists.
-std::uint32_t strength_of(float most) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &most, sizeof bits);
-  return bits >> 22;
-}
+std::uint32_t strength_of(float most) { return float_bits(most) >> 22; }
 
 }  // namespace
 

@@ -10,6 +10,22 @@
 namespace pocketray {
 namespace {
 
+// The directions of camera_ray() for a tile's pixels, with what neighbours share computed once.
+void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offset, RayPacket* packet) {
+  constexpr std::uint32_t kKept = 8;  // columns and rows of a full tile
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::uint32_t column[kKept], row[kKept];
+  Vec3 across[kKept], along[kKept];
+  for (std::uint32_t k = 0; k < kKept; ++k) column[k] = row[k] = kNone;
+  for (std::uint32_t i = 0; i < tile.count; ++i) {
+    const std::uint32_t x = tile.column[i], y = tile.row[i], at = x % kKept, to = y % kKept;
+    if (column[at] != x) column[at] = x, across[at] = column_part(camera, static_cast<float>(x) + offset.x);
+    if (row[to] != y) row[to] = y, along[to] = row_part(camera, static_cast<float>(y) + offset.y);
+    const Vec3 direction = normalize(across[at] + along[to]);
+    for (int axis = 0; axis < 3; ++axis) packet->direction[axis][i] = direction[axis];
+  }
+}
+
 void keep_first_hit(const FrameData& frame, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
                     const Hit& hit) {
   std::size_t width = frame.settings.width;
@@ -82,11 +98,7 @@ void trace_tile(Tracer* tracer, const Tile& tile, const PixelRows& image) {
   RayPacket packet;
   packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
   for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-    Vec2 offset = rook_point(sample, sample_count);
-    for (std::uint32_t i = 0; i < tile.count; ++i) {
-      Vec3 direction = pixel_ray(frame, tile.column[i], tile.row[i], offset).direction;
-      for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = direction[axis];
-    }
+    set_directions(frame.camera, tile, rook_point(sample, sample_count), &packet);
     Hit hits[kPacketMax];
     frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), hits, &tracer->stats);
     if (frame.first_hits)

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/limits.h"
 #include "support/hard_case.h"
 
 using namespace pocketray;
@@ -180,6 +181,42 @@ TEST_CASE("pack_places_every_pixel_in_every_format_rotation_and_stride") {
       for (int y = 0; y < screen_height; ++y)
         for (int i = screen_width * bytes; i < line_bytes; ++i) wrong += pixels[y * line_bytes + i] != 0xa5;
       CHECK(wrong == 0);
+    }
+  }
+}
+
+// Goal: equal neighbours get the same pixel, and what no display shows is counted in each of them. Method: a row of
+// pixels from few values, so that neighbours are often equal or differ in one channel; each pixel packed by itself.
+TEST_CASE("pack_of_equal_neighbours_equals_pixels_by_themselves") {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float values[] = {0.18f, 0.5f, -0.0f, -1, nan, infinity, kRadianceMax, 1e30f};
+  constexpr int kWidth = 4096;
+  for (float exposure : {1.0f, 0x1p-40f, 0x1p60f}) {
+    std::vector<Vec3> radiance(kWidth);
+    std::uint32_t seed = 3;
+    for (int column = 0; column < kWidth; ++column) {
+      radiance[static_cast<std::size_t>(column)] = column ? radiance[static_cast<std::size_t>(column - 1)] : Vec3{};
+      seed = seed * 1664525 + 1013904223;
+      if (seed >> 31) radiance[static_cast<std::size_t>(column)][(seed >> 26) % 3] = values[(seed >> 28) % 8];
+    }
+    for (bool dither : {false, true}) {
+      std::vector<std::uint8_t> rgb(3 * kWidth);
+      ToneCounts counts = pack_rows(radiance.data(), kWidth, 1, 0, 1, exposure, kRgb888, Rotation::none, dither,
+                                    rgb.data(), 3 * kWidth),
+                 expected;
+      int wrong = 0;
+      for (int column = 0; column < kWidth; ++column) {
+        std::uint8_t one[3];
+        const Vec3* at = &radiance[static_cast<std::size_t>(column)];
+        expected += pack_rows(at, 1, 1, 0, 1, exposure, kRgb888, Rotation::none, false, one, 3);
+        if (!dither) wrong += std::memcmp(one, &rgb[static_cast<std::size_t>(3 * column)], 3) != 0;
+      }
+      CHECK(wrong == 0);
+      CHECK(counts.nan == expected.nan);
+      CHECK(counts.infinite == expected.infinite);
+      CHECK(counts.negative == expected.negative);
+      CHECK(expected.nan > 100);
+      CHECK(expected.negative > 100);
     }
   }
 }

@@ -1,0 +1,17 @@
+// Floats by their bits, which sort like magnitudes.
+#pragma once
+#include <cstdint>
+#include <cstring>
+
+namespace pocketray {
+
+inline std::uint32_t float_bits(float value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+// Bits of |value|; above kInfinityBits for a NaN.
+inline std::uint32_t magnitude_bits(float value) { return float_bits(value) & 0x7FFFFFFFu; }
+constexpr std::uint32_t kInfinityBits = 0x7F800000u;
+
+}  // namespace pocketray
