@@ -14,7 +14,7 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
 
 // Where nobody has measured `slowdown`, it is estimated: clocks per pixel / clock rate, divided by 488 and 515 ns, the
 // cost of the scenes cornell and seesaw at 320 × 240 on one core of an AMD EPYC (README.md), as the geometric mean of
-// both. `make bench-device` counts the clocks, as instructions weighted by class: 38,800 and 57,300 in the armel build,
+// both. `make bench-device` counts the clocks, as instructions weighted by class: 38,000 and 56,500 in the armel build,
 // whose floats are software, 7,550 and 10,500 in the armhf build (tests/bench/device/expected.json). The weights are
 // guesses and leave out cache misses; latency and jitter are guesses where no source is named.
 struct Device {

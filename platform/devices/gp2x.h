@@ -21,7 +21,7 @@ constexpr Device kGp2x = {"gp2x",
                           mebibytes(16),
                           nullptr,
                           1,
-                          470,
+                          462,
                           1'000'000,
                           microseconds(500),
                           microseconds(500)};

@@ -25,7 +25,7 @@ constexpr Device kMiyoo = {"miyoo",
                            mebibytes(16),
                            kMiyooKeys,
                            1,
-                           230,
+                           226,
                            2'000'000,
                            microseconds(1500),
                            microseconds(2000)};
