@@ -39,7 +39,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -182,6 +182,13 @@ bench-povray: setup-bench-povray configure
 	@cmake --build $(BUILD) -j$(JOBS) --target bench_povray >&2
 	@$(BUILD)/bench_povray $(JSON:%=--json %) $(BENCH_OPTIONS)
 
+# Sample models beside Cycles' pictures of them, the worst first. MODELS= names some; SHEET_OPTIONS= as its --help says.
+contact-sheet: configure
+	@toolchains/setup.sh contact-sheet
+	cmake --build $(BUILD) -j$(JOBS) --target pocketray
+	@tests/materials/contact_sheet.py $(POCKETRAY) --folder $(BUILD)/contact-sheet $(if $(MODELS),--models $(MODELS)) \
+	  $(JSON:%=--json %) $(SHEET_OPTIONS)
+
 # The packages of a device's launchers: DEVICE=miyoo-mini (OnionUI, MinUI), rg350 (.opk), portmaster. This machine's program
 # bakes their scenes.
 package: all
@@ -231,6 +238,7 @@ help:
 	@echo "make bench-povray compare whole frames with POV-Ray (JSON=FILE: write the table)"
 	@echo "make bench-device count instructions and estimated cycles per pixel for DEVICE=, by part (BENCH_OPTIONS=--effects: and"
 	@echo "                  by effect; JSON=FILE: write the table)"
+	@echo "make contact-sheet render sample models beside Cycles, the worst first (MODELS='Duck Fox': some, JSON=FILE)"
 	@echo "make format       run clang-format on all sources"
 	@echo "make tidy         run clang-tidy on all sources"
 	@echo "make package      write the packages of launchers for DEVICE=miyoo-mini, rg350 or portmaster to build/packages"

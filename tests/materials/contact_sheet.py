@@ -1,0 +1,248 @@
+#!/usr/bin/env python3
+"""Renders models with pocketray and with Cycles under the same light, and judges the difference.
+
+Three pictures of each model: pocketray's, Cycles', the ꟻLIP map; the worst come first. `make contact-sheet` calls it. The
+light: an environment that varies with height and has a bright window to the left of the camera, and for glTF two suns.
+The models' own lights and cameras are left out.
+"""
+import argparse
+import array
+import json
+import math
+import os
+import shutil
+import struct
+import subprocess
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+WIDTH, HEIGHT = 320, 240
+SAMPLES, DEPTH = 16, 8
+SUNS = ({"direction": (0.35, 0.8, 0.5), "irradiance": 1.5}, {"direction": (-0.75, 0.35, 0.55), "irradiance": 0.5})
+WINDOW = {"direction": (-0.6, 0.3, 0.75), "cosine": 0.94, "radiance": 5.0}
+
+
+def fail(text):
+    sys.exit("contact_sheet: " + text)
+
+
+def unit(v):
+    size = math.sqrt(sum(x * x for x in v))
+    return tuple(x / size for x in v)
+
+
+def radiance(direction):
+    window = unit(WINDOW["direction"])
+    if sum(a * b for a, b in zip(direction, window)) > WINDOW["cosine"]:
+        return (WINDOW["radiance"],) * 3
+    low, middle, high = (0.16, 0.13, 0.1), (0.5, 0.5, 0.5), (0.25, 0.35, 0.6)
+    y = direction[1]
+    return tuple(b + (c - b) * y if y > 0 else b + (a - b) * min(1, -4 * y) for a, b, c in zip(low, middle, high))
+
+
+def write_environment(path, direction_of, width=512, height=256):
+    """A Radiance picture, not compressed."""
+    with open(path, "wb") as file:
+        file.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width))
+        for row in range(height):
+            for column in range(width):
+                color = radiance(direction_of((column + 0.5) / width, (row + 0.5) / height))
+                fraction, exponent = math.frexp(max(color))
+                scale = fraction * 256 / max(color)
+                file.write(bytes([int(x * scale) for x in color] + [exponent + 128]))
+
+
+def direction_of(u, v):
+    """Of a point of the picture, as pocketray has it."""
+    azimuth, height = 2 * math.pi * (u - 0.5), math.pi * (0.5 - v)
+    return (math.sin(azimuth) * math.cos(height), math.sin(height), -math.cos(azimuth) * math.cos(height))
+
+
+def relight(document):
+    """Replaces the lights of a glTF document by the suns."""
+    for node in document.get("nodes", []):
+        node.get("extensions", {}).pop("KHR_lights_punctual", None)
+    used = set(document.get("extensionsUsed", [])) | {"KHR_lights_punctual"}
+    document["extensionsUsed"] = sorted(used)
+    document.setdefault("extensions", {})["KHR_lights_punctual"] = {
+        "lights": [{"type": "directional", "intensity": sun["irradiance"]} for sun in SUNS]}
+    for number, sun in enumerate(SUNS):
+        x, y, z = unit(sun["direction"])
+        turn = (-y, x, 0, 1 + z)  # from +z to the sun
+        size = math.sqrt(sum(q * q for q in turn))
+        document.setdefault("nodes", []).append(
+            {"rotation": [q / size for q in turn], "extensions": {"KHR_lights_punctual": {"light": number}}})
+        for scene in document.get("scenes", []):
+            scene.setdefault("nodes", []).append(len(document["nodes"]) - 1)
+
+
+def copy_with_suns(source, folder):
+    """A copy of a model, lit by the suns if it is glTF. Returns its path."""
+    if source.endswith(".glb"):
+        with open(source, "rb") as file:
+            data = file.read()
+        size = struct.unpack_from("<I", data, 12)[0]
+        document = json.loads(data[20:20 + size])
+        relight(document)
+        text = json.dumps(document).encode()
+        text += b" " * (-len(text) % 4)
+        rest = data[20 + size:]
+        path = os.path.join(folder, os.path.basename(source))
+        with open(path, "wb") as file:
+            file.write(struct.pack("<III", 0x46546C67, 2, 20 + len(text) + len(rest)))
+            file.write(struct.pack("<II", len(text), 0x4E4F534A) + text + rest)
+        return path
+    folder = os.path.join(folder, os.path.basename(source) + ".files")
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(os.path.dirname(source), folder)
+    path = os.path.join(folder, os.path.basename(source))
+    if source.endswith(".gltf"):
+        with open(path) as file:
+            document = json.load(file)
+        relight(document)
+        with open(path, "w") as file:
+            json.dump(document, file)
+    return path
+
+
+def models_in(folder):
+    """Names and paths of the models that both programs read: glTF and OBJ."""
+    found = {}
+    for part in ("gltf", "animation", "mesh", "cornell/mcguire", "rooms"):
+        for place, _, files in sorted(os.walk(os.path.join(folder, part))):
+            for file in sorted(files):
+                if file.endswith((".glb", ".gltf", ".obj")):
+                    found[os.path.splitext(file)[0]] = os.path.join(place, file)
+    return found
+
+
+def display(radiance_file, picture):
+    """Radiance as pixels, 1 being white: a picture itself would be exposed for the suns."""
+    with open(radiance_file, "rb") as file:
+        header, size, scale = (file.readline() for _ in range(3))
+        width, height = (int(x) for x in size.split())
+        values = array.array("f", file.read())
+    if header != b"PF\n" or float(scale) >= 0 or sys.byteorder != "little":
+        fail(f"{radiance_file} is not a little-endian PFM")
+    level = lambda x: int(255 * (12.92 * x if x < 0.0031308 else 1.055 * min(x, 1) ** (1 / 2.4) - 0.055) + 0.5)
+    with open(picture, "wb") as file:
+        file.write(b"P6\n%d %d\n255\n" % (width, height))
+        for row in reversed(range(height)):
+            file.write(bytes(level(max(x, 0)) for x in values[3 * width * row:3 * width * (row + 1)]))
+
+
+def run(command, **options):
+    done = subprocess.run(command, capture_output=True, text=True, **options)
+    return done.returncode, done.stdout, done.stderr.strip()
+
+
+def forget_others(folder, light):
+    """Removes Cycles' pictures that were made by another script or in another light."""
+    with open(os.path.join(HERE, "cycles.py")) as file:
+        made_by = [file.read(), json.dumps(light)]
+    path = os.path.join(folder, "made-by.json")
+    if os.path.exists(path):
+        with open(path) as file:
+            if json.load(file) == made_by:
+                return
+    for name in os.listdir(folder):
+        if name.endswith(".cycles.png"):
+            os.remove(os.path.join(folder, name))
+    with open(path, "w") as file:
+        json.dump(made_by, file)
+
+
+def judge(program, model, camera, folder, environment):
+    """Renders with pocketray and compares. Returns the row of the table; None if it cannot be rendered."""
+    picture, radiance_file, difference = (os.path.join(folder, model["name"] + end)
+                                          for end in (".pocketray.ppm", ".pocketray.pfm", ".flip.png"))
+    status, _, messages = run([program, "render", model["file"], "--size", f"{WIDTH}x{HEIGHT}", "--samples", str(SAMPLES),
+                               "--depth", str(DEPTH), "--memory", "1G", "--camera", camera, "--environment", environment,
+                               "-o", radiance_file])
+    if status:
+        print(f"{model['name']}: {messages.splitlines()[-1]}", file=sys.stderr)
+        return None
+    display(radiance_file, picture)
+    status, text, _ = run([program, "compare", model["picture"], picture, "-o", difference, "--json", "-"])
+    if status:
+        fail(f"{model['name']}: {text}")
+    warnings = [line.removeprefix("pocketray: ") for line in messages.splitlines()
+                if line.startswith("pocketray: ") and "framing its bounds" not in line]
+    return {"model": model["name"], "flip": json.loads(text)["flip"], "warnings": warnings,
+            "pictures": [picture, model["picture"], difference]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", help="pocketray, with importers")
+    parser.add_argument("--shared", default="../shared", help="where scenes/ is")
+    parser.add_argument("--models", nargs="+", metavar="NAME", help="only these, by name without ending")
+    parser.add_argument("--samples", type=int, default=256, help="Cycles' samples a pixel (256)")
+    parser.add_argument("--folder", default="build/contact-sheet", help="where pictures go; Cycles' are kept there")
+    parser.add_argument("--columns", type=int, default=4, help="models side by side on the sheet (4)")
+    parser.add_argument("--json", metavar="FILE", help="also write the table as JSON")
+    arguments = parser.parse_args()
+    scenes = os.path.join(arguments.shared, "scenes")
+    if not os.path.isdir(scenes):
+        print(f"skipped: {scenes} is not there")
+        return
+    for tool in ("blender", "montage"):
+        if not shutil.which(tool):
+            fail(f"{tool} is missing: toolchains/setup.sh contact-sheet installs it")
+    folder = os.path.abspath(arguments.folder)
+    os.makedirs(os.path.join(folder, "models"), exist_ok=True)
+    found = models_in(scenes)
+    names = arguments.models or list(found)
+    for name in names:
+        if name not in found:
+            fail(f"no model '{name}' in {scenes}: " + ", ".join(found))
+    environment = os.path.join(folder, "environment.hdr")
+    write_environment(environment, direction_of)
+    suns = [dict(sun, direction=unit(sun["direction"])) for sun in SUNS]
+    light = {"width": WIDTH, "height": HEIGHT, "samples": arguments.samples, "depth": DEPTH, "environment": environment}
+    forget_others(folder, [light, suns, WINDOW])
+    jobs = dict(light, models=[{"name": name, "file": copy_with_suns(found[name], os.path.join(folder, "models")),
+                                "suns": [] if found[name].endswith(".obj") else suns,
+                                "picture": os.path.join(folder, name + ".cycles.png")} for name in names])
+    path = os.path.join(folder, "jobs.json")
+    with open(path, "w") as file:
+        json.dump(jobs, file)
+    print(f"rendering {len(names)} models with Cycles", flush=True)
+    if os.path.exists(path + ".cameras"):
+        os.remove(path + ".cameras")
+    status, output, messages = run(["blender", "--background", "--factory-startup", "--python",
+                                    os.path.join(HERE, "cycles.py"), "--", path],
+                                   env=dict(os.environ, PATH="/usr/bin:/bin"))  # where Blender looks for Python's modules
+    if status or not os.path.exists(path + ".cameras"):
+        fail("Blender failed:\n" + messages + output[-2000:])
+    with open(path + ".cameras") as file:
+        found = json.load(file)
+    cameras = found["cameras"]
+    for name, reason in found["reasons"].items():
+        print(f"{name}: Blender: {reason}", file=sys.stderr)
+    rows = [judge(arguments.program, model, cameras[model["name"]], folder, environment) for model in jobs["models"]
+            if model["name"] in cameras]
+    rows = sorted((row for row in rows if row), key=lambda row: -row["flip"])
+    if not rows:
+        fail("no model could be rendered by both")
+    for row in rows:
+        print(f"{row['flip']:.3f}  {row['model']}" + "".join("\n       " + text for text in row["warnings"]))
+    print(f"{sum(row['flip'] for row in rows) / len(rows):.3f}  mean of {len(rows)}; left out: " +
+          (", ".join(sorted(set(names) - {row["model"] for row in rows})) or "none"))
+    sheet = os.path.join(folder, "sheet.png")
+    labelled = []
+    for row in rows:
+        labelled += ["-label", f"{row['model']}  {row['flip']:.3f}", row["pictures"][0], "-label", "Cycles",
+                     row["pictures"][1], "-label", "ꟻLIP", row["pictures"][2]]
+    status, _, messages = run(["montage", "-font", "DejaVu-Sans", "-pointsize", "11", *labelled, "-tile",
+                               f"{3 * arguments.columns}x", "-geometry", "160x120+2+2", sheet])
+    if status:
+        fail("montage: " + messages)
+    print(f"the sheet: {sheet}")
+    if arguments.json:
+        with open(arguments.json, "w") as file:
+            json.dump([{key: row[key] for key in ("model", "flip", "warnings")} for row in rows], file, indent=2)
+
+
+if __name__ == "__main__":
+    main()
