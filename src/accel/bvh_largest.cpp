@@ -29,6 +29,7 @@ float largest_of_leaf(const LeafKind& kind, const Accel& accel, std::uint32_t ch
 
 float bvh_largest(const LeafKind& kind, const Accel& accel, const TriangleQuery& query) {
   CHECK_LE(bvh_bytes(1, 0), accel.data.bytes());
+  CHECK(query.box_value != nullptr && query.triangle_value != nullptr);
   BvhView bvh(accel.data.data);
   float most = 0;
   Entry stack[kBvhStackSize];

@@ -64,6 +64,7 @@ std::uint32_t sort_key(float f) {
 }
 
 void sort_primitives(Treelet* treelet, std::uint32_t count) {
+  CHECK_LE(count, kTreeletMax);
   std::uint64_t keys[kTreeletMax];
   for (int axis = 0; axis < 3; ++axis) {
     for (std::uint32_t i = 0; i < count; ++i)

@@ -8,6 +8,7 @@ namespace pocketray {
 inline namespace POCKETRAY_ISA {
 
 constexpr int kFixedGroup = 16, kFixedGroups = static_cast<int>(kPacketMax) / kFixedGroup;
+static_assert(kFixedGroup <= 32 && kPacketMax % kFixedGroup == 0, "a bit of a word for each ray of a group");
 
 // Groups of sixteen have hulls of their own.
 struct FixedBundle {
@@ -108,10 +109,8 @@ void closest_in_bundle(const FixedQuery<Tree>& query, FixedBundle* b, Hit* hits)
       for (int lane = 0; lane < 4 && node.child[lane] != kNoChild; ++lane) {
         FixedBox box;
         std::int32_t near;
-        if (misses(b->all, ChildSlabs{node, lane, b->frame, &box}, limit, &near)) continue;
-        int place = top++;
-        for (; place > first && stack[place - 1].near < near; --place) stack[place] = stack[place - 1];
-        stack[place] = {node.child[lane], near, box};
+        if (!misses(b->all, ChildSlabs{node, lane, b->frame, &box}, limit, &near))
+          push_nearest_last({node.child[lane], near, box}, first, stack, &top);
       }
       continue;
     }

@@ -38,10 +38,6 @@ inline FixedTriangle fixed_triangle(const TriangleBlock& block, int lane, const 
   return v;
 }
 
-// doubtful: too close to decide here. crossed: the line is, with t > 0 unless behind. Depths of the vertices lie
-// between `nearest` and `farthest`, with an error below 2.
-enum class FixedVerdict { missed, doubtful, crossed };
-
 // As seen from the ray.
 inline FixedRow sheared_row(const std::int32_t* v, std::int32_t origin, std::int32_t shear, const FixedRow& z) {
   FixedRow r;
@@ -53,7 +49,10 @@ inline FixedRow depth_row(const FixedRay& ray, const FixedTriangle& v) {
   return {{v.z.at[0] - ray.z, v.z.at[1] - ray.z, v.z.at[2] - ray.z}, v.z.low - ray.z, v.z.high - ray.z};
 }
 
-// Where the ray's line crosses the triangle `v` with vertices at depths z. *positive: sign of the edge functions if
+// doubtful: too close to decide here.
+enum class FixedVerdict { missed, doubtful, crossed };
+
+// Whether the ray's line crosses the triangle `v` with vertices at depths z. *positive: sign of the edge functions if
 // crossed.
 inline FixedVerdict cross_fixed(const FixedRay& ray, const FixedTriangle& v, const FixedRow& z, bool* positive) {
   // Where |x| exceeds this, 2u|x| is less than the rest of the excess.

@@ -132,6 +132,14 @@ inline bool is_blocked(const DualRay& ray, const FixedEnd& end, const HitFilter*
   return !filter || early || accepts(*filter, triangle, crossing);
 }
 
+// Pushes a visit above those from `first` on that begin farther away.
+template <class Visit>
+inline void push_nearest_last(const Visit& visit, int first, Visit* stack, int* top) {
+  int place = (*top)++;
+  for (; place > first && stack[place - 1].near < visit.near; --place) stack[place] = stack[place - 1];
+  stack[place] = visit;
+}
+
 template <class Tree>
 void closest_fixed(const FixedQuery<Tree>& query, const Ray& begin, Hit* hit) {
   hit->triangle = kNoTriangle;
@@ -162,10 +170,8 @@ void closest_fixed(const FixedQuery<Tree>& query, const Ray& begin, Hit* hit) {
       for (int lane = 0; lane < 4 && node.child[lane] != kNoChild; ++lane) {
         FixedBox box;
         std::int32_t near;
-        if (misses(ray.fixed, ChildSlabs{node, lane, frame, &box}, best.limit, &near)) continue;
-        int place = top++;
-        for (; place > first && stack[place - 1].near < near; --place) stack[place] = stack[place - 1];
-        stack[place] = {node.child[lane], near};
+        if (!misses(ray.fixed, ChildSlabs{node, lane, frame, &box}, best.limit, &near))
+          push_nearest_last({node.child[lane], near}, first, stack, &top);
       }
       continue;
     }

@@ -26,7 +26,10 @@ inline std::int32_t to_fraction(float value) {
   return bits >> 31 ? -static_cast<std::int32_t>(size) : static_cast<std::int32_t>(size);
 }
 
-inline std::uint32_t magnitude(std::int32_t a) { return static_cast<std::uint32_t>(a < 0 ? -a : a); }
+inline std::uint32_t magnitude(std::int32_t a) {
+  const std::uint32_t bits = static_cast<std::uint32_t>(a);
+  return a < 0 ? 0 - bits : bits;
+}
 inline std::int64_t product(std::int32_t a, std::int32_t b) { return static_cast<std::int64_t>(a) * b; }
 // value · fraction: low by less than 2.
 inline std::int32_t part(std::int32_t value, std::int32_t fraction) {

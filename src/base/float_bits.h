@@ -2,8 +2,11 @@
 #pragma once
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace pocketray {
+
+static_assert(std::numeric_limits<float>::is_iec559 && sizeof(float) == sizeof(std::uint32_t), "bits as in IEEE 754");
 
 inline std::uint32_t float_bits(float value) {
   std::uint32_t bits;

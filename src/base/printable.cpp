@@ -43,6 +43,7 @@ void make_printable(char* text, std::size_t byte_count) {
     std::size_t length = decode(reinterpret_cast<const unsigned char*>(text) + i, byte_count - i, &character);
     if (length == 0 || !is_harmless(character)) std::memset(text + i, '?', length > 0 ? length : 1);
     i += length > 0 ? length : 1;
+    CHECK_LE(i, byte_count);
   }
 }
 

@@ -105,6 +105,7 @@ TEST_CASE("fixed_point_cuts_towards_zero") {
   CHECK(to_fixed(-kInf, 126) == -kFixedMax);
   CHECK(to_fraction(1.0f) == 0x7FFFFFFF);
   CHECK(to_fraction(-1.0f) == -0x7FFFFFFF);
+  CHECK(magnitude(std::numeric_limits<std::int32_t>::min()) == 1u << 31);
   CHECK(greatest_exponent({-4, 1, 3.9f}) == 129);
 }
 
