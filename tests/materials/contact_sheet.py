@@ -177,7 +177,7 @@ def main():
     parser.add_argument("program", help="pocketray, with importers")
     parser.add_argument("--shared", default="../shared", help="where scenes/ is")
     parser.add_argument("--models", nargs="+", metavar="NAME", help="only these, by name without ending")
-    parser.add_argument("--samples", type=int, default=256, help="Cycles' samples a pixel (256)")
+    parser.add_argument("--samples", type=int, default=64, help="Cycles' samples a pixel (64)")
     parser.add_argument("--folder", default="build/contact-sheet", help="where pictures go; Cycles' are kept there")
     parser.add_argument("--columns", type=int, default=4, help="models side by side on the sheet (4)")
     parser.add_argument("--json", metavar="FILE", help="also write the table as JSON")
