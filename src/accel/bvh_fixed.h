@@ -42,7 +42,7 @@ void bundle_rays(const FixedQuery<Tree>& query, const Rays& rays, Bundle bundle,
 
 template <class Tree>
 void closest_fixed(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
-  closest_fixed(FixedQuery<Tree>(accel, filter, stats), ray, hit);
+  closest_of_ray(FixedQuery<Tree>(accel, filter, stats), ray, hit);
 }
 
 template <class Tree>
@@ -52,12 +52,12 @@ void closest_packet_fixed(const Accel& accel, const RayPacket& rays, const HitFi
   for (std::uint32_t i = 0; i < rays.count; ++i) hits[i].triangle = kNoTriangle;
   bundle_rays(
       query, rays, [&](FixedBundle* b) { closest_in_bundle(query, b, hits); },
-      [&](std::uint32_t i) { closest_fixed(query, ray_of(rays, i), &hits[i]); });
+      [&](std::uint32_t i) { closest_of_ray(query, ray_of(rays, i), &hits[i]); });
 }
 
 template <class Tree>
 bool occluded_fixed(const Accel& accel, const Ray& ray, const HitFilter* filter, TraceStats* stats) {
-  return occluded_fixed(FixedQuery<Tree>(accel, filter, stats), ray);
+  return occluded_ray(FixedQuery<Tree>(accel, filter, stats), ray);
 }
 
 template <class Tree>
@@ -67,7 +67,7 @@ std::uint64_t occluded_packet_fixed(const Accel& accel, const SegmentPacket& ray
   std::uint64_t blocked = 0;
   bundle_rays(
       query, rays, [&](FixedBundle* b) { blocked |= occluded_in_bundle(query, b); },
-      [&](std::uint32_t i) { blocked |= static_cast<std::uint64_t>(occluded_fixed(query, ray_of(rays, i))) << i; });
+      [&](std::uint32_t i) { blocked |= static_cast<std::uint64_t>(occluded_ray(query, ray_of(rays, i))) << i; });
   return blocked;
 }
 

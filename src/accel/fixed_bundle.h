@@ -33,8 +33,7 @@ inline void set_hulls(FixedBundle* b, const std::int32_t* limit) {
     std::int32_t z = b->ray[i].fixed.z;
     near = least(near, z), far = most(far, z + limit[i]);
   }
-  // Boxes end before 2^29; rays beside them all may end before they begin.
-  std::int32_t length = most(1, least(far - near, kFixedMax));
+  std::int32_t length = least(far - near, kFixedMax);  // boxes end before 2^29
   float per_length = 1 / static_cast<float>(length);
   HullRange all_x, all_y;
   b->group_count = (b->count + kFixedGroup - 1) / kFixedGroup;
@@ -55,7 +54,7 @@ inline void set_hulls(FixedBundle* b, const std::int32_t* limit) {
   b->all = {near, length, hull_side(all_x, per_length), hull_side(all_y, per_length)};
 }
 
-// Visits the rays of the bundle that pass through a leaf's box; limit(i) bounds the depth of ray i. visit(i) tells
+// Visits the rays of the bundle that pass through a leaf's box; limit_of(i) bounds the depth of ray i. visit(i) tells
 // whether the ray is searched for no longer.
 template <class Limit, class Visit>
 inline void for_each_ray(FixedBundle* b, const FixedBox& box, std::int32_t limit, Limit limit_of, Visit visit) {
@@ -106,12 +105,9 @@ void closest_in_bundle(const FixedQuery<Tree>& query, FixedBundle* b, Hit* hits)
       const BvhNode& node = query.tree.nodes[entry.child];
       ++counts.nodes;
       int first = top;
-      for (int lane = 0; lane < 4 && node.child[lane] != kNoChild; ++lane) {
-        FixedBox box;
-        std::int32_t near;
-        if (!misses(b->all, ChildSlabs{node, lane, b->frame, &box}, limit, &near))
-          push_nearest_last({node.child[lane], near, box}, first, stack, &top);
-      }
+      for_each_child(node, b->all, b->frame, limit, [&](std::uint32_t child, std::int32_t near, const FixedBox& box) {
+        push_nearest_last({child, near, box}, first, stack, &top);
+      });
       continue;
     }
     TriangleBlock scratch;

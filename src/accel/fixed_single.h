@@ -132,6 +132,17 @@ inline bool is_blocked(const DualRay& ray, const FixedEnd& end, const HitFilter*
   return !filter || early || accepts(*filter, triangle, crossing);
 }
 
+// Calls visit(child, near, box) for each child of a node that a ray or hull does not miss up to the depth `limit`.
+template <class Rays, class Visit>
+inline void for_each_child(const BvhNode& node, const Rays& rays, const FixedFrame& frame, std::int32_t limit,
+                           Visit visit) {
+  for (int lane = 0; lane < 4 && node.child[lane] != kNoChild; ++lane) {
+    FixedBox box;
+    std::int32_t near;
+    if (!misses(rays, ChildSlabs{node, lane, frame, &box}, limit, &near)) visit(node.child[lane], near, box);
+  }
+}
+
 // Pushes a visit above those from `first` on that begin farther away.
 template <class Visit>
 inline void push_nearest_last(const Visit& visit, int first, Visit* stack, int* top) {
@@ -141,7 +152,7 @@ inline void push_nearest_last(const Visit& visit, int first, Visit* stack, int* 
 }
 
 template <class Tree>
-void closest_fixed(const FixedQuery<Tree>& query, const Ray& begin, Hit* hit) {
+void closest_of_ray(const FixedQuery<Tree>& query, const Ray& begin, Hit* hit) {
   hit->triangle = kNoTriangle;
   int of_class, exponent;
   FixedStart start = start_fixed(query, begin, &of_class, &exponent);
@@ -167,12 +178,9 @@ void closest_fixed(const FixedQuery<Tree>& query, const Ray& begin, Hit* hit) {
       const BvhNode& node = query.tree.nodes[entry.child];
       ++counts.nodes;
       int first = top;
-      for (int lane = 0; lane < 4 && node.child[lane] != kNoChild; ++lane) {
-        FixedBox box;
-        std::int32_t near;
-        if (!misses(ray.fixed, ChildSlabs{node, lane, frame, &box}, best.limit, &near))
-          push_nearest_last({node.child[lane], near}, first, stack, &top);
-      }
+      for_each_child(node, ray.fixed, frame, best.limit, [&](std::uint32_t child, std::int32_t near, const FixedBox&) {
+        push_nearest_last({child, near}, first, stack, &top);
+      });
       continue;
     }
     const TriangleBlock& block = query.tree.leaf(entry.child, &scratch);
@@ -188,7 +196,7 @@ void closest_fixed(const FixedQuery<Tree>& query, const Ray& begin, Hit* hit) {
 }
 
 template <class Tree>
-bool occluded_fixed(const FixedQuery<Tree>& query, const Ray& begin) {
+bool occluded_ray(const FixedQuery<Tree>& query, const Ray& begin) {
   int of_class, exponent;
   FixedStart start = start_fixed(query, begin, &of_class, &exponent);
   if (start == FixedStart::in_floats) return occluded<Tree>(query.accel, begin, query.filter, query.stats);
@@ -208,11 +216,8 @@ bool occluded_fixed(const FixedQuery<Tree>& query, const Ray& begin) {
     if (!(child & kLeafBit)) {
       const BvhNode& node = query.tree.nodes[child];
       ++counts.nodes;
-      for (int lane = 0; lane < 4 && node.child[lane] != kNoChild; ++lane) {
-        FixedBox box;
-        std::int32_t near;
-        if (!misses(ray.fixed, ChildSlabs{node, lane, frame, &box}, end.limit, &near)) stack[top++] = node.child[lane];
-      }
+      for_each_child(node, ray.fixed, frame, end.limit,
+                     [&](std::uint32_t met, std::int32_t, const FixedBox&) { stack[top++] = met; });
       continue;
     }
     const TriangleBlock& block = query.tree.leaf(child, &scratch);

@@ -15,13 +15,13 @@ void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offs
   constexpr std::uint32_t kKept = 8;  // columns and rows of a full tile
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   std::uint32_t column[kKept], row[kKept];
-  Vec3 across[kKept], along[kKept];
+  Vec3 across[kKept], down[kKept];
   for (std::uint32_t k = 0; k < kKept; ++k) column[k] = row[k] = kNone;
   for (std::uint32_t i = 0; i < tile.count; ++i) {
-    const std::uint32_t x = tile.column[i], y = tile.row[i], at = x % kKept, to = y % kKept;
-    if (column[at] != x) column[at] = x, across[at] = column_part(camera, static_cast<float>(x) + offset.x);
-    if (row[to] != y) row[to] = y, along[to] = row_part(camera, static_cast<float>(y) + offset.y);
-    const Vec3 direction = normalize(across[at] + along[to]);
+    const std::uint32_t x = tile.column[i], y = tile.row[i], c = x % kKept, r = y % kKept;
+    if (column[c] != x) column[c] = x, across[c] = column_part(camera, static_cast<float>(x) + offset.x);
+    if (row[r] != y) row[r] = y, down[r] = row_part(camera, static_cast<float>(y) + offset.y);
+    const Vec3 direction = normalize(across[c] + down[r]);
     for (int axis = 0; axis < 3; ++axis) packet->direction[axis][i] = direction[axis];
   }
 }

@@ -7,6 +7,7 @@ The models' own lights and cameras are left out.
 """
 import argparse
 import array
+import hashlib
 import json
 import math
 import os
@@ -40,7 +41,13 @@ def radiance(direction):
     return tuple(b + (c - b) * y if y > 0 else b + (a - b) * min(1, -4 * y) for a, b, c in zip(low, middle, high))
 
 
-def write_environment(path, direction_of, width=512, height=256):
+def direction_of(u, v):
+    """Of a point of the picture, as pocketray has it."""
+    azimuth, height = 2 * math.pi * (u - 0.5), math.pi * (0.5 - v)
+    return (math.sin(azimuth) * math.cos(height), math.sin(height), -math.cos(azimuth) * math.cos(height))
+
+
+def write_environment(path, width=512, height=256):
     """A Radiance picture, not compressed."""
     with open(path, "wb") as file:
         file.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width))
@@ -50,12 +57,6 @@ def write_environment(path, direction_of, width=512, height=256):
                 fraction, exponent = math.frexp(max(color))
                 scale = fraction * 256 / max(color)
                 file.write(bytes([int(x * scale) for x in color] + [exponent + 128]))
-
-
-def direction_of(u, v):
-    """Of a point of the picture, as pocketray has it."""
-    azimuth, height = 2 * math.pi * (u - 0.5), math.pi * (0.5 - v)
-    return (math.sin(azimuth) * math.cos(height), math.sin(height), -math.cos(azimuth) * math.cos(height))
 
 
 def relight(document):
@@ -138,8 +139,8 @@ def run(command, **options):
 
 def forget_others(folder, light):
     """Removes Cycles' pictures that were made by another script or in another light."""
-    with open(os.path.join(HERE, "cycles.py")) as file:
-        made_by = [file.read(), json.dumps(light)]
+    with open(os.path.join(HERE, "cycles.py")) as script, open(light["environment"], "rb") as environment:
+        made_by = [script.read(), hashlib.sha256(environment.read()).hexdigest(), json.dumps([light, SUNS])]
     path = os.path.join(folder, "made-by.json")
     if os.path.exists(path):
         with open(path) as file:
@@ -172,6 +173,18 @@ def judge(program, model, camera, folder, environment):
             "pictures": [picture, model["picture"], difference]}
 
 
+def draw(rows, columns, sheet):
+    labelled = []
+    for row in rows:
+        for label, picture in zip((f"{row['model']}  {row['flip']:.3f}", "Cycles", "ꟻLIP"), row["pictures"]):
+            labelled += ["-label", label, picture]
+    status, _, messages = run(["montage", "-font", "DejaVu-Sans", "-pointsize", "11", *labelled, "-tile",
+                               f"{3 * columns}x", "-geometry", "160x120+2+2", sheet])
+    if status:
+        fail("montage: " + messages)
+    print(f"the sheet: {sheet}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", help="pocketray, with importers")
@@ -197,10 +210,10 @@ def main():
         if name not in found:
             fail(f"no model '{name}' in {scenes}: " + ", ".join(found))
     environment = os.path.join(folder, "environment.hdr")
-    write_environment(environment, direction_of)
+    write_environment(environment)
     suns = [dict(sun, direction=unit(sun["direction"])) for sun in SUNS]
     light = {"width": WIDTH, "height": HEIGHT, "samples": arguments.samples, "depth": DEPTH, "environment": environment}
-    forget_others(folder, [light, suns, WINDOW])
+    forget_others(folder, light)
     jobs = dict(light, models=[{"name": name, "file": copy_with_suns(found[name], os.path.join(folder, "models")),
                                 "suns": [] if found[name].endswith(".obj") else suns,
                                 "picture": os.path.join(folder, name + ".cycles.png")} for name in names])
@@ -216,9 +229,9 @@ def main():
     if status or not os.path.exists(path + ".cameras"):
         fail("Blender failed:\n" + messages + output[-2000:])
     with open(path + ".cameras") as file:
-        found = json.load(file)
-    cameras = found["cameras"]
-    for name, reason in found["reasons"].items():
+        answer = json.load(file)
+    cameras = answer["cameras"]
+    for name, reason in answer["reasons"].items():
         print(f"{name}: Blender: {reason}", file=sys.stderr)
     rows = [judge(arguments.program, model, cameras[model["name"]], folder, environment) for model in jobs["models"]
             if model["name"] in cameras]
@@ -229,16 +242,7 @@ def main():
         print(f"{row['flip']:.3f}  {row['model']}" + "".join("\n       " + text for text in row["warnings"]))
     print(f"{sum(row['flip'] for row in rows) / len(rows):.3f}  mean of {len(rows)}; left out: " +
           (", ".join(sorted(set(names) - {row["model"] for row in rows})) or "none"))
-    sheet = os.path.join(folder, "sheet.png")
-    labelled = []
-    for row in rows:
-        labelled += ["-label", f"{row['model']}  {row['flip']:.3f}", row["pictures"][0], "-label", "Cycles",
-                     row["pictures"][1], "-label", "ꟻLIP", row["pictures"][2]]
-    status, _, messages = run(["montage", "-font", "DejaVu-Sans", "-pointsize", "11", *labelled, "-tile",
-                               f"{3 * arguments.columns}x", "-geometry", "160x120+2+2", sheet])
-    if status:
-        fail("montage: " + messages)
-    print(f"the sheet: {sheet}")
+    draw(rows, arguments.columns, os.path.join(folder, "sheet.png"))
     if arguments.json:
         with open(arguments.json, "w") as file:
             json.dump([{key: row[key] for key in ("model", "flip", "warnings")} for row in rows], file, indent=2)

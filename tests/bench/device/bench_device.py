@@ -33,7 +33,7 @@ PARTS = (  # the first that matches a symbol
     ("soft float", r"^(__aeabi_[fdlui]|__(add|sub|mul|div|cmp|eq|ne|ge|gt|le|lt|unord|float|fix|extend|trunc|udiv|sqrt)|"
                    r"_*aeabi|sqrt|__ieee754|.*soft)"),
     ("triangles", r"(neon|baseline)::.*(leaf|leaves|triangle|segment|crossing|cross_|settle|locate|test_rays|list_|"
-                  r"meet_window|surely_behind|edge|place_)"),
+                  r"meet_window|edge|place_)"),
     ("traversal", r"(neon|baseline)::|Guarded|occluded|closest"),
     ("lights", r"direct_light|_light\(|reach\(|tile_shadows|shadow|transmittance|accept_|LightPoint"),
     ("pack", r"pack|tone|sRGB|srgb|dither|write_row"),
