@@ -24,6 +24,7 @@ constexpr std::uint32_t kPointsPerAreaLightMax = 256;
 // Fewer lights are all tested for shadows. Chosen: among few lights, hardly any are weak enough to go untested.
 constexpr std::uint32_t kSelectedLightsMin = 16;
 constexpr std::uint32_t kVirtualLightMax = 512;  // of instant radiosity
+constexpr std::uint32_t kEnvironmentLightMax = 256;
 constexpr std::uint32_t kCameraCountMax = 256;
 constexpr std::uint32_t kNodeCountMax = 1u << 16;
 constexpr std::uint32_t kChannelKeyCountMax = 1u << 22;  // over all animation channels together

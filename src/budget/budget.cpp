@@ -72,6 +72,8 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t o
       most = std::max(most, f->front.candidates[i].points_per_area_light);
       if (f->front.candidates[i].indirect == kInstantRadiosity) renderer->settings.indirect = kInstantRadiosity;
       if (f->front.candidates[i].resolution != Resolution::full) renderer->settings.resolution = Resolution::half;
+      if (f->front.candidates[i].environment_shadows > 0)
+        renderer->settings.environment_shadows = f->front.candidates[i].environment_shadows;
       if (f->front.candidates[i].light_tolerance > 0)
         renderer->settings.light_tolerance = f->front.candidates[i].light_tolerance;
     }

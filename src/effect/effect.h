@@ -35,8 +35,9 @@ enum class Effect : std::uint8_t {
   environment,
   undersampling,
   source_selection,
+  environment_shadow,
 };
-constexpr int kEffectCount = 30;
+constexpr int kEffectCount = 31;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }

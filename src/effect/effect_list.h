@@ -41,6 +41,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::environment, "environment", "a stored environment: light from every direction"},
     {Effect::undersampling, "undersampling", "--resolution checkerboard or half"},
     {Effect::source_selection, "source-selection", "many lights"},
+    {Effect::environment_shadow, "environment-shadow", "a stored environment and a diffuse material"},
 };
 
 constexpr bool effects_in_order() {

@@ -44,6 +44,8 @@ constexpr EffectMask kSpawning = kReflecting | bit(Effect::alpha_blend);
 inline double samples_price(double samples) { return samples; }
 // A pixel without them costs about as much as four rays.
 inline double virtual_lights_price(double lights) { return lights + 64; }
+// The surface hides half of the directions: twice as many as virtual lights cost the same.
+inline double environment_shadows_price(double directions) { return directions + 128; }
 // A pixel without lights costs about as much as one point.
 inline double points_price(double points) { return points + 1; }
 
@@ -194,6 +196,19 @@ inline constexpr SettingRow kSettingList[] = {
      0,
      {0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625, 0},
      nullptr,
+     ""},
+    {"environment-shadows",
+     "directions in which the environment casts shadows",
+     "a pixel traces rays along a sixteenth of them; 0: no shadows",
+     nullptr,
+     count_field<&Quality::environment_shadows>(Quantity::environment_shadows),
+     2,
+     bit(Effect::environment_shadow),
+     bit(Effect::environment_shadow),
+     false,
+     kAsAsked,
+     {0, 16, 32, 64, 128, 256},
+     environment_shadows_price,
      ""},
 };
 constexpr int kSettingCount = sizeof kSettingList / sizeof kSettingList[0];

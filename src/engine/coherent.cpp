@@ -52,12 +52,16 @@ void make_coherent(Renderer* renderer) {
                  &renderer->persistent_arena, &renderer->frame_arena, &renderer->coherence);
 }
 
+// With these, pixels depend on their neighbours in ways that are not followed.
+constexpr EffectMask kNeighbourEffects =
+    bit(Effect::instant_radiosity) | bit(Effect::selective) | bit(Effect::undersampling);
+
 bool begin_following(Renderer* renderer) {
   CoherenceState* state = &renderer->coherence_state;
   Coherence* c = &renderer->coherence;
   if (!state->planned) {
     state->whole_because = state->unplanned_because;
-  } else if (renderer->frame.trace_strip) {
+  } else if (renderer->frame.trace_strip && (renderer->effects.mask & kNeighbourEffects & kEffectsBuilt)) {
     state->whole_because = "pixels depend on their neighbours";
   } else if (!fits(*c, renderer->frame)) {
     state->whole_because = "more samples, lights or effects than memory was planned for";
@@ -88,6 +92,7 @@ void begin_coherent(Renderer* renderer, CoherentFrame* frame) {
       std::uint64_t found = clock_ns();
       Rows rows = {renderer, false};
       share_items(renderer->workers, 0, c->tile_rows, find_row, &rows);
+      spread_changes(c);
       clear_changes(c);
       for (const ChangeCounts& counts : c->counts) {
         state->search.moving_rays += counts.moving_rays;

@@ -46,14 +46,14 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.surface = find_surface_function(renderer->effects.mask);
   const EffectMask virtual_lights = bit(Effect::instant_radiosity) & kEffectsBuilt;
   renderer->frame.first_surface = find_surface_function(renderer->effects.mask & ~virtual_lights);
-  renderer->frame.surroundings = find_surroundings_function(renderer->frame);
+  find_surroundings(&renderer->frame);
   if (renderer->effects.mask & kMapEffects & kEffectsBuilt)
     add_material_maps(&renderer->frame);
   else if (renderer->frame.surroundings)
     add_surroundings(&renderer->frame);
-  renderer->frame.trace_strip = has(renderer->effects.mask, Effect::instant_radiosity) ? trace_interleaved
-                                : has(renderer->effects.mask, Effect::selective)       ? trace_selectively
-                                                                                       : nullptr;
+  renderer->frame.trace_strip = is_interleaved(renderer->effects.mask)           ? trace_interleaved
+                                : has(renderer->effects.mask, Effect::selective) ? trace_selectively
+                                                                                 : nullptr;
   renderer->frame.trace_lattice_strip = nullptr;
   if (has(renderer->effects.mask, Effect::undersampling)) {
     renderer->frame.trace_lattice_strip = renderer->frame.trace_strip;
@@ -71,6 +71,10 @@ void light_scene(Renderer* renderer) {
   CHECK_GT(renderer->exposure, 0);
   CHECK_LE(renderer->light_points.count, renderer->light_point_count_max);
   renderer->frame.beyond_depth = radiance_beyond_depth(renderer->scene.info, renderer->effects.mask);
+  if (has(renderer->effects.mask, Effect::environment_shadow) &&
+      renderer->environment_lights->wanted != renderer->settings.environment_shadows)
+    place_environment_lights(renderer->scene, renderer->settings.environment_shadows, renderer->environment_lights);
+  renderer->frame.environment_lights = renderer->environment_lights;
   if (!is_lit(*renderer)) {
     place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
                  renderer->light_points, &renderer->frame);

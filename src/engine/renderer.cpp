@@ -160,6 +160,9 @@ Status build_renderer_unexposed(Renderer* renderer) {
   const std::size_t used = renderer->persistent_arena.used;
   renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->effects.mask, &renderer->persistent_arena);
   CHECK_LE(renderer->persistent_arena.used - used, indirect_need(renderer->scene, renderer->effects.mask));
+  if (plans_environment_lights(renderer->scene, renderer->settings))
+    renderer->environment_lights =
+        new (arena_array<EnvironmentLights>(&renderer->persistent_arena, 1).data) EnvironmentLights();
   if (renderer->light_points.count)
     renderer->light_points = arena_array<LightPoint>(&renderer->persistent_arena, renderer->light_points.count);
   if (const std::uint32_t lights = renderer->selected_light_max) {
@@ -222,6 +225,8 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
                    renderer->light_point_count_max);
   if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
     return failure("memory is planned without virtual lights: plan with --indirect instant-radiosity");
+  if (has(effects.mask, Effect::environment_shadow) && !renderer->environment_lights)
+    return failure("memory is planned without shadows from the environment: plan with --environment-shadows above 0");
   if (has(effects.mask, Effect::source_selection) && renderer->light_entries.empty())
     return failure("memory is planned for shadow rays to all lights: plan with a --light-tolerance above 0");
   if (has(effects.mask, Effect::undersampling) && renderer->window_pixels.empty())

@@ -62,6 +62,7 @@ struct Renderer {
   Array<std::uint32_t> light_order;
   Array<LightEntry> light_entries;    // search_entry_count() of them per thread
   std::uint32_t light_count_max = 0;  // lights that may be set later; their points are planned for
+  EnvironmentLights* environment_lights = nullptr;  // if planned
   FrameData frame;
   Array<Span> spans;            // one per scanline
   Array<std::uint64_t> row_ns;  // cost of each in the last frame

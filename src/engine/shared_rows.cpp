@@ -73,6 +73,7 @@ bool search_shared_rows(Renderer* renderer, std::uint32_t pixel_count_max) {
   share_items(renderer->workers, rows->tile_row, stop, find_row, renderer);
   rows->tile_row = stop;
   if (stop < end) return false;
+  spread_changes(c);
   for (std::uint32_t row = rows->begin; row < rows->end; ++row)
     if (c->row_known[row]) ++rows->known_rows, rows->known_changes += count_changes(*c, row);
   clear_changes(c);

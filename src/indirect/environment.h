@@ -1,5 +1,6 @@
 // Light from a stored environment: what a ray sees that hits nothing, and what diffuse and glossy surfaces reflect of
-// it. Surfaces do not shade each other from it; mirrors and glass see it behind what they hit.
+// it. Here surfaces do not shade each other from it: at first hits, shade/environment_shadow.cpp adds its diffuse part
+// with shadows. Mirrors and glass see it behind what they hit.
 #pragma once
 #include <cmath>
 
@@ -74,9 +75,13 @@ inline Vec3T<T> environment_irradiance(const EnvironmentInfo& info, const Vec3T<
 // environment_irradiance() there.
 inline Vec3 reflected_environment(const Scene& scene, const Material& m, const Vec3& specular, const Vec3& normal,
                                   const Vec3& way, const Vec3& irradiance) {
-  const float cosine = dot(normal, way);
+  const float cosine = dot(normal, way), smoothness = 1 - m.roughness;
   const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, cosine);
-  return albedo.once * environment_gloss(scene, way - normal * (2 * cosine), m.roughness) +
+  // Off the normal, the middle of a rough lobe is nearer to it than the mirrored direction [Lagarde & de Rousiers 2014,
+  // "Moving Frostbite to PBR", listing 22].
+  const float share = smoothness * (std::sqrt(smoothness) + m.roughness);
+  const Vec3 mirrored = way - normal * (2 * cosine);
+  return albedo.once * environment_gloss(scene, normal * (1 - share) + mirrored * share, m.roughness) +
          albedo.scattered * irradiance;
 }
 

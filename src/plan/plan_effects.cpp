@@ -16,7 +16,7 @@ namespace {
 // Counts of materials with a property, among those that triangles use.
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
-                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0,
+                emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0, diffuse = 0,
                 metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
@@ -63,6 +63,7 @@ Census take_census(const Scene& scene, const Settings& settings) {
     c.unlit += m.unlit;
     c.textured += m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone;
     c.reflecting += reflects_surroundings(m);
+    c.diffuse += !(m.unlit && shows_unlit) && !is_zero(m.diffuse);
     c.one_sided += !m.double_sided && !transmits;
     c.scattering += !(m.unlit && shows_unlit) && (!is_zero(m.diffuse) || !is_zero(m.specular));
   }
@@ -126,6 +127,19 @@ void decide_indirect(const IndirectInfo& info, const IndirectInfo* chosen, const
     w->set(effect, false, chosen ? "%s instead" : "%s", chosen ? chosen->name : info.present);
 }
 
+// Shadows from the environment are traced for its diffuse light, pixel by pixel.
+void decide_environment_shadow(const Scene& scene, const Settings& settings, const IndirectInfo* indirect,
+                               std::uint32_t diffuse_count, PlanWriter* w) {
+  auto off = [w](const char* reason) { w->set(Effect::environment_shadow, false, "%s", reason); };
+  if (!environment_of(scene) || has(settings.forced_off, Effect::environment)) return off("no environment");
+  if (settings.indirect == IndirectChoice::none) return off("no indirect light requested");
+  if (indirect && has(indirect->effects, Effect::radiosity)) return off("radiosity stores them");
+  if (settings.environment_shadows == 0) return off("--environment-shadows 0");
+  if (settings.selective_contrast > 0) return off("selective rendering interpolates pixels");
+  if (settings.resolution != Resolution::full) return off("undersampling reconstructs pixels");
+  w->set_by_materials(Effect::environment_shadow, diffuse_count, "are diffuse");
+}
+
 }  // namespace
 
 EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
@@ -179,6 +193,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
           static_cast<double>(max_component(environment->radiance_max)));
   else
     w.set(Effect::environment, false, "no environment");
+  decide_environment_shadow(scene, settings, indirect, c.diffuse, &w);
   const bool shows_environment = environment_of(scene) && !has(settings.forced_off, Effect::environment);
   if (settings.indirect == IndirectChoice::none)
     w.set(Effect::ambient_gloss, false, "no indirect light requested");
@@ -225,6 +240,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     EffectDecision& d = plan.decisions[i];
     CHECK(d.reason[0] != 0);  // every effect has been decided
     EffectMask forced_on = settings.forced_on & ~excluded_indirect;
+    forced_on &= ~bit(Effect::environment_shadow);  // it has all that it takes, or is off
     if (!selects) forced_on &= ~bit(Effect::source_selection);
     bool on = (d.on || has(forced_on, effect)) && !has(settings.forced_off, effect);
     if (on != d.on) {

@@ -75,6 +75,8 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "accelerator", ArenaKind::persistent, keep);
   add_part(plan, "pose", ArenaKind::persistent, moves ? pose_need(scene) : 0);
   add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
+  add_part(plan, "environment shadows", ArenaKind::persistent,
+           plans_environment_lights(scene, settings) ? arena_need<EnvironmentLights>(1) : 0);
   add_part(plan, "lights", ArenaKind::persistent, lights.points ? arena_need<LightPoint>(lights.points) : 0);
   add_part(plan, "source selection", ArenaKind::persistent, selection_need(settings, lights.selected));
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
@@ -117,9 +119,11 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
   const bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
   const char* mixes = has(effects.mask, Effect::instant_radiosity) ? "instant radiosity mixes neighbouring pixels' rays"
-                      : has(effects.mask, Effect::selective)       ? "selective rendering interpolates pixels"
-                      : has(effects.mask, Effect::undersampling)   ? "undersampling reconstructs pixels"
-                                                                   : nullptr;
+                      : has(effects.mask, Effect::environment_shadow) && settings.coherence_by_tables
+                          ? "the tables do not know shadows from the environment"
+                      : has(effects.mask, Effect::selective)     ? "selective rendering interpolates pixels"
+                      : has(effects.mask, Effect::undersampling) ? "undersampling reconstructs pixels"
+                                                                 : nullptr;
   wanted = wanted && !mixes;
   const char* why = mixes                                      ? mixes
                     : settings.coherence == CoherenceMode::off ? "coherence is off"

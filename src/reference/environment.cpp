@@ -49,17 +49,21 @@ double cubed_distance(const Vec3d& point) {
 
 double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-// Diffuse and glossy lobe as light from all around meets them in the renderer: the lobe takes nothing of the diffuse
-// light.
-Vec3d even_lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
-  Vec3d value = s.diffuse * (1 / kPi);
+// Diffuse and glossy lobe as light from all around meets them in the renderer: the glossy lobe takes nothing of the
+// diffuse light, and only diffuse light meets shadows, where these are simulated.
+Vec3d value_in_model(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
+                     const Vec3d& to_light) {
+  const FrameData& frame = *reference.world.frame;
+  Vec3d value = {0, 0, 0};
   const Material& m = lobes_of(s);
   if (reflects_surroundings(m))
-    value += kBrdfList[m.brdf]->exact_value(m, s.specular, {0, 0, 0}, s.normal, to_viewer, to_light);
-  return value;
+    value = kBrdfList[m.brdf]->exact_value(m, s.specular, {0, 0, 0}, s.normal, to_viewer, to_light) * s.open;
+  const Vec3d diffuse = s.diffuse * (1 / kPi);
+  if (!has(frame.mask, Effect::environment_shadow) || is_zero(diffuse)) return value + diffuse * s.open;
+  return value +
+         diffuse * transmittance(reference.world, leave(frame, s, to_light, kInfinity), {kNone, kNone, true});
 }
 
-// Without anything in the way, both ways of sampling see the same light.
 Vec3d light_in_model(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
                      ReferenceSamples* samples) {
   const FrameData& frame = *reference.world.frame;
@@ -67,7 +71,7 @@ Vec3d light_in_model(const Reference& reference, const ReferenceSurface& s, cons
   auto add = [&](const Vec3d& direction, double density, double other) {
     const double cosine = dot(s.normal, direction);
     if (!(cosine > 0) || !(density > 0)) return;
-    sum += even_lobe_value(s, to_viewer, direction) * map_at(*frame.scene, direction) *
+    sum += value_in_model(reference, s, to_viewer, direction) * map_at(*frame.scene, direction) *
            (cosine * power_heuristic(density, other) / density);
   };
   const double u = samples->next(), v = samples->next();
@@ -76,7 +80,24 @@ Vec3d light_in_model(const Reference& reference, const ReferenceSurface& s, cons
   const double choice = samples->next(), u2 = samples->next(), v2 = samples->next();
   if (sample_lobes(s, to_viewer, choice, {u2, v2}, &direction))
     add(direction, lobe_density(s, to_viewer, direction), environment_density(reference, direction));
-  return sum * s.open;
+  return sum;
+}
+
+// Of the distant lights that reach the surface, the share that nothing hides.
+Vec3d openness_as_rendered(const Reference& reference, const ReferenceSurface& s) {
+  const FrameData& frame = *reference.world.frame;
+  Vec3d lit = {0, 0, 0}, open = {0, 0, 0};
+  for (std::uint32_t i = 0; i < frame.environment_lights->count; ++i) {
+    const EnvironmentLight& light = frame.environment_lights->light[i];
+    const Vec3d direction = to_double(light.direction);
+    const double cosine = dot(s.normal, direction);
+    if (!(cosine > 0) || !(dot(s.geometric, direction) > 0)) continue;
+    const Vec3d arriving = to_double(light.irradiance) * cosine;
+    open += arriving;
+    lit += arriving * transmittance(reference.world, leave(frame, s, direction, kInfinity), {kNone, kNone, true});
+  }
+  for (int c = 0; c < 3; ++c) lit[c] = open[c] > 0 ? lit[c] / open[c] : 1;
+  return lit;
 }
 
 }  // namespace
@@ -157,21 +178,26 @@ Vec3d environment_light(const Reference& reference, const ReferenceOptions& opti
   return sum * transmittance(reference.world, leave(frame, s, direction, kInfinity), {kNone, kNone, true});
 }
 
-Vec3d environment_light_as_rendered(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer) {
+Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
+                                    bool is_first) {
+  const FrameData& frame = *reference.world.frame;
   const Scene& scene = *frame.scene;
   if (!environment_lights(scene, frame.mask, frame.settings.indirect)) return {0, 0, 0};
+  const bool casts = is_first && has(frame.mask, Effect::environment_shadow) && !is_zero(s.diffuse);
   Vec3d sum = {0, 0, 0};
   if (environment_lights_diffuse(frame.mask))
-    sum = s.diffuse * environment_irradiance(scene.environment_info[0], s.normal);
+    sum = s.diffuse * environment_irradiance(scene.environment_info[0], s.normal) *
+          (casts ? openness_as_rendered(reference, s) : Vec3d{s.open, s.open, s.open});
   if (reflects_surroundings(lobes_of(s))) {
     auto to_float = [](const Vec3d& a) {
       return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
     };
     const Vec3 normal = to_float(s.normal);
     sum += to_double(reflected_environment(scene, lobes_of(s), to_float(s.specular), normal, to_float(-to_viewer),
-                                           environment_irradiance(scene.environment_info[0], normal)));
+                                           environment_irradiance(scene.environment_info[0], normal))) *
+           s.open;
   }
-  return sum * s.open;
+  return sum;
 }
 
 }  // namespace pocketray

@@ -18,12 +18,14 @@ double environment_density(const Reference& reference, const Vec3d& direction);
 // Picks a direction from numbers uniform in [0, 1).
 Vec3d sample_environment(const Reference& reference, const Pair& pair);
 
-// One sample of the environment's light towards the viewer. In the renderer's model nothing stands in its way and
-// Phong's lobe reflects none; in light transport, paths that continue share it by multiple importance sampling.
+// One sample of the environment's light towards the viewer. In the renderer's model only diffuse surfaces lie in shadow,
+// and Phong's lobe reflects none; in light transport, paths that continue share it by multiple importance sampling.
 Vec3d environment_light(const Reference& reference, const ReferenceOptions& options, const ReferenceSurface& s,
                         const Vec3d& to_viewer, bool goes_on, ReferenceSamples* samples);
 
-// The renderer's own approximation: nine coefficients and the split sum.
-Vec3d environment_light_as_rendered(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer);
+// The renderer's own approximation: nine coefficients, the split sum, and at first hits the share of the distant lights
+// that nothing hides: all of these, where pixels trace rays to some.
+Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
+                                    bool is_first);
 
 }  // namespace pocketray

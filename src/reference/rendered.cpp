@@ -35,7 +35,8 @@ Vec3d shade(const Reference& reference, const ReferenceRay& ray, const Reference
   if (m.unlit && has(frame.mask, Effect::emission)) return s.diffuse;
   const double open = has(frame.mask, Effect::ambient) ? s.open : 1;
   Vec3d sum = s.emission + exact_indirect_of(*frame.scene, s.diffuse, frame.mask) * open;
-  sum += reflected_surroundings(frame, s, -ray.direction) + environment_light_as_rendered(frame, s, -ray.direction);
+  sum += reflected_surroundings(frame, s, -ray.direction) +
+         environment_light_as_rendered(reference, s, -ray.direction, branch.depth == 0);
   if (!is_zero(s.diffuse) || !is_zero(lobes_of(s).specular))
     sum += sum_light_points(reference, s, -ray.direction, true);
   Vec3d turned = {0, 0, 0};

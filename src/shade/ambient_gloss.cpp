@@ -15,10 +15,11 @@ Vec3 even_light(const FrameData& frame, const Ray& ray, const Material& m, const
   return reflected_surroundings(frame.scene->info, m, specular, dot(s.normal, ray.direction));
 }
 
+template <bool with_diffuse>
 Vec3 environment_light(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s) {
   effect_entered<Effect::environment>();
   const Scene& scene = *frame.scene;
-  const bool scatters = environment_lights_diffuse(frame.mask) && !is_zero(s.diffuse),
+  const bool scatters = with_diffuse && environment_lights_diffuse(frame.mask) && !is_zero(s.diffuse),
              shines = reflects_surroundings(m);
   Vec3 sum = {0, 0, 0};
   if (!scatters && !shines) return sum;
@@ -41,25 +42,33 @@ void first_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surfa
   s->glow += light(frame, ray, *s->material, *s);
 }
 
-template <SurroundingsFunction light>
+template <SurroundingsFunction light, SurroundingsFunction first_light>
 void put_in_front(FrameData* frame) {
-  frame->surface = surface<light>, frame->first_surface = first_surface<light>;
+  frame->surface = surface<light>, frame->first_surface = first_surface<first_light>;
 }
 
 }  // namespace
 
-SurroundingsFunction find_surroundings_function(const FrameData& frame) {
-  CHECK(frame.scene != nullptr);
-  if (has(kAllEffects, Effect::environment) && environment_lights(*frame.scene, frame.mask, frame.settings.indirect))
-    return environment_light;
-  return has(frame.mask, Effect::ambient_gloss) ? even_light : nullptr;
+void find_surroundings(FrameData* frame) {
+  CHECK(frame != nullptr && frame->scene != nullptr);
+  frame->surroundings = frame->first_surroundings = has(frame->mask, Effect::ambient_gloss) ? even_light : nullptr;
+  if (!has(kAllEffects, Effect::environment) ||
+      !environment_lights(*frame->scene, frame->mask, frame->settings.indirect))
+    return;
+  frame->surroundings = frame->first_surroundings = environment_light<true>;
+  if (has(frame->mask, Effect::environment_shadow)) frame->first_surroundings = environment_light<false>;
 }
 
 void add_surroundings(FrameData* frame) {
   CHECK(frame != nullptr && frame->surface != nullptr && frame->first_surface != nullptr);
   CHECK(frame->surroundings != nullptr);
   frame->plain_surface = frame->surface, frame->plain_first_surface = frame->first_surface;
-  frame->surroundings == even_light ? put_in_front<even_light>(frame) : put_in_front<environment_light>(frame);
+  if (frame->surroundings == even_light)
+    put_in_front<even_light, even_light>(frame);
+  else if (frame->first_surroundings == environment_light<true>)
+    put_in_front<environment_light<true>, environment_light<true>>(frame);
+  else
+    put_in_front<environment_light<true>, environment_light<false>>(frame);
 }
 
 }  // namespace pocketray

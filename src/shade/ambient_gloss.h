@@ -5,10 +5,10 @@
 
 namespace pocketray {
 
-// The function for the plan; null: the surroundings light nothing, or only by the ambient term.
-SurroundingsFunction find_surroundings_function(const FrameData& frame);
+// Sets the frame's functions for the plan; null: the surroundings light nothing, or only by the ambient term.
+void find_surroundings(FrameData* frame);
 
-// Puts the frame's function in front of its surface functions, so that frames without one do not even test for it.
+// Puts the frame's functions in front of its surface functions, so that frames without one do not even test for it.
 void add_surroundings(FrameData* frame);
 
 }  // namespace pocketray

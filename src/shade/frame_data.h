@@ -8,6 +8,7 @@
 #include "base/limits.h"
 #include "effect/effect.h"
 #include "effect/settings.h"
+#include "indirect/environment_lights.h"
 #include "indirect/indirect_list.h"
 #include "scene/scene.h"
 
@@ -130,7 +131,8 @@ struct FrameData {
   SurfaceFunction surface = nullptr;
   SurfaceFunction first_surface = nullptr;  // at first hits: the same, but without light that trace_strip adds there
   SurfaceFunction plain_surface = nullptr, plain_first_surface = nullptr;  // see ambient_gloss.h
-  SurroundingsFunction surroundings = nullptr;                             // null: none but ambient light
+  // Null: none but ambient light. At first hits: without light that trace_strip adds there.
+  SurroundingsFunction surroundings = nullptr, first_surroundings = nullptr;
   GlowFunction glow = nullptr, first_glow = nullptr;                       // see material_maps.h
   RadianceFunction radiance = nullptr;
   ShadowsFunction find_shadows = nullptr;       // null if nothing casts a shadow
@@ -145,6 +147,7 @@ struct FrameData {
   Selection selection;
   float left_out_max = 0;  // radiance that may be skipped of one sample
   IndirectData indirect;
+  const EnvironmentLights* environment_lights = nullptr;  // set with Effect::environment_shadow
   Hit* first_hits = nullptr;  // receives the first hits, width × height for each sample in turn; null: not kept
   bool ray_by_ray = false;    // no packets
 };

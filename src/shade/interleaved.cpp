@@ -1,37 +1,76 @@
 #include "shade/interleaved.h"
 
+#include <algorithm>
+
 #include "base/check.h"
-#include "base/fmath.h"
 #include "shade/even_points.h"
 #include "shade/pixel.h"
+#include "shade/tile.h"
 #include "shade/tile_shadows.h"
 
 namespace pocketray {
 namespace {
 
-// An 8 × 8 tile at a multiple of eight, in Morton order; whole blocks, except at the picture's edge.
-struct BlockTile {
-  std::uint32_t count = 0;
-  std::uint8_t place[kPacketMax];
-  std::uint16_t column[kPacketMax], row[kPacketMax];
-  bool wanted[kPacketMax];
+// Pixels show the same surface if their normals differ by less than this cosine, and neither lies off the other's plane
+// by more than this slope.
+constexpr float kSameNormal = 0.9f, kSamePlane = 0.15f;
+
+bool shows_same(const Surface& a, const Surface& b) {
+  if (!(dot(a.normal, b.normal) > kSameNormal)) return false;
+  Vec3 way = b.point - a.point;
+  float height = dot(a.geometric, way);
+  return height * height <= kSamePlane * kSamePlane * dot(way, way);
+}
+
+const InterleavedSource* const kSources[] = {&kVirtualLightSource, &kEnvironmentSource};
+constexpr int kSourceCount = 2;
+
+// An aligned tile and the pixels about it that its pixels take light from, by rows.
+constexpr std::uint32_t kRegionSide = kTakenBefore + kTileSide + kTakenAfter;
+constexpr std::uint32_t kRegionPixels = kRegionSide * kRegionSide;
+struct Region {
+  bool is_known[kRegionPixels];
+  bool is_hit[kRegionPixels];
+  Surface surface[kRegionPixels];  // of those known that are hit, as is the light
+  InterleavedLight light[kSourceCount][kRegionPixels];
 };
 
-// The pixels of all blocks that have a wanted one.
-void list_pixels(const FrameData& frame, std::uint32_t left, std::uint32_t top, std::uint64_t wanted, BlockTile* tile) {
-  tile->count = 0;
+// Pixels to trace, in packets. Columns and rows count from the region's first.
+struct PixelList {
+  std::uint32_t count = 0;
+  std::uint8_t column[kRegionPixels], row[kRegionPixels];
+
+  void add(std::uint32_t c, std::uint32_t r) {
+    column[count] = static_cast<std::uint8_t>(c), row[count++] = static_cast<std::uint8_t>(r);
+  }
+};
+
+struct SharedTile {
+  std::uint32_t column, row;  // of its first pixel in the picture
+  PixelList wanted;           // in Morton order
+  PixelList others;           // in the picture, about wanted ones
+};
+
+// The tile's pixel in the mask, and those about them.
+void list_pixels(const Settings& settings, std::uint64_t mask, SharedTile* tile) {
+  bool is_wanted[kRegionPixels] = {}, is_taken[kRegionPixels] = {};
+  tile->wanted.count = tile->others.count = 0;
   for (std::uint32_t m = 0; m < kPacketMax; ++m) {
-    std::uint32_t column = left + morton_column(m), row = top + morton_row(m);
-    if (!(wanted >> (m & ~(kBlockPixels - 1)) & 0xFFFF)) continue;
-    if (column >= frame.settings.width || row >= frame.settings.height) continue;
-    std::uint32_t i = tile->count++;
-    tile->place[i] = static_cast<std::uint8_t>(m);
-    tile->column[i] = static_cast<std::uint16_t>(column), tile->row[i] = static_cast<std::uint16_t>(row);
-    tile->wanted[i] = wanted >> m & 1;
+    const std::uint32_t column = morton_column(m), row = morton_row(m);
+    if (!(mask >> m & 1) || tile->column + column >= settings.width || tile->row + row >= settings.height) continue;
+    tile->wanted.add(column + kTakenBefore, row + kTakenBefore);
+    is_wanted[(row + kTakenBefore) * kRegionSide + column + kTakenBefore] = true;
+    for (std::uint32_t y = row; y < row + kPatternSide; ++y)
+      std::fill_n(&is_taken[y * kRegionSide + column], kPatternSide, true);
+  }
+  for (std::uint32_t i = 0; i < kRegionPixels; ++i) {
+    const std::uint32_t column = i % kRegionSide, row = i / kRegionSide;
+    const std::uint32_t x = tile->column + column - kTakenBefore, y = tile->row + row - kTakenBefore;  // or beyond 2^31
+    if (is_taken[i] && !is_wanted[i] && x < settings.width && y < settings.height) tile->others.add(column, row);
   }
 }
 
-// First hits of a sample of the tile's pixels, with the surfaces there and, where known, the shadows of lights.
+// First hits of a sample of some pixels, with the surfaces there and, where known, the shadows of lights.
 struct FirstHits {
   Ray ray[kPacketMax];
   Hit hit[kPacketMax];
@@ -39,52 +78,146 @@ struct FirstHits {
   bool knows_shadows;
 };
 
-void find_first_hits(Tracer* tracer, const BlockTile& tile, const Vec2& offset, FirstHits* first) {
+void find_first_hits(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std::uint32_t begin,
+                     std::uint32_t count, const Vec2& offset, bool with_shadows, FirstHits* first) {
   const FrameData& frame = *tracer->frame;
-  for (std::uint32_t i = 0; i < tile.count; ++i) first->ray[i] = pixel_ray(frame, tile.column[i], tile.row[i], offset);
+  CHECK_LE(count, kPacketMax);
+  for (std::uint32_t i = 0; i < count; ++i)
+    first->ray[i] = pixel_ray(frame, tile.column + pixels.column[begin + i] - kTakenBefore,
+                              tile.row + pixels.row[begin + i] - kTakenBefore, offset);
   first->knows_shadows = false;
   if (!frame.camera.orthographic && !frame.ray_by_ray) {
     RayPacket packet;
-    packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = tile.count;
-    for (std::uint32_t i = 0; i < tile.count; ++i)
+    packet.origin = frame.camera.eye, packet.t_max = __builtin_inff(), packet.count = count;
+    for (std::uint32_t i = 0; i < count; ++i)
       for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = first->ray[i].direction[axis];
     frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), first->hit, &tracer->stats);
-    first->knows_shadows = frame.find_shadows != nullptr;
+    first->knows_shadows = with_shadows && frame.find_shadows != nullptr;
     if (first->knows_shadows) return frame.find_shadows(frame, packet, first->hit, &first->shadows, &tracer->stats);
   } else {
-    for (std::uint32_t i = 0; i < tile.count; ++i)
+    for (std::uint32_t i = 0; i < count; ++i)
       frame.first_rays->closest(frame.accel, first->ray[i], visible_filter(frame), &first->hit[i], &tracer->stats);
   }
-  for (std::uint32_t i = 0; i < tile.count; ++i)
+  for (std::uint32_t i = 0; i < count; ++i)
     if (first->hit[i].triangle != kNoTriangle)
       frame.first_surface(frame, first->ray[i], first->hit[i], &first->shadows.surface[i]);
 }
 
-void trace_block_tile(Tracer* tracer, const BlockTile& tile, const PixelRows& image) {
+// Adds what the pixels gather, those of the list from `begin`, to the region, which lacks it.
+void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std::uint32_t begin, std::uint32_t count,
+            const FirstHits& first, Region* region) {
+  const FrameData& frame = *tracer->frame;
+  const Surface* surface[kPacketMax];
+  std::uint8_t place[kPacketMax], in_region[kPacketMax];
+  InterleavedLight light[kPacketMax];
+  std::uint32_t found = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t column = pixels.column[begin + i], row = pixels.row[begin + i], k = row * kRegionSide + column;
+    if (region->is_known[k]) continue;
+    region->is_known[k] = true;
+    region->is_hit[k] = first.hit[i].triangle != kNoTriangle;
+    if (!region->is_hit[k]) continue;
+    region->surface[k] = first.shadows.surface[i];
+    surface[found] = &region->surface[k], in_region[found] = static_cast<std::uint8_t>(k);
+    place[found++] = static_cast<std::uint8_t>(morton_place((tile.column + column - kTakenBefore) % kPatternSide,
+                                                            (tile.row + row - kTakenBefore) % kPatternSide));
+  }
+  if (found == 0) return;
+  for (int source = 0; source < kSourceCount; ++source) {
+    if (!has(frame.mask, kSources[source]->effect)) continue;
+    kSources[source]->gather(frame, {found, surface, place}, &tracer->stats,
+                             &tracer->rays[static_cast<int>(RayKind::shadow)], light);
+    for (std::uint32_t i = 0; i < found; ++i) region->light[source][in_region[i]] = light[i];
+  }
+}
+
+// What a pixel takes from those about it: irradiance / π.
+Vec3 shared_light(const FrameData& frame, const Region& region, std::uint32_t column, std::uint32_t row) {
+  const std::uint32_t own = row * kRegionSide + column, first = own - kTakenBefore * kRegionSide - kTakenBefore;
+  const Surface& s = region.surface[own];
+  InterleavedLight sum[kSourceCount];
+  for (InterleavedLight& of_source : sum) of_source.pixel_count = 0;
+  for (std::uint32_t i = 0; i < kPatternPixels; ++i) {
+    const std::uint32_t k = first + i / kPatternSide * kRegionSide + i % kPatternSide;
+    if (!region.is_known[k] || !region.is_hit[k] || (k != own && !shows_same(s, region.surface[k]))) continue;
+    for (int source = 0; source < kSourceCount; ++source) {
+      sum[source].lit += region.light[source][k].lit, sum[source].open += region.light[source][k].open;
+      ++sum[source].pixel_count;
+    }
+  }
+  Vec3 light = {0, 0, 0};
+  for (int source = 0; source < kSourceCount; ++source)
+    if (has(frame.mask, kSources[source]->effect)) light += kSources[source]->irradiance(frame, s, sum[source]);
+  return light;
+}
+
+// Traces a sample of the tile's wanted pixels and adds it to the image.
+void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, const PixelRows& image,
+                  Region* region) {
   const FrameData& frame = *tracer->frame;
   const std::uint32_t sample_count = frame.settings.samples_per_pixel;
-  if (sample_count > 1) effect_entered<Effect::supersampling>();
-  Vec3 sum[kPacketMax] = {}, irradiance[kPacketMax];
+  const Vec2 offset = rook_point(sample, sample_count);
   FirstHits first;
-  for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
-    find_first_hits(tracer, tile, rook_point(sample, sample_count), &first);
-    gather_virtual_light(frame, {tile.count, tile.place, first.shadows.surface, first.hit}, &tracer->stats,
-                         &tracer->rays[static_cast<int>(RayKind::shadow)], irradiance);
-    tracer->tile_shadows = first.knows_shadows ? &first.shadows : nullptr;
-    for (std::uint32_t i = 0; i < tile.count; ++i) {
-      if (!tile.wanted[i]) continue;
-      Surface* s = &first.shadows.surface[i];
-      bool hit = first.hit[i].triangle != kNoTriangle;
-      if (hit) s->glow += s->diffuse * (irradiance[i] * (1 / kPiF));
-      tracer->tile_pixel = i;
-      tracer->first_surface = hit ? s : nullptr;
-      sum[i] += sample_radiance(tracer, first.ray[i], first.hit[i], tracer->first_surface);
-    }
+  PixelList lacking;
+  for (std::uint32_t i = 0; i < tile.others.count; ++i)
+    if (!region->is_known[tile.others.row[i] * kRegionSide + tile.others.column[i]])
+      lacking.add(tile.others.column[i], tile.others.row[i]);
+  for (std::uint32_t begin = 0; begin < lacking.count; begin += kPacketMax) {
+    const std::uint32_t count = std::min(lacking.count - begin, kPacketMax);
+    find_first_hits(tracer, tile, lacking, begin, count, offset, false, &first);
+    gather(tracer, tile, lacking, begin, count, first, region);
+  }
+  find_first_hits(tracer, tile, tile.wanted, 0, tile.wanted.count, offset, true, &first);
+  gather(tracer, tile, tile.wanted, 0, tile.wanted.count, first, region);
+  tracer->tile_shadows = first.knows_shadows ? &first.shadows : nullptr;
+  for (std::uint32_t i = 0; i < tile.wanted.count; ++i) {
+    Surface* s = &first.shadows.surface[i];
+    const bool hit = first.hit[i].triangle != kNoTriangle;
+    if (hit && !is_zero(s->diffuse))
+      s->glow += s->diffuse * shared_light(frame, *region, tile.wanted.column[i], tile.wanted.row[i]);
+    const std::uint32_t column = tile.column + tile.wanted.column[i] - kTakenBefore,
+                        row = tile.row + tile.wanted.row[i] - kTakenBefore;
+    tracer->tile_pixel = i;
+    tracer->first_surface = hit ? s : nullptr;
+    observe_pixel(tracer, column, row);
+    if (frame.first_hits) keep_first_hit(frame, sample, column, row, first.hit[i]);
+    Vec3* pixel = &image.at(column, row);
+    Vec3 sum = sample_radiance(tracer, first.ray[i], first.hit[i], tracer->first_surface);
+    if (sample > 0) sum = *pixel + sum;
+    *pixel = sample + 1 == sample_count ? sum * (1.0f / static_cast<float>(sample_count)) : sum;
   }
   tracer->first_surface = nullptr;
   tracer->tile_shadows = nullptr;
-  for (std::uint32_t i = 0; i < tile.count; ++i)
-    if (tile.wanted[i]) image.at(tile.column[i], tile.row[i]) = sum[i] * (1.0f / static_cast<float>(sample_count));
+}
+
+// What a tile's region shares with that of the next tile to the right.
+void move_on(Region* region) {
+  for (std::uint32_t row = 0; row < kRegionSide; ++row)
+    for (std::uint32_t column = 0; column < kRegionSide; ++column) {
+      const std::uint32_t to = row * kRegionSide + column, from = to + kTileSide;
+      region->is_known[to] = column + kTileSide < kRegionSide && region->is_known[from];
+      if (!region->is_known[to]) continue;
+      region->is_hit[to] = region->is_hit[from];
+      if (!region->is_hit[to]) continue;
+      region->surface[to] = region->surface[from];
+      for (auto& light : region->light) light[to] = light[from];
+    }
+}
+
+void trace_tile_row(Tracer* tracer, const AlignedTiles& tiles, std::uint32_t r, const PixelRows& image) {
+  const FrameData& frame = *tracer->frame;
+  Region region;
+  SharedTile tile;
+  for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
+    std::fill_n(region.is_known, kRegionPixels, false);
+    for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
+      tile.column = tiles.column + c * kTileSide, tile.row = tiles.row + r * kTileSide;
+      if (c > 0) move_on(&region);
+      if (!tiles.mask[r][c]) continue;
+      list_pixels(frame.settings, tiles.mask[r][c], &tile);
+      if (tile.wanted.count > 0) trace_sample(tracer, tile, sample, image, &region);
+    }
+  }
 }
 
 }  // namespace
@@ -92,15 +225,10 @@ void trace_block_tile(Tracer* tracer, const BlockTile& tile, const PixelRows& im
 void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
   if (strip.tile_count == 0) return;
   CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
+  if (tracer->frame->settings.samples_per_pixel > 1) effect_entered<Effect::supersampling>();
   AlignedTiles tiles;
   align_tiles(strip, &tiles);
-  BlockTile tile;
-  for (std::uint32_t r = 0; r < 2; ++r)
-    for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
-      if (!tiles.mask[r][c]) continue;
-      list_pixels(*tracer->frame, tiles.column + c * kTileSide, tiles.row + r * kTileSide, tiles.mask[r][c], &tile);
-      trace_block_tile(tracer, tile, image);
-    }
+  for (std::uint32_t r = 0; r < 2; ++r) trace_tile_row(tracer, tiles, r, image);
 }
 
 }  // namespace pocketray

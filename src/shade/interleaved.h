@@ -1,25 +1,47 @@
-// Interleaved sampling of virtual lights [Keller & Heidrich 2001; Wald et al. 2002]: in blocks of 4 × 4 pixels, each
-// pixel traces shadow rays to a sixteenth of the lights, and takes the mean of the block's pixels on the same surface.
-// Blocks have fixed places in the picture, and a pixel depends on its own block alone: whichever pixels are asked for,
-// the rest of their blocks is traced, too, and the picture does not depend on how it is divided.
+// Interleaved sampling [Keller & Heidrich 2001; Wald et al. 2002] of virtual lights and of the environment: each pixel
+// traces shadow rays to a sixteenth of the sources, by its place in a pattern of 4 × 4, and takes the mean of the
+// pixels about it on the same surface. A pixel depends on the 4 × 4 about it alone: whichever pixels are asked for,
+// those about them are traced, too, and the picture does not depend on how it is divided.
 #pragma once
 #include "shade/strip.h"
 #include "shade/surface.h"
 
 namespace pocketray {
 
-constexpr std::uint32_t kBlockSide = 4, kBlockPixels = kBlockSide * kBlockSide;
+constexpr EffectMask kInterleavedEffects = bit(Effect::instant_radiosity) | bit(Effect::environment_shadow);
+constexpr bool is_interleaved(EffectMask mask) { return (mask & kEffectsBuilt & kInterleavedEffects) != 0; }
 
-// Irradiance of the virtual lights on the first hits of up to four blocks. `place` is a pixel's position in Morton
-// order, ascending; pixels that hit nothing have no triangle.
-struct BlockHits {
+constexpr std::uint32_t kPatternSide = 4, kPatternPixels = kPatternSide * kPatternSide;
+// A pixel takes light from those at most so many columns and rows before and after it: one of each in the pattern.
+constexpr std::uint32_t kTakenBefore = 1, kTakenAfter = 2;
+static_assert(kTakenBefore + 1 + kTakenAfter == kPatternSide, "each place of the pattern once");
+
+// First hits of up to kPacketMax pixels, and the pixels' places in the pattern in Morton order.
+struct InterleavedPoints {
   std::uint32_t count;
+  const Surface* const* surface;
   const std::uint8_t* place;
-  const Surface* surface;
-  const Hit* hits;
 };
-void gather_virtual_light(const FrameData& frame, const BlockHits& pixels, TraceStats* stats, std::uint64_t* rays,
-                          Vec3* irradiance);
+// What arrives from a pixel's sixteenth of the sources, or the sum over pixels: with and without shadows.
+struct InterleavedLight {
+  Vec3 lit = {0, 0, 0}, open = {0, 0, 0};
+  std::uint32_t pixel_count = 1;
+};
+
+// A kind of sources.
+struct InterleavedSource {
+  Effect effect;
+  void (*gather)(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
+                 InterleavedLight* light);
+  // Irradiance / π on a surface, from the sum over the pixels that show it.
+  Vec3 (*irradiance)(const FrameData& frame, const Surface& s, const InterleavedLight& sum);
+};
+extern const InterleavedSource kVirtualLightSource, kEnvironmentSource;
+
+// Whether a distant light reaches the side of the surface that is seen.
+inline bool arrives(const EnvironmentLight& light, const Surface& s) {
+  return dot(s.normal, light.direction) > 0 && dot(s.geometric, light.direction) > 0;
+}
 
 // Traces the strip's pixels.
 void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image);

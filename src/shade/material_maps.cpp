@@ -97,7 +97,8 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   }
   if (frame.surroundings) {
     Material mapped;
-    s->glow += frame.surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
+    const SurroundingsFunction surroundings = first ? frame.first_surroundings : frame.surroundings;
+    s->glow += surroundings(frame, ray, lobes_at(frame, *s, &mapped), *s) * open;
   }
 }
 

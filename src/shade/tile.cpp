@@ -26,13 +26,13 @@ void set_directions(const CameraRays& camera, const Tile& tile, const Vec2& offs
   }
 }
 
+}  // namespace
+
 void keep_first_hit(const FrameData& frame, std::uint32_t sample, std::uint32_t column, std::uint32_t row,
                     const Hit& hit) {
   std::size_t width = frame.settings.width;
   frame.first_hits[(std::size_t(sample) * frame.settings.height + row) * width + column] = hit;
 }
-
-}  // namespace
 
 void observe_pixel(Tracer* tracer, std::uint32_t column, std::uint32_t row) {
   if (RayObserver* observer = tracer->stats.observer)

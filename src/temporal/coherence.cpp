@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "shade/interleaved.h"
 
 namespace pocketray {
 namespace {
@@ -34,6 +35,7 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   std::size_t bytes = moving_geometry_need(scene, mask);
   bytes = size_sum(bytes, arena_need(pixels * plan.samples * sizeof(Hit)));
   bytes = size_sum(bytes, arena_need<TileHits>(tiles) + arena_need<std::uint64_t>(tiles));
+  if (has(mask, Effect::environment_shadow)) bytes = size_sum(bytes, arena_need<std::uint64_t>(tiles));
   bytes = size_sum(bytes, arena_need<KnownShadows>(tiles * plan.samples * known_lights(plan)));
   bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
   bytes = size_sum(bytes, arena_need<Span>(kSpanRows * row_spans_max(plan.width)));
@@ -57,6 +59,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   c->first_hits = arena_array_zeroed<Hit>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
   c->tiles = arena_array<TileHits>(keep, tiles);
   c->changed = arena_array_zeroed<std::uint64_t>(keep, tiles);
+  if (has(frame.mask, Effect::environment_shadow)) c->given = arena_array_zeroed<std::uint64_t>(keep, tiles);
   c->shadows = arena_array_zeroed<KnownShadows>(keep, tiles * plan.samples * known_lights(plan));
   c->lights = arena_array<LightPoint>(keep, plan.light_points);
   c->counts = arena_array_zeroed<ChangeCounts>(keep, plan.threads);
@@ -72,7 +75,8 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
 bool fits(const Coherence& c, const FrameData& frame) {
   bool has_tables = c.tables.words.count > 0;
   return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.count <= c.plan.light_points &&
-         (has_tables || !keeps_tables(frame.mask, c.plan));
+         (has_tables || !keeps_tables(frame.mask, c.plan)) &&
+         (c.given.count > 0 || !has(frame.mask, Effect::environment_shadow));
 }
 
 bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
@@ -118,6 +122,8 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
     for_each_changed_box(
         c->moving, [](void* tables, const Box& box) { add_dirty(static_cast<RayTables*>(tables), box); }, &c->tables);
   }
+  // Tiles that are not searched, since others trace their rows, may have changed in any way.
+  std::fill(c->given.begin(), c->given.end(), is_unchanged(*c) ? 0 : ~std::uint64_t(0));
   forget_frame(c);  // until the frame is complete
   c->following = true;
   return true;
@@ -159,13 +165,31 @@ void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, Tr
   CHECK_LT(tile_row, c->tile_rows);
   const std::uint64_t known = known_pixels(*c, tile_row);
   for (std::uint32_t tile = tile_row * c->tile_columns; tile < (tile_row + 1) * c->tile_columns; ++tile) {
-    std::uint64_t found = 0;
+    const std::uint64_t unknown = ~known & pixels_in_picture(*c, tile);
+    std::uint64_t found = 0, given = unknown;
     if (known != 0)
       found = c->plan.tables_only ? find_blocks(*c, tile) & known
-                                  : find_changed_pixels(c->search, tile, known, &c->counts[thread], stats);
-    const std::uint64_t unknown = ~known & pixels_in_picture(*c, tile);
+                                  : find_changed_pixels(c->search, tile, known, &given, &c->counts[thread], stats);
+    if (c->given.count) c->given[tile] = given;
     if (!c->plan.tables_only) forget_shadows(c->search, tile, unknown);
     c->changed[tile] = found | unknown;
+  }
+}
+
+void spread_changes(Coherence* c) {
+  if (c->given.empty() || !has(c->search.frame->mask, Effect::environment_shadow)) return;
+  for (std::uint32_t tile = 0; tile < c->given.count; ++tile) {
+    const std::uint32_t left = tile % c->tile_columns * kChangeTileSide, top = tile / c->tile_columns * kChangeTileSide;
+    for (std::uint64_t rest = c->given[tile]; rest; rest &= rest - 1) {
+      const auto i = static_cast<std::uint32_t>(__builtin_ctzll(rest));
+      // The pixels that take light from it.
+      const std::uint32_t column = left + i % kChangeTileSide, row = top + i / kChangeTileSide;
+      for (std::uint32_t y = row - std::min(row, kTakenAfter); y <= row + kTakenBefore && y < c->plan.height; ++y)
+        for (std::uint32_t x = column - std::min(column, kTakenAfter); x <= column + kTakenBefore && x < c->plan.width;
+             ++x)
+          c->changed[y / kChangeTileSide * c->tile_columns + x / kChangeTileSide] |=
+              std::uint64_t(1) << (y % kChangeTileSide * kChangeTileSide + x % kChangeTileSide);
+    }
   }
 }
 

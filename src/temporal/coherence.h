@@ -28,6 +28,7 @@ struct Coherence {
   Array<TileHits> tiles;
   Array<KnownShadows> shadows;   // as in ChangeSearch
   Array<std::uint64_t> changed;  // pixels of each tile to trace, bit 8·y + x
+  Array<std::uint64_t> given;    // those that may give other light to the pixels about them; empty: none ever do
   Array<LightPoint> lights;      // of the last frame
   Array<MarkingObserver> observers;
   Array<ChangeCounts> counts;  // for each thread
@@ -64,7 +65,9 @@ bool is_unchanged(const Coherence& c);
 
 // Finds the pixels to trace in a row of tiles; threads may share the rows.
 void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, TraceStats* stats);
-// After all rows: deletes the records of what is traced again.
+// After all rows: adds the pixels that take light from those about them, which give other light ...
+void spread_changes(Coherence* c);
+// ... and deletes the records of what is traced again.
 void clear_changes(Coherence* c);
 // Lists the pixels to trace of a row of tiles as spans, at most row_spans_max(width); returns their number.
 constexpr std::uint32_t line_spans_max(std::uint32_t width) { return width / 2 + 1; }

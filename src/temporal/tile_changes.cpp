@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "shade/camera.h"
 #include "shade/filters.h"
+#include "shade/interleaved.h"
 #include "shade/lights.h"
 #include "shade/trace_spans.h"
 
@@ -72,6 +73,7 @@ struct TileSearch {
   const FrameData& frame;
   const TilePixels& pixels;
   std::uint64_t changed;
+  std::uint64_t given;  // pixels that may give other light to those about them
   ChangeCounts* counts;
   TraceStats* stats;
   const Hit* hits = nullptr;  // of the sample
@@ -279,6 +281,67 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   }
 }
 
+// All shadow rays from the points towards a distant light.
+Beam distant_beam(const EnvironmentLight& light, const TileHits& hits) {
+  const Vec3 room = {hits.room, hits.room, hits.room};
+  return beam_along({hits.points.low - room, hits.points.high + room}, {light.direction, light.direction}, kInfinity);
+}
+
+// Calls visit(index, light) for each distant light of the environment towards which the tile has a ray that can meet a
+// change. Stops when it returns false.
+template <class Visit>
+void for_each_distant_suspect(const ChangeSearch& search, const TileHits& hits, Visit visit) {
+  const FrameData& frame = *search.frame;
+  if (!has(frame.mask, Effect::environment_shadow) || is_empty(hits.points) || !search.moving->changed) return;
+  const EnvironmentLights& lights = *frame.environment_lights;
+  for (std::uint32_t i = 0; i < lights.count; ++i)
+    if (meets_change(*search.moving, distant_beam(lights.light[i], hits)) && !visit(i, lights.light[i])) return;
+}
+
+// Pixels of which a ray towards the environment is blocked where it was not, or no longer.
+void find_changed_openness(TileSearch* t, ShadowRays* s) {
+  if (s->rays.count == 0) return;
+  const FrameData& frame = t->frame;
+  const MovingGeometry& m = *t->search.moving;
+  ShadowContext shadow = {&frame, kNone};
+  MovingFilter context = {&m, {frame.filter_every_shadow ? frame.accept_opaque : nullptr, &shadow}};
+  HitFilter opaque = {accept_moving, &context}, other = {accept_static, &context};
+  const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
+  const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s->rays.count);
+  const std::uint64_t changed = blocked_among(kBvhAccel, m.last, *s, all, filter, t->stats) ^
+                                blocked_among(kBvhAccel, m.now, *s, all, filter, t->stats);
+  const std::uint64_t hidden = blocked_among(*frame.first_rays, frame.accel, *s, changed, &other, t->stats);
+  t->counts->moving_rays += 2 * s->rays.count;
+  t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(changed));
+  for (std::uint32_t i = 0; i < s->rays.count; ++i)
+    if ((changed & ~hidden) >> i & 1) t->given |= s->pixel[i];
+  s->rays.count = 0;
+}
+
+// Adds the pixels that may give other light to `given`: without a first hit of the last frame, or by their rays.
+void find_other_light(TileSearch* t, const TileHits& hits) {
+  if (!has(t->frame.mask, Effect::environment_shadow)) return;
+  t->given |= t->changed;  // no receivers: their rays are not looked at
+  ShadowRays s;
+  s.rays.count = 0;
+  for_each_distant_suspect(t->search, hits, [&](std::uint32_t index, const EnvironmentLight& light) {
+    for (std::uint32_t k = 0; k < t->receiver_count; ++k) {
+      const std::uint32_t i = t->receiver[k];
+      if (morton_place(t->pixels.x[i] % kPatternSide, t->pixels.y[i] % kPatternSide) != index % kPatternPixels)
+        continue;
+      if (t->given & bit_of(t->pixels, i)) continue;
+      const Surface& surface = surface_of(t, k);
+      if (is_zero(surface.diffuse) || !arrives(light, surface)) continue;
+      s.pixel[s.rays.count] = bit_of(t->pixels, i);
+      set_ray(&s.rays, s.rays.count++, {safe_origin(surface, 1), light.direction, kInfinity});
+      if (s.rays.count == kPacketMax) find_changed_openness(t, &s);
+    }
+    return true;
+  });
+  find_changed_openness(t, &s);
+  t->changed |= t->given;
+}
+
 // Calls visit(run, light, has_changed) for each light that has changed, or to which the tile has a ray that can meet a
 // change. Stops when it returns false.
 template <class Visit>
@@ -316,7 +379,7 @@ std::uint64_t find_marked(const ChangeSearch& search, std::uint32_t column, std:
 }
 
 std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known_pixels,
-                              ChangeCounts* counts, TraceStats* stats) {
+                              std::uint64_t* given, ChangeCounts* counts, TraceStats* stats) {
   const FrameData& frame = *search.frame;
   const TileHits& hits = search.tiles[tile];
   const std::uint32_t column = tile % search.tile_columns * kChangeTileSide,
@@ -326,15 +389,18 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, st
       search.moving->changed && meets_change(*search.moving, camera_beam(frame.camera, column, row, hits));
   bool any = seen;
   if (!any) for_each_suspect(search, hits, [&](const LightRun&, std::uint32_t, bool) { return !(any = true); });
+  if (!any)
+    for_each_distant_suspect(search, hits, [&](std::uint32_t, const EnvironmentLight&) { return !(any = true); });
   if (!any) return marked;
   const TilePixels pixels = pixels_of(frame.settings, column, row, known_pixels);
   if (pixels.count == 0) return 0;
-  TileSearch t = {search, frame, pixels, marked, counts, stats};
+  TileSearch t = {search, frame, pixels, marked, *given, counts, stats};
   for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
     t.hits = search.last.first_hits + std::size_t(sample) * frame.settings.width * frame.settings.height;
     t.offset = sample_offset(sample, frame.settings.samples_per_pixel);
     if (seen) find_changed_hits(&t);
     find_receivers(&t);
+    find_other_light(&t, hits);
     KnownShadows* known = known_shadows(search, sample, tile);
     for_each_suspect(search, hits, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
       const bool is_kept = light < search.known_lights;
@@ -344,6 +410,7 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, st
       return true;
     });
   }
+  *given = t.given;
   return t.changed;
 }
 
@@ -359,58 +426,10 @@ void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_
 }
 
 std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
-                                  ChangeCounts* counts, TraceStats* stats) {
-  const std::uint64_t changed = find_changes_of(search, tile, known, counts, stats);
+                                  std::uint64_t* given, ChangeCounts* counts, TraceStats* stats) {
+  const std::uint64_t changed = find_changes_of(search, tile, known, given, counts, stats);
   forget_shadows(search, tile, changed);
   return changed;
-}
-
-namespace {
-
-// How far curved_origin() may lift a point of the triangle, at most.
-float lift_bound(const FrameData& frame, const Triangle& t, const Vec3& point, const float* weight) {
-  float lift = 0;
-  for (std::uint32_t i = 0; i < 3; ++i)
-    lift += std::fabs(weight[i] * dot(point - frame.positions[t.vertex(i)], frame.normals[t.vertex(i)]));
-  return lift * 1.02f;  // normals may be 1 % too long (scene/validate.cpp)
-}
-
-}  // namespace
-
-TileHits measure_tile(const FrameData& frame, const Hit* first_hits, std::uint32_t column, std::uint32_t row,
-                      std::uint64_t known) {
-  const Settings& settings = frame.settings;
-  TileHits tile;
-  float reach = 0;  // largest coordinate of the triangles
-  const std::uint32_t right = std::min(column + kChangeTileSide, settings.width),
-                      bottom = std::min(row + kChangeTileSide, settings.height);
-  for (std::uint32_t sample = 0; sample < settings.samples_per_pixel; ++sample) {
-    for (std::uint32_t y = row; y < bottom; ++y) {
-      if (!(known >> (8 * (y - row)) & 1)) continue;
-      const Hit* line = first_hits + (std::size_t(sample) * settings.height + y) * settings.width;
-      for (std::uint32_t x = column; x < right; ++x) {
-        const Hit& hit = line[x];
-        if (hit.triangle == kNoTriangle) {
-          tile.t_max = kInfinity;
-          continue;
-        }
-        const Triangle& t = frame.scene->triangles[hit.triangle];
-        const float weight[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-        Vec3 point = {0, 0, 0};
-        for (std::uint32_t i = 0; i < 3; ++i) {
-          point += frame.positions[t.vertex(i)] * weight[i];
-          reach = std::max(reach, max_component(abs(frame.positions[t.vertex(i)])));
-        }
-        tile.t_max = std::max(tile.t_max, hit.t);
-        tile.points = merge(tile.points, point);
-        if (frame.normals.count) tile.room = std::max(tile.room, lift_bound(frame, t, point, weight));
-      }
-    }
-  }
-  // Shadow rays start off their point by at most 9 times origin_offset(), which is at most 36 · 2^-24 of the largest
-  // coordinate of the triangle (keep_off_edges()), or above the curved surface (curved_origin()).
-  tile.room += reach * 0x1p-15f;
-  return tile;
 }
 
 }  // namespace pocketray

@@ -54,9 +54,10 @@ struct ChangeCounts {
   std::uint64_t static_rays = 0;  // shadow rays against everything else
 };
 
-// Of the tile's pixels `known`, whose last frame is kept, bit 8·y + x for each that must be traced again.
+// Of the tile's pixels `known`, whose last frame is kept, bit 8·y + x for each that must be traced again. Adds to `given`
+// those that may give other light to the pixels about them (shade/interleaved.h).
 std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
-                                  ChangeCounts* counts, TraceStats* stats);
+                                  std::uint64_t* given, ChangeCounts* counts, TraceStats* stats);
 // What is known of the shadows of pixels that are traced again no longer holds.
 void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed);
 

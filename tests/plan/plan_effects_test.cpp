@@ -73,7 +73,8 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       // Stored, or by request.
       {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective) &
-                         ~bit(E::environment) & ~bit(E::undersampling) & ~bit(E::source_selection)},
+                         ~bit(E::environment) & ~bit(E::environment_shadow) & ~bit(E::undersampling) &
+                         ~bit(E::source_selection)},
   };
   for (const Row& row : rows) {
     CAPTURE(row.features);
@@ -121,6 +122,37 @@ TEST_CASE("plan_effects_give_reasons") {
   CHECK(reason(plan, Effect::undersampling) == "instant radiosity needs every pixel");
   CHECK_FALSE(has(plan.mask, Effect::selective));
   CHECK_FALSE(has(plan.mask, Effect::undersampling));
+}
+
+// Goal: shadows from the environment are on where it lights something diffuse whose pixels are traced one by one, never
+// forced. Method: each reason that speaks against them.
+TEST_CASE("plan_effects_shadow_what_an_environment_lights") {
+  const TestEnvironment even = even_environment({1, 1, 1});
+  auto s = generate_scene(0, 1);
+  auto reason_with = [&](void (*change)(Settings*)) {
+    Settings settings = settings_for(0, 8, 6);
+    settings.forced_on = bit(Effect::environment_shadow);
+    change(&settings);
+    const EffectPlan plan = plan_effects(s->scene, settings);
+    const std::string text = reason(plan, Effect::environment_shadow);
+    CHECK(has(plan.mask, Effect::environment_shadow) ==
+          (text.find("are diffuse") != std::string::npos && text[0] != 'n'));
+    return text;
+  };
+  CHECK(reason_with([](Settings*) {}) == "no environment");
+  even.give(&s->scene);
+  const std::string on = reason_with([](Settings*) {});
+  CHECK(on.find(" are diffuse") != std::string::npos);
+  CHECK(on[0] != 'n');
+  CHECK(reason_with([](Settings* t) { t->environment_shadows = 0; }) == "--environment-shadows 0");
+  CHECK(reason_with([](Settings* t) { t->indirect = IndirectChoice::none; }) == "no indirect light requested");
+  CHECK(reason_with([](Settings* t) { t->selective_contrast = 0.1f; }) == "selective rendering interpolates pixels");
+  CHECK(reason_with([](Settings* t) { t->resolution = Resolution::half; }) == "undersampling reconstructs pixels");
+  CHECK(reason_with([](Settings* t) { t->forced_off = bit(Effect::environment); }) == "no environment");
+  for (Material& m : s->materials) m.diffuse = {0, 0, 0};
+  s->bind();
+  even.give(&s->scene);
+  CHECK(reason_with([](Settings*) {}).rfind("none of ", 0) == 0);
 }
 
 // Goal: source selection is on where there are many lights, never forced. Method: one light fewer, and as many as it

@@ -127,7 +127,8 @@ TEST_CASE("probe_traps_an_effect_that_is_not_allowed") {
     if (!has(all, row.effect)) continue;
     CAPTURE(std::string(row.name));
     Renderer* renderer = row.effect == Effect::instant_radiosity  ? &with_virtual_lights->renderer
-                         : row.effect == Effect::environment      ? &with_environment->renderer
+                         : row.effect == Effect::environment || row.effect == Effect::environment_shadow
+                             ? &with_environment->renderer
                          : row.effect == Effect::source_selection ? &with_many_lights->renderer
                          : row.effect == Effect::selective || row.effect == Effect::undersampling
                              ? &interpolated->renderer

@@ -103,8 +103,8 @@ TEST_CASE("environment_reference_is_the_integral_over_directions") {
     }
 }
 
-// Goal: what stands between a surface and the environment shades it, in light transport alone. Method: a black lid
-// above the floor; only light from beside it arrives.
+// Goal: what stands between a surface and the environment shades it, in the renderer's model where shadows from the
+// environment are simulated. Method: a black lid above the floor; only light from beside it arrives.
 TEST_CASE("environment_reference_casts_shadows") {
   const TestEnvironment even = even_environment({1, 1, 1});
   Material white;
@@ -120,7 +120,11 @@ TEST_CASE("environment_reference_casts_shadows") {
   const Vec3d way = normalize(Vec3d{0, -0.2, -1});
   // The lid is four unit squares at distance 1, each with the form factor .1385316 to a point below its corner.
   check_equal(estimate(t, Transport::physical, Vec3d{0, 0, 0} - way * 2.0, way, 40000), 1 - 4 * 0.1385316, 1e-3);
-  check_equal(estimate(t, Transport::model, Vec3d{0, 0, 0} - way * 2.0, way, 40000), 1, 1e-3);
+  check_equal(estimate(t, Transport::model, Vec3d{0, 0, 0} - way * 2.0, way, 40000), 1 - 4 * 0.1385316, 1e-3);
+  Settings open = small_settings();
+  open.environment_shadows = 0;
+  const TestReference unshadowed(s.scene, open);
+  check_equal(estimate(unshadowed, Transport::model, Vec3d{0, 0, 0} - way * 2.0, way, 40000), 1, 1e-3);
 }
 
 // Goal: white furnace: in an even environment an object that reflects everything cannot be seen. Method: a white

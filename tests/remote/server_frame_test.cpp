@@ -10,6 +10,7 @@
 #include "support/effort.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
+#include "support/test_environment.h"
 
 using namespace pocketray;
 
@@ -83,6 +84,8 @@ TEST_CASE("server_frames_follow_every_setting") {
     generated->lights.push_back(light);
   }
   generated->bind();
+  const TestEnvironment even = even_environment({0.3f, 0.3f, 0.3f});
+  even.give(&generated->scene);
   std::vector<std::uint8_t> bytes(baked_size(generated->scene));
   baked_write(generated->scene, bytes.data());
   SceneStore store;

@@ -160,8 +160,15 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
     s.generated->cameras[0].vertical_extent = 4 * s.scale;
   }
   s.generated->bind();
+  if (next_u32(&s.rng) % 3 == 0) {
+    s.environment = std::make_unique<TestEnvironment>(16, 8, Vec3{0.4f, 0.5f, 0.6f}, [](const Vec3d& d, int) {
+      return d.x > 0.8 ? Vec3d{5, 4, 3} : Vec3d{1 + d.y, 1.2 + d.y, 1.5 + d.y};
+    });
+    s.environment->give(&s.generated->scene);
+  }
   s.rest = s.generated->rest_positions;
-  const Settings plain = settings_for(features, 24 + next_u32(&s.rng) % 30, 20 + next_u32(&s.rng) % 20);
+  Settings plain = settings_for(features, 24 + next_u32(&s.rng) % 30, 20 + next_u32(&s.rng) % 20);
+  plain.environment_shadows = next_u32(&s.rng) % 40;
   const AccelInfo* const accels[] = {nullptr, nullptr,
                                      kAccelList[next_u32(&s.rng) % (sizeof kAccelList / sizeof kAccelList[0])]};
   const AccelInfo* accel = accels[next_u32(&s.rng) % 3];

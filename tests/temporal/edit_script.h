@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "engine/coherent.h"
 #include "support/generated_scene.h"
+#include "support/test_environment.h"
 #include "temporal/shared_script.h"
 
 namespace pocketray {
@@ -13,6 +14,7 @@ namespace pocketray {
 struct EditScript {
   Rng rng;
   std::unique_ptr<GeneratedScene> generated;
+  std::unique_ptr<TestEnvironment> environment;  // or none
   std::unique_ptr<TestRenderer> whole, coherent;
   std::vector<Vec3> rest;  // positions at rest before any edit
   double seconds = 0;

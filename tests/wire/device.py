@@ -11,7 +11,7 @@ EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-ma
            "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
            "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective", "environment",
-           "undersampling", "source-selection"]
+           "undersampling", "source-selection", "environment-shadow"]
 
 failures = []
 
@@ -158,7 +158,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=16, more=b""):
+def hello(version=17, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
 
 
@@ -171,7 +171,7 @@ def pack_camera(camera):
 
 
 DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4,
-                cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, selective=0.0, resolution=0, light_tolerance=0.0625, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
+                cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=64, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
                 largest=16, level=1, order=(), measure=0)
 
 
@@ -179,9 +179,10 @@ def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
     rows = struct.pack("<HHHB", r["first"], end, r["largest"], r["level"]) + bytes(x for run in r["order"] for x in run)
-    settings = struct.pack("<HHBBHfBBBBHfBfII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
+    settings = struct.pack("<HHBBHfBBBBHfBfHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
-                           r["reconstruction"], r["virtual_lights"], r["selective"], r["resolution"], r["light_tolerance"], r["on"], r["off"])
+                           r["reconstruction"], r["virtual_lights"], r["selective"], r["resolution"], r["light_tolerance"],
+                           r["environment_shadows"], r["on"], r["off"])
     view = struct.pack("<BH", r["stated"], r["index"]) + pack_camera(r["camera"])
     if kind == FRAME_CHANGE:
         return message(kind, struct.pack("<Id", r["frame"], r["time"]) + pack_camera(r["camera"]) + rows)
@@ -203,7 +204,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\20\0", "the server says hello first, of version 16")
+            check(kind == HELLO and fields[:6] == b"PRAY\21\0", "the server says hello first, of version 17")
             self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
 
     def send(self, data):

@@ -1,0 +1,44 @@
+// The environment's diffuse light at first hits, with shadows: the irradiance from all directions, exact where nothing
+// is in the way, by the share of the distant lights that arrives. A ratio has no noise where nothing or everything is
+// hidden [Heitz et al. 2018, "Combining analytic direct illumination and stochastic shadows"].
+#include "effect/effect_probe.h"
+#include "indirect/environment.h"
+#include "shade/interleaved_rays.h"
+
+namespace pocketray {
+namespace {
+
+struct DistantSource {
+  const EnvironmentLights& lights;
+  std::uint32_t count;
+
+  bool arrives(std::uint32_t index, const Surface& s, const Vec3& origin, Vec3* light, Ray* ray) const {
+    const EnvironmentLight& from = lights.light[index];
+    if (!pocketray::arrives(from, s)) return false;
+    *light = from.irradiance * dot(s.normal, from.direction);
+    *ray = {origin, from.direction, __builtin_inff()};
+    return true;
+  }
+};
+
+void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
+            InterleavedLight* light) {
+  effect_entered<Effect::environment_shadow>();
+  CHECK(frame.environment_lights != nullptr);
+  const EnvironmentLights& lights = *frame.environment_lights;
+  gather_interleaved(frame, points, DistantSource{lights, lights.count}, true, stats, rays, light);
+}
+
+Vec3 irradiance(const FrameData& frame, const Surface& s, const InterleavedLight& sum) {
+  CHECK(environment_of(*frame.scene) != nullptr);
+  Vec3 result = environment_irradiance(*environment_of(*frame.scene), s.normal);
+  for (int c = 0; c < 3; ++c)
+    if (sum.lit[c] < sum.open[c]) result[c] *= sum.lit[c] / sum.open[c];
+  return result;
+}
+
+}  // namespace
+
+const InterleavedSource kEnvironmentSource = {Effect::environment_shadow, gather, irradiance};
+
+}  // namespace pocketray
