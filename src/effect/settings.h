@@ -37,7 +37,7 @@ struct Quality {
   float selective_contrast = 0;       // up to which pixels are interpolated, as displayed; 0: all are traced
   Resolution resolution = Resolution::full;
   float light_tolerance = 0.0625f;  // of many lights, the share that may go untested for shadows; 0: all are tested
-  std::uint32_t environment_shadows = 64;  // directions; a pixel traces shadow rays along a sixteenth of them; 0: none
+  std::uint32_t environment_shadows = 32;  // directions; a pixel traces shadow rays along a sixteenth of them; 0: none
 };
 
 // Whether frames trace only what may have changed. automatic: where that pays.

@@ -24,23 +24,48 @@ void hilbert_place(std::uint32_t side, std::uint32_t n, std::uint32_t* column, s
   *column = x, *row = y;
 }
 
-double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+// The lights are made of cells, which hold several texels, or of large texels a part: few enough for CPUs without an
+// FPU, and small enough that not several lights lie in the middle of one.
+constexpr std::uint32_t kCellsAlong = 64;
 
-// Large texels are divided, or several lights would lie in the middle of one.
-constexpr std::uint32_t kFinestSide = 64;
-
-// A texel, or a part of one, as a light: what it sends, up to a factor that all share.
-struct TexelLight {
+// What a cell sends, up to a factor that all share.
+struct CellLight {
   Vec3d direction, irradiance;
+  double luminance;
 };
-TexelLight texel_light(const Scene& scene, std::uint32_t side, std::uint32_t n) {
-  const std::uint32_t texels = scene.environment_info[0].side, parts = side / texels;
+
+// Sums over texels are integers: mantissa × 2^exponent, at most 40 bits, of at most 2^8 texels; in luminance, by weights
+// of 10 bits and places of 5.
+static_assert(kEnvironmentSideMax / kCellsAlong <= 16, "64 bits hold the sums");
+CellLight cell_light(const Scene& scene, std::uint32_t n) {
+  const std::uint32_t side = scene.environment_info[0].side;
+  const std::uint32_t along = side > kCellsAlong ? side / kCellsAlong : 1;  // texels of the cell
   std::uint32_t column, row;
-  hilbert_place(side, n, &column, &row);
-  const Vec3d point = from_octahedral(2 * (column + 0.5) / side - 1, 2 * (row + 0.5) / side - 1);
-  const double square = dot(point, point), distance = std::sqrt(square);
-  const std::uint32_t texel = scene.environment_texels[row / parts * texels + column / parts];
-  return {point / distance, to_double(environment_texel(texel)) / (square * distance)};
+  hilbert_place(kCellsAlong, n, &column, &row);
+  std::uint64_t color[3] = {}, sum = 0, across = 0, down = 0;
+  for (std::uint32_t y = 0; y < along; ++y)
+    for (std::uint32_t x = 0; x < along; ++x) {
+      const std::uint32_t texel =
+          side > kCellsAlong ? scene.environment_texels[(row * along + y) * side + column * along + x]
+                             : scene.environment_texels[row * side / kCellsAlong * side + column * side / kCellsAlong];
+      const std::uint32_t part[3] = {texel & 511, texel >> 9 & 511, texel >> 18 & 511}, exponent = texel >> 27;
+      const std::uint64_t luminance = std::uint64_t(218 * part[0] + 732 * part[1] + 74 * part[2]) << exponent;
+      for (int c = 0; c < 3; ++c) color[c] += std::uint64_t(part[c]) << exponent;
+      sum += luminance, across += luminance * (2 * x + 1), down += luminance * (2 * y + 1);
+    }
+  CellLight cell = {{0, 0, 0}, {0, 0, 0}, 0};
+  if (sum == 0) return cell;
+  // The middle of its light.
+  const double size = 2.0 / kCellsAlong, luminance = static_cast<double>(sum);
+  const double u = static_cast<double>(across) / luminance / (2 * along);
+  const double v = static_cast<double>(down) / luminance / (2 * along);
+  const Vec3d point = from_octahedral((column + u) * size - 1, (row + v) * size - 1);
+  const double square = dot(point, point), distance = std::sqrt(square), solid_angle = 1 / (square * distance);
+  cell.direction = point / distance;
+  cell.irradiance =
+      Vec3d{static_cast<double>(color[0]), static_cast<double>(color[1]), static_cast<double>(color[2])} * solid_angle;
+  cell.luminance = luminance / 1024 * solid_angle;
+  return cell;
 }
 
 }  // namespace
@@ -50,15 +75,15 @@ void place_environment_lights(const Scene& scene, std::uint32_t count, Environme
   CHECK_LE(count, kEnvironmentLightMax);
   lights->count = 0, lights->wanted = count;
   CHECK_LE(environment_of(scene)->side * environment_of(scene)->side, scene.environment_texels.count);
-  const std::uint32_t side = environment_of(scene)->side < kFinestSide ? kFinestSide : environment_of(scene)->side;
+  constexpr std::uint32_t cell_count = kCellsAlong * kCellsAlong;
   double total = 0;
-  for (std::uint32_t n = 0; n < side * side; ++n) total += luminance_of(texel_light(scene, side, n).irradiance);
+  for (std::uint32_t n = 0; n < cell_count; ++n) total += cell_light(scene, n).luminance;
   if (!(total > 0) || count == 0) return;
   const double share = total / count;
   Vec3d axis = {0, 0, 0}, sum = {0, 0, 0};
   double room = share;  // of the light that is being filled
-  auto add = [&](const TexelLight& texel, double part) {
-    axis += texel.direction * (part * luminance_of(texel.irradiance)), sum += texel.irradiance * part;
+  auto add = [&](const CellLight& cell, double part) {
+    axis += cell.direction * (part * cell.luminance), sum += cell.irradiance * part;
   };
   auto finish = [&] {
     const Vec3d unit = normalize(axis), scaled = sum / share;
@@ -67,15 +92,14 @@ void place_environment_lights(const Scene& scene, std::uint32_t count, Environme
       light.direction[c] = static_cast<float>(unit[c]), light.irradiance[c] = static_cast<float>(scaled[c]);
     axis = sum = {0, 0, 0}, room = share;
   };
-  for (std::uint32_t n = 0; n < side * side; ++n) {
-    const TexelLight texel = texel_light(scene, side, n);
-    const double luminance = luminance_of(texel.irradiance);
-    double left = luminance;
+  for (std::uint32_t n = 0; n < cell_count; ++n) {
+    const CellLight cell = cell_light(scene, n);
+    double left = cell.luminance;
     while (left > room && lights->count + 1 < count) {  // the last light takes what rounding leaves
-      add(texel, room / luminance), left -= room;
+      add(cell, room / cell.luminance), left -= room;
       finish();
     }
-    if (left > 0) add(texel, left / luminance), room -= left;
+    if (left > 0) add(cell, left / cell.luminance), room -= left;
   }
   if (!is_zero(axis)) finish();
   CHECK_LE(lights->count, count);

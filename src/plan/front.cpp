@@ -99,6 +99,7 @@ Front builtin_front() {
     float cut_off, contrast;
     Resolution resolution = Resolution::full;
     float light_tolerance = 0.0625f;
+    std::uint32_t environment_shadows = 32;
   } kLadder[] = {{1, 0, 1, 4, 0.5f, Resolution::half, 0.5f},
                  {1, 0, 1, 4, 0.5f, Resolution::full, 0.5f},
                  {1, 1, 1, 4, 0.25f, Resolution::full, 0.25f},
@@ -108,12 +109,12 @@ Front builtin_front() {
                  {1, 8, 4, 0.5f, 0},
                  {2, 8, 4, 0.5f, 0},
                  {4, 8, 4, 0.5f, 0},
-                 {4, 8, 8, 0.5f, 0},
-                 {8, 8, 8, 0.5f, 0},
-                 {8, 8, 16, 0.5f, 0},
-                 {16, 8, 16, 0.5f, 0},
-                 {16, 8, 64, 0.5f, 0},
-                 {16, 16, 64, 0, 0, Resolution::full, 0}};
+                 {4, 8, 8, 0.5f, 0, Resolution::full, 0.0625f, 64},
+                 {8, 8, 8, 0.5f, 0, Resolution::full, 0.0625f, 64},
+                 {8, 8, 16, 0.5f, 0, Resolution::full, 0.0625f, 128},
+                 {16, 8, 16, 0.5f, 0, Resolution::full, 0.0625f, 128},
+                 {16, 8, 64, 0.5f, 0, Resolution::full, 0.0625f, 256},
+                 {16, 16, 64, 0, 0, Resolution::full, 0, 256}};
   static_assert(sizeof kLadder / sizeof kLadder[0] <= kFrontCandidateMax, "a front holds them");
   Front front;
   Candidate c;
@@ -126,6 +127,7 @@ Front builtin_front() {
     c.selective_contrast = row.contrast;
     c.resolution = row.resolution;
     c.light_tolerance = row.light_tolerance;
+    c.environment_shadows = row.environment_shadows;
     // Guesses within a factor of two of `pocketray bench` on the built-in scenes.
     double reach = row.depth < 4 ? row.depth : 4, points = row.area_lights;
     double exact = row.cut_off == 0 ? 1.2 : row.cut_off > 1 ? 0.95 : 1.0;

@@ -11,11 +11,12 @@
 namespace pocketray {
 namespace {
 
-// Pixels show the same surface if their normals differ by less than this cosine, and neither lies off the other's plane
-// by more than this slope.
+// Neighbours show the same surface if it is the same triangle, or if their normals differ by less than this cosine and
+// the second lies off the first's plane by at most this slope.
 constexpr float kSameNormal = 0.9f, kSamePlane = 0.15f;
 
 bool shows_same(const Surface& a, const Surface& b) {
+  if (a.hit.triangle == b.hit.triangle) return true;
   if (!(dot(a.normal, b.normal) > kSameNormal)) return false;
   Vec3 way = b.point - a.point;
   float height = dot(a.geometric, way);
@@ -28,11 +29,13 @@ constexpr int kSourceCount = 2;
 // An aligned tile and the pixels about it that its pixels take light from, by rows.
 constexpr std::uint32_t kRegionSide = kTakenBefore + kTileSide + kTakenAfter;
 constexpr std::uint32_t kRegionPixels = kRegionSide * kRegionSide;
+enum class Link : std::uint8_t { unknown, different, same };
 struct Region {
   bool is_known[kRegionPixels];
   bool is_hit[kRegionPixels];
   Surface surface[kRegionPixels];  // of those known that are hit, as is the light
   InterleavedLight light[kSourceCount][kRegionPixels];
+  Link right[kRegionPixels], below[kRegionPixels];  // whether it shows the same surface as the next pixel there
 };
 
 // Pixels to trace, in packets. Columns and rows count from the region's first.
@@ -131,23 +134,42 @@ void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std
   }
 }
 
+void link_neighbours(Region* region) {
+  auto link = [&](std::uint32_t a, std::uint32_t b, Link* l) {
+    if (*l == Link::unknown && region->is_known[b])
+      *l = region->is_hit[b] && shows_same(region->surface[a], region->surface[b]) ? Link::same : Link::different;
+  };
+  for (std::uint32_t k = 0; k < kRegionPixels; ++k) {
+    if (!region->is_known[k] || !region->is_hit[k]) continue;
+    if (k % kRegionSide + 1 < kRegionSide) link(k, k + 1, &region->right[k]);
+    if (k + kRegionSide < kRegionPixels) link(k, k + kRegionSide, &region->below[k]);
+  }
+}
+
+// Calls visit(k) for a pixel, and those within reach along a row or column to which all neighbours show the same.
+template <class Visit>
+void along(const Link* links, std::uint32_t step, std::uint32_t own, Visit visit) {
+  visit(own);
+  for (std::uint32_t k = own, i = 0; i < kTakenBefore && links[k - step] == Link::same; ++i) visit(k -= step);
+  for (std::uint32_t k = own, i = 0; i < kTakenAfter && links[k] == Link::same; ++i) visit(k += step);
+}
+
 // What a pixel takes from those about it: irradiance / π.
 Vec3 shared_light(const FrameData& frame, const Region& region, std::uint32_t column, std::uint32_t row) {
-  const std::uint32_t own = row * kRegionSide + column, first = own - kTakenBefore * kRegionSide - kTakenBefore;
-  const Surface& s = region.surface[own];
-  InterleavedLight sum[kSourceCount];
-  for (InterleavedLight& of_source : sum) of_source.pixel_count = 0;
-  for (std::uint32_t i = 0; i < kPatternPixels; ++i) {
-    const std::uint32_t k = first + i / kPatternSide * kRegionSide + i % kPatternSide;
-    if (!region.is_known[k] || !region.is_hit[k] || (k != own && !shows_same(s, region.surface[k]))) continue;
-    for (int source = 0; source < kSourceCount; ++source) {
-      sum[source].lit += region.light[source][k].lit, sum[source].open += region.light[source][k].open;
-      ++sum[source].pixel_count;
-    }
-  }
+  const std::uint32_t own = row * kRegionSide + column;
   Vec3 light = {0, 0, 0};
-  for (int source = 0; source < kSourceCount; ++source)
-    if (has(frame.mask, kSources[source]->effect)) light += kSources[source]->irradiance(frame, s, sum[source]);
+  for (int source = 0; source < kSourceCount; ++source) {
+    if (!has(frame.mask, kSources[source]->effect)) continue;
+    InterleavedLight sum;
+    sum.pixel_count = 0;
+    along(region.right, 1, own, [&](std::uint32_t in_row) {
+      along(region.below, kRegionSide, in_row, [&](std::uint32_t k) {
+        sum.lit += region.light[source][k].lit, sum.open += region.light[source][k].open;
+        ++sum.pixel_count;
+      });
+    });
+    light += kSources[source]->irradiance(frame, region.surface[own], sum);
+  }
   return light;
 }
 
@@ -169,6 +191,7 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   }
   find_first_hits(tracer, tile, tile.wanted, 0, tile.wanted.count, offset, true, &first);
   gather(tracer, tile, tile.wanted, 0, tile.wanted.count, first, region);
+  link_neighbours(region);
   tracer->tile_shadows = first.knows_shadows ? &first.shadows : nullptr;
   for (std::uint32_t i = 0; i < tile.wanted.count; ++i) {
     Surface* s = &first.shadows.surface[i];
@@ -196,7 +219,9 @@ void move_on(Region* region) {
     for (std::uint32_t column = 0; column < kRegionSide; ++column) {
       const std::uint32_t to = row * kRegionSide + column, from = to + kTileSide;
       region->is_known[to] = column + kTileSide < kRegionSide && region->is_known[from];
+      region->right[to] = region->below[to] = Link::unknown;
       if (!region->is_known[to]) continue;
+      region->right[to] = region->right[from], region->below[to] = region->below[from];
       region->is_hit[to] = region->is_hit[from];
       if (!region->is_hit[to]) continue;
       region->surface[to] = region->surface[from];
@@ -210,6 +235,7 @@ void trace_tile_row(Tracer* tracer, const AlignedTiles& tiles, std::uint32_t r, 
   SharedTile tile;
   for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
     std::fill_n(region.is_known, kRegionPixels, false);
+    std::fill_n(region.right, kRegionPixels, Link::unknown), std::fill_n(region.below, kRegionPixels, Link::unknown);
     for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
       tile.column = tiles.column + c * kTileSide, tile.row = tiles.row + r * kTileSide;
       if (c > 0) move_on(&region);

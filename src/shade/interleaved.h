@@ -1,7 +1,8 @@
 // Interleaved sampling [Keller & Heidrich 2001; Wald et al. 2002] of virtual lights and of the environment: each pixel
-// traces shadow rays to a sixteenth of the sources, by its place in a pattern of 4 × 4, and takes the mean of the
-// pixels about it on the same surface. A pixel depends on the 4 × 4 about it alone: whichever pixels are asked for,
-// those about them are traced, too, and the picture does not depend on how it is divided.
+// traces shadow rays to a sixteenth of the sources, by its place in a pattern of 4 × 4, and takes the mean of the pixels
+// about it on the same surface: those to which neighbours along its row, then along a column, show the same. A pixel
+// depends on the 4 × 4 about it alone: whichever pixels are asked for, those about them are traced, too, and the picture
+// does not depend on how it is divided.
 #pragma once
 #include "shade/strip.h"
 #include "shade/surface.h"

@@ -4,12 +4,14 @@
 #include <cstring>
 #include <string>
 
+#include "effect/setting_list.h"
 #include "golden/golden_frames.h"
 #include "scene/baked.h"
 #include "scene/builtin_helpers.h"
 #include "support/effort.h"
 #include "support/generated_scene.h"
 #include "support/hard_case.h"
+#include "support/test_environment.h"
 
 using namespace pocketray;
 
@@ -61,5 +63,27 @@ TEST_CASE("hard_63_golden_frames_are_the_same_in_every_build") {
   if (changed || rows != static_cast<int>(sizeof kGoldenFrames / sizeof *kGoldenFrames)) {
     std::printf("tests/golden/frames.inc should be:\n%s", table.c_str());
     FAIL("the table of golden frames does not match");
+  }
+}
+
+// Goal: the same of what frames of the built-in scenes do not show: shadows from an environment, and virtual lights.
+TEST_CASE("hard_63_interleaved_light_is_the_same_in_every_build") {
+  count_assertions("the same hash in every build");
+  const TestEnvironment sky(16, 8, {0.5f, 0.6f, 0.7f}, [](const Vec3d& d, int) {
+    return d.x > 0.75 ? Vec3d{8, 7, 6} : Vec3d{0.25, 0.5, 0.75};
+  });
+  int count;
+  const BuiltinScene* list = builtin_list(&count);
+  for (int i = 0; i < count; ++i) {
+    if (std::strcmp(list[i].name, "seesaw") != 0) continue;
+    auto built = build_builtin(list[i]);
+    sky.give(&built->scene);
+    Settings settings = golden_settings(built->scene);
+    for (bool bounces : {false, true}) {
+      if (bounces) settings.indirect = indirect_choice(Effect::instant_radiosity);
+      const Picture picture = render_picture(built->scene, settings, 1.5);
+      CAPTURE(bounces);
+      CHECK(picture_hash(picture.data(), picture.size()) == (bounces ? 0x72182683u : 0xc6838112u));
+    }
   }
 }

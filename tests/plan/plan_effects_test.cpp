@@ -149,8 +149,12 @@ TEST_CASE("plan_effects_shadow_what_an_environment_lights") {
   CHECK(reason_with([](Settings* t) { t->selective_contrast = 0.1f; }) == "selective rendering interpolates pixels");
   CHECK(reason_with([](Settings* t) { t->resolution = Resolution::half; }) == "undersampling reconstructs pixels");
   CHECK(reason_with([](Settings* t) { t->forced_off = bit(Effect::environment); }) == "no environment");
+  const std::uint32_t stored[1] = {kNone};
+  s->scene.radiosity_triangles = {stored, 1};
+  CHECK(reason_with([](Settings*) {}) == "radiosity stores them");
   for (Material& m : s->materials) m.diffuse = {0, 0, 0};
   s->bind();
+  s->scene.radiosity_triangles = {};
   even.give(&s->scene);
   CHECK(reason_with([](Settings*) {}).rfind("none of ", 0) == 0);
 }

@@ -171,7 +171,7 @@ def pack_camera(camera):
 
 
 DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4,
-                cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=64, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
+                cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
                 largest=16, level=1, order=(), measure=0)
 
 
