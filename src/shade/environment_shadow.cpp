@@ -29,9 +29,9 @@ void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats*
   gather_interleaved(frame, points, DistantSource{lights, lights.count}, true, stats, rays, light);
 }
 
-Vec3 irradiance(const FrameData& frame, const Surface& s, const InterleavedLight& sum) {
+Vec3 irradiance(const FrameData& frame, const Vec3&, const Vec3& normal, const InterleavedLight& sum) {
   CHECK(environment_of(*frame.scene) != nullptr);
-  Vec3 result = environment_irradiance(*environment_of(*frame.scene), s.normal);
+  Vec3 result = environment_irradiance(*environment_of(*frame.scene), normal);
   for (int c = 0; c < 3; ++c)
     if (sum.lit[c] < sum.open[c]) result[c] *= sum.lit[c] / sum.open[c];
   return result;

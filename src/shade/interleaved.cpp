@@ -15,8 +15,14 @@ namespace {
 // the second lies off the first's plane by at most this slope.
 constexpr float kSameNormal = 0.9f, kSamePlane = 0.15f;
 
-bool shows_same(const Surface& a, const Surface& b) {
-  if (a.hit.triangle == b.hit.triangle) return true;
+// What neighbours compare of a surface.
+struct Shown {
+  Vec3 point, normal, geometric;
+  std::uint32_t triangle;
+};
+
+bool shows_same(const Shown& a, const Shown& b) {
+  if (a.triangle == b.triangle) return true;
   if (!(dot(a.normal, b.normal) > kSameNormal)) return false;
   Vec3 way = b.point - a.point;
   float height = dot(a.geometric, way);
@@ -33,9 +39,10 @@ enum class Link : std::uint8_t { unknown, different, same };
 struct Region {
   bool is_known[kRegionPixels];
   bool is_hit[kRegionPixels];
-  Surface surface[kRegionPixels];  // of those known that are hit, as is the light
+  Shown shown[kRegionPixels];  // of those known that are hit, as is the light
   InterleavedLight light[kSourceCount][kRegionPixels];
   Link right[kRegionPixels], below[kRegionPixels];  // whether it shows the same surface as the next pixel there
+  InterleavedLight column[kRegionPixels];           // of a source, sums along columns; none yet: of no pixel
 };
 
 // Pixels to trace, in packets. Columns and rows count from the region's first.
@@ -120,8 +127,9 @@ void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std
     region->is_known[k] = true;
     region->is_hit[k] = first.hit[i].triangle != kNoTriangle;
     if (!region->is_hit[k]) continue;
-    region->surface[k] = first.shadows.surface[i];
-    surface[found] = &region->surface[k], in_region[found] = static_cast<std::uint8_t>(k);
+    const Surface& s = first.shadows.surface[i];
+    region->shown[k] = {s.point, s.normal, s.geometric, s.hit.triangle};
+    surface[found] = &s, in_region[found] = static_cast<std::uint8_t>(k);
     place[found++] = static_cast<std::uint8_t>(morton_place((tile.column + column - kTakenBefore) % kPatternSide,
                                                             (tile.row + row - kTakenBefore) % kPatternSide));
   }
@@ -137,7 +145,7 @@ void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std
 void link_neighbours(Region* region) {
   auto link = [&](std::uint32_t a, std::uint32_t b, Link* l) {
     if (*l == Link::unknown && region->is_known[b])
-      *l = region->is_hit[b] && shows_same(region->surface[a], region->surface[b]) ? Link::same : Link::different;
+      *l = region->is_hit[b] && shows_same(region->shown[a], region->shown[b]) ? Link::same : Link::different;
   };
   for (std::uint32_t k = 0; k < kRegionPixels; ++k) {
     if (!region->is_known[k] || !region->is_hit[k]) continue;
@@ -154,23 +162,30 @@ void along(const Link* links, std::uint32_t step, std::uint32_t own, Visit visit
   for (std::uint32_t k = own, i = 0; i < kTakenAfter && links[k] == Link::same; ++i) visit(k += step);
 }
 
-// What a pixel takes from those about it: irradiance / π.
-Vec3 shared_light(const FrameData& frame, const Region& region, std::uint32_t column, std::uint32_t row) {
-  const std::uint32_t own = row * kRegionSide + column;
-  Vec3 light = {0, 0, 0};
+void add(const InterleavedLight& light, InterleavedLight* sum) {
+  sum->lit += light.lit, sum->open += light.open, sum->pixel_count += light.pixel_count;
+}
+
+constexpr InterleavedLight kNoLight = {{0, 0, 0}, {0, 0, 0}, 0};
+
+// Adds what the wanted pixels take from those about them to the light that their surfaces emit.
+void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* region, FirstHits* first) {
   for (int source = 0; source < kSourceCount; ++source) {
     if (!has(frame.mask, kSources[source]->effect)) continue;
-    InterleavedLight sum;
-    sum.pixel_count = 0;
-    along(region.right, 1, own, [&](std::uint32_t in_row) {
-      along(region.below, kRegionSide, in_row, [&](std::uint32_t k) {
-        sum.lit += region.light[source][k].lit, sum.open += region.light[source][k].open;
-        ++sum.pixel_count;
+    std::fill_n(region->column, kRegionPixels, kNoLight);
+    for (std::uint32_t i = 0; i < wanted.count; ++i) {
+      Surface& s = first->shadows.surface[i];
+      if (first->hit[i].triangle == kNoTriangle || is_zero(s.diffuse)) continue;
+      InterleavedLight sum = kNoLight;
+      along(region->right, 1, wanted.row[i] * kRegionSide + wanted.column[i], [&](std::uint32_t in_row) {
+        InterleavedLight* column = &region->column[in_row];
+        if (column->pixel_count == 0)
+          along(region->below, kRegionSide, in_row, [&](std::uint32_t k) { add(region->light[source][k], column); });
+        add(*column, &sum);
       });
-    });
-    light += kSources[source]->irradiance(frame, region.surface[own], sum);
+      s.glow += s.diffuse * kSources[source]->irradiance(frame, s.point, s.normal, sum);
+    }
   }
-  return light;
 }
 
 // Traces a sample of the tile's wanted pixels and adds it to the image.
@@ -192,12 +207,11 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   find_first_hits(tracer, tile, tile.wanted, 0, tile.wanted.count, offset, true, &first);
   gather(tracer, tile, tile.wanted, 0, tile.wanted.count, first, region);
   link_neighbours(region);
+  add_shared_light(frame, tile.wanted, region, &first);
   tracer->tile_shadows = first.knows_shadows ? &first.shadows : nullptr;
   for (std::uint32_t i = 0; i < tile.wanted.count; ++i) {
     Surface* s = &first.shadows.surface[i];
     const bool hit = first.hit[i].triangle != kNoTriangle;
-    if (hit && !is_zero(s->diffuse))
-      s->glow += s->diffuse * shared_light(frame, *region, tile.wanted.column[i], tile.wanted.row[i]);
     const std::uint32_t column = tile.column + tile.wanted.column[i] - kTakenBefore,
                         row = tile.row + tile.wanted.row[i] - kTakenBefore;
     tracer->tile_pixel = i;
@@ -224,7 +238,7 @@ void move_on(Region* region) {
       region->right[to] = region->right[from], region->below[to] = region->below[from];
       region->is_hit[to] = region->is_hit[from];
       if (!region->is_hit[to]) continue;
-      region->surface[to] = region->surface[from];
+      region->shown[to] = region->shown[from];
       for (auto& light : region->light) light[to] = light[from];
     }
 }

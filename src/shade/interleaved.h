@@ -34,8 +34,8 @@ struct InterleavedSource {
   Effect effect;
   void (*gather)(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
                  InterleavedLight* light);
-  // Irradiance / π on a surface, from the sum over the pixels that show it.
-  Vec3 (*irradiance)(const FrameData& frame, const Surface& s, const InterleavedLight& sum);
+  // Irradiance / π at a point of unit normal, from the sum over the pixels that show its surface.
+  Vec3 (*irradiance)(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum);
 };
 extern const InterleavedSource kVirtualLightSource, kEnvironmentSource;
 

@@ -32,12 +32,12 @@ void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats*
                      light);
 }
 
-Vec3 irradiance(const FrameData& frame, const Surface& s, const InterleavedLight& sum) {
+Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
   CHECK_GT(sum.pixel_count, 0u);
   Vec3 result = sum.lit * (static_cast<float>(kPatternPixels) / static_cast<float>(sum.pixel_count));
   if (sum.pixel_count < kSharersMin) {  // all lights, by the mean visibility of those traced
-    result = virtual_irradiance(lights, s.point, s.normal);
+    result = virtual_irradiance(lights, point, normal);
     for (int c = 0; c < 3; ++c) result[c] *= sum.open[c] > 0 ? sum.lit[c] / sum.open[c] : 1;
   }
   return min(result, Vec3{lights.irradiance_max, lights.irradiance_max, lights.irradiance_max}) * (1 / kPiF);

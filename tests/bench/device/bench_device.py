@@ -122,6 +122,8 @@ def count_pixels(machine, program, scene, plugin, folder, symbols, options, effe
 
 def bake(baker, scene, shared, folder):
     """The scene as a .pray file, or None."""
+    if scene.endswith(".pray"):
+        return scene
     source = scene
     if scene == "buddha":
         source = os.path.join(shared, "scenes", BUDDHA)
