@@ -101,6 +101,10 @@ void make_tracers(Renderer* renderer) {
     if (has(renderer->effects.mask, Effect::undersampling))
       keep_window({&renderer->window_pixels[i * pixels], pixels}, {&renderer->window_states[i * pixels], pixels},
                   &renderer->tracers[i]);
+    if (is_interleaved(renderer->effects.mask) && renderer->interleaved_pixels.count) {
+      const std::uint32_t count = kept_pixel_count(renderer->settings);
+      keep_interleaved_pixels({&renderer->interleaved_pixels[i * count], count}, &renderer->tracers[i]);
+    }
     if (renderer->light_entries.count) {
       const std::uint32_t entries = search_entry_count(renderer->selected_light_max);
       renderer->tracers[i].light_entries = {&renderer->light_entries[i * entries], entries};

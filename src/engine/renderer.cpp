@@ -13,6 +13,7 @@
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
 #include "shade/camera.h"
+#include "shade/interleaved.h"
 #include "shade/lattice.h"
 #include "shade/selective.h"
 #include "shade/source_selection.h"
@@ -175,6 +176,9 @@ Status build_renderer_unexposed(Renderer* renderer) {
   if (has(renderer->effects.mask, Effect::selective))
     renderer->corners =
         arena_array<CellCorner>(&renderer->persistent_arena, selective_corner_count(renderer->settings));
+  if (is_interleaved(renderer->effects.mask))
+    renderer->interleaved_pixels = arena_array<InterleavedPixel>(
+        &renderer->persistent_arena, renderer->settings.threads * kept_pixel_count(renderer->settings));
   if (plans_lattice(renderer->settings)) {
     const std::uint32_t count = renderer->settings.threads * window_pixel_count(renderer->settings);
     renderer->window_pixels = arena_array<Vec3>(&renderer->persistent_arena, count);

@@ -60,15 +60,16 @@ struct Renderer {
   std::uint32_t selected_light_max = 0;     // the same if source selection is planned, otherwise 0
   Array<LightNode> light_nodes;             // of source selection
   Array<std::uint32_t> light_order;
-  Array<LightEntry> light_entries;    // search_entry_count() of them per thread
-  std::uint32_t light_count_max = 0;  // lights that may be set later; their points are planned for
+  Array<LightEntry> light_entries;                  // search_entry_count() of them per thread
+  std::uint32_t light_count_max = 0;                // lights that may be set later; their points are planned for
   EnvironmentLights* environment_lights = nullptr;  // if planned
   FrameData frame;
-  Array<Span> spans;            // one per scanline
-  Array<std::uint64_t> row_ns;  // cost of each in the last frame
-  Array<Tracer> tracers;        // one per thread
-  Array<CellCorner> corners;    // of selective rendering, two rows per thread; empty: not planned
-  Array<Vec3> window_pixels;    // of undersampling, a window per thread; empty: not planned
+  Array<Span> spans;                           // one per scanline
+  Array<std::uint64_t> row_ns;                 // cost of each in the last frame
+  Array<Tracer> tracers;                       // one per thread
+  Array<CellCorner> corners;                   // of selective rendering, two rows per thread; empty: not planned
+  Array<InterleavedPixel> interleaved_pixels;  // kept_pixel_count() of them per thread; empty: not planned
+  Array<Vec3> window_pixels;                   // of undersampling, a window per thread; empty: not planned
   Array<std::uint8_t> window_states;
   Array<Vec3> image;  // width × height, linear
   Camera camera;

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/span.h"
 #include "scene/animate.h"
+#include "shade/interleaved.h"
 #include "shade/lattice.h"
 #include "shade/selective.h"
 #include "shade/source_selection.h"
@@ -82,6 +83,10 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
   add_part(plan, "selective", ArenaKind::persistent,
            has(effects.mask, Effect::selective) ? selective_need(settings) : 0);
+  add_part(plan, "interleaving", ArenaKind::persistent,
+           is_interleaved(effects.mask)
+               ? arena_need<InterleavedPixel>(std::size_t(settings.threads) * kept_pixel_count(settings))
+               : 0);
   add_part(plan, "undersampling", ArenaKind::persistent, lattice_need(settings));
   add_part(plan, "spans", ArenaKind::persistent,
            arena_need<Span>(settings.height) + arena_need<std::uint64_t>(settings.height));

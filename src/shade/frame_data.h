@@ -133,7 +133,7 @@ struct FrameData {
   SurfaceFunction plain_surface = nullptr, plain_first_surface = nullptr;  // see ambient_gloss.h
   // Null: none but ambient light. At first hits: without light that trace_strip adds there.
   SurroundingsFunction surroundings = nullptr, first_surroundings = nullptr;
-  GlowFunction glow = nullptr, first_glow = nullptr;                       // see material_maps.h
+  GlowFunction glow = nullptr, first_glow = nullptr;  // see material_maps.h
   RadianceFunction radiance = nullptr;
   ShadowsFunction find_shadows = nullptr;       // null if nothing casts a shadow
   StripFunction trace_strip = nullptr;          // traces pixels in blocks; null: each by itself
@@ -162,6 +162,7 @@ constexpr int kRayKindCount = 5;
 constexpr const char* kRayKindNames[kRayKindCount] = {"primary", "shadow", "mirror", "refraction", "blend"};
 
 struct CellCorner;
+struct InterleavedPixel;
 struct CornerRow {
   Array<CellCorner> corners;
   std::uint32_t row = ~0u;  // of the picture; ~0: none
@@ -189,15 +190,16 @@ struct alignas(64) Tracer {
   std::uint64_t rays[kRayKindCount] = {};
   std::uint64_t rays_left_out = 0;
   TraceStats stats;
-  const Surface* first_surface = nullptr;     // of the sample being shaded, or null: not known
-  const TileShadows* tile_shadows = nullptr;  // of the current tile, or null
-  std::uint32_t tile_pixel = 0;               // index in the tile of the pixel being shaded
-  float budget = 0;                           // radiance that may still be skipped of the current sample
-  CornerRow corner_rows[4];                   // of selective rendering
-  std::uint32_t corner_row_count = 0;         // that are kept: 0, 2 or 4
-  LatticeWindow window;                       // empty: not planned
-  Array<LightEntry> light_entries;            // scratch of source selection; empty: not planned
-  float left_out_max = 0;                     // largest sum skipped of one sample so far
+  const Surface* first_surface = nullptr;      // of the sample being shaded, or null: not known
+  const TileShadows* tile_shadows = nullptr;   // of the current tile, or null
+  std::uint32_t tile_pixel = 0;                // index in the tile of the pixel being shaded
+  float budget = 0;                            // radiance that may still be skipped of the current sample
+  CornerRow corner_rows[4];                    // of selective rendering
+  std::uint32_t corner_row_count = 0;          // that are kept: 0, 2 or 4
+  Array<InterleavedPixel> interleaved_pixels;  // of the row of tiles above; empty: not planned
+  LatticeWindow window;                        // empty: not planned
+  Array<LightEntry> light_entries;             // scratch of source selection; empty: not planned
+  float left_out_max = 0;                      // largest sum skipped of one sample so far
 };
 
 }  // namespace pocketray

@@ -15,13 +15,7 @@ namespace {
 // the second lies off the first's plane by at most this slope.
 constexpr float kSameNormal = 0.9f, kSamePlane = 0.15f;
 
-// What neighbours compare of a surface.
-struct Shown {
-  Vec3 point, normal, geometric;
-  std::uint32_t triangle;
-};
-
-bool shows_same(const Shown& a, const Shown& b) {
+bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
   if (a.triangle == b.triangle) return true;
   if (!(dot(a.normal, b.normal) > kSameNormal)) return false;
   Vec3 way = b.point - a.point;
@@ -29,21 +23,20 @@ bool shows_same(const Shown& a, const Shown& b) {
   return height * height <= kSamePlane * kSamePlane * dot(way, way);
 }
 
-const InterleavedSource* const kSources[] = {&kVirtualLightSource, &kEnvironmentSource};
-constexpr int kSourceCount = 2;
+const InterleavedSource* const kSources[kInterleavedSourceCount] = {&kVirtualLightSource, &kEnvironmentSource};
 
 // An aligned tile and the pixels about it that its pixels take light from, by rows.
 constexpr std::uint32_t kRegionSide = kTakenBefore + kTileSide + kTakenAfter;
 constexpr std::uint32_t kRegionPixels = kRegionSide * kRegionSide;
 enum class Link : std::uint8_t { unknown, different, same };
 struct Region {
-  bool is_known[kRegionPixels];
-  bool is_hit[kRegionPixels];
-  Shown shown[kRegionPixels];  // of those known that are hit, as is the light
-  InterleavedLight light[kSourceCount][kRegionPixels];
+  InterleavedPixel pixel[kRegionPixels];
   Link right[kRegionPixels], below[kRegionPixels];  // whether it shows the same surface as the next pixel there
   InterleavedLight column[kRegionPixels];           // of a source, sums along columns; none yet: of no pixel
 };
+
+bool is_known(const InterleavedPixel& pixel) { return pixel.row != kNone; }
+bool is_hit(const InterleavedPixel& pixel) { return is_known(pixel) && pixel.triangle != kNone; }
 
 // Pixels to trace, in packets. Columns and rows count from the region's first.
 struct PixelList {
@@ -123,32 +116,32 @@ void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std
   std::uint32_t found = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t column = pixels.column[begin + i], row = pixels.row[begin + i], k = row * kRegionSide + column;
-    if (region->is_known[k]) continue;
-    region->is_known[k] = true;
-    region->is_hit[k] = first.hit[i].triangle != kNoTriangle;
-    if (!region->is_hit[k]) continue;
+    InterleavedPixel* pixel = &region->pixel[k];
+    if (is_known(*pixel)) continue;
+    pixel->row = tile.row + row - kTakenBefore, pixel->triangle = kNone;
+    if (first.hit[i].triangle == kNoTriangle) continue;
     const Surface& s = first.shadows.surface[i];
-    region->shown[k] = {s.point, s.normal, s.geometric, s.hit.triangle};
+    pixel->triangle = s.hit.triangle, pixel->point = s.point, pixel->normal = s.normal, pixel->geometric = s.geometric;
     surface[found] = &s, in_region[found] = static_cast<std::uint8_t>(k);
     place[found++] = static_cast<std::uint8_t>(morton_place((tile.column + column - kTakenBefore) % kPatternSide,
                                                             (tile.row + row - kTakenBefore) % kPatternSide));
   }
   if (found == 0) return;
-  for (int source = 0; source < kSourceCount; ++source) {
+  for (int source = 0; source < kInterleavedSourceCount; ++source) {
     if (!has(frame.mask, kSources[source]->effect)) continue;
     kSources[source]->gather(frame, {found, surface, place}, &tracer->stats,
                              &tracer->rays[static_cast<int>(RayKind::shadow)], light);
-    for (std::uint32_t i = 0; i < found; ++i) region->light[source][in_region[i]] = light[i];
+    for (std::uint32_t i = 0; i < found; ++i) region->pixel[in_region[i]].light[source] = light[i];
   }
 }
 
 void link_neighbours(Region* region) {
   auto link = [&](std::uint32_t a, std::uint32_t b, Link* l) {
-    if (*l == Link::unknown && region->is_known[b])
-      *l = region->is_hit[b] && shows_same(region->shown[a], region->shown[b]) ? Link::same : Link::different;
+    const InterleavedPixel &p = region->pixel[a], &q = region->pixel[b];
+    if (*l == Link::unknown && is_known(q)) *l = is_hit(q) && shows_same(p, q) ? Link::same : Link::different;
   };
   for (std::uint32_t k = 0; k < kRegionPixels; ++k) {
-    if (!region->is_known[k] || !region->is_hit[k]) continue;
+    if (!is_hit(region->pixel[k])) continue;
     if (k % kRegionSide + 1 < kRegionSide) link(k, k + 1, &region->right[k]);
     if (k + kRegionSide < kRegionPixels) link(k, k + kRegionSide, &region->below[k]);
   }
@@ -170,7 +163,7 @@ constexpr InterleavedLight kNoLight = {{0, 0, 0}, {0, 0, 0}, 0};
 
 // Adds what the wanted pixels take from those about them to the light that their surfaces emit.
 void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* region, FirstHits* first) {
-  for (int source = 0; source < kSourceCount; ++source) {
+  for (int source = 0; source < kInterleavedSourceCount; ++source) {
     if (!has(frame.mask, kSources[source]->effect)) continue;
     std::fill_n(region->column, kRegionPixels, kNoLight);
     for (std::uint32_t i = 0; i < wanted.count; ++i) {
@@ -180,7 +173,8 @@ void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* r
       along(region->right, 1, wanted.row[i] * kRegionSide + wanted.column[i], [&](std::uint32_t in_row) {
         InterleavedLight* column = &region->column[in_row];
         if (column->pixel_count == 0)
-          along(region->below, kRegionSide, in_row, [&](std::uint32_t k) { add(region->light[source][k], column); });
+          along(region->below, kRegionSide, in_row,
+                [&](std::uint32_t k) { add(region->pixel[k].light[source], column); });
         add(*column, &sum);
       });
       s.glow += s.diffuse * kSources[source]->irradiance(frame, s.point, s.normal, sum);
@@ -197,7 +191,7 @@ void trace_sample(Tracer* tracer, const SharedTile& tile, std::uint32_t sample, 
   FirstHits first;
   PixelList lacking;
   for (std::uint32_t i = 0; i < tile.others.count; ++i)
-    if (!region->is_known[tile.others.row[i] * kRegionSide + tile.others.column[i]])
+    if (!is_known(region->pixel[tile.others.row[i] * kRegionSide + tile.others.column[i]]))
       lacking.add(tile.others.column[i], tile.others.row[i]);
   for (std::uint32_t begin = 0; begin < lacking.count; begin += kPacketMax) {
     const std::uint32_t count = std::min(lacking.count - begin, kPacketMax);
@@ -232,15 +226,38 @@ void move_on(Region* region) {
   for (std::uint32_t row = 0; row < kRegionSide; ++row)
     for (std::uint32_t column = 0; column < kRegionSide; ++column) {
       const std::uint32_t to = row * kRegionSide + column, from = to + kTileSide;
-      region->is_known[to] = column + kTileSide < kRegionSide && region->is_known[from];
       region->right[to] = region->below[to] = Link::unknown;
-      if (!region->is_known[to]) continue;
+      region->pixel[to].row = kNone;
+      if (column + kTileSide >= kRegionSide || !is_known(region->pixel[from])) continue;
       region->right[to] = region->right[from], region->below[to] = region->below[from];
-      region->is_hit[to] = region->is_hit[from];
-      if (!region->is_hit[to]) continue;
-      region->shown[to] = region->shown[from];
-      for (auto& light : region->light) light[to] = light[from];
+      region->pixel[to] = region->pixel[from];
     }
+}
+
+// Calls visit(kept, pixel) for the pixels of some rows of the region, and the places where the tracer keeps them.
+template <class Visit>
+void for_kept_pixels(Tracer* tracer, const SharedTile& tile, std::uint32_t first_row, Region* region, Visit visit) {
+  const std::uint32_t width = tracer->frame->settings.width;
+  for (std::uint32_t row = first_row; row < first_row + kKeptRows; ++row)
+    for (std::uint32_t column = 0; column < kRegionSide; ++column) {
+      const std::uint32_t x = tile.column + column - kTakenBefore, y = tile.row + row - kTakenBefore;
+      if (x < width)
+        visit(&tracer->interleaved_pixels[y % kKeptRows * width + x], y, &region->pixel[row * kRegionSide + column]);
+    }
+}
+
+void take_kept(Tracer* tracer, const SharedTile& tile, Region* region) {
+  if (tracer->interleaved_pixels.empty()) return;
+  for_kept_pixels(tracer, tile, 0, region, [](InterleavedPixel* kept, std::uint32_t row, InterleavedPixel* pixel) {
+    if (kept->row == row && !is_known(*pixel)) *pixel = *kept;
+  });
+}
+
+void keep(Tracer* tracer, const SharedTile& tile, Region* region) {
+  if (tracer->interleaved_pixels.empty()) return;
+  for_kept_pixels(tracer, tile, kTileSide, region, [](InterleavedPixel* kept, std::uint32_t, InterleavedPixel* pixel) {
+    if (is_known(*pixel)) *kept = *pixel;
+  });
 }
 
 void trace_tile_row(Tracer* tracer, const AlignedTiles& tiles, std::uint32_t r, const PixelRows& image) {
@@ -248,19 +265,32 @@ void trace_tile_row(Tracer* tracer, const AlignedTiles& tiles, std::uint32_t r, 
   Region region;
   SharedTile tile;
   for (std::uint32_t sample = 0; sample < frame.settings.samples_per_pixel; ++sample) {
-    std::fill_n(region.is_known, kRegionPixels, false);
+    for (InterleavedPixel& pixel : region.pixel) pixel.row = kNone;
     std::fill_n(region.right, kRegionPixels, Link::unknown), std::fill_n(region.below, kRegionPixels, Link::unknown);
     for (std::uint32_t c = 0; c < tiles.tile_count; ++c) {
       tile.column = tiles.column + c * kTileSide, tile.row = tiles.row + r * kTileSide;
       if (c > 0) move_on(&region);
       if (!tiles.mask[r][c]) continue;
       list_pixels(frame.settings, tiles.mask[r][c], &tile);
-      if (tile.wanted.count > 0) trace_sample(tracer, tile, sample, image, &region);
+      if (tile.wanted.count == 0) continue;
+      if (frame.settings.samples_per_pixel > 1) {
+        trace_sample(tracer, tile, sample, image, &region);
+        continue;
+      }
+      take_kept(tracer, tile, &region);
+      trace_sample(tracer, tile, sample, image, &region);
+      keep(tracer, tile, &region);
     }
   }
 }
 
 }  // namespace
+
+void keep_interleaved_pixels(Array<InterleavedPixel> pixels, Tracer* tracer) {
+  CHECK_LE(kept_pixel_count(tracer->frame->settings), pixels.count);
+  for (InterleavedPixel& pixel : pixels) pixel.row = kNone;
+  tracer->interleaved_pixels = pixels;
+}
 
 void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image) {
   if (strip.tile_count == 0) return;

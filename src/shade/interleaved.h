@@ -1,8 +1,8 @@
 // Interleaved sampling [Keller & Heidrich 2001; Wald et al. 2002] of virtual lights and of the environment: each pixel
-// traces shadow rays to a sixteenth of the sources, by its place in a pattern of 4 × 4, and takes the mean of the pixels
-// about it on the same surface: those to which neighbours along its row, then along a column, show the same. A pixel
-// depends on the 4 × 4 about it alone: whichever pixels are asked for, those about them are traced, too, and the picture
-// does not depend on how it is divided.
+// traces shadow rays to a sixteenth of the sources, by its place in a pattern of 4 × 4, and takes the mean of the
+// pixels about it on the same surface: those to which neighbours along its row, then along a column, show the same. A
+// pixel depends on the 4 × 4 about it alone: whichever pixels are asked for, those about them are traced, too, and the
+// picture does not depend on how it is divided.
 #pragma once
 #include "shade/strip.h"
 #include "shade/surface.h"
@@ -28,6 +28,21 @@ struct InterleavedLight {
   Vec3 lit = {0, 0, 0}, open = {0, 0, 0};
   std::uint32_t pixel_count = 1;
 };
+
+constexpr int kInterleavedSourceCount = 2;
+
+// What a pixel has gathered.
+struct InterleavedPixel {
+  std::uint32_t row;       // of the picture; kNone: it has gathered nothing yet
+  std::uint32_t triangle;  // kNone: its ray hits nothing, and the rest is not set
+  Vec3 point, normal, geometric;
+  InterleavedLight light[kInterleavedSourceCount];
+};
+// Those of the last rows of a row of tiles, which the next row of tiles takes light from.
+constexpr std::uint32_t kKeptRows = kTakenBefore + kTakenAfter;
+constexpr std::uint32_t kept_pixel_count(const Settings& settings) { return kKeptRows * settings.width; }
+// Gives a tracer that many pixels, for a frame.
+void keep_interleaved_pixels(Array<InterleavedPixel> pixels, Tracer* tracer);
 
 // A kind of sources.
 struct InterleavedSource {
