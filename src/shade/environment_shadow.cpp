@@ -29,7 +29,7 @@ void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats*
   gather_interleaved(frame, points, DistantSource{lights, lights.count}, true, stats, rays, light);
 }
 
-Vec3 irradiance(const FrameData& frame, const Vec3&, const Vec3& normal, const InterleavedLight& sum) {
+Vec3 irradiance(const FrameData& frame, const Vec3&, const Vec3& normal, const InterleavedLight& sum, bool) {
   CHECK(environment_of(*frame.scene) != nullptr);
   Vec3 result = environment_irradiance(*environment_of(*frame.scene), normal);
   for (int c = 0; c < 3; ++c)

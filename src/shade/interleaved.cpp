@@ -14,6 +14,8 @@ namespace {
 // Neighbours show the same surface if it is the same triangle, or if their normals differ by less than this cosine and
 // the second lies off the first's plane by at most this slope.
 constexpr float kSameNormal = 0.9f, kSamePlane = 0.15f;
+// Fewer pixels have too few sources to stand for all.
+constexpr std::uint32_t kSharersMin = 4;
 
 bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
   if (a.triangle == b.triangle) return true;
@@ -177,7 +179,17 @@ void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* r
                 [&](std::uint32_t k) { add(region->pixel[k].light[source], column); });
         add(*column, &sum);
       });
-      s.glow += s.diffuse * kSources[source]->irradiance(frame, s.point, s.normal, sum);
+      const bool are_few = sum.pixel_count < kSharersMin;
+      if (are_few) {
+        sum = kNoLight;
+        for (std::uint32_t k = 0; k < kPatternPixels; ++k) {
+          const std::uint32_t column = wanted.column[i] - kTakenBefore + k % kPatternSide;
+          const std::uint32_t row = wanted.row[i] - kTakenBefore + k / kPatternSide;
+          const InterleavedPixel& pixel = region->pixel[row * kRegionSide + column];
+          if (is_hit(pixel)) add(pixel.light[source], &sum);
+        }
+      }
+      s.glow += s.diffuse * kSources[source]->irradiance(frame, s.point, s.normal, sum, are_few);
     }
   }
 }

@@ -1,8 +1,9 @@
 // Interleaved sampling [Keller & Heidrich 2001; Wald et al. 2002] of virtual lights and of the environment: each pixel
 // traces shadow rays to a sixteenth of the sources, by its place in a pattern of 4 × 4, and takes the mean of the
-// pixels about it on the same surface: those to which neighbours along its row, then along a column, show the same. A
-// pixel depends on the 4 × 4 about it alone: whichever pixels are asked for, those about them are traced, too, and the
-// picture does not depend on how it is divided.
+// pixels about it on the same surface: those to which neighbours along its row, then along a column, show the same.
+// Where these are few, all pixels about it tell how much of the light is hidden. A pixel depends on the 4 × 4 about it
+// alone: whichever pixels are asked for, those about them are traced, too, and the picture does not depend on how it is
+// divided.
 #pragma once
 #include "shade/strip.h"
 #include "shade/surface.h"
@@ -49,8 +50,10 @@ struct InterleavedSource {
   Effect effect;
   void (*gather)(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
                  InterleavedLight* light);
-  // Irradiance / π at a point of unit normal, from the sum over the pixels that show its surface.
-  Vec3 (*irradiance)(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum);
+  // Irradiance / π at a point of unit normal, from the sum over the pixels that show its surface; if these are few,
+  // from that over all pixels about it, and only the share that shadows leave of the light counts.
+  Vec3 (*irradiance)(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum,
+                     bool are_few);
 };
 extern const InterleavedSource kVirtualLightSource, kEnvironmentSource;
 

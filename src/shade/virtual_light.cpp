@@ -8,8 +8,6 @@ namespace {
 
 // A shadow ray ends a little before its light, which lies on a surface: by a fraction of its length.
 constexpr float kRayEnd = 1 - 0x1p-10f;
-// With fewer pixels on the same surface, their lights would stand for too many.
-constexpr std::uint32_t kSharersMin = 4;
 
 struct VirtualSource {
   const VirtualLights& lights;
@@ -32,11 +30,12 @@ void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats*
                      light);
 }
 
-Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum) {
+Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum,
+                bool are_few) {
   const VirtualLights& lights = *virtual_lights_of(frame.indirect);
   CHECK_GT(sum.pixel_count, 0u);
   Vec3 result = sum.lit * (static_cast<float>(kPatternPixels) / static_cast<float>(sum.pixel_count));
-  if (sum.pixel_count < kSharersMin) {  // all lights, by the mean visibility of those traced
+  if (are_few) {  // all lights, by the mean visibility of those traced
     result = virtual_irradiance(lights, point, normal);
     for (int c = 0; c < 3; ++c) result[c] *= sum.open[c] > 0 ? sum.lit[c] / sum.open[c] : 1;
   }
