@@ -8,7 +8,7 @@
 #include "base/fmath.h"
 #include "effect/setting_list.h"
 #include "indirect/instant_radiosity.h"
-#include "shade/trace_spans.h"
+#include "support/divided_picture.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
@@ -61,8 +61,6 @@ double power_of(const VirtualLights& lights) {
   for (std::uint32_t i = 0; i < lights.count; ++i) sum += kPi * static_cast<double>(lights.light[i].intensity.y);
   return sum;
 }
-
-bool same_pixel(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 }  // namespace
 
@@ -147,31 +145,18 @@ TEST_CASE("instant_radiosity_does_not_depend_on_spans") {
     }
     std::unique_ptr<TestRenderer> t = rendered(room.scene, settings);
     Renderer& renderer = t->renderer;
-    std::vector<Vec3> whole(renderer.image.begin(), renderer.image.end()), again(whole.size());
-    auto trace = [&](const std::vector<Span>& spans, std::size_t group) {
-      std::fill(again.begin(), again.end(), Vec3{-1, -1, -1});
-      Tracer tracer = make_tracer(renderer.frame);
-      for (std::size_t i = 0; i < spans.size(); i += group)
-        trace_spans(&tracer, spans.data() + i, static_cast<std::uint32_t>(std::min(group, spans.size() - i)), Aov::none,
-                    again.data());
-      std::size_t different = 0;
-      for (std::size_t i = 0; i < whole.size(); ++i) different += again[i].x >= 0 && !same_pixel(again[i], whole[i]);
-      return different;
+    const std::vector<Vec3> whole(renderer.image.begin(), renderer.image.end());
+    const Divisions by(settings.height);
+    auto differ = [&](const std::vector<Span>& spans, std::size_t group) {
+      return different_pixels(renderer, whole, spans, group);
     };
-    std::vector<Span> rows, odd, pixels;
-    for (std::uint16_t y = 0; y < settings.height; ++y) {
-      rows.push_back({y, 0, 40});
-      odd.push_back({y, static_cast<std::uint16_t>(y % 7), static_cast<std::uint16_t>(23 + y % 5)});
-      for (std::uint16_t x = static_cast<std::uint16_t>(y % 3); x < 40; x = static_cast<std::uint16_t>(x + 5))
-        pixels.push_back({y, x, static_cast<std::uint16_t>(x + 1)});
-    }
-    CHECK(trace(rows, 1) == 0);
-    CHECK(trace(rows, 3) == 0);
-    CHECK(trace(rows, 28) == 0);
-    CHECK(trace(odd, 5) == 0);
-    CHECK(trace(pixels, 7) == 0);
+    CHECK(differ(by.rows, 1) == 0);
+    CHECK(differ(by.rows, 3) == 0);
+    CHECK(differ(by.rows, 28) == 0);
+    CHECK(differ(by.odd, 5) == 0);
+    CHECK(differ(by.pixels, 7) == 0);
     renderer.frame.ray_by_ray = true;
-    CHECK(trace(rows, 28) == 0);
+    CHECK(differ(by.rows, 28) == 0);
     renderer.frame.ray_by_ray = false;
     for (const AccelInfo* info : kAccelList) {
       CAPTURE(info->name);

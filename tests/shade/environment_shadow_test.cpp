@@ -7,8 +7,8 @@
 #include "accel/accel_list.h"
 #include "indirect/environment.h"
 #include "shade/interleaved.h"
-#include "shade/trace_spans.h"
 #include "shade_helpers.h"
+#include "support/divided_picture.h"
 #include "support/effort.h"
 #include "support/test_environment.h"
 
@@ -179,30 +179,16 @@ TEST_CASE("environment_shadow_does_not_depend_on_how_a_picture_is_divided") {
     REQUIRE(render_frame(&t->renderer, 0).ok);
     REQUIRE(has(t->renderer.effects.mask, Effect::environment_shadow));
     const std::vector<Vec3> whole(t->renderer.image.begin(), t->renderer.image.end());
-    std::vector<Vec3> again(whole.size());
-    auto differs = [&](const std::vector<Span>& spans, std::size_t group) {
-      std::fill(again.begin(), again.end(), Vec3{-1, -1, -1});
-      Tracer tracer = make_tracer(t->renderer.frame);
-      for (std::size_t i = 0; i < spans.size(); i += group)
-        trace_spans(&tracer, spans.data() + i, static_cast<std::uint32_t>(std::min(group, spans.size() - i)), Aov::none,
-                    again.data());
-      std::size_t different = 0;
-      for (std::size_t i = 0; i < whole.size(); ++i) different += again[i].x >= 0 && again[i] != whole[i];
-      return different;
+    const Divisions by(settings.height);
+    auto differ = [&](const std::vector<Span>& spans, std::size_t group) {
+      return different_pixels(t->renderer, whole, spans, group);
     };
-    std::vector<Span> rows, odd, pixels;
-    for (std::uint16_t y = 0; y < settings.height; ++y) {
-      rows.push_back({y, 0, 40});
-      odd.push_back({y, static_cast<std::uint16_t>(y % 7), static_cast<std::uint16_t>(23 + y % 5)});
-      for (std::uint16_t x = static_cast<std::uint16_t>(y % 3); x < 40; x = static_cast<std::uint16_t>(x + 5))
-        pixels.push_back({y, x, static_cast<std::uint16_t>(x + 1)});
-    }
-    CHECK(differs(rows, 1) == 0);
-    CHECK(differs(rows, 8) == 0);
-    CHECK(differs(odd, 5) == 0);
-    CHECK(differs(pixels, 7) == 0);
+    CHECK(differ(by.rows, 1) == 0);
+    CHECK(differ(by.rows, 8) == 0);
+    CHECK(differ(by.odd, 5) == 0);
+    CHECK(differ(by.pixels, 7) == 0);
     t->renderer.frame.ray_by_ray = true;
-    CHECK(differs(rows, 8) == 0);
+    CHECK(differ(by.rows, 8) == 0);
     settings.threads = 3;
     for (const AccelInfo* info : kAccelList) {
       auto other = make_renderer(s->scene, settings, info);

@@ -8,6 +8,7 @@
 #include "base/limits.h"
 #include "coherence_report/page.h"
 #include "session/interrupt.h"
+#include "session/note.h"
 #include "session/output.h"
 
 namespace pocketray {
@@ -21,6 +22,10 @@ struct ReportOptions {
   std::uint32_t table = 16;
   bool no_paper = false, compare = false, sweep_table = false;
 };
+
+// Effects by which pixels depend on each other.
+constexpr EffectMask kBetweenPixels = bit(Effect::selective) | bit(Effect::undersampling) |
+                                      bit(Effect::instant_radiosity) | bit(Effect::environment_shadow);
 
 enum class Way { frame_by_frame, coherent, by_tables };
 
@@ -37,7 +42,16 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   if (o.compare && (renderer->effects.mask & (bit(Effect::selective) | bit(Effect::undersampling))) != 0)
     return failure(
         "--compare traces single pixels, but with --selective or --resolution they depend on others: leave these out");
+  if (o.compare && (renderer->effects.mask & kBetweenPixels) != 0)
+    return failure(
+        "--compare traces single pixels, but with virtual lights or shadows from the environment they depend on "
+        "others: "
+        "add --indirect none, or --environment-shadows 0");
   if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
+  const EffectMask followed = way == Way::by_tables ? 0 : bit(Effect::environment_shadow);
+  const EffectMask not_followed = kBetweenPixels & ~followed;
+  if ((renderer->effects.mask & not_followed) != 0)
+    return failure("coherence does not follow these frames: %s", renderer->coherence_state.unplanned_because);
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
                       coherence_scratch_need(renderer->scene, renderer->effects.mask);
@@ -75,16 +89,21 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
   RETURN_IF_ERROR(parse_frames(o.frames, &range));
   Progress progress;
   std::uint64_t done = 0;
+  bool no_paper = o.no_paper;
   for (Way way : {Way::coherent, Way::by_tables}) {
-    if (interrupted || (way == Way::by_tables && o.no_paper)) break;
+    if (interrupted || (way == Way::by_tables && no_paper)) break;
     OpenScene whole, coherent;
     RETURN_IF_ERROR(open_way(Way::frame_by_frame, o, o.table, &whole));
     RETURN_IF_ERROR(open_way(way, o, o.table, &coherent));
     if (way == Way::coherent) {
       print_notes(coherent);
+      if (!no_paper && has(coherent.renderer.effects.mask, Effect::environment_shadow)) {
+        no_paper = true;
+        print_note("the paper's way is left out, which does not know shadows from the environment");
+      }
       if (!range.given) range = whole_animation(whole.renderer.scene);
       describe(o, coherent.renderer, report);
-      progress = start_progress("coherence", rendering_count(range) * (o.no_paper ? 1 : 2));
+      progress = start_progress("coherence", rendering_count(range) * (no_paper ? 1 : 2));
     }
     SequenceRun* run = way == Way::coherent ? &report->ours : &report->papers_way;
     Status status = run_sequence({&whole.renderer, &coherent.renderer}, range, &progress, done, run);
