@@ -30,11 +30,13 @@ struct BlockTree {
   }
 };
 
-// Replaces unhittable triangles, whose vertices may not exist in the mesh, by points, which no ray hits.
+// Sets the ids, and replaces unhittable triangles, whose vertices may not exist in the mesh, by points, which no ray
+// hits.
 __attribute__((noinline)) inline void gather_hittable(const Vec3* positions, const Triangle* triangles,
                                                       const CompactLeaf& leaf, TriangleBlock* block) {
   for (int lane = 0; lane < 4; ++lane) {
     std::uint32_t word = leaf.triangle[lane];
+    block->triangle[lane] = word & ~kUnhittableBit;  // filters may be asked before the full test
     for (int i = 0; i < 3; ++i) {
       Vec3 p = {0, 0, 0};
       if (!(word & kUnhittableBit)) p = positions[triangles[word].vertex(static_cast<std::uint32_t>(i))];

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "accel/accel_world.h"
 #include "accel/variant.h"
 #include "support/effort.h"
@@ -29,7 +31,16 @@ RayPacket packet_about(Rng* rng, const Mesh& mesh, const Box& bounds, float spre
 }
 
 bool accept_some(const void*, std::uint32_t triangle, float u, float v) { return triangle % 3 != 0 && u <= 0.7f - v; }
-bool accept_some_triangles(const void*, std::uint32_t triangle, float, float) { return triangle % 3 != 0; }
+// Asked with ids of the mesh alone.
+struct MeshIds {
+  std::uint32_t count;
+  mutable bool is_exceeded = false;
+};
+bool accept_some_triangles(const void* context, std::uint32_t triangle, float, float) {
+  const MeshIds& ids = *static_cast<const MeshIds*>(context);
+  ids.is_exceeded = ids.is_exceeded || triangle >= ids.count;
+  return triangle % 3 != 0;
+}
 
 }  // namespace
 
@@ -95,8 +106,14 @@ SegmentPacket segments_about(Rng* rng, const Mesh& mesh, const Box& bounds, floa
 // Goal: a packet of shadow rays is blocked where its rays are. Method: packets to a light and along a direction, near
 // and wide, with ends before, at and beyond the light, against occluded() of brute force.
 TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
-  HitFilter some = {accept_some, nullptr}, some_triangles = {accept_some_triangles, nullptr, false};
-  for (const Mesh& mesh : generated_meshes()) {
+  HitFilter some = {accept_some, nullptr};
+  std::vector<Mesh> meshes = generated_meshes();
+  // Among triangles that rays can hit, one that none can.
+  meshes.push_back(soup("one unhittable", 64, 0.2f, 1, 5));
+  for (std::uint32_t i = 0; i < 3; ++i) meshes.back().positions[meshes.back().triangles[1].vertex(i)].x = NAN;
+  for (const Mesh& mesh : meshes) {
+    MeshIds ids = {static_cast<std::uint32_t>(mesh.triangles.size())};
+    const HitFilter some_triangles = {accept_some_triangles, &ids, false};
     auto oracle = make_world(mesh, &kBruteAccel);
     for (const Variant& variant : all_variants()) {
       if (!variant.in_packets) continue;
@@ -117,6 +134,7 @@ TEST_CASE("accel_packets_of_shadow_rays_are_blocked_as_their_rays_are") {
       }
       INFO(mesh.name << ", " << name_of(variant) << ", " << blocked_count << " blocked");
       CHECK(wrong == 0);
+      CHECK_FALSE(ids.is_exceeded);
     }
   }
   select_isa(best_isa());
