@@ -116,7 +116,7 @@ inline bool is_blocked(const DualRay& ray, const FixedEnd& end, const HitFilter*
   FixedVerdict verdict = cross_fixed(ray.fixed, v, z, &positive);
   if (verdict == FixedVerdict::missed) return false;
   std::uint32_t triangle = block.triangle[lane];
-  const bool early = filter && !filter->reads_point && !(triangle & kUnhittableBit);
+  const bool early = filter && !filter->reads_point;
   if (early && !filter->accept(filter->context, triangle, 0, 0)) return false;
   if (verdict == FixedVerdict::crossed) {
     bool inside = end.sure.low <= z.low && z.high <= end.sure.high;

@@ -52,16 +52,12 @@ void make_coherent(Renderer* renderer) {
                  &renderer->persistent_arena, &renderer->frame_arena, &renderer->coherence);
 }
 
-// With these, pixels depend on their neighbours in ways that are not followed.
-constexpr EffectMask kNeighbourEffects =
-    bit(Effect::instant_radiosity) | bit(Effect::selective) | bit(Effect::undersampling);
-
 bool begin_following(Renderer* renderer) {
   CoherenceState* state = &renderer->coherence_state;
   Coherence* c = &renderer->coherence;
   if (!state->planned) {
     state->whole_because = state->unplanned_because;
-  } else if (renderer->frame.trace_strip && (renderer->effects.mask & kNeighbourEffects & kEffectsBuilt)) {
+  } else if (renderer->effects.mask & kNotFollowed & kEffectsBuilt) {
     state->whole_because = "pixels depend on their neighbours";
   } else if (!fits(*c, renderer->frame)) {
     state->whole_because = "more samples, lights or effects than memory was planned for";

@@ -56,7 +56,7 @@ struct SharedTile {
   PixelList others;           // in the picture, about wanted ones
 };
 
-// The tile's pixel in the mask, and those about them.
+// The tile's pixels in the mask, and those about them.
 void list_pixels(const Settings& settings, std::uint64_t mask, SharedTile* tile) {
   bool is_wanted[kRegionPixels] = {}, is_taken[kRegionPixels] = {};
   tile->wanted.count = tile->others.count = 0;

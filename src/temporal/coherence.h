@@ -12,6 +12,10 @@
 
 namespace pocketray {
 
+// Effects by which pixels depend on each other in ways that are not followed.
+constexpr EffectMask kNotFollowed =
+    bit(Effect::instant_radiosity) | bit(Effect::selective) | bit(Effect::undersampling);
+
 // What it is made for.
 struct CoherencePlan {
   std::uint32_t width, height, samples, threads, light_points;  // at most

@@ -23,10 +23,6 @@ struct ReportOptions {
   bool no_paper = false, compare = false, sweep_table = false;
 };
 
-// Effects by which pixels depend on each other.
-constexpr EffectMask kBetweenPixels = bit(Effect::selective) | bit(Effect::undersampling) |
-                                      bit(Effect::instant_radiosity) | bit(Effect::environment_shadow);
-
 enum class Way { frame_by_frame, coherent, by_tables };
 
 Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* renderer, const SceneStorage& storage,
@@ -42,14 +38,12 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   if (o.compare && (renderer->effects.mask & (bit(Effect::selective) | bit(Effect::undersampling))) != 0)
     return failure(
         "--compare traces single pixels, but with --selective or --resolution they depend on others: leave these out");
-  if (o.compare && (renderer->effects.mask & kBetweenPixels) != 0)
+  if (o.compare && (renderer->effects.mask & (bit(Effect::instant_radiosity) | bit(Effect::environment_shadow))) != 0)
     return failure(
         "--compare traces single pixels, but with virtual lights or shadows from the environment they depend on "
-        "others: "
-        "add --indirect none, or --environment-shadows 0");
+        "others: add --indirect none, or --environment-shadows 0");
   if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
-  const EffectMask followed = way == Way::by_tables ? 0 : bit(Effect::environment_shadow);
-  const EffectMask not_followed = kBetweenPixels & ~followed;
+  const EffectMask not_followed = kNotFollowed | (way == Way::by_tables ? bit(Effect::environment_shadow) : 0);
   if ((renderer->effects.mask & not_followed) != 0)
     return failure("coherence does not follow these frames: %s", renderer->coherence_state.unplanned_because);
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max);
