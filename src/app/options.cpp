@@ -124,25 +124,23 @@ Option add_environment_option(Command command, std::string* name) {
       "clear sky with a sun 0 … 90 degrees high (45) and haze 2 … 10 (3)");
 }
 
-void add_look_options(Command command, CommonOptions* o) {
-  Option budget = command.get_option("--budget-ms");  // whose prices are those of the scene's own look
-  command
-      .add_option("--background", o->background,
-                  "colour where nothing is hit: #rrggbb as displayed without exposure (quote it), or linear radiance "
-                  "as r,g,b")
-      .default_str("the scene's")
-      .excludes(budget);
-  add_environment_option(command, &o->environment)
-      .default_str("the scene's")
-      .excludes(budget)
-      .excludes(command.get_option("--background"));
-  command
-      .add_option("--light", o->light,
-                  "light for a scene that has none: key (a key and a fill light that follow the camera's side), sun "
-                  "(one from high above) or none (ambient alone)")
-      .one_of({"key", "sun", "none"})
-      .capture_default_str()
-      .excludes(budget);
+void add_look_options(Command command, CommonOptions* o, const char* own_look) {
+  Option background =
+      command
+          .add_option("--background", o->background,
+                      "colour where nothing is hit: #rrggbb as displayed without exposure (quote it), or linear "
+                      "radiance as r,g,b")
+          .default_str("the scene's");
+  Option environment = add_environment_option(command, &o->environment).default_str("the scene's").excludes(background);
+  Option light =
+      command
+          .add_option("--light", o->light,
+                      "light for a scene that has none: key (a key and a fill light that follow the camera's side), "
+                      "sun (one from high above) or none (ambient alone)")
+          .one_of({"key", "sun", "none"})
+          .capture_default_str();
+  if (own_look)
+    for (Option option : {background, environment, light}) option.excludes(command.get_option(own_look));
   command
       .add_option("--fov", o->fov,
                   "vertical field of view in degrees, 0.001 … 179, of the scene's cameras; the automatic camera still "

@@ -14,8 +14,9 @@ void add_scene_options(Command command, CommonOptions* options, bool scene_requi
 void add_view_options(Command command, CommonOptions* options);
 // --environment, excluding no other option.
 Option add_environment_option(Command command, std::string* name);
-// --background, --environment, --light, --fov and --focus. Call after add_scene_options() and add_budget_options().
-void add_look_options(Command command, CommonOptions* options);
+// --background, --environment, --light, --fov and --focus. Call after add_scene_options(), or add_view_options().
+// `own_look`, if not null, is an option that the command has and that works with the scene's own look only.
+void add_look_options(Command command, CommonOptions* options, const char* own_look = nullptr);
 // --coherence, initially auto, and --coherence-table.
 void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");
 // --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().

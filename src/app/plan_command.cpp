@@ -76,6 +76,7 @@ void add_plan_command(Command program, int* exit_status) {
   auto prices = std::make_shared<bool>(false);
   Command command = program.add_subcommand("plan", "show which effects a scene needs, why, and its memory map");
   add_scene_options(command, options.get());
+  add_look_options(command, options.get());
   add_coherence_options(command, options.get());
   add_json_option(command, &options->json);
   command.add_flag("--prices", *prices, "also render it and print the cost of each effect on this machine");

@@ -257,7 +257,7 @@ void add_render_options(Command command, RenderOptions* o) {
   add_scene_options(command, &o->common);
   if (o->parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
-  add_look_options(command, &o->common);
+  add_look_options(command, &o->common, "--budget-ms");
   add_coherence_options(command, &o->common);
   command
       .add_option(

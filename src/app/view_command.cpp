@@ -202,7 +202,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
       .capture_default_str();
   if (parts.servers) add_servers_options(command, &o->servers);
   add_budget_options(command, &o->budget);
-  add_look_options(command, &o->common);
+  add_look_options(command, &o->common, "--budget-ms");
   add_coherence_options(command, &o->common);
   if (parts.side_by_side) add_side_by_side_option(command, &o->side_by_side);
   command

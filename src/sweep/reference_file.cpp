@@ -44,6 +44,9 @@ std::string reference_key(const Rig& rig, const AccuracyOptions& options, Transp
               {"time", options.seconds},
               {"effects", options.common.effects},
               {"sampler", kReferenceSampler}};
+  const CommonOptions& common = options.common;  // the camera has --fov, the scene's hash --environment
+  if (!common.background.empty()) key["background"] = common.background;
+  if (common.light != CommonOptions().light) key["light"] = common.light;
   return key.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -72,6 +75,11 @@ Status check_same_reference(const std::string& path, const Accumulation& there, 
       return failure("%.200s is a reference with %s %.90s, not %.90s: name another file", path.c_str(),
                      item.key().c_str(), value.c_str(), item.value().dump().c_str());
   }
+  if (has.is_object())
+    for (const auto& item : has.items())
+      if (!wants.contains(item.key()))
+        return failure("%.200s is a reference with %s %.90s, not the scene's own: name another file", path.c_str(),
+                       item.key().c_str(), item.value().dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
   if (there.key == wanted.key && there.width == wanted.width && there.height == wanted.height) return success();
   return failure("%.300s is damaged: remove it, or take another copy", path.c_str());
 }

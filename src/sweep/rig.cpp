@@ -74,7 +74,10 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
     rig->baseline.settings = renderer->settings;
     rig->scene_hash = hash_of(source, renderer->scene);
     ContentHash identity;
-    if (identify_scene(source, renderer, &identity).ok) rig->front_path = front_path(common.scene, identity);
+    const bool has_own_look =
+        common.background.empty() && common.environment.empty() && common.light == CommonOptions().light;
+    if (has_own_look && identify_scene(source, renderer, &identity).ok)
+      rig->front_path = front_path(common.scene, identity);
     renderer->settings = dearest(renderer->scene, renderer->settings);
     return success();
   };

@@ -65,6 +65,7 @@ Json key_of(const Run& run, const Rig& rig) {
               {"time", o.seconds},
               {"exposure", c.exposure},
               {"effects", c.effects},
+              {"look", {c.background, c.environment, c.light, c.fov, c.focus}},
               {"output", o.output},
               {"reference", o.reference},
               {"reference-file", o.reference_file},

@@ -32,7 +32,7 @@ struct Rig {
   OpenScene opened;
   Configuration baseline;             // as set by the options
   std::string scene_hash;             // of its content
-  std::string front_path;             // in the cache; empty: the scene could not be identified
+  std::string front_path;             // in the cache; empty: not identified, or looks other than it is
   std::vector<std::uint32_t> packed;  // pixels of the last frame
   std::vector<std::uint8_t> reference_memory;
   Reference reference;            // of the posed frame; made on demand

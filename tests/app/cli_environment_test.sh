@@ -47,6 +47,13 @@ render model.pray off.ppm --effects auto,-environment >/dev/null
 check without_it_its_mean_is_seen test "$(first_pixel off.ppm | cut -c1-2)" = ff
 check plan_tells_it grep -Eq 'environment +on.*64×64 texels' <<<"$("${run[@]}" plan model.pray "${small[@]}" 2>&1)"
 check plan_tells_its_memory grep -Eq 'scene +environment +[0-9.]+ KiB' <<<"$("${run[@]}" plan model.pray "${small[@]}" 2>&1)"
+check plan_takes_it grep -Eq 'environment +on.*64×64 texels' <<<"$("${run[@]}" plan model.obj "${small[@]}" --environment red.hdr 2>&1)"
+expect bench_takes_it 0 '"environment"' bench model.obj "${small[@]}" --frames 1 --no-prices --environment red.hdr --json -
+expect bench_front_has_none 2 'excludes' bench model.obj --environment red.hdr --front refused.front
+if "${run[@]}" --help | grep -q '^ *reference '; then
+  expect reference_takes_it 0 'model reference' reference model.obj "${small[@]}" --kind model --samples 2 --environment red.hdr -o red.pfm
+  check reference_is_of_it grep -q 'red.pfm is a reference with scene' <<<"$("${run[@]}" reference model.obj "${small[@]}" --kind model --samples 2 -o red.pfm 2>&1)"
+fi
 check plan_tells_its_absence grep -Eq 'environment.*no environment' <<<"$("${run[@]}" plan cube "${small[@]}" 2>&1)"
 render model.obj sky.ppm --environment sky >/dev/null
 render model.obj low.ppm --environment sky:5,6 >/dev/null

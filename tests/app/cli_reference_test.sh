@@ -31,6 +31,9 @@ if "${run[@]}" --help | grep -q '^ *reference '; then
   expect reference_scene 1 'once.pfm.*scene' reference furnace --size 16x12 -o once.pfm
   expect reference_camera 1 'once.pfm.*camera' "${tiny[@]}" --camera '0,1,5 0,0,0 0,1,0 40' -o once.pfm
   expect reference_kind 1 'once.pfm.*kind "physical", not "model"' "${tiny[@]}" --kind model -o once.pfm
+  expect reference_look 1 'once.pfm.*background unknown, not "1,0,0"' "${tiny[@]}" --background 1,0,0 -o once.pfm
+  expect reference_begun_in_red 0 '2 samples' "${tiny[@]}" --background 1,0,0 --samples 2 -o red.pfm
+  expect reference_own_look 1 'red.pfm.*background "1,0,0", not the scene' "${tiny[@]}" --samples 2 -o red.pfm
   expect reference_bad_part 1 'K/N' "${tiny[@]}" --part 3/2 -o part.pfm
   expect reference_suffix 1 'pfm' "${tiny[@]}" -o once.png
   expect reference_itself 1 'overwrite the input' "${tiny[@]}" -o once.pfm --merge once.pfm

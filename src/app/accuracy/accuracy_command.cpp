@@ -70,6 +70,7 @@ void add_accuracy_command(Command program, int* exit_status) {
       "\"arithmetic double\" is timed with the reference's own tracer.\n"
       "Confidence intervals are 95 %, given at least six rounds.");
   add_scene_options(command, &o->common);
+  add_look_options(command, &o->common);
   command.add_option("-o,--output", o->folder, "folder to write to; created if missing").required();
   command
       .add_option("--pixel-format", o->output,

@@ -195,6 +195,7 @@ void add_coherence_report_command(Command program, int* exit_status) {
       "Try:  pocketray coherence-report seesaw -o report\n"
       "      pocketray coherence-report seesaw --frames 0:40 --size 640x480 --no-paper --json -");
   add_scene_options(command, &o->common);
+  add_look_options(command, &o->common);
   command.add_option("-o,--output", o->folder,
                      "folder for index.html with plots and pictures, report.json and frames.csv; created if missing");
   command.add_option("--frames", o->frames, "frames to render, FIRST:LAST; the first is traced whole")

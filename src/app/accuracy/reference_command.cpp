@@ -131,6 +131,7 @@ void add_reference_command(Command program, int* exit_status) {
       "Try:  pocketray reference cornell -o cornell.pfm --until 0.02\n"
       "      pocketray accuracy cornell -o DIR --reference cornell.pfm");
   add_view_options(command, &c->options.common);
+  add_look_options(command, &c->options.common);
   command.add_option("-o,--output", c->goal.path, "file to write or to continue, .pfm").required();
   command
       .add_option("--kind", c->kind,
