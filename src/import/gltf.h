@@ -78,6 +78,10 @@ int gltf_uv_set(const tinygltf::TextureInfo& info);
 // gltf_material.cpp: scene material of a glTF material (-1: the default one).
 std::uint32_t gltf_material(GltfFile* file, int material);
 
+// gltf_specular_glossiness.cpp: whether a material has the older model, and the material without it.
+bool gltf_has_specular_glossiness(const tinygltf::Material& source);
+tinygltf::Material gltf_without_specular_glossiness(GltfFile* file, const tinygltf::Material& source);
+
 // gltf_maps.cpp: the maps of a material; if it is clear, only those that do not change lobes.
 void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_clear, MaterialMaps* maps);
 // The mean of a channel of a metallic-roughness texture, 1 without one; above zero if any texel is, so that the mean

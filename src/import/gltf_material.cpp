@@ -136,7 +136,10 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   std::uint32_t* known = index < 0 ? &file->default_material : &file->materials[static_cast<std::size_t>(index)];
   if (*known != kNone) return *known;
   static const tinygltf::Material kDefault;
-  const tinygltf::Material& source = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
+  const tinygltf::Material& given = index < 0 ? kDefault : file->model.materials[static_cast<std::size_t>(index)];
+  const bool translate = gltf_has_specular_glossiness(given);
+  const tinygltf::Material translated = translate ? gltf_without_specular_glossiness(file, given) : kDefault;
+  const tinygltf::Material& source = translate ? translated : given;
   MaterialMaps maps;
   Material material = convert(file, source, &maps);
   if (index >= 0)
@@ -173,8 +176,13 @@ Vec3 gltf_color(const tinygltf::Value& object, const char* key, const Vec3& fall
 tinygltf::TextureInfo gltf_texture_info(const tinygltf::Value& object, const char* key) {
   tinygltf::TextureInfo info;
   if (object.Has(key) && object.Get(key).IsObject()) {
-    double index = gltf_number(object.Get(key), "index", -1);
+    const tinygltf::Value& value = object.Get(key);
+    const double index = gltf_number(value, "index", -1), set = gltf_number(value, "texCoord", 0);
     info.index = index >= 0 && index < 1e9 ? static_cast<int>(index) : -1;
+    info.texCoord = set >= 0 && set < 64 ? static_cast<int>(set) : 0;
+    constexpr const char* kTransform = "KHR_texture_transform";
+    if (value.Has("extensions") && value.Get("extensions").Has(kTransform))
+      info.extensions[kTransform] = value.Get("extensions").Get(kTransform);
   }
   return info;
 }

@@ -13,14 +13,27 @@ using Json = nlohmann::json;
 
 // Implemented here, or harmless to ignore.
 const char* const kKnownExtensions[] = {
-    "KHR_texture_transform",           "KHR_materials_transmission", "KHR_materials_ior",
-    "KHR_materials_specular",          "KHR_materials_volume",       "KHR_materials_unlit",
-    "KHR_materials_emissive_strength", "KHR_lights_punctual",        "EXT_mesh_gpu_instancing",
+    "KHR_texture_transform",
+    "KHR_materials_transmission",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_volume",
+    "KHR_materials_unlit",
+    "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",
+    "EXT_mesh_gpu_instancing",
     "KHR_mesh_quantization",
+    "KHR_materials_pbrSpecularGlossiness",
 };
 bool is_known_extension(const std::string& name) {
   return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),
                      [&](const char* known) { return name == known; });
+}
+// Extensions without which a file is all there, though it looks otherwise.
+bool affects_looks_alone(const std::string& name) {
+  constexpr const char* kPrefixes[] = {"KHR_materials_", "EXT_lights_", "KHR_xmp"};
+  return std::any_of(std::begin(kPrefixes), std::end(kPrefixes),
+                     [&](const char* prefix) { return name.compare(0, std::strlen(prefix), prefix) == 0; });
 }
 
 std::uint32_t little_endian_32(const std::uint8_t* p) {
@@ -75,7 +88,8 @@ void check_version_and_extensions(GltfFile* file, const Json& root) {
     fail_import("glTF version '%.20s' instead of 2.0; convert the file to glTF 2.0", version.c_str());
   if (const Json* required = member(root, "extensionsRequired"))
     for (const Json& name : *required)
-      if (name.is_string() && !is_known_extension(name.get<std::string>()))
+      if (name.is_string() && !is_known_extension(name.get<std::string>()) &&
+          !affects_looks_alone(name.get<std::string>()))
         fail_import("the file requires the glTF extension %.100s; export it without", name.get<std::string>().c_str());
   if (const Json* used = member(root, "extensionsUsed"))
     for (const Json& name : *used)

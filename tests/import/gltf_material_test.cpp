@@ -262,6 +262,41 @@ TEST_CASE("gltf_specular_textures_become_maps") {
   CHECK(imported.warning.find("specular") == std::string::npos);
 }
 
+// Goal: KHR_materials_pbrSpecularGlossiness becomes the same lobes. Method: its formulas by hand: what the specular
+// colour leaves is diffuse; glossiness 0.5 is roughness 0.5; a texture's colours are a map, its alphas (1, 1, ½, 0)
+// their mean.
+TEST_CASE("gltf_specular_glossiness_is_translated") {
+  const std::string start =
+      "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0,0,1],\"roughnessFactor\":0.1},\"extensions\":{"
+      "\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.8,0.4,0.2,0.5],\"specularFactor\":[0.25,0.5,0.125]"
+      ",";
+  const Material m = material_of(start + "\"glossinessFactor\":0.5}},\"alphaMode\":\"BLEND\"}");
+  check_vec(m.diffuse, {0.4f, 0.2f, 0.1f});
+  check_vec(m.specular, {0.25f, 0.5f, 0.125f});
+  CHECK(m.roughness == 0.25f);
+  CHECK(m.grazing == 1);
+  CHECK(m.opacity == 0.5f);
+  const ImportedScene imported =
+      load_text(triangle_gltf(start + "\"specularGlossinessTexture\":{\"index\":0,\"extensions\":{"
+                                      "\"KHR_texture_transform\":{\"scale\":[3,2]}}}}}}",
+                              images(kColors)));
+  REQUIRE(imported.scene.material_maps.count == 1);
+  const MaterialMaps& maps = imported.scene.material_maps[0];
+  CHECK((maps.specular_color.texture == 0 && maps.specular.texture == kNone));
+  CHECK((maps.specular_color.m[0][0] == 3 && maps.specular_color.m[1][1] == 2));
+  check_vec(maps.model.dielectric, {0.25f, 0.5f, 0.125f});
+  CHECK(maps.roughness_low == doctest::Approx(1 - (1 + 1 + 128 / 255.0 + 0) / 4).epsilon(1e-3));
+  CHECK(imported.warning.find("glossiness textures") != std::string::npos);
+}
+
+// Goal: a required extension that only changes looks is named, not refused; others are (hostile_test.cpp).
+TEST_CASE("gltf_required_looks_are_a_warning") {
+  const ImportedScene imported = load_text(triangle_gltf("{}",
+                                                         ",\"extensionsUsed\":[\"KHR_materials_clearcoat\"],"
+                                                         "\"extensionsRequired\":[\"KHR_materials_clearcoat\"]"));
+  CHECK(imported.warning.find("KHR_materials_clearcoat") != std::string::npos);
+}
+
 // Goal: textures are halved until they fit. Method: the sample helmet at a side of at most 64.
 TEST_CASE("gltf_large_textures_are_halved_until_they_fit") {
   std::string path = shared_scene("gltf/DamagedHelmet.glb");
