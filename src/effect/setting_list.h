@@ -10,7 +10,7 @@
 
 namespace pocketray {
 
-inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear", "trilinear"};
+inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear", "trilinear", "anisotropic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
@@ -104,7 +104,7 @@ inline constexpr SettingRow kSettingList[] = {
      ""},
     {"texture-filter",
      "texture filtering",
-     "",
+     "anisotropic: up to four places along a pixel's footprint, sharper at grazing angles",
      nullptr,
      choice_field<&Quality::texture_filter>(kTextureFilterNames),
      1,
@@ -113,7 +113,7 @@ inline constexpr SettingRow kSettingList[] = {
      true,
      double(TextureFilter::as_scene),
      {double(TextureFilter::nearest), double(TextureFilter::as_scene), double(TextureFilter::bilinear),
-      double(TextureFilter::trilinear)},
+      double(TextureFilter::trilinear), double(TextureFilter::anisotropic)},
      nullptr,
      ""},
     {"normals",

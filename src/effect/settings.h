@@ -8,10 +8,10 @@
 
 namespace pocketray {
 
-enum class TextureFilter : std::uint8_t { as_scene, nearest, bilinear, trilinear };
+enum class TextureFilter : std::uint8_t { as_scene, nearest, bilinear, trilinear, anisotropic };
 // Whether it reads the levels of textures that have them.
 constexpr bool takes_levels(TextureFilter filter) {
-  return filter == TextureFilter::as_scene || filter == TextureFilter::trilinear;
+  return filter != TextureFilter::nearest && filter != TextureFilter::bilinear;
 }
 enum class NormalMode : std::uint8_t { as_scene, flat };
 

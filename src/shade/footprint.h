@@ -2,7 +2,7 @@
 // wide as the pixel and keeps its angle through mirrors and refraction: the curvature of surfaces, which would widen or
 // narrow it, is left out, and so is the smaller angle of pixels away from the picture's centre. The texture's level is
 // that of the covered area, the mean of both axes: [Akenine-Möller et al. 2021] takes the longer one, which blurs
-// surfaces seen at a grazing angle.
+// surfaces seen at a grazing angle. TextureFilter::anisotropic divides the area along the longer axis.
 #pragma once
 #include <cmath>
 #include <cstring>
@@ -38,6 +38,25 @@ inline float footprint(const PixelCone& cone, float t, const Vec3& direction, co
   if (!(area > 0 && width > 0)) return 0;
   const float covered = seen > 0 && width < kMost ? width / seen * width * area : kMost;
   return covered < kMost ? covered : kMost;
+}
+
+// The longer axis of the ellipse that the cone covers, in texture coordinates, from end to end: on the surface it
+// follows the ray [Akenine-Möller et al. 2021, sec. 5]; the shorter one follows from the area. Arguments as above. Zero
+// where the ray is perpendicular to the surface or meets it edge-on. Always finite, without invalid operations.
+inline Vec2 footprint_axis(const FrameData& frame, float t, const Vec3& direction, const Vec3& perpendicular,
+                           const Vec3& normal, const Triangle& triangle) {
+  const Scene& scene = *frame.scene;
+  constexpr float kMost = 1e18f;                                                   // products of two are finite
+  const float cosine = dot(normal, direction), size = dot(normal, perpendicular);  // twice the triangle's area
+  if (scene.uvs.empty() || !(std::fabs(cosine) > 0 && size > 0)) return {0, 0};
+  const float stretch = (frame.cone.width + t * frame.cone.spread) / std::fabs(cosine);
+  const Vec3 along = normalize(direction - normal * cosine), a = frame.positions[triangle.vertex(0)];
+  const Vec3 e = frame.positions[triangle.vertex(1)] - a, f = frame.positions[triangle.vertex(2)] - a;
+  const float du = dot(cross(along, f), normal) / size, dv = dot(cross(e, along), normal) / size;
+  if (!(stretch < kMost && std::fabs(du) < kMost && std::fabs(dv) < kMost)) return {0, 0};
+  const Vec2 p = scene.uvs[triangle.vertex(0)], q = scene.uvs[triangle.vertex(1)], r = scene.uvs[triangle.vertex(2)];
+  const Vec2 axis = {((q.x - p.x) * du + (r.x - p.x) * dv) * stretch, ((q.y - p.y) * du + (r.y - p.y) * dv) * stretch};
+  return std::fabs(axis.x) < kMost && std::fabs(axis.y) < kMost ? axis : Vec2{0, 0};
 }
 
 // The level at which that many texels of level 0 are one: ½·log₂. Exact for powers of two, within 0.0005 elsewhere;

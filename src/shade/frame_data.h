@@ -65,6 +65,13 @@ struct PixelCone {
   float width, spread;
 };
 
+// What a pixel covers of a texture, in texture coordinates; see footprint.h.
+struct Footprint {
+  float area;
+  Vec2 axis;  // set for TextureFilter::anisotropic
+};
+constexpr Footprint kNoFootprint = {0, {0, 0}};
+
 // Bodies that contain the ray, innermost last, as material indices.
 struct MediumStack {
   std::uint32_t material[kMediumDepthMax];

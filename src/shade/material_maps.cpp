@@ -51,7 +51,7 @@ void apply_specular(const FrameData& frame, const MaterialMaps& maps, const Surf
   auto color = [&](const TextureUse& use) {
     const TextureFilter filter = frame.settings.texture_filter;
     return has(frame.mask, Effect::mip_map) ? color_at<true>(scene, use, uv, filter, s.footprint)
-                                            : color_at<false>(scene, use, uv, filter, 0);
+                                            : color_at<false>(scene, use, uv, filter, kNoFootprint);
   };
   if (maps.specular.texture != kNone) {
     const float share = color(maps.specular).alpha;

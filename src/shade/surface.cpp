@@ -69,6 +69,13 @@ inline void add_glow(const FrameData& frame, Surface* s) {
   }
 }
 
+inline void find_footprint(const FrameData& frame, float t, const Vec3& direction, const Vec3& perpendicular,
+                           const Vec3& outward, const Triangle& triangle, Footprint* result) {
+  result->area = footprint(frame.cone, t, direction, perpendicular, outward, *frame.scene, triangle);
+  if (frame.settings.texture_filter == TextureFilter::anisotropic)
+    result->axis = footprint_axis(frame, t, direction, perpendicular, outward, triangle);
+}
+
 template <EffectMask mask>
 void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   const Scene& scene = *frame.scene;
@@ -95,7 +102,7 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
     if (frame.normals.count) s->normal = smooth_normal(frame, t, w, u, v, s->geometric);
   }
   if constexpr (has(mask, Effect::mip_map))
-    s->footprint = footprint(frame.cone, hit.t, ray.direction, perpendicular, outward, scene, t);
+    find_footprint(frame, hit.t, ray.direction, perpendicular, outward, t, &s->footprint);
   s->diffuse = m.diffuse;
   s->is_tinted = false;
   if constexpr (has(mask, Effect::texture)) {

@@ -26,7 +26,7 @@ struct Surface {
   const Material* material;
   float roughness;
   SurfacePlace hit;
-  float footprint;  // see footprint.h; set with Effect::mip_map
+  Footprint footprint;  // set with Effect::mip_map
 };
 
 // Whether the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:

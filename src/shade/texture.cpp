@@ -160,16 +160,56 @@ auto sample(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter fi
                                         : sample_base<Texel, BlockTexels>(scene, t, place, filter);
 }
 
+Vec3 add(const Vec3& a, const Vec3& b) { return a + b; }
+Rgba add(const Rgba& a, const Rgba& b) { return {a.rgb + b.rgb, a.alpha + b.alpha}; }
+Vec3 scaled(const Vec3& a, float factor) { return a * factor; }
+Rgba scaled(const Rgba& a, float factor) { return {a.rgb * factor, a.alpha * factor}; }
+
 template <class Texel>
-auto sample(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint) {
+auto sample_level(const Scene& scene, const Texture& t, Vec2 place, float lambda) {
+  return t.format == TexelFormat::exact ? sample_levels<Texel, ExactTexels>(scene, t, place, lambda)
+                                        : sample_levels<Texel, BlockTexels>(scene, t, place, lambda);
+}
+
+// The number of places for a footprint of that area, in texels, and axis: as many as it is longer than wide, but no
+// more than it has texels along the axis.
+int place_count(float area, float axis_square) {
+  constexpr int kMost = 4;
+  int count = 1;
+  while (count < kMost && axis_square > area * static_cast<float>(count) &&
+         axis_square > static_cast<float>(count * count))
+    ++count;
+  return count;
+}
+
+// The mean of places along the axis of the footprint, each with its share of the area.
+template <class Texel>
+auto sample_along_axis(const Scene& scene, const TextureUse& use, Vec2 uv, float area, const Vec2& axis) {
+  const Texture& t = scene.textures[use.texture];
+  const Vec2 place = transformed(use, uv);
+  const Vec2 way = {use.m[0][0] * axis.x + use.m[0][1] * axis.y, use.m[1][0] * axis.x + use.m[1][1] * axis.y};
+  const float across = way.x * static_cast<float>(t.width), down = way.y * static_cast<float>(t.height);
+  const int count = place_count(area, across * across + down * down);
+  const float share = 1 / static_cast<float>(count), lambda = texture_level(area * share);
+  auto at = [&](int i) {
+    const float step = (static_cast<float>(i) + 0.5f) * share - 0.5f;
+    return sample_level<Texel>(scene, t, {place.x + way.x * step, place.y + way.y * step}, lambda);
+  };
+  auto sum = at(0);
+  for (int i = 1; i < count; ++i) sum = add(sum, at(i));
+  return scaled(sum, share);
+}
+
+template <class Texel>
+auto sample(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, const Footprint& footprint) {
   const Texture& t = scene.textures[use.texture];
   const float turn = use.m[0][0] * use.m[1][1] - use.m[0][1] * use.m[1][0];
   const float texels = static_cast<float>(std::uint32_t(t.width) * t.height);
-  const float lambda = texture_level(footprint * std::fabs(turn) * texels);
-  if (t.level_count == 1 || !takes_levels(filter) || lambda == 0) return sample<Texel>(scene, use, uv, filter);
-  const Vec2 place = transformed(use, uv);
-  return t.format == TexelFormat::exact ? sample_levels<Texel, ExactTexels>(scene, t, place, lambda)
-                                        : sample_levels<Texel, BlockTexels>(scene, t, place, lambda);
+  const float area = footprint.area * std::fabs(turn) * texels, lambda = texture_level(area);
+  if (t.level_count == 1 || !takes_levels(filter)) return sample<Texel>(scene, use, uv, filter);
+  if (filter == TextureFilter::anisotropic) return sample_along_axis<Texel>(scene, use, uv, area, footprint.axis);
+  if (lambda == 0) return sample<Texel>(scene, use, uv, filter);
+  return sample_level<Texel>(scene, t, transformed(use, uv), lambda);
 }
 
 }  // namespace
@@ -177,24 +217,26 @@ auto sample(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter fi
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter) {
   return sample<ColorTexel>(scene, use, uv, filter);
 }
-Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint) {
+Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter,
+                    const Footprint& footprint) {
   return sample<ColorTexel>(scene, use, uv, filter, footprint);
 }
 
 Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter) {
   return sample<NumberTexel>(scene, use, uv, filter);
 }
-Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint) {
+Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter,
+                    const Footprint& footprint) {
   return sample<NumberTexel>(scene, use, uv, filter, footprint);
 }
 
 float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                     TextureFilter filter, float footprint) {
+                     TextureFilter filter, const Footprint& footprint) {
   float alpha = material.opacity;
   if (material.diffuse_texture.texture != kNone && scene.uvs.count) {
     const Vec2 uv = hit_uv(scene, triangle, u, v);
-    alpha *= (footprint > 0 ? sample_texture(scene, material.diffuse_texture, uv, filter, footprint)
-                            : sample_texture(scene, material.diffuse_texture, uv, filter))
+    alpha *= (footprint.area > 0 ? sample_texture(scene, material.diffuse_texture, uv, filter, footprint)
+                                 : sample_texture(scene, material.diffuse_texture, uv, filter))
                  .alpha;
   }
   if (scene.colors.count) {

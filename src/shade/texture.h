@@ -1,7 +1,7 @@
 // Texture look-ups. Texels are sRGB bytes; a look-up returns linear colour and alpha.
 #pragma once
 #include "effect/effect_probe.h"
-#include "scene/scene.h"
+#include "shade/frame_data.h"
 
 namespace pocketray {
 
@@ -10,26 +10,27 @@ struct Rgba {
   float alpha;
 };
 
-enum class TextureFilter : std::uint8_t;
-
 // The colour of `use` at uv. Coordinates wrap as in the texture's sampler; row 0 is at v = 0.
 Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
-// The same, filtered for a footprint of that area in uv where the texture has levels (Effect::mip_map): between two
-// levels, each bilinear. With the filters nearest and bilinear, level 0 as above.
-Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint);
+// The same, filtered for a footprint where the texture has levels (Effect::mip_map): between two levels, each bilinear;
+// with the filter anisotropic, the mean of up to four places along the footprint's axis. With the filters nearest and
+// bilinear, level 0 as above.
+Rgba sample_texture(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter,
+                    const Footprint& footprint);
 
 // The same of a texture of numbers: texel bytes R, G, B as they are, 0 to 255.
 Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter);
-Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint);
+Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter,
+                    const Footprint& footprint);
 
 // The one of the two that the plan calls for.
 template <bool has_levels>
-Rgba color_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint) {
+Rgba color_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, const Footprint& footprint) {
   if constexpr (has_levels) return sample_texture(scene, use, uv, filter, footprint);
   return sample_texture(scene, use, uv, filter);
 }
 template <bool has_levels>
-Vec3 numbers_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, float footprint) {
+Vec3 numbers_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilter filter, const Footprint& footprint) {
   if constexpr (has_levels) return sample_numbers(scene, use, uv, filter, footprint);
   return sample_numbers(scene, use, uv, filter);
 }
@@ -44,13 +45,13 @@ inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v)
 
 // Alpha of a material at a hit: opacity × texture alpha × vertex alpha.
 float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                     TextureFilter filter, float footprint = 0);
+                     TextureFilter filter, const Footprint& footprint = kNoFootprint);
 
 // The same, for the effect in question: alpha_mask or alpha_blend. Without a footprint, as for holes and shadows, of
 // level 0: means would fill or widen holes with the distance, and a surface and its shadow would differ.
 template <Effect effect>
 float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                TextureFilter filter, float footprint = 0) {
+                TextureFilter filter, const Footprint& footprint = kNoFootprint) {
   static_assert(effect == Effect::alpha_mask || effect == Effect::alpha_blend, "no other effect reads alpha");
   effect_entered<effect>();
   return material_alpha(scene, material, triangle, u, v, filter, footprint);

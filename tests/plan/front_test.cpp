@@ -17,7 +17,8 @@ namespace {
 const std::string kHead = "pocketray-front 1\n";
 const std::string kLine =
     "samples=4 depth=8 area-lights=16 cut-off=0.5 texture-filter=scene normals=scene indirect=auto "
-    "reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32 flip=0.0123 "
+    "reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 "
+    "environment-shadows=32 flip=0.0123 "
     "ns=812\n";
 
 std::string text_of(const Front& front) {
@@ -38,7 +39,7 @@ Candidate random_candidate(Rng* rng) {
   c.ray_depth = next_u32(rng) % (kRayDepthMax + 1);
   c.points_per_area_light = 1 + next_u32(rng) % kPointsPerAreaLightMax;
   c.cut_off_levels = next_float(rng) * kCutOffLevelsMax;
-  c.texture_filter = static_cast<TextureFilter>(next_u32(rng) % 4);
+  c.texture_filter = static_cast<TextureFilter>(next_u32(rng) % 5);
   c.normals = static_cast<NormalMode>(next_u32(rng) % 2);
   c.indirect = static_cast<IndirectChoice>(next_u32(rng) % kIndirectChoiceCount);
   c.virtual_lights = 1 + next_u32(rng) % kVirtualLightMax;
@@ -99,7 +100,8 @@ TEST_CASE("front_text_is_as_documented") {
   CHECK(c.ns_per_pixel == 812);
   Front other;
   REQUIRE(parse(kHead + "# as measured\r\n\r\nns=812  flip=0.0123 samples=4 normals=scene indirect=auto "
-                        "reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32 "
+                        "reconstruction=bicubic virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 "
+                        "environment-shadows=32 "
                         "depth=8 area-lights=16 "
                         "texture-filter=scene cut-off=5e-1\r\n",
                 &other)

@@ -119,8 +119,9 @@ TEST_CASE("texture_in_blocks_is_that_of_its_texels") {
         int unequal = 0;
         for (int i = 0; i < 200; ++i) {
           const Vec2 uv = {next_float(&rng) * 4 - 2, next_float(&rng) * 4 - 2};
-          const float area = next_float(&rng) * next_float(&rng) * next_float(&rng);
-          const auto filter = static_cast<TextureFilter>(next_u32(&rng) % 4);
+          const Footprint area = {next_float(&rng) * next_float(&rng) * next_float(&rng),
+                                  {next_float(&rng) - 0.5f, next_float(&rng) - 0.5f}};
+          const auto filter = static_cast<TextureFilter>(next_u32(&rng) % 5);
           const Rgba p = sample_texture(a, use, uv, filter, area), q = sample_texture(b, use, uv, filter, area);
           unequal += !(p.rgb == q.rgb && p.alpha == q.alpha);
           unequal += !(sample_numbers(a, use, uv, filter) == sample_numbers(b, use, uv, filter));

@@ -204,7 +204,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\21\0", "the server says hello first, of version 17")
+            check(kind == HELLO and fields[:6] == b"PRAY\22\0", "the server says hello first, of version 18")
             self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
 
     def send(self, data):

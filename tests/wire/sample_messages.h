@@ -41,7 +41,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   f->settings.ray_depth = next_u32(rng) % (kRayDepthMax + 1);
   f->settings.points_per_area_light = 1 + next_u32(rng) % kPointsPerAreaLightMax;
   f->settings.cut_off_levels = static_cast<float>(next_u32(rng) % 64);
-  f->settings.texture_filter = static_cast<TextureFilter>(next_u32(rng) % 4);
+  f->settings.texture_filter = static_cast<TextureFilter>(next_u32(rng) % 5);
   f->settings.normals = static_cast<NormalMode>(next_u32(rng) % 2);
   f->settings.forced_on = next_u32(rng) & kAllEffects, f->settings.forced_off = next_u32(rng) & kAllEffects;
   f->exposure = 1 + next_float(rng), f->dither = next_u32(rng) % 2 != 0;
