@@ -39,7 +39,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -189,6 +189,17 @@ contact-sheet: configure
 	@tests/materials/contact_sheet.py $(POCKETRAY) --folder $(BUILD)/contact-sheet $(if $(MODELS),--models $(MODELS)) \
 	  $(JSON:%=--json %) $(SHEET_OPTIONS)
 
+# Mach bands of radiosity by each reconstruction: a table, and the cube as [Bastos92] figs. 6 and 7 show it.
+mach-bands: setup-tests configure
+	cmake --build $(BUILD) -j$(JOBS) --target draw_bands
+	@mkdir -p $(BUILD)/mach-bands && $(BUILD)/draw_bands $(BUILD)/mach-bands
+	@cd $(BUILD)/mach-bands && if command -v montage >/dev/null; then \
+	  montage -font DejaVu-Sans -pointsize 13 -depth 8 -label constant constant.ppm -label bilinear bilinear.ppm \
+	    -label 'bicubic, Hermite' bicubic.ppm -label 'lateral inhibition' constant-bands.ppm \
+	    -label 'lateral inhibition' bilinear-bands.ppm -label 'lateral inhibition' bicubic-bands.ppm -tile 3x -geometry 240x180+3+3 mach-bands.png && \
+	  echo "the picture: $(BUILD)/mach-bands/mach-bands.png"; \
+	else echo "pictures: $(BUILD)/mach-bands/*.ppm (ImageMagick puts them side by side)"; fi
+
 # The packages of a device's launchers: DEVICE=miyoo-mini (OnionUI, MinUI), rg350 (.opk), portmaster. This machine's program
 # bakes their scenes.
 package: all
@@ -239,6 +250,7 @@ help:
 	@echo "make bench-device count instructions and estimated cycles per pixel for DEVICE=, by part (BENCH_OPTIONS=--effects: and"
 	@echo "                  by effect; JSON=FILE: write the table)"
 	@echo "make contact-sheet render sample models beside Cycles, the worst first (MODELS='Duck Fox': some, JSON=FILE)"
+	@echo "make mach-bands    how visible the patches of radiosity are, by reconstruction: a table and a picture"
 	@echo "make format       run clang-format on all sources"
 	@echo "make tidy         run clang-tidy on all sources"
 	@echo "make package      write the packages of launchers for DEVICE=miyoo-mini, rg350 or portmaster to build/packages"

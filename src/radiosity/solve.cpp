@@ -146,7 +146,7 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   solution->patch_count = factors.count, solution->shots = exchange.shots;
   solution->unshot = unshot_magnitude(exchange) / exchange.emitted;
   std::vector<Vec3d> reflected = exchange.radiance;  // emission reaches pixels as direct light
-  for (std::size_t i = 0; i < patches.size(); ++i)
+  for (std::size_t i = 0; i < patches.size() && !options.stores_direct_light; ++i)
     if (!patches[i].is_back || patches[i].double_sided) reflected[i] = reflected[i] - patches[i].emission;
 
   std::vector<char> front(scene.triangles.count, 1), back(scene.triangles.count, 0);
@@ -162,8 +162,9 @@ Status solve_radiosity(const FrameData& frame, const RadiosityOptions& options, 
   parallel_for(count, options.threads, [&](std::uint32_t i) {
     if (stop) return;
     const Receiver& at = i < node_count ? places.nodes[i].at : places.values[i - node_count].at;
-    const Vec3d light = gather(rays, patches, reflected, at, i);
+    Vec3d light = gather(rays, patches, reflected, at, i);
     const bool covered = light.x < 0;
+    if (options.stores_direct_light && !covered) light += light_irradiance(rays, at) * (1 / kPi);
     if (i < node_count) {
       known[places.nodes[i].node] = !covered;
       if (!covered) solution->nodes[places.nodes[i].node].value = to_float(light);

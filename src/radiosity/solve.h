@@ -10,6 +10,9 @@ struct RadiosityOptions {
   std::uint32_t patch_count = 1200;  // roughly
   double nodes_per_patch = 2;        // along a side, of the grids
   double converged = 1e-4;           // unshot share of the emitted light
+  // Stores light that comes straight from the lights, too, as [Bastos92] does; whoever renders it leaves that out. For
+  // comparison: shadows are as coarse as the grids.
+  bool stores_direct_light = false;
   std::uint32_t threads = 1;
 };
 
