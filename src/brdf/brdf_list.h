@@ -6,11 +6,19 @@
 namespace pocketray {
 
 extern const BrdfInfo kPhongBrdf;
-extern const BrdfInfo kGgxBrdf;
+extern const BrdfInfo kGgxBrdf, kGrainedGgxBrdf;
+extern const BrdfInfo kWardBrdf, kGrainedWardBrdf;
 
-enum : std::uint32_t { kPhong, kGgx };  // values of Material::brdf
-inline const BrdfInfo* const kBrdfList[] = {&kPhongBrdf, &kGgxBrdf};
+enum : std::uint32_t { kPhong, kGgx, kWard };  // values of Material::brdf
+inline const BrdfInfo* const kBrdfList[] = {&kPhongBrdf, &kGgxBrdf, &kWardBrdf};
 constexpr std::uint32_t kBrdfCount = sizeof kBrdfList / sizeof kBrdfList[0];
 static_assert(kBrdfCount <= kBrdfCountMax, "raise it in base/limits.h");
+
+// Whether the material's lobe has a grain.
+inline bool has_grain(const Scene& scene, std::uint32_t material) {
+  if (scene.grains.empty() || !kBrdfList[scene.materials[material].brdf]->with_grain) return false;
+  const Vec2& direction = scene.grains[material].direction;
+  return direction.x != 0 || direction.y != 0;
+}
 
 }  // namespace pocketray

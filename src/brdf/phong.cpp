@@ -9,8 +9,9 @@ namespace {
 
 float scale(const Material& material) { return (material.exponent + 2) * (0.5f / kPiF); }
 
-Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, const Vec3& normal,
+Vec3 value(const Material& material, const Vec3& specular, const Vec3& diffuse, const LobeFrame& frame,
            const Vec3& to_viewer, const Vec3& to_light) {
+  const Vec3& normal = frame.normal;
   float cos_lobe = 2 * dot(normal, to_light) * dot(normal, to_viewer) - dot(to_light, to_viewer);
   if (!(cos_lobe > 0)) return diffuse;
   if (cos_lobe > 1) cos_lobe = 1;  // rounded unit vectors (HARDCASES row 30)
@@ -24,25 +25,26 @@ double exact_cosine(const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to
   return c < 1 ? c : 1;
 }
 
-Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const Vec3d& normal,
+Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& diffuse, const LobeFrameD& frame,
                   const Vec3d& to_viewer, const Vec3d& to_light) {
-  double cosine = exact_cosine(normal, to_viewer, to_light), n = static_cast<double>(material.exponent);
+  double cosine = exact_cosine(frame.normal, to_viewer, to_light), n = static_cast<double>(material.exponent);
   if (!(cosine > 0)) return diffuse;
   return diffuse + specular * ((n + 2) / (2 * kPi) * unit_power(cosine, n));
 }
 
-Vec3d sample(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, double u, double v) {
+Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& to_viewer, double u, double v) {
+  const Vec3d& normal = frame.normal;
   Vec3d mirrored = normalize(normal * (2 * dot(normal, to_viewer)) - to_viewer);
   return power_cosine_direction(mirrored, static_cast<double>(material.exponent), u, v);
 }
 
-double density(const Material& material, const Vec3d& normal, const Vec3d& to_viewer, const Vec3d& to_light) {
-  double cosine = exact_cosine(normal, to_viewer, to_light), n = static_cast<double>(material.exponent);
+double density(const Material& material, const LobeFrameD& frame, const Vec3d& to_viewer, const Vec3d& to_light) {
+  double cosine = exact_cosine(frame.normal, to_viewer, to_light), n = static_cast<double>(material.exponent);
   return cosine > 0 ? (n + 1) / (2 * kPi) * unit_power(cosine, n) : 0;
 }
 
 }  // namespace
 
-const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr, 1};
+const BrdfInfo kPhongBrdf = {"phong", value, peak, exact_value, sample, density, nullptr, 1, nullptr};
 
 }  // namespace pocketray

@@ -36,12 +36,15 @@ enum class Effect : std::uint8_t {
   undersampling,
   source_selection,
   environment_shadow,
+  anisotropy,
 };
-constexpr int kEffectCount = 31;
+constexpr int kEffectCount = 32;
 
 using EffectMask = std::uint32_t;
 constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }
-constexpr EffectMask kAllEffects = (1u << kEffectCount) - 1;
+static_assert(kEffectCount == 32,
+              "a mask has as many bits; more effects take a wider one, in files and on the wire too");
+constexpr EffectMask kAllEffects = ~EffectMask(0);
 // Methods of indirect light: a plan has one of them or none; --indirect chooses.
 constexpr EffectMask kIndirectEffects = bit(Effect::ambient) | bit(Effect::radiosity) | bit(Effect::instant_radiosity);
 

@@ -42,6 +42,7 @@ constexpr EffectRow kEffectList[kEffectCount] = {
     {Effect::undersampling, "undersampling", "--resolution checkerboard or half"},
     {Effect::source_selection, "source-selection", "many lights"},
     {Effect::environment_shadow, "environment-shadow", "a stored environment and a diffuse material"},
+    {Effect::anisotropy, "anisotropy", "a glossy material with a grain, such as brushed metal"},
 };
 
 constexpr bool effects_in_order() {

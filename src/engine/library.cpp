@@ -48,7 +48,7 @@ Status read_settings(const pocketray_settings& given, Settings* settings) {
   RETURN_IF_ERROR(check_limit(Quantity::depth, given.ray_depth));
   RETURN_IF_ERROR(check_limit(Quantity::area_light_points, given.points_per_area_light));
   RETURN_IF_ERROR(check_limit(Quantity::cut_off, static_cast<double>(given.cut_off_levels)));
-  RETURN_IF_ERROR(check_choice("texture_filter", given.texture_filter, 4));
+  RETURN_IF_ERROR(check_choice("texture_filter", given.texture_filter, 5));
   RETURN_IF_ERROR(check_choice("normals", given.normals, 2));
   settings->samples_per_pixel = static_cast<std::uint32_t>(given.samples_per_pixel);
   settings->ray_depth = static_cast<std::uint32_t>(given.ray_depth);

@@ -85,12 +85,14 @@ typedef struct pocketray_source {
 #define POCKETRAY_SOURCE_INIT \
   { sizeof(pocketray_source), NULL, NULL, 0, 0 }
 
-/* Nearest and bilinear read full-size texels alone. As the scene: trilinear where a texture has smaller levels. */
+/* Nearest and bilinear read full-size texels alone. As the scene: trilinear where a texture has smaller levels.
+   Anisotropic: sharper at grazing angles. */
 enum {
   POCKETRAY_FILTER_AS_SCENE = 0,
   POCKETRAY_FILTER_NEAREST = 1,
   POCKETRAY_FILTER_BILINEAR = 2,
-  POCKETRAY_FILTER_TRILINEAR = 3
+  POCKETRAY_FILTER_TRILINEAR = 3,
+  POCKETRAY_FILTER_ANISOTROPIC = 4
 };
 enum { POCKETRAY_NORMALS_AS_SCENE = 0, POCKETRAY_NORMALS_FLAT = 1 };
 

@@ -91,7 +91,7 @@ float gltf_map_mean(GltfFile* file, int texture, int channel);
 MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& source, MetallicRoughness model);
 // The scene keeps one set of texture coordinates per vertex: that of the first texture that the material has; -1: none.
 int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
-                       const MaterialMaps& maps);
+                       const MaterialMaps& maps, const Grain& grain);
 
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);

@@ -43,6 +43,11 @@ SpecularTextures specular_textures(const tinygltf::Material& source) {
   return {gltf_texture_info(*extension, "specularTexture"), gltf_texture_info(*extension, "specularColorTexture")};
 }
 
+tinygltf::TextureInfo anisotropy_texture(const tinygltf::Material& source) {
+  const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_anisotropy");
+  return extension ? gltf_texture_info(*extension, "anisotropyTexture") : tinygltf::TextureInfo();
+}
+
 // A dark texture leaves a trace of a lobe, for the same reason as in gltf_map_mean().
 constexpr float kLeastMean = 0x1p-10f;
 
@@ -101,7 +106,7 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
 }
 
 int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
-                       const MaterialMaps& maps) {
+                       const MaterialMaps& maps, const Grain& grain) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const SpecularTextures specular = specular_textures(source);
   const struct {
@@ -114,7 +119,8 @@ int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const M
              {"specular colour", maps.specular_color, specular.color},
              {"normal", maps.normal, plain(source.normalTexture)},
              {"emission", material.emission_texture, source.emissiveTexture},
-             {"occlusion", maps.occlusion, plain(source.occlusionTexture)}};
+             {"occlusion", maps.occlusion, plain(source.occlusionTexture)},
+             {"anisotropy", grain.texture, anisotropy_texture(source)}};
   const char* chosen = nullptr;
   int set = -1;
   for (const auto& texture : all) {

@@ -129,6 +129,19 @@ Material convert(GltfFile* file, const tinygltf::Material& source, MaterialMaps*
   return material;
 }
 
+// KHR_materials_anisotropy.
+Grain read_grain(GltfFile* file, const tinygltf::Material& source, const Material& material) {
+  Grain grain;
+  const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_anisotropy");
+  if (!extension || is_zero(material.specular)) return grain;
+  const double strength = static_cast<double>(gltf_unit(gltf_number(*extension, "anisotropyStrength", 0)));
+  const double angle = std::remainder(gltf_number(*extension, "anisotropyRotation", 0), 2 * kPi);
+  grain.direction = {static_cast<float>(strength * det_cos(angle)), static_cast<float>(strength * det_sin(angle))};
+  if (strength > 0)
+    grain.texture = gltf_texture_use(file, gltf_texture_info(*extension, "anisotropyTexture"), TexelKind::numbers);
+  return grain;
+}
+
 }  // namespace
 
 std::uint32_t gltf_material(GltfFile* file, int index) {
@@ -142,12 +155,17 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   const tinygltf::Material& source = translate ? translated : given;
   MaterialMaps maps;
   Material material = convert(file, source, &maps);
+  const Grain grain = read_grain(file, source, material);
   if (index >= 0)
-    file->material_uv_set[static_cast<std::size_t>(index)] = gltf_choose_uv_set(file, source, material, maps);
+    file->material_uv_set[static_cast<std::size_t>(index)] = gltf_choose_uv_set(file, source, material, maps, grain);
   *known = add_material(file->builder, material, source.name);
   if (has_map(maps)) {
     out.material_maps.resize(*known);
     out.material_maps.push_back(maps);
+  }
+  if (grain.direction.x != 0 || grain.direction.y != 0) {
+    out.grains.resize(*known);
+    out.grains.push_back(grain);
   }
   return *known;
 }

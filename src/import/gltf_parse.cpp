@@ -24,6 +24,7 @@ const char* const kKnownExtensions[] = {
     "EXT_mesh_gpu_instancing",
     "KHR_mesh_quantization",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_anisotropy",
 };
 bool is_known_extension(const std::string& name) {
   return std::any_of(std::begin(kKnownExtensions), std::end(kKnownExtensions),

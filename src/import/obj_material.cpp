@@ -3,16 +3,22 @@
 //   3, 5, 8     mirror Ks (5: instead of Fresnel's rise to 1, which Ks of a metal hardly has)
 //   4, 6, 7, 9  glass: transmits Tf (1 where absent), index of refraction Ni, mirror by Fresnel
 //   any         emission Ke; opacity d = 1 − Tr, times map_d
+// With Pr or Pm (the extension for physically based rendering, as Blender exports it), all but glass is glTF's
+// metallic-roughness material of base colour Kd. `aniso` and `anisor`, a turn being 1, are a grain along u: of that
+// material, or of Ward's lobe, which then stands in for Phong's of Ns with α = √(2/(Ns + 2)).
 #include "import/obj_material.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "base/fmath.h"
 #include "base/limits.h"
+#include "brdf/brdf_list.h"
 #include "import/files.h"
 #include "import/image.h"
 #include "import/import_error.h"
+#include "scene/metallic_roughness.h"
 
 namespace pocketray {
 namespace {
@@ -103,9 +109,29 @@ void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
   if (!source.ambient_texname.empty()) note_unused(builder, "ambient maps");
   if (!source.displacement_texname.empty()) note_unused(builder, "displacement maps");
   if (!source.reflection_texname.empty()) note_unused(builder, "reflection maps");
-  if (source.roughness > 0 || source.metallic > 0 || source.sheen > 0 || source.clearcoat_thickness > 0 ||
-      !source.roughness_texname.empty() || !source.metallic_texname.empty() || !source.sheen_texname.empty())
-    note_unused(builder, "PBR parameters of MTL");
+  if (source.sheen > 0 || !source.sheen_texname.empty()) note_unused(builder, "sheen");
+  if (source.clearcoat_thickness > 0) note_unused(builder, "clear coats");
+  if (!source.roughness_texname.empty() || !source.metallic_texname.empty())
+    note_unused(builder, "roughness and metallic maps");
+}
+
+bool is_physically_based(const tinyobj::material_t& source) { return source.roughness > 0 || source.metallic > 0; }
+
+void read_metallic_roughness(const tinyobj::material_t& source, Material* material) {
+  MetallicRoughness model;
+  model.base = material->diffuse;
+  const float root = (material->ior - 1) / (material->ior + 1);
+  model.dielectric = Vec3{1, 1, 1} * (material->ior > 1 ? root * root : 0.04f);
+  model.grazing = 1;
+  material->brdf = kGgx;
+  set_lobes(model, bounded(source.metallic, 0, 1), bounded(source.roughness, 0, 1), 0, material);
+}
+
+Grain read_grain(const tinyobj::material_t& source) {
+  const double strength = static_cast<double>(bounded(source.anisotropy, 0, 1));
+  const double turns = static_cast<double>(source.anisotropy_rotation);
+  const double angle = std::isfinite(turns) ? std::remainder(turns, 1) * 2 * kPi : 0;
+  return {{static_cast<float>(strength * det_cos(angle)), static_cast<float>(strength * det_sin(angle))}, {}};
 }
 
 }  // namespace
@@ -126,14 +152,25 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
     if (material.opacity < 1) material.alpha_mode = AlphaMode::blend;
     if (illum == 3 || illum == 5 || illum == 8) {
       material.mirror = ks;
+    } else if (is_physically_based(source)) {
+      read_metallic_roughness(source, &material);
     } else if (illum == 2) {
       material.specular = ks;
       material.exponent = bounded(source.shininess, 0, kPhongExponentMax);
     }
   }
+  const Grain grain = read_grain(source);
+  const bool has_grain = !is_zero(material.specular) && (grain.direction.x != 0 || grain.direction.y != 0);
+  if (has_grain && material.brdf == kPhong)
+    material.brdf = kWard, material.roughness = std::sqrt(2 / (material.exponent + 2));
   read_textures(builder, scene_path, source, &material);
   name_unused(builder, source);
-  return add_material(builder, material, source.name);
+  const std::uint32_t index = add_material(builder, material, source.name);
+  if (has_grain) {
+    builder->out->grains.resize(index);
+    builder->out->grains.push_back(grain);
+  }
+  return index;
 }
 
 }  // namespace pocketray

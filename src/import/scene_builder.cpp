@@ -230,9 +230,12 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
   bool textured = std::any_of(out.materials.begin(), out.materials.end(), is_textured) ||
-                  std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map);
+                  std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
+                  std::any_of(out.grains.begin(), out.grains.end(),
+                              [](const Grain& grain) { return grain.texture.texture != kNone; });
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
+  if (!out.grains.empty()) out.grains.resize(out.materials.size());
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())
     out.rest_normals.resize(out.rest_positions.size(), Vec3{0, 0, 0});
@@ -245,7 +248,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.positions = view(out.positions), scene.normals = view(out.normals);
   scene.uvs = view(out.uvs), scene.colors = view(out.colors);
   scene.triangles = view(out.triangles), scene.materials = view(out.materials),
-  scene.material_maps = view(out.material_maps);
+  scene.material_maps = view(out.material_maps), scene.grains = view(out.grains);
   scene.textures = view(out.textures), scene.texels = view(out.texels);
   scene.lights = view(out.lights), scene.cameras = view(out.cameras);
   scene.nodes = view(out.nodes), scene.animations = view(out.animations), scene.channels = view(out.channels);

@@ -70,18 +70,32 @@ inline Vec3T<T> environment_irradiance(const EnvironmentInfo& info, const Vec3T<
   return sum;
 }
 
+// The normal whose mirrored direction stands for a lobe with a grain, bent towards the viewer across it [glTF's
+// KHR_materials_anisotropy, "Image Based Lighting"]. The normal itself without a grain.
+inline Vec3 bent_normal(const LobeFrame& frame, float alpha, const Vec3& way) {
+  const float square = dot(frame.grain, frame.grain);
+  if (!(square > 0)) return frame.normal;
+  const float strength = std::sqrt(square);
+  const Vec3 across = cross(frame.normal, frame.grain / strength);
+  const Vec3 bent = normalize(cross(cross(way, across), across));
+  const float root = 1 - strength * (1 - std::sqrt(alpha)), share = root * root * root * root;
+  const Vec3 axis = normalize(bent + (frame.normal - bent) * share);
+  return dot(axis, frame.normal) > 0 ? axis : frame.normal;
+}
+
 // Radiance to a viewer from a glossy lobe under the environment: the split sum [Karis 2013]. `specular` as in brdf.h;
 // the material reflects its surroundings. `way` goes from the viewer to the surface, `irradiance` is
-// environment_irradiance() there.
+// environment_irradiance() there. The lobe has its middle where `axis` mirrors the viewer: the normal, or
+// bent_normal().
 inline Vec3 reflected_environment(const Scene& scene, const Material& m, const Vec3& specular, const Vec3& normal,
-                                  const Vec3& way, const Vec3& irradiance) {
+                                  const Vec3& axis, const Vec3& way, const Vec3& irradiance) {
   const float cosine = dot(normal, way), smoothness = 1 - m.roughness;
   const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, cosine);
   // Off the normal, the middle of a rough lobe is nearer to it than the mirrored direction [Lagarde & de Rousiers 2014,
   // "Moving Frostbite to PBR", listing 22].
   const float share = smoothness * (std::sqrt(smoothness) + m.roughness);
-  const Vec3 mirrored = way - normal * (2 * cosine);
-  return albedo.once * environment_gloss(scene, normal * (1 - share) + mirrored * share, m.roughness) +
+  const Vec3 mirrored = way - axis * (2 * dot(axis, way));
+  return albedo.once * environment_gloss(scene, axis * (1 - share) + mirrored * share, m.roughness) +
          albedo.scattered * irradiance;
 }
 

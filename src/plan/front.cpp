@@ -143,7 +143,6 @@ Front builtin_front() {
 }
 
 void drop_what_scene_ignores(Front* front, EffectMask effects) {
-  CHECK_EQ(effects & ~kAllEffects, 0u);
   const Quality usual;
   for (std::uint32_t i = 0; i < front->count; ++i)
     for (const SettingRow& row : kSettingList)

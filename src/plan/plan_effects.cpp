@@ -17,7 +17,7 @@ namespace {
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0, diffuse = 0,
-                metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0;
+                metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0;
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
@@ -27,6 +27,7 @@ bool reads_levels(const Scene& scene, std::uint32_t material) {
   };
   const Material& m = scene.materials[material];
   if (has_levels(m.diffuse_texture) || has_levels(m.emission_texture)) return true;
+  if (scene.grains.count && has_levels(scene.grains[material].texture)) return true;
   if (scene.material_maps.empty()) return false;
   const MaterialMaps& maps = scene.material_maps[material];
   return has_levels(maps.metallic_roughness) || has_levels(maps.specular) || has_levels(maps.specular_color) ||
@@ -50,6 +51,7 @@ Census take_census(const Scene& scene, const Settings& settings) {
       c.metallic_roughness += has_lobe_map(maps);
       c.bumpy += maps.normal.texture != kNone, c.occluded += maps.occlusion.texture != kNone;
     }
+    c.grained += !is_zero(m.specular) && has_grain(scene, i);
     c.with_levels += reads_levels(scene, i);
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
@@ -158,6 +160,7 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   w.set_by_materials(Effect::texture, c.textured, "have a texture");
   w.set_by_materials(Effect::metallic_roughness, c.metallic_roughness, "have a metallic-roughness or specular texture");
   w.set_by_materials(Effect::normal_map, c.bumpy, "have a normal texture");
+  w.set_by_materials(Effect::anisotropy, c.grained, "have a grain");
   if (takes_levels(settings.texture_filter))
     w.set_by_materials(Effect::mip_map, c.with_levels, "have a texture with levels");
   else

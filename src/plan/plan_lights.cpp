@@ -175,7 +175,9 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
     if (passes > reflectance) reflectance = passes;
     float f = max_component(m.diffuse) / kPiF;
     CHECK_LT(m.brdf, kBrdfCount);
-    if (!is_zero(m.specular)) f = f * kBrdfList[m.brdf]->diffuse_max + max_component(kBrdfList[m.brdf]->peak(m));
+    const BrdfInfo* lobe = kBrdfList[m.brdf];
+    if (has(frame.mask, Effect::anisotropy) && has_grain(scene, i)) lobe = lobe->with_grain;
+    if (!is_zero(m.specular)) f = f * lobe->diffuse_max + max_component(lobe->peak(m));
     if (f > scattering) scattering = f;
   }
   float irradiance = 0;

@@ -57,11 +57,10 @@ Vec3d value_in_model(const Reference& reference, const ReferenceSurface& s, cons
   Vec3d value = {0, 0, 0};
   const Material& m = lobes_of(s);
   if (reflects_surroundings(m))
-    value = kBrdfList[m.brdf]->exact_value(m, s.specular, {0, 0, 0}, s.normal, to_viewer, to_light) * s.open;
+    value = glossy_lobe(s).exact_value(m, s.specular, {0, 0, 0}, s, to_viewer, to_light) * s.open;
   const Vec3d diffuse = s.diffuse * (1 / kPi);
   if (!has(frame.mask, Effect::environment_shadow) || is_zero(diffuse)) return value + diffuse * s.open;
-  return value +
-         diffuse * transmittance(reference.world, leave(frame, s, to_light, kInfinity), {kNone, kNone, true});
+  return value + diffuse * transmittance(reference.world, leave(frame, s, to_light, kInfinity), {kNone, kNone, true});
 }
 
 Vec3d light_in_model(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
@@ -193,7 +192,8 @@ Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceS
       return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
     };
     const Vec3 normal = to_float(s.normal);
-    sum += to_double(reflected_environment(scene, lobes_of(s), to_float(s.specular), normal, to_float(-to_viewer),
+    const Vec3 way = to_float(-to_viewer), axis = bent_normal({normal, to_float(s.grain)}, lobes_of(s).roughness, way);
+    sum += to_double(reflected_environment(scene, lobes_of(s), to_float(s.specular), normal, axis, way,
                                            environment_irradiance(scene.environment_info[0], normal))) *
            s.open;
   }

@@ -13,8 +13,6 @@ namespace {
 // Relative to coordinates: nearer hits may be the surface itself, by rounding.
 constexpr double kOwnSurface = 0x1p-40;
 
-const BrdfInfo& glossy_lobe(const ReferenceSurface& s) { return *kBrdfList[s.material->brdf]; }
-
 // Lobes of a metallic-roughness texture, by the formulas of the glTF specification, secs. 3.9.2 and B.2.2, and the
 // mirror's share of src/import/README.md.
 void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d& tint,
@@ -57,31 +55,55 @@ double glossy_share(const ReferenceSurface& s) {
   return glossy > 0 ? glossy / (glossy + diffuse) : 0;
 }
 
-// The normal of a normal texture (sec. 3.9.3), for the rules stated in shade/normal_map.h: from ∂P/∂u and ∂P/∂v, which
-// solve e = u ∂P/∂u + v ∂P/∂v for both edges.
-Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d* corner,
-                    const Vec3d& direction, const ReferenceSurface& s) {
+// The frame of maps, from ∂P/∂u and ∂P/∂v, which solve e = u ∂P/∂u + v ∂P/∂v for both edges; shade/normal_map.h has the
+// rules. False if there is none.
+bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurface& s, Vec3d* tangent,
+               Vec3d* bitangent) {
   const Scene& scene = *frame.scene;
+  if (scene.uvs.empty()) return false;
   const Triangle& t = scene.triangles[s.triangle];
-  Vec3d numbers = to_double(sample_numbers(scene, maps.normal, uv, frame.settings.texture_filter));
-  for (int c = 0; c < 3; ++c) numbers[c] = std::fmax((numbers[c] - 128) / 127, -1);
-  numbers.x *= static_cast<double>(maps.normal_scale), numbers.y *= static_cast<double>(maps.normal_scale);
   Vec2 at[3];
   for (std::uint32_t i = 0; i < 3; ++i) at[i] = scene.uvs[t.vertex(i)];
   const double u1 = static_cast<double>(at[1].x - at[0].x), v1 = static_cast<double>(at[1].y - at[0].y);
   const double u2 = static_cast<double>(at[2].x - at[0].x), v2 = static_cast<double>(at[2].y - at[0].y);
   const double determinant = u1 * v2 - u2 * v1;
-  if ((numbers.x == 0 && numbers.y == 0) || determinant == 0) return s.normal;
+  if (determinant == 0) return false;
   const Vec3d e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
   const Vec3d by_u = (e1 * v2 - e2 * v1) * (1 / determinant), by_v = (e2 * u1 - e1 * u2) * (1 / determinant);
+  const Vec3d n = s.normal * (s.front ? 1.0 : -1.0);
+  *tangent = normalize(by_u - n * dot(n, by_u)), *bitangent = cross(n, *tangent);
+  if (dot(*bitangent, by_v) > 0) *bitangent = -*bitangent;
+  return !is_zero(*tangent);
+}
+
+// The normal of a normal texture (sec. 3.9.3).
+Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d* corner,
+                    const Vec3d& direction, const ReferenceSurface& s) {
+  Vec3d numbers = to_double(sample_numbers(*frame.scene, maps.normal, uv, frame.settings.texture_filter));
+  for (int c = 0; c < 3; ++c) numbers[c] = std::fmax((numbers[c] - 128) / 127, -1);
+  numbers.x *= static_cast<double>(maps.normal_scale), numbers.y *= static_cast<double>(maps.normal_scale);
+  Vec3d tangent, bitangent;
+  if ((numbers.x == 0 && numbers.y == 0) || !map_frame(frame, corner, s, &tangent, &bitangent)) return s.normal;
   const double side = s.front ? 1 : -1;
-  const Vec3d n = s.normal * side, tangent = normalize(by_u - n * dot(n, by_u));
-  Vec3d bitangent = cross(n, tangent);
-  if (dot(bitangent, by_v) > 0) bitangent = -bitangent;
-  Vec3d mapped = normalize(tangent * numbers.x + bitangent * numbers.y + n * numbers.z) * side;
+  Vec3d mapped = normalize(tangent * numbers.x + bitangent * numbers.y + s.normal * (side * numbers.z)) * side;
   const Vec3d way = normalize(direction);
   if (dot(mapped, way) > 0) mapped = normalize(mapped - way * dot(mapped, way));
-  return is_zero(tangent) || is_zero(mapped) ? s.normal : mapped;
+  return is_zero(mapped) ? s.normal : mapped;
+}
+
+// KHR_materials_anisotropy.
+Vec3d grain_of(const FrameData& frame, const Grain& grain, Vec2 uv, const Vec3d* corner, const ReferenceSurface& s) {
+  double x = static_cast<double>(grain.direction.x), y = static_cast<double>(grain.direction.y);
+  Vec3d tangent, bitangent;
+  if ((x == 0 && y == 0) || !map_frame(frame, corner, s, &tangent, &bitangent)) return {0, 0, 0};
+  if (grain.texture.texture != kNone) {
+    const Vec3d numbers = to_double(sample_numbers(*frame.scene, grain.texture, uv, frame.settings.texture_filter));
+    const double cosine = numbers.x / 127.5 - 1, sine = numbers.y / 127.5 - 1,
+                 size = std::sqrt(cosine * cosine + sine * sine);
+    const double weight = size > 0 ? numbers.z / 255 / size : 0, turned = (x * cosine - y * sine) * weight;
+    y = (x * sine + y * cosine) * weight, x = turned;
+  }
+  return tangent * x + bitangent * y;
 }
 
 }  // namespace
@@ -138,6 +160,9 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
     if (has(frame.mask, Effect::metallic_roughness) && has_lobe_map(maps))
       apply_metallic_roughness(frame, maps, uv, tint, &s);
   }
+  s.grain = {0, 0, 0};
+  if (has(frame.mask, Effect::anisotropy) && scene.grains.count)
+    s.grain = grain_of(frame, scene.grains[t.material()], uv, corner, s);
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
     s.emission = to_double(m.emission) * texel(m.emission_texture);
@@ -171,14 +196,14 @@ Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   Vec3d value = s.diffuse * (1 / kPi);
   if (!is_zero(lobes_of(s).specular))
-    value = glossy_lobe(s).exact_value(lobes_of(s), s.specular, value, s.normal, to_viewer, to_light);
+    value = glossy_lobe(s).exact_value(lobes_of(s), s.specular, value, s, to_viewer, to_light);
   return value;
 }
 
 double lobe_density(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {
   double cosine = dot(s.normal, to_light), share = glossy_share(s);
   if (!(cosine > 0) || (is_zero(s.diffuse) && share == 0)) return 0;
-  double glossy = share > 0 ? glossy_lobe(s).density(lobes_of(s), s.normal, to_viewer, to_light) : 0;
+  double glossy = share > 0 ? glossy_lobe(s).density(lobes_of(s), s, to_viewer, to_light) : 0;
   return (1 - share) * cosine / kPi + share * glossy;
 }
 
@@ -186,7 +211,7 @@ bool sample_lobes(const ReferenceSurface& s, const Vec3d& to_viewer, double choi
                   Vec3d* direction) {
   double share = glossy_share(s);
   if (is_zero(s.diffuse) && share == 0) return false;
-  *direction = choice < share ? glossy_lobe(s).sample(lobes_of(s), s.normal, to_viewer, pair.u, pair.v)
+  *direction = choice < share ? glossy_lobe(s).sample(lobes_of(s), s, to_viewer, pair.u, pair.v)
                               : power_cosine_direction(s.normal, 1, pair.u, pair.v);
   return dot(*direction, s.normal) > 0;
 }

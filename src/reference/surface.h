@@ -1,14 +1,17 @@
 // A point on a surface as the reference sees it, and its lobes.
 #pragma once
+#include "brdf/brdf_list.h"
 #include "reference/reference.h"
 #include "reference/samples.h"
 
 namespace pocketray {
 
-struct ReferenceSurface {
+// Its normal, and the geometric one, are unit and on the side the ray came from; its grain is zero without
+// Effect::anisotropy.
+struct ReferenceSurface : LobeFrameD {
   Vec3d point;
-  double magnitude;         // of the coordinates behind the point: bounds its rounding error
-  Vec3d geometric, normal;  // unit, both on the side the ray came from
+  double magnitude;  // of the coordinates behind the point: bounds its rounding error
+  Vec3d geometric;
   Vec3d diffuse, specular, mirror, emission;
   bool front;
   std::uint32_t triangle;
@@ -28,6 +31,12 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
 // A ray from the surface. Directions below the flat triangle but above the curved surface described by the vertex
 // normals start where the renderer starts them, see curved_origin() in surface.h.
 ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3d& direction, double t_max);
+
+// The glossy lobe, with its grain where it has one.
+inline const BrdfInfo& glossy_lobe(const ReferenceSurface& s) {
+  const BrdfInfo* lobe = kBrdfList[s.material->brdf];
+  return lobe->with_grain && !is_zero(s.grain) ? *lobe->with_grain : *lobe;
+}
 
 // Radiance of the surroundings that the glossy lobe reflects, if the frame's plan has Effect::ambient_gloss and
 // no environment stands in.

@@ -10,8 +10,8 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kBakedVersion = 8;     // as written
-constexpr std::uint32_t kBakedVersionMin = 7;  // the oldest that is read; it has no environment
+constexpr std::uint32_t kBakedVersion = 9;     // as written
+constexpr std::uint32_t kBakedVersionMin = 7;  // the oldest that is read; it has no environment and no grains
 
 // Size in bytes of the file that baked_write() makes.
 std::size_t baked_size(const Scene& scene);

@@ -121,6 +121,14 @@ struct MaterialMaps {
   float occlusion_strength = 1;
 };
 
+// The grain of a glossy material, as of brushed metal: along it, the lobe is wider.
+struct Grain {
+  // Along the tangent and the bitangent, the frame of MaterialMaps::normal; as long as the grain is strong, 0 to 1.
+  Vec2 direction = {0, 0};
+  // Numbers that turn and weaken it: R and G, −1 at 0 and 1 at 255, turn it to that direction; × B.
+  TextureUse texture;
+};
+
 enum class LightKind : std::uint32_t { point, spot, directional };
 
 // Lights other than surfaces. Emissive materials are the area lights; the plan finds them.
@@ -245,6 +253,7 @@ struct Scene {
   Array<const MaterialMaps> material_maps;        // one per material, or empty
   Array<const EnvironmentInfo> environment_info;  // one, or none
   Array<const std::uint32_t> environment_texels;  // of its maps
+  Array<const Grain> grains;                      // one per material, or empty
 };
 
 inline bool is_animated(const Scene& scene) {

@@ -1,8 +1,11 @@
 // Textures of materials.
+#include "base/check.h"
 #include "scene/metallic_roughness.h"
 #include "scene/validate_checks.h"
 
 namespace pocketray {
+
+constexpr float kGrainSquareMax = 1.00001f;  // a unit vector, rounded
 
 Status check_texture_use(const char* array, const char* field, std::uint32_t index, const TextureUse& use,
                          const Scene& scene) {
@@ -48,6 +51,23 @@ static Status validate_maps(const Scene& scene, std::uint32_t index) {
   // Kernels decide by the mean lobe whether the material has one at all.
   if (is_zero(m.specular) && !is_zero(lobe_bounds(m, maps).specular))
     return failure("material_maps[%u] makes a glossy lobe, but materials[%u] has none", index, index);
+  return success();
+}
+
+static Status validate_grain(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.grains.count);
+  const Grain& grain = scene.grains[index];
+  const Vec2 d = grain.direction;
+  if (!(d.x * d.x + d.y * d.y <= kGrainSquareMax))
+    return failure("grains[%u].direction must not be longer than 1", index);
+  return check_texture_use("grains", "texture", index, grain.texture, scene);
+}
+
+Status validate_grains(const Scene& scene) {
+  if (scene.grains.count != 0 && scene.grains.count != scene.materials.count)
+    return failure("%u grains for %u materials: there must be one for each or none", scene.grains.count,
+                   scene.materials.count);
+  for (std::uint32_t i = 0; i < scene.grains.count; ++i) RETURN_IF_ERROR(validate_grain(scene, i));
   return success();
 }
 

@@ -27,7 +27,8 @@ Vec3 environment_light(const FrameData& frame, const Ray& ray, const Material& m
   if (scatters) sum = s.diffuse * irradiance;
   if (!shines) return sum;
   const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
-  return sum + reflected_environment(scene, m, specular, s.normal, ray.direction, irradiance);
+  const Vec3 axis = has(frame.mask, Effect::anisotropy) ? bent_normal(s, m.roughness, ray.direction) : s.normal;
+  return sum + reflected_environment(scene, m, specular, s.normal, axis, ray.direction, irradiance);
 }
 
 template <SurroundingsFunction light>

@@ -183,7 +183,9 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
         if (!is_zero(m.specular)) {
           effect_entered<Effect::specular>();
           Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
-          f = kBrdfList[m.brdf]->value(m, specular, diffuse, s.normal, to_viewer, sample.direction);
+          const BrdfInfo* lobe = kBrdfList[m.brdf];
+          if constexpr (has(mask, Effect::metallic_roughness)) lobe = &lobe_at(frame, s, m);
+          f = lobe->value(m, specular, diffuse, s, to_viewer, sample.direction);
         }
       }
       Vec3 light_out = f * sample.irradiance * cosine;

@@ -68,6 +68,12 @@ float openness(const FrameData& frame, const MaterialMaps& maps, const Surface& 
   return 1 + maps.occlusion_strength * (open - 1);
 }
 
+// Whether the plan has the effect. Instances with anisotropy hold the code of all maps.
+template <EffectMask mask>
+bool takes_part(const FrameData& frame, Effect effect) {
+  return !has(mask, Effect::anisotropy) || has(frame.mask, effect);
+}
+
 template <EffectMask mask, bool first>
 void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surface* s) {
   frame.plain_surface(frame, ray, hit, s);
@@ -77,22 +83,31 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   if (const MaterialMaps* maps = maps_of(scene, *s)) {
     const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
     if constexpr (has(mask, Effect::normal_map)) {
-      if (maps->normal.texture != kNone) {
+      if (maps->normal.texture != kNone && takes_part<mask>(frame, Effect::normal_map)) {
         const Vec3 texel = numbers_at<has(mask, Effect::mip_map)>(scene, maps->normal, uv,
                                                                   frame.settings.texture_filter, s->footprint);
         s->normal = mapped_normal(frame, *maps, texel, ray, *s);
       }
     }
     if constexpr (has(mask, Effect::metallic_roughness)) {
-      if (has_lobe_map(*maps)) apply_metallic_roughness<mask>(frame, *maps, uv, &last, s);
+      if (has_lobe_map(*maps) && takes_part<mask>(frame, Effect::metallic_roughness))
+        apply_metallic_roughness<mask>(frame, *maps, uv, &last, s);
     }
     if constexpr (has(mask, Effect::occlusion)) {
-      if (maps->occlusion.texture != kNone) open = openness<mask>(frame, *maps, *s, uv, &last);
+      if (maps->occlusion.texture != kNone && takes_part<mask>(frame, Effect::occlusion))
+        open = openness<mask>(frame, *maps, *s, uv, &last);
+    }
+  }
+  if constexpr (has(mask, Effect::anisotropy)) {
+    s->grain = {0, 0, 0};
+    if (scene.grains.count) {
+      const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
+      s->grain = surface_grain(frame, scene.grains[s->material - scene.materials.data], uv, *s);
     }
   }
   (first ? frame.first_glow : frame.glow)(frame, s);
   if constexpr (has(mask, Effect::occlusion)) {
-    if (has(frame.mask, Effect::ambient))
+    if (has(frame.mask, Effect::ambient) && takes_part<mask>(frame, Effect::occlusion))
       s->glow += AmbientIndirect::radiance({scene, nullptr, s->point, s->normal, s->diffuse}) * open;
   }
   if (frame.surroundings) {
@@ -108,7 +123,7 @@ struct MapsPart {
   static constexpr EffectsOf<kMapEffects | bit(Effect::mip_map)> kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
-    return mapped_surface<mask, first>;
+    return mapped_surface < has(mask, Effect::anisotropy) ? mask | kMapEffects : mask, first > ;
   }
 };
 

@@ -5,7 +5,8 @@
 
 namespace pocketray {
 
-constexpr EffectMask kMapEffects = bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion);
+constexpr EffectMask kMapEffects =
+    bit(Effect::metallic_roughness) | bit(Effect::normal_map) | bit(Effect::occlusion) | bit(Effect::anisotropy);
 
 // Puts the maps behind the frame's surface functions, and light from FrameData::surroundings with them.
 void add_material_maps(FrameData* frame);

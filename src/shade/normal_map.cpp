@@ -1,6 +1,7 @@
 #include "shade/normal_map.h"
 
 #include "effect/effect_probe.h"
+#include "shade/texture.h"
 
 namespace pocketray {
 namespace {
@@ -10,25 +11,40 @@ float component(float texel) {
   return x > -1 ? x : -1;
 }
 
+// The grain's direction as its texture turns and weakens it.
+Vec2 turned_grain(const Vec2& d, const Vec3& numbers) {
+  const float x = numbers.x * (2 / 255.0f) - 1, y = numbers.y * (2 / 255.0f) - 1, square = x * x + y * y;
+  if (!(square > 0)) return {0, 0};
+  const float scale = numbers.z * (1 / 255.0f) / std::sqrt(square);
+  return {(d.x * x - d.y * y) * scale, (d.x * y + d.y * x) * scale};
+}
+
 }  // namespace
 
-Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3& texel, const Ray& ray,
-                   const Surface& s) {
-  effect_entered<Effect::normal_map>();
+bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3* tangent, Vec3* bitangent) {
   const Scene& scene = *frame.scene;
-  const float x = component(texel.x) * maps.normal_scale, y = component(texel.y) * maps.normal_scale;
-  if (x == 0 && y == 0) return s.normal;
+  if (scene.uvs.empty()) return false;
   const Triangle& t = scene.triangles[s.hit.triangle];
   const std::uint32_t i = t.vertex(0), j = t.vertex(1), k = t.vertex(2);
   const Vec3 e = frame.positions[j] - frame.positions[i], f = frame.positions[k] - frame.positions[i];
   const float eu = scene.uvs[j].x - scene.uvs[i].x, ev = scene.uvs[j].y - scene.uvs[i].y;
   const float fu = scene.uvs[k].x - scene.uvs[i].x, fv = scene.uvs[k].y - scene.uvs[i].y;
   const float area = eu * fv - ev * fu;  // twice the triangle's in the texture, negative where that is mirrored
-  if (!(area < 0 || area > 0)) return s.normal;
-  const Vec3 n = s.front ? s.normal : -s.normal, along = (e * fv - f * ev) * (area < 0 ? -1.0f : 1.0f);
-  const Vec3 tangent = normalize(along - n * dot(n, along));
-  if (is_zero(tangent)) return s.normal;
-  const Vec3 bitangent = cross(n, tangent) * (area < 0 ? 1.0f : -1.0f);
+  if (!(area < 0 || area > 0)) return false;
+  const Vec3 along = (e * fv - f * ev) * (area < 0 ? -1.0f : 1.0f);
+  *tangent = normalize(along - n * dot(n, along));
+  *bitangent = cross(n, *tangent) * (area < 0 ? 1.0f : -1.0f);
+  return !is_zero(*tangent);
+}
+
+Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3& texel, const Ray& ray,
+                   const Surface& s) {
+  effect_entered<Effect::normal_map>();
+  const float x = component(texel.x) * maps.normal_scale, y = component(texel.y) * maps.normal_scale;
+  if (x == 0 && y == 0) return s.normal;
+  const Vec3 n = s.front ? s.normal : -s.normal;
+  Vec3 tangent, bitangent;
+  if (!tangent_frame(frame, s, n, &tangent, &bitangent)) return s.normal;
   Vec3 mapped = normalize(tangent * x + bitangent * y + n * component(texel.z));
   if (!s.front) mapped = -mapped;
   if (dot(mapped, ray.direction) > 0) {
@@ -36,6 +52,22 @@ Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3&
     mapped = normalize(mapped - way * dot(mapped, way));
   }
   return is_zero(mapped) ? s.normal : mapped;
+}
+
+Vec3 surface_grain(const FrameData& frame, const Grain& grain, Vec2 uv, const Surface& s) {
+  effect_entered<Effect::anisotropy>();
+  Vec2 d = grain.direction;
+  Vec3 tangent, bitangent;
+  if ((d.x == 0 && d.y == 0) || !tangent_frame(frame, s, s.front ? s.normal : -s.normal, &tangent, &bitangent))
+    return {0, 0, 0};
+  if (grain.texture.texture != kNone) {
+    const TextureFilter filter = frame.settings.texture_filter;
+    const Vec3 numbers = has(frame.mask, Effect::mip_map)
+                             ? sample_numbers(*frame.scene, grain.texture, uv, filter, s.footprint)
+                             : sample_numbers(*frame.scene, grain.texture, uv, filter);
+    d = turned_grain(d, numbers);
+  }
+  return tangent * d.x + bitangent * d.y;
 }
 
 }  // namespace pocketray

@@ -4,17 +4,24 @@
 
 namespace pocketray {
 
-// The surface's normal as its map has it, unit, for the map's numbers there. The map's frame is that of the shading
-// normal n: the tangent is the triangle's ∂P/∂u made perpendicular to n, the bitangent perpendicular to both, against
-// ∂P/∂v. MikkTSpace averages tangents at the vertices and interpolates them. The normals differ from that by a turn
+// The frame of maps at the surface, for a unit normal n of its front: the tangent is the triangle's ∂P/∂u made
+// perpendicular to n, the bitangent perpendicular to both, against ∂P/∂v. False where texture coordinates span no area
+// or nothing is left of a direction.
+bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3* tangent, Vec3* bitangent);
+
+// The surface's normal as its map has it, unit, for the map's numbers there, in the frame above of the shading normal
+// n. MikkTSpace averages tangents at the vertices and interpolates them. The normals differ from that by a turn
 // about n by no more than the tangents of neighbouring triangles do, and not in their slope; no vertex needs memory for
 // a tangent.
 //   - A texel (128, 128, z) gives n itself, bit for bit.
 //   - On the back of a surface, the normal is that of the front reversed.
 //   - A normal that faces away from the viewer is bent back to the viewer's horizon: the part of it that is
 //     perpendicular to the ray. Such a point is seen edge-on; it is lit, and mirrors by the geometric normal.
-//   - Where texture coordinates span no area, or nothing is left of a direction, the normal is n.
+//   - Where there is no frame, the normal is n.
 Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3& texel, const Ray& ray,
                    const Surface& s);
+
+// LobeFrame::grain of the surface, whose normal is final (Effect::anisotropy).
+Vec3 surface_grain(const FrameData& frame, const Grain& grain, Vec2 uv, const Surface& s);
 
 }  // namespace pocketray

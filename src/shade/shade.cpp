@@ -338,7 +338,7 @@ struct SelectingRadiancePart {
 }  // namespace
 
 RadianceFunction find_radiance_function(EffectMask mask) {
-  CHECK_EQ(mask & ~kAllEffects, 0u);
+  if (has(mask, Effect::anisotropy)) mask |= bit(Effect::metallic_roughness);  // which looks up lobes at the point
   if constexpr (has(kAllEffects, Effect::source_selection))
     if (has(mask, Effect::source_selection)) return Instantiations<SelectingRadiancePart>::find(mask);
   return Instantiations<RadiancePart>::find(mask);

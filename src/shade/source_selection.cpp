@@ -25,6 +25,7 @@ SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Materia
     : frame_(*tracer->frame),
       surface_(surface),
       material_(m),
+      lobe_(lobe_at(*tracer->frame, surface, m)),
       to_viewer_(to_viewer),
       diffuse_(surface.diffuse * (1 / kPiF)),
       specular_({0, 0, 0}),
@@ -36,8 +37,8 @@ SourceSearch::SourceSearch(Tracer* tracer, const Surface& surface, const Materia
   if (shines_) {
     effect_entered<Effect::specular>();
     specular_ = reflectance_at(surface, m.specular, m.specular_tinted);
-    diffuse_most_ *= kBrdfList[m.brdf]->diffuse_max;
-    specular_most_ = max_component(kBrdfList[m.brdf]->peak(m));
+    diffuse_most_ *= lobe_.diffuse_max;
+    specular_most_ = max_component(lobe_.peak(m));
   }
   for (std::uint16_t run = 0; run < frame_.light_run_count; ++run) {
     const std::uint32_t root = frame_.light_tree.roots[run];
@@ -54,9 +55,8 @@ bool SourceSearch::radiance(const LightPoint& light, std::uint32_t run, Vec3* ra
   if (!lights_up(frame_, surface_, frame_.light_runs[run], light, &sample)) return false;
   if (!has(frame_.mask, Effect::shadow) && is_below(surface_, sample.direction)) return false;
   const float cosine = dot(surface_.normal, sample.direction);
-  const Vec3 f = shines_ ? kBrdfList[material_.brdf]->value(material_, specular_, diffuse_, surface_.normal, to_viewer_,
-                                                            sample.direction)
-                         : diffuse_;
+  const Vec3 f =
+      shines_ ? lobe_.value(material_, specular_, diffuse_, surface_, to_viewer_, sample.direction) : diffuse_;
   *radiance = f * sample.irradiance * cosine;
   return true;
 }

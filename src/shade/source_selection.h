@@ -53,6 +53,7 @@ class SourceSearch {
   const FrameData& frame_;
   const Surface& surface_;
   const Material& material_;
+  const BrdfInfo& lobe_;
   Vec3 to_viewer_, diffuse_, specular_;
   bool shines_;
   float diffuse_most_, specular_most_;  // upper bounds of the lobes; × cosine in the second

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/fmath.h"
+#include "brdf/brdf_list.h"
 #include "shade/frame_data.h"
 
 namespace pocketray {
@@ -13,10 +14,11 @@ struct SurfacePlace {
   std::uint32_t triangle;
 };
 
-struct Surface {
+// Its normal, and the geometric one, are unit and on the side the ray came from.
+struct Surface : LobeFrame {
   Vec3 point;
-  Vec3 offset;             // from the point to a safe origin on the side the ray came from
-  Vec3 geometric, normal;  // unit, both on the side the ray came from
+  Vec3 offset;  // from the point to a safe origin on the side the ray came from
+  Vec3 geometric;
   Vec3 diffuse;            // albedo
   Vec3 glow;               // radiance that leaves without any lights: emission, ambient
   bool front;              // the ray met the front (counter-clockwise) side
@@ -41,6 +43,12 @@ inline bool same_surface(const Surface& a, const Surface& b) {
 // The material's specular or mirror reflectance at the surface, given the part of it that is tinted.
 inline Vec3 reflectance_at(const Surface& s, const Vec3& reflectance, const Vec3& tinted) {
   return s.is_tinted ? reflectance - tinted * (Vec3{1, 1, 1} - s.tint) : reflectance;
+}
+
+// The material's glossy lobe at the surface, with its grain where it has one (Effect::anisotropy).
+inline const BrdfInfo& lobe_at(const FrameData& frame, const Surface& s, const Material& m) {
+  const BrdfInfo* lobe = kBrdfList[m.brdf];
+  return has(frame.mask, Effect::anisotropy) && lobe->with_grain && !is_zero(s.grain) ? *lobe->with_grain : *lobe;
 }
 
 // Selects the instantiation for the plan's mask.

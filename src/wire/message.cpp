@@ -136,8 +136,7 @@ template <class Io>
 void fields(Io& io, Settings* settings) {
   count(io, &settings->width, Quantity::width, 2), count(io, &settings->height, Quantity::height, 2);
   for (const SettingRow& row : kSettingList) setting(io, row, settings);
-  number(io, &settings->forced_on), number(io, &settings->forced_off);
-  io.require((settings->forced_on & ~kAllEffects) == 0 && (settings->forced_off & ~kAllEffects) == 0);
+  number(io, &settings->forced_on), number(io, &settings->forced_off);  // every bit is an effect
 }
 
 // Which rows, and how they come.
@@ -218,7 +217,6 @@ void fields(Io& io, ViewEntry* m) {
   fields(io, &m->camera);
   real(io, &m->exposure, Quantity::exposure), real(io, &m->frames_per_second, Quantity::frame_rate);
   number(io, &m->effects), number(io, &m->triangle_count);
-  io.require((m->effects & ~kAllEffects) == 0);
   point(io, &m->bounds.low), point(io, &m->bounds.high);
   io.require(!is_empty(m->bounds));
 }

@@ -224,7 +224,7 @@ static void odd_settings(pocketray_instance* instance) {
   WRONG(s.points_per_area_light = 257, "area light is 257");
   WRONG(s.cut_off_levels = NAN, "cut-off");
   WRONG(s.cut_off_levels = -1, "cut-off");
-  WRONG(s.texture_filter = 4, "texture_filter is 4");
+  WRONG(s.texture_filter = 5, "texture_filter is 5");
   WRONG(s.normals = -1, "normals is -1");
 #undef WRONG
 }

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/cli.sh"
 
 expect textures_name 1 'textures.*small' bake cube -o refused.pray --textures small
-expect filter_names 1 'bilinear or trilinear' render cube "${small[@]}" --texture-filter fine -o refused.ppm
+expect filter_names 1 'trilinear or anisotropic' render cube "${small[@]}" --texture-filter fine -o refused.ppm
 "${run[@]}" bake --help | grep -q 'glTF' || { finish; }
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >probe.obj
 "${run[@]}" bake probe.obj -o probe.pray >/dev/null 2>&1 || { echo "skipped: this build has no importers"; finish; }
@@ -31,11 +31,12 @@ check levels_take_no_more [ $(($(size levels.pray) - $(size plain.pray))) -le 22
 expect plan_levels 0 'mip-map +on +1 of 1 materials' plan levels.pray
 expect plan_no_levels 0 'mip-map +- +none of 1 materials' plan plain.pray
 expect plan_filter 0 'mip-map +- +--texture-filter bilinear' plan levels.pray --texture-filter bilinear
-for filter in scene bilinear trilinear; do
+for filter in scene bilinear trilinear anisotropic; do
   expect "render_$filter" 0 'ns per pixel' render levels.pray "${view[@]}" --texture-filter $filter -o $filter.ppm
 done
 expect render_plain 0 'ns per pixel' render plain.pray "${view[@]}" -o plain.ppm
 check scene_is_trilinear cmp -s scene.ppm trilinear.ppm
+check anisotropic_is_seen bash -c '! cmp -s anisotropic.ppm trilinear.ppm && ! cmp -s anisotropic.ppm bilinear.ppm'
 check bilinear_is_without_levels cmp -s bilinear.ppm plain.ppm
 check levels_are_seen bash -c '! cmp -s scene.ppm plain.ppm'
 

@@ -224,7 +224,7 @@ TEST_CASE("environment_levels_are_the_lobes_means") {
         Vec3d sum = {0, 0, 0};
         double weights = 0;
         for (int i = 0; i < 20000; ++i) {
-          const Vec3d d = kGgxBrdf.sample(m, n, n, once * next_double(&rng), next_double(&rng));
+          const Vec3d d = kGgxBrdf.sample(m, {n, {0, 0, 0}}, n, once * next_double(&rng), next_double(&rng));
           // Visible normals at normal incidence are distributed as all are: D n·h.
           const double cosine = dot(d, n);
           if (cosine > 0) sum += radiance(d) * cosine, weights += cosine;

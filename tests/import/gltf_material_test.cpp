@@ -289,6 +289,28 @@ TEST_CASE("gltf_specular_glossiness_is_translated") {
   CHECK(imported.warning.find("glossiness textures") != std::string::npos);
 }
 
+// Goal: KHR_materials_anisotropy becomes a grain: its strength, turned by its rotation, and its texture; metals without
+// it have none. Method: a rotation of 60° and more than a turn.
+TEST_CASE("gltf_anisotropy_becomes_a_grain") {
+  const std::string brushed =
+      "{\"pbrMetallicRoughness\":{\"roughnessFactor\":0.5},\"extensions\":{\"KHR_materials_anisotropy\":{"
+      "\"anisotropyStrength\":0.8,\"anisotropyRotation\":7.330383";
+  ImportedScene imported = load_text(triangle_gltf(brushed + "}}}"));
+  REQUIRE(imported.scene.grains.count == 1);
+  CHECK(imported.scene.grains[0].direction.x == doctest::Approx(0.4).epsilon(1e-5));
+  CHECK(imported.scene.grains[0].direction.y == doctest::Approx(0.8 * 0.8660254).epsilon(1e-5));
+  CHECK(imported.scene.grains[0].texture.texture == kNone);
+  CHECK(imported.warning.find("anisotropy") == std::string::npos);
+  imported = load_text(triangle_gltf(brushed + ",\"anisotropyTexture\":{\"index\":0}}}}", images(kRoughMetal)));
+  REQUIRE(imported.scene.grains.count == 1);
+  CHECK(imported.scene.grains[0].texture.texture == 0);
+  CHECK(imported.scene.uvs.count > 0);
+  CHECK(load_text(triangle_gltf("{}")).scene.grains.count == 0);
+  const std::string off = "{\"extensions\":{\"KHR_materials_anisotropy\":{\"anisotropyTexture\":{\"index\":0}}}}";
+  imported = load_text(triangle_gltf(off, images(kRoughMetal)));
+  CHECK((imported.scene.grains.count == 0 && imported.scene.textures.count == 0));
+}
+
 // Goal: a required extension that only changes looks is named, not refused; others are (hostile_test.cpp).
 TEST_CASE("gltf_required_looks_are_a_warning") {
   const ImportedScene imported = load_text(triangle_gltf("{}",

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "brdf/brdf_list.h"
 #include "import/import_testing.h"
 
 using namespace pocketray;
@@ -52,6 +53,28 @@ TEST_CASE("obj_illumination_models_map_to_our_lobes") {
   }
   CHECK(is_zero(first(load_material("Tf 1 1 1\nillum 2\n")).transmission));
   CHECK(first(load_material("illum 7\n")).transmission == Vec3{1, 1, 1});
+}
+
+// Goal: MTL's extension for physically based rendering gives glTF's material, and `aniso` a grain: of that material, or
+// of Ward's lobe in Phong's place; glass has none. Method: the formulas that obj_material.cpp states.
+TEST_CASE("obj_physically_based_materials_and_grains") {
+  const Material metal = first(load_material("Kd 0.8 0.4 0.2\nPr 0.5\nPm 1\nNs 40\nKs 1 1 1\nillum 2\n"));
+  CHECK(metal.brdf == kGgx);
+  CHECK((metal.specular == Vec3{0.8f, 0.4f, 0.2f} && is_zero(metal.diffuse)));
+  CHECK((metal.roughness == 0.25f && metal.grazing == 1));
+  const Material plastic = first(load_material("Kd 0.8 0.4 0.2\nPr 1\nNi 1.5\nillum 2\n"));
+  CHECK(plastic.specular.x == doctest::Approx(0.04));
+  ImportedScene brushed = load_material("Kd 0.1 0.1 0.1\nKs 0.3 0.2 0.1\nNs 48\nillum 2\naniso 0.5\nanisor 1.25\n");
+  CHECK((first(brushed).brdf == kWard && first(brushed).roughness == 0.2f));
+  REQUIRE(brushed.scene.grains.count == 1);
+  CHECK(std::fabs(brushed.scene.grains[0].direction.x) < 1e-6f);
+  CHECK(brushed.scene.grains[0].direction.y == doctest::Approx(0.5));
+  brushed = load_material("Kd 0.8 0.4 0.2\nPr 0.5\nPm 1\naniso 2\nsheen 1\nPs 0.5\n");
+  CHECK((first(brushed).brdf == kGgx && brushed.scene.grains.count == 1));
+  CHECK(brushed.scene.grains[0].direction.x == 1);
+  CHECK(brushed.warning.find("sheen") != std::string::npos);
+  CHECK(load_material("Kd 0.5 0.5 0.5\naniso 0.5\nillum 7\n").scene.grains.count == 0);
+  CHECK(load_material("Kd 0.5 0.5 0.5\naniso 0.5\nillum 1\n").scene.grains.count == 0);
 }
 
 // Goal: emission and both spellings of opacity.

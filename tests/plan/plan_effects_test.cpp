@@ -69,6 +69,7 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::metallic_roughness),
        bit(E::metallic_roughness) | bit(E::specular) | bit(E::mirror) | bit(E::ambient_gloss)},
       {bit(F::normal_map), bit(E::normal_map)},
+      {bit(F::anisotropy), bit(E::anisotropy) | bit(E::specular) | bit(E::ambient_gloss)},
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
       // Stored, or by request.

@@ -93,8 +93,8 @@ TEST_CASE("environment_reference_is_the_integral_over_directions") {
         const double light =
             radiance_behind(t.renderer->renderer.frame, d).y * d.y * 4.0 / (kSide * kSide) / std::pow(dot(p, p), 1.5);
         const Vec3d lambert = Vec3d{1, 1, 1} * (double(diffuse) / kPi), specular = to_double(m.specular);
-        physical += light * kGgxBrdf.exact_value(m, specular, lambert, n, -way, d).y;
-        model += light * (kGgxBrdf.exact_value(m, specular, {0, 0, 0}, n, -way, d).y + lambert.y);
+        physical += light * kGgxBrdf.exact_value(m, specular, lambert, {n, {0, 0, 0}}, -way, d).y;
+        model += light * (kGgxBrdf.exact_value(m, specular, {0, 0, 0}, {n, {0, 0, 0}}, -way, d).y + lambert.y);
       }
       CAPTURE(alpha);
       CAPTURE(diffuse);

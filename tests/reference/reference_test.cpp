@@ -96,10 +96,12 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
   // Needs only the surface, no scene.
   constexpr int kRings = 12, kSectors = 8;
   constexpr float kExponents[] = {0, 1, 20, 400};
-  for (std::uint32_t row = 0; row < 4 * kBrdfCount; ++row) {
+  for (std::uint32_t row = 0; row < 8 * kBrdfCount; ++row) {
     const float exponent = kExponents[row % 4];
     Material m;
-    m.specular = {0.4f, 0.4f, 0.4f}, m.brdf = row / 4, m.exponent = exponent;
+    m.specular = {0.4f, 0.4f, 0.4f}, m.brdf = row / 8, m.exponent = exponent;
+    const bool has_grain = row % 8 >= 4;
+    if (has_grain && !kBrdfList[m.brdf]->with_grain) continue;
     m.roughness = std::sqrt(2 / (exponent + 2)), m.grazing = 1;
     ReferenceSurface s = {};
     s.material = &m;
@@ -107,6 +109,7 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
     s.diffuse = {0.3, 0.3, 0.3};
     Vec3d to_viewer = normalize(Vec3d{0.5, 1, -0.3}), tangent, bitangent;
     make_basis(s.normal, &tangent, &bitangent);
+    if (has_grain) s.grain = tangent * 0.5 - bitangent * 0.3;
     auto cell = [&](const Vec3d& d) {
       int ring = std::min(kRings - 1, static_cast<int>(dot(d, s.normal) * kRings));
       double turn = std::atan2(dot(d, bitangent), dot(d, tangent)) / (2 * kPi) + 0.5;
@@ -144,6 +147,7 @@ TEST_CASE("reference_density_is_that_of_its_samples") {
       ++cells;
     }
     CAPTURE(exponent);
+    CAPTURE(row);
     CHECK(cells > 4);
     CHECK(chi2 < cells + 3.1 * std::sqrt(2.0 * cells) + 10);
   }

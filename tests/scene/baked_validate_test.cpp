@@ -201,6 +201,19 @@ TEST_CASE("validate_scene_refuses_bad_material_maps") {
   accepts([](FullScene* f) { f->material_maps.clear(); });
 }
 
+// Goal: a grain stronger than 1, or with an invalid texture, is refused.
+TEST_CASE("validate_scene_refuses_bad_grains") {
+  for (float bad : {kNan, kInf, 1.01f, -2.0f}) {
+    refuses("grains[2].direction", [=](FullScene* f) { f->grains[2].direction.x = bad; });
+    refuses("grains[0].direction", [=](FullScene* f) { f->grains[0].direction.y = bad; });
+  }
+  refuses("grains[1].texture is texture 7 of 2", [](FullScene* f) { f->grains[1].texture.texture = 7; });
+  refuses("grains[2].texture has a transform", [](FullScene* f) { f->grains[2].texture.m[1][2] = kInf; });
+  refuses("one for each", [](FullScene* f) { f->grains.pop_back(); });
+  accepts([](FullScene* f) { f->grains.clear(); });
+  accepts([](FullScene* f) { f->grains[0].direction = {0.70710678f, -0.70710678f}; });
+}
+
 // Goal: no texel outside the array is ever fetched.
 TEST_CASE("validate_scene_refuses_bad_textures") {
   refuses("textures[0]", [](FullScene* f) { f->textures[0].width = 0; });

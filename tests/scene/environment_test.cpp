@@ -82,32 +82,44 @@ TEST_CASE("environment_octahedral_map_covers_the_sphere_without_seams") {
   CHECK(octahedral_index(-1, -1, side) == side * side - 1);
 }
 
-// Goal: files of the version before environments are read. Method: such a file, made from today's: a table without the
-// last two sections, so that data begin 64 bytes earlier.
-TEST_CASE("baked_open_reads_files_without_environments") {
-  FullScene full;
-  make_full_scene(5, 12, 4, &full);
-  full.environment_info.clear(), full.environment_texels.clear(), full.bind();
-  const BakedFile now = bake(full.scene);
-  BakedFile before(now.size() - 64);
-  std::memcpy(before.data(), now.data(), kTableAt + 33 * kSectionBytes);
-  std::memset(before.data() + kTableAt + 33 * kSectionBytes, 0, 896 - (kTableAt + 33 * kSectionBytes));
-  std::memcpy(before.data() + 896, now.data() + 960, now.size() - 960);
-  put_u32(before, kVersionAt, 7), put_u64(before, kByteCountAt, before.size()), put_u32(before, kSectionCountAt, 33);
-  for (std::size_t kind = 0; kind < 33; ++kind) {
-    std::uint64_t offset;
-    std::memcpy(&offset, before.data() + kTableAt + kind * kSectionBytes + 8, sizeof offset);
-    put_u64(before, kTableAt + kind * kSectionBytes + 8, offset - 64);
+// Goal: files of earlier versions are read: 7 has neither environments nor grains, 8 no grains. Method: such files,
+// made from today's: a table without the last sections, so that data may begin earlier.
+TEST_CASE("baked_open_reads_files_of_earlier_versions") {
+  const struct {
+    std::uint32_t version;
+    std::size_t sections;
+  } cases[] = {{7, 33}, {8, 35}};
+  for (const auto& c : cases) {
+    CAPTURE(c.version);
+    FullScene full;
+    make_full_scene(5, 12, 4, &full);
+    if (c.version < 8) full.environment_info.clear(), full.environment_texels.clear();
+    full.grains.clear(), full.bind();
+    const BakedFile now = bake(full.scene);
+    auto data_begin = [](std::size_t sections) { return (kTableAt + sections * kSectionBytes + 63) / 64 * 64; };
+    const std::size_t begin = data_begin(c.sections), shift = data_begin(36) - begin;
+    BakedFile before(now.size() - shift);
+    std::memset(before.data(), 0, begin);
+    std::memcpy(before.data(), now.data(), kTableAt + c.sections * kSectionBytes);
+    std::memcpy(before.data() + begin, now.data() + begin + shift, now.size() - begin - shift);
+    put_u32(before, kVersionAt, c.version), put_u64(before, kByteCountAt, before.size());
+    put_u32(before, kSectionCountAt, static_cast<std::uint32_t>(c.sections));
+    for (std::size_t kind = 0; kind < c.sections; ++kind) {
+      std::uint64_t offset;
+      std::memcpy(&offset, before.data() + kTableAt + kind * kSectionBytes + 8, sizeof offset);
+      put_u64(before, kTableAt + kind * kSectionBytes + 8, offset - shift);
+    }
+    fix_checksum(before);
+    Scene opened;
+    const Status status = baked_open(before.data(), before.size(), &opened);
+    REQUIRE_MESSAGE(status.ok, status.message);
+    CHECK(scene_hash(opened) == scene_hash(full.scene));
+    CHECK(opened.environment_info.empty() == (c.version < 8));
+    CHECK(opened.grains.empty());
+    put_u32(before, kSectionCountAt, 36);
+    fix_checksum(before);
+    CHECK_FALSE(baked_open(before.data(), before.size(), &opened).ok);
   }
-  fix_checksum(before);
-  Scene opened;
-  const Status status = baked_open(before.data(), before.size(), &opened);
-  REQUIRE_MESSAGE(status.ok, status.message);
-  CHECK(scene_hash(opened) == scene_hash(full.scene));
-  CHECK(opened.environment_info.empty());
-  put_u32(before, kSectionCountAt, 35);
-  fix_checksum(before);
-  CHECK_FALSE(baked_open(before.data(), before.size(), &opened).ok);
 }
 
 // Goal: an environment with a bad size, number or texel is refused, and the line names it; a sound one survives a file.

@@ -34,6 +34,7 @@ struct FullScene {
   std::vector<pocketray::Vec3> radiosity_values;
   std::vector<pocketray::EnvironmentInfo> environment_info;
   std::vector<std::uint32_t> environment_texels;
+  std::vector<pocketray::Grain> grains;
 
   FullScene() = default;
   FullScene(const FullScene&) = delete;  // `scene` points into the vectors

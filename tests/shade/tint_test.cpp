@@ -45,7 +45,7 @@ TEST_CASE("tint_reaches_the_glossy_lobe") {
     Vec3 found = look(*t, eye, {0.1f, 0.2f, 0});
     Vec3d v = normalize(to_double(eye - Vec3{0.1f, 0.2f, 0})), l = -normalize(to_double(s.lights[0].direction));
     Vec3d specular = Vec3d{0.02, 0.02, 0.02} + to_double(m.specular_tinted * tint);
-    Vec3d lobe = kBrdfList[kGgx]->exact_value(m, specular, {0, 0, 0}, {0, 0, 1}, v, l);
+    Vec3d lobe = kBrdfList[kGgx]->exact_value(m, specular, {0, 0, 0}, {{0, 0, 1}, {0, 0, 0}}, v, l);
     double passes = 1.05 * 0.96 * (1 - std::pow(1 - v.z, 5)) * (1 - std::pow(1 - l.z, 5));
     CAPTURE(with);
     for (int c = 0; c < 3; ++c) {

@@ -54,6 +54,18 @@ void add_mapped_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   s->material_maps[material].specular.texture = s->material_maps[material].specular_color.texture = specular;
 }
 
+// Brushed, along a direction that its texture turns.
+void add_brushed_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
+  if (!has(features, Feature::anisotropy)) return;
+  Material m = matte({0.2f, 0.25f, 0.3f});
+  m.brdf = kGgx, m.specular = {0.6f, 0.5f, 0.4f}, m.grazing = 1, m.roughness = 0.1f;
+  const std::uint32_t material = add_material(s, m);
+  add_box(s, {2, 0, -2}, {2.7f, 1.5f, -1.2f}, material);
+  s->grains.resize(s->materials.size());
+  s->grains[material].direction = {0.6f, -0.5f};
+  if (has(features, Feature::texture)) s->grains[material].texture.texture = add_noise_texture(s, rng, false);
+}
+
 void add_bodies(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   Material shiny = matte(random_color(rng)), reflecting = matte(random_color(rng) * 0.5f),
            glass = matte(random_color(rng)), core = glass;
@@ -156,7 +168,9 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   std::uint32_t vertex_count = static_cast<std::uint32_t>(s->positions.size()) - first_vertex;
   add_panes(s.get(), features, &rng);
   add_mapped_box(s.get(), features, &rng);
+  add_brushed_box(s.get(), features, &rng);
   if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
+  if (!s->grains.empty()) s->grains.resize(s->materials.size());
   if (has(features, Feature::mip_map)) add_mip_maps(s.get());
   add_lights(s.get(), features, &rng);
   if (has(features, Feature::animation)) add_motion(s.get(), first_vertex, vertex_count);

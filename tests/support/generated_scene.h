@@ -35,8 +35,9 @@ enum class Feature : int {
   normal_map,
   occlusion,  // shows under ambient light only
   mip_map,    // of whatever textures there are
+  anisotropy,
 };
-constexpr int kFeatureCount = 22;
+constexpr int kFeatureCount = 23;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
@@ -50,6 +51,7 @@ struct GeneratedScene {
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
   std::vector<MaterialMaps> material_maps;
+  std::vector<Grain> grains;
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;

@@ -11,7 +11,8 @@ EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-ma
            "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
            "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective", "environment",
-           "undersampling", "source-selection", "environment-shadow"]
+           "undersampling", "source-selection", "environment-shadow",
+           "anisotropy"]
 
 failures = []
 
@@ -158,7 +159,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=17, more=b""):
+def hello(version=18, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
 
 

@@ -240,13 +240,11 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 87, nan},                     // cut-off
       {MessageType::frame_request, 8 + 87, {0, 0, 0x82, 0x42}},      // 65 levels
       {MessageType::frame_request, 8 + 87, {0, 0, 0x80, 0xBF}},      // −1
-      {MessageType::frame_request, 8 + 91, {4}},                     // filter
+      {MessageType::frame_request, 8 + 91, {5}},                     // filter
       {MessageType::frame_request, 8 + 92, {2}},                     // normals
       {MessageType::frame_request, 8 + 93, {kIndirectChoiceCount}},  // indirect
       {MessageType::frame_request, 8 + 94, {3}},                     // reconstruction
       {MessageType::frame_request, 8 + 97, nan},                     // selective
-      {MessageType::frame_request, 8 + more + 96, {0xFF}},           // effects
-      {MessageType::frame_request, 8 + more + 100, {0xFF}},
       {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 105, {2}},                   // dither
       {MessageType::frame_request, 8 + more + 106, {2}},                   // format
@@ -272,7 +270,6 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::view_entry, 8 + 16, infinite},         // eye.x
       {MessageType::view_entry, 8 + 64, {0, 0, 0, 0}},     // exposure
       {MessageType::view_entry, 8 + 68, nan},              // frames a second
-      {MessageType::view_entry, 8 + 75, {0xFF}},           // effects
       {MessageType::view_entry, 8 + 80, {0, 0, 0, 0x7F}},  // bounds turned over
   };
   const std::vector<std::uint8_t> tail = {1, 2, 3};

@@ -1,0 +1,140 @@
+// Glossy materials with a grain.
+#include <doctest/doctest.h>
+
+#include "base/rng.h"
+#include "brdf/brdf_list.h"
+#include "indirect/environment.h"
+#include "shade_helpers.h"
+#include "support/test_environment.h"
+
+using namespace pocketray;
+
+namespace {
+
+const Vec3 kPoint = {0.1f, 0.2f, 0};
+
+Material brushed(std::uint32_t brdf) {
+  Material m;
+  m.diffuse = {0.1f, 0.1f, 0.1f};
+  m.brdf = brdf, m.roughness = 0.2f, m.specular = {0.7f, 0.6f, 0.5f}, m.grazing = 1;
+  return m;
+}
+
+// A sheet in the plane z = 0 with ∂P/∂u along x and ∂P/∂v along y, or against it if mirrored, under a sun.
+void make_sheet(GeneratedScene* s, const Material& m, const Grain& grain, bool mirrored = false) {
+  add_sheet(s, 0, add_material(s, m));
+  if (mirrored)
+    for (Vec2& uv : s->uvs) uv.y = 1 - uv.y;
+  s->with_uvs = true;
+  s->grains = {grain};
+  s->lights.resize(1);
+  s->lights[0].kind = LightKind::directional;
+  s->lights[0].direction = normalize(Vec3{-1, -2, -3});
+}
+
+// What the sheet shows, less what the lobe in double precision makes of the grain in the scene.
+void check_lobe(GeneratedScene* s, const Vec3& eye, const Vec3d& grain) {
+  const Material& m = s->materials[0];
+  const Vec3d v = normalize(to_double(eye - kPoint)), l = -normalize(to_double(s->lights[0].direction));
+  const BrdfInfo& lobe = *kBrdfList[m.brdf]->with_grain;
+  const Vec3d normal = {0, 0, eye.z > 0 ? 1.0 : -1.0};
+  const Vec3d f = lobe.exact_value(m, to_double(m.specular), to_double(m.diffuse) * (1 / kPiD), {normal, grain}, v, l);
+  auto t = ray_renderer(s);
+  REQUIRE(has(t->renderer.effects.mask, Effect::anisotropy));
+  const Vec3 found = look(*t, eye, kPoint);
+  for (int c = 0; c < 3; ++c)
+    CHECK(static_cast<double>(found[c]) == doctest::Approx(f[c] * std::fmax(dot(normal, l), 0)).epsilon(1e-4));
+}
+
+}  // namespace
+
+// Goal: the grain lies in the frame of the texture coordinates: along u, and against v, as glTF has it. Method: the
+// renderer against the lobe in double precision with the grain by hand; both lobes, directions all around, seen from
+// both sides, texture coordinates mirrored.
+TEST_CASE("anisotropy_follows_the_texture_coordinates") {
+  for (std::uint32_t brdf : {std::uint32_t(kGgx), std::uint32_t(kWard)})
+    for (int i = 0; i < 8; ++i)
+      for (bool mirrored : {false, true}) {
+        GeneratedScene s;
+        const double turn = 0.8 * i, strength = 0.3 + 0.1 * i;
+        const Vec2 d = {static_cast<float>(strength * std::cos(turn)), static_cast<float>(strength * std::sin(turn))};
+        make_sheet(&s, brushed(brdf), {d, {}}, mirrored);
+        CAPTURE(brdf);
+        CAPTURE(i);
+        CAPTURE(mirrored);
+        const double down = mirrored ? 1 : -1;
+        check_lobe(&s, {1, 0.5f, 2}, {static_cast<double>(d.x), down * static_cast<double>(d.y), 0});
+        if (i != 2) continue;
+        s.lights[0].direction = normalize(Vec3{-1, -2, 3});
+        check_lobe(&s, {1, 0.5f, -2}, {static_cast<double>(d.x), down * static_cast<double>(d.y), 0});
+      }
+}
+
+// Goal: a texture turns the grain by its red and green, and weakens it by its blue. Method: closed form: a quarter
+// turn at half the strength; (1, 1) is an eighth of a turn.
+TEST_CASE("anisotropy_takes_its_texture") {
+  for (int quarter = 0; quarter < 2; ++quarter) {
+    GeneratedScene s;
+    make_sheet(&s, brushed(kGgx), {{0.8f, 0}, {}});
+    s.grains[0].texture.texture = add_texture(
+        &s, 1, 1, {quarter ? std::array<int, 4>{{127, 255, 128, 0}} : std::array<int, 4>{{255, 255, 255, 0}}});
+    const double x = quarter ? 127 / 127.5 - 1 : 1, size = std::sqrt(x * x + 1);
+    const double strength = 0.8 * (quarter ? 128 / 255.0 : 1) / size;
+    check_lobe(&s, {1, 0.5f, 2}, {strength * x, -strength, 0});
+  }
+}
+
+// Goal: without texture coordinates, with a grain of strength 0, with a lobe that has none, or with the effect off,
+// the surface shines evenly. Method: bits of the plain lobe's picture.
+TEST_CASE("anisotropy_is_absent_without_a_frame") {
+  auto seen = [](const Grain& grain, std::uint32_t brdf, bool with_uvs, EffectMask off) {
+    GeneratedScene s;
+    make_sheet(&s, brushed(brdf), grain);
+    s.with_uvs = with_uvs;
+    s.bind();
+    aim(&s, {1, 0.5f, 2}, kPoint, 20);
+    Settings settings;
+    settings.width = settings.height = 8, settings.forced_off = off;
+    return render_picture(s.scene, settings, 0);
+  };
+  const Grain along = {{1, 0}, {}};
+  const Picture even = seen({}, kGgx, true, 0);
+  CHECK_FALSE(same_picture(seen(along, kGgx, true, 0), even));
+  CHECK(same_picture(seen(along, kGgx, false, 0), even));
+  CHECK(same_picture(seen(along, kGgx, true, bit(Effect::anisotropy)), even));
+  CHECK(same_picture(seen(along, kPhong, true, 0), seen({}, kPhong, true, 0)));
+}
+
+// Goal: under an environment, the bent normal looks where a lobe with a grain reflects most. Method: the mean direction
+// of the lobe's samples, weighted by value × cosine / density, over views and grains: the bent normal's mirrored
+// direction is nearer to it than the plain one's, in the mean.
+TEST_CASE("anisotropy_bends_the_normal_towards_the_lobes_middle") {
+  const BrdfInfo& lobe = *kBrdfList[kGgx]->with_grain;
+  const Material m = brushed(kGgx);
+  Rng rng = make_rng(4);
+  double bent = 0, plain = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double turn = 2 * kPiD * next_double(&rng), cosine = 0.3 + 0.5 * next_double(&rng);
+    const Vec3d v = {std::sqrt(1 - cosine * cosine), 0, cosine};
+    const LobeFrameD frame = {{0, 0, 1}, {0.9 * std::cos(turn), 0.9 * std::sin(turn), 0}};
+    Vec3d sum = {0, 0, 0};
+    for (int k = 0; k < 2000; ++k) {
+      const double u = next_double(&rng);
+      const Vec3d l = lobe.sample(m, frame, v, u, next_double(&rng));
+      if (!(l.z > 0)) continue;
+      sum += l * (lobe.exact_value(m, {1, 1, 1}, {0, 0, 0}, frame, v, l).x * l.z / lobe.density(m, frame, v, l));
+    }
+    auto to_float = [](const Vec3d& a) {
+      return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+    };
+    const Vec3 axis = bent_normal({{0, 0, 1}, to_float(frame.grain)}, m.roughness, -to_float(v));
+    CHECK(length(axis) == doctest::Approx(1).epsilon(1e-5));
+    CHECK(axis.z > 0);
+    auto off = [&](const Vec3d& n) { return std::acos(std::fmin(1, dot(normalize(sum), n * (2 * dot(n, v)) - v))); };
+    bent += off(normalize(to_double(axis))), plain += off({0, 0, 1});
+  }
+  MESSAGE("mean angle to the lobe's middle: ", bent / 60, " with the bent normal, ", plain / 60, " without");
+  CHECK(bent < plain);
+  const LobeFrame even = {{0, 0, 1}, {0, 0, 0}};
+  CHECK(bent_normal(even, 0.2f, {0.6f, 0, -0.8f}) == even.normal);
+}
