@@ -89,7 +89,8 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
 float gltf_map_mean(GltfFile* file, int texture, int channel);
 // The model dimmed by the means of specular textures.
 MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& source, MetallicRoughness model);
-// The scene keeps one set of texture coordinates per vertex: that of the first texture that the material has; -1: none.
+// The scene keeps one set of texture coordinates per vertex: that of the first texture that the material has; for a
+// grain without textures the first; -1: none.
 int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
                        const MaterialMaps& maps, const Grain& grain);
 

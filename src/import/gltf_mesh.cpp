@@ -74,7 +74,7 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* me
   if (set < 0) return;
   int accessor = attribute(primitive, ("TEXCOORD_" + std::to_string(set)).c_str());
   if (accessor < 0) {
-    note_remark(file->builder, "a textured mesh has no TEXCOORD_" + std::to_string(set));
+    note_remark(file->builder, "a mesh lacks TEXCOORD_" + std::to_string(set) + ", which its material uses");
     return;
   }
   std::vector<float> values = gltf_floats(file, accessor, 2, "TEXCOORD");

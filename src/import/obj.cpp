@@ -115,8 +115,11 @@ tinyobj::index_t checked_corner(tinyobj::index_t corner, const tinyobj::attrib_t
   return corner;
 }
 
-bool is_textured(const Material& material) {
-  return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
+bool uses_uvs(const SceneBuilder& builder, std::uint32_t index) {
+  const SceneArrays& out = *builder.out;
+  const Material& material = out.materials[index];
+  if (material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone) return true;
+  return index < out.grains.size() && (out.grains[index].direction.x != 0 || out.grains[index].direction.y != 0);
 }
 
 MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attributes, std::uint32_t default_material,
@@ -131,7 +134,7 @@ MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attr
     int id = t < shape.mesh.material_ids.size() ? shape.mesh.material_ids[t] : -1;
     bool known = id >= 0 && static_cast<std::uint32_t>(id) < default_material;
     mesh.triangle_materials.push_back(known ? static_cast<std::uint32_t>(id) : default_material);
-    uvs |= is_textured(builder->out->materials[mesh.triangle_materials.back()]);
+    uvs |= uses_uvs(*builder, mesh.triangle_materials.back());
   }
   std::vector<tinyobj::index_t> corners(3 * triangle_count);
   for (std::size_t c = 0; c < corners.size(); ++c) {

@@ -4,6 +4,7 @@
 #pragma once
 #include <cmath>
 
+#include "brdf/grain.h"
 #include "effect/settings.h"
 #include "indirect/surroundings.h"
 
@@ -70,33 +71,49 @@ inline Vec3T<T> environment_irradiance(const EnvironmentInfo& info, const Vec3T<
   return sum;
 }
 
-// The normal whose mirrored direction stands for a lobe with a grain, bent towards the viewer across it [glTF's
-// KHR_materials_anisotropy, "Image Based Lighting"]. The normal itself without a grain.
-inline Vec3 bent_normal(const LobeFrame& frame, float alpha, const Vec3& way) {
-  const float square = dot(frame.grain, frame.grain);
-  if (!(square > 0)) return frame.normal;
-  const float strength = std::sqrt(square);
-  const Vec3 across = cross(frame.normal, frame.grain / strength);
-  const Vec3 bent = normalize(cross(cross(way, across), across));
-  const float root = 1 - strength * (1 - std::sqrt(alpha)), share = root * root * root * root;
-  const Vec3 axis = normalize(bent + (frame.normal - bent) * share);
-  return dot(axis, frame.normal) > 0 ? axis : frame.normal;
+// Its mean over a GGX lobe around the direction that the normal mirrors. `way` goes from the viewer to the surface.
+inline Vec3 environment_in_lobe(const Scene& scene, const Vec3& normal, const Vec3& way, float alpha) {
+  const float smoothness = 1 - alpha;
+  // Off the normal, the middle of a rough lobe is nearer to it than the mirrored direction [Lagarde & de Rousiers 2014,
+  // "Moving Frostbite to PBR", listing 22].
+  const float share = smoothness * (std::sqrt(smoothness) + alpha);
+  const Vec3 mirrored = way - normal * (2 * dot(normal, way));
+  return environment_gloss(scene, normal * (1 - share) + mirrored * share, alpha);
+}
+
+// The same for a lobe with a grain: the mean around microfacets that lean along the grain, at the middles of four equal
+// shares of their slopes, which are distributed as 1/(1 + (x/αx)²)^(3/2); weighted by the cosine of what they mirror,
+// as the levels of the map are. Glossy lobes without a grain do not call it.
+inline Vec3 environment_along_grain(const Scene& scene, const LobeFrame& frame, const Vec3& way, float alpha) {
+  const GrainAxes<float> axes = grain_axes(frame, alpha);
+  Vec3 sum = {0, 0, 0};
+  float weights = 0;
+  for (float slope : {-1.1338934f, -0.25819889f, 0.25819889f, 1.1338934f}) {
+    const Vec3 facet = normalize(frame.normal + axes.tangent * (slope * axes.along));
+    const float cosine = dot(frame.normal, way - facet * (2 * dot(facet, way)));
+    if (!(cosine > 0) || !(dot(facet, way) < 0)) continue;
+    sum += environment_in_lobe(scene, facet, way, alpha) * cosine;
+    weights += cosine;
+  }
+  return weights > 0 ? sum / weights : environment_in_lobe(scene, frame.normal, way, alpha);
 }
 
 // Radiance to a viewer from a glossy lobe under the environment: the split sum [Karis 2013]. `specular` as in brdf.h;
 // the material reflects its surroundings. `way` goes from the viewer to the surface, `irradiance` is
-// environment_irradiance() there. The lobe has its middle where `axis` mirrors the viewer: the normal, or
-// bent_normal().
+// environment_irradiance() there.
 inline Vec3 reflected_environment(const Scene& scene, const Material& m, const Vec3& specular, const Vec3& normal,
-                                  const Vec3& axis, const Vec3& way, const Vec3& irradiance) {
-  const float cosine = dot(normal, way), smoothness = 1 - m.roughness;
-  const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, cosine);
-  // Off the normal, the middle of a rough lobe is nearer to it than the mirrored direction [Lagarde & de Rousiers 2014,
-  // "Moving Frostbite to PBR", listing 22].
-  const float share = smoothness * (std::sqrt(smoothness) + m.roughness);
-  const Vec3 mirrored = way - axis * (2 * dot(axis, way));
-  return albedo.once * environment_gloss(scene, axis * (1 - share) + mirrored * share, m.roughness) +
-         albedo.scattered * irradiance;
+                                  const Vec3& way, const Vec3& irradiance) {
+  const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(m, specular, dot(normal, way));
+  return albedo.once * environment_in_lobe(scene, normal, way, m.roughness) + albedo.scattered * irradiance;
+}
+// The same for a lobe with a grain, whose albedo is that of the even lobe of the same area.
+inline Vec3 reflected_along_grain(const Scene& scene, const Material& m, const Vec3& specular, const LobeFrame& frame,
+                                  const Vec3& way, const Vec3& irradiance) {
+  const GrainAxes<float> axes = grain_axes(frame, m.roughness);
+  Material even = m;
+  even.roughness = std::sqrt(axes.along * axes.across);
+  const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(even, specular, dot(frame.normal, way));
+  return albedo.once * environment_along_grain(scene, frame, way, m.roughness) + albedo.scattered * irradiance;
 }
 
 // Whether the environment lights surfaces, besides being seen by rays. Stored radiosity holds its diffuse part.

@@ -192,10 +192,13 @@ Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceS
       return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
     };
     const Vec3 normal = to_float(s.normal);
-    const Vec3 way = to_float(-to_viewer), axis = bent_normal({normal, to_float(s.grain)}, lobes_of(s).roughness, way);
-    sum += to_double(reflected_environment(scene, lobes_of(s), to_float(s.specular), normal, axis, way,
-                                           environment_irradiance(scene.environment_info[0], normal))) *
-           s.open;
+    const Vec3 way = to_float(-to_viewer), irradiance = environment_irradiance(scene.environment_info[0], normal);
+    const Vec3 specular = to_float(s.specular);
+    const Vec3 reflected =
+        is_zero(s.grain)
+            ? reflected_environment(scene, lobes_of(s), specular, normal, way, irradiance)
+            : reflected_along_grain(scene, lobes_of(s), specular, {normal, to_float(s.grain)}, way, irradiance);
+    sum += to_double(reflected) * s.open;
   }
   return sum;
 }

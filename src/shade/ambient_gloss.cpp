@@ -27,8 +27,9 @@ Vec3 environment_light(const FrameData& frame, const Ray& ray, const Material& m
   if (scatters) sum = s.diffuse * irradiance;
   if (!shines) return sum;
   const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
-  const Vec3 axis = has(frame.mask, Effect::anisotropy) ? bent_normal(s, m.roughness, ray.direction) : s.normal;
-  return sum + reflected_environment(scene, m, specular, s.normal, axis, ray.direction, irradiance);
+  if (has(frame.mask, Effect::anisotropy) && !is_zero(s.grain))
+    return sum + reflected_along_grain(scene, m, specular, s, ray.direction, irradiance);
+  return sum + reflected_environment(scene, m, specular, s.normal, ray.direction, irradiance);
 }
 
 template <SurroundingsFunction light>

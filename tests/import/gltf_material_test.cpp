@@ -300,6 +300,7 @@ TEST_CASE("gltf_anisotropy_becomes_a_grain") {
   CHECK(imported.scene.grains[0].direction.x == doctest::Approx(0.4).epsilon(1e-5));
   CHECK(imported.scene.grains[0].direction.y == doctest::Approx(0.8 * 0.8660254).epsilon(1e-5));
   CHECK(imported.scene.grains[0].texture.texture == kNone);
+  CHECK(imported.scene.uvs.count == imported.scene.positions.count);
   CHECK(imported.warning.find("anisotropy") == std::string::npos);
   imported = load_text(triangle_gltf(brushed + ",\"anisotropyTexture\":{\"index\":0}}}}", images(kRoughMetal)));
   REQUIRE(imported.scene.grains.count == 1);

@@ -67,6 +67,7 @@ TEST_CASE("obj_physically_based_materials_and_grains") {
   ImportedScene brushed = load_material("Kd 0.1 0.1 0.1\nKs 0.3 0.2 0.1\nNs 48\nillum 2\naniso 0.5\nanisor 1.25\n");
   CHECK((first(brushed).brdf == kWard && first(brushed).roughness == 0.2f));
   REQUIRE(brushed.scene.grains.count == 1);
+  CHECK(brushed.scene.uvs.count == 4);
   CHECK(std::fabs(brushed.scene.grains[0].direction.x) < 1e-6f);
   CHECK(brushed.scene.grains[0].direction.y == doctest::Approx(0.5));
   brushed = load_material("Kd 0.8 0.4 0.2\nPr 0.5\nPm 1\naniso 2\nsheen 1\nPs 0.5\n");
