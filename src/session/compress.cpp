@@ -13,7 +13,7 @@ namespace {
 
 // What materials read of a run of texels.
 struct Uses {
-  bool color = false, alpha = false, normal = false, green_blue = false, red = false;
+  bool color = false, alpha = false, normal = false, green_blue = false, red = false, grain = false;
 };
 
 struct Channels {
@@ -40,6 +40,7 @@ std::map<std::uint32_t, Uses> find_uses(const Scene& scene) {
     note(maps.normal, &Uses::normal), note(maps.metallic_roughness, &Uses::green_blue);
     note(maps.occlusion, &Uses::red);
   }
+  for (const Grain& grain : scene.grains) note(grain.texture, &Uses::grain);
   return uses;
 }
 
@@ -49,11 +50,12 @@ TexelFormat choose_format(const Uses& uses, const std::uint32_t* texels, std::ui
     const Channels texel = channels_of(texels[i]);
     has_alpha |= texel.c[3] != 255, faces_outwards &= texel.c[2] >= 128;
   }
-  const bool numbers = uses.normal || uses.green_blue || uses.red;
+  const bool numbers = uses.normal || uses.green_blue || uses.red || uses.grain;
   if (uses.color) {
     if (numbers) return TexelFormat::exact;
     return uses.alpha && has_alpha ? TexelFormat::color_alpha8 : TexelFormat::color4;
   }
+  if (uses.grain) return TexelFormat::numbers12;
   if (uses.normal)
     return uses.green_blue || uses.red || !faces_outwards ? TexelFormat::numbers12 : TexelFormat::normal8;
   if (uses.green_blue) return uses.red ? TexelFormat::numbers12 : TexelFormat::green_blue8;

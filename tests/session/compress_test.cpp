@@ -20,13 +20,14 @@ std::uint32_t add(GeneratedScene* s, const std::array<int, 4>& texel) {
   return texture;
 }
 
-// The format that the texture gets for the uses that `use` sets.
+// The format that the texture gets for the uses that `use` sets, and as a grain's.
 template <class Use>
-TexelFormat format_for(const std::array<int, 4>& texel, Use use) {
+TexelFormat format_for(const std::array<int, 4>& texel, Use use, bool turns_a_grain = false) {
   GeneratedScene s;
   const std::uint32_t texture = add(&s, texel), material = add_material(&s, Material());
   s.material_maps.resize(s.materials.size());
   use(&s.materials[material], &s.material_maps[material], texture);
+  if (turns_a_grain) s.grains.resize(s.materials.size()), s.grains[material].texture.texture = texture;
   add_quad(&s, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, material);
   s.with_uvs = true;
   s.bind();
@@ -67,7 +68,12 @@ TEST_CASE("compress_chooses_blocks_by_use") {
         TexelFormat::numbers12);
   CHECK(format_for(plain, [&](M* m, P* p, std::uint32_t t) { diffuse(m, p, t), normal(m, p, t); }) ==
         TexelFormat::exact);
-  CHECK(format_for(plain, [](M*, P*, std::uint32_t) {}) == TexelFormat::exact);
+  auto nothing = [](M*, P*, std::uint32_t) {};
+  CHECK(format_for(plain, nothing) == TexelFormat::exact);
+  CHECK(format_for(plain, nothing, true) == TexelFormat::numbers12);
+  CHECK(format_for(plain, occlusion, true) == TexelFormat::numbers12);
+  CHECK(format_for(plain, normal, true) == TexelFormat::numbers12);
+  CHECK(format_for(plain, diffuse, true) == TexelFormat::exact);
 }
 
 // Goal: textures that share texels still do, and the error is reported once; a texture too small for blocks stays
