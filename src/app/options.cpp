@@ -61,7 +61,10 @@ void add_camera(Command command, CommonOptions* o) {
                      "\"ex,ey,ez tx,ty,tz ux,uy,uz VFOV\": eye, target, up vector, vertical field of view in degrees");
   command.add_option("--camera-index", o->camera_index, "which of the scene's cameras to use, counting from 0")
       .capture_default_str();
-  command.add_option("--exposure", o->exposure, "stops to add to the scene's own exposure, or auto");
+  command.add_option(
+      "--exposure", o->exposure,
+      "stops to add to the scene's exposure, which is measured where an imported model has lights; auto: always "
+      "measured; fixed or fixed,STOPS: never, radiance 1 is white");
 }
 
 }  // namespace

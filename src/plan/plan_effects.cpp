@@ -231,9 +231,12 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
                                                     : "half");
   if (settings.light_tolerance == 0)
     w.set(Effect::source_selection, false, "every light tested for shadows");
+  else if (selects)
+    w.set(Effect::source_selection, true, "%u lights: the strongest tested for shadows, error ≤ %.3g of the light",
+          light_count, static_cast<double>(settings.light_tolerance));
   else
-    w.set(Effect::source_selection, selects, "%u light%s: %s tested for shadows", light_count,
-          light_count == 1 ? "" : "s", selects ? "the strongest" : "each");
+    w.set(Effect::source_selection, false, "%u light%s: each tested for shadows", light_count,
+          light_count == 1 ? "" : "s");
   bool animated = is_animated(scene);
   w.set(Effect::animation, animated, animated ? "%u animation%s" : "nothing moves", scene.animations.count,
         scene.animations.count == 1 ? "" : "s");

@@ -96,10 +96,11 @@ Status start_scene(OpenScene* opened, const CommonOptions& o) {
   CHECK(opened->block != nullptr && opened->renderer.workers == nullptr);
   Renderer* renderer = &opened->renderer;
   renderer->workers = start_workers(renderer->settings.threads);
-  bool measured;
+  ExposureChoice choice;
   float factor;
-  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));
-  if (measured) renderer->scene.info.auto_exposure = 1;
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &choice, &factor));
+  if (choice != ExposureChoice::as_scene)
+    renderer->scene.info.auto_exposure = choice == ExposureChoice::measured ? 1.0f : 0.0f;
   RETURN_IF_ERROR(build_renderer(renderer));
   return change_exposure(factor, &renderer->exposure);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <thread>
 
 #include "accel/accel_list.h"
@@ -104,9 +105,9 @@ Status read_settings(const CommonOptions& o, Settings* settings) {
   for (int i = 0; i < kSettingCount; ++i)
     RETURN_IF_ERROR(read_setting(kSettingList[i], o.settings.options[i], settings));
   RETURN_IF_ERROR(read_coherence(o, settings));
-  bool measured;
+  ExposureChoice exposure;
   float factor;
-  RETURN_IF_ERROR(parse_exposure(o.exposure, &measured, &factor));  // checked even by commands that show nothing
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &exposure, &factor));  // checked even by commands that show nothing
   unsigned cores = std::thread::hardware_concurrency();
   CHECK(o.emulate.empty() || device != nullptr);
   if (!o.emulate.empty() && device->core_count > 0) cores = static_cast<unsigned>(device->core_count);
@@ -238,11 +239,16 @@ Status parse_look(const CommonOptions& o, Look* look) {
   return success();
 }
 
-Status parse_exposure(const std::string& text, bool* measured, float* factor) {
+Status parse_exposure(const std::string& text, ExposureChoice* choice, float* factor) {
+  constexpr const char* kFixed = "fixed";
+  const bool fixed = text.compare(0, std::strlen(kFixed), kFixed) == 0;
+  *choice = text == "auto" ? ExposureChoice::measured : fixed ? ExposureChoice::fixed : ExposureChoice::as_scene;
+  std::string given = fixed ? text.substr(std::strlen(kFixed)) : text;
+  if (fixed && !given.empty()) given = given[0] == ',' && given.size() > 1 ? given.substr(1) : "?";
   float stops = 0;
-  *measured = text == "auto";
-  if (!*measured && !text.empty() && (!read_numbers(text, &stops, 1) || !(std::fabs(stops) <= kExposureStopsMax)))
-    return failure("--exposure is '%s': write stops as 1.5 or -2, -60 … 60, or auto", text.c_str());
+  if (*choice != ExposureChoice::measured && !given.empty() &&
+      (!read_numbers(given, &stops, 1) || !(std::fabs(stops) <= kExposureStopsMax)))
+    return failure("--exposure is '%s': write stops as 1.5 or -2, -60 … 60, auto, fixed, or fixed,STOPS", text.c_str());
   *factor = static_cast<float>(det_exp(static_cast<double>(stops) * 0.693147180559945309));
   return success();
 }

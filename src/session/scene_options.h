@@ -60,6 +60,7 @@ Status parse_bytes(const std::string& text, std::size_t* bytes, const char* opti
 Status parse_camera(const std::string& text, Camera* camera);
 // Parses --background, --light and --fov.
 Status parse_look(const CommonOptions& options, Look* look);
-// Parses --exposure: whether to measure it, and the factor on the scene's or measured exposure.
-Status parse_exposure(const std::string& text, bool* measured, float* factor);
+enum class ExposureChoice { as_scene, measured, fixed };
+// Parses --exposure: whether to measure it, as the scene asks, always or never, and the factor on that exposure.
+Status parse_exposure(const std::string& text, ExposureChoice* choice, float* factor);
 }  // namespace pocketray

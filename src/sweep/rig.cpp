@@ -86,9 +86,9 @@ Status open_with(const AccuracyOptions& options, const CommonOptions& common, st
   Renderer* renderer = &rig->opened.renderer;
   RETURN_IF_ERROR(change_settings(renderer, rig->baseline.settings));
   RETURN_IF_ERROR(prepare_frame(renderer, options.seconds));
-  bool measured;
+  ExposureChoice choice;
   float factor;
-  RETURN_IF_ERROR(parse_exposure(common.exposure, &measured, &factor));
+  RETURN_IF_ERROR(parse_exposure(common.exposure, &choice, &factor));
   if (renderer->scene.info.auto_exposure == 0) return success();
   renderer->exposure = measure_exposure(renderer);
   return change_exposure(factor, &renderer->exposure);

@@ -9,6 +9,9 @@ first_pixel() { tail -c $((32 * 24 * 3)) "$1" | head -c 3 | od -An -tx1 | tr -d 
 for color in '#ff80' '#ff80gg' red 1,2 1,2,3,4 -1,0,0 nan,0,0 1e38,0,0 '#'; do
   expect "background_$color" 1 'background' render cube "${small[@]}" "--background=$color" -o refused.ppm
 done
+for exposure in fixed, fixed1 fixedly fixed,61 fixed,fixed auto,1 nan; do
+  expect "exposure_$exposure" 1 "exposure is '$exposure': write stops" render cube "${small[@]}" --exposure $exposure -o refused.ppm
+done
 expect light_name 1 'light.*moon' render cube "${small[@]}" --light moon -o refused.ppm
 for degrees in 0 -5 180 nan inf 40x wide; do
   expect "fov_$degrees" 1 "fov is '$degrees': it must lie in 0.001 … 179" render cube "${small[@]}" "--fov=$degrees" -o refused.ppm
@@ -43,6 +46,16 @@ if "${run[@]}" render --help | grep -q glTF; then
   check background_as_levels test "$(first_pixel levels.ppm)" = ff8000
   render model.obj linear.ppm --background 1,0.2158605,0 >/dev/null
   check background_as_radiance test "$(first_pixel linear.ppm)" = ff8000
+  # A model with a lamp is measured, unless told otherwise.
+  printf 'newmtl lamp\nKe 90 90 90\n' >lamp.mtl
+  printf 'mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\n' >lit.obj
+  grey=0.2158605,0.2158605,0.2158605
+  render lit.obj measured.ppm --background $grey >/dev/null
+  check exposure_is_measured test "$(first_pixel measured.ppm)" != 808080
+  render lit.obj fixed.ppm --background $grey --exposure fixed >/dev/null
+  check exposure_is_fixed test "$(first_pixel fixed.ppm)" = 808080
+  render lit.obj stop.ppm --background 0.431721,0.431721,0.431721 --exposure fixed,-1 >/dev/null
+  check exposure_is_fixed_a_stop_lower test "$(first_pixel stop.ppm)" = 808080
   render model.obj fov.ppm --fov 40 >/dev/null
   check usual_field_of_view cmp -s usual.ppm fov.ppm
   render model.obj narrow.ppm --fov 5 >/dev/null

@@ -65,7 +65,7 @@ void fuzz_text(const std::uint8_t* bytes, std::size_t byte_count) {
   std::string text(bytes + 1, bytes + byte_count);
   std::uint32_t width, height;
   std::size_t size;
-  bool measured;
+  ExposureChoice exposure;
   float factor = 0;
   Camera camera;
   Settings settings;
@@ -82,7 +82,7 @@ void fuzz_text(const std::uint8_t* bytes, std::size_t byte_count) {
       CHECK(is_finite(camera.eye) && is_finite(camera.target) && is_finite(camera.up));
       break;
     case 3:
-      if (!parse_exposure(text, &measured, &factor).ok) return;
+      if (!parse_exposure(text, &exposure, &factor).ok) return;
       CHECK(std::isfinite(factor) && factor > 0);
       break;
     case 4:

@@ -178,7 +178,8 @@ TEST_CASE("plan_effects_select_among_many_lights") {
   CHECK_FALSE(has(plan.mask, Effect::source_selection));
   CHECK_FALSE(has(plan_with(kSelectedLightsMin - 2, 0.1f, selection, 0).mask, Effect::source_selection));
   plan = plan_with(kSelectedLightsMin - 1, 0.1f, 0, 0);
-  CHECK(reason(plan, Effect::source_selection) == "16 lights: the strongest tested for shadows");
+  CHECK(reason(plan, Effect::source_selection) ==
+        "16 lights: the strongest tested for shadows, error ≤ 0.1 of the light");
   CHECK(has(plan.mask, Effect::source_selection));
   CHECK_FALSE(has(plan_with(kSelectedLightsMin - 1, 0.1f, 0, selection).mask, Effect::source_selection));
   CHECK_FALSE(has(plan_with(kSelectedLightsMin - 1, 0, selection, 0).mask, Effect::source_selection));

@@ -275,13 +275,15 @@ TEST_CASE("limits_are_the_same_for_command_line_file_and_wire") {
 
 // Goal: stops on the command line have exactly the range of exposures, also multiplied by the scene's.
 TEST_CASE("limits_of_stops_are_those_of_exposures") {
-  bool measured;
+  ExposureChoice choice;
   float factor;
-  for (const char* good : {"60", "-60", "0", "1.5", "auto"}) CHECK(parse_exposure(good, &measured, &factor).ok);
-  for (const char* bad : {"60.001", "-60.001", "61", "nan", "inf", "-inf", "1e30", "x"})
-    CHECK(!parse_exposure(bad, &measured, &factor).ok);
+  for (const char* good : {"60", "-60", "0", "1.5", "auto", "fixed", "fixed,60", "fixed,-60"})
+    CHECK(parse_exposure(good, &choice, &factor).ok);
+  for (const char* bad :
+       {"60.001", "-60.001", "61", "nan", "inf", "-inf", "1e30", "x", "fixed,61", "fixed,", "fixed,auto"})
+    CHECK(!parse_exposure(bad, &choice, &factor).ok);
   for (const char* end : {"60", "-60"}) {
-    REQUIRE(parse_exposure(end, &measured, &factor).ok);
+    REQUIRE(parse_exposure(end, &choice, &factor).ok);
     float exposure = 1;
     CHECK(change_exposure(factor, &exposure).ok);
     CHECK(within(Quantity::exposure, exposure));

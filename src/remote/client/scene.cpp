@@ -177,8 +177,12 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output
   query.camera_index = static_cast<std::uint16_t>(o.camera_index);  // below kCameraCountMax: options are checked
   query.camera_stated = !o.camera.empty();
   if (query.camera_stated) RETURN_IF_ERROR(parse_camera(o.camera, &query.camera));
+  ExposureChoice exposure;
   float factor;
-  RETURN_IF_ERROR(parse_exposure(o.exposure, &query.measure_exposure, &factor));
+  RETURN_IF_ERROR(parse_exposure(o.exposure, &exposure, &factor));
+  if (exposure == ExposureChoice::fixed)
+    return failure("--exposure fixed needs the scene on this device: raise --memory to hold it, or leave it out");
+  query.measure_exposure = exposure == ExposureChoice::measured;
   std::size_t wanted = opened->source.bytes_wanted, limit = query.settings.memory_bytes;
   Status status = s->is_named ? success() : name_without_loading(s, o.scene);
   query.scene = s->scene;
