@@ -248,7 +248,7 @@ def write_gltf(context, path, objects, say):
                 export_animations=True, export_frame_range=True, export_nla_strips=False, use_active_scene=True,
                 convert_lighting_mode="COMPAT", export_colors=uses_vertex_colors(), use_selection=objects == "SELECTED",
                 use_visible=objects == "VISIBLE", use_renderable=objects == "RENDERED")
-    except (RuntimeError, AttributeError) as error:
+    except (RuntimeError, AttributeError, TypeError) as error:
         raise ExportError(f"Blender's glTF exporter fails: {last_line(error)}") from error
     for line in lines:
         warning = re.search(r"(?:WARNING|ERROR): *(.*)", line)

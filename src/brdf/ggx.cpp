@@ -22,20 +22,7 @@ namespace pocketray {
 namespace {
 
 constexpr float kDiffuseMax = 1.05f;
-constexpr float kAlphaMin = 1e-3f;   // a smoother lobe is a mirror; keeps D finite
 constexpr float kCosineMin = 1e-6f;  // in V, which is infinite where both cosines are 0
-
-template <class T>
-T alpha_of(const Material& material) {
-  return static_cast<T>(material.roughness > kAlphaMin ? material.roughness : kAlphaMin);
-}
-
-// Interpolated normals put some visible points below their horizon: the viewer counts as mirrored in it.
-template <class T>
-Vec3T<T> above_horizon(const Vec3T<T>& normal, const Vec3T<T>& to_viewer) {
-  T cosine = dot(normal, to_viewer);
-  return cosine < 0 ? to_viewer - normal * (2 * cosine) : to_viewer;
-}
 
 // The distribution: D = square / (π slope²), where slope is at least `square`; and the root in V and G₁ of a direction.
 template <class T>
@@ -129,7 +116,7 @@ Vec3 peak_of(const Material& material, float roughness) {
   return (most * (0.5f / kPiF / (square * std::sqrt(square))) + rest) * 1.00001f;  // covers rounding
 }
 Vec3 peak(const Material& material) { return peak_of(material, material.roughness); }
-// The stronger the grain, the more is scattered again.
+// What is scattered again grows or falls with the grain's strength: the larger of both ends.
 Vec3 grained_peak(const Material& material) { return max(peak_of(material, material.roughness), peak_of(material, 1)); }
 
 template <template <class> class Distribution>

@@ -6,6 +6,20 @@
 
 namespace pocketray {
 
+constexpr float kAlphaMin = 1e-3f;  // a smoother lobe is a mirror; keeps distributions finite
+
+template <class T>
+T alpha_of(const Material& material) {
+  return static_cast<T>(material.roughness > kAlphaMin ? material.roughness : kAlphaMin);
+}
+
+// Interpolated normals put some visible points below their horizon: the viewer counts as mirrored in it.
+template <class T>
+Vec3T<T> above_horizon(const Vec3T<T>& normal, const Vec3T<T>& to_viewer) {
+  T cosine = dot(normal, to_viewer);
+  return cosine < 0 ? to_viewer - normal * (2 * cosine) : to_viewer;
+}
+
 template <class T>
 struct GrainAxes {
   Vec3T<T> tangent, bitangent;  // along and across
@@ -25,6 +39,14 @@ GrainAxes<T> grain_axes(const LobeFrameT<T>& frame, T alpha) {
   axes.bitangent = cross(frame.normal, axes.tangent);
   axes.along += (1 - alpha) * (square < 1 ? square : 1);
   return axes;
+}
+
+// The material with the even lobe of the same area, α = √(αx αy), for what is known of even lobes alone.
+inline Material evened(const Material& m, const LobeFrame& frame) {
+  const GrainAxes<float> axes = grain_axes(frame, m.roughness);
+  Material even = m;
+  even.roughness = std::sqrt(axes.along * axes.across);
+  return even;
 }
 
 }  // namespace pocketray

@@ -11,13 +11,7 @@
 namespace pocketray {
 namespace {
 
-constexpr float kAlphaMin = 1e-3f;
 constexpr float kRiseMin = 0.1f;  // both cosines .05: 87°
-
-template <class T>
-T alpha_of(const Material& material) {
-  return static_cast<T>(material.roughness > kAlphaMin ? material.roughness : kAlphaMin);
-}
 
 template <class T, bool has_grain>
 GrainAxes<T> axes_of(const Material& material, const LobeFrameT<T>& frame) {
@@ -42,9 +36,9 @@ inline float decay(float x) { return det_pow(0.36787944f, x < 100 ? x : 100); }
 
 template <class T, bool has_grain>
 Vec3T<T> value_of(const Material& material, const Vec3T<T>& specular, const Vec3T<T>& diffuse,
-                  const LobeFrameT<T>& frame, const Vec3T<T>& to_viewer, const Vec3T<T>& to_light) {
+                  const LobeFrameT<T>& frame, const Vec3T<T>& viewer, const Vec3T<T>& to_light) {
   if (!(dot(frame.normal, to_light) > 0)) return diffuse;
-  const Vec3T<T> h = to_viewer + to_light;
+  const Vec3T<T> h = above_horizon(frame.normal, viewer) + to_light;
   T rise = dot(frame.normal, h);
   if (rise < static_cast<T>(kRiseMin)) rise = static_cast<T>(kRiseMin);
   const GrainAxes<T> axes = axes_of<T, has_grain>(material, frame);
@@ -72,7 +66,8 @@ Vec3d exact_value(const Material& material, const Vec3d& specular, const Vec3d& 
 
 // Mirrors the viewer in a normal of that distribution of slopes.
 template <bool has_grain>
-Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& to_viewer, double u, double v) {
+Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& viewer, double u, double v) {
+  const Vec3d to_viewer = above_horizon(frame.normal, viewer);
   const GrainAxes<double> axes = axes_of<double, has_grain>(material, frame);
   const double radius = std::sqrt(-det_log(1 - u)), turn = 2 * kPi * v;
   const Vec3d half = normalize(axes.tangent * (axes.along * radius * det_cos(turn)) +
@@ -82,7 +77,8 @@ Vec3d sample(const Material& material, const LobeFrameD& frame, const Vec3d& to_
 
 // That of the normals, exp(−slope²)/(π αx αy cos³), over 4 v·h.
 template <bool has_grain>
-double density(const Material& material, const LobeFrameD& frame, const Vec3d& to_viewer, const Vec3d& to_light) {
+double density(const Material& material, const LobeFrameD& frame, const Vec3d& viewer, const Vec3d& to_light) {
+  const Vec3d to_viewer = above_horizon(frame.normal, viewer);
   const GrainAxes<double> axes = axes_of<double, has_grain>(material, frame);
   const Vec3d half = normalize(to_viewer + to_light);
   const double rise = dot(frame.normal, half), way = dot(half, to_viewer);

@@ -78,6 +78,9 @@ int gltf_uv_set(const tinygltf::TextureInfo& info);
 // gltf_material.cpp: scene material of a glTF material (-1: the default one).
 std::uint32_t gltf_material(GltfFile* file, int material);
 
+// gltf_maps.cpp: mean of a texture's colours, linear.
+Vec3 gltf_color_mean(GltfFile* file, int texture);
+
 // gltf_specular_glossiness.cpp: whether a material has the older model, and the material without it.
 bool gltf_has_specular_glossiness(const tinygltf::Material& source);
 tinygltf::Material gltf_without_specular_glossiness(GltfFile* file, const tinygltf::Material& source);

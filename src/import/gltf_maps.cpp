@@ -66,6 +66,8 @@ Vec3 color_mean(const Image& image) {
 
 }  // namespace
 
+Vec3 gltf_color_mean(GltfFile* file, int texture) { return color_mean(gltf_image(file, texture, TexelKind::colors)); }
+
 MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& source, MetallicRoughness model) {
   const SpecularTextures textures = specular_textures(source);
   if (textures.share.index >= 0) {
@@ -73,8 +75,7 @@ MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& sour
     const float share = std::max(channel_mean(image, 3), kLeastMean);
     model.dielectric = model.dielectric * share, model.grazing *= share;
   }
-  if (textures.color.index >= 0)
-    model.dielectric *= color_mean(gltf_image(file, textures.color.index, TexelKind::colors));
+  if (textures.color.index >= 0) model.dielectric *= gltf_color_mean(file, textures.color.index);
   return model;
 }
 

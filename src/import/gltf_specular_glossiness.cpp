@@ -2,7 +2,7 @@
 // KHR_materials_specular, for diffuse colour c, specular colour s and glossiness g:
 //   base colour = c · (1 − max(s)), metallic 0, roughness = 1 − g
 //   specular colour factor = s / 0.04, its texture's colours that of the specularGlossinessTexture
-// The texture's alpha, which scales g, counts by its mean.
+// The texture's alpha, which scales g, counts by its mean, and so do its colours in what the base colour loses.
 #include <algorithm>
 
 #include "import/gltf.h"
@@ -36,15 +36,19 @@ tinygltf::Material gltf_without_specular_glossiness(GltfFile* file, const tinygl
   tinygltf::Material result = source;
   const std::vector<double> specular = color_of(*extension, "specularFactor");
   std::vector<double> base = color_of(*extension, "diffuseFactor");
-  const double remains = 1 - *std::max_element(specular.begin(), specular.end());
-  for (double& c : base) c *= remains;
-  base.push_back(alpha_of(*extension, "diffuseFactor"));
   double glossiness = static_cast<double>(gltf_unit(gltf_number(*extension, "glossinessFactor", 1)));
   const tinygltf::TextureInfo texture = gltf_texture_info(*extension, "specularGlossinessTexture");
+  Vec3 mean = {1, 1, 1};
   if (texture.index >= 0) {
+    mean = gltf_color_mean(file, texture.index);
     note_remark(file->builder, "glossiness textures count only by their mean");
     glossiness *= static_cast<double>(channel_mean(gltf_image(file, texture.index, TexelKind::colors), 3));
   }
+  double reflected = 0;
+  for (int c = 0; c < 3; ++c)
+    reflected = std::max(reflected, specular[static_cast<std::size_t>(c)] * static_cast<double>(mean[c]));
+  for (double& c : base) c *= 1 - reflected;
+  base.push_back(alpha_of(*extension, "diffuseFactor"));
   tinygltf::PbrMetallicRoughness& pbr = result.pbrMetallicRoughness;
   pbr = tinygltf::PbrMetallicRoughness();
   pbr.baseColorFactor = base, pbr.baseColorTexture = gltf_texture_info(*extension, "diffuseTexture");

@@ -126,7 +126,7 @@ MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attr
                     CornerIndex* index, SceneBuilder* builder) {
   MeshData mesh;
   index->begin_mesh();
-  bool normals = false, uvs = false;
+  bool normals = false, uvs = false, missing = false;
   std::size_t triangle_count = shape.mesh.indices.size() / 3;
   for (std::size_t t = 0; t < triangle_count; ++t) {
     if (t < shape.mesh.num_face_vertices.size() && shape.mesh.num_face_vertices[t] != 3)
@@ -140,8 +140,10 @@ MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attr
   for (std::size_t c = 0; c < corners.size(); ++c) {
     corners[c] = checked_corner(shape.mesh.indices[c], attributes, builder);
     normals |= corners[c].normal_index >= 0;
+    missing |= uvs && corners[c].texcoord_index < 0;
     if (!uvs) corners[c].texcoord_index = -1;
   }
+  if (missing) note_remark(builder, "a mesh lacks texture coordinates, which its material uses");
   for (const tinyobj::index_t& corner : corners) mesh.indices.push_back(index->vertex(corner, normals, uvs, &mesh));
   return mesh;
 }

@@ -5,7 +5,7 @@
 //   any         emission Ke; opacity d = 1 − Tr, times map_d
 // With Pr or Pm (the extension for physically based rendering, as Blender exports it), all but glass is glTF's
 // metallic-roughness material of base colour Kd. `aniso` and `anisor`, a turn being 1, are a grain along u: of that
-// material, or of Ward's lobe, which then stands in for Phong's of Ns with α = √(2/(Ns + 2)).
+// material, or of Ward's lobe, which then stands in for Phong's of Ns with α = 1/√(2(Ns + 2)), as high and as wide.
 #include "import/obj_material.h"
 
 #include <algorithm>
@@ -102,6 +102,8 @@ void read_textures(SceneBuilder* builder, const std::string& scene_path, const t
   }
 }
 
+bool is_physically_based(const tinyobj::material_t& source) { return source.roughness > 0 || source.metallic > 0; }
+
 void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
   if (!source.bump_texname.empty() || !source.normal_texname.empty()) note_unused(builder, "bump and normal maps");
   if (!source.specular_texname.empty() || !source.specular_highlight_texname.empty())
@@ -110,12 +112,13 @@ void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
   if (!source.displacement_texname.empty()) note_unused(builder, "displacement maps");
   if (!source.reflection_texname.empty()) note_unused(builder, "reflection maps");
   if (source.sheen > 0 || !source.sheen_texname.empty()) note_unused(builder, "sheen");
+  const bool is_glass = source.illum == 4 || source.illum == 6 || source.illum == 7 || source.illum == 9;
+  if (is_glass && (is_physically_based(source) || source.anisotropy > 0))
+    note_unused(builder, "Pr, Pm and aniso of glass");
   if (source.clearcoat_thickness > 0) note_unused(builder, "clear coats");
   if (!source.roughness_texname.empty() || !source.metallic_texname.empty())
     note_unused(builder, "roughness and metallic maps");
 }
-
-bool is_physically_based(const tinyobj::material_t& source) { return source.roughness > 0 || source.metallic > 0; }
 
 void read_metallic_roughness(const tinyobj::material_t& source, Material* material) {
   MetallicRoughness model;
@@ -150,10 +153,10 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
   } else {
     material.opacity = bounded(source.dissolve, 0, 1);
     if (material.opacity < 1) material.alpha_mode = AlphaMode::blend;
-    if (illum == 3 || illum == 5 || illum == 8) {
-      material.mirror = ks;
-    } else if (is_physically_based(source)) {
+    if (is_physically_based(source)) {  // Blender gives its metals illum 3, too
       read_metallic_roughness(source, &material);
+    } else if (illum == 3 || illum == 5 || illum == 8) {
+      material.mirror = ks;
     } else if (illum == 2) {
       material.specular = ks;
       material.exponent = bounded(source.shininess, 0, kPhongExponentMax);
@@ -162,7 +165,7 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
   const Grain grain = read_grain(source);
   const bool has_grain = !is_zero(material.specular) && (grain.direction.x != 0 || grain.direction.y != 0);
   if (has_grain && material.brdf == kPhong)
-    material.brdf = kWard, material.roughness = std::sqrt(2 / (material.exponent + 2));
+    material.brdf = kWard, material.roughness = std::sqrt(0.5f / (material.exponent + 2));
   read_textures(builder, scene_path, source, &material);
   name_unused(builder, source);
   const std::uint32_t index = add_material(builder, material, source.name);

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/limits.h"
 #include "import/import_error.h"
+#include "import/tangents.h"
 #include "scene/animate.h"
 #include "scene/baked.h"
 #include "scene/metallic_roughness.h"
@@ -236,6 +237,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.grains.empty()) out.grains.resize(out.materials.size());
+  make_tangents(&out);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())
     out.rest_normals.resize(out.rest_positions.size(), Vec3{0, 0, 0});
@@ -249,6 +251,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.uvs = view(out.uvs), scene.colors = view(out.colors);
   scene.triangles = view(out.triangles), scene.materials = view(out.materials),
   scene.material_maps = view(out.material_maps), scene.grains = view(out.grains);
+  scene.tangents = view(out.tangents);
   scene.textures = view(out.textures), scene.texels = view(out.texels);
   scene.lights = view(out.lights), scene.cameras = view(out.cameras);
   scene.nodes = view(out.nodes), scene.animations = view(out.animations), scene.channels = view(out.channels);

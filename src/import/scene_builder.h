@@ -35,6 +35,7 @@ struct SceneArrays {
   std::vector<Material> materials;
   std::vector<MaterialMaps> material_maps;  // of the first materials; the rest have none
   std::vector<Grain> grains;                // likewise
+  std::vector<PackedTangent> tangents;      // see tangents.h
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;

@@ -109,10 +109,7 @@ inline Vec3 reflected_environment(const Scene& scene, const Material& m, const V
 // The same for a lobe with a grain, whose albedo is that of the even lobe of the same area.
 inline Vec3 reflected_along_grain(const Scene& scene, const Material& m, const Vec3& specular, const LobeFrame& frame,
                                   const Vec3& way, const Vec3& irradiance) {
-  const GrainAxes<float> axes = grain_axes(frame, m.roughness);
-  Material even = m;
-  even.roughness = std::sqrt(axes.along * axes.across);
-  const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(even, specular, dot(frame.normal, way));
+  const BrdfAlbedo albedo = kBrdfList[m.brdf]->albedo(evened(m, frame), specular, dot(frame.normal, way));
   return albedo.once * environment_along_grain(scene, frame, way, m.roughness) + albedo.scattered * irradiance;
 }
 

@@ -188,7 +188,8 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   const EffectMask excluded_indirect = indirect ? kIndirectEffects & ~indirect->effects
                                        : settings.indirect == IndirectChoice::none
                                            ? kIndirectEffects | bit(Effect::ambient_gloss)
-                                           : bit(Effect::instant_radiosity);
+                                       : environment_of(scene) ? bit(Effect::radiosity) | bit(Effect::instant_radiosity)
+                                                               : bit(Effect::instant_radiosity);
   const std::uint32_t light_count = c.emissive + scene.lights.count;
   const bool selects = settings.light_tolerance > 0 && light_count >= kSelectedLightsMin;
   if (const EnvironmentInfo* environment = environment_of(scene))

@@ -3,6 +3,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
+#include "brdf/grain.h"
 #include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"
@@ -71,8 +72,14 @@ bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurfa
   const Vec3d e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
   const Vec3d by_u = (e1 * v2 - e2 * v1) * (1 / determinant), by_v = (e2 * u1 - e1 * u2) * (1 / determinant);
   const Vec3d n = s.normal * (s.front ? 1.0 : -1.0);
-  *tangent = normalize(by_u - n * dot(n, by_u)), *bitangent = cross(n, *tangent);
-  if (dot(*bitangent, by_v) > 0) *bitangent = -*bitangent;
+  Vec3d along = by_u, at_vertex[3];
+  for (std::uint32_t i = 0; i < 3 && scene.tangents.count; ++i)
+    at_vertex[i] = to_double(unpacked(scene.tangents[t.vertex(i)]));
+  if (scene.tangents.count && !is_zero(at_vertex[0]) && !is_zero(at_vertex[1]) && !is_zero(at_vertex[2]))
+    along = at_vertex[0] * (1 - s.u - s.v) + at_vertex[1] * s.u + at_vertex[2] * s.v;
+  const Vec3d own = normalize(by_u - n * dot(n, by_u)), other = cross(n, own);
+  *tangent = normalize(along - n * dot(n, along)), *bitangent = cross(n, *tangent);
+  if (dot(other, by_v) > 0) *bitangent = -*bitangent;
   return !is_zero(*tangent);
 }
 
@@ -190,7 +197,11 @@ Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, 
   const Vec3 specular = {static_cast<float>(s.specular.x), static_cast<float>(s.specular.y),
                          static_cast<float>(s.specular.z)};
   const float cosine = static_cast<float>(dot(s.normal, to_viewer));
-  return s.open * to_double(reflected_surroundings(frame.scene->info, lobes_of(s), specular, cosine));
+  auto to_float = [](const Vec3d& a) {
+    return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+  };
+  const Material m = is_zero(s.grain) ? lobes_of(s) : evened(lobes_of(s), {to_float(s.normal), to_float(s.grain)});
+  return s.open * to_double(reflected_surroundings(frame.scene->info, m, specular, cosine));
 }
 
 Vec3d lobe_value(const ReferenceSurface& s, const Vec3d& to_viewer, const Vec3d& to_light) {

@@ -19,7 +19,7 @@ static_assert(sizeof(Vec3) == 12 && sizeof(Vec2) == 8 && sizeof(Rgba16) == 8 && 
 static_assert(sizeof(Texture) == 4 + 2 * 2 + 4 + 4, "no padding");
 static_assert(sizeof(TextureUse) == 28 && sizeof(Material) == 8 * 12 + 6 * 4 + 2 * 28 + 4 + 4, "no padding");
 static_assert(sizeof(MetallicRoughness) == 28 && sizeof(MaterialMaps) == 28 + 5 * 28 + 8 * 4, "no padding");
-static_assert(sizeof(Grain) == 8 + 28, "no padding");
+static_assert(sizeof(Grain) == 8 + 28 && sizeof(PackedTangent) == 4, "no padding");
 static_assert(sizeof(Light) == 4 + 3 * 12 + 3 * 4 + 4 && sizeof(Camera) == 3 * 12 + 4 * 4, "no padding");
 static_assert(sizeof(Node) == 4 + 12 + 16 + 12 + 8 && sizeof(Animation) == 12, "no padding");
 static_assert(sizeof(Channel) == 4 * 4 + 2 + 2 && sizeof(Joint) == 4 + 48 && sizeof(Skin) == 8, "no padding");
@@ -88,8 +88,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("environment_info", scene.environment_info);
   visit("environment_texels", scene.environment_texels);
   visit("grains", scene.grains);
+  visit("tangents", scene.tangents);
 }
-constexpr std::uint32_t kArrayCount = 35;
+constexpr std::uint32_t kArrayCount = 36;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -100,7 +101,7 @@ constexpr std::uint64_t first_offset(std::uint32_t section_count) {
 }
 // Older files lack the last arrays.
 constexpr std::uint32_t section_count_of(std::uint32_t version) {
-  return version < 8 ? kSectionCount - 3 : version < 9 ? kSectionCount - 1 : kSectionCount;
+  return version < 8 ? kSectionCount - 4 : version < 9 ? kSectionCount - 2 : kSectionCount;
 }
 
 // zlib counts in uInt, which may be narrower than size_t.

@@ -11,7 +11,7 @@
 namespace pocketray {
 
 constexpr std::uint32_t kBakedVersion = 9;     // as written
-constexpr std::uint32_t kBakedVersionMin = 7;  // the oldest that is read; it has no environment and no grains
+constexpr std::uint32_t kBakedVersionMin = 7;  // the oldest that is read; it has no environment, grains or tangents
 
 // Size in bytes of the file that baked_write() makes.
 std::size_t baked_size(const Scene& scene);

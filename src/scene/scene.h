@@ -129,6 +129,14 @@ struct Grain {
   TextureUse texture;
 };
 
+// A unit vector in 127ths; zero: none.
+struct PackedTangent {
+  std::int8_t x = 0, y = 0, z = 0, reserved = 0;
+};
+inline Vec3 unpacked(const PackedTangent& t) {
+  return {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)};  // × 127
+}
+
 enum class LightKind : std::uint32_t { point, spot, directional };
 
 // Lights other than surfaces. Emissive materials are the area lights; the plan finds them.
@@ -254,6 +262,8 @@ struct Scene {
   Array<const EnvironmentInfo> environment_info;  // one, or none
   Array<const std::uint32_t> environment_texels;  // of its maps
   Array<const Grain> grains;                      // one per material, or empty
+  // One per vertex, or empty: the tangent of the frame of maps; none: the triangle's own, see shade/normal_map.h.
+  Array<const PackedTangent> tangents;
 };
 
 inline bool is_animated(const Scene& scene) {

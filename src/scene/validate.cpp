@@ -31,6 +31,7 @@ Status validate_counts(const Scene& scene) {
   RETURN_IF_ERROR(check_count("nodes", scene.nodes.count, kNodeCountMax));
   RETURN_IF_ERROR(check_per_vertex("normals", scene.normals.count, scene));
   RETURN_IF_ERROR(check_per_vertex("uvs", scene.uvs.count, scene));
+  RETURN_IF_ERROR(check_per_vertex("tangents", scene.tangents.count, scene));
   return check_per_vertex("colors", scene.colors.count, scene);
 }
 

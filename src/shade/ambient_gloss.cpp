@@ -12,7 +12,10 @@ Vec3 even_light(const FrameData& frame, const Ray& ray, const Material& m, const
   if (!reflects_surroundings(m)) return {0, 0, 0};
   effect_entered<Effect::ambient_gloss>();
   const Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
-  return reflected_surroundings(frame.scene->info, m, specular, dot(s.normal, ray.direction));
+  const float cosine = dot(s.normal, ray.direction);
+  if (has(frame.mask, Effect::anisotropy) && !is_zero(s.grain))
+    return reflected_surroundings(frame.scene->info, evened(m, s), specular, cosine);
+  return reflected_surroundings(frame.scene->info, m, specular, cosine);
 }
 
 template <bool with_diffuse>

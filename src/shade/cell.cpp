@@ -39,8 +39,9 @@ bool is_same_side(const FrameData& frame, const Vec3& a, const Vec3& b) {
 
 bool has_texture(const Scene& scene, const Material& m) {
   if (m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone) return true;
-  if (scene.material_maps.empty()) return false;
   const auto index = static_cast<std::size_t>(&m - scene.materials.data);
+  if (scene.grains.count && scene.grains[index].texture.texture != kNone) return true;
+  if (scene.material_maps.empty()) return false;
   CHECK_LT(index, scene.material_maps.count);
   const MaterialMaps& maps = scene.material_maps[index];
   for (const TextureUse* use :

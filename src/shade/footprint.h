@@ -40,9 +40,10 @@ inline float footprint(const PixelCone& cone, float t, const Vec3& direction, co
   return covered < kMost ? covered : kMost;
 }
 
-// The longer axis of the ellipse that the cone covers, in texture coordinates, from end to end: on the surface it
-// follows the ray [Akenine-Möller et al. 2021, sec. 5]; the shorter one follows from the area. Arguments as above. Zero
-// where the ray is perpendicular to the surface or meets it edge-on. Always finite, without invalid operations.
+// The longer axis, on the surface, of the ellipse that the cone covers, in texture coordinates, from end to end: it
+// follows the ray [Akenine-Möller et al. 2021, sec. 5]; the other one follows from the area. Where a texture is
+// stretched, that one may be longer there; then one place is read. Arguments as above. Zero where the ray is
+// perpendicular to the surface or meets it edge-on. Always finite, without invalid operations.
 inline Vec2 footprint_axis(const FrameData& frame, float t, const Vec3& direction, const Vec3& perpendicular,
                            const Vec3& normal, const Triangle& triangle) {
   const Scene& scene = *frame.scene;

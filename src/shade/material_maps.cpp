@@ -123,7 +123,8 @@ struct MapsPart {
   static constexpr EffectsOf<kMapEffects | bit(Effect::mip_map)> kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
-    return mapped_surface < has(mask, Effect::anisotropy) ? mask | kMapEffects : mask, first > ;
+    constexpr EffectMask code = has(mask, Effect::anisotropy) ? mask | kMapEffects : mask;
+    return mapped_surface<code, first>;
   }
 };
 

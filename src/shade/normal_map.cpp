@@ -31,7 +31,11 @@ bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3
   const float fu = scene.uvs[k].x - scene.uvs[i].x, fv = scene.uvs[k].y - scene.uvs[i].y;
   const float area = eu * fv - ev * fu;  // twice the triangle's in the texture, negative where that is mirrored
   if (!(area < 0 || area > 0)) return false;
-  const Vec3 along = (e * fv - f * ev) * (area < 0 ? -1.0f : 1.0f);
+  Vec3 along = (e * fv - f * ev) * (area < 0 ? -1.0f : 1.0f);
+  if (scene.tangents.count) {
+    const Vec3 a = unpacked(scene.tangents[i]), b = unpacked(scene.tangents[j]), c = unpacked(scene.tangents[k]);
+    if (!is_zero(a) && !is_zero(b) && !is_zero(c)) along = a * (1 - s.hit.u - s.hit.v) + b * s.hit.u + c * s.hit.v;
+  }
   *tangent = normalize(along - n * dot(n, along));
   *bitangent = cross(n, *tangent) * (area < 0 ? 1.0f : -1.0f);
   return !is_zero(*tangent);

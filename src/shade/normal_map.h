@@ -4,15 +4,15 @@
 
 namespace pocketray {
 
-// The frame of maps at the surface, for a unit normal n of its front: the tangent is the triangle's ∂P/∂u made
-// perpendicular to n, the bitangent perpendicular to both, against ∂P/∂v. False where texture coordinates span no area
-// or nothing is left of a direction.
+// The frame of maps at the surface, for a unit normal n of its front: the tangent is interpolated from the vertices,
+// else the triangle's own ∂P/∂u, and made perpendicular to n; the bitangent is perpendicular to both, against ∂P/∂v.
+// Vertices that move have no tangents, and triangles at the seam of a mirrored texture may have none: there, the frame
+// turns about n from triangle to triangle. False where texture coordinates span no area or nothing is left of a
+// direction.
 bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3* tangent, Vec3* bitangent);
 
-// The surface's normal as its map has it, unit, for the map's numbers there, in the frame above of the shading normal
-// n. MikkTSpace averages tangents at the vertices and interpolates them. The normals differ from that by a turn
-// about n by no more than the tangents of neighbouring triangles do, and not in their slope; no vertex needs memory for
-// a tangent.
+// The surface's normal as its map has it, unit, for the map's numbers there, in the frame above of the shading normal.
+// MikkTSpace leaves the tangent as it is interpolated; ours is unit and perpendicular.
 //   - A texel (128, 128, z) gives n itself, bit for bit.
 //   - On the back of a surface, the normal is that of the front reversed.
 //   - A normal that faces away from the viewer is bent back to the viewer's horizon: the part of it that is

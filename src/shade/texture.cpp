@@ -138,7 +138,7 @@ auto sample_base(const Scene& scene, const Texture& t, Vec2 place, TextureFilter
   return takes_nearest ? nearest<Texel, Texels>(level, place) : bilinear<Texel, Texels>(level, place);
 }
 
-// Between the levels next to lambda > 0. One level alone for the quarter of its octave on either side; in between, a
+// Between the levels next to lambda ≥ 0. One level alone for the quarter of its octave on either side; in between, a
 // mix, twice as steep.
 template <class Texel, class Texels>
 auto sample_levels(const Scene& scene, const Texture& t, Vec2 place, float lambda) {

@@ -287,6 +287,11 @@ TEST_CASE("gltf_specular_glossiness_is_translated") {
   check_vec(maps.model.dielectric, {0.25f, 0.5f, 0.125f});
   CHECK(maps.roughness_low == doctest::Approx(1 - (1 + 1 + 128 / 255.0 + 0) / 4).epsilon(1e-3));
   CHECK(imported.warning.find("glossiness textures") != std::string::npos);
+  // With the usual factor of 1, what the texture's mean leaves is diffuse: its channels are 1 in half of the texels.
+  const Material usual = material_of(
+      "{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"specularGlossinessTexture\":{\"index\":0}}}}",
+      images(kColors));
+  check_vec(usual.diffuse, {0.5f, 0.5f, 0.5f});
 }
 
 // Goal: KHR_materials_anisotropy becomes a grain: its strength, turned by its rotation, and its texture; metals without

@@ -58,14 +58,19 @@ TEST_CASE("obj_illumination_models_map_to_our_lobes") {
 // Goal: MTL's extension for physically based rendering gives glTF's material, and `aniso` a grain: of that material, or
 // of Ward's lobe in Phong's place; glass has none. Method: the formulas that obj_material.cpp states.
 TEST_CASE("obj_physically_based_materials_and_grains") {
-  const Material metal = first(load_material("Kd 0.8 0.4 0.2\nPr 0.5\nPm 1\nNs 40\nKs 1 1 1\nillum 2\n"));
+  const Material metal = first(load_material("Kd 0.8 0.4 0.2\nPr 0.5\nPm 1\nNs 40\nKs 1 1 1\nillum 3\n"));
   CHECK(metal.brdf == kGgx);
   CHECK((metal.specular == Vec3{0.8f, 0.4f, 0.2f} && is_zero(metal.diffuse)));
   CHECK((metal.roughness == 0.25f && metal.grazing == 1));
   const Material plastic = first(load_material("Kd 0.8 0.4 0.2\nPr 1\nNi 1.5\nillum 2\n"));
   CHECK(plastic.specular.x == doctest::Approx(0.04));
   ImportedScene brushed = load_material("Kd 0.1 0.1 0.1\nKs 0.3 0.2 0.1\nNs 48\nillum 2\naniso 0.5\nanisor 1.25\n");
-  CHECK((first(brushed).brdf == kWard && first(brushed).roughness == 0.2f));
+  CHECK(first(brushed).brdf == kWard);
+  // As high as the Phong lobe of that exponent, straight on.
+  const Material phong = first(load_material("Kd 0.1 0.1 0.1\nKs 0.3 0.2 0.1\nNs 48\nillum 2\n"));
+  const Vec3 n = {0, 0, 1}, none = {0, 0, 0};
+  CHECK(kWardBrdf.value(first(brushed), {1, 1, 1}, none, {n, none}, n, n).x ==
+        doctest::Approx(kPhongBrdf.value(phong, {1, 1, 1}, none, {n, none}, n, n).x).epsilon(1e-4));
   REQUIRE(brushed.scene.grains.count == 1);
   CHECK(brushed.scene.uvs.count == 4);
   CHECK(std::fabs(brushed.scene.grains[0].direction.x) < 1e-6f);
@@ -74,7 +79,8 @@ TEST_CASE("obj_physically_based_materials_and_grains") {
   CHECK((first(brushed).brdf == kGgx && brushed.scene.grains.count == 1));
   CHECK(brushed.scene.grains[0].direction.x == 1);
   CHECK(brushed.warning.find("sheen") != std::string::npos);
-  CHECK(load_material("Kd 0.5 0.5 0.5\naniso 0.5\nillum 7\n").scene.grains.count == 0);
+  const ImportedScene glass = load_material("Kd 0.5 0.5 0.5\naniso 0.5\nillum 7\n");
+  CHECK((glass.scene.grains.count == 0 && glass.warning.find("aniso of glass") != std::string::npos));
   CHECK(load_material("Kd 0.5 0.5 0.5\naniso 0.5\nillum 1\n").scene.grains.count == 0);
 }
 

@@ -245,10 +245,10 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(open_error(file), "checksum"));
   fix_checksum(file);
   CHECK(open_error(file) == "");
-  put_u32(file, kSectionCountAt, 37);
+  put_u32(file, kSectionCountAt, 38);
   fix_checksum(file);
-  CHECK(mentions(open_error(file), "37 sections"));
-  put_u32(file, kSectionCountAt, 36);
+  CHECK(mentions(open_error(file), "38 sections"));
+  put_u32(file, kSectionCountAt, 37);
   put_u32(file, section_at(0) + 16, 2);
   fix_checksum(file);
   CHECK(mentions(open_error(file), "2 info sections"));

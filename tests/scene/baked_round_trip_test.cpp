@@ -29,7 +29,8 @@ bool same_scene(const Scene& a, const Scene& b) {
          same_bytes(a.skin_weights, b.skin_weights) && same_bytes(a.morph_positions, b.morph_positions) &&
          same_bytes(a.morph_normals, b.morph_normals) && same_bytes(a.accel, b.accel) &&
          same_bytes(a.material_maps, b.material_maps) && same_bytes(a.environment_info, b.environment_info) &&
-         same_bytes(a.environment_texels, b.environment_texels) && same_bytes(a.grains, b.grains);
+         same_bytes(a.environment_texels, b.environment_texels) && same_bytes(a.grains, b.grains) &&
+         same_bytes(a.tangents, b.tangents);
 }
 
 }  // namespace

@@ -210,6 +210,9 @@ TEST_CASE("validate_scene_refuses_bad_grains") {
   refuses("grains[1].texture is texture 7 of 2", [](FullScene* f) { f->grains[1].texture.texture = 7; });
   refuses("grains[2].texture has a transform", [](FullScene* f) { f->grains[2].texture.m[1][2] = kInf; });
   refuses("one for each", [](FullScene* f) { f->grains.pop_back(); });
+  refuses("tangents", [](FullScene* f) { f->tangents.pop_back(); });
+  accepts([](FullScene* f) { f->tangents[0] = {-128, -128, 5, 9}; });
+  accepts([](FullScene* f) { f->tangents.clear(); });
   accepts([](FullScene* f) { f->grains.clear(); });
   accepts([](FullScene* f) { f->grains[0].direction = {0.70710678f, -0.70710678f}; });
 }

@@ -82,7 +82,8 @@ TEST_CASE("environment_octahedral_map_covers_the_sphere_without_seams") {
   CHECK(octahedral_index(-1, -1, side) == side * side - 1);
 }
 
-// Goal: files of earlier versions are read: 7 has neither environments nor grains, 8 no grains. Method: such files,
+// Goal: files of earlier versions are read: 7 has no environments, grains and tangents, 8 no
+// grains and tangents. Method: such files,
 // made from today's: a table without the last sections, so that data may begin earlier.
 TEST_CASE("baked_open_reads_files_of_earlier_versions") {
   const struct {
@@ -94,10 +95,10 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     FullScene full;
     make_full_scene(5, 12, 4, &full);
     if (c.version < 8) full.environment_info.clear(), full.environment_texels.clear();
-    full.grains.clear(), full.bind();
+    full.grains.clear(), full.tangents.clear(), full.bind();
     const BakedFile now = bake(full.scene);
     auto data_begin = [](std::size_t sections) { return (kTableAt + sections * kSectionBytes + 63) / 64 * 64; };
-    const std::size_t begin = data_begin(c.sections), shift = data_begin(36) - begin;
+    const std::size_t begin = data_begin(c.sections), shift = data_begin(37) - begin;
     BakedFile before(now.size() - shift);
     std::memset(before.data(), 0, begin);
     std::memcpy(before.data(), now.data(), kTableAt + c.sections * kSectionBytes);
@@ -115,8 +116,8 @@ TEST_CASE("baked_open_reads_files_of_earlier_versions") {
     REQUIRE_MESSAGE(status.ok, status.message);
     CHECK(scene_hash(opened) == scene_hash(full.scene));
     CHECK(opened.environment_info.empty() == (c.version < 8));
-    CHECK(opened.grains.empty());
-    put_u32(before, kSectionCountAt, 36);
+    CHECK((opened.grains.empty() && opened.tangents.empty()));
+    put_u32(before, kSectionCountAt, 37);
     fix_checksum(before);
     CHECK_FALSE(baked_open(before.data(), before.size(), &opened).ok);
   }

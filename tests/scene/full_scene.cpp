@@ -90,7 +90,7 @@ void FullScene::bind() {
   scene.radiosity_grids = view(radiosity_grids), scene.radiosity_nodes = view(radiosity_nodes);
   scene.radiosity_corners = view(radiosity_corners), scene.radiosity_values = view(radiosity_values);
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
-  scene.grains = view(grains);
+  scene.grains = view(grains), scene.tangents = view(tangents);
 }
 
 void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {
@@ -121,6 +121,7 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
     full->environment_texels.push_back(to_environment_texel(to_double(color(&rng)) * 9.0));
   full->grains.resize(full->materials.size());
   full->grains[2].direction = {0.6f, -0.8f}, full->grains[2].texture.texture = 1;
+  full->tangents.assign(vertex_count, {127, 0, -3, 0});
   for (int i = 0; i < 37; ++i) full->accel.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
   full->bind();
 }

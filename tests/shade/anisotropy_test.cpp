@@ -84,6 +84,32 @@ TEST_CASE("anisotropy_takes_its_texture") {
   }
 }
 
+// Goal: tangents at the vertices take the place of the triangle's own, interpolated; a triangle without one at each
+// vertex keeps its own. Method: the lobe with the grain by hand.
+TEST_CASE("anisotropy_follows_tangents_at_vertices") {
+  for (bool whole : {true, false}) {
+    GeneratedScene s;
+    make_sheet(&s, brushed(kGgx), {{0.8f, 0}, {}});
+    s.tangents.assign(s.positions.size(), {0, 127, 0, 0});
+    const std::uint32_t corner = s.triangles[0].vertex(0);
+    s.tangents[corner] = whole ? PackedTangent{127, 0, 0, 0} : PackedTangent();
+    // On the first or the second triangle: the plane's square has corners at ±10.
+    const Vec3 p = s.positions[corner];
+    CAPTURE(whole);
+    REQUIRE(std::fabs(p.x) == 10);
+    GeneratedScene own;
+    make_sheet(&own, brushed(kGgx), {{0.8f, 0}, {}});
+    auto smooth = ray_renderer(&s), flat = ray_renderer(&own);
+    const Vec3 eye = {1, 0.5f, 2};
+    const bool same = look(*smooth, eye, kPoint) == look(*flat, eye, kPoint);
+    CHECK(same == !whole);
+  }
+  GeneratedScene s;
+  make_sheet(&s, brushed(kGgx), {{0.8f, 0}, {}});
+  s.tangents.assign(s.positions.size(), {76, 102, 0, 0});
+  check_lobe(&s, {1, 0.5f, 2}, Vec3d{0.8 * 76, 0.8 * 102, 0} * (1 / std::sqrt(76.0 * 76 + 102 * 102)));
+}
+
 // Goal: without texture coordinates, with a grain of strength 0, with a lobe that has none, or with the effect off,
 // the surface shines evenly. Method: bits of the plain lobe's picture.
 TEST_CASE("anisotropy_is_absent_without_a_frame") {

@@ -60,7 +60,10 @@ void add_brushed_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   Material m = matte({0.2f, 0.25f, 0.3f});
   m.brdf = kGgx, m.specular = {0.6f, 0.5f, 0.4f}, m.grazing = 1, m.roughness = 0.1f;
   const std::uint32_t material = add_material(s, m);
+  s->tangents.resize(s->positions.size());
   add_box(s, {2, 0, -2}, {2.7f, 1.5f, -1.2f}, material);
+  for (std::size_t i = s->tangents.size(); i + 4 < s->positions.size(); ++i)  // not of the last side
+    s->tangents.push_back({static_cast<std::int8_t>(90 - 11 * (i % 4)), 60, -66, 0});
   s->grains.resize(s->materials.size());
   s->grains[material].direction = {0.6f, -0.5f};
   if (has(features, Feature::texture)) s->grains[material].texture.texture = add_noise_texture(s, rng, false);
@@ -177,7 +180,7 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   aim(s.get(), {0.3f, 1.6f, 4.6f}, {0, 1, 0}, 50);
   s->scene.info.background = {0.1f, 0.15f, 0.2f};
   s->with_normals = has(features, Feature::smooth_normal);
-  s->with_uvs = !s->textures.empty();
+  s->with_uvs = !s->textures.empty() || has(features, Feature::anisotropy);
   s->with_colors = has(features, Feature::vertex_color);
   s->bind();
   return s;

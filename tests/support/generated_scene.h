@@ -52,6 +52,7 @@ struct GeneratedScene {
   std::vector<Material> materials;
   std::vector<MaterialMaps> material_maps;
   std::vector<Grain> grains;
+  std::vector<PackedTangent> tangents;  // of the first vertices; the rest have none
   std::vector<Texture> textures;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;

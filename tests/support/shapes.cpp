@@ -26,6 +26,8 @@ void GeneratedScene::bind() {
   scene.positions = view(positions), scene.normals = view(normals, with_normals), scene.uvs = view(uvs, with_uvs);
   scene.colors = view(colors, with_colors), scene.triangles = view(triangles), scene.materials = view(materials),
   scene.material_maps = view(material_maps), scene.grains = view(grains);
+  if (!tangents.empty()) tangents.resize(positions.size());
+  scene.tangents = view(tangents);
   scene.textures = view(textures), scene.texels = view(texels), scene.lights = view(lights);
   scene.cameras = view(cameras), scene.nodes = view(nodes), scene.animations = view(animations);
   scene.channels = view(channels), scene.key_times = view(key_times), scene.key_values = view(key_values);
