@@ -39,15 +39,21 @@ bool is_same_side(const FrameData& frame, const Vec3& a, const Vec3& b) {
 
 bool has_texture(const Scene& scene, const Material& m) {
   if (m.diffuse_texture.texture != kNone || m.emission_texture.texture != kNone) return true;
-  const auto index = static_cast<std::size_t>(&m - scene.materials.data);
-  if (scene.grains.count && scene.grains[index].texture.texture != kNone) return true;
   if (scene.material_maps.empty()) return false;
+  const auto index = static_cast<std::size_t>(&m - scene.materials.data);
   CHECK_LT(index, scene.material_maps.count);
   const MaterialMaps& maps = scene.material_maps[index];
   for (const TextureUse* use :
        {&maps.metallic_roughness, &maps.specular, &maps.specular_color, &maps.normal, &maps.occlusion})
     if (use->texture != kNone) return true;
   return false;
+}
+
+// Whether a texture turns the grain of a glossy lobe: its light changes from texel to texel.
+bool has_grain_texture(const Scene& scene, const Material& m) {
+  if (scene.grains.empty()) return false;
+  const auto index = static_cast<std::uint32_t>(&m - scene.materials.data);
+  return has_grain(scene, index) && scene.grains[index].texture.texture != kNone;
 }
 
 // The corner's light on the surface's diffuse colour. False if it is too dark there.
@@ -67,6 +73,7 @@ bool recolor(const CellCorner& corner, const Surface& s, Vec3* radiance) {
 bool has_smooth_light(const FrameData& frame, const Surface& s) {
   const Material& m = *s.material;
   if (!is_zero(m.mirror) || !is_zero(m.transmission) || m.alpha_mode != AlphaMode::opaque) return false;
+  if (has_grain_texture(*frame.scene, m)) return false;
   return !culls(m, s.front, frame.mask) && frame.eye_media.depth == 0;
 }
 

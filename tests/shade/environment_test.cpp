@@ -131,9 +131,12 @@ TEST_CASE("environment_is_within_the_bound_of_radiance") {
 // without one that could be shown.
 TEST_CASE("environment_pictures_do_not_depend_on_threads_or_forced_effects") {
   const TestEnvironment sky = colorful();
-  for (bool has_one : {true, false}) {
-    auto s = generate_scene(kAllFeatures, 5);
+  for (int with = 0; with < 4; ++with) {
+    const bool has_one = with & 1, has_ambient = with & 2;
+    auto s = generate_scene(kAllFeatures & ~(has_ambient ? 0 : bit(Feature::ambient)), 5);
     if (has_one) sky.give(&s->scene);
+    CAPTURE(has_one);
+    CAPTURE(has_ambient);
     Settings settings = settings_for(kAllFeatures, effort_side(40), effort_side(30));
     const Picture one = render_picture(s->scene, settings);
     settings.threads = 3;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "brdf/brdf_list.h"
 #include "scene/builtin_helpers.h"
 #include "shade/trace_spans.h"
 #include "shade_helpers.h"
@@ -164,6 +165,27 @@ TEST_CASE("selective_keeps_textures") {
   CHECK(largest_difference(found.picture, exact.picture) < 1e-5f);
   CHECK(ray_count(found.counts, RayKind::primary) >= kWidth * kHeight);
   CHECK(ray_count(found.counts, RayKind::shadow) < ray_count(exact.counts, RayKind::shadow) / 2);
+}
+
+// Goal: a texture that turns a grain keeps every texel, too: no pixel of it is interpolated. Method: stripes of two
+// grains.
+TEST_CASE("selective_keeps_the_texture_of_a_grain") {
+  GeneratedScene s;
+  std::vector<std::array<int, 4>> texels;
+  for (int i = 0; i < 64 * 64; ++i) texels.push_back({i % 2 ? 255 : 128, i % 2 ? 128 : 255, 255, 255});
+  Material m = matte(0.2f);
+  m.brdf = kGgx, m.roughness = 0.2f, m.specular = {0.6f, 0.6f, 0.6f};
+  const std::uint32_t material = add_material(&s, m);
+  s.grains.resize(material + 1);
+  s.grains[material].direction = {0.9f, 0};
+  s.grains[material].texture.texture = add_texture(&s, 64, 64, texels);
+  s.with_uvs = true;
+  make_lit_sheet(&s, material, {-0.3f, -0.2f, -1});
+  s.bind();
+  const Rendered exact = render_with(s.scene, selective_settings(0));
+  const Rendered found = render_with(s.scene, selective_settings(0.125f));
+  CHECK(ray_count(found.counts, RayKind::primary) >= kWidth * kHeight);
+  CHECK(largest_difference(found.picture, exact.picture) < 1e-5f);
 }
 
 // Goal: what a mirror or a glass shows is traced, not guessed. Method: a mirror that fills the view, opposite a
