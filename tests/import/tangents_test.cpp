@@ -45,6 +45,20 @@ TEST_CASE("tangents_are_averaged_at_vertices") {
   }
 }
 
+// Goal: triangles count by the angle that they have at the vertex. Method: closed form: in a plane, a right angle with
+// ∂P/∂u along x, and half of one with ∂P/∂u along (1, 1).
+TEST_CASE("tangents_are_weighted_by_angle") {
+  SceneArrays out;
+  out.materials.emplace_back();
+  out.grains.push_back({{1, 0}, {}});
+  out.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 1, 0}};
+  out.uvs = {{0, 0}, {1, 0}, {0, 1}, {-1, 2}};
+  out.triangles = {Triangle(0, 1, 2, 0), Triangle(0, 2, 3, 0)};
+  make_tangents(&out);
+  const Vec3 expected = normalize(Vec3{2, 0, 0} + normalize(Vec3{1, 1, 0}));
+  CHECK(length(unpacked(out.tangents[0]) / 127.0f - expected) < 0.01f);
+}
+
 // Goal: no vertex gets a tangent where nothing asks for one, that moves, or that both orientations of the texture
 // share.
 TEST_CASE("tangents_are_left_out") {

@@ -131,6 +131,27 @@ TEST_CASE("anisotropy_is_absent_without_a_frame") {
   CHECK(same_picture(seen(along, kPhong, true, 0), seen({}, kPhong, true, 0)));
 }
 
+// Goal: rays that meet brushed metal under an environment see it along the grain. Method: a metal without diffuse
+// light; the look-up of the test below, with the grain by hand.
+TEST_CASE("anisotropy_is_seen_under_an_environment") {
+  const TestEnvironment sky(16, 8, {0.5f, 0.5f, 0.5f}, [](const Vec3d& d, int) {
+    return Vec3d{1 + d.x, 1 + d.y, 1 + d.z};
+  });
+  Material m = brushed(kGgx);
+  m.diffuse = {0, 0, 0};
+  GeneratedScene s;
+  make_sheet(&s, m, {{0.9f, 0}, {}});
+  s.lights[0].intensity = {0, 0, 0};
+  sky.give(&s.scene);
+  auto t = ray_renderer(&s);
+  const Vec3 eye = {1, 0.5f, 2}, way = normalize(kPoint - eye), mean = {0.5f, 0.5f, 0.5f};
+  const Vec3 found = look(*t, eye, kPoint);
+  const Vec3 expected = reflected_along_grain(s.scene, m, m.specular, {{0, 0, 1}, {0.9f, 0, 0}}, way, mean);
+  const Vec3 even = reflected_environment(s.scene, m, m.specular, {0, 0, 1}, way, mean);
+  for (int c = 0; c < 3; ++c) CHECK(found[c] == doctest::Approx(expected[c]).epsilon(1e-4));
+  CHECK(length(found - even) > 0.02f);
+}
+
 // Goal: under an environment, brushed metal reflects the mean along its grain. Method: the mean of the lobe's samples,
 // value × cosine × radiance / density, over views and grains, under a sky that is bright to one side; the error of the
 // look-ups against that of a look-up without the grain.
