@@ -131,7 +131,7 @@ int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const M
     else if (gltf_uv_set(texture.info) != set)
       note_remark(file->builder, std::string(texture.name) + " textures use the texture coordinates of the " + chosen);
   }
-  return set < 0 && (grain.direction.x != 0 || grain.direction.y != 0) ? 0 : set;
+  return set < 0 && has_strength(grain) ? 0 : set;
 }
 
 }  // namespace pocketray

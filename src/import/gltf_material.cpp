@@ -163,7 +163,7 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
     out.material_maps.resize(*known);
     out.material_maps.push_back(maps);
   }
-  if (grain.direction.x != 0 || grain.direction.y != 0) {
+  if (has_strength(grain)) {
     out.grains.resize(*known);
     out.grains.push_back(grain);
   }

@@ -119,7 +119,7 @@ bool uses_uvs(const SceneBuilder& builder, std::uint32_t index) {
   const SceneArrays& out = *builder.out;
   const Material& material = out.materials[index];
   if (material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone) return true;
-  return index < out.grains.size() && (out.grains[index].direction.x != 0 || out.grains[index].direction.y != 0);
+  return index < out.grains.size() && has_strength(out.grains[index]);
 }
 
 MeshData shape_mesh(const tinyobj::shape_t& shape, const tinyobj::attrib_t& attributes, std::uint32_t default_material,

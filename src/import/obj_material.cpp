@@ -102,6 +102,9 @@ void read_textures(SceneBuilder* builder, const std::string& scene_path, const t
   }
 }
 
+bool is_glass(const tinyobj::material_t& source) {
+  return source.illum == 4 || source.illum == 6 || source.illum == 7 || source.illum == 9;
+}
 bool is_physically_based(const tinyobj::material_t& source) { return source.roughness > 0 || source.metallic > 0; }
 
 void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
@@ -112,8 +115,7 @@ void name_unused(SceneBuilder* builder, const tinyobj::material_t& source) {
   if (!source.displacement_texname.empty()) note_unused(builder, "displacement maps");
   if (!source.reflection_texname.empty()) note_unused(builder, "reflection maps");
   if (source.sheen > 0 || !source.sheen_texname.empty()) note_unused(builder, "sheen");
-  const bool is_glass = source.illum == 4 || source.illum == 6 || source.illum == 7 || source.illum == 9;
-  if (is_glass && (is_physically_based(source) || source.anisotropy > 0))
+  if (is_glass(source) && (is_physically_based(source) || source.anisotropy > 0))
     note_unused(builder, "Pr, Pm and aniso of glass");
   if (source.clearcoat_thickness > 0) note_unused(builder, "clear coats");
   if (!source.roughness_texname.empty() || !source.metallic_texname.empty())
@@ -147,8 +149,7 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
   material.ior = bounded(source.ior, 1, kIorMax);
   Vec3 ks = bounded3(source.specular, 1), tf = bounded3(source.transmittance, 1);
   int illum = source.illum;
-  bool glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
-  if (glass) {
+  if (is_glass(source)) {
     material.transmission = is_zero(tf) ? Vec3{1, 1, 1} : tf;
   } else {
     material.opacity = bounded(source.dissolve, 0, 1);
@@ -163,13 +164,13 @@ std::uint32_t add_obj_material(SceneBuilder* builder, const std::string& scene_p
     }
   }
   const Grain grain = read_grain(source);
-  const bool has_grain = !is_zero(material.specular) && (grain.direction.x != 0 || grain.direction.y != 0);
-  if (has_grain && material.brdf == kPhong)
+  const bool brushed = !is_zero(material.specular) && has_strength(grain);
+  if (brushed && material.brdf == kPhong)
     material.brdf = kWard, material.roughness = std::sqrt(0.5f / (material.exponent + 2));
   read_textures(builder, scene_path, source, &material);
   name_unused(builder, source);
   const std::uint32_t index = add_material(builder, material, source.name);
-  if (has_grain) {
+  if (brushed) {
     builder->out->grains.resize(index);
     builder->out->grains.push_back(grain);
   }

@@ -101,6 +101,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
 // (HARDCASES row 27).
 void require_invertible(const Transform& t, const std::string& name);
 
+inline bool has_strength(const Grain& grain) { return grain.direction.x != 0 || grain.direction.y != 0; }
+
 // True if a vertex may be part of a triangle (HARDCASES row 8).
 bool is_coordinate(const Vec3& p);
 

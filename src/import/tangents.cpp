@@ -20,10 +20,7 @@ struct Sum {
 };
 
 bool needs_tangents(const SceneArrays& out, std::uint32_t material) {
-  if (material < out.grains.size()) {
-    const Vec2& direction = out.grains[material].direction;
-    if (direction.x != 0 || direction.y != 0) return true;
-  }
+  if (material < out.grains.size() && has_strength(out.grains[material])) return true;
   return material < out.material_maps.size() && out.material_maps[material].normal.texture != kNone;
 }
 

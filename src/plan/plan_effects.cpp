@@ -185,11 +185,11 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
   const IndirectInfo* indirect = choose_indirect(scene, settings);
   for (const IndirectInfo& info : IndirectList::kInfos)
     if (info.effects) decide_indirect(info, indirect, scene, settings, &w);
+  const EffectMask replaces_environment = environment_of(scene) ? bit(Effect::radiosity) : 0;  // its diffuse light
   const EffectMask excluded_indirect = indirect ? kIndirectEffects & ~indirect->effects
                                        : settings.indirect == IndirectChoice::none
                                            ? kIndirectEffects | bit(Effect::ambient_gloss)
-                                       : environment_of(scene) ? bit(Effect::radiosity) | bit(Effect::instant_radiosity)
-                                                               : bit(Effect::instant_radiosity);
+                                           : bit(Effect::instant_radiosity) | replaces_environment;
   const std::uint32_t light_count = c.emissive + scene.lights.count;
   const bool selects = settings.light_tolerance > 0 && light_count >= kSelectedLightsMin;
   if (const EnvironmentInfo* environment = environment_of(scene))

@@ -63,18 +63,19 @@ static Status validate_grain(const Scene& scene, std::uint32_t index) {
   return check_texture_use("grains", "texture", index, grain.texture, scene);
 }
 
+static Status check_per_material(const char* array, std::uint32_t count, const Scene& scene) {
+  if (count == 0 || count == scene.materials.count) return success();
+  return failure("%u %s for %u materials: there must be one for each or none", count, array, scene.materials.count);
+}
+
 Status validate_grains(const Scene& scene) {
-  if (scene.grains.count != 0 && scene.grains.count != scene.materials.count)
-    return failure("%u grains for %u materials: there must be one for each or none", scene.grains.count,
-                   scene.materials.count);
+  RETURN_IF_ERROR(check_per_material("grains", scene.grains.count, scene));
   for (std::uint32_t i = 0; i < scene.grains.count; ++i) RETURN_IF_ERROR(validate_grain(scene, i));
   return success();
 }
 
 Status validate_material_maps(const Scene& scene) {
-  if (scene.material_maps.count != 0 && scene.material_maps.count != scene.materials.count)
-    return failure("%u material_maps for %u materials: there must be one for each or none", scene.material_maps.count,
-                   scene.materials.count);
+  RETURN_IF_ERROR(check_per_material("material_maps", scene.material_maps.count, scene));
   for (std::uint32_t i = 0; i < scene.material_maps.count; ++i) RETURN_IF_ERROR(validate_maps(scene, i));
   return success();
 }
