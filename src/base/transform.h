@@ -65,7 +65,7 @@ inline NormalTransform normal_transform(const Transform& t) {
 inline Vec3 transform_normal(const NormalTransform& t, const Vec3& n) {
   Vec3d m = {n.x, n.y, n.z};
   Vec3d u = normalize(Vec3d{dot(t.row[0], m), dot(t.row[1], m), dot(t.row[2], m)});
-  return {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)};
+  return to_float(u);
 }
 inline Vec3 transform_normal(const Transform& t, const Vec3& n) { return transform_normal(normal_transform(t), n); }
 

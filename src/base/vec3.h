@@ -48,6 +48,9 @@ inline Vec3 max(const Vec3& a, const Vec3& b) {
   return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
 inline Vec3d to_double(const Vec3& a) { return {a.x, a.y, a.z}; }
+inline Vec3 to_float(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 inline Vec3 abs(const Vec3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
 template <class T>
 inline bool is_zero(const Vec3T<T>& a) {

@@ -123,7 +123,7 @@ void smooth_normals(MeshData* mesh, float crease_degrees) {
     std::uint32_t position = first[mesh->indices[c]];
     Vec3d n =
         corner_normal(corners, c, &around[begin[position]], begin[position + 1] - begin[position], cos_crease, &flat);
-    normals[c] = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
+    normals[c] = to_float(n);
   }
   mesh->normals.clear();
   if (!flat) assign(mesh, normals);

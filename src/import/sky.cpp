@@ -112,9 +112,8 @@ Light sun_of(const Sky& sky) {
   Light light;
   light.kind = LightKind::directional;
   const Vec3d direction = -to_sun(sky), irradiance = sunlight(sky);
-  light.direction = {static_cast<float>(direction.x), static_cast<float>(direction.y), static_cast<float>(direction.z)};
-  light.intensity = {static_cast<float>(irradiance.x), static_cast<float>(irradiance.y),
-                     static_cast<float>(irradiance.z)};
+  light.direction = to_float(direction);
+  light.intensity = to_float(irradiance);
   return light;
 }
 

@@ -37,8 +37,6 @@ struct Particle {
   float range = 0;  // of the light, on the way from it; 0: no limit
 };
 
-Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 // What lights are placed by must not follow every movement of the scene, or each would change all of the light: six
 // bits of a length or an area, and a box that changes in steps of a sixteenth to a thirty-second of its longest edge.
 double rounded(double v) {

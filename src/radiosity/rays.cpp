@@ -13,8 +13,6 @@
 namespace pocketray {
 namespace {
 
-Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 Vec3 origin_of(const Receiver& from) { return to_float(from.point + from.normal * from.lift); }
 
 }  // namespace

@@ -14,8 +14,6 @@ constexpr double kInset = 0.05;        // of a cell: nodes keep off borders
 constexpr double kCornerInset = 0.02;  // of the way to a triangle's centre
 constexpr double kLift = 1e-3;         // of a cell, or of the way to a triangle's centre
 
-Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 // The nearest point of a triangle [Ericson 2005, sec. 5.1.5], by clamping barycentric coordinates edge by edge.
 Vec3d nearest_on_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   const Vec3d way = b - a;

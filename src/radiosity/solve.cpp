@@ -16,8 +16,6 @@ constexpr std::uint32_t kPatchRays = 36, kNodeRays = 64;
 constexpr double kBackSees = 0.05;  // share of fronts around a back that is worth light of its own
 constexpr double kCovered = 0.9;    // share of back faces around a node that lies inside a body
 
-Vec3 to_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 Outlook look_around_patch(const SceneRays& rays, const Patch& patch, std::uint32_t seed) {
   Outlook mean;
   for (int k = 0; k < kPatchSamples; ++k) {

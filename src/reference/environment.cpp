@@ -188,9 +188,6 @@ Vec3d environment_light_as_rendered(const Reference& reference, const ReferenceS
     sum = s.diffuse * environment_irradiance(scene.environment_info[0], s.normal) *
           (casts ? openness_as_rendered(reference, s) : Vec3d{s.open, s.open, s.open});
   if (reflects_surroundings(lobes_of(s))) {
-    auto to_float = [](const Vec3d& a) {
-      return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
-    };
     const Vec3 normal = to_float(s.normal);
     const Vec3 way = to_float(-to_viewer), irradiance = environment_irradiance(scene.environment_info[0], normal);
     const Vec3 specular = to_float(s.specular);

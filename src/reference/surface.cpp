@@ -44,10 +44,8 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
   s->mapped = *s->material, s->is_mapped = true;
   s->mapped.roughness = static_cast<float>(roughness * roughness);
   s->mapped.grazing = static_cast<float>((grazing * (1 - metallic) + metallic) * (1 - mirrored));
-  s->mapped.specular = {static_cast<float>(s->specular.x), static_cast<float>(s->specular.y),
-                        static_cast<float>(s->specular.z)};
-  s->mapped.mirror = {static_cast<float>(s->mirror.x), static_cast<float>(s->mirror.y),
-                      static_cast<float>(s->mirror.z)};
+  s->mapped.specular = to_float(s->specular);
+  s->mapped.mirror = to_float(s->mirror);
 }
 
 // Probability of sampling the glossy lobe rather than the diffuse one.
@@ -194,12 +192,8 @@ ReferenceRay leave(const FrameData& frame, const ReferenceSurface& s, const Vec3
 Vec3d reflected_surroundings(const FrameData& frame, const ReferenceSurface& s, const Vec3d& to_viewer) {
   if (environment_lights(*frame.scene, frame.mask, frame.settings.indirect)) return {0, 0, 0};
   if (!has(frame.mask, Effect::ambient_gloss) || !reflects_surroundings(lobes_of(s))) return {0, 0, 0};
-  const Vec3 specular = {static_cast<float>(s.specular.x), static_cast<float>(s.specular.y),
-                         static_cast<float>(s.specular.z)};
+  const Vec3 specular = to_float(s.specular);
   const float cosine = static_cast<float>(dot(s.normal, to_viewer));
-  auto to_float = [](const Vec3d& a) {
-    return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
-  };
   const Material m = is_zero(s.grain) ? lobes_of(s) : evened(lobes_of(s), {to_float(s.normal), to_float(s.grain)});
   return s.open * to_double(reflected_surroundings(frame.scene->info, m, specular, cosine));
 }

@@ -161,8 +161,7 @@ bool trace_rows(const Renderer& renderer, const std::vector<std::uint32_t>& rows
     std::vector<Vec3d>& radiances = c->row_of[thread];
     c->trace_row(c->rows[i], radiances.data());
     Vec3* out = c->picture + std::size_t(c->rows[i]) * radiances.size();
-    for (const Vec3d& radiance : radiances)
-      *out++ = {static_cast<float>(radiance.x), static_cast<float>(radiance.y), static_cast<float>(radiance.z)};
+    for (const Vec3d& radiance : radiances) *out++ = to_float(radiance);
     std::lock_guard<std::mutex> lock(c->mutex);
     if (c->row_done) c->row_done(c->rows[i]);
     return !interrupted;

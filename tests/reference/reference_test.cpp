@@ -17,12 +17,10 @@ using namespace pocketray;
 
 namespace {
 
-Vec3 as_float(const Vec3d& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 // Green radiance along a ray: the picture of one pixel seen by a camera that looks along it.
 double rendered_along(TestReference* t, const Vec3d& eye, const Vec3d& direction) {
   Camera camera;
-  camera.eye = as_float(eye), camera.target = as_float(eye + direction), camera.up = {0, 1, 0};
+  camera.eye = to_float(eye), camera.target = to_float(eye + direction), camera.up = {0, 1, 0};
   REQUIRE(make_camera_rays(camera, 1, 1, &t->renderer->renderer.frame.camera).ok);
   Vec3d picture;
   trace_as_rendered(t->reference, 0, 1, &picture);

@@ -166,9 +166,6 @@ TEST_CASE("anisotropy_reflects_the_environment_along_the_grain") {
   const BrdfInfo& lobe = *kBrdfList[kGgx]->with_grain;
   Material m = brushed(kGgx);
   m.roughness = 0.15f, m.specular = {1, 1, 1};
-  auto to_float = [](const Vec3d& a) {
-    return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
-  };
   Rng rng = make_rng(4);
   double along = 0, even = 0;
   constexpr int kViews = 60, kSamples = kEffortDivisor > 1 ? 600 : 3000;

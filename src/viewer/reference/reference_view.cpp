@@ -124,7 +124,7 @@ std::vector<Vec3> mean_of_seeds(const ReferenceView& view, std::initializer_list
     Vec3d sum = {0, 0, 0};
     for (std::uint32_t seed : seeds) sum += view.sums[seed][i];
     sum = sum * scale;
-    mean[i] = {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)};
+    mean[i] = to_float(sum);
   }
   return mean;
 }
@@ -201,7 +201,7 @@ const Vec3* picture_beside(SideBySide* side_by_side, const Renderer& renderer) {
       if (x == middle) view->shown[i] = {white, white, white};
       if (x <= middle || samples == 0 || !view->aimed) continue;
       Vec3d mean = (view->sums[0][i] + view->sums[1][i]) / (2.0 * samples);
-      view->shown[i] = {static_cast<float>(mean.x), static_cast<float>(mean.y), static_cast<float>(mean.z)};
+      view->shown[i] = to_float(mean);
     }
   }
   return view->shown.data();
