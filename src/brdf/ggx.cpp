@@ -16,7 +16,7 @@
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
 #include "brdf/ggx_albedo.h"
-#include "brdf/grain.h"
+#include "brdf/microfacet.h"
 
 namespace pocketray {
 namespace {

@@ -6,7 +6,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
-#include "brdf/grain.h"
+#include "brdf/microfacet.h"
 
 namespace pocketray {
 namespace {

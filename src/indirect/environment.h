@@ -4,7 +4,7 @@
 #pragma once
 #include <cmath>
 
-#include "brdf/grain.h"
+#include "brdf/microfacet.h"
 #include "effect/settings.h"
 #include "indirect/surroundings.h"
 

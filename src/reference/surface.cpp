@@ -3,7 +3,7 @@
 #include "base/fmath.h"
 #include "brdf/brdf_list.h"
 #include "brdf/directions.h"
-#include "brdf/grain.h"
+#include "brdf/microfacet.h"
 #include "indirect/environment.h"
 #include "scene/metallic_roughness.h"
 #include "shade/texture.h"

@@ -1,5 +1,4 @@
-// Widths of a lobe along and across the grain [Burley 2012; glTF's KHR_materials_anisotropy]: for roughness α and
-// strength s, α + (1 − α) s² along it and α across.
+// What lobes of microfacets share: their width, viewers below the horizon, and the grain.
 #pragma once
 #include "brdf/brdf.h"
 #include "brdf/directions.h"
@@ -20,6 +19,8 @@ Vec3T<T> above_horizon(const Vec3T<T>& normal, const Vec3T<T>& to_viewer) {
   return cosine < 0 ? to_viewer - normal * (2 * cosine) : to_viewer;
 }
 
+// Widths along and across the grain [Burley 2012; glTF's KHR_materials_anisotropy]: for roughness α and strength s,
+// α + (1 − α) s² along it and α across.
 template <class T>
 struct GrainAxes {
   Vec3T<T> tangent, bitangent;  // along and across
