@@ -11,6 +11,7 @@
 namespace pocketray {
 
 inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear", "trilinear", "anisotropic"};
+inline constexpr const char* kAreaShadowsNames[] = {"adaptive", "every"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
@@ -89,6 +90,19 @@ inline constexpr SettingRow kSettingList[] = {
      {1, 4, 9, 16, 36, 64, 144, 256},
      points_price,
      "-1/2 for random points; a grid of n points errs by one shadow edge of n, down to -1"},
+    {"area-shadows",
+     "points of an area light that get shadow rays",
+     "adaptive: all where it is partly hidden, few elsewhere",
+     nullptr,
+     choice_field<&Quality::area_shadows>(kAreaShadowsNames),
+     1,
+     bit(Effect::area_light),
+     bit(Effect::area_light),
+     true,
+     double(AreaShadows::every),
+     {double(AreaShadows::adaptive), double(AreaShadows::every)},
+     nullptr,
+     ""},
     {"cut-off",
      "largest error per pixel from skipped rays, in display levels",
      "0: trace every ray",

@@ -20,6 +20,9 @@ enum class IndirectChoice : std::uint8_t { automatic, none, first };
 // Of stored light, between the places where it is stored.
 enum class Reconstruction : std::uint8_t { constant, bilinear, bicubic };
 
+// Shadow rays to an area light: to some of its points first, and to the others where these differ, or to every point.
+enum class AreaShadows : std::uint8_t { adaptive, every };
+
 // The pixels that are traced: all, half of them, or a quarter; see shade/lattice.h.
 enum class Resolution : std::uint8_t { full, checkerboard, half };
 
@@ -28,6 +31,7 @@ struct Quality {
   std::uint32_t samples_per_pixel = 1;
   std::uint32_t ray_depth = 8;  // reflections and refractions along a path
   std::uint32_t points_per_area_light = 4;
+  AreaShadows area_shadows = AreaShadows::adaptive;
   float cut_off_levels = 0.5f;  // largest error per sample from skipped rays, in display levels; 0: skip none
   TextureFilter texture_filter = TextureFilter::as_scene;
   NormalMode normals = NormalMode::as_scene;

@@ -16,6 +16,7 @@
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
 #include "shade/selective.h"
+#include "shade/point_groups.h"
 #include "shade/source_selection.h"
 
 namespace pocketray {
@@ -166,6 +167,12 @@ Status build_renderer_unexposed(Renderer* renderer) {
         new (arena_array<EnvironmentLights>(&renderer->persistent_arena, 1).data) EnvironmentLights();
   if (renderer->light_points.count)
     renderer->light_points = arena_array<LightPoint>(&renderer->persistent_arena, renderer->light_points.count);
+  if (has(renderer->effects.mask, Effect::area_light)) {
+    const std::uint32_t points = renderer->light_point_count_max;
+    renderer->point_groups = arena_array<PointGroup>(&renderer->persistent_arena, points);
+    renderer->point_order = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
+    renderer->point_place = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
+  }
   if (const std::uint32_t lights = renderer->selected_light_max) {
     const std::uint32_t entries = renderer->settings.threads * search_entry_count(lights);
     renderer->light_nodes = arena_array<LightNode>(&renderer->persistent_arena, lights);

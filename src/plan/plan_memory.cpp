@@ -9,6 +9,7 @@
 #include "scene/animate.h"
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
+#include "shade/point_groups.h"
 #include "shade/selective.h"
 #include "shade/source_selection.h"
 
@@ -78,7 +79,10 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
   add_part(plan, "environment shadows", ArenaKind::persistent,
            plans_environment_lights(scene, settings) ? arena_need<EnvironmentLights>(1) : 0);
-  add_part(plan, "lights", ArenaKind::persistent, lights.points ? arena_need<LightPoint>(lights.points) : 0);
+  const bool has_groups = has(effects.mask, Effect::area_light);
+  add_part(plan, "lights", ArenaKind::persistent,
+           lights.points ? arena_need<LightPoint>(lights.points) + (has_groups ? point_groups_need(lights.points) : 0)
+                         : 0);
   add_part(plan, "source selection", ArenaKind::persistent, selection_need(settings, lights.selected));
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
   add_part(plan, "selective", ArenaKind::persistent,

@@ -8,6 +8,7 @@
 #include "shade/filters.h"
 #include "shade/lights.h"
 #include "shade/media.h"
+#include "shade/point_groups.h"
 #include "shade/surface.h"
 #include "shade/texture.h"
 #include "shade/tile_shadows.h"
@@ -132,15 +133,18 @@ inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSampl
 // The fraction of a light that arrives: zero or one, or between if something transparent is in the way. find_ray()
 // returns the shadow ray.
 template <EffectMask mask, class FindRay>
-Vec3 shadow(Tracer* tracer, FindRay find_ray, std::uint32_t light, bool at_first_hit) {
+Vec3 shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light, bool at_first_hit) {
   effect_entered<Effect::shadow>();
   const FrameData& frame = *tracer->frame;
-  ++tracer->rays[static_cast<int>(RayKind::shadow)];
   bool blocked, known = at_first_hit && is_known(*tracer, light, &blocked);
+  const std::uint32_t emitter = frame.lights[light].material;
+  if (!known && emitter != kNone && frame.point_groups.groups.count)
+    blocked = is_point_blocked(tracer, s, light, at_first_hit), known = true;
+  else
+    ++tracer->rays[static_cast<int>(RayKind::shadow)];
   constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
   if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
   const Ray ray = find_ray();
-  std::uint32_t emitter = frame.lights[light].material;
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   bool filtered = frame.filter_every_shadow || emitter != kNone;
@@ -197,7 +201,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
           if (kept) run.sample(light, s.point, &sample);
           return shadow_ray(frame, s, sample);
         };
-        light_out *= shadow<mask>(tracer, find_ray, i, at_first_hit);
+        light_out *= shadow<mask>(tracer, s, find_ray, i, at_first_hit);
       }
       sum += light_out;
     }

@@ -39,6 +39,20 @@ struct LightTree {
   std::uint32_t roots[4];            // of FrameData::light_runs; kNone: the run has no tree
 };
 
+// Points of an area light that are tested for shadows together, see point_groups.h.
+struct PointGroup {
+  std::uint8_t probes[5];    // its points at the corners and in the middle, by their numbers in the light
+  std::uint16_t begin, end;  // in PointGroups::order
+  std::uint16_t second;      // its second half, the first being the next group; 0: not divided
+};
+// The groups of all area lights, at most as many as its points of each: the first has all of them.
+struct PointGroups {
+  Array<const PointGroup> groups;          // one place for each point; empty: each point is tested
+  Array<const std::uint8_t> order, place;  // of each light, its points in the order of its groups, and the inverse
+  std::uint32_t first_point;               // of the first area light, in FrameData::lights
+  std::uint32_t points_of_light;
+};
+
 struct LightSample {
   Vec3 to_light;    // from the point; a shadow ray runs along it, 0 < t < t_max
   Vec3 direction;   // the same, unit
@@ -102,8 +116,7 @@ using GlowFunction = void (*)(const FrameData& frame, Surface* surface);
 using SurroundingsFunction = Vec3 (*)(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s);
 // Radiance along a ray, given its first hit and the surface there if already known (otherwise null).
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
-using ShadowsFunction = void (*)(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
-                                 TraceStats* stats);
+using ShadowsFunction = void (*)(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);
 using StripFunction = void (*)(Tracer* tracer, const TileStrip& strip, const PixelRows& image);
 
 // Upper bounds of the radiance along a ray, by the number of reflections and refractions that it may still meet.
@@ -133,6 +146,7 @@ struct FrameData {
   LightRun light_runs[4];
   int light_run_count = 0;
   LightTree light_tree = {};  // set with Effect::source_selection
+  PointGroups point_groups = {};
   Settings settings;
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;
@@ -191,6 +205,18 @@ struct LightEntry {
   std::uint16_t next;  // in the list of entries about as strong
 };
 
+// A bit for each point of an area light.
+using PointBits = std::uint64_t[kPointsPerAreaLightMax / 64];
+
+// Of the area light last tested for shadows ray by ray, the points whose rays were traced, and what was found; and the
+// points that are settled, by their group or by their own ray.
+struct TestedPoints {
+  Vec3 point, normal;             // of the surface
+  std::uint32_t triangle, first;  // the light's first point; ~0: none
+  bool front;
+  PointBits traced, met, settled, blocked;
+};
+
 // One thread's state; counters accumulate. Aligned so that threads do not share a cache line.
 struct alignas(64) Tracer {
   const FrameData* frame = nullptr;
@@ -207,6 +233,7 @@ struct alignas(64) Tracer {
   LatticeWindow window;                        // empty: not planned
   Array<LightEntry> light_entries;             // scratch of source selection; empty: not planned
   float left_out_max = 0;                      // largest sum skipped of one sample so far
+  TestedPoints tested_points = {{0, 0, 0}, {0, 0, 0}, 0, ~0u, false, {}, {}, {}, {}};
 };
 
 }  // namespace pocketray

@@ -98,7 +98,7 @@ void find_first_hits(Tracer* tracer, const SharedTile& tile, const PixelList& pi
       for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i] = first->ray[i].direction[axis];
     frame.first_rays->closest_packet(frame.accel, packet, visible_filter(frame), first->hit, &tracer->stats);
     first->knows_shadows = with_shadows && frame.find_shadows != nullptr;
-    if (first->knows_shadows) return frame.find_shadows(frame, packet, first->hit, &first->shadows, &tracer->stats);
+    if (first->knows_shadows) return frame.find_shadows(tracer, packet, first->hit, &first->shadows);
   } else {
     for (std::uint32_t i = 0; i < count; ++i)
       frame.first_rays->closest(frame.accel, first->ray[i], visible_filter(frame), &first->hit[i], &tracer->stats);

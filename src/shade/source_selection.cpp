@@ -163,8 +163,8 @@ Vec3 SourceSearch::estimate() const {
   return sum;
 }
 
-void find_tile_surfaces(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
-                        TraceStats*) {
+void find_tile_surfaces(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows) {
+  const FrameData& frame = *tracer->frame;
   for (std::uint32_t i = 0; i < rays.count; ++i)
     if (hits[i].triangle != kNoTriangle) frame.first_surface(frame, ray_of(rays, i), hits[i], &shadows->surface[i]);
   std::memset(shadows->traced, 0, sizeof shadows->traced);

@@ -67,7 +67,6 @@ class SourceSearch {
 };
 
 // Fills the surfaces of a tile's first hits; no shadow ray is traced before its light is selected.
-void find_tile_surfaces(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
-                        TraceStats* stats);
+void find_tile_surfaces(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);
 
 }  // namespace pocketray

@@ -69,7 +69,7 @@ void add_sample(Tracer* tracer, const Tile& tile, const RayPacket& packet, const
   CHECK_EQ(tile.count, packet.count);
   TileShadows shadows;
   if (frame.find_shadows) {
-    frame.find_shadows(frame, packet, hits, &shadows, &tracer->stats);
+    frame.find_shadows(tracer, packet, hits, &shadows);
     tracer->tile_shadows = &shadows;
   }
   const bool has_plain_background = !has(frame.mask, Effect::environment);

@@ -6,7 +6,7 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kTileLightMax = 64;  // further lights are tested ray by ray
+constexpr std::uint32_t kTileLightMax = 256;  // further lights are tested ray by ray
 constexpr std::uint32_t kTileSampleMax = 8;  // and the light from all but these is computed again: 12 KiB
 
 // The light that arrives at a pixel's first hit unless it is blocked; see LightSample.
@@ -31,11 +31,13 @@ struct TileShadows {
   Surface surface[kPacketMax];
   TileSample sample[kTileSampleMax][kPacketMax];  // of the pixels that are lit up
   TileMask lit[kTileLightMax], traced[kTileLightMax], blocked[kTileLightMax];
+  TileMask decided[kTileLightMax];  // of points in groups, instead of `traced`; not set without groups
 };
 
 // Fills `shadows` for the rays of a packet and their first hits.
-void find_tile_shadows(const FrameData& frame, const RayPacket& rays, const Hit* hits, TileShadows* shadows,
-                       TraceStats* stats);
+void find_tile_shadows(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);
+// The same where FrameData::point_groups has any; counts the rays that it traces to points in groups.
+void find_grouped_tile_shadows(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);
 
 // The sample of a light at the first hit, if find_tile_shadows() has kept it. False: not known. Otherwise *sample is
 // null if the light does not light it up.

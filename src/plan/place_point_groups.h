@@ -1,0 +1,12 @@
+// Groups of the points of area lights, see shade/point_groups.h.
+#pragma once
+#include "shade/frame_data.h"
+
+namespace pocketray {
+
+// Sets frame->point_groups for its lights, which must be placed; no groups if each point is to be tested. The arrays are
+// at least as many as the frame's lights. Allocates nothing.
+void place_point_groups(Array<PointGroup> groups, Array<std::uint8_t> order, Array<std::uint8_t> place,
+                        FrameData* frame);
+
+}  // namespace pocketray
