@@ -9,6 +9,7 @@
 #include "indirect/environment.h"
 #include "indirect/indirect_list.h"
 #include "scene/metallic_roughness.h"
+#include "shade/point_groups.h"
 
 namespace pocketray {
 namespace {
@@ -192,6 +193,10 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
                                            : bit(Effect::instant_radiosity) | replaces_environment;
   const std::uint32_t light_count = c.emissive + scene.lights.count;
   const bool selects = settings.light_tolerance > 0 && light_count >= kSelectedLightsMin;
+  if (c.emissive && !selects && settings.area_shadows == AreaShadows::adaptive &&
+      settings.points_per_area_light > kUndividedMax)
+    w.set(Effect::area_light, true, "%u of %u materials emit light: %u points each, all tested where partly hidden",
+          c.emissive, c.materials, settings.points_per_area_light);
   if (const EnvironmentInfo* environment = environment_of(scene))
     w.set(Effect::environment, true, "%u×%u texels, radiance at most %.3g", environment->side, environment->side,
           static_cast<double>(max_component(environment->radiance_max)));

@@ -186,6 +186,27 @@ TEST_CASE("plan_effects_select_among_many_lights") {
   CHECK(reason(plan_with(90, 0, 0, 0), Effect::source_selection) == "every light tested for shadows");
 }
 
+// Goal: the plan says how an area light is tested for shadows. Method: few points, many, every one tested, among many
+// lights.
+TEST_CASE("plan_effects_say_how_area_lights_are_tested") {
+  auto s = generate_scene(bit(Feature::emission), 1);
+  Settings settings = settings_for(0, 8, 6);
+  auto says = [&] { return reason(plan_effects(s->scene, settings), Effect::area_light); };
+  auto is_adaptive = [&] { return says().find("points each, all tested where partly hidden") != std::string::npos; };
+  settings.points_per_area_light = 5;
+  CHECK_FALSE(is_adaptive());
+  CHECK(says().find("emit light") != std::string::npos);
+  settings.points_per_area_light = 256;
+  CHECK(is_adaptive());
+  CHECK(says().find("emit light: 256 points") != std::string::npos);
+  settings.area_shadows = AreaShadows::every;
+  CHECK_FALSE(is_adaptive());
+  settings.area_shadows = AreaShadows::adaptive;
+  s->lights.assign(kSelectedLightsMin, Light());
+  s->bind();
+  CHECK_FALSE(is_adaptive());
+}
+
 // Goal: --indirect chooses the method, --effects cannot add another to it. Method: an ambient scene and a scene without
 // indirect light, every choice, with effects forced on and off.
 TEST_CASE("plan_effects_have_the_chosen_indirect_light") {
