@@ -15,6 +15,10 @@ void survive_closed_pipes();
 // From here on, standard output and error go to the end of that file, which is created if missing.
 bool log_to_file(const char* path, FileError* error);
 
+// From here on, what is printed is lost, except that the end of it goes to the standard error of old if the program
+// aborts.
+void keep_quiet();
+
 // Writes a line with its terminator to standard output. Never waits and never fails: false means that the reader is
 // gone or currently takes nothing, and that the line is lost.
 bool print_line_at_once(const char* line);

@@ -17,6 +17,18 @@ namespace {
 // block.
 constexpr size_t kLineBytesMax = 4096;
 
+// Standard error of old, of a program that keeps quiet.
+int loud_error = -1;
+
+extern "C" void on_abort(int number) {
+  char last[512];
+  const off_t end = lseek(STDERR_FILENO, 0, SEEK_END), size = static_cast<off_t>(sizeof last);
+  const ssize_t length = pread(STDERR_FILENO, last, sizeof last, end > size ? end - size : 0);
+  if (length > 0 && write(loud_error, last, static_cast<size_t>(length)) < 0) loud_error = -1;
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
 }  // namespace
 
 void open_standard_streams() {
@@ -39,6 +51,19 @@ bool log_to_file(const char* path, FileError* error) {
   if (!ok) snprintf(error->text, sizeof error->text, "cannot be written: %s", strerror(errno));
   if (file > STDERR_FILENO) close(file);
   return ok;
+}
+
+void keep_quiet() {
+  PLATFORM_CHECK(loud_error < 0);
+  FILE* printed = tmpfile();
+  const int nowhere = printed ? fileno(printed) : open("/dev/null", O_RDWR | O_CLOEXEC);
+  loud_error = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  fflush(nullptr);
+  dup2(nowhere, STDERR_FILENO);
+  const int output = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  dup2(output, STDOUT_FILENO);
+  if (output > STDERR_FILENO) close(output);
+  signal(SIGABRT, on_abort);
 }
 
 bool print_line_at_once(const char* line) {

@@ -2,6 +2,7 @@
 #pragma once
 #include "app/command_line.h"
 #include "session/servers.h"
+#include "session/team.h"
 #include "viewer/side_by_side.h"
 
 namespace pocketray {
@@ -10,6 +11,7 @@ namespace pocketray {
 struct OptionalParts {
   const ServersBackend* servers = nullptr;
   const SideBySideBackend* side_by_side = nullptr;
+  Team team;  // alone in builds without MPI
 };
 // Leaves *servers as it is in builds without a network, and null if options name no server.
 inline Status open_servers(const OptionalParts& parts, const ServersOptions& options, const platform::Device* emulated,

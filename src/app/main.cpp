@@ -11,6 +11,9 @@
 #include "app/accuracy/accuracy_command.h"
 #include "viewer/reference/reference_view.h"
 #endif
+#ifdef POCKETRAY_HAVE_MPI
+#include "app/mpi/team_mpi.h"
+#endif
 #ifdef POCKETRAY_HAVE_NETWORK
 #include "app/network/network_commands.h"
 #include "remote/client/servers.h"
@@ -22,7 +25,31 @@
 namespace pocketray {
 namespace {
 
-int run(int argument_count, char** arguments) {
+// Joins the ranks that mpirun started with this one. Only rank 0 prints from then on.
+Status join_team(Team* team) {
+  const TeamLaunch launch = team_launch();
+  if (launch.size == 1) return success();
+#ifdef POCKETRAY_HAVE_MPI
+  Status status = join_mpi_team(team);
+#else
+  team->rank = launch.rank;
+  Status status = failure(
+      "mpirun started %u programs, and this build has no MPI: build one with -DPOCKETRAY_MPI=ON, or start one program",
+      launch.size);
+#endif
+  if (!leads(*team)) platform::keep_quiet();
+  return status;
+}
+
+void leave_team(const Team& team) {
+#ifdef POCKETRAY_HAVE_MPI
+  if (team.backend) leave_mpi_team();
+#else
+  (void)team;
+#endif
+}
+
+int run_command(int argument_count, char** arguments, const Team& team) {
   int exit_status = kExitDone;
   CommandLine line("pocketray",
                    "pocketray ray-traces scenes for handheld screens in a block of memory sized once at start.\n"
@@ -33,6 +60,7 @@ int run(int argument_count, char** arguments) {
   Command program = line.program();
   program.footer("Exit status: 0 done, 1 bad input or environment, 2 wrong usage, 3 interrupted.");
   OptionalParts parts;
+  parts.team = team;
 #ifdef POCKETRAY_HAVE_NETWORK
   parts.servers = &kRenderServers;
 #endif
@@ -45,8 +73,8 @@ int run(int argument_count, char** arguments) {
   add_plan_command(program, &exit_status);
   add_bench_command(program, &exit_status);
 #ifdef POCKETRAY_HAVE_ACCURACY
-  add_accuracy_command(program, &exit_status);
-  add_reference_command(program, &exit_status);
+  add_accuracy_command(program, team, &exit_status);
+  add_reference_command(program, team, &exit_status);
   add_coherence_report_command(program, &exit_status);
   add_compare_command(program, &exit_status);
 #endif
@@ -58,9 +86,6 @@ int run(int argument_count, char** arguments) {
   add_split_report_command(program, &exit_status);
 #endif
   line.refuse_meaningless_values();
-  catch_interrupts();
-  Status given = check_arguments(argument_count, arguments);
-  if (!given.ok) return report(given), kExitUsage;
   try {
     ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
     if (!parsed.error.empty()) {
@@ -70,8 +95,28 @@ int run(int argument_count, char** arguments) {
     std::fputs(parsed.help.c_str(), stdout);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "pocketray: %s\n", error.what());
+    abort_team(team, kExitInput);
     return kExitInput;
   }
+  return exit_status;
+}
+
+int run(int argument_count, char** arguments) {
+  catch_interrupts();
+  Team team;
+  Status status = join_team(&team);
+  int exit_status = report(status);
+  bool is_needed = false;
+  if (status.ok) {
+    status = check_arguments(argument_count, arguments);
+    if (!status.ok) report(status), exit_status = kExitUsage;
+  }
+  if (status.ok) {
+    status = check_team_command(team, argument_count > 1 ? arguments[1] : nullptr, &is_needed);
+    exit_status = report(status);
+  }
+  if (status.ok && is_needed) exit_status = run_command(argument_count, arguments, team);
+  leave_team(team);
   return exit_status;
 }
 

@@ -15,19 +15,24 @@ Accumulation empty_accumulation(const std::string& key, std::uint32_t width, std
   return a;
 }
 
+void take_half(const Reference& reference, Transport transport, std::uint32_t half, std::uint32_t row,
+               const SampleRange& samples, ExactSum* sums) {
+  CHECK_LT(half, kReferenceHalfCount);
+  ReferenceOptions options;
+  options.transport = transport;
+  options.first_sample = samples.begin;
+  options.samples_per_pixel = samples.end - samples.begin;
+  options.seed = half + 1;
+  add_reference(reference, options, row, sums);
+}
+
 void accumulate(const Reference& reference, Transport transport, std::uint32_t row, const SampleRange& samples,
                 Accumulation* a) {
   CHECK_LT(row, a->height);
   CHECK_EQ(a->width, static_cast<std::uint32_t>(reference.world.frame->camera.width));
   add_samples(samples, &a->rows[row]);
-  ReferenceOptions options;
-  options.transport = transport;
-  options.first_sample = samples.begin;
-  options.samples_per_pixel = samples.end - samples.begin;
-  for (std::uint32_t half = 0; half < kReferenceHalfCount; ++half) {
-    options.seed = half + 1;
-    add_reference(reference, options, row, a->sums[half].data() + std::size_t(row) * a->width * 3);
-  }
+  for (std::uint32_t half = 0; half < kReferenceHalfCount; ++half)
+    take_half(reference, transport, half, row, samples, a->sums[half].data() + std::size_t(row) * a->width * 3);
 }
 
 Status merge(const Accumulation& other, Accumulation* a) {

@@ -23,6 +23,10 @@ struct Accumulation {
 
 Accumulation empty_accumulation(const std::string& key, std::uint32_t width, std::uint32_t height);
 
+// Adds the samples of a row and half to R, G, B of each of its pixels.
+void take_half(const Reference& reference, Transport transport, std::uint32_t half, std::uint32_t row,
+               const SampleRange& samples, ExactSum* sums);
+
 // Adds samples, which the row must lack. Threads may add to different rows at once.
 void accumulate(const Reference& reference, Transport transport, std::uint32_t row, const SampleRange& samples,
                 Accumulation* accumulation);

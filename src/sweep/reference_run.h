@@ -30,12 +30,14 @@ struct ReferenceGoal {
   std::uint32_t part = 1, part_count = 1;  // takes the samples of this part
   double pixels_per_degree = kHandheldPixelsPerDegree;
   std::string path;                             // of its file
+  Team team;                                    // whose ranks take the samples
   double save_seconds = 60;                     // between saves
   std::function<void(std::uint32_t)> row_done;  // called after samples of a row, one at a time; may be null
 };
 
 // Adds the samples that the goal lacks, with the rig's prepared frame and all its threads, and saves them now and then
-// and at the end. After an interrupt *whole is false; the same call continues.
+// and at the end. The other ranks of a team run a ReferenceHelper; this one leads it. After an interrupt *whole is
+// false; the same call continues.
 Status run_reference(const ReferenceGoal& goal, Rig* rig, Accumulation* accumulation, bool* whole);
 
 }  // namespace pocketray

@@ -99,6 +99,7 @@ Status render_reference(const AccuracyOptions& options, Transport transport, Rig
       goal.pixels_per_degree = options.pixels_per_degree;
       goal.save_seconds = options.save_seconds;
       goal.row_done = options.row_done;
+      goal.team = options.team;
       goal.path = cached_path(options.common.scene, accumulation.key);
       if (goal.path.empty()) goal.path = path;
       continue_from(goal.path, &accumulation);

@@ -47,6 +47,13 @@ Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig) {
   return success();
 }
 
+Status reference_rig(Rigs* rigs, Rig** rig) {
+  CHECK(rigs != nullptr && rigs->by_columns.count(kCornellSphereColumns) == 1);  // planned
+  Configuration configuration = rigs->by_columns[kCornellSphereColumns]->baseline;
+  if (rigs->options.common.scene == "cornell") configuration.sphere_columns = kReferenceColumns;
+  return rig_for(rigs, configuration, rig);
+}
+
 std::string id_of(const SweepPoint& point) { return point.value.empty() ? point.knob : point.knob + " " + point.value; }
 
 bool is_measured(const SweepPlan& plan, std::size_t point_index) {

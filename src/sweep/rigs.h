@@ -6,6 +6,9 @@
 
 namespace pocketray {
 
+// Of Cornell's sphere in references, finer than any in the sweep.
+constexpr std::uint32_t kReferenceColumns = 256;
+
 struct Rigs {
   const AccuracyOptions& options;
   std::map<std::uint32_t, std::unique_ptr<Rig>>
@@ -17,6 +20,9 @@ Status plan_rigs(Rigs* rigs, SweepPlan* plan);
 
 // Finds or opens the rig of a configuration, with the first rig's exposure. Owned by `rigs`.
 Status rig_for(Rigs* rigs, const Configuration& configuration, Rig** rig);
+
+// The same for the rig whose pictures are references.
+Status reference_rig(Rigs* rigs, Rig** rig);
 
 // A unique name for a point of the plan.
 std::string id_of(const SweepPoint& point);

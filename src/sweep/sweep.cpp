@@ -21,8 +21,6 @@
 namespace pocketray {
 namespace {
 
-// Cornell's sphere in the reference, finer than any in the sweep.
-constexpr std::uint32_t kReferenceColumns = 256;
 // Measurements of the baseline per round; all others are divided by them.
 constexpr int kBaselineRuns = 3;
 constexpr std::uint32_t kRoundsMax = 1000;
@@ -204,11 +202,8 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
 // Renders both references: the one knobs are compared with, and the one that gives the converged model's error against
 // full transport.
 Status render_references(Run* run, Sweep* sweep, bool* whole) {
-  bool is_cornell = run->options.common.scene == "cornell";
-  Configuration configuration = run->rigs.by_columns[kCornellSphereColumns]->baseline;
-  if (is_cornell) configuration.sphere_columns = kReferenceColumns;
   Rig* rig;
-  RETURN_IF_ERROR(rig_for(&run->rigs, configuration, &rig));
+  RETURN_IF_ERROR(reference_rig(&run->rigs, &rig));
   ReferencePictures other;
   Transport kind = chosen(run->options), other_kind = other_than(kind);
   RETURN_IF_ERROR(render_reference(run->options, kind, rig, &run->state, &run->reference, whole));
@@ -225,7 +220,7 @@ Status render_references(Run* run, Sweep* sweep, bool* whole) {
   std::vector<double> of_one = reference.one, of_other = reference.other, none(of_one.size(), 0.0);
   for (std::size_t i = 0; i < none.size(); ++i) of_one[i] -= other.one[i], of_other[i] -= other.other[i];
   sweep->model_rmse = unbiased_rmse(of_one, of_other, none);
-  if (is_cornell) run->rigs.by_columns.erase(kReferenceColumns);
+  run->rigs.by_columns.erase(kReferenceColumns);
   return success();
 }
 

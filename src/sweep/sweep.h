@@ -7,6 +7,7 @@
 #include "reference/reference.h"
 #include "session/open_scene.h"
 #include "session/progress.h"
+#include "session/team.h"
 #include "sweep/front.h"
 #include "sweep/state.h"
 
@@ -24,6 +25,7 @@ struct AccuracyOptions {
       false;  // if the CPU counts no instructions; only for a program started as `pocketray accuracy …`
   double save_seconds = 60;                     // between saves of a running reference
   std::function<void(std::uint32_t)> row_done;  // called after samples of a reference's row, one at a time; may be null
+  Team team;                                    // its ranks take samples of references; this one measures
   std::string counting_folder;                  // in the program that valgrind runs: the job to render; else empty
 };
 

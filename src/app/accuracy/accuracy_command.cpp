@@ -8,18 +8,18 @@
 #include "session/gnuplot.h"
 #include "session/output.h"
 #include "sweep/instructions.h"
+#include "sweep/reference_team.h"
 #include "sweep/references.h"
 #include "sweep/report.h"
-#include "sweep/sweep.h"
+#include "sweep/rigs.h"
 
 namespace pocketray {
 namespace {
 
-int run(AccuracyOptions options) {
+int lead(AccuracyOptions options) {
   Sweep sweep;
   bool whole;
   SweptFront front;
-  if (!options.counting_folder.empty()) return report(render_for_valgrind(options));
   Status status = check_outputs({{"SCENE", options.common.scene}}, {{"--json", options.common.json}});
   if (status.ok) status = name_reference(&options);
   if (status.ok) status = measure_sweep(options, &sweep, &whole, &front);
@@ -54,11 +54,27 @@ int run(AccuracyOptions options) {
   return report(status);
 }
 
+int run(const AccuracyOptions& options) {
+  if (!options.counting_folder.empty()) return report(render_for_valgrind(options));
+  Rigs rigs = {options, {}};
+  // Only when the leader begins a reference: afterwards nothing may disturb its measurements.
+  ReferenceHelper helper(options.team, options, [&](Rig** found) {
+    SweepPlan plan;
+    RETURN_IF_ERROR(plan_rigs(&rigs, &plan));
+    RETURN_IF_ERROR(reference_rig(&rigs, found));
+    return prepare_for_reference(options.seconds, *found);
+  });
+  return run_in_team(
+      options.team, [&] { return lead(options); }, success,
+      [&](const TeamMessage& message) { return helper.work(message); });
+}
+
 }  // namespace
 
-void add_accuracy_command(Command program, int* exit_status) {
+void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   auto o = std::make_shared<AccuracyOptions>();
   o->starts_valgrind = true;
+  o->team = team;
   Command command = program.add_subcommand("accuracy", "measure the time cost of accuracy: sweep every setting");
   command.footer(
       "Varies one setting at a time (samples, depth, points per area light, …), then several at once. Times each\n"

@@ -7,13 +7,13 @@
 #include "platform/file.h"
 #include "session/output.h"
 #include "sweep/reference_run.h"
+#include "sweep/reference_team.h"
 #include "sweep/references.h"
+#include "sweep/rigs.h"
 
 namespace pocketray {
 namespace {
 
-// Cornell's sphere is as fine as in the references of `accuracy`.
-constexpr std::uint32_t kReferenceColumns = 256;
 constexpr std::uint32_t kPartCountMax = 4096;
 
 struct ReferenceCommand {
@@ -89,13 +89,18 @@ Status tell(const ReferenceCommand& c, const Rig& rig, const Accumulation& sum) 
                            {"regions", regions_json(regions)}});
 }
 
+// Opens the scene and prepares its frame.
+Status open_for_reference(const ReferenceCommand& c, std::unique_ptr<Rig>* rig) {
+  std::uint32_t columns = c.options.common.scene == "cornell" ? kReferenceColumns : kCornellSphereColumns;
+  RETURN_IF_ERROR(open_rig(c.options, columns, rig));
+  print_notes((*rig)->opened);
+  return prepare_for_reference(c.options.seconds, rig->get());
+}
+
 Status accumulate_all(const ReferenceCommand& c, bool* whole) {
   RETURN_IF_ERROR(check_files(c));
   std::unique_ptr<Rig> rig;
-  std::uint32_t columns = c.options.common.scene == "cornell" ? kReferenceColumns : kCornellSphereColumns;
-  RETURN_IF_ERROR(open_rig(c.options, columns, &rig));
-  print_notes(rig->opened);
-  RETURN_IF_ERROR(prepare_for_reference(c.options.seconds, rig.get()));
+  RETURN_IF_ERROR(open_for_reference(c, &rig));
   const Settings& settings = rig->opened.renderer.settings;
   std::string key = reference_key(*rig, c.options, c.goal.transport);
   Accumulation sum = empty_accumulation(key, settings.width, settings.height);
@@ -105,7 +110,7 @@ Status accumulate_all(const ReferenceCommand& c, bool* whole) {
   return tell(c, *rig, sum);
 }
 
-int run(ReferenceCommand command) {
+int lead(ReferenceCommand command) {
   bool whole = true;
   Status status = read_goal(&command);
   if (status.ok) status = check_limit(Quantity::seconds, command.options.seconds, "--time");
@@ -117,10 +122,24 @@ int run(ReferenceCommand command) {
   return kExitInterrupted;
 }
 
+int run(ReferenceCommand command) {
+  const Team& team = command.goal.team;
+  command.options.common.threads = team_threads(team, command.options.common.threads);
+  std::unique_ptr<Rig> rig;
+  ReferenceHelper helper(team, command.options, [&](Rig** found) { return *found = rig.get(), success(); });
+  auto open = [&] {
+    RETURN_IF_ERROR(check_limit(Quantity::seconds, command.options.seconds, "--time"));
+    return open_for_reference(command, &rig);
+  };
+  return run_in_team(
+      team, [&] { return lead(command); }, open, [&](const TeamMessage& message) { return helper.work(message); });
+}
+
 }  // namespace
 
-void add_reference_command(Command program, int* exit_status) {
+void add_reference_command(Command program, const Team& team, int* exit_status) {
   auto c = std::make_shared<ReferenceCommand>();
+  c->goal.team = team;
   Command command = program.add_subcommand("reference", "render a reference picture to judge others by");
   command.footer(
       "Traces paths in double precision and adds them up in a .pfm file: a picture of linear light, followed by the\n"

@@ -1,0 +1,111 @@
+#include "sweep/reference_share.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kMeasureGrowth = 1.1;
+// Chosen: a row of 320 pixels takes a tenth of a second then, and its sums of 31 kB a ten-thousandth to be sent.
+constexpr std::uint32_t kBatchesAtOnce = 4;
+// Chosen: while one program measures, the others are busy; each round of a small picture takes a few megabytes.
+constexpr std::size_t kRoundsAhead = 4;
+
+}  // namespace
+
+bool MeasureSchedule::is_due_after(std::uint32_t batch) {
+  if (batch + 1 < at) return false;
+  at = std::max(batch + 2, static_cast<std::uint32_t>(kMeasureGrowth * (batch + 1)));
+  return true;
+}
+
+ReferenceShare::ReferenceShare(std::uint32_t samples, std::uint32_t part, std::uint32_t part_count, bool is_gated,
+                               Accumulation* accumulation)
+    : end_(samples),
+      batch_(part - 1),
+      batch_count_((samples + kReferenceBatch - 1) / kReferenceBatch),
+      part_count_(part_count),
+      is_gated_(is_gated),
+      accumulation_(accumulation) {
+  CHECK(part >= 1 && part <= part_count);
+  CHECK_LE(samples, kReferenceSampleMax);
+  look_ahead();
+}
+
+void ReferenceShare::look_ahead() {
+  while (rounds_.size() < kRoundsAhead && batch_ < batch_count_) rounds_.push_back(next_round());
+}
+
+ReferenceShare::Round ReferenceShare::next_round() {
+  CHECK_LT(batch_, batch_count_);
+  std::vector<SampleRange> ranges;
+  Round round = {batch_ * kReferenceBatch, 0, 0};
+  for (bool is_due = false; !is_due && batch_ < batch_count_; batch_ += part_count_) {
+    SampleRange batch = {batch_ * kReferenceBatch, std::min(end_, (batch_ + 1) * kReferenceBatch)};
+    const bool joins = !ranges.empty() && ranges.back().end == batch.begin &&
+                       batch.end - ranges.back().begin <= kBatchesAtOnce * kReferenceBatch;
+    if (joins)
+      ranges.back().end = batch.end;
+    else
+      ranges.push_back(batch);
+    round.end = batch.end, round.batches = batch_ + 1;
+    is_due = schedule_.is_due_after(batch_);
+    for (std::uint32_t row = 0; is_due && !round.is_measured && row < accumulation_->height; ++row)
+      round.is_measured = !missing_samples(accumulation_->rows[row], batch).empty();
+  }
+  for (const SampleRange& range : ranges)
+    for (std::uint32_t row = 0; row < accumulation_->height; ++row)
+      for (const SampleRange& missing : missing_samples(accumulation_->rows[row], range))
+        round.pieces.push_back({row, missing});
+  round.missing = round.pieces.size();
+  return round;
+}
+
+std::vector<ReferencePiece> ReferenceShare::take(std::uint32_t count) {
+  std::vector<ReferencePiece> taken;
+  for (Round& round : rounds_)
+    for (; round.next < round.pieces.size() && taken.size() < count; ++round.next) {
+      const ReferencePiece& piece = round.pieces[round.next];
+      if (std::any_of(taken.begin(), taken.end(), [&](const ReferencePiece& t) { return t.row == piece.row; }))
+        return taken;
+      taken.push_back(piece);
+    }
+  return taken;
+}
+
+Status ReferenceShare::add(RowSamples taken) {
+  auto round = std::find_if(rounds_.begin(), rounds_.end(), [&](const Round& r) {
+    return taken.samples.begin >= r.begin && taken.samples.begin < r.end;
+  });
+  if (round == rounds_.end() || round->missing == 0) return failure("samples that nobody asked for");
+  if (is_gated_ && round != rounds_.begin())
+    round->held.push_back(std::move(taken));
+  else
+    RETURN_IF_ERROR(merge(taken, accumulation_));
+  --round->missing;
+  return success();
+}
+
+bool ReferenceShare::is_first_round_done() const { return !rounds_.empty() && rounds_.front().missing == 0; }
+
+Status ReferenceShare::end_round() {
+  CHECK(is_first_round_done());
+  rounds_.pop_front();
+  look_ahead();
+  if (rounds_.empty()) return success();
+  for (const RowSamples& held : rounds_.front().held) RETURN_IF_ERROR(merge(held, accumulation_));
+  rounds_.front().held.clear();
+  return success();
+}
+
+Status ReferenceShare::add_held() {
+  for (Round& round : rounds_) {
+    for (const RowSamples& held : round.held) RETURN_IF_ERROR(merge(held, accumulation_));
+    round.held.clear();
+  }
+  return success();
+}
+
+}  // namespace pocketray
