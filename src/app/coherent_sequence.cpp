@@ -33,6 +33,11 @@ Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequenc
   return success();
 }
 
+void add_coherence(const CoherentSequence& other, CoherentSequence* s) {
+  s->frames += other.frames, s->whole_frames += other.whole_frames;
+  s->pixels += other.pixels, s->pixels_traced += other.pixels_traced;
+}
+
 void print_coherence(const CoherentSequence& s) {
   if (s.frames < 2) return;
   std::printf("  coherence: %.1f %% of the pixels traced; %" PRIu64 " of %" PRIu64 " frames whole%s%s\n",

@@ -17,6 +17,9 @@ Status check_coherence(const char* because, CommonOptions* options);
 // render_coherent() for the next frame; an interrupt ends it early.
 Status render_next(Renderer* renderer, double seconds, CoherentSequence* sequence, bool* complete);
 
+// Adds what another program saved in frames of the same sequence.
+void add_coherence(const CoherentSequence& other, CoherentSequence* sequence);
+
 void print_coherence(const CoherentSequence& sequence);
 Json coherence_json(const CoherentSequence& sequence);
 

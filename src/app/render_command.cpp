@@ -3,130 +3,34 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/coherent_sequence.h"
 #include "app/commands.h"
-#include "app/render_options.h"
+#include "app/render_job.h"
 #include "app/render_summary.h"
+#include "app/render_team.h"
 #include "base/seal.h"
-#include "budget/budget.h"
 #include "engine/frame.h"
-#include "session/aov_picture.h"
-#include "session/black_picture.h"
-#include "session/camera_control.h"
 #include "session/interrupt.h"
 #include "session/note.h"
 #include "session/output.h"
 #include "session/picture.h"
-#include "session/progress.h"
 #include "session/report.h"
-#include "session/resume.h"
 #include "session/servers.h"
 
 namespace pocketray {
 namespace {
 
-struct Job {
-  RenderOptions options;
-  RenderRequest asked;
-  Servers* servers = nullptr;
-  Budget* budget = nullptr;
-  CoherentSequence* coherent = nullptr;  // null: frames are traced whole
-  std::uint8_t* page = nullptr;          // the packed frame, for --budget-ms: packing is part of the frame time
-  CameraControl camera;                  // for --orbit and --turntable
-  const SceneSource* source = nullptr;
-  AnimationFile* animation = nullptr;  // null: a file per picture
-  Array<Span> crop_spans;              // empty: the whole picture is traced
-  FrameJournal* journal = nullptr;     // null: none is kept
-  std::vector<bool> is_finished;       // by an earlier run; by the frames' order, empty: none
+// All that rendering takes. What refers to other members stays in place.
+struct Opened {
+  RenderJob job;
+  ServersHandle closing;
+  OpenScene scene;
+  Budget budget;
+  AnimationFile animation;
+  FrameJournal journal;
+  CoherentSequence coherent;
 };
 
-constexpr std::uint64_t kProgressNs = 100'000'000;
-
-Status render_with_servers(Renderer* renderer, const Job& job, double seconds, std::uint64_t rows_before,
-                           Progress* progress, bool* complete) {
-  const ServersBackend& servers = *job.servers->backend;
-  std::uint64_t start = clock_ns();
-  RETURN_IF_ERROR(servers.begin_frame(job.servers, renderer, seconds));
-  do {
-    if (servers.state(*job.servers).cut_off)
-      return failure("no server answers, and the scene does not fit in --memory: start a server, or raise --memory");
-    *complete = servers.advance_frame(job.servers, renderer, clock_ns() + kProgressNs, &interrupted);
-    ServersState state = servers.state(*job.servers);
-    if (state.disputed)
-      return failure("frame discarded: two servers disagree about its pixels (--verify 0 skips the check)");
-    show_progress(progress, rows_before + state.rows_done);
-  } while (!*complete && !interrupted);
-  renderer->timings.trace_ms = static_cast<double>(clock_ns() - start) * 1e-6;
-  return success();
-}
-
-// Renders in bands of rows, or what has changed, to show progress and to lose at most a frame when interrupted.
-Status render_with_progress(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress,
-                            bool* complete) {
-  const double seconds = time_of(job.options, job.asked, frame, renderer->scene.info);
-  const auto rows = static_cast<std::uint32_t>(box_to_write(job.asked.picture, renderer->settings).height);
-  const std::uint64_t rows_before = std::uint64_t(frame - job.asked.sequence.first) * rows;
-  if (job.servers) return render_with_servers(renderer, job, seconds, rows_before, progress, complete);
-  if (job.coherent) {
-    RETURN_IF_ERROR(render_next(renderer, seconds, job.coherent, complete));
-    show_progress(progress, rows_before + rows);
-    return success();
-  }
-  struct Shown {
-    Progress* progress;
-    std::uint64_t rows_before;
-  } shown = {progress, rows_before};
-  SpanList bands = row_bands(renderer);
-  if (!job.crop_spans.empty())
-    bands.spans = job.crop_spans.data, bands.span_count = job.crop_spans.count, bands.span_ns = nullptr;
-  bands.progress_context = &shown;
-  bands.progress = [](void* context, std::uint32_t row_count) {
-    const Shown& s = *static_cast<Shown*>(context);
-    show_progress(s.progress, s.rows_before + row_count);
-  };
-  SpanSource source = list_source(&bands);
-  source.aov = job.asked.aov;
-  source.stop = &interrupted;
-  return render_frame(renderer, seconds, source, complete);
-}
-
-void pack_page(Renderer* renderer, const Job& job) {
-  const PictureOptions& p = job.asked.picture;
-  std::uint64_t start = clock_ns();
-  pack_rows(renderer->image.data, static_cast<int>(renderer->settings.width),
-            static_cast<int>(renderer->settings.height), 0, static_cast<int>(renderer->settings.height),
-            renderer->exposure, p.packed_format, Rotation::none, p.dither, job.page, p.packed_line_bytes);
-  wait_for_pace(&renderer->pace, 0, start);
-}
-
-// Renders a single frame until its settings settle, a frame of a sequence once.
-Status render_budgeted(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
-  constexpr int kSettleFrames = 12;  // derived: as many as the ladder of builtin_front() has steps up
-  RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
-  for (int i = 0; i < kSettleFrames; ++i) {
-    std::uint32_t chosen = job.budget->governor.current;
-    std::uint64_t start = clock_ns();
-    RETURN_IF_ERROR(render_with_progress(renderer, job, frame, progress, complete));
-    if (!*complete) break;
-    pack_page(renderer, job);
-    end_budget_frame(job.budget, clock_ns() - start);
-    if (job.asked.sequence.given || i + 1 == kSettleFrames) break;
-    RETURN_IF_ERROR(begin_budget_frame(job.budget, renderer));
-    if (job.budget->governor.current == chosen) break;
-  }
-  return success();
-}
-
-Status render_one(Renderer* renderer, const Job& job, std::uint32_t frame, Progress* progress, bool* complete) {
-  if (moves_camera(job.options)) {
-    const float degrees = orbit_after(job.options, frame - job.asked.sequence.first);
-    RETURN_IF_ERROR(set_camera(renderer, orbited_camera(job.camera, degrees)));
-  }
-  return job.budget ? render_budgeted(renderer, job, frame, progress, complete)
-                    : render_with_progress(renderer, job, frame, progress, complete);
-}
-
-Status start_servers_for(const RenderOptions& o, Renderer* renderer, Job* job) {
+Status start_servers_for(const RenderOptions& o, Renderer* renderer, RenderJob* job) {
   if (!job->servers) return success();
   bool raw = has_suffix(job->asked.kind.c_str(), ".raw");
   const ServersBackend& servers = *job->servers->backend;
@@ -148,7 +52,8 @@ std::size_t output_bytes(const RenderOptions& o, const RenderRequest& asked, con
 }
 
 // Opens the scene with a budget, without servers.
-Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, Job* job, OpenScene* opened, Budget* budget) {
+Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, RenderJob* job, OpenScene* opened,
+                     Budget* budget) {
   OpenFront front;
   RETURN_IF_ERROR(open_scene_with_front(o.common, {o.budget.front}, bytes, opened, &front));
   print_notes(front);
@@ -168,7 +73,7 @@ Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, Job* job,
 }
 
 // Reads which frames are finished, with --resume, and begins to list those that will be.
-Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJournal* journal, Job* job) {
+Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJournal* journal, RenderJob* job) {
   if (!keeps_journal(job->options, job->asked)) return success();
   const std::string path = journal_path(job->options.output);
   const std::string identity = identity_of(job->options, job->asked, source, renderer);
@@ -184,7 +89,7 @@ Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJ
 }
 
 // A span for each row of the crop.
-void make_crop_spans(const PixelBox& crop, Renderer* renderer, Job* job) {
+void make_crop_spans(const PixelBox& crop, Renderer* renderer, RenderJob* job) {
   if (crop.width == 0) return;
   job->crop_spans = arena_array<Span>(&renderer->frame_arena, static_cast<std::size_t>(crop.height));
   for (int i = 0; i < crop.height; ++i)
@@ -192,7 +97,7 @@ void make_crop_spans(const PixelBox& crop, Renderer* renderer, Job* job) {
                static_cast<std::uint32_t>(crop.left + crop.width), 1, &job->crop_spans[static_cast<std::uint32_t>(i)]);
 }
 
-Status start_animation(Renderer* renderer, AnimationFile* animation, Job* job) {
+Status start_animation(Renderer* renderer, AnimationFile* animation, RenderJob* job) {
   if (job->asked.animation == AnimationKind::none) return success();
   const double rate = frame_rate(job->options, renderer->scene.info);
   const PixelBox box = box_to_write(job->asked.picture, renderer->settings);
@@ -204,104 +109,142 @@ Status start_animation(Renderer* renderer, AnimationFile* animation, Job* job) {
                          renderer, animation);
 }
 
-// In renderer.image, all of it.
-bool shows_radiance(const Job& job) { return !job.servers && job.asked.aov == Aov::none && job.crop_spans.empty(); }
+// Reads the options and opens the scene. Ranks that help neither print nor keep a journal.
+Status open_job(const RenderOptions& given, Opened* o) {
+  RenderJob* job = &o->job;
+  job->options = given;
+  RenderOptions* options = &job->options;
+  options->common.threads = team_threads(options->parts.team, options->common.threads);
+  RETURN_IF_ERROR(read_render_options(options, &job->asked));
+  job->asked.picture.kind = job->asked.kind.c_str();
+  const platform::Device* device = nullptr;
+  RETURN_IF_ERROR(find_device(options->common, &device));
+  Status status =
+      open_servers(options->parts, options->servers, options->common.emulate.empty() ? nullptr : device, &job->servers);
+  o->closing.reset(job->servers);
+  RETURN_IF_ERROR(status);
+  auto bytes = [job](const Settings& settings) { return output_bytes(job->options, job->asked, settings); };
+  RETURN_IF_ERROR(options->budget.ms > 0 ? open_budgeted(*options, bytes, job, &o->scene, &o->budget)
+                                         : open_scene_with(job->servers, options->common, bytes, &o->scene));
+  Renderer* renderer = &o->scene.renderer;
+  if (moves_camera(*options)) job->camera = make_camera_control(renderer->camera, subject_of(o->scene));
+  RETURN_IF_ERROR(start_servers_for(*options, renderer, job));
+  make_crop_spans(job->asked.picture.crop, renderer, job);
+  RETURN_IF_ERROR(start_animation(renderer, &o->animation, job));
+  if (leads(options->parts.team)) RETURN_IF_ERROR(start_journal(o->scene.source, *renderer, &o->journal, job));
+  job->source = &o->scene.source;
+  if (renderer->coherence_state.planned && !job->servers) job->coherent = &o->coherent;  // or the client uses it
+  return success();
+}
 
-Status render_files(Renderer* renderer, const Job& job, RenderSummary* summary, bool* stopped) {
+std::uint64_t row_count(const RenderJob& job, const Renderer& renderer) {
+  return static_cast<std::uint64_t>(box_to_write(job.asked.picture, renderer.settings).height);
+}
+
+// Frames that no earlier run has finished.
+std::vector<std::uint32_t> frames_to_render(const RenderJob& job) {
+  std::vector<std::uint32_t> frames;
   const FrameRange& s = job.asked.sequence;
-  const PixelBox box = box_to_write(job.asked.picture, renderer->settings);
-  Progress progress =
-      start_progress("rendering", std::uint64_t(s.last - s.first + 1) * static_cast<std::uint32_t>(box.height));
-  Status status;
-  std::vector<std::uint32_t> indices;  // of the files written
-  indices.reserve(job.asked.paths.size());
-  seal_memory();
-  std::uint32_t written = 0;
-  char black[kBlackTextBytes] = "";
-  PictureOptions picture = job.asked.picture;
-  AovPicture shown;
-  for (std::uint32_t frame = s.first; frame <= s.last; ++frame) {
-    const std::string& path = job.asked.paths[job.animation ? 0 : frame - s.first];
-    if (!job.is_finished.empty() && job.is_finished[frame - s.first]) continue;
-    bool complete;
-    float exposure = renderer->exposure;
-    status = render_one(renderer, job, frame, &progress, &complete);
-    if (!status.ok) break;
-    *stopped = !complete;
-    if (*stopped) break;
-    summary->trace_ms += renderer->timings.trace_ms;
-    if (written == 0 && shows_radiance(job)) explain_black(*renderer, job.source->material_names, black);
-    if (job.asked.aov != Aov::none && !has_suffix(job.asked.kind.c_str(), ".pfm")) {
-      shown = color_aov(job.asked.aov, box, renderer);
-      picture.legend = job.options.no_legend ? nullptr : &shown.legend;
-    }
-    status =
-        job.animation ? add_frame(picture, renderer, job.animation) : write_picture(path.c_str(), picture, renderer);
-    renderer->exposure = exposure;
-    if (!status.ok) break;
-    ++written;
+  for (std::uint32_t frame = s.first; frame <= s.last; ++frame)
+    if (job.is_finished.empty() || !job.is_finished[frame - s.first]) frames.push_back(frame);
+  return frames;
+}
+
+// Renders all frames, alone or with the helpers of a team. `written` has room for all of them.
+Status render_all(Opened* o, RenderedFiles* files, std::vector<std::uint32_t>* written, bool* stopped) {
+  const RenderJob& job = o->job;
+  Renderer* renderer = &o->scene.renderer;
+  const Team& team = job.options.parts.team;
+  const std::uint64_t rows = row_count(job, *renderer);
+  auto finish = [&](std::uint32_t frame) {
     if (job.journal) add_to_journal(job.journal, frame);
-    if (!job.animation || written == 1) indices.push_back(frame - s.first);
+    written->push_back(frame);
+    files->rows_before += rows;
+  };
+  const std::vector<std::uint32_t> frames = frames_to_render(job);
+  std::size_t next = 0;
+  std::unique_ptr<FrameLead> lead;
+  if (team.size > 1)
+    lead = std::make_unique<FrameLead>(team, identity_of(job.options, job.asked, o->scene.source, *renderer), frames,
+                                       [&](const SharedFrame& shared) {
+                                         finish(shared.frame);
+                                         files->trace_ms += shared.trace_ms;
+                                         add_coherence(shared.coherent, &o->coherent);
+                                         show_progress(&files->progress, files->rows_before);
+                                       });
+  seal_memory();
+  for (;;) {
+    std::uint32_t frame = 0;
+    bool there = next < frames.size();
+    if (lead) {
+      SealPause pause;
+      RETURN_IF_ERROR(lead->next(&frame, &there));
+    } else if (there) {
+      frame = frames[next++];
+    }
+    if (!there) break;
+    bool complete;
+    RETURN_IF_ERROR(render_file(renderer, job, frame, files, &complete));
+    if (complete) finish(frame);
+    if (!complete && !lead) break;  // a team's leader still hears of what the others have finished
   }
+  *stopped = written->size() < frames.size();
+  return success();
+}
+
+Status render_files(Opened* o, RenderSummary* summary, bool* stopped) {
+  RenderJob* job = &o->job;
+  const FrameRange& s = job->asked.sequence;
+  RenderedFiles files;
+  files.picture = job->asked.picture;
+  const std::uint64_t rows = row_count(*job, o->scene.renderer);
+  files.rows_before =
+      rows * static_cast<std::uint64_t>(std::count(job->is_finished.begin(), job->is_finished.end(), true));
+  files.progress = start_progress("rendering", (s.last - s.first + 1) * rows);
+  std::vector<std::uint32_t> written;
+  written.reserve(s.last - s.first + 1);
+  Status status = render_all(o, &files, &written, stopped);
   unseal_memory();
-  end_progress(&progress);
-  if (black[0]) print_note(black);
-  if (status.ok && job.animation && written > 0) status = end_animation(job.animation);
-  if (job.animation && (!status.ok || written == 0)) return status;  // there is no file
-  for (std::uint32_t index : indices) summary->files.push_back(job.asked.paths[index]);
-  summary->frame_count = written;
-  summary->aov_line = shown.told;
-  if (status.ok && !*stopped && job.journal && !job.options.resume) remove_journal(job.journal);
+  end_progress(&files.progress);
+  if (files.black[0]) print_note(files.black);
+  if (status.ok && job->animation && !written.empty()) status = end_animation(job->animation);
+  summary->trace_ms = files.trace_ms;
+  if (job->animation && (!status.ok || written.empty())) return status;  // there is no file
+  std::sort(written.begin(), written.end());
+  if (job->animation) summary->files.push_back(job->asked.paths[0]);
+  if (!job->animation)
+    for (std::uint32_t frame : written) summary->files.push_back(job->asked.paths[frame - s.first]);
+  summary->frame_count = static_cast<std::uint32_t>(written.size());
+  summary->aov_line = files.shown.told;
+  if (status.ok && !*stopped && job->journal && !job->options.resume) remove_journal(job->journal);
   return status;
 }
 
-int run(RenderOptions options) {
-  Job job;
-  Status status = read_render_options(&options, &job.asked);
-  job.options = options;
-  job.asked.picture.kind = job.asked.kind.c_str();
-  const platform::Device* device = nullptr;
-  if (status.ok) status = find_device(options.common, &device);
-  if (status.ok)
-    status =
-        open_servers(options.parts, options.servers, options.common.emulate.empty() ? nullptr : device, &job.servers);
-  ServersHandle closing(job.servers);
-  OpenScene opened;
-  Budget budget;
-  auto bytes = [&](const Settings& settings) { return output_bytes(options, job.asked, settings); };
-  if (status.ok)
-    status = options.budget.ms > 0 ? open_budgeted(options, bytes, &job, &opened, &budget)
-                                   : open_scene_with(job.servers, options.common, bytes, &opened);
-  if (status.ok && moves_camera(options)) job.camera = make_camera_control(opened.renderer.camera, subject_of(opened));
-  if (status.ok) status = start_servers_for(options, &opened.renderer, &job);
-  if (status.ok) make_crop_spans(job.asked.picture.crop, &opened.renderer, &job);
-  AnimationFile animation;
-  if (status.ok) status = start_animation(&opened.renderer, &animation, &job);
-  FrameJournal journal;
-  if (status.ok) status = start_journal(opened.source, opened.renderer, &journal, &job);
+int lead(const RenderOptions& given) {
+  Opened o;
+  Status status = open_job(given, &o);
+  const RenderJob& job = o.job;
+  const RenderOptions& options = job.options;
   if (!status.ok && interrupted) return kExitInterrupted;
   if (!status.ok) return report(status);
-  print_notes(opened);
+  print_notes(o.scene);
   if (!job.servers)
-    for (std::string& note : unexpected(options, job.asked, opened.renderer)) print_note(std::move(note));
-  job.source = &opened.source;
+    for (std::string& note : unexpected(options, job.asked, o.scene.renderer)) print_note(std::move(note));
   bool stopped = false;
-  CoherentSequence coherent;
-  if (opened.renderer.coherence_state.planned && !job.servers) job.coherent = &coherent;  // or the client uses it
   RenderSummary summary = {&job.options,
-                           &opened.renderer,
-                           box_to_write(job.asked.picture, opened.renderer.settings),
+                           &o.scene.renderer,
+                           box_to_write(job.asked.picture, o.scene.renderer.settings),
                            job.servers,
                            job.budget,
                            job.coherent,
                            {},
                            0,
                            0};
-  status = render_files(&opened.renderer, job, &summary, &stopped);
+  status = render_files(&o, &summary, &stopped);
   const auto before = std::count(job.is_finished.begin(), job.is_finished.end(), true);
   if (before > 0 && options.common.json != "-") std::printf("%td frames were finished before\n", before);
   if (summary.frame_count > 0 && options.common.json != "-") print_summary(summary);
-  if (status.ok && job.budget) finish_budget(budget);
+  if (status.ok && job.budget) finish_budget(o.budget);
   if (status.ok && !options.common.json.empty()) status = write_json(options.common.json, to_json(summary));
   if (status.ok && stopped) {
     std::fprintf(stderr, "pocketray: interrupted; %u finished frame%s kept%s\n", summary.frame_count,
@@ -309,6 +252,37 @@ int run(RenderOptions options) {
     return kExitInterrupted;
   }
   return report(status);
+}
+
+// Renders the frames that the leader gives.
+Status help(const TeamMessage& message, Opened* o, RenderedFiles* files) {
+  return render_given_frames(o->job.options.parts.team, message, [&](SharedFrame* shared, bool* complete) {
+    const double trace_ms = files->trace_ms;
+    o->coherent = CoherentSequence();
+    seal_memory();
+    Status status = render_file(&o->scene.renderer, o->job, shared->frame, files, complete);
+    unseal_memory();
+    shared->trace_ms = files->trace_ms - trace_ms;
+    shared->coherent = o->coherent;
+    return status;
+  });
+}
+
+int run(const RenderOptions& options) {
+  const Team& team = options.parts.team;
+  std::unique_ptr<Opened> helper;
+  RenderedFiles files;
+  auto open = [&] {
+    helper = std::make_unique<Opened>();
+    RETURN_IF_ERROR(open_job(options, helper.get()));
+    files.picture = helper->job.asked.picture;
+    tell_ready_for_frames(
+        team, identity_of(helper->job.options, helper->job.asked, helper->scene.source, helper->scene.renderer));
+    return success();
+  };
+  return run_in_team(
+      team, [&] { return lead(options); }, open,
+      [&](const TeamMessage& message) { return help(message, helper.get(), &files); });
 }
 
 }  // namespace

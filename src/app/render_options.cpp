@@ -147,6 +147,19 @@ Status check_resume(const RenderOptions& o, const RenderRequest& request) {
   return failure("--resume is for sequences of numbered pictures: add --frames 0:99 or --turntable 36, and write .png");
 }
 
+// Ranks write files of their own.
+Status check_team(const RenderOptions& o, const RenderRequest& request) {
+  if (o.parts.team.size == 1) return success();
+  if (request.animation != AnimationKind::none)
+    return failure("-o %.200s is one file, written by one program: write .png under mpirun, or start without it",
+                   o.output.c_str());
+  if (!request.sequence.given)
+    return failure("one picture is rendered by one program: add --frames 0:99, or start it without mpirun");
+  if (!o.servers.addresses.empty() || o.budget.ms > 0)
+    return failure("ranks share frames by themselves: drop --server and --budget-ms, or start without mpirun");
+  return success();
+}
+
 Status check_frame_rate(const RenderOptions& o, const RenderRequest& request) {
   if (o.frames_per_second > 0 && !request.sequence.given)
     return failure("--fps is for sequences: add --frames 0:99 or --turntable 36");
@@ -240,6 +253,7 @@ Status read_render_options(RenderOptions* o, RenderRequest* request) {
   RETURN_IF_ERROR(parse_aov(o->aov, &request->aov));
   RETURN_IF_ERROR(parse_raw_format(o->raw_format, &request->picture.raw_format));
   RETURN_IF_ERROR(check_paths(*o, request));
+  RETURN_IF_ERROR(check_team(*o, *request));
   if (!rotation_from_degrees(o->rotation, &request->picture.rotation))
     return failure("--rotate is %d: it must be 0, 90, 180 or 270", o->rotation);
   RETURN_IF_ERROR(check_raw(*o, *request));
