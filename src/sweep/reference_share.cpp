@@ -10,8 +10,11 @@ namespace {
 constexpr double kMeasureGrowth = 1.1;
 // Chosen: a row of 320 pixels takes a tenth of a second then, and its sums of 31 kB a ten-thousandth to be sent.
 constexpr std::uint32_t kBatchesAtOnce = 4;
-// Chosen: while one program measures, the others are busy; each round of a small picture takes a few megabytes.
-constexpr std::size_t kRoundsAhead = 4;
+// Chosen: while one program measures, the others are busy. What is held back takes a few megabytes for each round of a
+// small picture; if nothing is, rounds only list pieces.
+constexpr std::size_t kRoundsAhead = 4, kUngatedRoundsAhead = 64;
+// Portions of all threads that make plenty.
+constexpr std::size_t kPlenty = 4, kPiecesMax = 2;
 
 }  // namespace
 
@@ -35,7 +38,8 @@ ReferenceShare::ReferenceShare(std::uint32_t samples, std::uint32_t part, std::u
 }
 
 void ReferenceShare::look_ahead() {
-  while (rounds_.size() < kRoundsAhead && batch_ < batch_count_) rounds_.push_back(next_round());
+  while (rounds_.size() < (is_gated_ ? kRoundsAhead : kUngatedRoundsAhead) && batch_ < batch_count_)
+    rounds_.push_back(next_round());
 }
 
 ReferenceShare::Round ReferenceShare::next_round() {
@@ -73,6 +77,14 @@ std::vector<ReferencePiece> ReferenceShare::take(std::uint32_t count) {
       taken.push_back(piece);
     }
   return taken;
+}
+
+std::vector<ReferencePiece> ReferenceShare::take_portion(std::uint32_t threads, std::uint32_t all_threads) {
+  CHECK(threads > 0 && threads <= all_threads);
+  std::size_t left = 0;
+  for (const Round& round : rounds_) left += round.pieces.size() - round.next;
+  const std::size_t each = std::min(kPiecesMax, std::max<std::size_t>(1, left / (kPlenty * all_threads)));
+  return take(threads * static_cast<std::uint32_t>(each));
 }
 
 Status ReferenceShare::add(RowSamples taken) {

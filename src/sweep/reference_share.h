@@ -31,6 +31,9 @@ class ReferenceShare {
 
   // The next pieces to be taken, of different rows; at most so many, and none if those that may be begun are.
   std::vector<ReferencePiece> take(std::uint32_t count);
+  // The same for a helper of so many threads among all the team's: two pieces for each, as long as there are plenty, so
+  // that threads wait little for each other; at last one, so that ranks do.
+  std::vector<ReferencePiece> take_portion(std::uint32_t threads, std::uint32_t all_threads);
   // Samples of a piece that was given out.
   Status add(RowSamples taken);
 

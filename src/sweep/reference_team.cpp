@@ -19,8 +19,6 @@ enum : std::uint8_t {
 
 // Of pieces that a helper has at a time: while it works on one, the next is already there.
 constexpr std::uint32_t kPortionsAhead = 2;
-// Pieces of a portion for each thread, so that threads wait little for the last one.
-constexpr std::uint32_t kPiecesPerThread = 2;
 constexpr double kWaitSeconds = 0.05;
 // Chosen: mpirun kills ranks a second after it has told them to end, and saving takes some of it.
 constexpr double kInterruptSeconds = 0.4;
@@ -92,13 +90,15 @@ Status read_rows(TeamReader* reader, std::vector<RowSamples>* rows) {
 
 // Gives out pieces until each ready helper has as many as it may.
 void give_pieces(Lead* lead) {
+  std::uint32_t threads = thread_count(lead->rig);
+  for (const Helper& helper : lead->helpers) threads += helper.threads;
   for (std::uint32_t portions = 0; portions < kPortionsAhead; ++portions)
     for (std::uint32_t rank = 1; rank < lead->helpers.size(); ++rank) {
       Helper& helper = lead->helpers[rank];
       if (!helper.is_ready || helper.portions != portions) continue;
       TeamWriter text;
       text.number(lead->run);
-      std::vector<ReferencePiece> pieces = lead->share.take(kPiecesPerThread * helper.threads);
+      std::vector<ReferencePiece> pieces = lead->share.take_portion(helper.threads, threads);
       if (pieces.empty()) return;
       for (const ReferencePiece& piece : pieces)
         text.number(piece.row), text.number(piece.samples.begin), text.number(piece.samples.end);
