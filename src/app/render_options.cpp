@@ -283,7 +283,9 @@ void add_render_options(Command command, RenderOptions* o) {
   command.add_option("--format", o->format, "format for -o -: png, jpg, ppm, pfm, raw, gif, apng or mp4")
       .one_of({"png", "jpg", "ppm", "pfm", "raw", "gif", "apng", "mp4"})
       .default_str("png");
-  Option frames = command.add_option("--frames", o->frames, "render a sequence, FIRST:LAST");
+  Option frames =
+      command.add_option("--frames", o->frames,
+                         "render a sequence, FIRST:LAST; under mpirun, in a build with MPI, ranks share its frames");
   command.add_option("--time", o->seconds, "animation time in seconds, for a single frame").capture_default_str();
   Option orbit = command.add_option("--orbit", o->orbit_degrees, "degrees that the camera orbits its target per frame")
                      .capture_default_str();

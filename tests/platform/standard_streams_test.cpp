@@ -7,7 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 
 using namespace platform;
 
@@ -66,4 +69,36 @@ TEST_CASE("line_is_printed_at_once_or_lost") {
     close(ends[0]);
     return !print_line_at_once("hello") && !print_line_at_once("again");
   }));
+}
+
+// Goal: a quiet program prints nothing, but if it aborts, the end of what it printed is seen, or its death would be a
+// riddle. Method: in a child whose outputs are pipes, with and without an abort.
+TEST_CASE("quiet_program_is_heard_only_when_it_aborts") {
+  for (bool aborts : {false, true}) {
+    CAPTURE(aborts);
+    int outputs[2], errors[2];
+    REQUIRE(pipe(outputs) == 0);
+    REQUIRE(pipe(errors) == 0);
+    pid_t child = fork();
+    if (child == 0) {
+      dup2(outputs[1], 1), dup2(errors[1], 2);
+      keep_quiet();
+      std::printf("table\n");
+      for (int i = 0; i < 1000; ++i) std::fprintf(stderr, "note %d\n", i);
+      std::fflush(nullptr);
+      if (aborts) std::abort();
+      _exit(0);
+    }
+    close(outputs[1]), close(errors[1]);
+    char text[2000] = {0};
+    CHECK(read(outputs[0], text, sizeof text - 1) == 0);
+    ssize_t length = read(errors[0], text, sizeof text - 1);
+    CHECK(length == (aborts ? 512 : 0));
+    if (aborts) CHECK(std::strcmp(text + 512 - 9, "note 999\n") == 0);
+    int status = 0;
+    waitpid(child, &status, 0);
+    CHECK(WIFSIGNALED(status) == aborts);
+    if (aborts) CHECK(WTERMSIG(status) == SIGABRT);
+    close(outputs[0]), close(errors[0]);
+  }
 }

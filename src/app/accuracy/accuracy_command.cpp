@@ -83,7 +83,8 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
       "strips, accuracy.csv and the references, which are also kept per scene and camera in the cache. If\n"
       "interrupted, samples of references and finished rounds are kept, and the same command continues. Times are of\n"
       "whole frames (pose, refit, lights, tracing, packing) after a warm-up frame with the same settings;\n"
-      "\"arithmetic double\" is timed with the reference's own tracer.\n"
+      "\"arithmetic double\" is timed with the reference's own tracer. Under `mpirun`, in a build with MPI, all ranks\n"
+      "take samples of references, and only rank 0 is timed.\n"
       "Confidence intervals are 95 %, given at least six rounds.");
   add_scene_options(command, &o->common);
   add_look_options(command, &o->common);

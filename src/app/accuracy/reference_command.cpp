@@ -146,7 +146,8 @@ void add_reference_command(Command program, const Team& team, int* exit_status) 
       "sums. The file is saved every minute and when interrupted; the same command continues it. Runs on several\n"
       "machines take one part each, and --merge adds their files; the result equals that of one run, bit for bit.\n"
       "Two halves of the samples are independent, and their difference gives the error: as ꟻLIP and RMSE, and per\n"
-      "region. Cornell's sphere has 256 columns here, as in the references of `accuracy`.\n"
+      "region. Cornell's sphere has 256 columns here, as in the references of `accuracy`. A build with MPI shares the\n"
+      "samples among the ranks of `mpirun -n 8 pocketray reference …`, with the same result.\n"
       "Try:  pocketray reference cornell -o cornell.pfm --until 0.02\n"
       "      pocketray accuracy cornell -o DIR --reference cornell.pfm");
   add_view_options(command, &c->options.common);
