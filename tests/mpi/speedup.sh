@@ -10,6 +10,8 @@ cd "$folder"
 export XDG_CACHE_HOME=$folder/cache
 TIMEFORMAT='%R %U %S'
 seconds() { { time "$@" >/dev/null 2>&1; } 2>&1; }  # COMMAND... : of the clock, of all CPUs in the program and in the system
+# Linux shares a busy CPU among sessions, so several programs of one session get no more of it than one does.
+apart=(setsid --wait "$program")
 team=(mpirun --oversubscribe --bind-to none -n "$ranks")
 [ "$(id -u)" != 0 ] || team+=(--allow-run-as-root)
 compare() {  # NAME COMMAND... : of the program, with its output in a new folder
@@ -17,8 +19,8 @@ compare() {  # NAME COMMAND... : of the program, with its output in a new folder
   shift
   : >runs
   for _ in $(seq "$rounds"); do
-    rm -rf out && mkdir out && one=$(seconds "$program" "$@" --threads 1)
-    rm -rf out && mkdir out && several=$(seconds "${team[@]}" "$program" "$@" --threads 1)
+    rm -rf out && mkdir out && one=$(seconds "${apart[@]}" "$@" --threads 1)
+    rm -rf out && mkdir out && several=$(seconds "${team[@]}" "${apart[@]}" "$@" --threads 1)
     awk '{ print $1 / $4, $1, $4, ($5 + $6) / ($2 + $3) }' <<<"$one $several" >>runs
   done
   sort -n runs | awk -v name="$name" -v ranks="$ranks" '{ r[NR] = $1; a[NR] = $2; b[NR] = $3; c[NR] = $4 } END {

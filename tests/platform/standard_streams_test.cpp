@@ -79,6 +79,7 @@ TEST_CASE("quiet_program_is_heard_only_when_it_aborts") {
     int outputs[2], errors[2];
     REQUIRE(pipe(outputs) == 0);
     REQUIRE(pipe(errors) == 0);
+    std::fflush(nullptr);  // or the child does
     pid_t child = fork();
     if (child == 0) {
       dup2(outputs[1], 1), dup2(errors[1], 2);
