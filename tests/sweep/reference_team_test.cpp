@@ -127,7 +127,7 @@ TEST_CASE("reference_team_goes_on_after_an_interrupt_with_other_ranks") {
 // Goal: a rank with another scene, or that cannot open its own, ends the team with an error that names it.
 TEST_CASE("reference_team_ends_if_a_rank_differs") {
   ReferenceGoal goal;
-  goal.samples = 1u << 20;
+  goal.samples = 32;
   AccuracyOptions other = small_cube("16x16"), missing = small_cube();
   missing.common.scene = "no_such_scene";
   Result differs = take(goal, 3, nullptr, &other);

@@ -129,7 +129,9 @@ int run(ReferenceCommand command) {
   ReferenceHelper helper(team, command.options, [&](Rig** found) { return *found = rig.get(), success(); });
   auto open = [&] {
     RETURN_IF_ERROR(check_limit(Quantity::seconds, command.options.seconds, "--time"));
-    return open_for_reference(command, &rig);
+    RETURN_IF_ERROR(open_for_reference(command, &rig));
+    make_rig_reference(rig.get());  // while the leader makes its own
+    return success();
   };
   return run_in_team(
       team, [&] { return lead(command); }, open, [&](const TeamMessage& message) { return helper.work(message); });
