@@ -13,6 +13,10 @@
 #include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
 #include "platform/null/net/null_link.h"
+#ifdef POCKETRAY_HAVE_TLS
+#include "platform/entropy.h"
+#include "platform/net/tls/tls_link.h"
+#endif
 
 namespace platform {
 
@@ -25,6 +29,10 @@ inline std::uint64_t steady_ns() {
 // Shaped links over the other two, fast enough for the tests that run on all links.
 inline const LinkBackend kShapedTcp = shaped_link_backend(kTcpLink);
 inline const LinkBackend kShapedNull = shaped_link_backend(kNullLink);
+#ifdef POCKETRAY_HAVE_TLS
+inline const LinkBackend kTlsTcp = tls_link_backend(kTcpLink);
+inline const LinkBackend kTlsNull = tls_link_backend(kNullLink);
+#endif
 inline ShapedLinkSettings fast_radio() {
   ShapedLinkSettings settings;
   settings.line = {50'000'000, 100'000, 100'000};
@@ -32,9 +40,9 @@ inline ShapedLinkSettings fast_radio() {
 }
 
 struct LinkRig {
-  std::vector<std::max_align_t> memory, radio_memory;
+  std::vector<std::max_align_t> memory, upper_memory;
   const LinkBackend* net = nullptr;
-  Link *link = nullptr, *inner = nullptr;  // inner: below a shaped one
+  Link *link = nullptr, *inner = nullptr;  // inner: below a shaped or encrypted one
   int listener = -1;
   LinkAddress address;  // of the listener
   Error error;
@@ -43,7 +51,16 @@ struct LinkRig {
                    const NullLinkSettings& settings = NullLinkSettings(),
                    const ShapedLinkSettings& radio = fast_radio(), std::uint64_t (*clock)() = steady_ns) {
     bool shaped = &backend == &kShapedTcp || &backend == &kShapedNull;
-    const LinkBackend& below = &backend == &kShapedTcp ? kTcpLink : &backend == &kShapedNull ? kNullLink : backend;
+    bool encrypted = false;
+    const LinkBackend& shaped_below = &backend == &kShapedTcp    ? kTcpLink
+                                      : &backend == &kShapedNull ? kNullLink
+                                                                 : backend;
+#ifdef POCKETRAY_HAVE_TLS
+    encrypted = &backend == &kTlsTcp || &backend == &kTlsNull;
+    const LinkBackend& below = &backend == &kTlsTcp ? kTcpLink : &backend == &kTlsNull ? kNullLink : shaped_below;
+#else
+    const LinkBackend& below = shaped_below;
+#endif
     bool simulated = &below == &kNullLink;
     LinkOptions options;
     options.memory_bytes = simulated ? null_link_need(stream_count_max, settings) : below.need(stream_count_max);
@@ -55,6 +72,7 @@ struct LinkRig {
     link = simulated ? null_link_open(options, settings, &error) : below.open(options, &error);
     REQUIRE_MESSAGE(link != nullptr, error.text);
     if (shaped) open_radio(stream_count_max, radio);
+    if (encrypted) encrypt(stream_count_max);
     REQUIRE_MESSAGE(link != nullptr, error.text);
     REQUIRE(net->resolve(":0", &address, &error));
     listener = net->listen(link, address, &error);
@@ -62,13 +80,28 @@ struct LinkRig {
     REQUIRE(net->resolve(net->stream_name(link, listener), &address, &error));
   }
   void open_radio(int stream_count_max, const ShapedLinkSettings& radio) {
-    LinkOptions options;
-    options.memory_bytes = shaped_link_need(stream_count_max, radio);
-    radio_memory.resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
-    options.memory = radio_memory.data();
-    options.stream_count_max = stream_count_max;
     inner = link;
-    link = shaped_link_open(inner, options, radio, &error);
+    link = shaped_link_open(inner, upper_options(stream_count_max, shaped_link_need(stream_count_max, radio)), radio,
+                            &error);
+  }
+  void encrypt(int stream_count_max) {
+#ifdef POCKETRAY_HAVE_TLS
+    TlsLinkSettings settings;
+    settings.key.bytes[0] = 1;
+    settings.random = random_bytes;
+    inner = link;
+    link = tls_link_open(inner, upper_options(stream_count_max, tls_link_need(stream_count_max)), settings, &error);
+#else
+    (void)stream_count_max;
+#endif
+  }
+  LinkOptions upper_options(int stream_count_max, std::size_t byte_count) {
+    LinkOptions options;
+    options.memory_bytes = byte_count;
+    upper_memory.resize(byte_count / sizeof(std::max_align_t) + 1);
+    options.memory = upper_memory.data();
+    options.stream_count_max = stream_count_max;
+    return options;
   }
   ~LinkRig() {
     net->close_all(link);

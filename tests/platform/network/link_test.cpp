@@ -1,4 +1,5 @@
-// What every link must do, tested on sockets of this machine, on the simulated link, and on a radio over either.
+// What every link must do, tested on sockets of this machine, on the simulated link, and on a radio and on TLS over
+// either.
 #include <doctest/doctest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,8 +13,12 @@
 using namespace platform;
 
 namespace {
+#ifdef POCKETRAY_HAVE_TLS
+const LinkBackend* const kLinks[] = {&kTcpLink, &kNullLink, &kShapedTcp, &kShapedNull, &kTlsTcp, &kTlsNull};
+#else
 const LinkBackend* const kLinks[] = {&kTcpLink, &kNullLink, &kShapedTcp, &kShapedNull};
-}
+#endif
+}  // namespace
 
 // Goal: addresses are parsed as written, a missing host means this machine, and invalid ones are reported. Method: each
 // form.

@@ -1,0 +1,25 @@
+// The key that a device and its render servers share: 256 random bits in a file of one line, readable by its owner
+// alone,
+//
+//     pocketray-key-1:<64 hexadecimal digits>
+#pragma once
+#include <cstddef>
+
+#include "platform/file.h"
+
+namespace platform {
+
+struct SharedKey {
+  static constexpr std::size_t kByteCount = 32;
+  unsigned char bytes[kByteCount] = {};
+};
+
+// Writes a key to a new file of mode 0600. Fails if there is one by that name, whatever it is.
+bool create_key_file(const char* path, const SharedKey& key, FileError* error);
+// Fails if others than the owner may do anything with the file, or if it is not such a file.
+bool read_key_file(const char* path, SharedKey* key, FileError* error);
+
+// Overwrites secret bytes before their memory goes to something else; not optimised away.
+void wipe(void* bytes, std::size_t byte_count);
+
+}  // namespace platform

@@ -1,0 +1,40 @@
+// Encrypted links: a link on top of another whose streams are TLS connections with a shared key (tls_stream.h). Peers
+// of another key, or without one, never become connected. What is written, read and waited for is the same as without.
+//
+// - A connection counts as connected when its handshake is complete, all within the time to connect.
+// - A peer that was accepted has kTlsHandshakeNs for its handshake, during which nothing is read from it; then reading
+//   fails. Handshakes of accepted peers advance in poll() alone, at most one step of one stream in each of its rounds,
+//   so that a flood of them slows the others down by no more than that.
+// - close() tells the peer that nothing more comes, unless bytes from it are left unread. A stream that ends without
+// that
+//   has failed, so nobody on the way can cut it unnoticed.
+#pragma once
+#include "platform/link.h"
+#include "platform/net/key_file.h"
+
+namespace platform {
+
+// Chosen: 3 s for a client to answer (remote/client/client.h), and a second round of a lost packet.
+constexpr std::uint64_t kTlsHandshakeNs = 5'000'000'000;
+
+struct TlsLinkSettings {
+  SharedKey key;
+  bool (*random)(void* bytes, std::size_t byte_count) = nullptr;  // as in platform/entropy.h
+};
+
+// Bytes of memory for that many streams.
+std::size_t tls_link_need(int stream_count_max);
+// `inner` must have room for as many streams; the caller keeps it, it must outlive this link, and others may share it.
+// The clock is the inner one. `options.now_ns` is ignored. The key is wiped from the memory by close_all().
+Link* tls_link_open(Link* inner, const LinkOptions& options, const TlsLinkSettings& settings, Error* error);
+
+// The functions of such a link over links of that kind, except need() and open(), which are the ones above.
+LinkBackend tls_link_backend(const LinkBackend& inner);
+
+struct TlsLinkRecord {
+  std::uint64_t handshakes = 0, failures = 0;  // completed; begun and failed
+  std::size_t heap_bytes_max = 0;              // most that a stream has taken of its kTlsStreamHeapBytes
+};
+TlsLinkRecord tls_link_record(const Link* link);
+
+}  // namespace platform
