@@ -81,6 +81,7 @@ int run_command(int argument_count, char** arguments, const Team& team) {
 #ifdef POCKETRAY_HAVE_NETWORK
   add_serve_command(program, &exit_status);
   add_scenes_command(program, &exit_status);
+  add_keygen_command(program, &exit_status);
 #endif
 #if defined POCKETRAY_HAVE_ACCURACY && defined POCKETRAY_HAVE_NETWORK
   add_split_report_command(program, &exit_status);

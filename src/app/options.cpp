@@ -83,6 +83,12 @@ Option add_server_option(Command command, std::vector<std::string>* addresses) {
       .allow_extra_args(false);
 }
 
+Option add_key_option(Command command, std::string* path) {
+  return command.add_option("--key", *path,
+                            "encrypt the links and let in only who has the key in FILE, made by `pocketray keygen` and "
+                            "the same on both sides; its mode must be 0600");
+}
+
 void add_scene_options(Command command, CommonOptions* o, bool scene_required) {
   add_scene(command, o, scene_required);
   for (int i = 0; i < kSettingCount; ++i)
@@ -194,6 +200,7 @@ void add_budget_options(Command command, BudgetOptions* o) {
 void add_servers_options(Command command, ServersOptions* o) {
   const char* group = "Render servers";
   add_server_option(command, &o->addresses).group(group);
+  add_key_option(command, &o->key).group(group);
   command.add_option("--share", o->device_share, "the device's share of the rows, 0 … 1, instead of the fastest")
       .group(group);
   command

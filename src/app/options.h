@@ -21,10 +21,11 @@ void add_look_options(Command command, CommonOptions* options, const char* own_l
 void add_coherence_options(Command command, CommonOptions* options, const char* usual = "auto");
 // --budget-ms and --front, which exclude the settings they choose. Call after add_scene_options().
 void add_budget_options(Command command, BudgetOptions* options);
-// --json, --isa and --server, each a single option. The variable must outlive the parsing of the command line.
+// --json, --isa, --server and --key, each a single option. The variable must outlive the parsing of the command line.
 Option add_json_option(Command command, std::string* path);
 Option add_isa_option(Command command, std::string* isa);
 Option add_server_option(Command command, std::vector<std::string>* addresses);
+Option add_key_option(Command command, std::string* path);
 // --server and the options that go with it, for builds with a network.
 void add_servers_options(Command command, ServersOptions* options);
 // --side-by-side, for builds with the reference.

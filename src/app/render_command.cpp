@@ -22,8 +22,8 @@ namespace {
 // All that rendering takes. What refers to other members stays in place.
 struct Opened {
   RenderJob job;
-  ServersHandle closing;
   OpenScene scene;
+  ServersHandle closing;  // before the scene, whose block has what they need
   Budget budget;
   AnimationFile animation;
   FrameJournal journal;

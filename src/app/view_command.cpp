@@ -20,6 +20,7 @@ namespace {
 
 // Loads and builds on another thread while the screen shows a message.
 struct Loading {
+  Servers* servers;
   std::unique_ptr<OpenScene> opened = std::make_unique<OpenScene>();
   Status status;
   OpenFront front;
@@ -27,8 +28,7 @@ struct Loading {
   std::thread thread;
 
   Loading(const CommonOptions& options, const BudgetOptions& budget, Viewer* viewer)
-      : thread([this, &options, &budget, viewer] {
-          Servers* servers = viewer->servers;
+      : servers(viewer->servers), thread([this, &options, &budget, viewer] {
           status = budget.ms > 0 ? open_scene_with_front(options, {budget.front}, viewer_bytes, opened.get(), &front)
                                  : open_scene_with(servers, options, viewer_bytes, opened.get());
           if (status.ok && servers)
@@ -36,7 +36,10 @@ struct Loading {
                                              viewer->options.dither);
           done = true;
         }) {}
-  ~Loading() { thread.join(); }
+  ~Loading() {
+    thread.join();
+    if (servers) servers->backend->stop(servers);
+  }
 };
 
 // Shows the waiting screen until the scene is loaded. False if the user quit first.

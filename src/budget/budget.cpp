@@ -58,10 +58,10 @@ constexpr IndirectChoice kInstantRadiosity = indirect_choice(Effect::instant_rad
 
 // Plans with virtual lights, for undersampling and source selection, if a candidate has them, and the most points per
 // area light that fit; drops candidates that need more.
-Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes, const FrontSource& source,
+Status plan_front(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output, const FrontSource& source,
                   const ContentHash* identity, OpenFront* f) {
   renderer->settings.points_per_area_light = 1;
-  RETURN_IF_ERROR(plan_renderer(renderer, storage, output_bytes));
+  RETURN_IF_ERROR(plan_renderer(renderer, storage, output));
   RETURN_IF_ERROR(load_front(*renderer, source, identity, f));
   const Front all = f->front;
   CHECK_GT(all.count, 0u);
@@ -78,7 +78,7 @@ Status plan_front(Renderer* renderer, const SceneStorage& storage, std::size_t o
         renderer->settings.light_tolerance = f->front.candidates[i].light_tolerance;
     }
     renderer->settings.points_per_area_light = most;
-    Status status = plan_renderer(renderer, storage, output_bytes);
+    Status status = plan_renderer(renderer, storage, output);
     Front rest;
     for (std::uint32_t i = 0; i < f->front.count && !status.ok; ++i)
       if (f->front.candidates[i].points_per_area_light < most) rest.candidates[rest.count++] = f->front.candidates[i];
@@ -118,8 +118,8 @@ Status open_scene_with_front(const CommonOptions& common, const FrontSource& fro
     if (!identified) f->notes.push_back("prices are not saved: too little memory to identify the scene by its content");
     return success();
   };
-  hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, std::size_t bytes) {
-    return plan_front(renderer, storage, bytes, from, identified ? &identity : nullptr, f);
+  hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
+    return plan_front(renderer, storage, output, from, identified ? &identity : nullptr, f);
   };
   RETURN_IF_ERROR(open_scene(common, hooks, opened));
   return start_scene(opened, common);

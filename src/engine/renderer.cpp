@@ -81,31 +81,31 @@ Status adopt_or_build(Renderer* renderer) {
   return renderer->accel_info->adopt(&renderer->accel, renderer->accel_data);
 }
 
-Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, std::size_t output_bytes) {
+Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, const OutputNeed& output) {
   renderer->accel_info = &accel;
   CoherenceState* coherence = &renderer->coherence_state;
   Status status = plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, storage,
-                              {renderer->light_points.count, renderer->selected_light_max}, output_bytes,
-                              &renderer->memory, &coherence->unplanned_because);
+                              {renderer->light_points.count, renderer->selected_light_max}, output, &renderer->memory,
+                              &coherence->unplanned_because);
   coherence->planned = !coherence->unplanned_because;
   return status;
 }
 
 // Chooses the accelerator and plans the memory with it: the requested one, else the one the scene was baked with, else
 // the default, else, if that does not fit, the first automatic one that does.
-Status choose_accel(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
+Status choose_accel(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
   const AccelInfo* baked = accel_of(renderer->scene.accel);
   if (renderer->accel_info) {
     if (renderer->accel_info != baked) renderer->scene.accel = {};
-    return plan_with(renderer, *renderer->accel_info, storage, output_bytes);
+    return plan_with(renderer, *renderer->accel_info, storage, output);
   }
   const AccelInfo* first = baked ? baked : kAccelList[0];
-  Status status = plan_with(renderer, *first, storage, output_bytes);
+  Status status = plan_with(renderer, *first, storage, output);
   if (first != kAccelList[0]) return status;
   for (const AccelInfo* info : kAccelList) {
     if (status.ok || info == first || !info->is_automatic) continue;
     renderer->scene.accel = {};
-    status = plan_with(renderer, *info, storage, output_bytes);
+    status = plan_with(renderer, *info, storage, output);
     renderer->accel_is_fallback = status.ok;
   }
   return status;
@@ -121,7 +121,7 @@ void start_renderer(void* block, std::size_t block_bytes, const Settings& settin
       renderer->scene_arena.capacity;  // aligning the block's start may have lost a few bytes
 }
 
-Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
+Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
   RETURN_IF_ERROR(validate_settings(renderer->settings));
   if (renderer->camera_index > 0 && renderer->camera_index >= renderer->scene.cameras.count)
     return failure("there is no camera %u: the scene has %u, counted from 0", renderer->camera_index,
@@ -140,7 +140,7 @@ Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_
   const bool may_select =
       renderer->light_count_max > 0 && renderer->settings.light_tolerance > 0 && light_count_max >= kSelectedLightsMin;
   renderer->selected_light_max = may_select || has(renderer->effects.mask, Effect::source_selection) ? point_count : 0;
-  return choose_accel(renderer, storage, output_bytes);
+  return choose_accel(renderer, storage, output);
 }
 
 Status build_renderer_unexposed(Renderer* renderer) {
@@ -211,9 +211,9 @@ Status build_renderer(Renderer* renderer) {
   return success();
 }
 
-Status plan_without_scene(Renderer* renderer, std::size_t output_bytes) {
+Status plan_without_scene(Renderer* renderer, const OutputNeed& output) {
   RETURN_IF_ERROR(validate_settings(renderer->settings));
-  RETURN_IF_ERROR(plan_output_memory(renderer->settings, output_bytes, &renderer->memory));
+  RETURN_IF_ERROR(plan_output_memory(renderer->settings, output, &renderer->memory));
   Arena rest = renderer->scene_arena;
   renderer->scene_arena.capacity = 0;
   renderer->frame_arena = take_front(&rest, "frame", renderer->memory.arena_bytes[static_cast<int>(ArenaKind::frame)]);

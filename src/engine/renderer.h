@@ -95,15 +95,15 @@ struct Renderer {
 void start_renderer(void* block, std::size_t block_bytes, const Settings& settings, Renderer* renderer);
 
 // Second step, with renderer->scene set: adds a missing camera and lights, plans effects and memory. On failure the
-// plans are filled as far as they got, so that they can be shown. `output_bytes` as in plan_memory().
-Status plan_renderer(Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes);
+// plans are filled as far as they got, so that they can be shown. `output` as in plan_memory().
+Status plan_renderer(Renderer* renderer, const SceneStorage& storage, const OutputNeed& output);
 
 // Third step: carves the arenas, builds the accelerator, poses the scene at time 0. Call it only once.
 Status build_renderer(Renderer* renderer);
 
 // Replaces the second and third step on a device that only shows what others render: has memory for the output alone
 // and renders nothing. The caller sets camera, exposure, effects and whatever else it uses of the scene.
-Status plan_without_scene(Renderer* renderer, std::size_t output_bytes);
+Status plan_without_scene(Renderer* renderer, const OutputNeed& output);
 
 // Changes the settings that trade accuracy for time for the next frames, within the planned memory: samples, depth,
 // points per area light, cut-off, texture filter and normals may differ. If one is out of range or the lights would

@@ -53,7 +53,7 @@ CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point
 namespace {
 
 Status plan_memory_with(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                        const SceneStorage& storage, const PlannedLights& lights, std::size_t output_bytes,
+                        const SceneStorage& storage, const PlannedLights& lights, const OutputNeed& output,
                         bool with_coherence, MemoryPlan* plan) {
   CHECK(plan != nullptr);
   CHECK(settings.threads >= 1 && settings.threads <= kThreadCountMax);
@@ -104,8 +104,9 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   // The scratch of a single build is free again when the first frame is shown, so output shares its part of the frame
   // arena.
   if (rebuilds) add_part(plan, "build scratch", ArenaKind::frame, std::exchange(scratch, 0));
-  add_part(plan, scratch > output_bytes ? "build scratch, then output" : "output", ArenaKind::frame,
-           std::max(scratch, output_bytes));
+  add_part(plan, scratch > output.output_bytes ? "build scratch, then output" : "output", ArenaKind::frame,
+           std::max(scratch, output.output_bytes));
+  add_part(plan, "encrypted links", ArenaKind::frame, output.tls_bytes);
   align_arenas(plan);
 
   if (plan->total_bytes <= plan->limit_bytes) return success();
@@ -123,7 +124,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
 }  // namespace
 
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                   const SceneStorage& storage, const PlannedLights& lights, std::size_t output_bytes, MemoryPlan* plan,
+                   const SceneStorage& storage, const PlannedLights& lights, const OutputNeed& output, MemoryPlan* plan,
                    const char** without_coherence) {
   const bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
   bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
@@ -138,21 +139,22 @@ Status plan_memory(const Scene& scene, const Settings& settings, const EffectPla
                     : settings.coherence == CoherenceMode::off ? "coherence is off"
                     : wanted                                   ? nullptr
                                                                : "nothing moves";
-  Status status = plan_memory_with(scene, settings, effects, accel, storage, lights, output_bytes, wanted, plan);
+  Status status = plan_memory_with(scene, settings, effects, accel, storage, lights, output, wanted, plan);
   if (wanted && !status.ok) {
     wanted = false;
     why = "coherence does not fit into memory";
-    status = plan_memory_with(scene, settings, effects, accel, storage, lights, output_bytes, wanted, plan);
+    status = plan_memory_with(scene, settings, effects, accel, storage, lights, output, wanted, plan);
   }
   if (without_coherence) *without_coherence = why;
   return status;
 }
 
-Status plan_output_memory(const Settings& settings, std::size_t output_bytes, MemoryPlan* plan) {
+Status plan_output_memory(const Settings& settings, const OutputNeed& output, MemoryPlan* plan) {
   CHECK(plan != nullptr);
   *plan = MemoryPlan();
   plan->limit_bytes = settings.memory_bytes;
-  add_part(plan, "output", ArenaKind::frame, output_bytes);
+  add_part(plan, "output", ArenaKind::frame, output.output_bytes);
+  add_part(plan, "encrypted links", ArenaKind::frame, output.tls_bytes);
   align_arenas(plan);
   if (plan->total_bytes <= plan->limit_bytes) return success();
   return failure(

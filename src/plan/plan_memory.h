@@ -40,18 +40,25 @@ struct PlannedLights {
   std::uint32_t selected = 0;  // points among which source selection chooses; 0: it is not planned
 };
 
-// Plans the block. `output_bytes` is what the caller needs to show or write a frame (packed pixels, PNG encoder).
+// What the caller needs of the frame arena.
+struct OutputNeed {
+  std::size_t output_bytes = 0;  // to show or write a frame: packed pixels, PNG encoder, rows of render servers
+  std::size_t tls_bytes = 0;     // to encrypt the links to render servers
+  OutputNeed(std::size_t bytes) : output_bytes(bytes) {}
+};
+
+// Plans the block.
 // Fails with the figures and a setting that would fit if the total exceeds settings.memory_bytes; fills the plan in
 // either case.
 // Memory to trace only what changes is planned as requested, and left out if everything else fits without it:
 // *without_coherence (may be null) receives why it is left out, or null.
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
-                   const SceneStorage& storage, const PlannedLights& lights, std::size_t output_bytes, MemoryPlan* plan,
+                   const SceneStorage& storage, const PlannedLights& lights, const OutputNeed& output, MemoryPlan* plan,
                    const char** without_coherence = nullptr);
 CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count);
 
 // The same for a device that only shows what others render: its plan has only the output.
-Status plan_output_memory(const Settings& settings, std::size_t output_bytes, MemoryPlan* plan);
+Status plan_output_memory(const Settings& settings, const OutputNeed& output, MemoryPlan* plan);
 
 // Draws the map as text, one line per part, into `text` (`size` bytes, always terminated). Returns its length.
 std::size_t draw_memory_plan(const MemoryPlan& plan, char* text, std::size_t size);

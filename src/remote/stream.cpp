@@ -106,6 +106,13 @@ bool send_message(MessageStream* s, const Message& message) {
   return true;
 }
 
+const char* malformed_text(const MessageStream& s) {
+  // An alert or a handshake of any TLS [RFC 5246, sec. 6.2.1]; no message has such a type.
+  const std::uint8_t* bytes = s.in.data + s.in_begin;
+  const bool is_tls = input_bytes(s) >= 2 && (bytes[0] == 21 || bytes[0] == 22) && bytes[1] == 3;
+  return is_tls ? "it asks for a key: use the one that it was given (--key)" : "it sent a malformed message";
+}
+
 Status check_version(const Hello& hello) {
   if (hello.version == kWireVersion) return success();
   return failure("it speaks protocol version %u and this program version %u: update one", hello.version, kWireVersion);

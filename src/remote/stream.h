@@ -48,6 +48,9 @@ inline void drop_input(MessageStream* stream) { stream->in_begin = stream->in_en
 // Queues a message; false if it does not fit.
 [[nodiscard]] bool send_message(MessageStream* stream, const Message& message);
 
+// Why take_message() called the input malformed: a peer that uses TLS answers with that.
+const char* malformed_text(const MessageStream& stream);
+
 // Fails if the peer's hello has another protocol version.
 Status check_version(const Hello& hello);
 

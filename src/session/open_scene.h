@@ -21,10 +21,10 @@ struct OpenScene {
 
 // A command's additions to opening a scene.
 struct OpenHooks {
-  std::function<std::size_t(const Settings&)> output_bytes;  // as plan_memory() takes it
+  std::function<OutputNeed(const Settings&)> output_bytes;  // as plan_memory() takes it
   std::function<Status(const std::string& name, Renderer*, SceneSource*, SceneStorage*)> load = load_scene;
   std::function<Status(const SceneSource&, Renderer*)> loaded = {};  // between loading and planning
-  std::function<Status(Renderer*, const SceneStorage&, std::size_t output_bytes)> plan = plan_renderer;
+  std::function<Status(Renderer*, const SceneStorage&, const OutputNeed& output)> plan = plan_renderer;
 };
 
 // Fails if the system cannot give a block of `wanted` bytes: it would end the program as soon as it uses them.

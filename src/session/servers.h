@@ -20,6 +20,7 @@ constexpr int kVerifyAuto = -1;
 
 struct ServersOptions {
   std::vector<std::string> addresses;
+  std::string key;  // file of the key that encrypts the links; empty: they are not encrypted
   double device_share = kBestShare;
   int verify = kVerifyAuto;  // servers' pixels to check per frame
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
@@ -49,8 +50,8 @@ struct ServersTotals {
   std::uint64_t frames = 0, device_rows = 0, server_rows = 0, bytes_in = 0, bytes_out = 0;
   std::uint64_t device_pixels = 0;     // traced in the device's rows
   std::uint64_t unchanged_frames = 0;  // equal to the frame before: nothing was requested
-  std::uint64_t checked = 0;  // servers' pixels checked, or rows if the device has no scene
-  std::uint32_t lies = 0;     // servers caught with wrong pixels
+  std::uint64_t checked = 0;           // servers' pixels checked, or rows if the device has no scene
+  std::uint32_t lies = 0;              // servers caught with wrong pixels
   bool checks_rows = false;
   double caught_row = 0;              // lowest probability of catching one wrong row per frame, over all servers
   double local_ns = 0, known_ns = 0;  // predicted for the device alone, and measured; only frames with a prediction
@@ -85,6 +86,8 @@ struct ServersBackend {
 
   // With the scene open, gets ready for frames; pixels arrive with 24 bits, or 16 if `small_pixels`.
   Status (*start)(Servers* servers, Renderer* renderer, bool small_pixels, bool dither);
+  // Ends what start() began, if it did. Call before the renderer's memory is given back, or close().
+  void (*stop)(Servers* servers);
   // Begin a frame, then advance it, each time until about `deadline_ns` of clock_ns(), until it is complete.
   // begin_frame() abandons an unfinished frame.
   Status (*begin_frame)(Servers* servers, Renderer* renderer, double seconds);

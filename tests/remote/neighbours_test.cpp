@@ -299,3 +299,36 @@ TEST_CASE("server_slices_expect_dear_pixels_behind_cheap_ones") {
   CHECK(known > 0.6 * kRoomNs);
   CHECK(dear_pixel_ns(known, kRoomNs) == kRoomNs);
 }
+
+// Goal: whoever opens connections without a hello has half of the guests' places at most, so that a client from
+// elsewhere gets in at once, and its own oldest ones make way. Method: a flood from one address, then a client.
+TEST_CASE("server_keeps_guests_places_for_other_addresses") {
+  ServerRig rig;
+  const int half = ServerOptions().guest_count_max / 2;
+  std::vector<int> flood;
+  auto is_open = [&](int stream) {
+    char byte[64];
+    std::size_t count = 0;
+    platform::Error error;
+    platform::LinkResult result = platform::LinkResult::done;
+    while (result == platform::LinkResult::done)
+      result = rig.net->read(rig.link, stream, byte, sizeof byte, &count, &error);
+    return result == platform::LinkResult::later;
+  };
+  for (int i = 0; i < 3 * half; ++i) {
+    platform::Error error;
+    int stream = platform::null_link_connect_from(rig.link, "10.0.0.7", rig.address, 1000 * kMs, &error);
+    REQUIRE_MESSAGE(stream >= 0, error.text);
+    flood.push_back(stream);
+    rig.step();
+    rig.step();
+  }
+  for (int i = 0; i < 3 * half; ++i) {
+    CAPTURE(i);
+    CHECK_EQ(is_open(flood[static_cast<std::size_t>(i)]), i >= 2 * half);
+  }
+  ScriptedClient client(&rig);
+  client.wait_for(MessageType::hello, 100 * kMs);
+  for (int i = 2 * half; i < 3 * half; ++i) CHECK(is_open(flood[static_cast<std::size_t>(i)]));
+  for (int stream : flood) rig.net->close(rig.link, stream);
+}

@@ -26,12 +26,12 @@ struct ReportOptions {
 enum class Way { frame_by_frame, coherent, by_tables };
 
 Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* renderer, const SceneStorage& storage,
-                std::size_t output_bytes) {
+                const OutputNeed& output) {
   Settings* settings = &renderer->settings;
   settings->coherence = way == Way::frame_by_frame ? CoherenceMode::off : CoherenceMode::on;
   settings->coherence_table = table;
   settings->coherence_by_tables = way == Way::by_tables;
-  RETURN_IF_ERROR(plan_renderer(renderer, storage, output_bytes));
+  RETURN_IF_ERROR(plan_renderer(renderer, storage, output));
   if (!has(renderer->effects.mask, Effect::animation) || !is_animated(renderer->scene))
     return failure("%s does not move, so every frame would be the first again: choose a scene with an animation, as %s",
                    o.common.scene.c_str(), kPapersScene);
@@ -56,8 +56,8 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
 Status open_way(Way way, const ReportOptions& o, std::uint32_t table, OpenScene* opened) {
   OpenHooks hooks;
   hooks.output_bytes = [](const Settings&) -> std::size_t { return 0; };
-  hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, std::size_t output_bytes) {
-    return plan_way(way, o, table, renderer, storage, output_bytes);
+  hooks.plan = [&](Renderer* renderer, const SceneStorage& storage, const OutputNeed& output) {
+    return plan_way(way, o, table, renderer, storage, output);
   };
   RETURN_IF_ERROR(open_scene(o.common, hooks, opened));
   return start_scene(opened, o.common);

@@ -6,5 +6,6 @@ namespace pocketray {
 
 void add_serve_command(Command program, int* exit_status);
 void add_scenes_command(Command program, int* exit_status);
+void add_keygen_command(Command program, int* exit_status);
 
 }  // namespace pocketray

@@ -57,6 +57,7 @@ void add_scenes_command(Command program, int* exit_status) {
   auto o = std::make_shared<ScenesOptions>();
   Command command = program.add_subcommand("scenes", "list the scenes that render servers offer");
   add_server_option(command, &o->servers.addresses).required();
+  add_key_option(command, &o->servers.key);
   add_json_option(command, &o->json);
   command.footer(
       "Pass any of these names to `render` or `view` with the same --server. They fetch the scene, or leave it to the\n"

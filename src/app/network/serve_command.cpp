@@ -10,6 +10,7 @@
 #include "platform/net/descriptors.h"
 #include "platform/net/tcp.h"
 #include "platform/standard_streams.h"
+#include "remote/encryption.h"
 #include "remote/server/server.h"
 #include "session/interrupt.h"
 #include "session/note.h"
@@ -19,7 +20,7 @@ namespace pocketray {
 namespace {
 
 struct ServeOptions {
-  std::string listen = "127.0.0.1:7411", scenes, memory = "64M", scene_memory = "1G", coherence = "auto", isa;
+  std::string listen = "127.0.0.1:7411", key, scenes, memory = "64M", scene_memory = "1G", coherence = "auto", isa;
   int clients = 8;
   std::uint32_t threads = 0, image_side_max = 2048;
   double idle_seconds = 300;
@@ -28,8 +29,8 @@ struct ServeOptions {
 
 struct Serving {
   SceneStore store;
-  std::vector<std::max_align_t> link_memory;
-  platform::Link* link = nullptr;
+  std::vector<std::max_align_t> tcp_memory, tls_memory;
+  platform::Link *tcp = nullptr, *link = nullptr;  // link: tcp, or the encrypted one over it
   Server* server = nullptr;
   Serving() = default;
   Serving(const Serving&) = delete;
@@ -37,7 +38,8 @@ struct Serving {
   ~Serving() {
     unseal_memory();
     close_server(server);
-    if (link) link->backend->close_all(link);
+    if (link && link != tcp) link->backend->close_all(link);
+    if (tcp) tcp->backend->close_all(tcp);
   }
 };
 
@@ -65,11 +67,11 @@ Status plan_streams(ServerOptions* options) {
 Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
   platform::Error error;
   if (!platform::kTcpLink.resolve(o.listen.c_str(), address, &error)) return failure("--listen: %s", error.text);
-  if (address->loopback || o.insecure_lan) return success();
+  if (address->loopback || o.insecure_lan || !o.key.empty()) return success();
   return failure(
       "--listen %s is open to other machines and there is no authentication: anyone who reaches the port can use the "
-      "CPU and see the scenes. Listen on 127.0.0.1:7411 and connect through an SSH tunnel, or trust the network with "
-      "--insecure-lan",
+      "CPU and see the scenes. Give both sides a key (`pocketray keygen`, --key), listen on 127.0.0.1:7411 and connect "
+      "through an SSH tunnel, or trust the network with --insecure-lan",
       o.listen.c_str());
 }
 
@@ -89,6 +91,27 @@ Status read_options(const ServeOptions& o, ServerOptions* options) {
   return success();
 }
 
+Status open_link(const ServeOptions& o, int stream_count, Serving* serving) {
+  auto options_in = [&](std::vector<std::max_align_t>* memory, std::size_t byte_count) {
+    memory->resize(byte_count / sizeof(std::max_align_t) + 1);
+    platform::LinkOptions options;
+    options.memory = memory->data(), options.memory_bytes = memory->size() * sizeof(std::max_align_t);
+    options.stream_count_max = stream_count;
+    options.now_ns = clock_ns;
+    return options;
+  };
+  platform::SharedKey key;
+  if (!o.key.empty()) RETURN_IF_ERROR(read_key(o.key, &key));
+  platform::Error error;
+  serving->tcp = serving->link =
+      platform::kTcpLink.open(options_in(&serving->tcp_memory, platform::kTcpLink.need(stream_count)), &error);
+  if (serving->tcp && !o.key.empty())
+    serving->link = open_encrypted_link(
+        serving->tcp, options_in(&serving->tls_memory, encrypted_link_need(stream_count)), key, &error);
+  platform::wipe(&key, sizeof key);
+  return serving->link ? success() : failure("%s", error.text);
+}
+
 Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   platform::LinkAddress address;
   RETURN_IF_ERROR(find_address(o, &address));
@@ -100,15 +123,7 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   store_options.bytes_max = scene_bytes;
 
   RETURN_IF_ERROR(plan_streams(options));
-  platform::LinkOptions link_options;
-  link_options.stream_count_max = server_stream_count(*options);
-  link_options.memory_bytes = platform::kTcpLink.need(link_options.stream_count_max);
-  serving->link_memory.resize(link_options.memory_bytes / sizeof(std::max_align_t) + 1);
-  link_options.memory = serving->link_memory.data();
-  link_options.now_ns = clock_ns;
-  platform::Error error;
-  serving->link = platform::kTcpLink.open(link_options, &error);
-  if (!serving->link) return failure("%s", error.text);
+  RETURN_IF_ERROR(open_link(o, server_stream_count(*options), serving));
   // Takes the address first, so that one already in use is reported before the slow reading of scenes.
   RETURN_IF_ERROR(open_server(*options, serving->store, serving->link, address, &serving->server));
   RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
@@ -116,10 +131,13 @@ Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
   return success();
 }
 
-void print_start(const Serving& serving, const ServerOptions& options) {
+void print_start(const ServeOptions& o, const Serving& serving, const ServerOptions& options) {
   for (const StoredScene& scene : serving.store.scenes)
     std::printf("  %-24s %9s triangles %8.1f MiB\n", scene.name, grouped(scene.scene.triangles.count).c_str(),
                 static_cast<double>(scene.byte_count) / (1 << 20));
+  if (!o.key.empty())
+    std::printf("  only for holders of the key in %s, encrypted; %.1f MiB for that\n", o.key.c_str(),
+                static_cast<double>(encrypted_link_need(server_stream_count(options))) / (1 << 20));
   std::printf("listening on %s: %zu scenes, %u thread%s, %d clients of %.0f MiB each; Ctrl-C stops it\n",
               server_address(*serving.server), serving.store.scenes.size(), options.thread_count,
               options.thread_count == 1 ? "" : "s", options.client_count_max,
@@ -134,7 +152,7 @@ int run(const ServeOptions& o) {
   ServerOptions options;
   Status status = start(o, &serving, &options);
   if (!status.ok) return report(status);
-  print_start(serving, options);
+  print_start(o, serving, options);
   seal_memory();
   while (!interrupted) step_server(serving.server, kStepNs);
   unseal_memory();
@@ -157,10 +175,13 @@ void add_serve_command(Command program, int* exit_status) {
   command
       .add_option("--listen", o->listen,
                   "HOST:PORT to listen on; port 0 takes any free one; addresses that other machines can reach need "
-                  "--insecure-lan")
+                  "--key or --insecure-lan")
       .capture_default_str();
-  command.add_flag("--insecure-lan", o->insecure_lan,
-                   "allow addresses that other machines can reach; there is no authentication");
+  Option key = add_key_option(command, &o->key);
+  command
+      .add_flag("--insecure-lan", o->insecure_lan,
+                "allow addresses that other machines can reach; there is no authentication")
+      .excludes(key);
   command.add_option(
       "--scenes", o->scenes,
       "folder of scenes to offer besides the built-in ones, without its subfolders: .pray files and, on a desktop, "

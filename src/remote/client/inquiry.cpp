@@ -58,7 +58,7 @@ Status await(Inquiry* q, MessageType type, Message* answer) {
   RETURN_IF_ERROR(check_stop(*q));  // even if the server answers without a wait
   for (;;) {
     DecodeState state = take_message(&q->messages, answer);
-    if (state == DecodeState::malformed) return failure("it sent a malformed message");
+    if (state == DecodeState::malformed) return failure("%s", malformed_text(q->messages));
     if (state == DecodeState::message) {
       if (answer->type == MessageType::error) return failure("%s", wire_error_text(answer->error.code));
       return answer->type == type ? success() : failure("it sent an unrequested message");

@@ -151,7 +151,7 @@ void read_server(Client* client, RemoteServer* server) {
       if (server->more) return;
       Message message;
       DecodeState state = take_message(&server->messages, &message);
-      if (state == DecodeState::malformed) return lose_server(client, server, "it sent a malformed message");
+      if (state == DecodeState::malformed) return lose_server(client, server, malformed_text(server->messages));
       if (state == DecodeState::need_more) break;
       took = true;
       ++messages;

@@ -31,7 +31,7 @@ Status ask(ConnectedServers* s, std::size_t server, Inquiry* inquiry) {
   CHECK_LT(server, s->addresses.size());
   InquiryOptions options;
   options.stopped = [s] { return s->stopped.load() || interrupted.load(); };
-  return open_inquiry(options, s->link, s->addresses[server], inquiry);
+  return open_inquiry(options, s->inquiry_link ? s->inquiry_link : s->link, s->addresses[server], inquiry);
 }
 
 // "127.0.0.1:7411: it does not answer; …", each server once; the link's errors already begin with the name.
@@ -168,7 +168,7 @@ EffectPlan effects_of_servers(EffectMask mask) {
 }
 
 // Opens without the scene: shows what the servers render.
-Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output_bytes, OpenScene* opened) {
+Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& output, OpenScene* opened) {
   CHECK(opened->block != nullptr);
   if (!o.fov.empty())
     return failure("--fov needs the scene on this device: raise --memory to hold it, or use --camera");
@@ -196,7 +196,7 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, std::size_t output
   Renderer* renderer = &opened->renderer;
   *renderer = Renderer();
   start_renderer(opened->block, limit, query.settings, renderer);
-  RETURN_IF_ERROR(plan_without_scene(renderer, output_bytes));
+  RETURN_IF_ERROR(plan_without_scene(renderer, output));
   renderer->pace = pace;
   renderer->camera = s->view.camera;
   renderer->camera_index = o.camera_index;
@@ -227,7 +227,9 @@ Status open_scene_or_leave_it(Servers* servers, const CommonOptions& common, con
         "--light");
   OpenHooks hooks;
   hooks.output_bytes = [&](const Settings& settings) {
-    return output_bytes(settings) + servers->backend->need(*servers, settings);
+    OutputNeed need(output_bytes(settings) + servers->backend->need(*servers, settings));
+    need.tls_bytes = arena_need(client_tls_need(*s));
+    return need;
   };
   end_client(s);
   s->is_named = s->is_thin = false;

@@ -10,6 +10,7 @@
 #include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
 #include "remote/client/frame.h"
+#include "remote/encryption.h"
 
 namespace pocketray {
 
@@ -29,7 +30,9 @@ platform::LinkOptions link_options(int stream_count_max, std::size_t byte_count,
 }
 
 Status open_link(const platform::Device* emulated, ConnectedServers* s) {
-  int streams = static_cast<int>(s->addresses.size());
+  // One more with a key: an inquiry's connection may still be closing when the client opens its own.
+  const bool has_key = !s->options.key.empty();
+  int streams = static_cast<int>(s->addresses.size()) + has_key;
   platform::Error error;
   CHECK_LE(s->addresses.size(), std::size_t(kServerCountMax));
   s->tcp = s->link = kNet.open(link_options(streams, kNet.need(streams), &s->tcp_memory), &error);
@@ -38,7 +41,22 @@ Status open_link(const platform::Device* emulated, ConnectedServers* s) {
     std::size_t need = platform::shaped_link_need(streams, radio);
     s->link = platform::shaped_link_open(s->tcp, link_options(streams, need, &s->radio_memory), radio, &error);
   }
-  return s->link ? success() : failure("%s", error.text);
+  if (s->link && has_key)
+    s->inquiry_link =
+        open_encrypted_link(s->link, link_options(1, encrypted_link_need(1), &s->inquiry_memory), s->key, &error);
+  return s->link && (s->inquiry_link || !has_key) ? success() : failure("%s", error.text);
+}
+
+// Opens the client's link in the arena, if it is an encrypted one.
+Status open_client_link(ConnectedServers* s, Arena* arena) {
+  if (s->options.key.empty()) return success();
+  platform::LinkOptions options;
+  options.stream_count_max = static_cast<int>(s->addresses.size());
+  options.memory_bytes = client_tls_need(*s);
+  options.memory = arena_allocate(arena, options.memory_bytes);
+  platform::Error error;
+  s->client_link = open_encrypted_link(s->link, options, s->key, &error);
+  return s->client_link ? success() : failure("%s", error.text);
 }
 
 void print_line(void*, const char* line) { std::fprintf(stderr, "pocketray: %s\n", line); }
@@ -54,6 +72,7 @@ Status check(const ServersOptions& o) {
     if (!(x >= 0 && x < 1e30)) return failure("prices, energies and their weights must not be negative");
   if (o.verify != kVerifyAuto && !(o.verify >= 0 && o.verify <= static_cast<int>(kSpotChecksMax)))
     return failure("--verify is %d: it must lie in 0 … %u", o.verify, kSpotChecksMax);
+  if (o.addresses.empty() && !o.key.empty()) return failure("--key encrypts links to render servers: add --server");
   if (o.addresses.empty() && o.verify != kVerifyAuto)
     return failure("--verify checks pixels of render servers: add --server");
   bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
@@ -77,6 +96,7 @@ Status open_servers(const ServersOptions& options, const platform::Device* emula
   if (options.addresses.empty()) return success();
   auto s = std::make_unique<ConnectedServers>();
   s->options = options;
+  if (!options.key.empty()) RETURN_IF_ERROR(read_key(options.key, &s->key));
   for (const std::string& text : options.addresses) {
     platform::LinkAddress address;
     platform::Error error;
@@ -91,8 +111,10 @@ Status open_servers(const ServersOptions& options, const platform::Device* emula
 void close_servers(Servers* servers) {
   ConnectedServers* s = connected(servers);
   end_client(s);
+  if (s->inquiry_link) s->inquiry_link->backend->close_all(s->inquiry_link);
   if (s->link != s->tcp) s->link->backend->close_all(s->link);
   kNet.close_all(s->tcp);
+  platform::wipe(&s->key, sizeof s->key);
   delete s;
 }
 
@@ -118,13 +140,17 @@ Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, boo
   options.log = print_line;
   s->totals = ServersTotals();
   s->last = FrameShare();
+  RETURN_IF_ERROR(open_client_link(s, &renderer->frame_arena));
   s->started = true;
-  RETURN_IF_ERROR(make_client(options, renderer->settings, s->scene, s->link, s->addresses.data(),
-                              static_cast<std::uint32_t>(s->addresses.size()), &renderer->frame_arena, &s->client));
+  RETURN_IF_ERROR(make_client(options, renderer->settings, s->scene, s->client_link ? s->client_link : s->link,
+                              s->addresses.data(), static_cast<std::uint32_t>(s->addresses.size()),
+                              &renderer->frame_arena, &s->client));
   for (std::uint32_t i = 0; i < s->client.server_count; ++i)
     s->client.servers[i].lied = s->client.servers[i].told = s->lied[i];
   return success();
 }
+
+void stop_client(Servers* servers) { end_client(connected(servers)); }
 
 Status begin_frame(Servers* servers, Renderer* renderer, double seconds) {
   return begin_frame(renderer, &connected(servers)->client, seconds);
@@ -254,6 +280,7 @@ const ServersBackend kRenderServers = {open_servers,
                                        scene_triangle_count,
                                        list_offered_scenes,
                                        start_client,
+                                       stop_client,
                                        begin_frame,
                                        advance_frame,
                                        tend_client,
@@ -266,10 +293,16 @@ const ServersBackend kRenderServers = {open_servers,
 
 ConnectedServers::ConnectedServers() : Servers{&kRenderServers} {}
 
+std::size_t client_tls_need(const ConnectedServers& s) {
+  return s.options.key.empty() ? 0 : encrypted_link_need(static_cast<int>(s.addresses.size()));
+}
+
 void end_client(ConnectedServers* servers) {
   for (std::uint32_t i = 0; servers->started && i < servers->client.server_count; ++i)
     servers->lied[i] = servers->client.servers[i].lied;
   if (servers->started) close_client(&servers->client);
+  if (servers->client_link) servers->client_link->backend->close_all(servers->client_link);
+  servers->client_link = nullptr;
   servers->started = false;
 }
 

@@ -1,5 +1,6 @@
 // The backend of session/servers.h: a Client over TCP, and a scene fetched from or left to the servers.
 #pragma once
+#include "platform/net/key_file.h"
 #include "remote/client/client.h"
 #include "session/servers.h"
 
@@ -10,9 +11,12 @@ struct ConnectedServers : Servers {
 
   ServersOptions options;
   std::vector<platform::LinkAddress> addresses;
-  std::vector<std::max_align_t> tcp_memory, radio_memory;
+  std::vector<std::max_align_t> tcp_memory, radio_memory, inquiry_memory;
   platform::Link* tcp = nullptr;
-  platform::Link* link = nullptr;  // tcp, or the emulated radio over it
+  platform::Link* link = nullptr;          // tcp, or the emulated radio over it
+  platform::Link* inquiry_link = nullptr;  // an encrypted one over it, for questions before the first frame; null: link
+  platform::Link* client_link = nullptr;   // the same for the client, in its arena
+  platform::SharedKey key;                 // if options.key
   ContentHash scene;
   bool is_named = false;  // `scene` is the hash of the open scene
   bool is_thin = false;   // the scene does not fit on the device
@@ -32,6 +36,8 @@ inline const ConnectedServers& connected(const Servers& servers) {
 
 extern const ServersBackend kRenderServers;
 
+// Bytes of the client's encrypted link; 0 without a key.
+std::size_t client_tls_need(const ConnectedServers& servers);
 // Closes the client's connections, if any.
 void end_client(ConnectedServers* servers);
 

@@ -15,8 +15,7 @@ using platform::LinkResult;
 constexpr std::uint64_t kLingerNs = 2'000'000'000;    // for a leaving peer to read the reason
 constexpr std::uint64_t kMakeWayNs = 10'000'000'000;  // of silence after which a client makes way for another
 constexpr std::uint64_t kAcceptRestNs =
-    1'000'000'000;                  // pause after a failed accept, since what was short will not be free at once
-constexpr int kAcceptsAtOnce = 16;  // chosen: the guests of a server by default; more would only displace each other
+    1'000'000'000;  // pause after a failed accept, since what was short will not be free at once
 
 void queue(Guest* guest, const Message& message) { CHECK(send_message(&guest->messages, message)); }
 
@@ -25,6 +24,9 @@ bool flush(Guest* guest) {
   platform::Error error;
   return flush_message_stream(&guest->messages, &error);
 }
+
+// Of one address at a time: however many it sends, and however long their handshakes take, others find room.
+int guests_max(const Server& server) { return std::max(1, server.options.guest_count_max / 2); }
 
 void send_away(Server* server, Guest* guest, WireError code) {
   CHECK(!guest->leaves);
@@ -42,14 +44,16 @@ int guests_of(const Server& server, std::uint64_t key) {
                                         [&](const Guest& g) { return is_open(g) && g.key == key; }));
 }
 
-// A free slot, else that of the longest-waiting guest among those leaving or, failing that, of the address with most
-// guests.
-Guest* free_guest(Server* server) {
+// A free slot for a guest of that address, else that of the longest-waiting guest among those leaving or, failing that,
+// of the address with most guests; of its own address if that has its share.
+Guest* free_guest(Server* server, std::uint64_t key) {
+  const bool own = guests_of(*server, key) >= guests_max(*server);
   Guest* chosen = nullptr;
   int most = 0;
   std::uint64_t least = 0;
   for (Guest& guest : server->guests) {
-    if (!is_open(guest)) return &guest;
+    if (!is_open(guest) && !own) return &guest;
+    if (!is_open(guest) || (own && guest.key != key)) continue;
     int count = guest.leaves ? kAddressCountMax : guests_of(*server, guest.key);
     std::uint64_t left = platform::link_timer_left(&guest.timer, now_ns(server));
     if (count < most || (count == most && left >= least)) continue;
@@ -62,12 +66,13 @@ Guest* free_guest(Server* server) {
 
 void receive_guest(Server* server, int stream) {
   CHECK_GE(stream, 0);
-  Guest* guest = free_guest(server);
+  const std::uint64_t key = address_key(server->net->stream_name(server->link, stream));
+  Guest* guest = free_guest(server, key);
   *guest = Guest();
   guest->messages.in = {guest->input, sizeof guest->input};
   guest->messages.out = {guest->output, sizeof guest->output};
   start_message_stream(&guest->messages, server->link, stream);
-  guest->key = address_key(server->net->stream_name(server->link, stream));
+  guest->key = key;
   guest->timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
   queue(guest, server_hello(*server));
   if (!flush(guest)) close_guest(guest);
@@ -193,8 +198,12 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   log_line(&server->log, now, "%s connected", session->name);
 }
 
+// The link's errors begin with the name.
 void log_guest(Server* server, const Guest& guest, const char* reason) {
-  log_line(&server->log, now_ns(server), "%s disconnected: %s", name_of(*server, guest), reason);
+  const char* name = name_of(*server, guest);
+  const std::size_t length = std::strlen(name);
+  if (std::strncmp(reason, name, length) == 0 && std::strncmp(reason + length, ": ", 2) == 0) reason += length + 2;
+  log_line(&server->log, now_ns(server), "%s disconnected: %s", name, reason);
 }
 
 // Reads the first message; the bytes after it belong to the session.
@@ -234,7 +243,11 @@ bool discard_input(MessageStream* messages) {
 
 void tend_guest(Server* server, Guest* guest) {
   CHECK(is_open(*guest));
-  if (!flush(guest)) return close_guest(guest);
+  platform::Error error;
+  if (!flush_message_stream(&guest->messages, &error)) {
+    if (!guest->leaves) log_guest(server, *guest, error.text);
+    return close_guest(guest);
+  }
   if (guest->leaves) {
     if (!discard_input(&guest->messages)) return close_guest(guest);
   } else {
@@ -247,7 +260,8 @@ void tend_guest(Server* server, Guest* guest) {
 
 void accept_clients(Server* server) {
   server->accept_rests = false;
-  for (int i = 0; i < kAcceptsAtOnce; ++i) {
+  // More of one address would only displace each other.
+  for (int i = 0; i < guests_max(*server); ++i) {
     int stream = -1;
     platform::Error error;
     LinkResult result = server->net->accept(server->link, server->listener, &stream, &error);

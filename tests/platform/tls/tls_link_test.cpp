@@ -6,7 +6,7 @@
 
 #include "platform/net/link_pipe.h"
 #include "platform/net/tls/tls_stream.h"
-#include "platform/network/tls/tls_rig.h"
+#include "platform/tls/tls_rig.h"
 #include "support/effort.h"
 
 using namespace platform;

@@ -1,4 +1,4 @@
-#include "platform/network/tls/tls_rig.h"
+#include "platform/tls/tls_rig.h"
 
 #include "platform/net/link_pipe.h"
 
