@@ -23,11 +23,14 @@ ifneq ($(DEVICE),)
 endif
 override CLASS := $(filter-out desktop,$(CLASS))
 # CROSS_PREFIX=arm-linux-: a vendor's compiler, for the class of DEVICE= or, without it, for the CPU that the compiler or
-# CROSS_FLAGS= chooses. SYSROOT= its C library if not its own; ZLIB= folder with include/zlib.h, zconf.h and lib/libz.a.
+# CROSS_FLAGS= chooses. SYSROOT= its C library if not its own; ZLIB= folder with include/zlib.h, zconf.h and lib/libz.a;
+# MBEDTLS= folder with include/mbedtls and lib/libmbed{tls,x509,crypto}.a of version 2.28. TLS=OFF leaves encryption out.
 CROSS_PREFIX ?=
 CROSS_FLAGS ?=
 SYSROOT ?=
 ZLIB ?=
+MBEDTLS ?=
+TLS ?=
 ifneq ($(CROSS_PREFIX),)
   override CLASS := $(or $(CLASS),cross)
 endif
@@ -51,11 +54,12 @@ setup:
 
 # Ninja and a compiler cache where installed, and the device's toolchain.
 configure: setup
-	@mkdir -p $(BUILD) && sysroot=$(if $(CLASS),$$(toolchains/sysroot.sh $(CLASS) $(ZLIB))) && \
+	@mkdir -p $(BUILD) && sysroot=$(if $(CLASS),$$(toolchains/sysroot.sh $(CLASS) "$(ZLIB)" "$(MBEDTLS)")) && \
 	cmake -S . -B $(BUILD) -DCMAKE_INSTALL_PREFIX=$(PREFIX) \
 	  $$([ -f $(BUILD)/CMakeCache.txt ] || ! command -v ninja >/dev/null || echo -G Ninja) \
 	  $$(! command -v ccache >/dev/null || echo -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) \
 	  $(if $(CLASS),-DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/toolchains/$(CLASS).cmake -DPOCKETRAY_SYSROOT=$$sysroot) \
+	  $(if $(TLS),-DPOCKETRAY_TLS=$(TLS)) \
 	  $(if $(CROSS_PREFIX),-DPOCKETRAY_CROSS_PREFIX=$(CROSS_PREFIX) -DPOCKETRAY_CROSS_SYSROOT=$(SYSROOT) "-DPOCKETRAY_CROSS_FLAGS=$(CROSS_FLAGS)") \
 	  >$(BUILD)/configure.log || { cat $(BUILD)/configure.log 2>/dev/null; exit 1; }
 

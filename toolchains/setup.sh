@@ -30,13 +30,13 @@ required() {
     *) echo "setup.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
 }
-# Optional packages: the emulator window, model formats, a faster build.
+# Optional packages: the emulator window, model formats, encryption, a faster build.
 optional() {
   case $1 in
     armhf | armel | aarch64 | armv6 | armv7 | mips32 | armv4t | cross) echo ninja=ninja-build ;;
-    tests) echo libembree-dev valgrind=valgrind libpng-dev zip=zip unzip=unzip mksquashfs=squashfs-tools ;; # to compare depth, count instructions, read pictures
+    tests) echo openssl=openssl libembree-dev valgrind=valgrind libpng-dev zip=zip unzip=unzip mksquashfs=squashfs-tools ;; # to compare TLS and depth, count instructions, read pictures
     ci) echo ccache=ccache identify=imagemagick ffmpeg=ffmpeg ;; # to build again, and to read animations
-    desktop) echo ninja=ninja-build libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev ;;
+    desktop) echo ninja=ninja-build libsdl2-dev libtinygltf-dev libtinyobjloader-dev libassimp-dev libstb-dev libmbedtls-dev ;;
   esac
 }
 

@@ -3,8 +3,8 @@
 //
 // - A connection counts as connected when its handshake is complete, all within the time to connect.
 // - A peer that was accepted has kTlsHandshakeNs for its handshake, during which nothing is read from it; then reading
-//   fails. Handshakes of accepted peers advance in poll() alone, at most one step of one stream in each of its rounds,
-//   so that a flood of them slows the others down by no more than that.
+//   fails. Handshakes of accepted peers advance in poll() alone, one step of one stream at a time; after each they rest
+//   for kTlsRestFactor times as long as it took. So a flood of them leaves three quarters of the CPU to the others.
 // - close() tells the peer that nothing more comes, unless bytes from it are left unread. A stream that ends without
 // that
 //   has failed, so nobody on the way can cut it unnoticed.
@@ -16,6 +16,8 @@ namespace platform {
 
 // Chosen: 3 s for a client to answer (remote/client/client.h), and a second round of a lost packet.
 constexpr std::uint64_t kTlsHandshakeNs = 5'000'000'000;
+// Chosen: of two steps of 3 ms, a peer that comes alone notices only one rest.
+constexpr std::uint64_t kTlsRestFactor = 3;
 
 struct TlsLinkSettings {
   SharedKey key;

@@ -27,7 +27,8 @@ struct alignas(TlsSlot) TlsLink : Link {  // followed by its slots, waits and he
   Link* inner;
   TlsConfig config;
   int slot_count;
-  int turn;  // the slot whose handshake goes first
+  int turn;        // the slot whose handshake goes first
+  LinkTimer rest;  // until the next step of an accepted peer's handshake
   TlsSlot* slots;
   LinkWait* waits;  // for the inner poll(), one per slot
   TlsLinkRecord record;

@@ -1,4 +1,6 @@
 // What an encrypted link waits for.
+#include <algorithm>
+
 #include "platform/check.h"
 #include "platform/net/tls/tls_link_state.h"
 
@@ -49,6 +51,16 @@ bool look(TlsLink* link, LinkWait* wait) {
   return wait->can_read || wait->can_write;
 }
 
+// A step of an accepted peer's handshake, then a rest.
+void greet_in_turn(TlsLink* link, TlsSlot* slot) {
+  Error error;
+  const std::uint64_t begin = now_of(link);
+  (void)tls_greet(link, slot, &error);
+  const std::uint64_t end = now_of(link);
+  link->rest = link_timer(end, end > begin ? kTlsRestFactor * (end - begin) : 0);
+  link->turn = (static_cast<int>(slot - link->slots) + 1) % link->slot_count;
+}
+
 // Moves a stream that is ready below. `*may_greet` is spent by a step of an accepted peer's handshake.
 void move(TlsLink* link, TlsSlot* slot, const LinkWait& below, LinkWait* wait, bool* may_greet) {
   Error error;
@@ -60,9 +72,12 @@ void move(TlsLink* link, TlsSlot* slot, const LinkWait& below, LinkWait* wait, b
       (void)tls_progress(link, slot, &error);
       break;
     case TlsPhase::greeting:
-      if (slot->accepted && !*may_greet) break;
-      *may_greet = *may_greet && !slot->accepted;
-      (void)tls_greet(link, slot, &error);
+      if (!slot->accepted) {
+        (void)tls_greet(link, slot, &error);
+      } else if (*may_greet) {
+        *may_greet = false;
+        greet_in_turn(link, slot);
+      }
       break;
     case TlsPhase::connected:
       if (tls_keeps_output(slot->tls) && below.can_write && tls_flush(&slot->tls) == LinkResult::failed)
@@ -105,15 +120,21 @@ int poll_once(TlsLink* link, LinkWait* waits, int wait_count, std::uint64_t wait
 
   // 2. Every stream that may move, each once, beginning with the one whose turn it is; and who waits for it.
   int inner_count = 0;
+  const int turn = link->turn;
+  const std::uint64_t rest_ns = link_timer_left(&link->rest, now_of(link));
   auto wait_of = [&](const TlsSlot* slot) -> LinkWait* {
     for (int i = 0; i < wait_count; ++i)
       if ((waits[i].want_read || waits[i].want_write) && tls_slot_of(link, waits[i].stream) == slot) return &waits[i];
     return nullptr;
   };
-  auto slot_in_turn = [&](int i) { return &link->slots[(link->turn + i) % link->slot_count]; };
+  auto slot_in_turn = [&](int i) { return &link->slots[(turn + i) % link->slot_count]; };
   for (int i = 0; i < link->slot_count; ++i) {
     const TlsSlot* slot = slot_in_turn(i);
     if (slot->phase == TlsPhase::unused || slot->phase == TlsPhase::broken) continue;
+    if (slot->phase == TlsPhase::greeting && slot->accepted && rest_ns > 0) {
+      wait_ns = std::min(wait_ns, rest_ns);
+      continue;
+    }
     LinkWait below = ask(*slot, wait_of(slot));
     if (below.want_read || below.want_write) link->waits[inner_count++] = below;
   }
@@ -121,16 +142,13 @@ int poll_once(TlsLink* link, LinkWait* waits, int wait_count, std::uint64_t wait
   if (net(link).poll(link->inner, link->waits, inner_count, wait_ns) == 0) *waited_ns += wait_ns;
 
   // 3. Its answers, in the same order.
-  bool may_greet = true;
-  const int turn = link->turn;
+  bool may_greet = rest_ns == 0;
   for (int i = 0, at = 0; i < link->slot_count && at < inner_count; ++i) {
-    TlsSlot* slot = &link->slots[(turn + i) % link->slot_count];
+    TlsSlot* slot = slot_in_turn(i);
     if (slot->inner != link->waits[at].stream) continue;
     const LinkWait below = link->waits[at++];
     if (!below.can_read && !below.can_write) continue;
-    bool greets = may_greet;
     move(link, slot, below, wait_of(slot), &may_greet);
-    if (greets && !may_greet) link->turn = (turn + i + 1) % link->slot_count;
   }
   int ready_count = 0;
   for (int i = 0; i < wait_count; ++i)

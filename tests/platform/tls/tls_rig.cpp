@@ -6,8 +6,13 @@ namespace platform {
 namespace {
 
 std::uint64_t test_state = 1;
+bool (*slow_random)(void*, std::size_t) = nullptr;
+bool server_random(void* bytes, std::size_t byte_count) {
+  return (slow_random ? slow_random : tls_test_random)(bytes, byte_count);
+}
 
-Link* encrypt(Link* below, int stream_count, unsigned char key, std::vector<std::max_align_t>* memory) {
+Link* encrypt(Link* below, int stream_count, unsigned char key, bool (*random)(void*, std::size_t),
+              std::vector<std::max_align_t>* memory) {
   LinkOptions options;
   options.memory_bytes = tls_link_need(stream_count);
   memory->resize(options.memory_bytes / sizeof(std::max_align_t) + 1);
@@ -15,7 +20,7 @@ Link* encrypt(Link* below, int stream_count, unsigned char key, std::vector<std:
   options.stream_count_max = stream_count;
   TlsLinkSettings settings;
   settings.key.bytes[0] = key;
-  settings.random = tls_test_random;
+  settings.random = random;
   Error error;
   Link* link = tls_link_open(below, options, settings, &error);
   REQUIRE_MESSAGE(link != nullptr, error.text);
@@ -39,8 +44,8 @@ TlsRig::TlsRig(unsigned char server_key, unsigned char device_key) {
   options.memory = below_memory.data();
   below = null_link_open(options, settings, &error);
   REQUIRE_MESSAGE(below != nullptr, error.text);
-  server = encrypt(below, kStreamCount, server_key, &server_memory);
-  device = encrypt(below, kStreamCount, device_key, &device_memory);
+  server = encrypt(below, kStreamCount, server_key, server_random, &server_memory);
+  device = encrypt(below, kStreamCount, device_key, tls_test_random, &device_memory);
   const LinkBackend& net = *server->backend;
   REQUIRE(net.resolve(":0", &address, &error));
   listener = net.listen(server, address, &error);
@@ -50,7 +55,10 @@ TlsRig::TlsRig(unsigned char server_key, unsigned char device_key) {
   REQUIRE(kNullLink.resolve(kNullLink.stream_name(below, relay_listener), &relay_address, &error));
 }
 
+void TlsRig::dawdle(bool (*random)(void*, std::size_t)) { slow_random = random; }
+
 TlsRig::~TlsRig() {
+  slow_random = nullptr;
   device->backend->close_all(device);
   server->backend->close_all(server);
   kNullLink.close_all(below);

@@ -56,6 +56,8 @@ struct TlsRig {
   // Lets the server handle what has come, until nothing moves any more. True if it takes the peer for connected.
   bool serve(int accepted, Error* why);
   std::string read_below(int stream);
+  // From here on the server's random bytes come from there.
+  void dawdle(bool (*random)(void*, std::size_t));
 };
 
 }  // namespace platform
