@@ -63,6 +63,30 @@ TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
   CHECK(part_bytes(plan_for(bit(Feature::point_light), bit(Effect::point_light)), "lights") == 0);
 }
 
+// Goal: encrypted links are a part of their own, beside the output, and absent without a key; with a scene and without.
+// Method: plans with and without them.
+TEST_CASE("plan_memory_has_encrypted_links_of_their_own") {
+  auto generated = generate_scene(bit(Feature::ambient), 2);
+  auto test = make_renderer(generated->scene, settings_of(bit(Feature::ambient)));
+  const Renderer& renderer = test->renderer;
+  OutputNeed need(1000 * kArenaAlignment);
+  std::size_t totals[2][2];
+  for (std::size_t tls_bytes : {std::size_t(0), 700 * kArenaAlignment}) {
+    need.tls_bytes = tls_bytes;
+    MemoryPlan plan;
+    REQUIRE(plan_output_memory(renderer.settings, need, &plan).ok);
+    CHECK(part_bytes(plan, "output") == need.output_bytes);
+    CHECK(part_bytes(plan, "encrypted links") == tls_bytes);
+    totals[0][tls_bytes > 0] = plan.total_bytes;
+    REQUIRE(
+        plan_memory(generated->scene, renderer.settings, renderer.effects, *renderer.accel_info, {}, {}, need, &plan)
+            .ok);
+    CHECK(part_bytes(plan, "encrypted links") == tls_bytes);
+    totals[1][tls_bytes > 0] = plan.total_bytes;
+  }
+  for (const auto& total : totals) CHECK(total[1] - total[0] == 700 * kArenaAlignment);
+}
+
 // Goal: a run stays inside its plan, and the plan is not much larger. Method: high-water marks of real runs.
 TEST_CASE("plan_memory_holds_in_a_run") {
   for (std::uint32_t features : feature_sets()) {

@@ -6,6 +6,7 @@
 
 #include "platform/net/link_pipe.h"
 #include "platform/net/tls/tls_stream.h"
+#include "platform/network/link_rig.h"
 #include "platform/tls/tls_rig.h"
 #include "support/effort.h"
 
@@ -330,6 +331,46 @@ TEST_CASE("tls_link_reads_nothing_false") {
     CHECK(result == LinkResult::failed);
     CHECK(says(rig.error, kind == 0 || kind == 4 ? "closed the connection" : "bytes that TLS does not allow"));
   }
+}
+
+// Goal: nobody waits for bytes that have been deciphered already, and those of the last record arrive without another
+// write. Method: reads of fewer bytes than a record has, with a wait before each; a peer that reads late.
+TEST_CASE("tls_link_waits_for_no_bytes_that_it_has") {
+  LinkRig rig(kTlsNull);
+  int device = -1, server = -1;
+  REQUIRE(rig.pair(&device, &server));
+  const std::string bytes = counted_bytes(1000);
+  REQUIRE(rig.write_all(server, bytes));
+  std::string got;
+  while (got.size() < bytes.size()) {
+    char part[7];
+    std::size_t count = 0;
+    REQUIRE(rig.wait(device, true, false, kMs));
+    REQUIRE(rig.net->read(rig.link, device, part, sizeof part, &count, &rig.error) == LinkResult::done);
+    got.append(part, count);
+  }
+  CHECK(got == bytes);
+  CHECK_FALSE(rig.wait(device, true, false, kMs));
+
+  std::size_t sent = 0, count = 0;
+  const std::string more = counted_bytes(300'000);
+  LinkResult result = LinkResult::done;
+  while (result == LinkResult::done) {
+    result = rig.net->write(rig.link, server, more.data() + sent, more.size() - sent, &count, &rig.error);
+    sent += count;
+  }
+  CHECK(result == LinkResult::later);
+  CHECK_GE(sent, 65536u - 4096u);
+  CHECK(rig.read_all(device, sent, &result) == more.substr(0, sent));
+  // What is kept when a stream is closed still arrives, and then the end.
+  REQUIRE(rig.write_all(device, "x"));
+  REQUIRE(rig.read_all(server, 1, &result) == "x");
+  sent = 0;
+  for (result = LinkResult::done; result == LinkResult::done; sent += count)
+    result = rig.net->write(rig.link, server, more.data() + sent, more.size() - sent, &count, &rig.error);
+  rig.net->close(rig.link, server);
+  CHECK(rig.read_all(device, sent + 1, &result) == more.substr(0, sent));
+  CHECK(result == LinkResult::ended);
 }
 
 // Goal: without random bytes there is no handshake. Method: a system that has none.
