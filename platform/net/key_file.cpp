@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -16,9 +17,11 @@ constexpr char kPrefix[] = "pocketray-key-1:";
 constexpr std::size_t kPrefixBytes = sizeof kPrefix - 1, kDigitCount = 2 * SharedKey::kByteCount;
 constexpr std::size_t kLineBytes = kPrefixBytes + kDigitCount + 1;
 
-template <class... Values>
-bool refuse(FileError* error, const char* format, Values... values) {
-  snprintf(error->text, sizeof error->text, format, values...);
+__attribute__((format(printf, 2, 3))) bool refuse(FileError* error, const char* format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(error->text, sizeof error->text, format, arguments);
+  va_end(arguments);
   return false;
 }
 

@@ -21,7 +21,7 @@ expect keygen_help 0 '64 hexadecimal digits' keygen --help
 
 if "${run[@]}" scenes --server 127.0.0.1:1 --key pocketray.key 2>&1 | grep -q 'this build has no TLS'; then
   # Goal: a build without TLS refuses keys with one line wherever they can be given.
-  for command in "serve --listen :0" "scenes --server :1" "render cube -o b.ppm --server :1" "view cube --server :1"; do
+  for command in "serve --listen :0" "scenes --server :1" "render cube -o b.ppm --server :1" "view cube --screen null --server :1"; do
     # shellcheck disable=SC2086
     expect "no_tls_${command%% *}" 1 '^pocketray: --key: this build has no TLS: rebuild it' $command --key pocketray.key
   done
