@@ -130,25 +130,26 @@ inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSampl
   return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
 }
 
-// The fraction of a light that arrives: zero or one, or between if something transparent is in the way. find_ray()
-// returns the shadow ray.
+// As shadow(), if a tile does not know the result, or, with `passes`, knows that nothing opaque is in the way.
 template <EffectMask mask, class FindRay>
-Vec3 shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light, bool at_first_hit) {
-  effect_entered<Effect::shadow>();
+[[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light,
+                                     bool at_first_hit, bool passes) {
   const FrameData& frame = *tracer->frame;
-  bool blocked, known = at_first_hit && is_known(*tracer, light, &blocked);
   const std::uint32_t emitter = frame.lights[light].material;
-  if (!known && emitter != kNone && frame.point_groups.groups.count)
-    blocked = is_point_blocked(tracer, s, light, at_first_hit), known = true;
-  else
-    ++tracer->rays[static_cast<int>(RayKind::shadow)];
+  bool blocked = false;
+  if (!passes && emitter != kNone && frame.point_groups.groups.count) {
+    --tracer->rays[static_cast<int>(RayKind::shadow)];  // those that it traces are counted there
+    blocked = is_point_blocked(tracer, s, light, at_first_hit);
+    passes = true;
+  }
   constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
-  if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
+  if (blocked) return {0, 0, 0};
+  if (passes && !kClear) return {1, 1, 1};
   const Ray ray = find_ray();
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   bool filtered = frame.filter_every_shadow || emitter != kNone;
-  if (!known) {
+  if (!passes) {
     const AccelTraversal& rays = at_first_hit ? *frame.first_rays : *frame.accel_info;
     blocked = rays.occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
   }
@@ -158,6 +159,19 @@ Vec3 shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t li
     if (plan_of<mask>(frame) & clear) return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
   }
   return {1, 1, 1};
+}
+
+// The fraction of a light that arrives: zero or one, or between if something transparent is in the way. find_ray()
+// returns the shadow ray.
+template <EffectMask mask, class FindRay>
+Vec3 shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light, bool at_first_hit) {
+  effect_entered<Effect::shadow>();
+  ++tracer->rays[static_cast<int>(RayKind::shadow)];
+  bool blocked;
+  const bool known = at_first_hit && is_known(*tracer, light, &blocked);
+  constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
+  if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
+  return traced_shadow<mask>(tracer, s, find_ray, light, at_first_hit, known);
 }
 
 // Radiance towards the viewer from light that arrives straight from the lights; `m` has the lobes there. `weight` is

@@ -13,7 +13,7 @@ namespace {
 bool receives(const Surface& s) { return !(is_zero(s.diffuse) && is_zero(s.material->specular)); }
 
 // Whether direct_light() will probably skip the ray; highlights are not estimated.
-bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& sample) {
+[[gnu::always_inline]] inline bool cannot_matter(const FrameData& frame, const Surface& s, const LightSample& sample) {
   if (!is_zero(s.material->specular)) return false;
   Vec3 most = s.diffuse * (1 / kPiF) * sample.irradiance * dot(s.normal, sample.direction);
   return max_component(most) <= frame.left_out_max;
