@@ -125,17 +125,28 @@ const char* stream_name(const Link* base, int stream) {
   return slot->inner >= 0 ? net(link).stream_name(link->inner, slot->inner) : slot->name;
 }
 
+// The slot of a stream whose handshake is done, if there are bytes to move; otherwise null, and what to return instead.
+TlsSlot* find_ready(TlsLink* link, int stream, const void* bytes, std::size_t byte_count_max, LinkResult* result,
+                    Error* error) {
+  TlsSlot* slot = tls_slot_of(link, stream);
+  *result = slot ? tls_progress(link, slot, error) : stale_stream(error);
+  if (*result == LinkResult::done && byte_count_max > 0) {
+    PLATFORM_CHECK(bytes != nullptr);
+    return slot;
+  }
+  if (*result != LinkResult::failed) *result = LinkResult::later;
+  return nullptr;
+}
+
 LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max, std::size_t* byte_count,
                 Error* error) {
   *byte_count = 0;
   TlsLink* link = tls_of(base);
-  TlsSlot* slot = tls_slot_of(link, stream);
-  if (!slot) return stale_stream(error);
-  LinkResult state = tls_progress(link, slot, error);
-  if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
-  PLATFORM_CHECK(bytes != nullptr);
+  LinkResult result;
+  TlsSlot* slot = find_ready(link, stream, bytes, byte_count_max, &result, error);
+  if (!slot) return result;
   if (slot->ended) return LinkResult::ended;
-  LinkResult result = tls_read(&slot->tls, bytes, byte_count_max, byte_count);
+  result = tls_read(&slot->tls, bytes, byte_count_max, byte_count);
   slot->ended = result == LinkResult::ended;
   return result == LinkResult::failed ? tls_fail(link, slot, error) : result;
 }
@@ -144,12 +155,10 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
                  Error* error) {
   *byte_count = 0;
   TlsLink* link = tls_of(base);
-  TlsSlot* slot = tls_slot_of(link, stream);
-  if (!slot) return stale_stream(error);
-  LinkResult state = tls_progress(link, slot, error);
-  if (state != LinkResult::done || byte_count_max == 0) return state == LinkResult::failed ? state : LinkResult::later;
-  PLATFORM_CHECK(bytes != nullptr);
-  LinkResult result = tls_write(&slot->tls, bytes, byte_count_max, byte_count);
+  LinkResult result;
+  TlsSlot* slot = find_ready(link, stream, bytes, byte_count_max, &result, error);
+  if (!slot) return result;
+  result = tls_write(&slot->tls, bytes, byte_count_max, byte_count);
   return result == LinkResult::failed ? tls_fail(link, slot, error) : result;
 }
 
