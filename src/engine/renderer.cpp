@@ -167,7 +167,7 @@ Status build_renderer_unexposed(Renderer* renderer) {
         new (arena_array<EnvironmentLights>(&renderer->persistent_arena, 1).data) EnvironmentLights();
   if (renderer->light_points.count)
     renderer->light_points = arena_array<LightPoint>(&renderer->persistent_arena, renderer->light_points.count);
-  if (has(renderer->effects.mask, Effect::area_light)) {
+  if (has_point_groups(renderer->settings, renderer->effects.mask)) {
     const std::uint32_t points = renderer->light_point_count_max;
     renderer->point_groups = arena_array<PointGroup>(&renderer->persistent_arena, points);
     renderer->point_order = arena_array<std::uint8_t>(&renderer->persistent_arena, points);

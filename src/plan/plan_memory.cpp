@@ -79,7 +79,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
   add_part(plan, "environment shadows", ArenaKind::persistent,
            plans_environment_lights(scene, settings) ? arena_need<EnvironmentLights>(1) : 0);
-  const bool has_groups = has(effects.mask, Effect::area_light);
+  const bool has_groups = has_point_groups(settings, effects.mask);
   add_part(plan, "lights", ArenaKind::persistent,
            lights.points ? arena_need<LightPoint>(lights.points) + (has_groups ? point_groups_need(lights.points) : 0)
                          : 0);

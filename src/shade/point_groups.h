@@ -9,8 +9,11 @@
 
 namespace pocketray {
 
-// Lights of fewer points are tested point by point.
+// Groups of so many points, and lights, are tested point by point.
 constexpr std::uint32_t kUndividedMax = 5;
+constexpr bool has_point_groups(const Settings& settings, EffectMask mask) {
+  return has(mask, Effect::area_light) && settings.points_per_area_light > kUndividedMax;
+}
 inline std::size_t point_groups_need(std::uint32_t points) {
   return arena_need<PointGroup>(points) + 2 * arena_need<std::uint8_t>(points);
 }

@@ -59,6 +59,8 @@ TEST_CASE("plan_memory_has_no_part_for_an_absent_effect") {
   CHECK(part_bytes(plan_for(bit(Feature::point_light), 0), "lights") == arena_need<LightPoint>(1));
   CHECK(part_bytes(plan_for(bit(Feature::emission), 0), "lights") ==
         arena_need<LightPoint>(2));  // 2 points per area light
+  CHECK(part_bytes(plan_for(bit(Feature::emission) | bit(Feature::specular), 0), "lights") >
+        arena_need<LightPoint>(9));  // 9 points, in groups
   CHECK(part_bytes(plan_for(bit(Feature::emission), bit(Effect::area_light)), "lights") == 0);
   CHECK(part_bytes(plan_for(bit(Feature::point_light), bit(Effect::point_light)), "lights") == 0);
 }

@@ -123,8 +123,15 @@ TEST_CASE("server_frames_follow_every_setting") {
     double usual = row.field.get(plain.settings);
     double coarse = row.sweep.values[row.sweep.values[0] == usual ? row.sweep.count / 2 : 0];
     if (row.effects == bit(Effect::instant_radiosity)) continue;   // below
-    const bool shows = std::string(row.name) != "reconstruction";  // the scene stores no radiosity
+    // The scene stores no radiosity; among many lights, area lights have no groups.
+    const bool shows = std::string(row.name) != "reconstruction" && std::string(row.name) != "area-shadows";
     check_and_back([&](FrameRequest* r) { row.field.set(&r->settings, coarse); }, shows);
+  }
+  for (AreaShadows choice : {AreaShadows::adaptive, AreaShadows::every}) {
+    request = plain;
+    request.settings.light_tolerance = 0, request.settings.points_per_area_light = 64;
+    request.settings.area_shadows = choice;
+    check(request, choice == AreaShadows::adaptive);
   }
   for (std::uint32_t count : {16u, 64u}) {
     request = plain;

@@ -110,6 +110,13 @@ TEST_CASE("point_groups_are_the_same_in_tiles_and_ray_by_ray") {
     CAPTURE(seed);
     constexpr std::uint32_t kPoints[] = {6, 9, 16, 50, 144, 256};
     auto s = generate_scene(bit(Feature::emission) | (seed % 2 ? ~0u : 1u << seed / 2 % 20 | 1u << seed % 7), seed);
+    Material low = lamp();  // partly below the floor
+    low.emission = {1, 2, 3}, low.double_sided = true;
+    add_quad(s.get(), {-1.5f, -0.6f, 1}, {1.5f, -0.6f, 0.5f}, {1.5f, 1, 0.5f}, {-1.5f, 1, 1},
+             add_material(s.get(), low));
+    if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
+    if (!s->grains.empty()) s->grains.resize(s->materials.size());
+    s->bind();
     Settings settings = settings_of(kPoints[seed % 6]);
     settings.cut_off_levels = seed % 3 == 0 ? 0.5f : 0;
     settings.light_tolerance = 0;

@@ -38,6 +38,7 @@ std::unique_ptr<GeneratedScene> lit_scene(std::uint32_t features, std::uint64_t 
 Settings settings_of(std::uint32_t features, float tolerance) {
   Settings settings = settings_for(features, kWidth, kHeight);
   settings.points_per_area_light = 9;
+  settings.area_shadows = AreaShadows::every;
   settings.cut_off_levels = 0;
   settings.light_tolerance = tolerance;
   return settings;

@@ -43,7 +43,7 @@ TEST_CASE("tile_shadows_change_no_pixel") {
     }
     Status status;
     Settings settings = settings_for(seed, 48, 40);
-    settings.light_tolerance = 0;
+    settings.light_tolerance = 0, settings.area_shadows = AreaShadows::every;
     auto test = make_renderer(scene->scene, settings, nullptr, &status);
     REQUIRE_MESSAGE(status.ok, status.message);
     REQUIRE(render_frame(&test->renderer, 0, Aov::none).ok);

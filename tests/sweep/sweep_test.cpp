@@ -131,7 +131,7 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   std::string names, notes;
   for (const KnobFigures& k : sweep.knobs) names += k.name + " ";
   for (const std::string& note : sweep.notes) notes += note + "\n";
-  CHECK(names == "samples area-lights normals indirect selective resolution arithmetic output ");
+  CHECK(names == "samples area-lights area-shadows normals indirect selective resolution arithmetic output ");
   CHECK(notes.find("depth is skipped") != std::string::npos);
   CHECK(sweep.strips.size() == sweep.knobs.size());
   for (const Strip& strip : sweep.strips) {

@@ -213,8 +213,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\23\0"), WRONG_VERSION), (hello(19, bytes(236)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\23\0" + bytes(251)), MALFORMED), (hello(18, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\24\0"), WRONG_VERSION), (hello(20, bytes(236)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\24\0" + bytes(251)), MALFORMED), (hello(19, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(16)), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])

@@ -217,7 +217,7 @@ TEST_CASE("message_values_out_of_range_are_refused") {
     std::vector<std::uint8_t> bytes;
   };
   const std::vector<std::uint8_t> nan = {0, 0, 0xC0, 0x7F}, infinite = {0, 0, 0x80, 0xFF};
-  const std::size_t more = setting_wire_bytes() - 10;  // settings after normals
+  const std::size_t more = setting_wire_bytes() - 10;  // bytes beyond those of the first settings, ten
   const Edit edits[] = {
       {MessageType::hello, 8, {'p'}},
       {MessageType::scene_entry, 8 + 95, {'x'}},
@@ -237,14 +237,15 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 84, {17}},    // depth
       {MessageType::frame_request, 8 + 85, {0, 0}},  // points
       {MessageType::frame_request, 8 + 85, {1, 1}},
-      {MessageType::frame_request, 8 + 87, nan},                     // cut-off
-      {MessageType::frame_request, 8 + 87, {0, 0, 0x82, 0x42}},      // 65 levels
-      {MessageType::frame_request, 8 + 87, {0, 0, 0x80, 0xBF}},      // −1
-      {MessageType::frame_request, 8 + 91, {5}},                     // filter
-      {MessageType::frame_request, 8 + 92, {2}},                     // normals
-      {MessageType::frame_request, 8 + 93, {kIndirectChoiceCount}},  // indirect
-      {MessageType::frame_request, 8 + 94, {3}},                     // reconstruction
-      {MessageType::frame_request, 8 + 97, nan},                     // selective
+      {MessageType::frame_request, 8 + 87, {2}},                           // area shadows
+      {MessageType::frame_request, 8 + 88, nan},                           // cut-off
+      {MessageType::frame_request, 8 + 88, {0, 0, 0x82, 0x42}},            // 65 levels
+      {MessageType::frame_request, 8 + 88, {0, 0, 0x80, 0xBF}},            // −1
+      {MessageType::frame_request, 8 + 92, {5}},                           // filter
+      {MessageType::frame_request, 8 + 93, {2}},                           // normals
+      {MessageType::frame_request, 8 + 94, {kIndirectChoiceCount}},        // indirect
+      {MessageType::frame_request, 8 + 95, {3}},                           // reconstruction
+      {MessageType::frame_request, 8 + 98, nan},                           // selective
       {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 105, {2}},                   // dither
       {MessageType::frame_request, 8 + more + 106, {2}},                   // format

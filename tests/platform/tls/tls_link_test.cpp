@@ -63,7 +63,8 @@ TEST_CASE("tls_link_connects_with_the_same_key_and_hides_what_passes") {
 // Goal: with another key nobody is connected, and both are told that the keys differ. Method: every other value of a
 // byte of the key.
 TEST_CASE("tls_link_wrong_keys_connect_nobody") {
-  for (int key = 0; key<256; key += pocketray::effort(40)> 1 ? 1 : 32) {
+  constexpr int kStep = pocketray::kEffortDivisor > 1 ? 32 : 1;
+  for (int key = 0; key < 256; key += kStep) {
     if (key == 1) continue;
     CAPTURE(key);
     TlsRig rig(1, static_cast<unsigned char>(key));
