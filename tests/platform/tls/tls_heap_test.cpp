@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/net/link_pipe.h"
+#include "platform/tls/tls_rig.h"
 #include "support/effort.h"
 
 using namespace platform;
@@ -15,7 +16,7 @@ using namespace platform;
 // Goal: blocks are zeroed, aligned, apart from each other and within the heap; what is freed can be taken again, up to
 // the last byte. Method: random requests against a model that fills every block with its own byte.
 TEST_CASE("tls_heap_keeps_blocks_apart") {
-  std::vector<std::max_align_t> memory(4096 / sizeof(std::max_align_t));
+  std::vector<HeapGrain> memory(4096 / sizeof(HeapGrain));
   TlsHeap heap = make_tls_heap(memory.data(), 4096);
   TlsHeapUse use(&heap);
   std::map<unsigned char*, std::size_t> blocks;
@@ -58,7 +59,7 @@ TEST_CASE("tls_heap_keeps_blocks_apart") {
 
 // Goal: a product that overflows is refused, not truncated. Method: factors whose product is 0 modulo 2⁶⁴, or near it.
 TEST_CASE("tls_heap_refuses_products_that_overflow") {
-  std::vector<std::max_align_t> memory(1024 / sizeof(std::max_align_t));
+  std::vector<HeapGrain> memory(1024 / sizeof(HeapGrain));
   TlsHeap heap = make_tls_heap(memory.data(), 1024);
   TlsHeapUse use(&heap);
   const std::size_t half = std::size_t(1) << (4 * sizeof(std::size_t));

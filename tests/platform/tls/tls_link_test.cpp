@@ -405,7 +405,7 @@ TEST_CASE("tls_handshake_memory_is_within_its_plan") {
   CHECK_GE(most, kTlsStreamHeapBytes * 3 / 4);
   rig.end(&m);
 
-  std::vector<std::max_align_t> memory(kTlsStreamHeapBytes / sizeof(std::max_align_t)), config_memory(8192 / 16);
+  std::vector<HeapGrain> memory(kTlsStreamHeapBytes / sizeof(HeapGrain)), config_memory(8192 / sizeof(HeapGrain));
   TlsConfig config = {};
   SharedKey key;
   key.bytes[0] = 1;
@@ -436,6 +436,6 @@ TEST_CASE("tls_handshake_memory_is_within_its_plan") {
     rig.server->backend->close(rig.server, accepted);
   }
   CHECK_GT(failures, 8);
-  CHECK_GT(successes, 8);
+  CHECK_GT(successes, pocketray::kEffortDivisor > 1 ? 2 : 8);
   tls_config_end(&config);
 }

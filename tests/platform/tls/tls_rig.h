@@ -15,6 +15,11 @@ namespace platform {
 // Random bytes that are the same every time.
 bool tls_test_random(void* bytes, std::size_t byte_count);
 
+// Memory as heaps of the library need it, on 32-bit machines, too.
+struct alignas(16) HeapGrain {
+  unsigned char bytes[16];
+};
+
 constexpr std::size_t kNowhere = ~std::size_t(0);
 
 // What the one between does to the bytes of a direction: from an offset on, once.
