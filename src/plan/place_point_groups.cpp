@@ -16,7 +16,8 @@ struct GroupBuilder {
   PointGroup* groups;
   std::uint32_t count = 0;
 
-  const Vec3& position(std::uint32_t point) const { return points[point].position; }
+  // In double precision, as fourth powers of lengths exceed the range of float.
+  Vec3d position(std::uint32_t point) const { return to_double(points[point].position); }
 };
 
 // Of the group's points the one with the greatest value; of several, the one with the lowest number.
@@ -25,45 +26,45 @@ std::uint8_t greatest(const GroupBuilder& b, const PointGroup& group, Value valu
   std::uint8_t best = b.order[group.begin];
   for (std::uint32_t i = group.begin + 1u; i < group.end; ++i) {
     const std::uint8_t point = b.order[i];
-    const float is = value(b.position(point)), was = value(b.position(best));
+    const double is = value(b.position(point)), was = value(b.position(best));
     if (is > was || (is == was && point < best)) best = point;
   }
   return best;
 }
 
-float square(const Vec3& v) { return dot(v, v); }
+double square(const Vec3d& v) { return dot(v, v); }
 
 // The corners of a rectangle, whichever way it is turned: the point farthest from the middle, the one opposite, the one
 // farthest from their diagonal, and the one opposite that.
 void find_probes(const GroupBuilder& b, PointGroup* group) {
-  Vec3 middle = {0, 0, 0};
+  Vec3d middle = {0, 0, 0};
   for (std::uint32_t i = group->begin; i < group->end; ++i) middle += b.position(b.order[i]);
-  middle = middle / static_cast<float>(group->end - group->begin);
-  auto farthest_from = [&](const Vec3& from) {
-    return greatest(b, *group, [&](const Vec3& p) { return square(p - from); });
+  middle = middle / static_cast<double>(group->end - group->begin);
+  auto farthest_from = [&](const Vec3d& from) {
+    return greatest(b, *group, [&](const Vec3d& p) { return square(p - from); });
   };
   std::uint8_t* probes = group->probes;
   probes[0] = farthest_from(middle);
-  const Vec3 &first = b.position(probes[0]), &opposite = b.position(probes[1] = farthest_from(first));
-  const Vec3 diagonal = opposite - first;
-  probes[2] = greatest(b, *group, [&](const Vec3& p) { return square(cross(p - first, diagonal)); });
+  const Vec3d first = b.position(probes[0]), opposite = b.position(probes[1] = farthest_from(first));
+  const Vec3d diagonal = opposite - first;
+  probes[2] = greatest(b, *group, [&](const Vec3d& p) { return square(cross(p - first, diagonal)); });
   probes[3] = farthest_from(b.position(probes[2]));
-  probes[4] = greatest(b, *group, [&](const Vec3& p) { return -square(p - middle); });
+  probes[4] = greatest(b, *group, [&](const Vec3d& p) { return -square(p - middle); });
 }
 
 // The longest edge of the group's corners.
-Vec3 longest_edge(const GroupBuilder& b, const PointGroup& group) {
-  const Vec3& corner = b.position(group.probes[2]);
-  const Vec3 one = b.position(group.probes[0]) - corner, other = b.position(group.probes[1]) - corner;
+Vec3d longest_edge(const GroupBuilder& b, const PointGroup& group) {
+  const Vec3d corner = b.position(group.probes[2]);
+  const Vec3d one = b.position(group.probes[0]) - corner, other = b.position(group.probes[1]) - corner;
   return square(one) >= square(other) ? one : other;
 }
 
 // Where to divide the sorted points, neither half with less than a third of them: at a wide gap near the middle, so
 // that rows of a grid stay whole.
-std::uint32_t find_half(const GroupBuilder& b, std::uint32_t begin, std::uint32_t end, const Vec3& along) {
+std::uint32_t find_half(const GroupBuilder& b, std::uint32_t begin, std::uint32_t end, const Vec3d& along) {
   const std::uint32_t third = (end - begin + 2) / 3, first = begin + third, last = end - third;
   auto gap = [&](std::uint32_t i) { return dot(b.position(b.order[i]) - b.position(b.order[i - 1]), along); };
-  float widest = 0;
+  double widest = 0;
   for (std::uint32_t i = first; i <= last; ++i) widest = std::max(widest, gap(i));
   auto off_middle = [&](std::uint32_t i) { return 2 * i > begin + end ? 2 * i - begin - end : begin + end - 2 * i; };
   std::uint32_t half = begin + (end - begin) / 2;
@@ -78,9 +79,9 @@ std::uint16_t build(GroupBuilder* b, std::uint32_t begin, std::uint32_t end) {
   PointGroup group = {{}, static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end), 0};
   find_probes(*b, &group);
   if (end - begin > kUndividedMax) {
-    const Vec3 along = longest_edge(*b, group);
+    const Vec3d along = longest_edge(*b, group);
     std::sort(b->order + begin, b->order + end, [&](std::uint8_t i, std::uint8_t k) {
-      const float a = dot(b->position(i), along), c = dot(b->position(k), along);
+      const double a = dot(b->position(i), along), c = dot(b->position(k), along);
       return a < c || (a == c && i < k);
     });
     const std::uint32_t half = find_half(*b, begin, end, along);

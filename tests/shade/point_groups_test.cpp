@@ -95,6 +95,17 @@ TEST_CASE("point_groups_are_exact_behind_a_straight_edge") {
       const Traced every = trace(s->scene, settings, AreaShadows::every);
       const Traced adaptive = trace(s->scene, settings, AreaShadows::adaptive);
       CHECK(same(every.picture, adaptive.picture));
+      for (float scale : {0x1p-50f, 0x1p50f}) {
+        if (side != 4) break;
+        std::vector<Vec3> positions = s->positions;
+        Camera camera = s->cameras[0];
+        for (Vec3& p : s->positions) p = p * scale;
+        s->cameras[0].eye = camera.eye * scale, s->cameras[0].target = camera.target * scale;
+        s->bind();
+        CHECK(same(adaptive.picture, trace(s->scene, settings, AreaShadows::adaptive).picture));
+        s->positions = positions, s->cameras[0] = camera;
+        s->bind();
+      }
       if (side == 8) rays += adaptive.shadow_rays, all_rays += every.shadow_rays;
     }
   }
