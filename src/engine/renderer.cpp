@@ -15,8 +15,8 @@
 #include "shade/camera.h"
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
-#include "shade/selective.h"
 #include "shade/point_groups.h"
+#include "shade/selective.h"
 #include "shade/source_selection.h"
 
 namespace pocketray {
@@ -234,6 +234,10 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   if (point_count > renderer->light_point_count_max)
     return failure("the lights need %u points, memory is planned for %u: plan for that many", point_count,
                    renderer->light_point_count_max);
+  // Room kept for more lights would hold the points, but not their groups.
+  if (has_point_groups(settings, effects.mask) && renderer->point_groups.empty())
+    return failure("memory is planned for at most %u points per area light: plan for %u", kUndividedMax,
+                   settings.points_per_area_light);
   if (has(effects.mask, Effect::instant_radiosity) && !virtual_lights_of(renderer->frame.indirect))
     return failure("memory is planned without virtual lights: plan with --indirect instant-radiosity");
   if (has(effects.mask, Effect::environment_shadow) && !renderer->environment_lights)

@@ -9,7 +9,7 @@
 
 namespace pocketray {
 
-// Groups of so many points, and lights, are tested point by point.
+// At most so many points of a light or a group are tested one by one.
 constexpr std::uint32_t kUndividedMax = 5;
 constexpr bool has_point_groups(const Settings& settings, EffectMask mask) {
   return has(mask, Effect::area_light) && settings.points_per_area_light > kUndividedMax;
