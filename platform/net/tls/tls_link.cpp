@@ -9,8 +9,8 @@
 namespace platform {
 namespace {
 
-constexpr std::uint64_t kFarewellNs =
-    2'000'000'000;  // for the last record to find room; chosen: as the server's kLingerNs
+// For the last record to find room; chosen: as the server's kLingerNs.
+constexpr std::uint64_t kFarewellNs = 2'000'000'000;
 constexpr std::size_t kHeapAlignment = 16;
 constexpr std::size_t kUnreadMax = 65536;  // taken from a peer that is refused, so that it can read why
 
@@ -98,8 +98,8 @@ LinkResult accept(Link* base, int listener, int* stream, Error* error) {
   TlsLink* link = tls_of(base);
   TlsSlot* from = tls_slot_of(link, listener);
   if (!from || from->phase != TlsPhase::listening) return stale_stream(error);
-  TlsSlot* slot =
-      take_slot(link, TlsPhase::connecting, error);  // first, because a closing one occupies an inner stream, too
+  // First, because a closing one occupies an inner stream, too.
+  TlsSlot* slot = take_slot(link, TlsPhase::connecting, error);
   int inner = -1;
   LinkResult result = net(link).accept(link->inner, from->inner, &inner, error);
   if (result == LinkResult::done && slot) {
