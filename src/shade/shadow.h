@@ -1,0 +1,176 @@
+// Shadow rays, and the light that passes what is transparent.
+#pragma once
+#include "base/fmath.h"
+#include "effect/effect_probe.h"
+#include "shade/contact.h"
+#include "shade/dielectric.h"
+#include "shade/filters.h"
+#include "shade/lights.h"
+#include "shade/media.h"
+#include "shade/point_groups.h"
+#include "shade/surface.h"
+#include "shade/texture.h"
+#include "shade/tile_shadows.h"
+
+namespace pocketray {
+
+// The effects that are simulated. Source selection has few instances, which hold the code of all other effects.
+template <EffectMask mask>
+constexpr EffectMask plan_of(const FrameData& frame) {
+  if constexpr (has(mask, Effect::source_selection)) return frame.mask;
+  return mask;
+}
+
+// Whether to skip a contribution of at most `bound`: all that is skipped of a sample stays below half the narrowest
+// display level, so no pixel changes by more than one level.
+inline bool leave_out(Tracer* tracer, float bound) {
+  if (!(bound <= tracer->budget)) return false;
+  tracer->budget -= bound;
+  ++tracer->rays_left_out;
+  return true;
+}
+
+// Transmittance of a contact for an unrefracted ray: Fresnel once, from the body that ends there to the one that begins
+// (air if none), times the tints of all bodies entered.
+inline Vec3 interface_transmittance(const FrameData& frame, const Contact& contact, float cos_i) {
+  Vec3 tint = {1, 1, 1};
+  float from = 1, to = 1;
+  bool any = false;
+  for (std::uint32_t i = 0; i < contact.count; ++i) {
+    const Face& face = contact.face[i];
+    const Material& m = frame.scene->materials[face.material];
+    if (is_zero(m.transmission)) continue;
+    effect_entered<Effect::refraction>();
+    any = true;
+    if (face.front || m.thin) tint *= m.transmission;
+    (face.front || m.thin ? to : from) = m.ior;
+  }
+  if (!any) return tint;
+  float cos_t;
+  return tint * (1 - fresnel(cos_i, from / to, &cos_t));
+}
+
+// Σ absorption × distance through bodies, from the sums at their entries and exits and the absorption still `open` at
+// the end of the ray, which may be at infinity. If the sums overflow, their difference is unknown: nothing passes.
+inline float optical_depth(float begin, float end, float open, float distance) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  if (!(begin < kInfinity && end < kInfinity)) return kInfinity;
+  return open > 0 ? (end - begin) + open * distance : end - begin;
+}
+
+// Transmittance of the transparent surfaces between the point and the light, without refraction, in order along the
+// ray: products of floats do not commute in the last bit, and every accelerator must give the same.
+template <EffectMask mask>
+Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, bool at_first_hit) {
+  const FrameData& frame = *tracer->frame;
+  const EffectMask plan = plan_of<mask>(frame);
+  HitFilter filter = {frame.accept_clear, &context, frame.filters_read_point};
+  Vec3 result = {1, 1, 1};
+  Vec3 absorbed_begin = {0, 0, 0}, absorbed_end = {0, 0, 0};  // Σ absorption × distance at entries and exits
+  Vec3 open = {0, 0, 0};                                      // absorption of the bodies entered and not yet left
+  int open_count =
+      0;  // number of these bodies: `open` alone keeps a rounding error, which would make an infinite ray opaque
+  float unit = length(ray.direction), passed = 0;
+  for (std::uint32_t layer = 0; layer < kTransparentLayerMax; ++layer) {
+    Hit hit;
+    ++tracer->rays[static_cast<int>(RayKind::shadow)];
+    const AccelTraversal& rays = at_first_hit && layer == 0 ? *frame.first_rays : *frame.accel_info;
+    rays.closest(frame.accel, ray, &filter, &hit, &tracer->stats);
+    if (hit.triangle == kNoTriangle) {
+      if (has(plan, Effect::absorption)) {
+        float end = (passed + ray.t_max) * unit;
+        if (open_count <= 0) open = {0, 0, 0};
+        Vec3 inside;
+        for (int c = 0; c < 3; ++c) inside[c] = optical_depth(absorbed_begin[c], absorbed_end[c], open[c], end);
+        result *= transmittance(inside, 1.0f);
+      }
+      return result;
+    }
+    Surface s;
+    frame.surface(frame, ray, hit, &s);
+    Contact contact;
+    gather_contact(frame, s, hit, &filter, &contact, &tracer->stats);
+    if (has(plan, Effect::refraction)) {
+      result *= interface_transmittance(frame, contact, std::fabs(dot(s.normal, ray.direction)) / unit);
+      if (has(plan, Effect::absorption)) {
+        float distance = (passed + hit.t) * unit;
+        for (std::uint32_t i = 0; i < contact.count; ++i) {
+          const Material& m = frame.scene->materials[contact.face[i].material];
+          if (is_zero(m.transmission) || m.thin || is_zero(m.absorption)) continue;
+          effect_entered<Effect::absorption>();
+          bool enters = contact.face[i].front;
+          (enters ? absorbed_begin : absorbed_end) += m.absorption * distance;
+          open = enters ? open + m.absorption : open - m.absorption;
+          open_count += enters ? 1 : -1;
+        }
+      }
+    }
+    if (has(plan, Effect::alpha_blend)) {
+      for (std::uint32_t i = 0; i < contact.count; ++i) {
+        const Face& face = contact.face[i];
+        const Material& m = frame.scene->materials[face.material];
+        if (m.alpha_mode != AlphaMode::blend) continue;
+        float alpha = hit_alpha<Effect::alpha_blend>(*frame.scene, m, face.hit.triangle, face.hit.u, face.hit.v,
+                                                     frame.settings.texture_filter);
+        result = result * (1 - alpha);
+      }
+    }
+    if (!(max_component(result) > 0)) return {0, 0, 0};
+    passed += hit.t;
+    ray.origin = safe_origin(s, -1);
+    ray.t_max -= hit.t;
+    if (!(ray.t_max > 0)) return result;
+  }
+  return {0, 0, 0};
+}
+
+inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSample& sample) {
+  const bool below = is_below(s, sample.direction);
+  return {below ? curved_origin(frame, s) : safe_origin(s, 1), sample.to_light, sample.t_max};
+}
+
+// As shadow(), if a tile does not know the result, or, with `passes`, knows that nothing opaque is in the way.
+template <EffectMask mask, class FindRay>
+[[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light,
+                                     bool at_first_hit, bool passes) {
+  const FrameData& frame = *tracer->frame;
+  const std::uint32_t emitter = frame.lights[light].material;
+  bool blocked = false;
+  if (!passes && emitter != kNone && frame.point_groups.groups.count) {
+    --tracer->rays[static_cast<int>(RayKind::shadow)];  // those that it traces are counted there
+    blocked = is_point_blocked(tracer, s, light, at_first_hit);
+    passes = true;
+  }
+  constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
+  if (blocked) return {0, 0, 0};
+  if (passes && !kClear) return {1, 1, 1};
+  const Ray ray = find_ray();
+  ShadowContext context = {&frame, emitter};
+  HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
+  bool filtered = frame.filter_every_shadow || emitter != kNone;
+  if (!passes) {
+    const AccelTraversal& rays = at_first_hit ? *frame.first_rays : *frame.accel_info;
+    blocked = rays.occluded(frame.accel, ray, filtered ? &opaque : nullptr, &tracer->stats);
+  }
+  if (blocked) return {0, 0, 0};
+  if constexpr (kClear) {
+    constexpr EffectMask clear = bit(Effect::refraction) | bit(Effect::alpha_blend);
+    if (plan_of<mask>(frame) & clear) return clear_transmittance<mask>(tracer, ray, context, at_first_hit);
+  }
+  return {1, 1, 1};
+}
+
+// The fraction of a light that arrives: zero or one, or between if something transparent is in the way. find_ray()
+// returns the shadow ray.
+template <EffectMask mask, class FindRay>
+Vec3 shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light, bool at_first_hit) {
+  effect_entered<Effect::shadow>();
+  ++tracer->rays[static_cast<int>(RayKind::shadow)];
+  bool blocked;
+  const bool known = at_first_hit && is_known(*tracer, light, &blocked);
+  constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
+  if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
+  return traced_shadow<mask>(tracer, s, find_ray, light, at_first_hit, known);
+}
+
+}  // namespace pocketray
