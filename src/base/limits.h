@@ -21,6 +21,7 @@ constexpr float kEnvironmentScaleMin = 0x1p-40f, kEnvironmentScaleMax = 0x1p40f;
 constexpr std::uint32_t kLightCountMax = 4096;       // lights of a scene
 constexpr std::uint32_t kPointLightCountMax = 4096;  // after area lights have become points
 constexpr std::uint32_t kPointsPerAreaLightMax = 256;
+constexpr std::uint32_t kLightCornerMax = 8;  // of flat lamps in closed form
 // Fewer lights are all tested for shadows. Chosen: among few lights, hardly any are weak enough to go untested.
 constexpr std::uint32_t kSelectedLightsMin = 16;
 constexpr std::uint32_t kVirtualLightMax = 512;  // of instant radiosity

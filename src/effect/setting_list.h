@@ -12,6 +12,7 @@ namespace pocketray {
 
 inline constexpr const char* kTextureFilterNames[] = {"scene", "nearest", "bilinear", "trilinear", "anisotropic"};
 inline constexpr const char* kAreaShadowsNames[] = {"adaptive", "every"};
+inline constexpr const char* kAreaIrradianceNames[] = {"points", "analytic"};
 inline constexpr const char* kNormalNames[] = {"scene", "flat"};
 inline constexpr const char* kResolutionNames[] = {"full", "checkerboard", "half"};
 inline constexpr const char* kReconstructionNames[] = {"constant", "bilinear", "bicubic"};
@@ -101,6 +102,19 @@ inline constexpr SettingRow kSettingList[] = {
      true,
      double(AreaShadows::every),
      {double(AreaShadows::adaptive), double(AreaShadows::every)},
+     nullptr,
+     ""},
+    {"area-irradiance",
+     "light from flat lamps that nothing hides",
+     "analytic: in closed form; points: the sum over their points",
+     nullptr,
+     choice_field<&Quality::area_irradiance>(kAreaIrradianceNames),
+     1,
+     bit(Effect::area_light),
+     bit(Effect::area_light),
+     true,
+     double(AreaIrradiance::analytic),
+     {double(AreaIrradiance::points), double(AreaIrradiance::analytic)},
      nullptr,
      ""},
     {"cut-off",

@@ -22,6 +22,8 @@ enum class Reconstruction : std::uint8_t { constant, bilinear, bicubic };
 
 // Shadow rays to an area light: to some of its points first, and to the others where these differ, or to every point.
 enum class AreaShadows : std::uint8_t { adaptive, every };
+// Light from flat lamps: the sum over their points, or in closed form.
+enum class AreaIrradiance : std::uint8_t { points, analytic };
 
 // The pixels that are traced: all, half of them, or a quarter; see shade/lattice.h.
 enum class Resolution : std::uint8_t { full, checkerboard, half };
@@ -32,6 +34,7 @@ struct Quality {
   std::uint32_t ray_depth = 8;  // reflections and refractions along a path
   std::uint32_t points_per_area_light = 4;
   AreaShadows area_shadows = AreaShadows::adaptive;
+  AreaIrradiance area_irradiance = AreaIrradiance::analytic;
   float cut_off_levels = 0.5f;  // largest error per sample from skipped rays, in display levels; 0: skip none
   TextureFilter texture_filter = TextureFilter::as_scene;
   NormalMode normals = NormalMode::as_scene;

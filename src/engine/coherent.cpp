@@ -48,7 +48,8 @@ FrameKind kind_of(const CoherentFrame& frame) {
 
 void make_coherent(Renderer* renderer) {
   if (!renderer->coherence_state.planned) return;
-  make_coherence(renderer->frame, coherence_plan(renderer->settings, renderer->light_point_count_max),
+  make_coherence(renderer->frame,
+                 coherence_plan(renderer->settings, renderer->light_point_count_max, renderer->light_polygons.count),
                  &renderer->persistent_arena, &renderer->frame_arena, &renderer->coherence);
 }
 

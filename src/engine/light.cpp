@@ -4,6 +4,7 @@
 #include "effect/setting_list.h"
 #include "engine/prepare.h"
 #include "indirect/surroundings.h"
+#include "plan/place_light_polygons.h"
 #include "plan/place_light_tree.h"
 #include "plan/place_point_groups.h"
 #include "plan/place_virtual_lights.h"
@@ -80,8 +81,10 @@ void light_scene(Renderer* renderer) {
     place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
                  renderer->light_points, &renderer->frame);
     CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
-    if (has(renderer->effects.mask, Effect::area_light))
+    if (has(renderer->effects.mask, Effect::area_light)) {
       place_point_groups(renderer->point_groups, renderer->point_order, renderer->point_place, &renderer->frame);
+      place_light_polygons(renderer->light_polygons, &renderer->frame);
+    }
     if (has(renderer->effects.mask, Effect::source_selection))
       place_light_tree(renderer->light_nodes, renderer->light_order, &renderer->frame);
     if (has(renderer->effects.mask, Effect::instant_radiosity)) place_virtual_lights(&renderer->frame);
@@ -91,8 +94,9 @@ void light_scene(Renderer* renderer) {
     renderer->lit_settings = renderer->settings;
     renderer->lit_mask = renderer->effects.mask;
   }
-  if (renderer->frame.point_groups.groups.count && renderer->frame.find_shadows)
-    renderer->frame.find_shadows = find_grouped_tile_shadows;
+  if ((renderer->frame.point_groups.groups.count || renderer->frame.light_polygons.count) &&
+      renderer->frame.find_shadows)
+    renderer->frame.find_shadows = find_lamp_tile_shadows;
   const float white = 1 / renderer->exposure;
   renderer->frame.selection = {renderer->settings.selective_contrast, white, kDisplayFlare * white};
   renderer->frame.left_out_max = 2 * kHalfLevel * renderer->settings.cut_off_levels / renderer->exposure;

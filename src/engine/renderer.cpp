@@ -9,6 +9,7 @@
 #include "engine/coherent.h"
 #include "engine/exposure.h"
 #include "engine/frame.h"
+#include "plan/place_light_polygons.h"
 #include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
 #include "plan/plan_scene.h"
@@ -173,6 +174,8 @@ Status build_renderer_unexposed(Renderer* renderer) {
     renderer->point_order = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
     renderer->point_place = arena_array<std::uint8_t>(&renderer->persistent_arena, points);
   }
+  if (const std::uint32_t polygons = light_polygon_count(renderer->scene, renderer->effects.mask))
+    renderer->light_polygons = arena_array<LightPolygon>(&renderer->persistent_arena, polygons);
   if (const std::uint32_t lights = renderer->selected_light_max) {
     const std::uint32_t entries = renderer->settings.threads * search_entry_count(lights);
     renderer->light_nodes = arena_array<LightNode>(&renderer->persistent_arena, lights);

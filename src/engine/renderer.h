@@ -60,6 +60,7 @@ struct Renderer {
   std::uint32_t selected_light_max = 0;     // the same if source selection is planned, otherwise 0
   Array<PointGroup> point_groups;           // of area lights
   Array<std::uint8_t> point_order, point_place;
+  Array<LightPolygon> light_polygons;
   Array<LightNode> light_nodes;             // of source selection
   Array<std::uint32_t> light_order;
   Array<LightEntry> light_entries;                  // search_entry_count() of them per thread

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/check.h"
 #include "base/fmath.h"
@@ -39,9 +40,9 @@ LightPoint to_point(const Light& light) {
   return p;
 }
 
-// Smallest squared distance from a point to a box.
-float box_distance_square(const Box& box, const Vec3& p) {
-  Vec3 d = max(max(box.low - p, p - box.high), Vec3{0, 0, 0});
+// Smallest squared distance between boxes.
+float box_distance_square(const Box& a, const Box& b) {
+  Vec3 d = max(max(b.low - a.high, a.low - b.high), Vec3{0, 0, 0});
   return dot(d, d);
 }
 
@@ -50,12 +51,13 @@ struct LightReach {
   const FrameData* frame;
   const LightPoint* light;
   bool is_area;
+  Box positions;  // of all that it is
 };
 
 // Upper bound of the irradiance within a box that reaches as high over the emitter's plane; falls as the box shrinks.
 float irradiance_within(const LightReach& reach, const Box& box, float height) {
   const LightPoint& light = *reach.light;
-  const float square = box_distance_square(box, light.position);
+  const float square = box_distance_square(box, reach.positions);
   float scale = 1;
   if (reach.is_area) {  // cos ≤ height / distance
     if (!(height > 0)) return 0;
@@ -97,14 +99,25 @@ float box_irradiance(const void* context, const Box& box) {
   return irradiance_within(reach, box, height);
 }
 
-// Upper bound of a light's irradiance on any triangle but its own.
-float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind) {
+// Upper bound of a light's irradiance on any triangle but its own; `positions` holds all that it is.
+float irradiance_bound(const FrameData& frame, const LightPoint& light, Effect kind, const Box& positions) {
   const float intensity = max_component(light.intensity);
   if (!(intensity > 0)) return 0;
   if (kind == Effect::directional_light) return intensity;
-  const LightReach reach = {&frame, &light, kind == Effect::area_light};
+  const LightReach reach = {&frame, &light, kind == Effect::area_light, positions};
   const float most = frame.accel_info->largest(frame.accel, {&reach, box_irradiance, triangle_irradiance});
   return most < kRadianceMax ? most : kRadianceMax;
+}
+
+// The same for a lamp in closed form, as if one of its points had all its light.
+float lamp_bound(const FrameData& frame, const LightPolygon& polygon, LightPoint point) {
+  if (!polygon.corner_count) return 0;
+  Box box = empty_box();
+  for (std::uint32_t i = 0; i < polygon.corner_count; ++i) box = merge(box, polygon.corners[i]);
+  point.position = polygon.corners[0], point.direction = polygon.normal;
+  point.intensity = point.intensity * static_cast<float>(frame.settings.points_per_area_light);
+  const float surrounded = kPiF * max_component(polygon.radiance);
+  return std::min(surrounded, irradiance_bound(frame, point, Effect::area_light, box));
 }
 
 // To a sixteenth of the next power of two: frames of an animation, whose lights and surfaces move a little, have the
@@ -147,7 +160,7 @@ void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData
         if (effect_of(light.kind) == kind) points[count++] = to_point(light);
     }
     CHECK_LE(count, points.count);
-    if (count > begin) frame->light_runs[frame->light_run_count++] = {begin, count, find_light_sampler(kind)};
+    if (count > begin) frame->light_runs[frame->light_run_count++] = {begin, count, find_light_sampler(kind), nullptr};
   }
   frame->lights = {points.data, count};
 }
@@ -182,13 +195,18 @@ RadianceBounds radiance_bounds(const FrameData& frame) {
   }
   float irradiance = 0;
   for (int r = 0; r < frame.light_run_count; ++r) {
-    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
+    const LightRun& run = frame.light_runs[r];
+    float lamp = 0;  // the sum over its points
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const LightPoint& light = frame.lights[i];
-      Effect kind = light.material != kNone ? Effect::area_light
-                    : frame.light_runs[r].sample == find_light_sampler(Effect::directional_light)
-                        ? Effect::directional_light
-                        : Effect::point_light;
-      irradiance += irradiance_bound(frame, light, kind);
+      Effect kind = light.material != kNone                                       ? Effect::area_light
+                    : run.sample == find_light_sampler(Effect::directional_light) ? Effect::directional_light
+                                                                                  : Effect::point_light;
+      lamp += irradiance_bound(frame, light, kind, {light.position, light.position});
+      const std::uint32_t points = run.polygons ? frame.settings.points_per_area_light : 1, next = i + 1 - run.begin;
+      if (next % points) continue;
+      if (run.polygons) lamp = std::max(lamp, lamp_bound(frame, run.polygons[next / points - 1], light));
+      irradiance += std::exchange(lamp, 0.0f);
     }
   }
   const float lit = scattering > 0 && irradiance > 0 ? scattering * irradiance : 0;  // not 0 × ∞

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/span.h"
+#include "plan/place_light_polygons.h"
 #include "scene/animate.h"
 #include "shade/interleaved.h"
 #include "shade/lattice.h"
@@ -42,10 +43,12 @@ double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 
 
 }  // namespace
 
-CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count) {
+CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count,
+                             std::uint32_t area_light_count) {
   CoherencePlan plan;
   plan.width = settings.width, plan.height = settings.height;
   plan.samples = settings.samples_per_pixel, plan.threads = settings.threads, plan.light_points = light_point_count;
+  plan.area_lights = area_light_count;
   plan.table_side = settings.coherence_table, plan.tables_only = settings.coherence_by_tables;
   return plan;
 }
@@ -80,9 +83,11 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "environment shadows", ArenaKind::persistent,
            plans_environment_lights(scene, settings) ? arena_need<EnvironmentLights>(1) : 0);
   const bool has_groups = has_point_groups(settings, effects.mask);
-  add_part(plan, "lights", ArenaKind::persistent,
-           lights.points ? arena_need<LightPoint>(lights.points) + (has_groups ? point_groups_need(lights.points) : 0)
-                         : 0);
+  add_part(
+      plan, "lights", ArenaKind::persistent,
+      lights.points ? arena_need<LightPoint>(lights.points) + (has_groups ? point_groups_need(lights.points) : 0) : 0);
+  const std::uint32_t polygons = light_polygon_count(scene, effects.mask);
+  add_part(plan, "flat lamps", ArenaKind::persistent, polygons ? arena_need<LightPolygon>(polygons) : 0);
   add_part(plan, "source selection", ArenaKind::persistent, selection_need(settings, lights.selected));
   add_part(plan, "threads", ArenaKind::persistent, arena_need<Tracer>(settings.threads));
   add_part(plan, "selective", ArenaKind::persistent,
@@ -98,7 +103,7 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
   if (with_coherence) {
     add_part(plan, "coherence", ArenaKind::persistent,
-             coherence_need(scene, effects.mask, coherence_plan(settings, lights.points)));
+             coherence_need(scene, effects.mask, coherence_plan(settings, lights.points, polygons)));
     scratch = std::max(scratch, coherence_scratch_need(scene, effects.mask));
   }
   // The scratch of a single build is free again when the first frame is shown, so output shares its part of the frame

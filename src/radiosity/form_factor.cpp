@@ -4,32 +4,10 @@
 
 #include "base/check.h"
 #include "base/fmath.h"
+#include "shade/form_factor.h"
 
 namespace pocketray {
 namespace {
-
-// The angle between two vectors, accurate when it is small [Kahan 2006]; not their unit vectors' arc cosine.
-double angle_between(const Vec3d& a, const Vec3d& b) {
-  Vec3d u = a * length(b), v = b * length(a);
-  double sum = length(u + v), difference = length(u - v);
-  if (!(sum > 0)) return kPi;
-  // 2·atan(difference / sum), by the arc cosine of the half angle or of its complement, whichever is well conditioned.
-  double size = std::sqrt(sum * sum + difference * difference);
-  return difference < sum ? kPi - 2 * det_acos(difference / size) : 2 * det_acos(sum / size);
-}
-
-// The part of a polygon, relative to the point, above the horizon.
-void clip_to_horizon(const Vec3d& point, const Vec3d& normal, const Polygon& polygon, Polygon* clipped) {
-  clipped->clear();
-  const std::size_t count = polygon.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    Vec3d a = polygon[i] - point, b = polygon[(i + 1) % count] - point;
-    double above_a = dot(a, normal), above_b = dot(b, normal);
-    if (above_a >= 0) clipped->push_back(a);
-    if ((above_a > 0 && above_b < 0) || (above_a < 0 && above_b > 0))
-      clipped->push_back(a + (b - a) * (above_a / (above_a - above_b)));
-  }
-}
 
 Vec3d normal_of(const Polygon& polygon) {
   Vec3d sum = {0, 0, 0};
@@ -96,16 +74,13 @@ double polygon_area(const Polygon& polygon) { return 0.5 * length(normal_of(poly
 double point_form_factor(const Vec3d& point, const Vec3d& normal, const Polygon& polygon) {
   CHECK(polygon.size() >= 3);
   if (!(dot(normal_of(polygon), point - polygon[0]) > 0)) return 0;
-  thread_local Polygon clipped;
-  clip_to_horizon(point, normal, polygon, &clipped);
-  double sum = 0;
-  for (std::size_t i = 0; i < clipped.size(); ++i) {
-    const Vec3d &a = clipped[i], &b = clipped[(i + 1) % clipped.size()];
-    const Vec3d axis = cross(b, a);
-    const double size = length(axis);
-    if (size > 0) sum += angle_between(a, b) * dot(axis, normal) / size;
-  }
-  const double factor = sum / (2 * kPi);
+  const std::uint32_t count = static_cast<std::uint32_t>(polygon.size());
+  thread_local Polygon seen, clipped;
+  seen.clear();
+  for (const Vec3d& corner : polygon) seen.push_back(corner - point);
+  clipped.resize(2 * polygon.size());
+  const std::uint32_t kept = clip_to_horizon(seen.data(), count, normal, clipped.data());
+  const double factor = form_factor_above_horizon(clipped.data(), kept, normal);
   return factor > 0 ? factor < 1 ? factor : 1 : 0;
 }
 

@@ -1,12 +1,15 @@
 #include "reference/light.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "base/check.h"
 #include "base/fmath.h"
 #include "reference/environment.h"
 #include "reference/guide.h"
+#include "shade/form_factor.h"
 #include "shade/lights.h"
+#include "shade/polygon_light.h"
 #include "shade/texture.h"
 
 namespace pocketray {
@@ -128,26 +131,100 @@ Vec3d transmittance(const ReferenceWorld& world, const ReferenceRay& ray, const 
   return result;
 }
 
+namespace {
+
+// One light's radiance towards the viewer; false if it contributes nothing. `weight` is the irradiance times the
+// cosine.
+struct ReferenceLight {
+  Vec3d direction, sent;  // unblocked
+  double distance, weight;
+};
+bool find_light(const FrameData& frame, const LightRun& run, std::uint32_t i, const ReferenceSurface& s,
+                const Vec3d& to_viewer, ReferenceLight* found) {
+  Vec3d irradiance;
+  if (!reach(frame.lights[i], run.sample, s.point, &found->direction, &found->distance, &irradiance)) return false;
+  const double cosine = dot(s.normal, found->direction);
+  if (!(cosine > 0)) return false;
+  found->weight = max_component(irradiance) * cosine;
+  found->sent = lobe_value(s, to_viewer, found->direction) * irradiance * cosine;
+  return true;
+}
+Vec3d arriving(const Reference& reference, const ReferenceSurface& s, std::uint32_t i, const ReferenceLight& light) {
+  const FrameData& frame = *reference.world.frame;
+  if (is_zero(light.sent)) return light.sent;
+  return light.sent * transmittance(reference.world, leave(frame, s, light.direction, light.distance),
+                                    {kNone, frame.lights[i].material, false});
+}
+
+// A flat lamp as polygon_light.h has it, and how much of its light a surface gets as it sets.
+struct ReferenceLamp {
+  double irradiance = 0;  // of the brightest channel
+  double highest = 0;     // of its corners; 0: none is below the horizon
+};
+// False if it is too far away.
+bool view_lamp(const LightPolygon& polygon, const ReferenceSurface& s, ReferenceLamp* lamp) {
+  Vec3d corners[kLightCornerMax], clipped[2 * kLightCornerMax];
+  double lowest = kInfinity, highest = -kInfinity;
+  for (std::uint32_t i = 0; i < polygon.corner_count; ++i) {
+    corners[i] = to_double(polygon.corners[i]) - s.point;
+    const double height = dot(corners[i], s.normal);
+    lowest = std::min(lowest, height), highest = std::max(highest, height);
+  }
+  if (!(length(corners[0]) * static_cast<double>(polygon.scale) <= static_cast<double>(kPolygonNear))) return false;
+  double front = -dot(corners[0], to_double(polygon.normal)), side = 1;
+  if (front < 0 && polygon.two_sided) front = -front, side = -1;
+  if (!(front > 0 && highest > 0)) return true;
+  const std::uint32_t count = clip_to_horizon(corners, polygon.corner_count, s.normal, clipped);
+  const double factor = side * form_factor_above_horizon(clipped, count, s.normal);
+  lamp->irradiance = factor > 0 ? static_cast<double>(max_component(polygon.radiance)) * kPi * factor : 0;
+  if (lowest < 0) lamp->highest = highest;
+  return true;
+}
+
+// The light of a lamp's points, weighted so that their sum, unblocked, is that of its polygon.
+Vec3d sum_lamp(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer, const LightRun& run,
+               std::uint32_t first, const ReferenceLamp& lamp) {
+  const FrameData& frame = *reference.world.frame;
+  Vec3d sum = {0, 0, 0};
+  double all = 0, highest = 0;
+  for (std::uint32_t i = first; i < first + frame.settings.points_per_area_light; ++i) {
+    ReferenceLight light;
+    if (!find_light(frame, run, i, s, to_viewer, &light)) continue;
+    all += light.weight;
+    highest = std::max(highest, dot(s.normal, light.direction) * light.distance);
+    sum += arriving(reference, s, i, light);
+  }
+  if (!(all > 0)) return {0, 0, 0};
+  return sum * (lamp.irradiance / all * (lamp.highest > 3 * highest ? 3 * highest / lamp.highest : 1));
+}
+
+}  // namespace
+
 Vec3d sum_light_points(const Reference& reference, const ReferenceSurface& s, const Vec3d& to_viewer,
                        bool with_area_lights) {
   const FrameData& frame = *reference.world.frame;
   Vec3d sum = {0, 0, 0};
-  for (int r = 0; r < frame.light_run_count; ++r)
-    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i) {
+  for (int r = 0; r < frame.light_run_count; ++r) {
+    const LightRun& run = frame.light_runs[r];
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const LightPoint& light = frame.lights[i];
       if (light.material != kNone) {  // an emitter does not light itself
         if (!with_area_lights || &frame.scene->materials[light.material] == s.material) continue;
       }
-      Vec3d direction, irradiance;
-      double distance;
-      if (!reach(light, frame.light_runs[r].sample, s.point, &direction, &distance, &irradiance)) continue;
-      double cosine = dot(s.normal, direction);
-      if (!(cosine > 0)) continue;
-      Vec3d sent = lobe_value(s, to_viewer, direction) * irradiance * cosine;
-      if (is_zero(sent)) continue;
-      sum +=
-          sent * transmittance(reference.world, leave(frame, s, direction, distance), {kNone, light.material, false});
+      if (run.polygons) {
+        const std::uint32_t points = frame.settings.points_per_area_light;
+        const LightPolygon& polygon = run.polygons[(i - run.begin) / points];
+        ReferenceLamp lamp;
+        if (polygon.corner_count && view_lamp(polygon, s, &lamp)) {
+          if (lamp.irradiance > 0) sum += sum_lamp(reference, s, to_viewer, run, i, lamp);
+          i += points - 1;
+          continue;
+        }
+      }
+      ReferenceLight found;
+      if (find_light(frame, run, i, s, to_viewer, &found)) sum += arriving(reference, s, i, found);
     }
+  }
   return sum;
 }
 

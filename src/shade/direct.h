@@ -1,55 +1,191 @@
 // Direct light at a surface: lights × shadow rays.
 #pragma once
 #include "brdf/brdf_list.h"
+#include "shade/polygon_light.h"
 #include "shade/shadow.h"
 
 namespace pocketray {
+
+// A surface that receives light, and the viewer of what leaves it.
+struct LitSurface {
+  const Surface& surface;
+  const Material& material;  // with the lobes there
+  const Vec3& to_viewer;
+  const Vec3& weight;  // the throughput of the path so far
+  Vec3 diffuse;        // value of the diffuse lobe
+  bool at_first_hit;
+};
+
+// The value of all lobes for light from a direction.
+template <EffectMask mask>
+inline Vec3 lobe_value(const FrameData& frame, const LitSurface& to, const Vec3& direction) {
+  const Material& m = to.material;
+  if constexpr (has(mask, Effect::specular)) {
+    if (!is_zero(m.specular)) {
+      effect_entered<Effect::specular>();
+      Vec3 specular = reflectance_at(to.surface, m.specular, m.specular_tinted);
+      const BrdfInfo* lobe = kBrdfList[m.brdf];
+      if constexpr (has(mask, Effect::metallic_roughness)) lobe = &lobe_at(frame, to.surface, m);
+      return lobe->value(m, specular, to.diffuse, to.surface, to.to_viewer, direction);
+    }
+  }
+  return to.diffuse;
+}
+
+// Adds the light of frame.lights[i], one of the run's.
+template <EffectMask mask>
+[[gnu::always_inline]] inline void add_light_point(Tracer* tracer, const LitSurface& to, const LightRun& run,
+                                                   std::uint32_t i, Vec3* sum) {
+  const FrameData& frame = *tracer->frame;
+  const Surface& s = to.surface;
+  const LightPoint& light = frame.lights[i];
+  LightSample sample;
+  const TileSample* kept = nullptr;
+  if (to.at_first_hit && is_sampled(*tracer, i, &kept)) {
+    if (!kept) return;
+    sample.direction = kept->direction, sample.irradiance = kept->irradiance;
+  } else if (!lights_up(frame, s, run, light, &sample)) {
+    return;
+  }
+  float cosine = dot(s.normal, sample.direction);
+  if (!has(mask, Effect::shadow) && is_below(s, sample.direction)) return;
+  Vec3 light_out = lobe_value<mask>(frame, to, sample.direction) * sample.irradiance * cosine;
+  float bound = max_component(light_out * to.weight);
+  if (!(bound > 0)) return;
+  if constexpr (has(mask, Effect::shadow)) {
+    if (leave_out(tracer, bound)) return;
+    light_out *= shadow<mask>(tracer, s, run, i, kept ? nullptr : &sample, to.at_first_hit);
+  }
+  *sum += light_out;
+}
+
+// The light of a lamp's points, weighted so that without shadows their sum is that of its polygon.
+template <EffectMask mask>
+[[gnu::noinline]] Vec3 weighted_points(Tracer* tracer, const LitSurface& to, const LightRun& run, std::uint32_t first,
+                                       const PolygonView& view, const Vec3& irradiance) {
+  const FrameData& frame = *tracer->frame;
+  const Surface& s = to.surface;
+  const LightPolygon& polygon = run.polygons[(first - run.begin) / frame.settings.points_per_area_light];
+  Vec3 seen = {0, 0, 0};
+  float all = 0, highest = 0;
+  for (std::uint32_t i = first; i < first + frame.settings.points_per_area_light; ++i) {
+    LightSample sample;
+    if (!lights_up(frame, s, run, frame.lights[i], &sample)) continue;
+    const float share = max_component(sample.irradiance) * dot(s.normal, sample.direction);
+    all += share;
+    if (view.highest > 0) highest = std::max(highest, dot(s.normal, sample.to_light) * polygon.scale);
+    Vec3 light_out = lobe_value<mask>(frame, to, sample.direction) * share;
+    if (!(max_component(light_out * to.weight) > 0)) continue;
+    if constexpr (has(mask, Effect::shadow)) {
+      light_out *= shadow<mask>(tracer, s, run, i, &sample, to.at_first_hit);
+    } else if (is_below(s, sample.direction)) {
+      continue;
+    }
+    seen += light_out;
+  }
+  if (!(all > 0)) return {0, 0, 0};
+  seen = seen * (1 / all) * irradiance;
+  // As the lamp sets, its light fades with the last of its points, the highest of which is at least a third as high as
+  // its corners while none of them is below the horizon.
+  return view.highest > 3 * highest ? seen * (3 * highest / view.highest) : seen;
+}
+
+// The share of a whole lamp's light that arrives at a matte surface: of the light points that differ in visibility,
+// each by what it contributes.
+template <EffectMask mask>
+[[gnu::noinline]] Vec3 polygon_visibility(Tracer* tracer, const LitSurface& to, const LightRun& run,
+                                          std::uint32_t first, const TilePolygon* tile) {
+  const FrameData& frame = *tracer->frame;
+  const Surface& s = to.surface;
+  const std::uint32_t count = frame.settings.points_per_area_light;
+  constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
+  if (tile) {
+    const bool blocked = tile->blocked[tracer->tile_pixel];
+    if (blocked || (!kClear && tile->open[tracer->tile_pixel])) {
+      effect_entered<Effect::shadow>();
+      if (!frame.point_groups.groups.count) tracer->rays[static_cast<int>(RayKind::shadow)] += count;
+      return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
+    }
+  }
+  auto visibility = [&](std::uint32_t i) { return shadow<mask>(tracer, s, run, i, nullptr, to.at_first_hit); };
+  auto share = [&](std::uint32_t i) {
+    LightSample sample;
+    return lights_up(frame, s, run, frame.lights[i], &sample)
+               ? max_component(sample.irradiance) * dot(s.normal, sample.direction)
+               : 0;
+  };
+  const Vec3 common = visibility(first);
+  Vec3 other = common;
+  std::uint32_t next = first + 1;
+  for (; next < first + count && other == common; ++next) other = visibility(next);
+  if (other == common) return common;
+  float all = 0;
+  for (std::uint32_t i = first; i + 1 < next; ++i) all += share(i);
+  Vec3 seen = common * all;
+  for (std::uint32_t i = next - 1; i < first + count; ++i) {
+    const float own = share(i);
+    all += own;
+    seen += (i + 1 == next ? other : visibility(i)) * own;
+  }
+  return all > 0 ? seen * (1 / all) : Vec3{0, 0, 0};
+}
+
+// The sum and the light of a run's lamps, of which some are polygons.
+template <EffectMask mask>
+[[gnu::noinline]] Vec3 add_area_lights(Tracer* tracer, const LitSurface& to, const LightRun& run, Vec3 sum) {
+  const FrameData& frame = *tracer->frame;
+  const Surface& s = to.surface;
+  const std::uint32_t count = frame.settings.points_per_area_light;
+  for (std::uint32_t lamp = 0, first = run.begin; first < run.end; ++lamp, first += count) {
+    const LightPolygon& polygon = run.polygons[lamp];
+    if (&frame.scene->materials[frame.lights[first].material] == s.material) continue;
+    const TilePolygon* tile = to.at_first_hit ? tile_polygon(*tracer, lamp) : nullptr;
+    PolygonView view = {false, false, 0, 0};
+    if (tile)
+      view = tile->view[tracer->tile_pixel];
+    else if (polygon.corner_count)
+      view = view_polygon(polygon, s);
+    if (!view.is_near) {
+      for (std::uint32_t i = first; i < first + count; ++i) add_light_point<mask>(tracer, to, run, i, &sum);
+      continue;
+    }
+    const Vec3 irradiance = polygon_irradiance(polygon, view);
+    if (!(max_component(irradiance) > 0)) continue;
+    if (!(has(mask, Effect::specular) && !is_zero(to.material.specular))) {
+      const Vec3 light_out = to.diffuse * irradiance;
+      const float bound = max_component(light_out * to.weight);
+      if (!(bound > 0)) continue;
+      if constexpr (has(mask, Effect::shadow))
+        if (leave_out(tracer, bound)) continue;
+      if (view.is_whole) {
+        if constexpr (has(mask, Effect::shadow))
+          sum += light_out * polygon_visibility<mask>(tracer, to, run, first, tile);
+        else
+          sum += light_out;
+        continue;
+      }
+    }
+    sum += weighted_points<mask>(tracer, to, run, first, view, irradiance);
+  }
+  return sum;
+}
 
 // Radiance towards the viewer from light that arrives straight from the lights; `m` has the lobes there. `weight` is
 // the throughput of the path so far.
 template <EffectMask mask>
 Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec3& to_viewer, const Vec3& weight) {
   const FrameData& frame = *tracer->frame;
-  Vec3 diffuse = s.diffuse * (1 / kPiF);
   Vec3 sum = {0, 0, 0};
   const bool at_first_hit = tracer->first_surface && same_surface(*tracer->first_surface, s);
+  const LitSurface to = {s, m, to_viewer, weight, s.diffuse * (1 / kPiF), at_first_hit};
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const LightPoint& light = frame.lights[i];
-      LightSample sample;
-      const TileSample* kept = nullptr;
-      if (at_first_hit && is_sampled(*tracer, i, &kept)) {
-        if (!kept) continue;
-        sample.direction = kept->direction, sample.irradiance = kept->irradiance;
-      } else if (!lights_up(frame, s, run, light, &sample)) {
-        continue;
-      }
-      float cosine = dot(s.normal, sample.direction);
-      if (!has(mask, Effect::shadow) && is_below(s, sample.direction)) continue;
-      Vec3 f = diffuse;
-      if constexpr (has(mask, Effect::specular)) {
-        if (!is_zero(m.specular)) {
-          effect_entered<Effect::specular>();
-          Vec3 specular = reflectance_at(s, m.specular, m.specular_tinted);
-          const BrdfInfo* lobe = kBrdfList[m.brdf];
-          if constexpr (has(mask, Effect::metallic_roughness)) lobe = &lobe_at(frame, s, m);
-          f = lobe->value(m, specular, diffuse, s, to_viewer, sample.direction);
-        }
-      }
-      Vec3 light_out = f * sample.irradiance * cosine;
-      float bound = max_component(light_out * weight);
-      if (!(bound > 0)) continue;
-      if constexpr (has(mask, Effect::shadow)) {
-        if (leave_out(tracer, bound)) continue;
-        auto find_ray = [&] {
-          if (kept) run.sample(light, s.point, &sample);
-          return shadow_ray(frame, s, sample);
-        };
-        light_out *= shadow<mask>(tracer, s, find_ray, i, at_first_hit);
-      }
-      sum += light_out;
+    if (run.polygons) {
+      const LitSurface copy = to;  // what is passed on is kept in memory
+      sum = add_area_lights<mask>(tracer, copy, run, sum);
+      continue;
     }
+    for (std::uint32_t i = run.begin; i < run.end; ++i) add_light_point<mask>(tracer, to, run, i, &sum);
   }
   return sum;
 }

@@ -53,6 +53,16 @@ struct PointGroups {
   std::uint32_t points_of_light;
 };
 
+// A flat lamp that shines alike everywhere, see polygon_light.h.
+struct LightPolygon {
+  Vec3 corners[kLightCornerMax];  // counter-clockwise seen from its front
+  std::uint32_t corner_count;     // 0: the lamp has no such form, nothing else is set
+  std::uint32_t two_sided;
+  Vec3 normal, radiance;
+  float scale;   // a power of two; the polygon's size times it is 1/2 to 1
+  float margin;  // the sine of a margin wide enough for the rounding of its corners and of the lamp's points
+};
+
 struct LightSample {
   Vec3 to_light;    // from the point; a shadow ray runs along it, 0 < t < t_max
   Vec3 direction;   // the same, unit
@@ -65,6 +75,7 @@ using LightSampler = bool (*)(const LightPoint& light, const Vec3& point, LightS
 struct LightRun {
   std::uint32_t begin, end;
   LightSampler sample;
+  const LightPolygon* polygons;  // of its area lights, one for each, or null: light comes from their points
 };
 
 // Rays of a camera: origin(s) and a plane of directions; see camera.h.
@@ -147,6 +158,7 @@ struct FrameData {
   int light_run_count = 0;
   LightTree light_tree = {};  // set with Effect::source_selection
   PointGroups point_groups = {};
+  Array<const LightPolygon> light_polygons;  // of LightRun::polygons
   Settings settings;
   EffectMask mask = 0;
   SurfaceFunction surface = nullptr;

@@ -27,12 +27,8 @@ Vec3 selected_light(Tracer* tracer, const Surface& s, const Material& m, const V
       seen += entry.radiance;
       continue;
     }
-    auto find_ray = [&] {
-      LightSample sample;
-      frame.light_runs[entry.run].sample(frame.lights[entry.light], s.point, &sample);
-      return shadow_ray(frame, s, sample);
-    };
-    seen += entry.radiance * shadow<mask>(tracer, s, find_ray, entry.light, at_first_hit);
+    const LightRun& run = frame.light_runs[entry.run];
+    seen += entry.radiance * shadow<mask>(tracer, s, run, entry.light, nullptr, at_first_hit);
   }
   const float all = max_component(tested);
   // With nothing tested, the middle of the interval.

@@ -130,9 +130,9 @@ inline Ray shadow_ray(const FrameData& frame, const Surface& s, const LightSampl
 }
 
 // As shadow(), if a tile does not know the result, or, with `passes`, knows that nothing opaque is in the way.
-template <EffectMask mask, class FindRay>
-[[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light,
-                                     bool at_first_hit, bool passes) {
+template <EffectMask mask>
+[[gnu::noinline]] Vec3 traced_shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
+                                     const LightSample* known, bool at_first_hit, bool passes) {
   const FrameData& frame = *tracer->frame;
   const std::uint32_t emitter = frame.lights[light].material;
   bool blocked = false;
@@ -144,7 +144,9 @@ template <EffectMask mask, class FindRay>
   constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
   if (blocked) return {0, 0, 0};
   if (passes && !kClear) return {1, 1, 1};
-  const Ray ray = find_ray();
+  LightSample sample;
+  if (!known) run.sample(frame.lights[light], s.point, &sample), known = &sample;
+  const Ray ray = shadow_ray(frame, s, *known);
   ShadowContext context = {&frame, emitter};
   HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   bool filtered = frame.filter_every_shadow || emitter != kNone;
@@ -160,17 +162,18 @@ template <EffectMask mask, class FindRay>
   return {1, 1, 1};
 }
 
-// The fraction of a light that arrives: zero or one, or between if something transparent is in the way. find_ray()
-// returns the shadow ray.
-template <EffectMask mask, class FindRay>
-Vec3 shadow(Tracer* tracer, const Surface& s, FindRay find_ray, std::uint32_t light, bool at_first_hit) {
+// The fraction of frame.lights[light], one of the run's, that arrives: zero or one, or between if something transparent
+// is in the way. `sample` is the light's at the surface, or null.
+template <EffectMask mask>
+[[gnu::always_inline]] inline Vec3 shadow(Tracer* tracer, const Surface& s, const LightRun& run, std::uint32_t light,
+                                          const LightSample* sample, bool at_first_hit) {
   effect_entered<Effect::shadow>();
   ++tracer->rays[static_cast<int>(RayKind::shadow)];
   bool blocked;
   const bool known = at_first_hit && is_known(*tracer, light, &blocked);
   constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
   if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
-  return traced_shadow<mask>(tracer, s, find_ray, light, at_first_hit, known);
+  return traced_shadow<mask>(tracer, s, run, light, sample, at_first_hit, known);
 }
 
 }  // namespace pocketray

@@ -19,6 +19,11 @@ bool keeps_tables(EffectMask mask, const CoherencePlan& plan) {
   return plan.tables_only || (mask & kEffectsBuilt & kGoingOn) != 0;
 }
 
+template <class T>
+bool differ(const T* last, const Array<const T>& now) {
+  return now.count > 0 && std::memcmp(static_cast<const void*>(last), now.data, now.bytes()) != 0;
+}
+
 std::uint32_t tiles_along(std::uint32_t pixels) { return (pixels + kChangeTileSide - 1) / kChangeTileSide; }
 
 std::uint32_t known_lights(const CoherencePlan& plan) {
@@ -38,6 +43,7 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   if (has(mask, Effect::environment_shadow)) bytes = size_sum(bytes, arena_need<std::uint64_t>(tiles));
   bytes = size_sum(bytes, arena_need<KnownShadows>(tiles * plan.samples * known_lights(plan)));
   bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
+  bytes = size_sum(bytes, arena_need<LightPolygon>(plan.area_lights));
   bytes = size_sum(bytes, arena_need<Span>(kSpanRows * row_spans_max(plan.width)));
   bytes = size_sum(bytes, 2 * arena_need<std::uint8_t>(plan.height));
   if (!keeps_tables(mask, plan)) return bytes;
@@ -62,6 +68,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   if (has(frame.mask, Effect::environment_shadow)) c->given = arena_array_zeroed<std::uint64_t>(keep, tiles);
   c->shadows = arena_array_zeroed<KnownShadows>(keep, tiles * plan.samples * known_lights(plan));
   c->lights = arena_array<LightPoint>(keep, plan.light_points);
+  c->light_polygons = arena_array<LightPolygon>(keep, plan.area_lights);
   c->counts = arena_array_zeroed<ChangeCounts>(keep, plan.threads);
   c->spans = arena_array<Span>(keep, kSpanRows * row_spans_max(plan.width));
   c->row_known = arena_array_zeroed<std::uint8_t>(keep, plan.height);
@@ -75,7 +82,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
 bool fits(const Coherence& c, const FrameData& frame) {
   bool has_tables = c.tables.words.count > 0;
   return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.count <= c.plan.light_points &&
-         (has_tables || !keeps_tables(frame.mask, c.plan)) &&
+         frame.light_polygons.count <= c.plan.area_lights && (has_tables || !keeps_tables(frame.mask, c.plan)) &&
          (c.given.count > 0 || !has(frame.mask, Effect::environment_shadow));
 }
 
@@ -92,8 +99,7 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   for (ChangeCounts& counts : c->counts) counts = ChangeCounts();
   std::fill(c->row_traced.begin(), c->row_traced.end(), std::uint8_t(0));
   bool lights_changed =
-      !*why && frame.lights.count > 0 &&
-      std::memcmp(static_cast<const void*>(c->lights.data), frame.lights.data, frame.lights.bytes()) != 0;
+      !*why && (differ(c->lights.data, frame.lights) || differ(c->light_polygons.data, frame.light_polygons));
   if (lights_changed && has(frame.mask, Effect::source_selection)) {
     *why = "a light changed, and with it the selection of the others";
     lights_changed = false;
@@ -101,7 +107,7 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   c->search = {&frame,
                &c->moving,
                c->tables.words.count ? &c->tables : nullptr,
-               {c->first_hits.data, c->marked.data, c->lights},
+               {c->first_hits.data, c->marked.data, c->lights, c->light_polygons},
                c->tiles.data,
                c->tile_columns,
                lights_changed,
@@ -242,6 +248,8 @@ void keep(Coherence* c, const FrameData& frame) {
   CHECK_LE(frame.lights.count, c->lights.count);
   c->light_count = frame.lights.count;
   std::copy(frame.lights.begin(), frame.lights.end(), c->lights.begin());
+  CHECK_LE(frame.light_polygons.count, c->light_polygons.count);
+  std::copy(frame.light_polygons.begin(), frame.light_polygons.end(), c->light_polygons.begin());
   c->signature = c->followed;
   c->following = false;
   ++c->kept_count;

@@ -18,7 +18,7 @@ constexpr EffectMask kNotFollowed =
 
 // What it is made for.
 struct CoherencePlan {
-  std::uint32_t width, height, samples, threads, light_points;  // at most
+  std::uint32_t width, height, samples, threads, light_points, area_lights;  // at most
   std::uint32_t table_side;
   bool tables_only;  // the paper's way: every ray in tables, whole blocks traced again
 };
@@ -34,6 +34,7 @@ struct Coherence {
   Array<std::uint64_t> changed;  // pixels of each tile to trace, bit 8·y + x
   Array<std::uint64_t> given;    // those that may give other light to the pixels about them; empty: none ever do
   Array<LightPoint> lights;      // of the last frame
+  Array<LightPolygon> light_polygons;
   Array<MarkingObserver> observers;
   Array<ChangeCounts> counts;  // for each thread
   Array<Span> spans;           // some rows of tiles as spans

@@ -342,6 +342,15 @@ void find_other_light(TileSearch* t, const TileHits& hits) {
   t->changed |= t->given;
 }
 
+bool has_light_changed(const ChangeSearch& search, const LightRun& run, std::uint32_t light) {
+  const FrameData& frame = *search.frame;
+  if (!search.lights_changed) return false;
+  if (std::memcmp(&search.last.lights[light], &frame.lights[light], sizeof(LightPoint)) != 0) return true;
+  if (!run.polygons) return false;
+  const std::uint32_t lamp = (light - run.begin) / frame.settings.points_per_area_light;
+  return std::memcmp(&search.last.light_polygons[lamp], &run.polygons[lamp], sizeof(LightPolygon)) != 0;
+}
+
 // Calls visit(run, light, has_changed) for each light that has changed, or to which the tile has a ray that can meet a
 // change. Stops when it returns false.
 template <class Visit>
@@ -353,7 +362,7 @@ void for_each_suspect(const ChangeSearch& search, const TileHits& hits, Visit vi
     const LightRun& run = frame.light_runs[r];
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const LightPoint& light = frame.lights[i];
-      bool has_changed = search.lights_changed && std::memcmp(&search.last.lights[i], &light, sizeof light) != 0;
+      const bool has_changed = has_light_changed(search, run, i);
       if (!has_changed) {
         if (!casts) continue;
         if (!meets_change(*search.moving, shadow_beam(run, light, hits.points, hits.room))) continue;

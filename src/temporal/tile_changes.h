@@ -22,6 +22,7 @@ struct LastFrame {
   const Hit* first_hits = nullptr;  // width × height for each sample
   const std::uint8_t* marked = nullptr;
   Array<const LightPoint> lights;
+  Array<const LightPolygon> light_polygons;
 };
 
 // Of a tile, a sample and a light, bit 8·y + x for each pixel: whether it is known that the moving geometry as it is
@@ -54,8 +55,8 @@ struct ChangeCounts {
   std::uint64_t static_rays = 0;  // shadow rays against everything else
 };
 
-// Of the tile's pixels `known`, whose last frame is kept, bit 8·y + x for each that must be traced again. Adds to `given`
-// those that may give other light to the pixels about them (shade/interleaved.h).
+// Of the tile's pixels `known`, whose last frame is kept, bit 8·y + x for each that must be traced again. Adds to
+// `given` those that may give other light to the pixels about them (shade/interleaved.h).
 std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
                                   std::uint64_t* given, ChangeCounts* counts, TraceStats* stats);
 // What is known of the shadows of pixels that are traced again no longer holds.

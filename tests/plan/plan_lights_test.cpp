@@ -248,6 +248,25 @@ TEST_CASE("plan_lights_radiance_bound_knows_both_sides_of_a_light") {
   CHECK(bound[0] > 2);
 }
 
+// Goal: the radiance bound holds where a lamp's closed form exceeds the light of its points. Method: a plate close to
+// the corner of a wide lamp of one point, whose light is known: .8/π · 2 · a quarter of π.
+TEST_CASE("plan_lights_radiance_bound_of_a_wide_lamp") {
+  GeneratedScene s;
+  Material plate, wide;
+  plate.diffuse = {0.8f, 0.8f, 0.8f};
+  wide.diffuse = {0, 0, 0}, wide.emission = {2, 2, 2};
+  add_quad(&s, {-8, 8, 2}, {8, 8, 2}, {8, -8, 2}, {-8, -8, 2}, add_material(&s, wide));
+  add_quad(&s, {7.9f, 7.9f, 1.99f}, {8, 7.9f, 1.99f}, {8, 8, 1.99f}, {7.9f, 8, 1.99f}, add_material(&s, plate));
+  aim(&s, {0, -3, 1}, {0, 0, 0}, 60);
+  s.bind();
+  Settings settings = settings_for(0, 4, 3);
+  settings.points_per_area_light = 1;
+  auto test = make_renderer(s.scene, settings);
+  const float bound = radiance_bounds(test->renderer.frame).after[0];
+  CHECK(bound > 2 + 0.8f * 2 * 0.2f);
+  CHECK(bound < 2 + 0.8f * 2 * 1.1f);
+}
+
 // Goal: the radiance bound does not depend on the accelerator: a hierarchy leaves out only boxes that cannot count.
 // Method: brute force, generated scenes with every kind of light and range.
 TEST_CASE("plan_lights_radiance_bound_is_the_same_with_every_accelerator") {

@@ -131,7 +131,7 @@ TEST_CASE("accuracy_measures_every_knob_of_the_scene") {
   std::string names, notes;
   for (const KnobFigures& k : sweep.knobs) names += k.name + " ";
   for (const std::string& note : sweep.notes) notes += note + "\n";
-  CHECK(names == "samples area-lights area-shadows normals indirect selective resolution arithmetic output ");
+  CHECK(names == "samples area-lights area-shadows area-irradiance normals indirect selective resolution arithmetic output ");
   CHECK(notes.find("depth is skipped") != std::string::npos);
   CHECK(sweep.strips.size() == sweep.knobs.size());
   for (const Strip& strip : sweep.strips) {
@@ -354,7 +354,7 @@ TEST_CASE("accuracy_refuses_the_state_of_another_sweep") {
     cases.push_back({[&row](AccuracyOptions* a) {
                        SettingOption* option = &a->common.settings[row.name];
                        option->count += 1, option->real = row.sweep.values[0];
-                       if (row.field.names) option->choice = row.field.names[1];
+                       if (row.field.names) option->choice = row.field.names[row.field.get(Settings()) == 1 ? 0 : 1];
                      },
                      row.name});
   for (const Case& c : cases) {

@@ -156,6 +156,32 @@ TEST_CASE("dependence_on_the_selection_of_lights_makes_a_whole_frame") {
   CHECK(whole_because(pair) == "");
 }
 
+// Goal: a lamp that changes its shape, but not its points, changes the light. Method: a square becomes a bar with the
+// same centre and area; one point stands for it.
+TEST_CASE("dependence_on_the_shape_of_a_lamp") {
+  auto s = std::make_unique<GeneratedScene>();
+  add_quad(s.get(), {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, add_material(s.get(), matte(0.5f)));
+  const std::uint32_t first = vertex_count(*s);
+  Material lamp = matte(0);
+  lamp.emission = {4, 4, 4};
+  add_quad(s.get(), {-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}, add_material(s.get(), lamp));
+  let_move(s.get(), first);
+  aim(s.get(), {0, 1, 6}, {0, 0, 0}, 60);
+  s->bind();
+  Settings settings = settings_for(0, 40, 30);
+  settings.points_per_area_light = 1;
+  Pair pair = make_pair(std::move(s), settings);
+  CHECK(same_frames(pair));
+  const Array<Vec3>& image = pair.whole->renderer.image;
+  const std::vector<Vec3> before(image.begin(), image.end());
+  const LightPoint point = pair.whole->renderer.frame.lights[0];
+  for (Vec3& p : pair.scene->rest_positions) p.x *= 2, p.z /= 2;
+  CHECK(same_frames(pair));
+  CHECK(whole_because(pair) == "");
+  CHECK(std::memcmp(&point, &pair.whole->renderer.frame.lights[0], sizeof point) == 0);
+  CHECK(std::memcmp(before.data(), image.data, image.bytes()) != 0);
+}
+
 // Goal: a mirror shows shadows that move. Method: it shows a wall; what casts the shadow is seen neither directly nor
 // in the mirror.
 TEST_CASE("dependence_on_shadows_in_a_mirror") {

@@ -188,7 +188,7 @@ def test_malformed(server, scenes):
               dict(camera=dict(CAMERA, fov=0.0)), dict(camera=dict(CAMERA, fov=3.13)), dict(stated=1, camera=dict(CAMERA, fov=3.13)),
               dict(camera=dict(CAMERA, extent=-1.0, projection=1)), dict(camera=dict(CAMERA, extent=0.0)),
               dict(camera=dict(CAMERA, projection=2)), dict(width=0), dict(width=8193), dict(height=0, end=0), dict(height=8193),
-              dict(samples=0), dict(samples=17), dict(depth=17), dict(points=0), dict(points=257), dict(area_shadows=2), dict(cut_off=-1.0),
+              dict(samples=0), dict(samples=17), dict(depth=17), dict(points=0), dict(points=257), dict(area_shadows=2), dict(area_irradiance=2), dict(cut_off=-1.0),
               dict(cut_off=65.0), dict(filter=5), dict(normals=2), dict(indirect=5), dict(virtual_lights=0), dict(virtual_lights=513), dict(reconstruction=3), dict(selective=1.5), dict(selective=-0.5), dict(resolution=3), dict(light_tolerance=1.5), dict(light_tolerance=-0.5), dict(environment_shadows=257),
               dict(exposure=-1.0),
               dict(exposure=big), dict(exposure=8e-19), dict(dither=2), dict(format=2), dict(first=36), dict(first=9, end=9), dict(end=37),
@@ -213,8 +213,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\24\0"), WRONG_VERSION), (hello(20, bytes(236)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\24\0" + bytes(251)), MALFORMED), (hello(19, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\25\0"), WRONG_VERSION), (hello(21, bytes(236)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\25\0" + bytes(251)), MALFORMED), (hello(20, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(16)), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])
@@ -238,8 +238,20 @@ def test_places(program):
     check(server.process.wait(60) == 3, "the server is interrupted")
 
 
+# The lengths that PROTOCOL.md states for requests without an order.
+def test_documented_lengths():
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "src", "wire", "PROTOCOL.md")
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    for kind, name in ((FRAME_REQUEST, "frame_request"), (FRAME_CHANGE, "frame_change"), (VIEW_QUERY, "view_query")):
+        stated = re.search(r"^\| \d+ " + name + r" \|.*\| (\d+)", text, re.MULTILINE)
+        sent = len(request(bytes(16), kind)) - len(message(kind, b""))
+        check(stated and int(stated.group(1)) == sent, "%s has %d bytes" % (name, sent))
+
+
 def main():
     program = os.path.abspath(sys.argv[1])
+    test_documented_lengths()
     check(scene_hash(b"") == bytes(16), "the hash of nothing")
     check(scene_hash(b"pocketray") == struct.pack("<QQ", 0x165f8be4a8264bd0, 0x6c30a3d2c6337914), "the hash on the page")
     with tempfile.TemporaryDirectory() as folder:

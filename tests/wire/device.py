@@ -159,7 +159,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=19, more=b""):
+def hello(version=20, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
 
 
@@ -171,7 +171,7 @@ def pack_camera(camera):
                        camera["projection"])
 
 
-DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0,
+DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0, area_irradiance=1,
                 cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
                 largest=16, level=1, order=(), measure=0)
 
@@ -180,7 +180,7 @@ def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
     rows = struct.pack("<HHHB", r["first"], end, r["largest"], r["level"]) + bytes(x for run in r["order"] for x in run)
-    settings = struct.pack("<HHBBHBfBBBBHfBfHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["cut_off"],
+    settings = struct.pack("<HHBBHBBfBBBBHfBfHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["selective"], r["resolution"], r["light_tolerance"],
                            r["environment_shadows"], r["on"], r["off"])
@@ -205,7 +205,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\23\0", "the server says hello first, of version 19")
+            check(kind == HELLO and fields[:6] == b"PRAY\24\0", "the server says hello first, of version 20")
             self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
 
     def send(self, data):

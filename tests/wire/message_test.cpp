@@ -238,14 +238,15 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 85, {0, 0}},  // points
       {MessageType::frame_request, 8 + 85, {1, 1}},
       {MessageType::frame_request, 8 + 87, {2}},                           // area shadows
-      {MessageType::frame_request, 8 + 88, nan},                           // cut-off
-      {MessageType::frame_request, 8 + 88, {0, 0, 0x82, 0x42}},            // 65 levels
-      {MessageType::frame_request, 8 + 88, {0, 0, 0x80, 0xBF}},            // −1
-      {MessageType::frame_request, 8 + 92, {5}},                           // filter
-      {MessageType::frame_request, 8 + 93, {2}},                           // normals
-      {MessageType::frame_request, 8 + 94, {kIndirectChoiceCount}},        // indirect
-      {MessageType::frame_request, 8 + 95, {3}},                           // reconstruction
-      {MessageType::frame_request, 8 + 98, nan},                           // selective
+      {MessageType::frame_request, 8 + 88, {2}},                           // area irradiance
+      {MessageType::frame_request, 8 + 89, nan},                           // cut-off
+      {MessageType::frame_request, 8 + 89, {0, 0, 0x82, 0x42}},            // 65 levels
+      {MessageType::frame_request, 8 + 89, {0, 0, 0x80, 0xBF}},            // −1
+      {MessageType::frame_request, 8 + 93, {5}},                           // filter
+      {MessageType::frame_request, 8 + 94, {2}},                           // normals
+      {MessageType::frame_request, 8 + 95, {kIndirectChoiceCount}},        // indirect
+      {MessageType::frame_request, 8 + 96, {3}},                           // reconstruction
+      {MessageType::frame_request, 8 + 99, nan},                           // selective
       {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 105, {2}},                   // dither
       {MessageType::frame_request, 8 + more + 106, {2}},                   // format

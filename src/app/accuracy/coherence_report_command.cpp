@@ -46,7 +46,7 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   const EffectMask not_followed = kNotFollowed | (way == Way::by_tables ? bit(Effect::environment_shadow) : 0);
   if ((renderer->effects.mask & not_followed) != 0)
     return failure("coherence does not follow these frames: %s", renderer->coherence_state.unplanned_because);
-  const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max);
+  const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max, renderer->light_polygons.count);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
                       coherence_scratch_need(renderer->scene, renderer->effects.mask);
   return failure("coherence does not fit in --memory: try --memory %zuM", (bytes >> 20) + 1);

@@ -1,0 +1,154 @@
+#include "plan/place_light_polygons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "shade/lights.h"
+
+namespace pocketray {
+namespace {
+
+constexpr std::uint32_t kTrianglesMax = 16;  // of one polygon
+constexpr double kUnevenMax = 0x1p-12;       // how far it may leave its plane, relative to its size
+
+struct Edge {
+  Vec3 from, to;
+};
+struct Outline {
+  Edge edges[3 * kTrianglesMax];
+  std::uint32_t count = 0;
+  Vec3d area_vector = {0, 0, 0};  // twice the area along the normal
+};
+
+Vec3d area_vector_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return cross(to_double(b) - to_double(a), to_double(c) - to_double(a));
+}
+
+// Adds an edge, or removes the same edge of a neighbour, which runs the other way.
+void add_edge(const Vec3& from, const Vec3& to, Outline* outline) {
+  for (std::uint32_t i = 0; i < outline->count; ++i) {
+    if (!(outline->edges[i].from == to && outline->edges[i].to == from)) continue;
+    outline->edges[i] = outline->edges[--outline->count];
+    return;
+  }
+  outline->edges[outline->count++] = {from, to};
+}
+
+// The edges of a material's triangles without those that two share. False if there are too many.
+bool find_outline(const FrameData& frame, std::uint32_t material, Outline* outline) {
+  std::uint32_t triangles = 0;
+  for (const Triangle& t : frame.scene->triangles) {
+    if (t.material() != material) continue;
+    const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+    const Vec3d area = area_vector_of(a, b, c);
+    if (is_zero(area)) continue;
+    if (++triangles > kTrianglesMax) return false;
+    outline->area_vector += area;
+    add_edge(a, b, outline), add_edge(b, c, outline), add_edge(c, a, outline);
+  }
+  return outline->count <= kLightCornerMax;
+}
+
+// Joins the edges to one polygon. False if they are not one.
+bool join(Outline* outline, LightPolygon* polygon) {
+  polygon->corner_count = outline->count;
+  for (std::uint32_t i = 0; i < outline->count; ++i) {
+    Edge* edges = outline->edges;
+    polygon->corners[i] = edges[i].from;
+    if (i + 1 == outline->count) break;
+    std::uint32_t next = i + 1;
+    while (next < outline->count && !(edges[next].from == edges[i].to)) ++next;
+    if (next == outline->count) return false;
+    std::swap(edges[i + 1], edges[next]);
+  }
+  return outline->count >= 3 && outline->edges[outline->count - 1].to == outline->edges[0].from;
+}
+
+double height_over(const LightPolygon& polygon, const Vec3& point) {
+  return dot(to_double(point) - to_double(polygon.corners[0]), to_double(polygon.normal));
+}
+
+bool is_flat(const FrameData& frame, std::uint32_t material, const LightPolygon& polygon, double size) {
+  for (const Triangle& t : frame.scene->triangles) {
+    if (t.material() != material) continue;
+    const Vec3 &a = frame.positions[t.vertex(0)], &b = frame.positions[t.vertex(1)], &c = frame.positions[t.vertex(2)];
+    const Vec3d area = area_vector_of(a, b, c);
+    if (is_zero(area)) continue;
+    if (!(dot(area, to_double(polygon.normal)) > 0)) return false;  // folded
+    for (const Vec3& p : {a, b, c})
+      if (!(std::fabs(height_over(polygon, p)) <= size * kUnevenMax)) return false;
+  }
+  return true;
+}
+
+// The sine of a margin around the polygon's plane, or above a horizon, beyond which neither its corners nor the lamp's
+// points, as rounded, lie on the other side.
+double margin_of(const LightPolygon& polygon, const LightPoint* points, std::uint32_t count, double size) {
+  double off = 0, largest = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    off = std::max(off, std::fabs(height_over(polygon, points[i].position)) / size +
+                            length(to_double(points[i].direction) - to_double(polygon.normal)));
+    largest = std::max(largest, static_cast<double>(max_component(abs(points[i].position))));
+  }
+  constexpr double kEpsilon = std::numeric_limits<float>::epsilon();
+  return 0x1p-9 + off + 16 * kEpsilon * (1 + largest / size);
+}
+
+bool make_polygon(const FrameData& frame, std::uint32_t material, const LightPoint* points, std::uint32_t count,
+                  LightPolygon* polygon) {
+  const Material& m = frame.scene->materials[material];
+  if (m.emission_texture.texture != kNone && frame.scene->uvs.count) return false;
+  Outline outline;
+  if (!find_outline(frame, material, &outline) || !join(&outline, polygon)) return false;
+  double size = 0;
+  for (std::uint32_t i = 1; i < polygon->corner_count; ++i)
+    size = std::max(size, length(to_double(polygon->corners[i]) - to_double(polygon->corners[0])));
+  const double area = length(outline.area_vector);
+  if (!(size > 0x1p-100 && area > 0)) return false;
+  polygon->normal = to_float(outline.area_vector / area);
+  if (!is_flat(frame, material, *polygon, size)) return false;
+  int exponent;
+  std::frexp(size, &exponent);
+  polygon->scale = static_cast<float>(std::ldexp(1.0, -exponent));
+  polygon->margin = static_cast<float>(margin_of(*polygon, points, count, size));
+  polygon->radiance = m.emission;
+  polygon->two_sided = m.double_sided;
+  return true;
+}
+
+}  // namespace
+
+std::uint32_t light_polygon_count(const Scene& scene, EffectMask mask) {
+  if (!has(mask, Effect::area_light)) return 0;
+  std::uint32_t count = 0;
+  for (const Material& m : scene.materials) count += !is_zero(m.emission);
+  return count;
+}
+
+void place_light_polygons(Array<LightPolygon> polygons, FrameData* frame) {
+  CHECK(frame != nullptr);
+  frame->light_polygons = {};
+  if (frame->settings.area_irradiance == AreaIrradiance::points || frame->light_run_count == 0 ||
+      has(frame->mask, Effect::source_selection))
+    return;
+  LightRun& run = frame->light_runs[frame->light_run_count - 1];
+  if (run.sample != find_light_sampler(Effect::area_light)) return;
+  const std::uint32_t n = frame->settings.points_per_area_light, count = (run.end - run.begin) / n;
+  CHECK_LE(count, polygons.count);
+  bool any = false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const LightPoint* points = &frame->lights[run.begin + i * n];
+    polygons[i] = {};
+    if (make_polygon(*frame, points->material, points, n, &polygons[i]))
+      any = true;
+    else
+      polygons[i] = {};
+  }
+  if (!any) return;
+  run.polygons = polygons.data;
+  frame->light_polygons = {polygons.data, count};
+}
+
+}  // namespace pocketray

@@ -1,0 +1,213 @@
+#include <algorithm>
+
+#include "shade/point_groups.h"
+#include "shade/polygon_light.h"
+#include "shade/tile_receivers.h"
+
+namespace pocketray {
+namespace {
+
+// A lamp as seen from a tile's first hits. Pixels are bits.
+struct TileLamp {
+  const LightRun& run;
+  std::uint32_t first;  // of its points
+  KnownViews views;     // of its polygon; those that it surely lights up see it whole
+
+  std::uint32_t number(const FrameData& frame) const {
+    return (first - run.begin) / frame.settings.points_per_area_light;
+  }
+};
+
+// Views of the lamp's polygon, if it has one.
+void find_views(const FrameData& frame, const TileReceivers& receivers, TileLamp* lamp, TileShadows* shadows) {
+  const std::uint32_t number = lamp->number(frame);
+  if (!lamp->run.polygons || number >= kTilePolygonMax) return;
+  const LightPolygon& polygon = lamp->run.polygons[number];
+  TilePolygon& tile = shadows->polygons[number];
+  if (!polygon.corner_count) return;
+  for (std::uint32_t k = 0; k < receivers.count; ++k) {
+    const std::uint32_t pixel = receivers.pixel[k];
+    const Surface& s = shadows->surface[pixel];
+    if (&frame.scene->materials[frame.lights[lamp->first].material] == s.material) continue;
+    const PolygonView view = tile.view[pixel] = view_polygon(polygon, s);
+    tile.viewed.set(pixel);
+    if (!view.is_near) continue;
+    const Vec3 irradiance = polygon_irradiance(polygon, view);
+    if (!(view.form_factor > 0))
+      lamp->views.unlit.set(pixel);
+    else if (view.is_whole) {
+      lamp->views.lit.set(pixel);
+      if (!cannot_matter(frame, s, irradiance)) lamp->views.matter.set(pixel);
+    }
+  }
+}
+
+// The pixels of `open`, from which all points of the lamp are seen, and of `blocked`, from which none is.
+void keep_common(const FrameData& frame, const TileLamp& lamp, std::uint64_t open, std::uint64_t blocked,
+                 TileShadows* shadows) {
+  const std::uint32_t number = lamp.number(frame);
+  if (!lamp.run.polygons || number >= kTilePolygonMax) return;
+  shadows->polygons[number].open = mask_of(open & bits_of(lamp.views.matter));
+  shadows->polygons[number].blocked = mask_of(blocked & bits_of(lamp.views.matter));
+}
+
+// A light of few points, each tested.
+void trace_points(Tracer* tracer, const TileLamp& lamp, const TileReceivers& receivers, TileShadows* shadows) {
+  const FrameData& frame = *tracer->frame;
+  const std::uint32_t end = std::min(lamp.first + frame.settings.points_per_area_light, kTileLightMax);
+  std::uint64_t all = ~std::uint64_t(0), any = 0;
+  for (std::uint32_t i = lamp.first; i < end; ++i) {
+    trace_light(tracer, lamp.run, i, receivers, &lamp.views, shadows);
+    const std::uint64_t blocked = bits_of(shadows->blocked[i]);
+    all &= blocked, any |= blocked;
+  }
+  if (end == lamp.first + frame.settings.points_per_area_light) keep_common(frame, lamp, ~any, all, shadows);
+}
+
+// The points of one area light as seen from a tile's first hits: what is_point_blocked() finds, for all at once.
+class TilePoints {
+ public:
+  TilePoints(Tracer* tracer, const TileLamp& lamp, const TileReceivers& receivers, TileShadows* shadows)
+      : tracer_(tracer),
+        frame_(*tracer->frame),
+        lamp_(lamp),
+        first_(lamp.first),
+        receivers_(receivers),
+        shadows_(shadows) {
+    const PointGroups& groups = frame_.point_groups;
+    const std::uint32_t place = first_ - groups.first_point;
+    groups_ = &groups.groups[place];
+    order_ = &groups.order[place];
+    packet_.count = 0;
+  }
+
+  // Of a light whose last points exceed kTileLightMax, only which pixels it lights up.
+  void find() {
+    const std::uint32_t all = frame_.point_groups.points_of_light, count = std::min(all, kTileLightMax - first_);
+    std::uint64_t matter = bits_of(lamp_.views.matter), open = ~std::uint64_t(0), blocked = open;
+    for (std::uint32_t point = 0; point < count; ++point) matter |= find_probes(point);
+    if (count == all) test(groups_[0], matter);
+    for (std::uint32_t point = 0; point < count; ++point) {
+      shadows_->traced[first_ + point] = {};
+      shadows_->decided[first_ + point] = mask_of(known_[point] & matter);
+      shadows_->blocked[first_ + point] = mask_of(blocked_[point]);
+      open &= ~blocked_[point], blocked &= blocked_[point];
+    }
+    if (count == all) keep_common(frame_, lamp_, open, blocked, shadows_);
+  }
+
+ private:
+  static constexpr int kTogetherMax = 12;  // pixels; their rays to all probes fill a packet
+
+  // The pixels that it lights up, and those from which it is a probe; returns those to which it matters.
+  std::uint64_t find_probes(std::uint32_t point) {
+    const std::uint32_t light = first_ + point;
+    TileMask lit = {};
+    std::uint64_t probes = bits_of(lamp_.views.lit), matter = 0;
+    for (std::uint32_t k = 0; k < receivers_.count; ++k) {
+      const std::uint32_t place = receivers_.pixel[k];
+      if (lamp_.views.lit[place] || lamp_.views.unlit[place]) continue;
+      const Surface& s = shadows_->surface[place];
+      LightSample sample;
+      if (!lights_up(frame_, s, lamp_.run, frame_.lights[light], &sample)) continue;
+      lit.set(place);
+      if (light < kTileSampleMax) shadows_->sample[light][place] = {sample.direction, sample.irradiance};
+      if (!(dot(s.geometric, sample.direction) > 0)) continue;
+      probes |= std::uint64_t(1) << place;
+      if (!cannot_matter(frame_, s, sample)) matter |= std::uint64_t(1) << place;
+    }
+    shadows_->lit[light] = lit;
+    probes_[point] = probes, known_[point] = blocked_[point] = 0;
+    return matter;
+  }
+
+  // Adds the rays of pixels from which the point is a probe to the packet, unless their result is known.
+  void add_rays(std::uint32_t point, std::uint64_t pixels) {
+    const std::uint64_t fresh = pixels & probes_[point] & ~known_[point];
+    const Vec3& position = frame_.lights[first_ + point].position;
+    known_[point] |= fresh;
+    for (std::uint64_t rest = fresh; rest; rest &= rest - 1) {
+      const std::uint32_t place = static_cast<std::uint32_t>(__builtin_ctzll(rest));
+      if (packet_.count == kPacketMax) trace();
+      pixel_[packet_.count] = static_cast<std::uint8_t>(place),
+      point_[packet_.count] = static_cast<std::uint8_t>(point);
+      set_ray(&packet_, packet_.count++, {receivers_.origin[place], position - shadows_->surface[place].point, 1});
+    }
+  }
+  void trace() {
+    if (packet_.count == 0) return;
+    tracer_->rays[static_cast<int>(RayKind::shadow)] += packet_.count;
+    for (std::uint64_t found = trace_packet(tracer_, packet_, frame_.lights[first_].material); found;
+         found &= found - 1) {
+      const int ray = __builtin_ctzll(found);
+      blocked_[point_[ray]] |= std::uint64_t(1) << pixel_[ray];
+    }
+    packet_.count = 0;
+  }
+
+  void test(const PointGroup& group, std::uint64_t pixels) {
+    if (!group.second) {
+      for (std::uint32_t i = group.begin; i < group.end; ++i) add_rays(order_[i], pixels);
+      return trace();
+    }
+    // Few rays are faster in one packet, even if some of them are not needed.
+    const bool at_once = __builtin_popcountll(pixels) <= kTogetherMax;
+    for (std::uint32_t i = 0; at_once && i < std::size(group.probes); ++i) add_rays(group.probes[i], pixels);
+    trace();
+    std::uint64_t all = pixels, none = pixels;  // blocked
+    for (std::uint32_t point : group.probes) {
+      add_rays(point, all | none);
+      trace();
+      all &= blocked_[point], none &= probes_[point] & ~blocked_[point];
+    }
+    for (std::uint32_t i = group.begin; i < group.end; ++i) {
+      const std::uint32_t point = order_[i];
+      known_[point] |= (all | none) & probes_[point];
+      blocked_[point] = (blocked_[point] & ~none) | (all & probes_[point]);
+    }
+    const std::uint64_t rest = pixels & ~(all | none);
+    if (!rest) return;
+    test(*(&group + 1), rest);
+    test(groups_[group.second], rest);
+  }
+
+  Tracer* tracer_;
+  const FrameData& frame_;
+  const TileLamp& lamp_;
+  std::uint32_t first_;
+  const TileReceivers& receivers_;
+  TileShadows* shadows_;
+  const PointGroup* groups_;
+  const std::uint8_t* order_;
+  SegmentPacket packet_;
+  std::uint8_t pixel_[kPacketMax], point_[kPacketMax];                                   // of its rays
+  std::uint64_t probes_[kTileLightMax], known_[kTileLightMax], blocked_[kTileLightMax];  // by point
+};
+
+}  // namespace
+
+void find_lamp_tile_shadows(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows) {
+  const FrameData& frame = *tracer->frame;
+  const PointGroups& groups = frame.point_groups;
+  TileReceivers receivers;
+  find_receivers(frame, rays, hits, shadows, &receivers);
+  for (TilePolygon& polygon : shadows->polygons) polygon.viewed = polygon.open = polygon.blocked = {};
+  for (int r = 0; r < frame.light_run_count; ++r) {
+    const LightRun& run = frame.light_runs[r];
+    const bool has_groups = groups.groups.count && run.begin == groups.first_point;
+    const bool has_lamps = has_groups || run.polygons;
+    const std::uint32_t step = has_lamps ? frame.settings.points_per_area_light : 1;
+    for (std::uint32_t i = run.begin; i < run.end && i < kTileLightMax; i += step) {
+      TileLamp lamp = {run, i, {}};
+      if (has_lamps) find_views(frame, receivers, &lamp, shadows);
+      if (has_groups)
+        TilePoints(tracer, lamp, receivers, shadows).find();
+      else if (has_lamps)
+        trace_points(tracer, lamp, receivers, shadows);
+      else
+        trace_light(tracer, run, i, receivers, nullptr, shadows);
+    }
+  }
+}
+
+}  // namespace pocketray
