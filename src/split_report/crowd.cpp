@@ -349,7 +349,7 @@ CrowdReport simulate_crowd(const Crowd& crowd) {
   s.servers.resize(crowd.servers.size());
   s.report.clients.resize(crowd.clients.size());
   s.report.price_low.resize(crowd.servers.size()), s.report.price_high.resize(crowd.servers.size());
-  s.changes.resize(crowd.end_ns / kSecondNs + 1), s.frames.resize(s.changes.size());
+  s.changes.resize(static_cast<std::size_t>(crowd.end_ns / kSecondNs) + 1), s.frames.resize(s.changes.size());
   for (std::uint32_t i = 0; i < crowd.clients.size(); ++i) {
     CHECK_LE(crowd.clients[i].server_count, kServerCountMax);
     CHECK_GT(crowd.clients[i].pixel_ns, 0);
