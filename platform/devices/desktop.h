@@ -5,6 +5,7 @@ namespace platform {
 
 // Any PC on Ethernet of 1 Gbit/s: 941 Mbit/s by iperf3 (mpr-projects.com, "RPi NAS: Part 3 Network Connections",
 // 2023). A window of the handhelds' size, and enough memory for every scene.
+// Energy: guesses.
 constexpr Device kDesktop = {"desktop",
                              "A PC with a window or a framebuffer",
                              "x86-64",
@@ -19,6 +20,8 @@ constexpr Device kDesktop = {"desktop",
                              1,
                              117'500'000,
                              microseconds(100),
-                             0};
+                             0,
+                             10,
+                             10};
 
 }  // namespace platform

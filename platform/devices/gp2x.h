@@ -10,6 +10,8 @@ namespace platform {
 // USB 1.1 carries at most 19 packets of 64 bytes per millisecond (USB 2.0 specification, sec. 5.8.4), 1.2 MB/s, of
 // which headers and host leave about 1. Its successor, the Wiz, answers a ping with the same Linux driver in 0.98 ms
 // (gp32x.com, topic 50468, 2009).
+// Energy: ARM920T, 560 mW at 200 MHz in 0.25 µm [Furber 2000, "ARM System-on-Chip Architecture", table 12.5], of which
+// this chip is a shrink; a guess of 10 mA at 3.3 V for USB while it carries 1 MB/s.
 constexpr Device kGp2x = {"gp2x",
                           "GamePark GP2X: ARM920T 200 MHz, no FPU",
                           "armv4t",
@@ -24,6 +26,8 @@ constexpr Device kGp2x = {"gp2x",
                           462,
                           1'000'000,
                           microseconds(500),
-                          microseconds(500)};
+                          microseconds(500),
+                          0.56,
+                          33};
 
 }  // namespace platform

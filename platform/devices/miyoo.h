@@ -14,6 +14,7 @@ constexpr std::uint16_t kMiyooKeys[] = {key::kUp,          key::kDown,      key:
 // Link: a USB stick for 802.11n with one antenna. 16 Mbit/s, from the 10 to 20 that consumer 802.11g and n devices
 // reached in an office (web.luchs.at, "Using 802.11n and WPA2"): its CPU is as slow as theirs. Latency and jitter are
 // guesses.
+// Energy: a guess: as much per MHz as the ARM1176 of pi_zero.h.
 constexpr Device kMiyoo = {"miyoo",
                            "Miyoo and kin: F1C100s, ARM926EJ-S, no FPU",
                            "armel",
@@ -28,6 +29,8 @@ constexpr Device kMiyoo = {"miyoo",
                            226,
                            2'000'000,
                            microseconds(1500),
-                           microseconds(2000)};
+                           microseconds(2000),
+                           0.08,
+                           kRadioNanojoules};
 
 }  // namespace platform

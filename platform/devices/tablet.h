@@ -9,6 +9,8 @@ namespace platform {
 // (The Buddha, 6688 and 520, gives 6.43; four and eight cores give less for both.) Link: 802.11g with 19 Mbit/s on
 // average (sec. 4). At that rate its T_t of 400 ns carries 0.95 bytes: a pixel of four bytes compressed 4:1. Latency
 // and jitter are guesses: the paper has none.
+// Energy: the thermal design power of an ultra low voltage Pentium M at 1 GHz (Intel, "Pentium M Processor Datasheet",
+// 252612), an upper bound.
 constexpr Device kTablet = {"tablet",
                             "The tablet PC of Aranha et al.: Pentium M 1 GHz",
                             "x86-64",
@@ -23,6 +25,8 @@ constexpr Device kTablet = {"tablet",
                             4.47,
                             2'375'000,
                             microseconds(1500),
-                            microseconds(1000)};
+                            microseconds(1000),
+                            7,
+                            kRadioNanojoules};
 
 }  // namespace platform

@@ -26,6 +26,7 @@ enum class Quantity : int {
   coordinate,
   field_of_view,
   vertical_extent,
+  price,
 };
 
 struct LimitRow {
@@ -43,6 +44,7 @@ constexpr float kFrameRateMin = 1e-3f;
 constexpr float kFieldOfViewMin = static_cast<float>(radians(0.001)),
                 kFieldOfViewMax = static_cast<float>(radians(179));
 constexpr float kVerticalExtentMin = 0x1p-126f;  // the smallest normal float
+constexpr std::uint16_t kPriceUnit = 256;        // the price of a server without other clients
 
 constexpr LimitRow kLimitList[] = {
     {Quantity::width, "the picture's width", 1, kImageSideMax},
@@ -65,6 +67,7 @@ constexpr LimitRow kLimitList[] = {
      double(kFieldOfViewMax)},
     {Quantity::vertical_extent, "the height that an orthographic camera sees", double(kVerticalExtentMin),
      double(kCoordinateMax)},
+    {Quantity::price, "the price of a server's time in 256ths", kPriceUnit, UINT16_MAX},
 };
 constexpr int kLimitCount = sizeof kLimitList / sizeof kLimitList[0];
 
@@ -72,7 +75,7 @@ constexpr const LimitRow& limit_of(Quantity quantity) { return kLimitList[static
 constexpr bool limits_in_order() {
   for (int i = 0; i < kLimitCount; ++i)
     if (static_cast<int>(kLimitList[i].quantity) != i) return false;
-  return kLimitCount == static_cast<int>(Quantity::vertical_extent) + 1;
+  return kLimitCount == static_cast<int>(Quantity::price) + 1;
 }
 static_assert(limits_in_order(), "one row for each quantity, in their order");
 

@@ -33,6 +33,7 @@ void add_edge(const Vec3& from, const Vec3& to, Outline* outline) {
     outline->edges[i] = outline->edges[--outline->count];
     return;
   }
+  CHECK_LT(outline->count, 3 * kTrianglesMax);
   outline->edges[outline->count++] = {from, to};
 }
 
@@ -53,6 +54,7 @@ bool find_outline(const FrameData& frame, std::uint32_t material, Outline* outli
 
 // Joins the edges to one polygon. False if they are not one.
 bool join(Outline* outline, LightPolygon* polygon) {
+  CHECK_LE(outline->count, kLightCornerMax);
   polygon->corner_count = outline->count;
   for (std::uint32_t i = 0; i < outline->count; ++i) {
     Edge* edges = outline->edges;
@@ -86,6 +88,8 @@ bool is_flat(const FrameData& frame, std::uint32_t material, const LightPolygon&
 // The sine of a margin around the polygon's plane, or above a horizon, beyond which neither its corners nor the lamp's
 // points, as rounded, lie on the other side.
 double margin_of(const LightPolygon& polygon, const LightPoint* points, std::uint32_t count, double size) {
+  CHECK_GT(count, 0u);
+  CHECK_GT(size, 0.0);
   double off = 0, largest = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     off = std::max(off, std::fabs(height_over(polygon, points[i].position)) / size +
@@ -112,6 +116,7 @@ bool make_polygon(const FrameData& frame, std::uint32_t material, const LightPoi
   int exponent;
   std::frexp(size, &exponent);
   polygon->scale = static_cast<float>(std::ldexp(1.0, -exponent));
+  CHECK(polygon->scale > 0 && std::isfinite(polygon->scale));
   polygon->margin = static_cast<float>(margin_of(*polygon, points, count, size));
   polygon->radiance = m.emission;
   polygon->two_sided = m.double_sided;
@@ -135,7 +140,9 @@ void place_light_polygons(Array<LightPolygon> polygons, FrameData* frame) {
     return;
   LightRun& run = frame->light_runs[frame->light_run_count - 1];
   if (run.sample != find_light_sampler(Effect::area_light)) return;
-  const std::uint32_t n = frame->settings.points_per_area_light, count = (run.end - run.begin) / n;
+  const std::uint32_t n = frame->settings.points_per_area_light;
+  CHECK(n >= 1 && (run.end - run.begin) % n == 0);
+  const std::uint32_t count = (run.end - run.begin) / n;
   CHECK_LE(count, polygons.count);
   bool any = false;
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -136,7 +136,8 @@ void observe_overture(CostModel* model, std::uint32_t server, const PixelTimes& 
     if (!is_known(row.device_ns)) smooth(&row.device_ns, times.device_ns * pixels), row.guessed = true;
     if (!is_known(row.bytes)) smooth(&row.bytes, bytes_per_pixel * pixels);
   }
-  observe_server_price(model, server, times.server_ns);
+  observe_server_speed(model, server, times.server_ns);
+  s->price = s->price_stated;
   smooth(&s->ns_per_byte, times.transfer_ns / bytes_per_pixel);
   smooth(&s->start_ns, start_ns);
 }
@@ -147,15 +148,14 @@ void observe_device_row(CostModel* model, std::uint32_t row, double ns, double p
 }
 
 void observe_server_rows(CostModel* model, std::uint32_t server, std::uint32_t row_begin, std::uint32_t row_end,
-                         double render_ns, double bytes, double part) {
+                         double work_ns, double bytes, double part) {
   CHECK_LT(server, model->server_count);
   CHECK_LE(row_begin, row_end);
   CHECK_LE(row_end, model->rows.count);
   double row_count = row_end - row_begin;
   for (std::uint32_t r = row_begin; r < row_end; ++r) {
     RowModel* row = &model->rows[r];
-    row->server_ns_seen =
-        is_amount(render_ns) && part >= kPartMin ? static_cast<float>(render_ns / row_count / part) : 0;
+    row->server_ns_seen = is_amount(work_ns) && part >= kPartMin ? static_cast<float>(work_ns / row_count / part) : 0;
     row->part_seen = static_cast<float>(part);
     row->server_seen = static_cast<std::uint8_t>(server);
     // An unchanged row takes no bytes, which is as good a measurement as any.
@@ -179,17 +179,25 @@ void observe_own_link(CostModel* model, double ns_per_byte) {
   smooth(link, ns_per_byte);
 }
 
-void observe_server_price(CostModel* model, std::uint32_t server, double ns_per_pixel) {
+void observe_server_speed(CostModel* model, std::uint32_t server, double ns_per_pixel) {
   CHECK_LT(server, model->server_count);
   double mean = mean_device_ns(*model);
   if (mean > 0) smooth(&model->servers[server].speed, ns_per_pixel * model->width / mean);
+}
+
+void observe_price(CostModel* model, std::uint32_t server, double price) {
+  CHECK_LT(server, model->server_count);
+  const double max = static_cast<double>(kPriceMax);
+  model->servers[server].price_stated = price >= 1 ? static_cast<float>(std::fmin(price, max)) : 1;
 }
 
 void end_frame(CostModel* model) {
   fold_device_rows(model);
   for (std::uint32_t i = 0; i < model->server_count; ++i) {
     fold_server_rows(model, i);
-    fold_times(&model->servers[i].transfer_seen, &model->servers[i].ns_per_byte);
+    ServerModel* server = &model->servers[i];
+    fold_times(&server->transfer_seen, &server->ns_per_byte);
+    server->price += kPricePart * (server->price_stated - server->price);
   }
   fold_times(&model->unpack_seen, &model->unpack_ns_per_byte);
   fold_times(&model->link_seen, &model->link_ns_per_byte);
@@ -224,13 +232,13 @@ SplitProblem make_problem(CostModel* model, const SplitWish& wish) {
   for (std::uint32_t i = 0; i < model->server_count; ++i) {
     const ServerModel& server = model->servers[i];
     if (!is_usable(server)) continue;
-    double speed = static_cast<double>(server.speed.value), per_byte = static_cast<double>(server.ns_per_byte.value);
+    double slowness = server_slowness(server), per_byte = static_cast<double>(server.ns_per_byte.value);
     double byte_cost = cost_is_bytes ? 1 : (model->cost_per_byte + server.cost_per_megabyte * 1e-6) * per_cost;
     ServerTables* t = &p.servers[i];
     t->usable = true;
     t->render_ns = add_table(model, &tables, [&](std::uint32_t row) {
       const RowModel& r = model->rows[row];
-      return device_ns(row) * speed * (r.holder == i ? static_cast<double>(r.holder_part) : 1);
+      return device_ns(row) * slowness * (r.holder == i ? static_cast<double>(r.holder_part) : 1);
     });
     t->transfer_ns = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * per_byte; });
     t->cost = add_table(model, &tables, [&](std::uint32_t row) { return bytes(row) * byte_cost; });

@@ -19,8 +19,11 @@ struct ByteTimes {
 };
 
 struct ServerModel {
-  bool connected = false;         // false: gets no rows
-  Smoothed speed;                 // its time for a row over the device's
+  bool connected = false;  // false: gets no rows
+  Smoothed speed;          // its work on a row over the device's time
+  float price = 1;         // at which the split counts: how long its work takes because of other clients, over
+                           // the work; follows the stated price
+  float price_stated = 1;
   Smoothed ns_per_byte;           // to send from it
   Smoothed start_ns;              // from the request to the first chunk, without that chunk's rendering and sending
   double cost_per_megabyte = 0;   // price of 10⁶ bytes from it, in the caller's unit
@@ -73,26 +76,38 @@ std::size_t cost_model_need(std::uint32_t row_count, std::uint32_t server_count)
 CostModel make_cost_model(std::uint32_t width, std::uint32_t row_count, std::uint32_t server_count, Arena* arena);
 
 // The first estimate of a connection: means over a frame, before any of its rows has been measured. Bytes per pixel are
-// after compression. Forgets what was known about this server.
+// after compression. Forgets what was known about this server but its price, which counts at once.
 void observe_overture(CostModel* model, std::uint32_t server, const PixelTimes& times, double bytes_per_pixel,
                       double start_ns);
 
 // Wall time of a row on the device, which traced `part` of its pixels: with k threads at work, a k-th of its time on
 // one of them. A small part tells nothing of the row's price.
 void observe_device_row(CostModel* model, std::uint32_t row, double ns, double part = 1);
-// Rows received from a server: its reported rendering time, their bytes on the wire, and the part of their pixels that
+// Rows received from a server: its reported work on them, their bytes on the wire, and the part of their pixels that
 // it traced.
 void observe_server_rows(CostModel* model, std::uint32_t server, std::uint32_t row_begin, std::uint32_t row_end,
-                         double render_ns, double bytes, double part = 1);
+                         double work_ns, double bytes, double part = 1);
 // Time of the device for the row in the coming frame.
 inline double device_row_ns(const RowModel& row) {
   return static_cast<double>(row.device_ns.value) * static_cast<double>(row.device_part);
 }
 // Bytes received from the server and the time from the first to the last of them, while it had them ready.
 void observe_transfer(CostModel* model, std::uint32_t server, double bytes, double ns);
-// The price of a server that has no rows, known from a ping or from another client's load: its cost per pixel, as a
-// mean over the frame.
-void observe_server_price(CostModel* model, std::uint32_t server, double ns_per_pixel);
+// The speed of a server that has no rows, known from a ping: its work per pixel, as a mean over the frame.
+void observe_server_speed(CostModel* model, std::uint32_t server, double ns_per_pixel);
+// The price that a server states: how long its work takes over how long it would take without other clients. Anything
+// but a number from 1 on counts as 1, more than kPriceMax as that. From one frame to the next the split's price moves
+// by kPricePart of the way.
+void observe_price(CostModel* model, std::uint32_t server, double price);
+// All clients of a server see the same price. If each answered it in full, a price too low would bring as much demand
+// too much as there was too little, and so on for ever. With half of the answer or less, each error is smaller than the
+// one before; a quarter, chosen, leaves room for prices that are frames old.
+constexpr float kPricePart = 0.25f;
+constexpr float kPriceMax = 256;
+// How long the server takes for a row, over the device's time: 0 if unknown.
+inline double server_slowness(const ServerModel& server) {
+  return static_cast<double>(server.speed.value) * static_cast<double>(server.price);
+}
 inline void observe_start(CostModel* model, std::uint32_t server, double ns) {
   smooth(&model->servers[server].start_ns, ns);
 }
@@ -107,7 +122,7 @@ void observe_own_link(CostModel* model, double ns_per_byte);
 
 // Applies the frame's measurements. If all rows of the device changed their price, the servers' rows are assumed to
 // have changed alike, since a new scene and a throttled device look the same. The remaining difference common to a
-// server's rows is its speed; the differences between them belong to the rows.
+// server's rows is its speed; the differences between them belong to the rows. Prices follow those stated.
 void end_frame(CostModel* model);
 
 // The problem for the next frame. Its tables lie in the model and are valid until the next call. Whatever the numbers,

@@ -144,6 +144,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     const FrameShare& share = e->client.share;
     e->times[measured++] = share.measured_ns / (double(settings.width) * settings.height);
     point->m += double(share.device_rows) / settings.height / frame_count;
+    point->device_pixels += double(share.device_pixels) / frame_count;
     point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
     point->row_bytes += double(share.row_bytes) / frame_count;
     point->kept_rows += double(share.kept_rows) / frame_count;

@@ -26,6 +26,7 @@ struct SplitSetup {
 struct SplitPoint {
   double m = 0;                              // the device's share of the rows
   double ns_per_pixel = 0;                   // of the median frame
+  double device_pixels = 0;                  // traced by the device
   double bytes = 0;                          // received and sent per frame
   double row_bytes = 0;                      // of these, rows without message overhead
   double row_count = 0;                      // sent by servers

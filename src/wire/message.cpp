@@ -76,6 +76,7 @@ void fields(Io& io, Hello* m) {
   io.require(magic == kMagic);
   number(io, &m->version);
   number(io, &m->image_side_max), number(io, &m->message_bytes_max), number(io, &m->scene_bytes_max);
+  count(io, &m->price, Quantity::price);
 }
 template <class Io>
 void fields(Io& io, SceneList* m) {
@@ -179,7 +180,8 @@ template <class Io>
 void fields(Io& io, RowChunk* m) {
   number(io, &m->frame), number(io, &m->row_begin), number(io, &m->row_count);
   io.require(m->row_count >= 1 && m->row_count <= kImageSideMax && m->row_begin <= kImageSideMax - m->row_count);
-  number(io, &m->pixel_ps), number(io, &m->pixels_traced), number(io, &m->encoding);
+  number(io, &m->pixel_ps), count(io, &m->price, Quantity::price), number(io, &m->pixels_traced);
+  number(io, &m->encoding);
   io.require(m->pixels_traced <= m->row_count * kImageSideMax), io.tail(&m->bytes);
 }
 template <class Io>
@@ -199,7 +201,7 @@ void fields(Io& io, Ping* m) {
 }
 template <class Io>
 void fields(Io& io, Pong* m) {
-  number(io, &m->id), number(io, &m->pixel_ps);
+  number(io, &m->id), number(io, &m->pixel_ps), count(io, &m->price, Quantity::price);
   io.tail(&m->bytes);
 }
 template <class Io>
@@ -263,18 +265,18 @@ struct PayloadSize {
 };
 constexpr PayloadSize kPayloadSizes[] = {
     {0, 0},                                          // no type
-    {20, 0},                                         // hello
+    {22, 0},                                         // hello
     {2, 0},                                          // scene_list
     {16, 0},                                         // scene_query
     {96, 0},                                         // scene_entry
     {28, 0},                                         // scene_fetch
     {24, kPieceBytesMax},                            // scene_piece
     {92 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
-    {17, kChunkBytesMax},                            // row_chunk
+    {19, kChunkBytesMax},                            // row_chunk
     {4, 0},                                          // cancel
     {6, 0},                                          // error
     {8, 0},                                          // ping
-    {8, kPingBytesMax},                              // pong
+    {10, kPingBytesMax},                             // pong
     {68 + kSettingsBytes, 0},                        // view_query
     {104, 0},                                        // view_entry
     {67, kRunBytes* kRunCountMax},                   // frame_change

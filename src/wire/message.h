@@ -45,6 +45,7 @@ struct Hello {
   std::uint16_t image_side_max = 0;      // largest picture that the sender takes or renders
   std::uint32_t message_bytes_max = 0;   // header included; the sender's receive buffer
   std::uint64_t scene_bytes_max = 0;     // largest baked file that the sender accepts; 0: none
+  std::uint16_t price = kPriceUnit;      // of a server's time for this device, see RowChunk; a device states the unit
 };
 
 struct SceneList {
@@ -103,9 +104,10 @@ struct FrameRequest {
 struct RowChunk {
   std::uint32_t frame = 0;
   std::uint16_t row_begin = 0, row_count = 0;
-  std::uint32_t pixel_ps = 0;       // server's cost of a pixel of these rows, picoseconds; ~0u: that or more
-  std::uint32_t pixels_traced = 0;  // of these rows; the server kept the others from its last frame
-  std::uint8_t encoding = 0;        // see codec.h
+  std::uint32_t pixel_ps = 0;        // server's work on a pixel of these rows, picoseconds; ~0u: that or more
+  std::uint16_t price = kPriceUnit;  // how long work takes now over how long it takes without other clients, in 256ths
+  std::uint32_t pixels_traced = 0;   // of these rows; the server kept the others from its last frame
+  std::uint8_t encoding = 0;         // see codec.h
   Array<const std::uint8_t> bytes;
 };
 
@@ -132,8 +134,9 @@ struct Ping {
 };
 struct Pong {
   std::uint32_t id = 0;
-  std::uint32_t pixel_ps = 0;       // recent cost of a pixel on the server; 0: it has rendered none
-  Array<const std::uint8_t> bytes;  // content has no meaning
+  std::uint32_t pixel_ps = 0;        // recent work on a pixel; 0: the server has rendered none
+  std::uint16_t price = kPriceUnit;  // as in a RowChunk
+  Array<const std::uint8_t> bytes;   // content has no meaning
 };
 
 // What a device without the scene must know about it before it requests frames.

@@ -168,7 +168,9 @@ assert all(set(f[k]) == {"m", "ns_per_pixel"} for k in ("chosen", "best"))
 assert len(f["sweep"]) >= 3 and all(set(p) == {"m", "ns_per_pixel"} for p in f["sweep"])
 assert f["best"]["ns_per_pixel"] == min(p["ns_per_pixel"] for p in f["sweep"]) < f["local_ns_per_pixel"]
 keys = {"times_of", "processors", "share", "ns_per_pixel", "our_share", "our_ns_per_pixel"}
-assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])'
+assert len(f["paper"]) == 6 and all(keys <= set(row) for row in f["paper"])
+assert all(f[k] for k in ("energy_front", "price_front"))
+assert [row["clients"] for row in f["one_server_many_clients"]] == [1, 2, 3, 4, 6, 8, 12, 16]'
     fi
     expect split_report_device 1 'gp2x' split-report cube --emulate toaster
     expect split_report_no_server 1 'servers' "${report[@]}" --servers 0

@@ -31,6 +31,8 @@ TEST_CASE("device_list_has_plausible_and_distinct_entries") {
     CHECK((device.link_bytes_per_second >= 100'000 && device.link_bytes_per_second <= 125'000'000));
     CHECK((device.link_latency_ns >= 50'000 && device.link_latency_ns <= 50'000'000));
     CHECK(device.link_jitter_ns <= 2 * device.link_latency_ns);
+    CHECK((device.core_watts >= 0.01 && device.core_watts <= 50));
+    CHECK((device.byte_nanojoules >= 1 && device.byte_nanojoules <= 10'000));
     std::set<int> keys;
     for (int i = 0; device.keys && i < 12; ++i) keys.insert(device.keys[i]);
     CHECK((!device.keys || keys.size() == 12));

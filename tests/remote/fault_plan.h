@@ -42,8 +42,8 @@ enum class Malice : std::uint8_t {
   foreign_rows,     // sends wrong pixels for other servers' rows
   repeated_rows,    // sends its rows twice, the second time wrong
   free_pixels,      // claims that its pixels take no time
-  dear_pixels,      // claims milliseconds per pixel
-  random_prices,    // claims random times
+  dear_pixels,      // claims milliseconds per pixel, and to be as busy as can be
+  random_prices,    // claims random times and prices
   wrong_scene,      // describes another scene or impossible sizes
   wrong_hello,      // speaks another version or accepts no picture
   quick_pongs,      // answers pings at once but is slow with rows

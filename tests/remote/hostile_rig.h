@@ -62,7 +62,7 @@ struct HostileRig {
   Message pong(const Ping& ping) {
     Message message;
     message.type = MessageType::pong;
-    message.pong = {ping.id, 100'000, {payload.data(), ping.reply_bytes}};
+    message.pong = {ping.id, 100'000, kPriceUnit, {payload.data(), ping.reply_bytes}};
     return message;
   }
   // The answer of a well-behaved server.

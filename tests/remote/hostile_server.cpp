@@ -34,9 +34,21 @@ std::uint32_t price(HostileServer* server) {
   }
 }
 
+std::uint16_t stated_price(HostileServer* server) {
+  switch (server->settings.malice) {
+    case Malice::dear_pixels:
+      return UINT16_MAX;
+    case Malice::random_prices:
+      return static_cast<std::uint16_t>(kPriceUnit + server->random.below(UINT16_MAX - kPriceUnit + 1));
+    default:
+      return kPriceUnit;
+  }
+}
+
 void say_hello(HostileServer* server, Connection* c) {
   Message message = hello_message();
   message.hello.message_bytes_max = 512;
+  message.hello.price = stated_price(server);
   if (server->settings.malice == Malice::wrong_hello) {
     std::uint64_t kind = server->random.below(3);
     if (kind == 0) message.hello.version = static_cast<std::uint16_t>(server->random.below(65536));
@@ -68,6 +80,7 @@ void say_pong(HostileServer* server, Connection* c, std::uint32_t id, std::uint3
   Message message;
   message.type = MessageType::pong;
   message.pong.id = id, message.pong.pixel_ps = price(server);
+  message.pong.price = stated_price(server);
   message.pong.bytes = {zeros, byte_count};
   say(c, message);
 }
@@ -101,6 +114,7 @@ void say_rows(HostileServer* server, Connection* c, std::uint32_t frame, std::ui
   message.type = MessageType::row_chunk;
   RowChunk* chunk = &message.row_chunk;
   chunk->frame = frame, chunk->pixel_ps = price(server), chunk->pixels_traced = shape.width * (end - begin);
+  chunk->price = stated_price(server);
   chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(end - begin);
   std::uint32_t count =
       encode_rows(c->encoder, begin, end - begin, rows.data(), q.deflate_level, encoded.data(), &chunk->encoding);

@@ -142,6 +142,15 @@ std::vector<Field> message_fields() {
                     [](Message* m, double x) { take(&m->view_query.camera_index, x); }, 2});
   for (MessageType type : {MessageType::frame_request, MessageType::frame_change})
     fields.push_back({Quantity::seconds, type, [](Message* m, double x) { m->frame_request.seconds = x; }, 8});
+  for (MessageType type : {MessageType::hello, MessageType::row_chunk, MessageType::pong})
+    fields.push_back({Quantity::price, type,
+                      [](Message* m, double x) {
+                        take(m->type == MessageType::hello       ? &m->hello.price
+                             : m->type == MessageType::row_chunk ? &m->row_chunk.price
+                                                                 : &m->pong.price,
+                             x);
+                      },
+                      2});
   fields.push_back({Quantity::frame_rate, MessageType::view_entry,
                     [](Message* m, double x) { take(&m->view_entry.frames_per_second, x); }, 4});
   fields.push_back(
@@ -173,7 +182,7 @@ std::vector<Field> message_fields() {
 Message message_with(const Field& field, double x) {
   Message message;
   message.type = field.type;
-  message.frame_request.row_end = 1;
+  message.frame_request.row_end = message.row_chunk.row_count = 1;
   message.view_entry.bounds = {{0, 0, 0}, {1, 1, 1}};
   field.set(&message, x);
   return message;
@@ -191,10 +200,11 @@ bool sender_accepts(const Field& field, double x) { return can_encode(message_wi
 
 // The decoder's limits, with bytes our encoder never writes: the field is located by what changes with its lowest byte.
 bool receiver_accepts(const Field& field, double x) {
-  double other = field.byte_count <= 2   ? 2
+  const double valid = field.quantity == Quantity::price ? kPriceUnit : 1;
+  double other = field.byte_count <= 2   ? valid + 1
                  : field.byte_count == 4 ? double(std::nextafterf(1, 0))
                                          : std::nextafter(1.0, 0.0);
-  std::vector<std::uint8_t> bytes = bytes_with(field, 1), changed = bytes_with(field, other);
+  std::vector<std::uint8_t> bytes = bytes_with(field, valid), changed = bytes_with(field, other);
   std::size_t at = kHeaderBytes;
   while (at < bytes.size() && bytes[at] == changed[at]) ++at;
   REQUIRE(at + field.byte_count <= bytes.size());
@@ -214,7 +224,7 @@ bool receiver_accepts(const Field& field, double x) {
 bool is_count(Quantity q) {
   return q == Quantity::width || q == Quantity::height || q == Quantity::samples || q == Quantity::depth ||
          q == Quantity::area_light_points || q == Quantity::virtual_lights || q == Quantity::environment_shadows ||
-         q == Quantity::camera_index;
+         q == Quantity::camera_index || q == Quantity::price;
 }
 // Quantities stored in files.
 bool is_in_files(Quantity q) {
@@ -250,7 +260,7 @@ std::vector<Value> values_of(const LimitRow& row) {
 
 // Goal: command line, file and message accept the same numbers, so that none accepts a value that a later CHECK
 // rejects. Method: for each row of the table, both limits on every path, just beyond, NaN and infinities; every row
-// must be used by a message and at least one other path.
+// must be used by a message and, but for prices, at least one other path.
 TEST_CASE("limits_are_the_same_for_command_line_file_and_wire") {
   const std::vector<Field> fields = message_fields();
   for (const LimitRow& row : kLimitList) {
@@ -258,7 +268,8 @@ TEST_CASE("limits_are_the_same_for_command_line_file_and_wire") {
     int message_count = 0;
     for (const Value& value : values_of(row)) {
       CAPTURE(value.x);
-      if (row.quantity != Quantity::frame_rate && row.quantity != Quantity::vertical_extent)
+      if (row.quantity != Quantity::frame_rate && row.quantity != Quantity::vertical_extent &&
+          row.quantity != Quantity::price)
         CHECK(option_accepts(row.quantity, value.x) == value.good);
       if (is_in_files(row.quantity)) CHECK(file_accepts(row.quantity, value.x) == value.good);
       for (const Field& field : fields)

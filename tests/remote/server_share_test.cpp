@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "base/limit_list.h"
+
 using namespace pocketray;
 
 namespace {
@@ -25,6 +27,7 @@ void play(std::vector<Player>* players, Lanes* lanes, std::uint64_t ns, std::uin
     for (std::size_t i = 0; i < players->size(); ++i) {
       Player* p = &(*players)[i];
       forgive(&p->account, piece_ns, players->size());
+      observe_demand(&p->account, piece_ns);
       note(lanes, &p->account, true);
       int* best = &first[p->account.heavy ? 1 : 0];
       if (*best < 0 || goes_before(p->account, (*players)[static_cast<std::size_t>(*best)].account))
@@ -115,4 +118,63 @@ TEST_CASE("share_knows_addresses") {
   CHECK(address_key("[::]:80") != address_key("[1::]:80"));
   for (const char* odd : {"", ":", "[", "[]", "[:::]", "[zz]:1", "[1:2:3:4:5:6:7:8:9:a]:1", "[::::::::::]"})
     (void)address_key(odd);
+}
+
+// Goal: the price is what an account waits, over its work. Method: accounts of the scheduler that always have work, or
+// half of the time, after a long while: of one lane, and of the other.
+TEST_CASE("share_price_is_what_others_take") {
+  auto settled = [](double busy) {
+    Account a;
+    for (int i = 0; i < 4000; ++i) {
+      a.waits = i % 10 < 10 * busy;
+      observe_demand(&a, 5 * kMs);
+    }
+    return a;
+  };
+  const Account always = settled(1), half = settled(0.5), never = settled(0);
+  CHECK(always.demand == doctest::Approx(1).epsilon(1e-3));
+  CHECK(half.demand == doctest::Approx(0.5).epsilon(0.05));
+  CHECK(never.demand == 0);
+  Account heavy = always;
+  heavy.heavy = true;
+  struct Case {
+    std::vector<Account> others;
+    double light_price, heavy_price;
+  };
+  const Case cases[] = {{{}, 1, 1},
+                        {{never}, 1, 1},
+                        {{always}, 2, 4},
+                        {{always, always, half}, 3.5, 4},
+                        {{heavy}, 4.0 / 3, 2},
+                        {{always, heavy, heavy}, 2 / 0.75, 3 / 0.25}};
+  for (const Case& c : cases) {
+    Lanes lanes;
+    clear_demand(&lanes);
+    for (const Account& other : c.others) add_demand(&lanes, other);
+    add_demand(&lanes, half);
+    CHECK(crowding(lanes, half) == doctest::Approx(c.light_price).epsilon(0.02));
+    clear_demand(&lanes);
+    for (const Account& other : c.others) add_demand(&lanes, other);
+    Account own;
+    own.heavy = true;
+    CHECK(crowding(lanes, own) == doctest::Approx(c.heavy_price).epsilon(0.02));
+  }
+  CHECK(price_of(1, 1) == kPriceUnit);
+  CHECK(price_of(2, 1.5) == 3 * kPriceUnit);
+  CHECK(price_of(64, 64) == UINT16_MAX);
+}
+
+// Goal: the price tells how the scheduler divides its time. Method: light and heavy players as above; the inverse of
+// each one's share of the time is its price.
+TEST_CASE("share_price_agrees_with_the_scheduler") {
+  std::vector<Player> players(5);
+  Lanes lanes;
+  for (std::size_t i = 0; i < players.size(); ++i) players[i].frame_ns = i < 3 ? 100 * kMs : 10'000 * kMs;
+  play(&players, &lanes, 10'000 * kMs);
+  for (Player& p : players) p.got_ns = 0;
+  play(&players, &lanes, 30'000 * kMs);
+  clear_demand(&lanes);
+  for (Player& p : players) add_demand(&lanes, p.account);
+  for (const Player& p : players)
+    CHECK(crowding(lanes, p.account) * share_of(p, 30'000 * kMs) == doctest::Approx(1).epsilon(0.1));
 }

@@ -198,7 +198,7 @@ TEST_CASE("hard_60_degenerate_observations_split_in_range") {
       for (std::uint32_t s = 0; s < 2; ++s) {
         observe_server_rows(&own.model, s, 100 + 70 * s, 170 + 70 * s, bad, bad);
         observe_transfer(&own.model, s, bad, 1000), observe_transfer(&own.model, s, 1000, bad);
-        observe_start(&own.model, s, bad), observe_server_price(&own.model, s, bad);
+        observe_start(&own.model, s, bad), observe_server_speed(&own.model, s, bad);
       }
       observe_server_rows(&own.model, 0, 50, 50, 100, 100);
       observe_device_start(&own.model, bad), observe_unpack(&own.model, bad, 1), observe_unpack(&own.model, 1, bad);
@@ -210,6 +210,34 @@ TEST_CASE("hard_60_degenerate_observations_split_in_range") {
     }
   }
   count_assertions("split in [0, H], finite");
+}
+
+// Goal: a busy server gets fewer rows: at twice the price as many as at half the speed. A stated price counts in full
+// for a new connection, later by a quarter of the difference a frame, and a lie as no more than the largest price.
+TEST_CASE("cost_model_counts_a_server_at_its_price") {
+  OwnModel own(320, 240, 1), slow(320, 240, 1);
+  for (OwnModel* m : {&own, &slow}) m->model.servers[0].connected = true;
+  observe_price(&own.model, 0, 2);
+  observe_overture(&own.model, 0, {1000, 200, 50}, 1, 1e6);
+  observe_overture(&slow.model, 0, {1000, 400, 50}, 1, 1e6);
+  CHECK(own.plan().boundary[0] == slow.plan().boundary[0]);
+  const ServerModel& server = own.model.servers[0];
+  observe_price(&own.model, 0, 6);
+  CHECK(server.price == 2);
+  end_frame(&own.model);
+  CHECK(server.price == 3);
+  end_frame(&own.model);
+  CHECK(server.price == 3.75f);
+  const std::uint32_t rows = own.plan().boundary[0];
+  CHECK(rows > slow.plan().boundary[0]);
+  for (double lie : {std::nan(""), 0.0, -1.0, 0.5, -HUGE_VAL}) {
+    observe_price(&own.model, 0, lie);
+    CHECK(server.price_stated == 1);
+  }
+  for (double lie : {1e30, HUGE_VAL}) {
+    observe_price(&own.model, 0, lie);
+    CHECK(server.price_stated == kPriceMax);
+  }
 }
 
 // Goal: no rows, one row, no servers.

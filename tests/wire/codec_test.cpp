@@ -54,7 +54,8 @@ Bytes deflated(const Bytes& body, bool finish) {
 }
 
 RowChunk chunk_of(const Bytes& bytes, std::uint8_t encoding, std::uint16_t row_begin = 0, std::uint16_t row_count = 1) {
-  return {0, row_begin, row_count, 0, 0, encoding, {bytes.data(), static_cast<std::uint32_t>(bytes.size())}};
+  return {0,          row_begin, row_count, 0,
+          kPriceUnit, 0,         encoding,  {bytes.data(), static_cast<std::uint32_t>(bytes.size())}};
 }
 
 }  // namespace

@@ -145,7 +145,8 @@ def test_views(device, scenes, rgb, frame):
 def test_pings_and_cancel(device, scenes, frame):
     for size in (0, 1, 65536):
         fields = device.ask(message(PING, struct.pack("<II", 7 + size, size)), PONG)
-        check(struct.unpack("<I", fields[:4])[0] == 7 + size and len(fields) == 8 + size, "a pong of %d bytes" % size)
+        check(struct.unpack("<I", fields[:4])[0] == 7 + size and len(fields) == 10 + size, "a pong of %d bytes" % size)
+        check(struct.unpack("<H", fields[8:10])[0] >= 256, "a pong's price")
     # Large enough to be under way when it is cancelled.
     large = dict(width=1024, height=1024, samples=16, largest=1)
     device.send(request(scenes["statue"]["hash"], frame=frame + 1, **large) + message(CANCEL, struct.pack("<I", frame + 1)) +
@@ -204,7 +205,7 @@ def test_malformed(server, scenes):
               message(PING, struct.pack("<II", 1, 65537)), message(ERROR, struct.pack("<HI", 0, 0)),
               message(ERROR, struct.pack("<HI", 8, 0)), message(0), message(16), message(SCENE_LIST, b""),
               message(SCENE_LIST, bytes(3)), message(ROW_CHUNK, bytes(600)), hello()]
-    cases += [message(kind, bytes(size)) for kind, size in ((SCENE_ENTRY, 96), (SCENE_PIECE, 24), (PONG, 8))]
+    cases += [message(kind, bytes(size)) for kind, size in ((SCENE_ENTRY, 96), (SCENE_PIECE, 24), (PONG, 10))]
     good = message(PING, bytes(8))
     cases += [good[:i] + bytes([good[i] ^ 1]) + good[i + 1:] for i in range(3, len(good))]
     for data in cases:
@@ -213,9 +214,9 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\25\0"), WRONG_VERSION), (hello(21, bytes(236)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\25\0"), WRONG_VERSION), (hello(21, bytes(234)), WRONG_VERSION),
                        (message(HELLO, b"PRAY\25\0" + bytes(251)), MALFORMED), (hello(20, b"x"), MALFORMED),
-                       (message(HELLO, b"pray" + bytes(16)), MALFORMED)):
+                       (message(HELLO, b"pray" + bytes(18)), MALFORMED), (message(HELLO, hello()[8:28] + b"\xff\0"), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])
         check(device.closed(waits=data is good), "a wrong first message ends the connection")

@@ -160,7 +160,7 @@ def message(kind, fields=b""):
 
 
 def hello(version=20, more=b""):
-    return message(HELLO, b"PRAY" + struct.pack("<HHIQ", version, 8192, 1 << 21, 1 << 30) + more)
+    return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
 CAMERA = dict(eye=(0, 0, 5), target=(0, 0, 0), up=(0, 1, 0), fov=0.8, extent=1.0, projection=0)
@@ -206,7 +206,8 @@ class Device:
             self.send(hello())
             kind, fields = self.receive()
             check(kind == HELLO and fields[:6] == b"PRAY\24\0", "the server says hello first, of version 20")
-            self.side, self.message_bytes, self.scene_bytes = struct.unpack("<HIQ", fields[6:])
+            self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
+            check(self.price >= 256, "the hello's price")
 
     def send(self, data):
         try:
@@ -268,8 +269,9 @@ class Device:
         return dict(hash=fields[:16], size=size, index=index, count=count, triangles=triangles, name=name[0].decode())
 
     def take_chunk(self, fields, frame, r, due):
-        number, row, rows, _, traced, encoding = struct.unpack("<IHHIIB", fields[:17])
-        data = fields[17:]
+        number, row, rows, _, self.price, traced, encoding = struct.unpack("<IHHIHIB", fields[:19])
+        data = fields[19:]
+        check(self.price >= 256, "a chunk's price")
         self.traced += traced
         check(traced <= rows * r["width"], "no more pixels are traced than the rows have")
         check(number == frame, "a chunk is of the frame")

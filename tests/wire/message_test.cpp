@@ -75,13 +75,15 @@ TEST_CASE("message_bytes_are_the_protocol_s") {
   std::vector<std::uint8_t> bytes = encoded(m);
   CHECK(bytes == sealed({9, 0, 0, 0, 0, 0, 0, 0, 4, 3, 2, 1}));
   m.type = MessageType::hello;
-  m.hello = {1, 320, 0x12345678, 0x1122334455667788};
-  CHECK(encoded(m) == sealed({1,    0,    0,    0,    0,    0,    0,    0,    'P',  'R',  'A',  'Y',  1,    0,
-                              0x40, 0x01, 0x78, 0x56, 0x34, 0x12, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11}));
+  m.hello = {1, 320, 0x12345678, 0x1122334455667788, 0x0140};
+  CHECK(encoded(m) ==
+        sealed({1,    0,    0,    0,    0,    0,    0,    0,    'P',  'R',  'A',  'Y',  1,    0,    0x40,
+                0x01, 0x78, 0x56, 0x34, 0x12, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 0x40, 0x01}));
   m.type = MessageType::row_chunk;
   const std::uint8_t data[] = {0xAB, 0xCD};
-  m.row_chunk = {7, 258, 3, 0x00010000, 0x0201, 2, {data, 2}};
-  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 2, 1, 3, 0, 0, 0, 1, 0, 1, 2, 0, 0, 2, 0xAB, 0xCD}));
+  m.row_chunk = {7, 258, 3, 0x00010000, 0x0140, 0x0201, 2, {data, 2}};
+  CHECK(encoded(m) ==
+        sealed({8, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 2, 1, 3, 0, 0, 0, 1, 0, 0x40, 1, 1, 2, 0, 0, 2, 0xAB, 0xCD}));
   CHECK(row_chunk_prefix_bytes() == encoded(m).size() - 2);
 }
 
@@ -139,10 +141,13 @@ TEST_CASE("message_every_field_travels") {
          q->row_end = static_cast<std::uint16_t>(q->row_begin + 9), q->run_count = 2;
          q->runs[0] = {4, 1}, q->runs[1] = {5, 0};
        }},
+      {MessageType::hello, [](Message* m) { m->hello.price ^= 1; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1; }},
+      {MessageType::row_chunk, [](Message* m) { m->row_chunk.price ^= 1; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixels_traced ^= 1; }},
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
+      {MessageType::pong, [](Message* m) { m->pong.price ^= 1; }},
   };
   const std::vector<std::uint8_t> tail = {1, 2, 3};
   for (const auto& change : changes) {
@@ -220,6 +225,8 @@ TEST_CASE("message_values_out_of_range_are_refused") {
   const std::size_t more = setting_wire_bytes() - 10;  // bytes beyond those of the first settings, ten
   const Edit edits[] = {
       {MessageType::hello, 8, {'p'}},
+      {MessageType::hello, 8 + 20, {0, 0}},  // price
+      {MessageType::hello, 8 + 20, {0xFF, 0}},
       {MessageType::scene_entry, 8 + 95, {'x'}},
       {MessageType::scene_fetch, 8 + 24, {1, 0, 1, 0}},
       {MessageType::scene_fetch, 8 + 16, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
@@ -262,9 +269,11 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_change, 8 + 66, {10}},                           // level
       {MessageType::row_chunk, 8 + 6, {0, 0}},
       {MessageType::row_chunk, 8 + 4, {0xFF, 0x1F, 2, 0}},
+      {MessageType::row_chunk, 8 + 12, {0xFF, 0}},  // price
       {MessageType::error, 8, {0, 0}},
       {MessageType::error, 8, {8, 0}},
       {MessageType::ping, 8 + 4, {1, 0, 1, 0}},
+      {MessageType::pong, 8 + 8, {0xFF, 0}},               // price
       {MessageType::view_query, 8 + 16, {2}},              // camera stated
       {MessageType::view_query, 8 + 19, nan},              // eye.x
       {MessageType::view_query, 8 + 67, {0, 0}},           // width
@@ -307,10 +316,10 @@ TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
     if (known) CHECK(refused(header(type, 1)));
   }
   CHECK(refused(header(9, 5)));
-  CHECK(refused(header(8, 17 + kChunkBytesMax + 1)));
-  CHECK(!refused(header(8, 17 + kChunkBytesMax)));
-  CHECK(decode(header(8, 17 + 1000), &message, 8 + 17 + 999).state == DecodeState::malformed);
-  CHECK(decode(header(8, 17 + 1000), &message, 8 + 17 + 1000).state == DecodeState::need_more);
+  CHECK(refused(header(8, 19 + kChunkBytesMax + 1)));
+  CHECK(!refused(header(8, 19 + kChunkBytesMax)));
+  CHECK(decode(header(8, 19 + 1000), &message, 8 + 19 + 999).state == DecodeState::malformed);
+  CHECK(decode(header(8, 19 + 1000), &message, 8 + 19 + 1000).state == DecodeState::need_more);
 }
 
 // Goal: a request that a change can express is recognised, and the change reproduces it; other requests are not.
@@ -400,14 +409,14 @@ TEST_CASE("message_orders_that_are_none_are_refused") {
 
 // Goal: of a hello of another version, the version is read, however long the message.
 TEST_CASE("message_hello_of_another_version_tells_its_version") {
-  for (std::size_t extra : {0, 14, 100}) {
+  for (std::size_t extra : {0, 16, 100}) {
     std::vector<std::uint8_t> bytes = {1, 0, 0, 0, 0, 0, 0, 0, 'P', 'R', 'A', 'Y', 3, 1};
     bytes.resize(bytes.size() + extra, 0xEE);
     Message message;
     REQUIRE(decode(sealed(bytes), &message).state == DecodeState::message);
     CHECK(message.hello.version == 0x0103);
     bytes[12] = kWireVersion, bytes[13] = 0;
-    CHECK(refused(sealed(bytes)) == (extra != 14));
+    CHECK(refused(sealed(bytes)) == (extra != 16));
   }
 }
 
@@ -428,7 +437,7 @@ TEST_CASE("message_tail_may_lie_in_place") {
   for (std::uint8_t i = 0; i < 5; ++i) buffer[row_chunk_prefix_bytes() + i] = i;
   Message m;
   m.type = MessageType::row_chunk;
-  m.row_chunk = {1, 2, 3, 4, 5, 0, {buffer.data() + row_chunk_prefix_bytes(), 5}};
+  m.row_chunk = {1, 2, 3, 4, kPriceUnit, 5, 0, {buffer.data() + row_chunk_prefix_bytes(), 5}};
   std::vector<std::uint8_t> apart = encoded(m);
   encode_message(m, buffer.data());
   CHECK(buffer == apart);

@@ -17,6 +17,7 @@ constexpr int kMessageTypeCount = static_cast<int>(MessageType::frame_change);
 inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
   auto wide = [&] { return std::uint64_t(next_u32(rng)) << 32 | next_u32(rng); };
   auto narrow = [&] { return static_cast<std::uint16_t>(next_u32(rng)); };
+  auto price = [&] { return static_cast<std::uint16_t>(kPriceUnit + next_u32(rng) % (UINT16_MAX - kPriceUnit + 1)); };
   auto real = [&] { return (next_float(rng) - 0.5f) * 200; };
   Array<const std::uint8_t> bytes = {tail.data(), static_cast<std::uint32_t>(tail.size())};
   ContentHash hash = {wide(), wide()};
@@ -78,6 +79,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   v->scene = hash, v->camera = f->camera, v->exposure = 1 + next_float(rng), v->frames_per_second = 1 + next_float(rng);
   v->effects = next_u32(rng) & kAllEffects, v->triangle_count = next_u32(rng);
   v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
+  m.hello.price = price(), m.row_chunk.price = price(), m.pong.price = price();
   return m;
 }
 

@@ -12,6 +12,7 @@
 #include "session/output.h"
 #include "session/report.h"
 #include "session/scene_identity.h"
+#include "split_report/fronts.h"
 #include "split_report/plot.h"
 
 namespace pocketray {
@@ -75,11 +76,39 @@ std::string title_of(const ReportOptions& o, const SplitSetup& s) {
   return text;
 }
 
+// The figures beside those of time.
+struct Extras {
+  DeviceEnergy energy;
+  Fronts fronts;
+  std::vector<ClientsRow> clients;
+};
+
+Extras make_extras(const platform::Device& device, const SplitSetup& setup, const SplitFigures& figures) {
+  Extras extras;
+  // W · ns = nJ; all cores are busy.
+  extras.energy.pixel_nanojoules = device.core_watts * setup.device->settings.threads * setup.device_ns;
+  extras.energy.byte_nanojoules = device.byte_nanojoules;
+  extras.fronts = make_fronts(figures, extras.energy, static_cast<std::uint32_t>(pixel_count(*setup.device)));
+  double pixels = 0, bytes = 0;
+  for (const SplitPoint& p : figures.sweep) pixels += p.row_count * setup.device->settings.width, bytes += p.row_bytes;
+  if (pixels > 0 && bytes > 0) extras.clients = measure_clients(setup, bytes / pixels);
+  return extras;
+}
+
+Json front_json(const std::vector<FrontPoint>& points, const char* unit) {
+  Json front = Json::array();
+  for (const FrontPoint& p : points)
+    if (p.on_front) front.push_back({{"m", p.m}, {"ms_per_frame", p.ms}, {unit, p.cost}});
+  return front;
+}
+
 Json point_json(const SplitPoint& p) { return {{"m", p.m}, {"ns_per_pixel", p.ns_per_pixel}}; }
 
-Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& s) {
+Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& s, const Extras& extras) {
   const Settings& settings = setup.device->settings;
-  Json sweep = Json::array(), paper = Json::array();
+  Json sweep = Json::array(), paper = Json::array(), clients = Json::array();
+  for (const ClientsRow& row : extras.clients)
+    clients.push_back({{"clients", row.count}, {"ms_per_frame", row.ms}, {"m", row.m}, {"price", row.price}});
   for (const SplitPoint& p : s.sweep) sweep.push_back(point_json(p));
   for (const PaperRow& row : s.paper)
     paper.push_back({{"times_of", row.scene},
@@ -95,6 +124,11 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
           {"best", point_json(s.best)},
           {"local_ns_per_pixel", s.local.ns_per_pixel},
           {"paper", paper},
+          {"energy_front", front_json(extras.fronts.energy, "millijoules_per_frame")},
+          {"price_front", front_json(extras.fronts.bytes, "kilobytes_per_frame")},
+          {"nanojoules_per_pixel", extras.energy.pixel_nanojoules},
+          {"nanojoules_per_byte", extras.energy.byte_nanojoules},
+          {"one_server_many_clients", clients},
           {"scene", o.common.scene},
           {"emulated", o.common.emulate},
           {"servers", setup.server_count},
@@ -153,16 +187,40 @@ void print_paper(const SplitFigures& s) {
   std::printf("  (in each pair, ours comes first)\n");
 }
 
-Status write_files(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& figures) {
+void print_front(const char* unit, const std::vector<FrontPoint>& points) {
+  std::printf("  %-14s %6s %14s %14s\n", "", "m", "ms per frame", unit);
+  for (const FrontPoint& p : points)
+    if (p.on_front) std::printf("  %-14s %6.3f %14.2f %14.3f\n", "not beaten", p.m, p.ms, p.cost);
+}
+
+void print_extras(const Extras& extras) {
+  if (extras.fronts.energy.empty()) return;
+  std::printf(
+      "time against energy: the fixed shares that no other beats in both, at %.0f nJ a pixel and %.0f nJ a byte beyond "
+      "the device idle\n",
+      extras.energy.pixel_nanojoules, extras.energy.byte_nanojoules);
+  print_front("mJ per frame", extras.fronts.energy);
+  std::printf("time against price, where bytes have one\n");
+  print_front("kB per frame", extras.fronts.bytes);
+  if (extras.clients.empty()) return;
+  std::printf("one such server and many such devices, each with its own best share at the server's price\n");
+  std::printf("  %-14s %6s %14s %14s\n", "clients", "m", "ms per frame", "price");
+  for (const ClientsRow& row : extras.clients)
+    std::printf("  %-14u %6.3f %14.2f %14.2f\n", row.count, row.m, row.ms, row.price);
+}
+
+Status write_files(const ReportOptions& o, const SplitSetup& setup, const SplitFigures& figures, const Extras& extras) {
   if (o.folder.empty() || figures.sweep.empty()) return success();
   std::uint32_t pixels = setup.device->settings.width * setup.device->settings.height;
   RETURN_IF_ERROR(write_split_csv(o.folder, figures, pixels));
-  bool drawn;
+  RETURN_IF_ERROR(write_fronts_csv(o.folder, extras.fronts, extras.clients));
+  bool drawn, fronts_drawn;
   RETURN_IF_ERROR(draw_split(o.folder, {title_of(o, setup), pixels}, figures, &drawn));
-  if (!drawn)
+  RETURN_IF_ERROR(draw_fronts(o.folder, title_of(o, setup), extras.fronts, extras.clients, &fronts_drawn));
+  if (!drawn || !fronts_drawn)
     std::fprintf(stderr,
-                 "pocketray: no split.png: gnuplot is missing or failed; install it (Debian: gnuplot), then: cd -- %s "
-                 "&& gnuplot split.gnuplot\n",
+                 "pocketray: no split.png or fronts.png: gnuplot is missing or failed; install it (Debian: gnuplot), "
+                 "then: cd -- %s && gnuplot split.gnuplot fronts.gnuplot\n",
                  shell_word(o.folder).c_str());
   return success();
 }
@@ -202,15 +260,17 @@ int run(const ReportOptions& o) {
   status = measure(o, setup, &figures);
   if (!status.ok) return report(status);
   if (figures.chosen.ns_per_pixel <= 0) return kExitInterrupted;
+  const Extras extras = make_extras(*device, setup, figures);
   if (o.common.json != "-") {
     std::printf("pixels, rows and messages are real; time is simulated, at these costs\n");
     std::printf("%s\n", title_of(o, setup).c_str());
     print_sweep(setup, figures);
     print_bytes(setup, figures);
     print_paper(figures);
+    print_extras(extras);
   }
-  status = write_files(o, setup, figures);
-  if (status.ok && !o.common.json.empty()) status = write_json(o.common.json, to_json(o, setup, figures));
+  status = write_files(o, setup, figures, extras);
+  if (status.ok && !o.common.json.empty()) status = write_json(o.common.json, to_json(o, setup, figures, extras));
   if (status.ok && interrupted) {
     std::fprintf(stderr, "pocketray: interrupted; kept %zu points of the sweep and %zu rows of the table\n",
                  figures.sweep.size(), figures.paper.size());
@@ -225,7 +285,9 @@ void add_split_report_command(Command program, int* exit_status) {
   auto o = std::make_shared<ReportOptions>();
   o->common.emulate = "tablet";
   Command command = program.add_subcommand(
-      "split-report", "measure the speed-up by render servers against the device's share of the rows");
+      "split-report",
+      "measure the speed-up by render servers against the device's share of the rows, its energy and bytes, and how "
+      "many devices share a server");
   command.footer(
       "Device, link and servers are simulated on a virtual clock, so you need not start any. A busy machine affects "
       "only\n"
@@ -238,7 +300,8 @@ void add_split_report_command(Command program, int* exit_status) {
       .range(1u, kServerCountMax)
       .capture_default_str();
   command.add_option("-o,--output", o->folder,
-                     "folder for split.csv and, if gnuplot is installed, split.png; created if missing");
+                     "folder for split.csv, fronts.csv and, if gnuplot is installed, split.png and fronts.png; created "
+                     "if missing");
   command
       .add_option("--steps", o->step_count,
                   "number of shares to measure, from 0 to 1; a few more are added around the fastest")

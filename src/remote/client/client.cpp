@@ -286,7 +286,8 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   s->frame.heard_ns = client_now_ns(*client);
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
   if (s->phase == ServerPhase::probing) s->probe_ns_per_pixel = 1e-3 * chunk.pixel_ps;
-  double render_ns = 1e-3 * chunk.pixel_ps * client->settings.width * chunk.row_count;
+  const double work_ns = 1e-3 * chunk.pixel_ps * client->settings.width * chunk.row_count;
+  const double render_ns = work_ns * price_ratio(chunk.price);
   s->frame.render_ns += render_ns;
   if (s->frame.first_ns == 0)
     s->frame.first_ns = s->frame.heard_ns;
@@ -299,7 +300,8 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   else
     a->bytes += byte_count;
   const double part = static_cast<double>(chunk.pixels_traced) / (client->settings.width * chunk.row_count);
-  observe_server_rows(&client->model, server, begin, end, render_ns, byte_count, std::fmin(1, part));
+  observe_server_rows(&client->model, server, begin, end, work_ns, byte_count, std::fmin(1, part));
+  observe_price(&client->model, server, price_ratio(chunk.price));
   if (!agrees_with_device(client, s, begin, end)) return;
   if (!client->options.has_scene) compare_with_others(client, s, begin, end);
   if (s->useful_ns == 0 || s->told) server_is_useful(client, s);

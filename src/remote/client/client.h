@@ -65,7 +65,7 @@ struct ServerFrame {
   std::uint32_t rows_come = 0;               // of these received, including rows the device had already done
   std::uint64_t asked_ns = 0, bytes = 0;
   std::uint64_t row_bytes = 0;     // of these, rows without message overhead
-  double render_ns = 0;            // for the received rows, as reported by the server
+  double render_ns = 0;            // for the received rows: the server's work at its price
   bool open = false;               // more rows are expected
   std::uint64_t heard_ns = 0;      // when the last rows came
   std::uint64_t first_ns = 0;      // when the first rows came

@@ -10,6 +10,9 @@ inline std::uint32_t index_of(const Client& client, const RemoteServer* server) 
   return static_cast<std::uint32_t>(server - client.servers);
 }
 
+// As the cost model takes a message's price.
+constexpr double price_ratio(std::uint16_t price) { return static_cast<double>(price) / kPriceUnit; }
+
 // ---- peer.cpp
 
 // Advances connecting, the overture and reading.

@@ -64,6 +64,7 @@ void take_hello(Client* client, RemoteServer* server, const Hello& hello) {
   if (!same_version.ok) return lose_server(client, server, same_version.message);
   if (client->settings.width > hello.image_side_max || client->settings.height > hello.image_side_max)
     return lose_server(client, server, "it does not render pictures of that size: use a smaller --size");
+  observe_price(&client->model, index_of(*client, server), price_ratio(hello.price));
   enter(client, server, ServerPhase::asking);
   Message message;
   message.type = MessageType::scene_query;

@@ -126,13 +126,14 @@ void take_pong(Client* client, RemoteServer* server, const Pong& pong) {
   double ns = static_cast<double>(client_now_ns(*client) - server->ping_ns);
   server->ping_id = 0;
   server->frame.answers = true;
+  observe_price(&client->model, index_of(*client, server), price_ratio(pong.price));
   if (server->phase == ServerPhase::measuring) return take_measuring_pong(client, server, ns, pong.bytes.count);
   if (server->phase != ServerPhase::ready) return;
   if (pong.bytes.count > 0) return take_ready_pong(client, server, ns, pong.bytes.count);
   const Smoothed& start = client->model.servers[index_of(*client, server)].start_ns;
   if (is_watched(*client, ns, 0) || ns < static_cast<double>(start.value))
     observe_start(&client->model, index_of(*client, server), ns);
-  if (pong.pixel_ps > 0) observe_server_price(&client->model, index_of(*client, server), 1e-3 * pong.pixel_ps);
+  if (pong.pixel_ps > 0) observe_server_speed(&client->model, index_of(*client, server), 1e-3 * pong.pixel_ps);
 }
 
 bool wants_quiet(const Client& client) {

@@ -48,7 +48,7 @@ Split split_by_share(const Client& client, const SplitProblem& problem) {
   split.server_count = client.server_count;
   double rows = problem.row_count, speed_sum = 0, so_far = 0;
   auto speed_of = [&](std::uint32_t i) {
-    return problem.servers[i].usable ? 1 / static_cast<double>(client.model.servers[i].speed.value) : 0;
+    return problem.servers[i].usable ? 1 / server_slowness(client.model.servers[i]) : 0;
   };
   for (std::uint32_t i = 0; i < client.server_count; ++i) speed_sum += speed_of(i);
   double device_rows = speed_sum > 0 ? std::floor(rows * client.options.device_share + 0.5) : rows;

@@ -131,9 +131,9 @@ void share_missing_rows(Client* client) {
   std::uint32_t begin = client->merge.next_row, end = client->settings.height;
   while (end > begin && client->merge.rows[end - 1].state != RowState::missing) --end;
   auto speed_of = [&](std::uint32_t i) {
-    const Smoothed& speed = client->model.servers[i].speed;  // its time relative to the device's
-    bool usable = client->servers[i].phase == ServerPhase::ready && !client->servers[i].frame.open && is_known(speed);
-    return usable ? 1 / static_cast<double>(speed.value) : 0;
+    const double slowness = server_slowness(client->model.servers[i]);
+    bool usable = client->servers[i].phase == ServerPhase::ready && !client->servers[i].frame.open && slowness > 0;
+    return usable ? 1 / slowness : 0;
   };
   double sum = 1, so_far = 1, rows = end - begin;
   for (std::uint32_t i = 0; i < client->server_count; ++i) sum += speed_of(i);

@@ -74,7 +74,7 @@ void receive_guest(Server* server, int stream) {
   start_message_stream(&guest->messages, server->link, stream);
   guest->key = key;
   guest->timer = platform::link_timer(now_ns(server), server->options.message_timeout_ns);
-  queue(guest, server_hello(*server));
+  queue(guest, server_hello(*server, key));
   if (!flush(guest)) close_guest(guest);
 }
 
@@ -185,6 +185,7 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   restart_session(session, server->link, guest->messages.stream);
   session->phase = SessionPhase::serving;
   session->address = address;
+  session->price = newcomer_price(*server, guest->key);
   session->message_bytes_max = hello.message_bytes_max;
   std::snprintf(session->name, sizeof session->name, "%s", name_of(*server, *guest));
   std::uint64_t now = now_ns(server);

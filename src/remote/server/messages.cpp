@@ -46,6 +46,7 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
   reply.type = MessageType::pong;
   reply.pong.id = ping.id;
   reply.pong.pixel_ps = pixel_ps;
+  reply.pong.price = session->price;
   reply.pong.bytes.count = ping.reply_bytes;
   std::uint32_t byte_count = message_bytes(reply);
   std::uint8_t* at = reserve_output(&session->messages, byte_count);
@@ -160,11 +161,12 @@ bool take_message(Server* server, Session* session, const Message& message) {
 
 }  // namespace
 
-Message server_hello(const Server& server) {
+Message server_hello(const Server& server, std::uint64_t address_key) {
   Message message;
   message.type = MessageType::hello;
   message.hello.image_side_max = static_cast<std::uint16_t>(server.options.image_side_max);
   message.hello.message_bytes_max = kRequestBytesMax;
+  message.hello.price = newcomer_price(server, address_key);
   return message;
 }
 

@@ -41,7 +41,8 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   chunk->frame = request.frame;
   chunk->row_begin = static_cast<std::uint16_t>(row_begin);
   chunk->row_count = static_cast<std::uint16_t>(row_count);
-  chunk->pixel_ps = session->pixel_ps = picoseconds(session->job.wall_ns, session->job.pixel_count);
+  chunk->pixel_ps = session->pixel_ps = picoseconds(session->job.work_ns, session->job.pixel_count);
+  chunk->price = session->price;
   for (std::uint32_t row = row_begin; row < row_end; ++row) chunk->pixels_traced += count_pixels(renderer, row);
   std::uint32_t byte_count =
       encode_rows(session->encoder, row_begin, row_count,
@@ -206,7 +207,7 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns) {
   return source.slice;
 }
 
-void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns) {
+void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns) {
   FrameJob* job = &session->job;
   CHECK_GT(slice.pixel_count, 0u);
   if (slice.is_probe) {
@@ -221,7 +222,7 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std:
   }
   job->rows_traced += slice.row_count;
   job->traced_columns = slice.column_end;
-  job->wall_ns += wall_ns;
+  job->work_ns += took_ns;
   job->pixel_count += slice.pixel_count;
   if (slice.traced_count > 0)
     session->trace_ns = dear_pixel_ns(session->trace_ns, static_cast<double>(took_ns + 1) / slice.traced_count);
@@ -235,7 +236,7 @@ void send_chunks(Session* session) {
     job->rows_sent += rows;
     pass_rows(job->request, rows, &job->sent);
     CHECK_LE(job->rows_sent, job->rows_traced);
-    if (job->rows_sent == job->rows_traced) job->wall_ns = job->pixel_count = 0;
+    if (job->rows_sent == job->rows_traced) job->work_ns = job->pixel_count = 0;
     if (!has_rows(job->sent)) {
       ++session->frame_count;
       drop_job(session);

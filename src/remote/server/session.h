@@ -52,7 +52,7 @@ struct FrameJob {
   RowSequence traced, sent;  // what is left to trace, and to send
   std::uint32_t rows_traced, rows_sent;
   std::uint32_t traced_columns;
-  std::uint64_t wall_ns, pixel_count;  // of rows traced but not completely sent
+  std::uint64_t work_ns, pixel_count;  // of rows traced but not completely sent
   std::uint64_t took_ns;               // CPU time so far
 };
 
@@ -98,7 +98,8 @@ struct Session {
   std::uint64_t job_number = 0;        // counts jobs, including those of earlier clients
   std::uint32_t frame_last = 0;        // number of the last request
   double trace_ns = 0, probe_ns = 0;   // thread time of an expensive pixel, and of an exposure pixel; 0: unknown
-  std::uint32_t pixel_ps = 0;          // recent time per pixel for the client, waiting included
+  std::uint32_t pixel_ps = 0;          // recent work on a pixel
+  std::uint16_t price = kPriceUnit;    // for the client, as of the last choice
   std::uint64_t waiting_since_ns = 0;  // when it began waiting for its turn; 0: not waiting
 
   platform::LinkTimer message_timer, idle_timer, stall_timer, leave_timer;
@@ -145,8 +146,8 @@ inline double dear_pixel_ns(double known_ns, double new_ns) {
 std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
 // Traces the next pixels of the job, for about `slice_ns`.
 Slice trace_slice(Session* session, std::uint64_t slice_ns);
-// Accounts for a slice: `took_ns` of thread time, `wall_ns` for the client.
-void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns, std::uint64_t wall_ns);
+// Accounts for a slice that took that much CPU time.
+void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns);
 // Queues completely traced chunks as far as the queue has room; the last one ends the job.
 void send_chunks(Session* session);
 

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/check.h"
+#include "base/limit_list.h"
 
 namespace pocketray {
 
@@ -51,6 +52,26 @@ void forgive(Account* account, std::uint64_t passed_ns, std::uint64_t account_co
   CHECK_GT(account_count, 0u);
   if (account->owed_ns == 0) return;
   account->owed_ns -= std::min(account->owed_ns, passed_ns / (kForgiveFactor * account_count));
+}
+
+void observe_demand(Account* account, std::uint64_t passed_ns) {
+  const double passed = static_cast<double>(passed_ns), part = passed / (passed + static_cast<double>(kDemandNs));
+  account->demand += part * ((account->waits ? 1 : 0) - account->demand);
+}
+
+double crowding(const Lanes& lanes, const Account& account) {
+  const int lane = account.heavy ? 1 : 0;
+  const double others = std::max(0.0, lanes.demand[lane] - account.demand);
+  // The turns that the other lane takes while it has work.
+  constexpr double kHeavyTurns = 1.0 / kHeavyPart;
+  const double lost = std::min(1.0, lanes.demand[1 - lane]) * (lane == 1 ? 1 - kHeavyTurns : kHeavyTurns);
+  return (1 + others) / (1 - lost);
+}
+
+std::uint16_t price_of(double address_crowding, double connection_crowding) {
+  CHECK(address_crowding >= 1 && connection_crowding >= 1);
+  const double price = kPriceUnit * address_crowding * connection_crowding;
+  return price < limit_of(Quantity::price).high ? static_cast<std::uint16_t>(price + 0.5) : UINT16_MAX;
 }
 
 std::uint64_t address_key(const char* name) {

@@ -64,7 +64,7 @@ struct Server {
   Work work;
   std::uint64_t cpu_free_ns = 0;  // when the emulated CPU finishes its last work
   std::uint64_t settled_ns = 0;   // when accounts were last settled
-  std::uint32_t pixel_ps = 0;     // recent time per pixel for a client
+  std::uint32_t pixel_ps = 0;     // recent work on a pixel
   ServerLog log;
   ServerTotals totals;
 };
@@ -98,12 +98,15 @@ void end_session(Server* server, Session* session, const char* reason);
 void read_session(Server* server, Session* session);
 // Handles messages for up to a slice, as far as there is room to answer. Returns their number.
 int take_messages(Server* server, Session* session);
-Message server_hello(const Server& server);
+// To a guest of that address.
+Message server_hello(const Server& server, std::uint64_t address_key);
 
 // ---- work.cpp
 
 // Charges CPU time to this client, for a frame or otherwise.
 void account_for(Server* server, Session* session, std::uint64_t took_ns, bool is_job);
+// The price of the server's time for one more connection of that address.
+std::uint16_t newcomer_price(const Server& server, std::uint64_t address_key);
 // Tells the client that a request is refused, and logs why.
 void refuse(Server* server, Session* session, WireError code, std::uint32_t frame, const char* reason);
 // Ends finished work and begins the next: a part of a frame for the client that has used the CPU least.

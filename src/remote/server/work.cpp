@@ -7,9 +7,6 @@
 namespace pocketray {
 namespace {
 
-// Chosen: with eight busy clients each gets its turn within kLightNs.
-constexpr std::uint64_t kSliceNs = 20'000'000;  // of CPU time before another client may have its turn
-
 std::uint64_t elapsed(std::uint64_t begin, std::uint64_t end) { return end > begin ? end - begin : 0; }
 
 // Accounts for finished frames and forgives debt for the time passed.
@@ -24,8 +21,33 @@ void settle(Server* server, std::uint64_t now) {
               session.ended_sent_ns);
     session.ended_took_ns = session.ended_sent_ns = 0;
   }
-  for (Session& session : server->sessions) forgive(&session.account, passed, count);
-  for (Address& address : server->addresses) forgive(&address.account, passed, count);
+  for (Session& session : server->sessions) {
+    forgive(&session.account, passed, count);
+    observe_demand(&session.account, passed);
+  }
+  for (Address& address : server->addresses) {
+    forgive(&address.account, passed, count);
+    observe_demand(&address.account, passed);
+  }
+}
+
+// States each client's price anew.
+void set_prices(Server* server) {
+  clear_demand(&server->lanes);
+  for (Address& address : server->addresses) {
+    add_demand(&server->lanes, address.account);
+    clear_demand(&address.lanes);
+  }
+  auto address_of = [&](const Session& session) -> Address& {
+    return server->addresses[static_cast<std::size_t>(session.address)];
+  };
+  for (const Session& session : server->sessions)
+    if (session.address >= 0) add_demand(&address_of(session).lanes, session.account);
+  for (Session& session : server->sessions) {
+    if (session.phase != SessionPhase::serving || session.address < 0) continue;
+    const Address& address = address_of(session);
+    session.price = price_of(crowding(server->lanes, address.account), crowding(address.lanes, session.account));
+  }
 }
 
 bool has_turn(const Server& server, const Session& session) {
@@ -59,6 +81,7 @@ int choose_session(Server* server) {
     bool goes = *best < 0 || goes_before(a->account, server->addresses[static_cast<std::size_t>(*best)].account);
     if (a->waits && goes) *best = static_cast<int>(i);
   }
+  set_prices(server);
   int chosen = first[choose_lane(&server->lanes, first[0] >= 0, first[1] >= 0)];
   if (chosen < 0) return -1;
 
@@ -149,8 +172,7 @@ void end_work(Server* server) {
   account_for(server, session, took, is_job);
   if (is_job) (goes_on ? session->job.took_ns : session->ended_took_ns) += took;  // of an abandoned frame: wasted
   if (!goes_on) return;
-  if (work->slice.pixel_count > 0)
-    end_slice(session, work->slice, took, elapsed(session->waiting_since_ns, work->end_ns));
+  if (work->slice.pixel_count > 0) end_slice(session, work->slice, took);
   session->waiting_since_ns = work->end_ns;
   std::uint64_t start = now_ns(server);
   send_chunks(session);
@@ -179,6 +201,13 @@ void account_for(Server* server, Session* session, std::uint64_t took, bool is_j
     else
       owe(account, took);
   }
+}
+
+std::uint16_t newcomer_price(const Server& server, std::uint64_t key) {
+  for (const Address& address : server.addresses)
+    if (address.key == key)
+      return price_of(crowding(server.lanes, address.account), crowding(address.lanes, Account()));
+  return price_of(crowding(server.lanes, Account()), 1);
 }
 
 void refuse(Server* server, Session* session, WireError code, std::uint32_t frame, const char* reason) {
