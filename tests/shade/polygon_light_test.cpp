@@ -196,7 +196,7 @@ TEST_CASE("hard_polygon_light_in_extreme_places") {
 }
 
 // Goal: a floor under a lamp that nothing hides is lit as by infinitely many points, whatever their number, also close
-// to the lamp, where four points give .4 to 2.5 times the light. Method: radiances against the formula in double
+// to the lamp, where four points give up to 2.5 times the light. Method: radiances against the formula in double
 // precision, .7 · 8 times the form factor.
 TEST_CASE("polygon_light_needs_no_points_where_nothing_is_in_the_way") {
   double off_points = 0;
