@@ -35,7 +35,8 @@ PARTS = (  # the first that matches a symbol
     ("triangles", r"(neon|baseline)::.*(leaf|leaves|triangle|segment|crossing|cross_|settle|locate|test_rays|list_|"
                   r"meet_window|edge|place_)"),
     ("traversal", r"(neon|baseline)::|Guarded|occluded|closest"),
-    ("lights", r"direct_light|_light\(|reach\(|tile_shadows|shadow|transmittance|accept_|LightPoint"),
+    ("lights", r"direct_light|polygon|edge_sum|area_lights|_points|find_views|_light\(|reach\(|tile_shadows|shadow|"
+               r"transmittance|accept_|LightPoint"),
     ("pack", r"pack|tone|sRGB|srgb|dither|write_row"),
     ("surface", r"surface|smooth_normal|texture|shade|radiance|contact|normalize|mirror|dielectric|fresnel|brdf|"
                 r"spawn|det_|origin"),
