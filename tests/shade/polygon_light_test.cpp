@@ -193,6 +193,11 @@ TEST_CASE("hard_polygon_light_in_extreme_places") {
   CHECK(view_polygon(p, facing({0, 1, below}, {0, 0, 1})).form_factor == doctest::Approx(0.5));
   CHECK(view_polygon(p, facing({1, 1, below}, {0, 0, 1})).form_factor == doctest::Approx(0.25));
   CHECK(!view_polygon(p, facing({0, 0, -3e38f}, {0, 0, 1})).is_near);
+  const Surface in_front = facing({0.2f, 0.1f, 0}, {0.6f, 0, 0.8f}), behind = facing({0.2f, 0.1f, 2}, {0.6f, 0, -0.8f});
+  CHECK(view_polygon(p, behind).form_factor == 0);
+  p.two_sided = 1;
+  CHECK(view_polygon(p, behind).form_factor == doctest::Approx(view_polygon(p, in_front).form_factor));
+  CHECK(view_polygon(p, behind).is_whole == view_polygon(p, in_front).is_whole);
 }
 
 // Goal: a floor under a lamp that nothing hides is lit as by infinitely many points, whatever their number, also close
@@ -298,6 +303,11 @@ TEST_CASE("polygon_light_is_the_same_in_tiles_and_ray_by_ray") {
     }
   }
   CHECK(changed > 0);
+  auto round = lamp_scene(2);  // coarse, so that the lamp is below some triangles that its normals face
+  add_sphere(round.get(), {0, 0, 0.6f}, 0.6f, 7, 4, add_material(round.get(), matte(0.5f)));
+  round->bind();
+  CHECK(same(picture_of(round->scene, settings_of(4, AreaIrradiance::analytic, 96, 80)),
+             picture_of(round->scene, settings_of(4, AreaIrradiance::analytic, 96, 80), nullptr, false)));
   auto s = lamp_scene(2, true);
   const Picture picture = picture_of(s->scene, settings_of(4));
   for (float scale : {0x1p-50f, 0x1p50f}) {
