@@ -16,6 +16,10 @@ struct LitSurface {
   bool at_first_hit;
 };
 
+// What direct light depends on.
+constexpr EffectMask kDirectEffects =
+    bit(Effect::shadow) | bit(Effect::specular) | bit(Effect::metallic_roughness) | kPassageEffects;
+
 // The value of all lobes for light from a direction.
 template <EffectMask mask>
 inline Vec3 lobe_value(const FrameData& frame, const LitSurface& to, const Vec3& direction) {
@@ -182,7 +186,7 @@ Vec3 direct_light(Tracer* tracer, const Surface& s, const Material& m, const Vec
     const LightRun& run = frame.light_runs[r];
     if (run.polygons) {
       const LitSurface copy = to;  // what is passed on is kept in memory
-      sum = add_area_lights<mask>(tracer, copy, run, sum);
+      sum = add_area_lights<mask & kDirectEffects>(tracer, copy, run, sum);
       continue;
     }
     for (std::uint32_t i = run.begin; i < run.end; ++i) add_light_point<mask>(tracer, to, run, i, &sum);

@@ -21,6 +21,10 @@ constexpr EffectMask plan_of(const FrameData& frame) {
   return mask;
 }
 
+// What the light that passes depends on: fewer instances.
+constexpr EffectMask kPassageEffects =
+    bit(Effect::refraction) | bit(Effect::absorption) | bit(Effect::alpha_blend) | bit(Effect::source_selection);
+
 // Whether to skip a contribution of at most `bound`: all that is skipped of a sample stays below half the narrowest
 // display level, so no pixel changes by more than one level.
 inline bool leave_out(Tracer* tracer, float bound) {
@@ -173,7 +177,7 @@ template <EffectMask mask>
   const bool known = at_first_hit && is_known(*tracer, light, &blocked);
   constexpr bool kClear = has(mask, Effect::refraction) || has(mask, Effect::alpha_blend);
   if (known && (blocked || !kClear)) return blocked ? Vec3{0, 0, 0} : Vec3{1, 1, 1};
-  return traced_shadow<mask>(tracer, s, run, light, sample, at_first_hit, known);
+  return traced_shadow<mask & kPassageEffects>(tracer, s, run, light, sample, at_first_hit, known);
 }
 
 }  // namespace pocketray
