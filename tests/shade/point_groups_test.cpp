@@ -8,37 +8,17 @@
 #include <cstring>
 #include <set>
 
-#include "shade/filters.h"
 #include "shade/shade_helpers.h"
-#include "shade/trace_spans.h"
 #include "support/effort.h"
 
 using namespace pocketray;
 
 namespace {
 
-struct Traced {
-  Picture picture;
-  std::uint64_t shadow_rays = 0;
-};
-
-Traced trace(const Scene& scene, Settings settings, AreaShadows choice, const AccelInfo* accel = nullptr,
-             bool in_tiles = true) {
+TracedPicture trace(const Scene& scene, Settings settings, AreaShadows choice, const AccelInfo* accel = nullptr,
+                    bool in_tiles = true) {
   settings.area_shadows = choice;
-  auto test = make_renderer(scene, settings, accel);
-  REQUIRE(render_frame(&test->renderer, 0).ok);
-  FrameData frame = test->renderer.frame;
-  make_filters(&frame);
-  if (!in_tiles) frame.find_shadows = nullptr;
-  std::vector<Span> spans;
-  for (std::uint32_t row = 0; row < settings.height; ++row)
-    spans.push_back({static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(settings.width)});
-  Tracer tracer = make_tracer(frame);
-  Traced traced;
-  traced.picture.resize(std::size_t(settings.width) * settings.height);
-  trace_spans(&tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, traced.picture.data());
-  traced.shadow_rays = tracer.rays[static_cast<int>(RayKind::shadow)];
-  return traced;
+  return trace_picture(scene, settings, accel, in_tiles);
 }
 
 bool same(const Picture& a, const Picture& b) {
@@ -92,8 +72,8 @@ TEST_CASE("point_groups_are_exact_behind_a_straight_edge") {
     for (std::uint32_t side : {3u, 4u, 5u, 8u, 10u, 16u}) {
       CAPTURE(side);
       const Settings settings = settings_of(side * side);
-      const Traced every = trace(s->scene, settings, AreaShadows::every);
-      const Traced adaptive = trace(s->scene, settings, AreaShadows::adaptive);
+      const TracedPicture every = trace(s->scene, settings, AreaShadows::every);
+      const TracedPicture adaptive = trace(s->scene, settings, AreaShadows::adaptive);
       CHECK(same(every.picture, adaptive.picture));
       for (float scale : {0x1p-50f, 0x1p50f}) {
         if (side != 4) break;
@@ -131,12 +111,12 @@ TEST_CASE("point_groups_are_the_same_in_tiles_and_ray_by_ray") {
     Settings settings = settings_of(kPoints[seed % 6]);
     settings.cut_off_levels = seed % 3 == 0 ? 0.5f : 0;
     settings.light_tolerance = 0;
-    const Traced tiles = trace(s->scene, settings, AreaShadows::adaptive);
-    const Traced single = trace(s->scene, settings, AreaShadows::adaptive, nullptr, false);
+    const TracedPicture tiles = trace(s->scene, settings, AreaShadows::adaptive);
+    const TracedPicture single = trace(s->scene, settings, AreaShadows::adaptive, nullptr, false);
     CHECK(same(tiles.picture, single.picture));
     for (const AccelInfo* accel : kAccelList)
       CHECK(same(tiles.picture, trace(s->scene, settings, AreaShadows::adaptive, accel).picture));
-    const Traced every = trace(s->scene, settings, AreaShadows::every);
+    const TracedPicture every = trace(s->scene, settings, AreaShadows::every);
     CHECK(single.shadow_rays <= every.shadow_rays + every.shadow_rays / 2);  // probes of points that do not matter
     rays += single.shadow_rays, all_rays += every.shadow_rays;
   }

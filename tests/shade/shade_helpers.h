@@ -2,6 +2,10 @@
 #pragma once
 #include <cmath>
 
+#include <doctest/doctest.h>
+
+#include "shade/filters.h"
+#include "shade/trace_spans.h"
 #include "support/generated_scene.h"
 
 namespace pocketray {
@@ -53,6 +57,29 @@ inline std::unique_ptr<TestRenderer> ray_renderer(GeneratedScene* s, std::uint32
 }
 inline Vec3 look(const TestRenderer& t, const Vec3& from, const Vec3& to) {
   return trace_ray(t.renderer, from, normalize(to - from));
+}
+
+// A frame's picture traced by one thread, in tiles or ray by ray.
+struct TracedPicture {
+  Picture picture;
+  std::uint64_t shadow_rays = 0;
+};
+inline TracedPicture trace_picture(const Scene& scene, const Settings& settings, const AccelInfo* accel = nullptr,
+                                   bool in_tiles = true) {
+  auto test = make_renderer(scene, settings, accel);
+  REQUIRE(render_frame(&test->renderer, 0).ok);
+  FrameData frame = test->renderer.frame;
+  make_filters(&frame);
+  if (!in_tiles) frame.find_shadows = nullptr;
+  std::vector<Span> spans;
+  for (std::uint32_t row = 0; row < settings.height; ++row)
+    spans.push_back({static_cast<std::uint16_t>(row), 0, static_cast<std::uint16_t>(settings.width)});
+  Tracer tracer = make_tracer(frame);
+  TracedPicture traced;
+  traced.picture.resize(std::size_t(settings.width) * settings.height);
+  trace_spans(&tracer, spans.data(), static_cast<std::uint32_t>(spans.size()), Aov::none, traced.picture.data());
+  traced.shadow_rays = tracer.rays[static_cast<int>(RayKind::shadow)];
+  return traced;
 }
 
 }  // namespace pocketray
