@@ -311,6 +311,25 @@ TEST_CASE("polygon_light_is_the_same_in_tiles_and_ray_by_ray") {
   }
 }
 
+// Goal: a lamp does not light itself, on whichever side of its plane rounding puts a point. Method: a tilted lamp that
+// also reflects, alone: each pixel shows what it emits.
+TEST_CASE("polygon_light_does_not_light_its_lamp") {
+  GeneratedScene s;
+  Material light = lamp();
+  light.diffuse = {0.7f, 0.7f, 0.7f};
+  add_quad(&s, {-1, -0.3f, 1.1f}, {1.1f, -0.7f, 0.9f}, {1.3f, 1.1f, 2.1f}, {-0.8f, 1.5f, 2.3f},
+           add_material(&s, light));
+  aim(&s, {0.1f, -1, 5}, {0.1f, 0.5f, 1.5f}, 40);
+  s.bind();
+  const Picture picture = picture_of(s.scene, settings_of(4, AreaIrradiance::analytic, 48, 40));
+  int seen = 0;
+  for (const Vec3& pixel : picture) {
+    CHECK((pixel == Vec3{8, 8, 8} || is_zero(pixel)));
+    seen += !is_zero(pixel);
+  }
+  CHECK(seen > 200);
+}
+
 // Goal: lamps that a polygon describes get one. Method: outlines of a square, of several, of an L and of a
 // triangle; none for lamps in parts, bent, of two sides, with textures, or of many corners.
 TEST_CASE("light_polygons_of_flat_lamps") {
