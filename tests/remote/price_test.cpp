@@ -12,6 +12,7 @@
 #include "hostile_rig.h"
 #include "present/pack.h"
 #include "remote/server/state.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -141,6 +142,10 @@ std::vector<Message> priced(std::vector<Message> messages, std::uint16_t price) 
 // again when they are gone; every pixel is right. Method: a device twice as slow as the server; four clients with frame
 // after frame, of one other address or of four.
 TEST_CASE("price_of_a_busy_server_moves_rows_to_the_device") {
+  if (kEffortDivisor > 6) {
+    MESSAGE("skipped: it takes minutes under emulation");
+    return;
+  }
   for (int address_count : {1, 4}) {
     CAPTURE(address_count);
     SharedServer s;
@@ -165,6 +170,10 @@ TEST_CASE("price_of_a_busy_server_moves_rows_to_the_device") {
 // Goal: a newcomer learns the price from the hello. Method: the hello to a further address, and to a second connection
 // of the busy one.
 TEST_CASE("price_is_in_the_hello") {
+  if (kEffortDivisor > 6) {
+    MESSAGE("skipped: it takes minutes under emulation");
+    return;
+  }
   for (int address : {1, 2, 3}) {
     CAPTURE(address);
     SharedServer s;
