@@ -115,7 +115,8 @@ float lamp_bound(const FrameData& frame, const LightPolygon& polygon, LightPoint
   Box box = empty_box();
   for (std::uint32_t i = 0; i < polygon.corner_count; ++i) box = merge(box, polygon.corners[i]);
   point.position = polygon.corners[0], point.direction = polygon.normal;
-  point.intensity = point.intensity * static_cast<float>(frame.settings.points_per_area_light);
+  constexpr float most = std::numeric_limits<float>::max();
+  point.intensity = min(point.intensity * static_cast<float>(frame.settings.points_per_area_light), {most, most, most});
   const float surrounded = kPiF * max_component(polygon.radiance);
   return std::min(surrounded, irradiance_bound(frame, point, Effect::area_light, box));
 }

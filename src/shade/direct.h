@@ -1,5 +1,8 @@
 // Direct light at a surface: lights × shadow rays.
 #pragma once
+#include <algorithm>
+#include <limits>
+
 #include "brdf/brdf_list.h"
 #include "shade/polygon_light.h"
 #include "shade/shadow.h"
@@ -63,6 +66,9 @@ template <EffectMask mask>
   *sum += light_out;
 }
 
+// Irradiances whose sum is smaller have no finite inverse.
+constexpr float kShareMin = std::numeric_limits<float>::min();
+
 // The light of a lamp's points, weighted so that without shadows their sum is that of its polygon.
 template <EffectMask mask>
 [[gnu::noinline]] Vec3 weighted_points(Tracer* tracer, const LitSurface& to, const LightRun& run, std::uint32_t first,
@@ -87,7 +93,7 @@ template <EffectMask mask>
     }
     seen += light_out;
   }
-  if (!(all > 0)) return {0, 0, 0};
+  if (!(all >= kShareMin)) return {0, 0, 0};
   seen = seen * (1 / all) * irradiance;
   // As the lamp sets, its light fades with the last of its points, the highest of which is at least a third as high as
   // its corners while none of them is below the horizon.
@@ -131,7 +137,7 @@ template <EffectMask mask>
     all += own;
     seen += (i + 1 == next ? other : visibility(i)) * own;
   }
-  return all > 0 ? seen * (1 / all) : Vec3{0, 0, 0};
+  return all >= kShareMin ? seen * (1 / all) : Vec3{0, 0, 0};
 }
 
 // The sum and the light of a run's lamps, of which some are polygons.

@@ -237,6 +237,23 @@ TEST_CASE("polygon_light_behind_a_blocker") {
   CHECK(error < error_of_points);
 }
 
+// Goal: lamps too dim for weights leave finite pictures. Method: radiances about the smallest floats, a lamp that is
+// partly hidden and one that the floor's horizon cuts, matte and glossy floors.
+TEST_CASE("polygon_light_of_a_lamp_hardly_above_nothing") {
+  for (float radiance : {1e-36f, 1e-38f, 1e-40f, 1e-44f})
+    for (bool glossy : {false, true})
+      for (float height : {2.0f, 0.01f}) {
+        CAPTURE(radiance);
+        auto s = lamp_scene(height, true);
+        for (Material& m : s->materials) {
+          if (!is_zero(m.emission)) m.emission = {radiance, radiance, radiance};
+          if (glossy) m.specular = {0.3f, 0.3f, 0.3f};
+        }
+        s->bind();
+        for (const Vec3& pixel : picture_of(s->scene, settings_of(4))) CHECK(is_finite(pixel));
+      }
+}
+
 // Goal: as a lamp sets behind a horizon, its light fades out without a step, whatever the number of points. Method: a
 // wall turned in small steps; no step of the radiance exceeds what the slope of the whole curve explains.
 TEST_CASE("polygon_light_sets_without_a_step") {
