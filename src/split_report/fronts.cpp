@@ -35,10 +35,10 @@ void write_data(std::string* f, const char* name, const std::vector<FrontPoint>&
   }
 }
 
-void write_front_plot(std::string* f, const char* name, const char* title, const char* unit) {
+void write_front_plot(std::string* f, const char* name, const char* title, const char* unit, const char* key) {
   *f +=
       std::string("set title '") + title + "'\nset xlabel 'milliseconds per frame, logarithmic'\nset ylabel '" + unit +
-      "'\nset logscale x\nset autoscale\nset yrange [0:*]\nset key top right nobox\nplot $" + name +
+      "'\nset logscale x\nset autoscale\nset yrange [0:*]\nset key " + key + " nobox\nplot $" + name +
       " using 1:2 title 'shares measured' with points pt 7 ps 0.7 lc rgb '#aaaaaa', \\\n  $" + name +
       "_front using 1:2 title 'not beaten in both; m beside it' with linespoints pt 7 lw 2 lc rgb '#d62728', \\\n  $" +
       name + "_front using 1:2:(sprintf(' %.2f', $3)) notitle with labels left offset 0.3,0.6 font ',8'\n";
@@ -134,8 +134,9 @@ Status draw_fronts(const std::string& folder, const std::string& title, const Fr
   std::string text = "set terminal pngcairo size 1500,560 font 'sans,11' noenhanced\nset output 'fronts.png'\n";
   write_data(&text, "energy", fronts.energy), write_data(&text, "bytes", fronts.bytes);
   text += "set multiplot layout 1,3 title " + gnuplot_string(title) + " font 'sans,13'\nset grid lc rgb '#dddddd'\n";
-  write_front_plot(&text, "energy", "Time against energy", "millijoules per frame, beyond the device idle");
-  write_front_plot(&text, "bytes", "Time against price", "kilobytes per frame, each of which has its price");
+  write_front_plot(&text, "energy", "Time against energy", "millijoules per frame, beyond the device idle", "top left");
+  write_front_plot(&text, "bytes", "Time against price", "kilobytes per frame, each of which has its price",
+                   "bottom left");
   write_clients_plot(&text, clients);
   text += "unset multiplot\n";
   RETURN_IF_ERROR(write_file(folder + "/fronts.gnuplot", text));

@@ -46,8 +46,8 @@ void write_data(std::string* f, const SplitFigures& s, std::uint32_t pixel_count
 void write_sweep_plot(std::string* f, const SplitFigures& s, std::uint32_t pixel_count) {
   double local_ms = s.local.ns_per_pixel * pixel_count * 1e-6, chosen_ms = s.chosen.ns_per_pixel * pixel_count * 1e-6;
   bool logarithmic = s.local.ns_per_pixel > kLogFrom * s.best.ns_per_pixel;
-  append(f, "set title 'Frame time over the device's share'\n");
-  append(f, "set xlabel 'm: the device's share of the rows'\nset xrange [-0.02:1.02]\n");
+  append(f, "set title \"Frame time over the device's share\"\n");
+  append(f, "set xlabel \"m: the device's share of the rows\"\nset xrange [-0.02:1.02]\n");
   append(f, "set ylabel 'milliseconds per frame%s'\nset grid lc rgb '#dddddd'\n", logarithmic ? ", logarithmic" : "");
   if (logarithmic)
     append(f, "set logscale y\nset yrange [%.6g:%.6g]\n", 0.5 * s.best.ns_per_pixel * pixel_count * 1e-6, 2 * local_ms);

@@ -3,8 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <cctype>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
+#include "split_report/plot.h"
 #include "support/generated_scene.h"
 #include "support/scripted_client.h"
 
@@ -31,6 +36,49 @@ TEST_CASE("fronts_count_pixels_and_bytes") {
   CHECK(fronts.bytes[0].cost == doctest::Approx(40));
   CHECK(fronts.bytes[1].cost == 0);
   CHECK((fronts.energy[1].on_front && fronts.bytes[1].on_front));
+}
+
+// Goal: gnuplot can read the scripts of the report. Method: no text ends within a line or runs on beyond it; gnuplot
+// itself, where it is installed.
+TEST_CASE("fronts_and_splits_are_drawn") {
+  char folder[] = "/tmp/pocketray-fronts-XXXXXX";
+  REQUIRE(mkdtemp(folder) != nullptr);
+  SplitFigures figures;
+  for (SplitPoint* p : {&figures.chosen, &figures.best, &figures.local}) p->m = 0.1, p->ns_per_pixel = 500;
+  figures.sweep = {figures.best, figures.best, figures.local};
+  figures.sweep[0].m = 0, figures.sweep[0].bytes = 40'000, figures.sweep[2].m = 1, figures.sweep[2].device_pixels = 900;
+  figures.local.ns_per_pixel = 9000;
+  figures.paper.resize(2);
+  for (PaperRow& row : figures.paper) row.scene = "a scene", row.ns_per_pixel = row.our_ns = row.bound_ns = 400;
+  bool drawn[2];
+  REQUIRE(draw_split(folder, {"it's a title", 1000}, figures, &drawn[0]).ok);
+  REQUIRE(draw_fronts(folder, "it's a title", make_fronts(figures, {7000, 1100}, 1000),
+                      {{1, 70, 0.1, 1}, {2, 90, 0.2, 2}}, &drawn[1])
+              .ok);
+  const bool has_gnuplot = std::system("gnuplot -V >/dev/null 2>&1") == 0;
+  if (!has_gnuplot) MESSAGE("not drawn: no gnuplot");
+  for (int i = 0; i < 2; ++i) {
+    CHECK(drawn[i] == has_gnuplot);
+    std::ifstream script(std::string(folder) + (i == 0 ? "/split.gnuplot" : "/fronts.gnuplot"));
+    int lines = 0;
+    for (std::string line; std::getline(script, line); ++lines) {
+      CAPTURE(line);
+      char open = 0;
+      for (std::size_t k = 0; k < line.size(); ++k) {
+        const char c = line[k];
+        if (!open && (c == '\'' || c == '"')) {
+          const bool after_word = k > 0 && std::isalnum(static_cast<unsigned char>(line[k - 1]));
+          CHECK(!after_word);
+          open = c;
+        } else if (open == c) {
+          open = 0;
+        }
+      }
+      CHECK(open == 0);
+    }
+    CHECK(lines > 10);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 // Goal: as clients are added to a server, [Aranha07] sec. 4, each gets less of it: frames take longer, the device's
