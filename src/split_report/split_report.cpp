@@ -50,13 +50,13 @@ struct Experiment {
   }
 };
 
-Status open_whole_encoder(Experiment* e) {
+void open_whole_encoder(Experiment* e) {
   const Settings& settings = e->setup.device->settings;
   CodecShape shape = {settings.width, settings.height, std::min(kChunkRowsMax, settings.height), e->setup.format};
   e->whole_memory.resize(row_encoder_need(shape) + kArenaAlignment);
   e->whole_chunk.resize(encoded_bytes_max(shape, shape.chunk_rows_max));
   Arena arena = make_arena("whole frames", e->whole_memory.data(), e->whole_memory.size());
-  return make_row_encoder(shape, &arena, &e->whole);
+  make_row_encoder(shape, &arena, &e->whole);
 }
 
 Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_t* frames_done, Experiment* e) {
@@ -83,7 +83,8 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   Arena arena = make_arena("client", e->memory.data(), e->memory.size());
   RETURN_IF_ERROR(make_client(options, renderer->settings, setup.scene, e->world.link, e->world.addresses.data(),
                               setup.server_count, &arena, &e->client));
-  return open_whole_encoder(e);
+  open_whole_encoder(e);
+  return success();
 }
 
 // The next frame along the path.
@@ -104,13 +105,14 @@ Status next_frame(Experiment* e, bool* complete) {
 double whole_bytes(Experiment* e) {
   CHECK(e->whole != nullptr);
   restart_row_encoder(e->whole);
-  int level = deflate_level(e->client.servers[0].ns_per_byte);
+  const RowCoding coding = row_coding(e->client.servers[0].ns_per_byte);
   std::uint32_t height = e->client.settings.height;
   double sum = 0;
-  for (std::uint32_t row = 0; row < height; row += kChunkRowsMax) {
+  for (std::uint32_t end = height; end > 0;) {  // upward, as servers send them
     std::uint8_t encoding;
-    std::uint32_t count = std::min(kChunkRowsMax, height - row);
-    sum += encode_rows(e->whole, row, count, merged_row(e->client, row), level, e->whole_chunk.data(), &encoding);
+    const std::uint32_t count = std::min(kChunkRowsMax, end), row = end - count;
+    end = row;
+    sum += encode_rows(e->whole, 1, row, count, merged_row(e->client, row), coding, e->whole_chunk.data(), &encoding);
   }
   return sum;
 }

@@ -1,45 +1,33 @@
-// State common to both ends of the codec: memory and zlib's allocator.
 #include "wire/codec_state.h"
 
 #include <cstring>
 
 #include "base/check.h"
 #include "base/limits.h"
-#include "wire/pixel_runs.h"
 
 namespace pocketray {
 namespace {
 
-void* take(void* arena, uInt count, uInt bytes) {
-  std::uint64_t total = std::uint64_t(count) * bytes;
-  return total <= SIZE_MAX ? arena_try_allocate(static_cast<Arena*>(arena), static_cast<std::size_t>(total)) : nullptr;
-}
-void give_back(void*, void*) {}  // the arena frees everything at once
-
-std::uint32_t chunk_pixels(const CodecShape& shape, std::uint32_t row_count) { return shape.width * row_count; }
-
-std::size_t picture_bytes(const CodecShape& shape) {
-  return std::size_t(shape.width) * shape.height * pixel_bytes(shape.format);
-}
+std::size_t row_bytes(const CodecShape& shape) { return std::size_t(shape.width) * pixel_bytes(shape.format); }
+std::size_t versions_bytes(const CodecShape& shape) { return (2 * std::size_t(shape.height) + 1) * row_bytes(shape); }
+std::uint32_t block_columns(const CodecShape& shape) { return (shape.width + kBlockColumns - 1) / kBlockColumns; }
 
 }  // namespace
 
-std::uint32_t body_bytes_max(const CodecShape& shape, std::uint32_t row_count) {
-  std::uint32_t pixels = chunk_pixels(shape, row_count);
-  return kNumberBytesMax + run_bytes_max(pixels) + pixels * pixel_bytes(shape.format);
+std::uint32_t raw_bytes(const CodecShape& shape, std::uint32_t row_count) {
+  CHECK_LE(row_count, shape.height);
+  return static_cast<std::uint32_t>(row_bytes(shape) * row_count);
 }
 
-// Incompressible data is stored: less than an eighth more with any of zlib's settings, and a few bytes to flush.
+// A chunk that would take more coded is sent as it is.
 std::uint32_t encoded_bytes_max(const CodecShape& shape, std::uint32_t row_count) {
-  std::uint32_t body = body_bytes_max(shape, row_count);
-  return body + body / 8 + 64;
+  return raw_bytes(shape, row_count);
 }
 
-std::size_t codec_state_need(const CodecShape& shape, std::size_t zlib_bytes) {
-  // One byte more than a body may have, to detect bodies that are too long.
-  return arena_need(picture_bytes(shape)) + arena_need<std::uint8_t>(shape.height) +
-         arena_need(run_bytes_max(chunk_pixels(shape, shape.chunk_rows_max))) +
-         arena_need(body_bytes_max(shape, shape.chunk_rows_max) + 1) + arena_need(zlib_bytes);
+std::size_t codec_state_need(const CodecShape& shape) {
+  return arena_need(versions_bytes(shape)) + arena_need<std::uint8_t>(shape.height) +
+         arena_need<std::uint32_t>(shape.height) + arena_need<BlockChoice>(block_columns(shape)) +
+         arena_need<std::uint8_t>(shape.width + 2);
 }
 
 bool codec_shape_valid(const CodecShape& shape) {
@@ -49,26 +37,51 @@ bool codec_shape_valid(const CodecShape& shape) {
          encoded_bytes_max(shape, shape.chunk_rows_max) <= kChunkBytesMax;
 }
 
-void make_codec_state(const CodecShape& shape, std::size_t zlib_bytes, Arena* arena, CodecState* state) {
+void make_codec_state(const CodecShape& shape, Arena* arena, CodecState* state) {
+  CHECK(arena != nullptr && state != nullptr);
   CHECK(codec_shape_valid(shape));
   std::size_t used = arena->used;
   *state = CodecState();
   state->shape = shape;
-  state->picture = arena_array<std::uint8_t>(arena, picture_bytes(shape));
-  state->sent = arena_array<std::uint8_t>(arena, shape.height);
-  state->runs = arena_array<std::uint8_t>(arena, run_bytes_max(chunk_pixels(shape, shape.chunk_rows_max)));
-  state->body = arena_array<std::uint8_t>(arena, body_bytes_max(shape, shape.chunk_rows_max) + 1);
-  state->zlib_arena = make_arena("zlib", arena_allocate(arena, zlib_bytes), arena_need(zlib_bytes));
-  CHECK_EQ(arena->used - used, codec_state_need(shape, zlib_bytes));
-  state->stream.zalloc = take, state->stream.zfree = give_back, state->stream.opaque = &state->zlib_arena;
+  state->versions = arena_array<std::uint8_t>(arena, versions_bytes(shape));
+  state->current = arena_array<std::uint8_t>(arena, shape.height);
+  state->row_frames = arena_array<std::uint32_t>(arena, shape.height);
+  state->blocks = arena_array<BlockChoice>(arena, block_columns(shape));
+  state->differs = arena_array<std::uint8_t>(arena, shape.width + 2);
+  CHECK_EQ(arena->used - used, codec_state_need(shape));
   restart_codec_state(state);
 }
 
 void restart_codec_state(CodecState* state) {
-  CHECK(state->picture.data != nullptr);
-  std::memset(state->picture.data, 0, state->picture.bytes());
-  std::memset(state->sent.data, 0, state->sent.bytes());
+  CHECK(state->versions.data != nullptr);
+  std::memset(state->versions.data, 0, state->versions.bytes());
+  std::memset(state->current.data, 0, state->current.bytes());
+  std::memset(state->row_frames.data, 0, state->row_frames.bytes());
+  state->frame = 0;
+  for (BlockChoice& block : state->blocks) block = {};
+  restart_models(&state->models);
   state->broken = false;
+}
+
+void begin_rows(CodecState* state, std::uint32_t frame, std::uint32_t row_begin, std::uint32_t row_count) {
+  CHECK_GT(row_count, 0u);
+  CHECK_LE(row_count, state->shape.height);
+  CHECK_LE(row_begin, state->shape.height - row_count);
+  state->frame = frame;
+  for (std::uint32_t row = row_begin; row < row_begin + row_count; ++row) {
+    state->current[row] ^= 1u;
+    state->row_frames[row] = frame;
+  }
+}
+
+void put_raw_rows(CodecState* state, std::uint32_t row_begin, std::uint32_t row_count, const std::uint8_t* pixels) {
+  CHECK(pixels != nullptr);
+  CHECK_LE(row_count, state->shape.height);
+  CHECK_LE(row_begin, state->shape.height - row_count);
+  const std::size_t stride = row_bytes(state->shape);
+  for (std::uint32_t i = 0; i < row_count; ++i)
+    std::memcpy(picture_row(*state, row_begin + i), pixels + i * stride, stride);
+  for (BlockChoice& block : state->blocks) block = {};  // an encoder may have tried to code the rows
 }
 
 }  // namespace pocketray

@@ -147,8 +147,7 @@ void row_fields(Io& io, FrameRequest* m, std::uint32_t height) {
   io.require(m->row_begin < m->row_end && m->row_end <= height);
   number(io, &m->chunk_rows);
   io.require(m->chunk_rows >= 1);
-  number(io, &m->deflate_level);
-  io.require(m->deflate_level <= 9);
+  choice(io, &m->coding, RowCoding::near_lossless);
   io.length_of(&m->run_count);
   if (m->run_count > kRunCountMax) return;
   for (std::uint32_t i = 0; i < m->run_count; ++i) number(io, &m->runs[i].row_count), number(io, &m->runs[i].place);
@@ -375,7 +374,7 @@ void take_change(const FrameRequest& change, FrameRequest* request) {
   request->frame = change.frame, request->seconds = change.seconds;
   request->camera = change.camera;
   request->row_begin = change.row_begin, request->row_end = change.row_end;
-  request->chunk_rows = change.chunk_rows, request->deflate_level = change.deflate_level;
+  request->chunk_rows = change.chunk_rows, request->coding = change.coding;
   request->run_count = change.run_count;
   std::memcpy(request->runs, change.runs, sizeof request->runs);
 }

@@ -14,7 +14,7 @@
 namespace pocketray {
 
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 11 + (kSettingCount - 6);
+constexpr std::uint16_t kWireVersion = 12 + (kSettingCount - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -82,6 +82,10 @@ struct RowRun {
   std::uint8_t row_count = 0, place = 0;
 };
 
+// How a server sends rows: as they are, unless they have not changed; coded; or coded with pixels that may be off by
+// one level of their format in each channel.
+enum class RowCoding : std::uint8_t { raw, lossless, near_lossless };
+
 // Requests rows of a frame. They come run after run, each from its lowest row upward.
 struct FrameRequest {
   std::uint32_t frame = 0;  // counts up
@@ -95,10 +99,10 @@ struct FrameRequest {
   bool dither = false;
   WireFormat format = WireFormat::rgb565;
   std::uint16_t row_begin = 0, row_end = 0;
-  std::uint16_t chunk_rows = 1;    // of a chunk, at most; no chunk has rows of two runs
-  std::uint8_t deflate_level = 1;  // 0 (no compression) to 9
-  std::uint8_t run_count = 0;      // 0: all rows are one run
-  RowRun runs[kRunCountMax];       // from top to bottom; their places are a permutation of 0 … run_count − 1
+  std::uint16_t chunk_rows = 1;  // of a chunk, at most; no chunk has rows of two runs
+  RowCoding coding = RowCoding::lossless;
+  std::uint8_t run_count = 0;  // 0: all rows are one run
+  RowRun runs[kRunCountMax];   // from top to bottom; their places are a permutation of 0 … run_count − 1
 };
 
 struct RowChunk {

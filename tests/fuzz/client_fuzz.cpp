@@ -96,7 +96,7 @@ void send_rows() {
   if (!peer->encoder) {
     peer->encoder_block.assign(row_encoder_need(shape) + kArenaAlignment, 0);
     Arena arena = make_arena("encoder", peer->encoder_block.data(), peer->encoder_block.size());
-    CHECK(make_row_encoder(shape, &arena, &peer->encoder).ok);
+    make_row_encoder(shape, &arena, &peer->encoder);
   }
   Bytes encoded(encoded_bytes_max(shape, row_count));
   Message message;
@@ -106,8 +106,8 @@ void send_rows() {
   chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(row_count);
   const Bytes& picture = picture_of(q.format, q.seconds);
   std::uint32_t count =
-      encode_rows(peer->encoder, begin, row_count, picture.data() + begin * kFuzzWidth * pixel_bytes(q.format),
-                  q.deflate_level, encoded.data(), &chunk->encoding);
+      encode_rows(peer->encoder, q.frame, begin, row_count, picture.data() + begin * kFuzzWidth * pixel_bytes(q.format),
+                  q.coding, encoded.data(), &chunk->encoding);
   add_chunk_number(chunk, peer->chunk_count++);
   chunk->bytes = {encoded.data(), count};
   pass_rows(q, row_count, &peer->due);

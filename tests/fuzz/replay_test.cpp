@@ -75,8 +75,8 @@ TEST_CASE("fuzz_message_corpus_and_damaged_seeds") {
   fuzz_counts = FuzzCounts();
   for (const FuzzSeed& seed : message_seeds()) fuzz_message(seed.bytes.data(), seed.bytes.size());
   CHECK(fuzz_counts.messages == 30);
-  CHECK(fuzz_counts.chunks == 32);
-  CHECK(fuzz_counts.pictures == 12);
+  CHECK(fuzz_counts.chunks == 48);
+  CHECK(fuzz_counts.pictures == 18);
   damage(message_seeds(), fuzz_message, effort(400));
   CHECK(replay("message", fuzz_message) >= 10);
 }

@@ -22,23 +22,24 @@ Bytes unsealed(const Bytes& message) {
   return bytes;
 }
 
-// A picture of 24 × 16 that drifts, as chunks an encoder writes at a level.
-Bytes chunk_seed(WireFormat format, int level) {
+// A picture of 24 × 16 that drifts, as chunks an encoder writes.
+Bytes chunk_seed(WireFormat format, RowCoding coding) {
   CodecShape shape = {24, 16, 4, format};
   Bytes block(row_encoder_need(shape) + kArenaAlignment), chunk(encoded_bytes_max(shape, 4));
   Arena arena = make_arena("seed", block.data(), block.size());
   RowEncoder* encoder;
   Bytes bytes = {2, static_cast<std::uint8_t>(format)};
-  if (!make_row_encoder(shape, &arena, &encoder).ok) return bytes;
+  make_row_encoder(shape, &arena, &encoder);
   std::size_t row_bytes = 24 * pixel_bytes(format);
   Bytes picture(16 * row_bytes);
-  for (int frame = 0; frame < 2; ++frame)
+  for (std::uint32_t frame = 0; frame < 2; ++frame)
     for (std::uint32_t row = 16; row > 0; row -= 4) {
       for (std::size_t i = (row - 4) * row_bytes; i < row * row_bytes; ++i)
         if (frame == 0 || i % 50 > 40) picture[i] = static_cast<std::uint8_t>(i / 5 + i % 7 + row);
       std::uint8_t encoding;
-      std::uint32_t count =
-          encode_rows(encoder, row - 4, 4, picture.data() + (row - 4) * row_bytes, level, chunk.data(), &encoding);
+      std::uint32_t count = encode_rows(encoder, 1 + frame, row - 4, 4, picture.data() + (row - 4) * row_bytes, coding,
+                                        chunk.data(), &encoding);
+      encoding = static_cast<std::uint8_t>(encoding | frame << 7);
       append(&bytes, {static_cast<std::uint8_t>(row - 4), 4, encoding, static_cast<std::uint8_t>(count),
                       static_cast<std::uint8_t>(count >> 8)});
       append(&bytes, Bytes(chunk.begin(), chunk.begin() + count));
@@ -83,12 +84,14 @@ std::vector<FuzzSeed> message_seeds() {
   }
   seeds.push_back({"every_type", all});
   for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888})
-    for (int level : {0, 6}) {
-      std::string name = (format == WireFormat::rgb565 ? "rgb565_level_" : "rgb888_level_") + std::to_string(level);
-      seeds.push_back({"chunks_" + name, chunk_seed(format, level)});
-      std::uint8_t format_byte = static_cast<std::uint8_t>(format), level_byte = static_cast<std::uint8_t>(level);
+    for (RowCoding coding : {RowCoding::raw, RowCoding::lossless, RowCoding::near_lossless}) {
+      const char* codings[] = {"raw", "lossless", "near_lossless"};
+      const std::uint8_t format_byte = static_cast<std::uint8_t>(format),
+                         coding_byte = static_cast<std::uint8_t>(coding);
+      const std::string name = std::string(format == WireFormat::rgb565 ? "rgb565_" : "rgb888_") + codings[coding_byte];
+      seeds.push_back({"chunks_" + name, chunk_seed(format, coding)});
       seeds.push_back({"pictures_" + name,
-                       {3, format_byte, 0, 3, level_byte, 2, 7, 9, 5, 1, level_byte, 1, 255, 0, 3, level_byte, 0}});
+                       {3, format_byte, 0, 3, coding_byte, 2, 7, 9, 5, 1, coding_byte, 1, 255, 0, 3, coding_byte, 0}});
     }
   return seeds;
 }
@@ -122,9 +125,11 @@ std::vector<FuzzSeed> front_seeds() {
   append(&both, text_of(front));
   return {{"builtin", text_of(front)},
           {"with_prices", both},
-          {"comments", bytes_of("pocketray-front 1\r\n\n# what follows\nsamples=4 depth=8 area-lights=16 area-shadows=every area-irradiance=points cut-off=5e-1 "
+          {"comments", bytes_of("pocketray-front 1\r\n\n# what follows\nsamples=4 depth=8 area-lights=16 "
+                                "area-shadows=every area-irradiance=points cut-off=5e-1 "
                                 "texture-filter=nearest normals=flat indirect=auto reconstruction=bicubic "
-                                "virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 environment-shadows=32 flip=1 ns=1e9\n")},
+                                "virtual-lights=64 selective=0 resolution=full light-tolerance=0.0625 "
+                                "environment-shadows=32 flip=1 ns=1e9\n")},
           {"another_version", bytes_of("pocketray-front 2\nsamples=4\n")}};
 }
 

@@ -92,7 +92,7 @@ RowSource::RowSource(std::uint32_t width_, std::uint32_t height_, WireFormat for
   CodecShape shape = {width, height, std::min(32u, height), format};
   memory.resize(row_encoder_need(shape) + kArenaAlignment);
   arena = make_arena("rows", memory.data(), memory.size());
-  REQUIRE(make_row_encoder(shape, &arena, &encoder).ok);
+  make_row_encoder(shape, &arena, &encoder);
 }
 
 void RowSource::restart() {
@@ -111,8 +111,8 @@ Message RowSource::chunk(std::uint32_t frame, std::uint32_t row_begin, std::uint
   c->frame = frame;
   c->row_begin = static_cast<std::uint16_t>(row_begin), c->row_count = static_cast<std::uint16_t>(row_count);
   c->pixel_ps = kPixelPs, c->pixels_traced = width * row_count;
-  std::uint32_t count =
-      encode_rows(encoder, row_begin, row_count, pixels.data(), 0, bytes.back()->data(), &c->encoding);
+  std::uint32_t count = encode_rows(encoder, frame, row_begin, row_count, pixels.data(), RowCoding::raw,
+                                    bytes.back()->data(), &c->encoding);
   c->bytes = {bytes.back()->data(), count};
   add_chunk_number(c, chunk_count++);
   return message;

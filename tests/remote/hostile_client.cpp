@@ -23,7 +23,7 @@ FrameRequest small_frame(HostileClient* c) {
   request.settings.width = 8, request.settings.height = 8;
   request.row_end = 8;
   request.chunk_rows = 1;
-  request.deflate_level = 6;
+  request.coding = RowCoding::lossless;
   return request;
 }
 

@@ -101,7 +101,7 @@ void say_rows(HostileServer* server, Connection* c, std::uint32_t frame, std::ui
   if (!c->encoder) {
     c->block.assign(row_encoder_need(shape) + kArenaAlignment, 0);
     Arena arena = make_arena("encoder", c->block.data(), c->block.size());
-    REQUIRE(make_row_encoder(shape, &arena, &c->encoder).ok);
+    make_row_encoder(shape, &arena, &c->encoder);
   }
   std::size_t line_bytes = std::size_t(shape.width) * pixel_bytes(shape.format);
   const std::vector<std::uint8_t>& picture = server->settings.picture(q.seconds);
@@ -117,7 +117,7 @@ void say_rows(HostileServer* server, Connection* c, std::uint32_t frame, std::ui
   chunk->price = stated_price(server);
   chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(end - begin);
   std::uint32_t count =
-      encode_rows(c->encoder, begin, end - begin, rows.data(), q.deflate_level, encoded.data(), &chunk->encoding);
+      encode_rows(c->encoder, frame, begin, end - begin, rows.data(), q.coding, encoded.data(), &chunk->encoding);
   add_chunk_number(chunk, c->chunk_count++);
   chunk->bytes = {encoded.data(), count};
   say(c, message);

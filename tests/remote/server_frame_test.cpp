@@ -52,12 +52,12 @@ TEST_CASE("server_frames_equal_local_ones") {
   check_frame(&client, request);
   request.frame = 6, request.camera.eye.x = -0.2f;
   check_frame(&client, request, MessageType::frame_change);
-  request.frame = 7, request.format = WireFormat::rgb888, request.dither = false, request.deflate_level = 6;
+  request.frame = 7, request.format = WireFormat::rgb888, request.dither = false, request.coding = RowCoding::lossless;
   check_frame(&client, request);
   request.frame = 8, request.camera_stated = false, request.exposure = 0;
   check_frame(&client, request);
   request = frame_request("statue", 9, 40, 30);
-  request.settings.samples_per_pixel = 4, request.chunk_rows = 7, request.deflate_level = 0;
+  request.settings.samples_per_pixel = 4, request.chunk_rows = 7, request.coding = RowCoding::raw;
   check_frame(&client, request);
   request.frame = 10, request.run_count = 3;
   request.runs[0] = {9, 1}, request.runs[1] = {14, 0}, request.runs[2] = {7, 2};
@@ -165,7 +165,7 @@ TEST_CASE("server_makes_rows_no_earlier_than_they_can_be_sent") {
   ServerRig rig(ServerOptions(), settings);
   ScriptedClient client(&rig);
   FrameRequest request = frame_request("cube", 1, 320, 240);
-  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = 4;
+  request.format = WireFormat::rgb888, request.coding = RowCoding::raw, request.chunk_rows = 4;
   client.request(request);
   std::uint64_t ahead_max = 0;
   rig.run_until([&] {
@@ -221,7 +221,7 @@ TEST_CASE("server_cuts_chunks_to_the_size_that_the_client_takes") {
   hello.hello.message_bytes_max = 3072;
   client.send(hello);
   FrameRequest request = frame_request("cornell", 1);
-  request.chunk_rows = 48, request.deflate_level = 0;
+  request.chunk_rows = 48, request.coding = RowCoding::raw;
   client.request(request);
   client.wait_for_rows(48);
   CHECK(client.chunks.size() > 2);
@@ -240,7 +240,7 @@ TEST_CASE("server_sends_chunks_that_waited_without_delay") {
   ServerRig rig(options);
   ScriptedClient client(&rig);
   FrameRequest request = frame_request("cube", 1, 320, 240);
-  request.format = WireFormat::rgb888, request.deflate_level = 0, request.chunk_rows = 4;
+  request.format = WireFormat::rgb888, request.coding = RowCoding::raw, request.chunk_rows = 4;
   std::uint64_t start = rig.now();
   client.request(request);
   while (client.rows_come < 240 && rig.now() - start < 5000 * kMs) {

@@ -176,7 +176,7 @@ TEST_CASE("server_ends_a_client_that_never_reads") {
   rig.run_until([&] { return client_count(*rig.server) == 2; });
   deaf.reads = false;
   FrameRequest large = frame_request("cornell", 1, 320, 240);
-  large.format = WireFormat::rgb888, large.deflate_level = 0;
+  large.format = WireFormat::rgb888, large.coding = RowCoding::raw;
   deaf.send_bytes(request_bytes(large));
   FrameRequest request = frame_request("cube", 1);
   std::uint64_t start = rig.now(), last_ns = 0;

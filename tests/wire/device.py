@@ -7,6 +7,7 @@ HELLO, SCENE_LIST, SCENE_QUERY, SCENE_ENTRY, SCENE_FETCH, SCENE_PIECE, FRAME_REQ
     VIEW_QUERY, VIEW_ENTRY, FRAME_CHANGE = range(1, 16)
 WRONG_VERSION, MALFORMED, UNKNOWN_SCENE, TOO_LARGE, BAD_REQUEST, BUSY, CLOSING = range(1, 8)
 RGB565, RGB888 = 0, 1
+RED, GREEN, BLUE = range(3)
 EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-mask", "alpha-blend", "emission", "texture",
            "vertex-color", "smooth-normal", "ambient", "point-light", "spot-light", "directional-light", "area-light",
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
@@ -65,15 +66,72 @@ def scene_hash(data):
 # ---- Chunks
 
 
+class Code:
+    """A range decoder: bits of adapting probability, numbers, even bits."""
+
+    def __init__(self, data):
+        check(not data or data[-1] != 0, "code does not end in zeros")
+        self.data, self.at, self.range, self.code = data, 0, 0xFFFFFFFF, 0
+        for _ in range(4):
+            self.shift()
+
+    def shift(self):
+        self.code = self.code << 8 | (self.data[self.at] if self.at < len(self.data) else 0)
+        self.at += 1
+
+    def normalise(self):
+        while self.range < 1 << 24:
+            self.range <<= 8
+            self.shift()
+
+    def bit(self, model, key):
+        zero = model.get(key, 2048)
+        bound = (self.range >> 12) * zero
+        if self.code < bound:
+            self.range, model[key], value = bound, zero + (4096 - zero >> 4), 0
+        else:
+            self.code -= bound
+            self.range, model[key], value = self.range - bound, zero - (zero >> 4), 1
+        self.normalise()
+        return value
+
+    def even_bits(self, count):
+        value = 0
+        for _ in range(count):
+            self.range >>= 1
+            one = self.code >= self.range
+            if one:
+                self.code -= self.range
+            value = value << 1 | one
+            self.normalise()
+        return value
+
+    def number(self, model, key, bits_max):
+        length = 0
+        while length + 1 < bits_max and self.bit(model, (key, "longer", length)):
+            length += 1
+        if length == 0:
+            return 1
+        top = 2 | self.bit(model, (key, "second", length))
+        return top << length - 1 | self.even_bits(length - 1)
+
+
 class Picture:
-    """The picture as last sent, and the deflate stream."""
+    """The picture as last sent, the frame before, and the statistics of the code."""
 
     def __init__(self, width, height, pixel_format):
         self.width, self.height, self.format = width, height, pixel_format
         self.levels = (32, 64, 32) if pixel_format == RGB565 else (256, 256, 256)
-        self.pixels = [(0, 0, 0)] * (width * height)
-        self.sent = [False] * height
-        self.inflater = zlib.decompressobj(-15)
+        black = [(0, 0, 0)] * width
+        self.rows = [black] * height
+        self.before = [black] * height
+        self.frames = [0] * height
+        self.model = {}
+        self.blocks = [("spatial", 0, 0)] * ((width + 7) // 8)
+
+    @property
+    def pixels(self):
+        return [pixel for row in self.rows for pixel in row]
 
     def load(self, body, at):
         if self.format == RGB888:
@@ -81,62 +139,105 @@ class Picture:
         value = body[at] | body[at + 1] << 8
         return value >> 11, value >> 5 & 63, value & 31
 
-    def decode(self, row, row_count, encoding, data):
-        if encoding & 2:
-            data = self.inflater.decompress(data + b"\0\0\xff\xff")
-        at = 0
-
-        def number():
-            nonlocal at
-            value = shift = 0
-            while True:
-                byte = data[at]
-                at += 1
-                value |= (byte & 127) << shift
-                shift += 7
-                if byte < 128:
-                    return value
-
-        run_bytes = number()
-        values = runs_end = at + run_bytes
-        count = row_count * self.width
+    def decode(self, frame, row, row_count, encoding, data):
+        for y in range(row, row + row_count):
+            self.before[y], self.rows[y], self.frames[y] = self.rows[y], [(0, 0, 0)] * self.width, frame
         size = 3 if self.format == RGB888 else 2
-        chunk = self.pixels[row * self.width:(row + row_count) * self.width]
-        place = 0
+        if encoding & 1:
+            check(len(data) <= row_count * self.width * size, "code is no longer than its pixels")
+            self.decode_blocks(frame, row, row_count, Code(data))
+            return
+        check(len(data) == row_count * self.width * size, "the body has the length of its pixels")
+        for y in range(row_count):
+            self.rows[row + y] = [self.load(data, (y * self.width + x) * size) for x in range(self.width)]
+        self.blocks = [("spatial", 0, 0)] * len(self.blocks)
 
-        def leave(end):
-            left = self.sent[row + place // self.width:row + (end - 1) // self.width + 1] if end > place else []
-            check(all(left), "pixels are left only in rows that were sent before")
+    def decode_blocks(self, frame, row, row_count, code):
+        self.above_differ = [0] * (self.width + 1)
+        end = row + row_count
+        while end > row:
+            begin = max(row, end - 8)
+            beside, self.beside_differ = self.blocks[0], {}
+            for left in range(0, self.width, 8):
+                right = min(left + 8, self.width)
+                block = self.choice(code, beside, self.blocks[left // 8])
+                self.fill(frame, code, block, left, right, begin, end)
+                self.blocks[left // 8] = beside = block
+            end = begin
+        check(code.at >= len(code.data), "all of the code is used")
 
-        while at < runs_end:
-            skipped = number()
-            leave(place + skipped)
-            place += skipped
-            given = number()
-            assert given >= 1 and place + given <= count
-            for i in range(place, place + given):
-                pixel = self.load(data, values)
-                values += size
-                chunk[i] = self.undo(pixel, chunk, i) if encoding & 1 else pixel
-            place += given
-        leave(count)
-        assert at == runs_end and values == len(data), "the body has the length that its runs call for"
-        self.sent[row:row + row_count] = [True] * row_count
-        self.pixels[row * self.width:(row + row_count) * self.width] = chunk
+    def choice(self, code, beside, below):
+        def like(kind):
+            return (beside[0] == kind) + (below[0] == kind)
 
-    def undo(self, difference, chunk, i):
-        width = self.width
-        if i < width:
-            guess = chunk[i - 1] if i else (0, 0, 0)
-        elif i % width == 0:
-            guess = chunk[i - width]
-        else:
-            guess = tuple(
-                min(left, up) if corner >= max(left, up) else max(left, up) if corner <= min(left, up) else left + up - corner
-                for left, up, corner in zip(chunk[i - 1], chunk[i - width], chunk[i - width - 1]))
-        red, green, blue = difference
-        share = green >> 1 if self.format == RGB565 else green
-        return tuple((d + g) % n for d, g, n in zip((red + share, green, blue + share), guess, self.levels))
+        _, x, y = beside
+        if code.bit(self.model, ("spatial?", like("spatial"))):
+            return "spatial", x, y
+        if not code.bit(self.model, ("same motion?", like("exact"))):
+            moved = []
+            for axis, start in (0, x), (1, y):
+                other = axis == 1 and moved[0] != x
+                if code.bit(self.model, ("motion differs?", axis, other)):
+                    falls = code.bit(self.model, ("motion falls?", axis))
+                    by = code.number(self.model, ("motion", axis), 8)
+                    start += -by if falls else by
+                moved.append(start)
+            x, y = moved
+        return ("exact" if code.bit(self.model, ("exact?", like("exact"))) else "temporal"), x, y
+
+    def fill(self, frame, code, block, left, right, begin, end):
+        kind, x, y = block
+        if kind != "spatial":
+            check(left + x >= 0 and right + x <= self.width and begin + y >= 0 and end + y <= self.height,
+                  "motion stays inside the picture")
+        below_differs = 1
+        for row in reversed(range(begin, end)):
+            moved = None
+            if kind != "spatial":
+                source = self.before if self.frames[row + y] == frame else self.rows
+                moved = source[row + y][left + x:right + x]
+            last, any_beside = self.beside_differ.get(row, (0, 0))
+            differ = 0
+            if kind != "exact":
+                differ = below_differs = code.bit(self.model, (kind, "row differs?", below_differs, any_beside))
+            for column in range(left, right):
+                guess, context, activity = self.guess(row, column, right, row + 1 == end, moved and moved[column - left], last)
+                last = code.bit(self.model, (kind, "differs?", context)) if differ else 0
+                self.rows[row][column] = self.difference(code, kind, guess, activity) if last else guess
+                self.above_differ[column] = last
+            self.beside_differ[row] = last, differ
+
+    def guess(self, row, column, right, lowest, moved, last):
+        """The prediction of a pixel, the context of whether it differs, and its activity."""
+        below_row = self.rows[row + 1] if row + 1 < self.height else [(0, 0, 0)] * self.width
+        below = below_row[column]
+        before = self.rows[row][column - 1] if column else below
+        corner = below_row[column - 1] if column else below
+        beyond = below_row[column + 1] if column + 1 < self.width and (lowest or column + 1 < right) else below
+        history = last, self.above_differ[column], self.above_differ[column + 1]
+        if moved:
+            return moved, (history, moved != before, moved != below, before != below), sum(history)
+        differences = before != corner, below != corner, beyond != below
+        guess = tuple(
+            min(a, b) if c >= max(a, b) else max(a, b) if c <= min(a, b) else a + b - c
+            for a, b, c in zip(before, below, corner))
+        return guess, (history, differences), sum(differences)
+
+    def difference(self, code, kind, guess, activity):
+        pixel, signs = list(guess), ()
+        for channel in GREEN, RED, BLUE:
+            levels = self.levels[channel]
+            by = 0
+            if signs == (0, 0) or code.bit(self.model, (kind, "channel differs?", signs, activity)):
+                falls = code.bit(self.model, (kind, "falls?", signs))
+                by = code.number(self.model, (kind, channel, activity), levels.bit_length() - 1)
+                pixel[channel] = (guess[channel] + (-by if falls else by)) % levels
+                activity = min(3, by.bit_length())
+                signs += (-1 if falls else 1,)
+            else:
+                activity = activity if signs else 0
+                signs += (0,)
+        return tuple(pixel)
 
     def compare(self, rgb, rows=None):
         """Whether it equals `rgb`, bytes of R, G and B, converted to this format."""
@@ -159,7 +260,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=20, more=b""):
+def hello(version=21, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
@@ -173,13 +274,13 @@ def pack_camera(camera):
 
 DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0, area_irradiance=1,
                 cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
-                largest=16, level=1, order=(), measure=0)
+                largest=16, coding=1, order=(), measure=0)
 
 
 def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
-    rows = struct.pack("<HHHB", r["first"], end, r["largest"], r["level"]) + bytes(x for run in r["order"] for x in run)
+    rows = struct.pack("<HHHB", r["first"], end, r["largest"], r["coding"]) + bytes(x for run in r["order"] for x in run)
     settings = struct.pack("<HHBBHBBfBBBBHfBfHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["selective"], r["resolution"], r["light_tolerance"],
@@ -205,7 +306,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\24\0", "the server says hello first, of version 20")
+            check(kind == HELLO and fields[:6] == b"PRAY\25\0", "the server says hello first, of version 21")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 
@@ -275,17 +376,16 @@ class Device:
         self.traced += traced
         check(traced <= rows * r["width"], "no more pixels are traced than the rows have")
         check(number == frame, "a chunk is of the frame")
-        check(encoding >> 2 == self.chunk_count % 64, "chunks are counted")
+        check(encoding >> 1 == self.chunk_count % 128, "chunks are counted")
         first, end = due[0]
         check(row + rows == end and row >= first, "the lowest rows of the next run come first")
         check(rows <= r["largest"], "a chunk of %d rows is no larger than asked" % rows)
         size = 3 if r["format"] == RGB888 else 2
         count = rows * r["width"]
-        body = 21 + count // 2 + count * size
-        check(len(data) <= body + body // 8 + 64, "a chunk is no longer than its rows can take")
-        self.encodings.add(encoding & 3)
+        check(len(data) <= count * size, "a chunk is no longer than its pixels")
+        self.encodings.add(encoding & 1)
         self.chunk_count += 1
-        self.picture.decode(row, rows, encoding, data)
+        self.picture.decode(number, row, rows, encoding, data)
         due[0] = first, row
         if row == first:
             del due[0]

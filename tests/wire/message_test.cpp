@@ -134,7 +134,10 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_change, [](Message* m) { m->frame_request.frame ^= 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.seconds += 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.camera.eye.z += 1; }},
-      {MessageType::frame_change, [](Message* m) { m->frame_request.deflate_level ^= 1; }},
+      {MessageType::frame_change,
+       [](Message* m) {
+         m->frame_request.coding = m->frame_request.coding == RowCoding::raw ? RowCoding::lossless : RowCoding::raw;
+       }},
       {MessageType::frame_change,
        [](Message* m) {
          FrameRequest* q = &m->frame_request;
@@ -260,13 +263,13 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + more + 107, {5, 0, 5, 0}},          // no rows
       {MessageType::frame_request, 8 + more + 109, {0xFF, 0xFF}},          // rows beyond the picture
       {MessageType::frame_request, 8 + more + 111, {0, 0}},                // chunk rows
-      {MessageType::frame_request, 8 + more + 113, {10}},                  // level
+      {MessageType::frame_request, 8 + more + 113, {3}},                   // coding
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 60, {5, 0, 5, 0}},                   // no rows
       {MessageType::frame_change, 8 + 62, {0xFF, 0xFF}},                   // rows beyond any picture
       {MessageType::frame_change, 8 + 64, {0, 0}},                         // chunk rows
-      {MessageType::frame_change, 8 + 66, {10}},                           // level
+      {MessageType::frame_change, 8 + 66, {3}},                            // coding
       {MessageType::row_chunk, 8 + 6, {0, 0}},
       {MessageType::row_chunk, 8 + 4, {0xFF, 0x1F, 2, 0}},
       {MessageType::row_chunk, 8 + 12, {0xFF, 0}},  // price

@@ -62,7 +62,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
       std::swap(f->runs[i].place, f->runs[next_u32(rng) % (i + 1)].place);
     }
   }
-  f->deflate_level = static_cast<std::uint8_t>(next_u32(rng) % 10);
+  f->coding = static_cast<RowCoding>(next_u32(rng) % 3);
   m.row_chunk.frame = next_u32(rng), m.row_chunk.row_begin = narrow() % 4000;
   m.row_chunk.row_count = static_cast<std::uint16_t>(1 + next_u32(rng) % 100);
   m.row_chunk.pixels_traced = next_u32(rng) % (m.row_chunk.row_count * kImageSideMax + 1);

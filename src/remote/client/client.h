@@ -176,8 +176,8 @@ struct Client {
   std::uint64_t progress_ns = 0;  // when missing rows last came
 };
 
-// zlib level to request for rows over a link of that speed.
-std::uint8_t deflate_level(double ns_per_byte);
+// How rows should come over a link of that speed.
+RowCoding row_coding(double ns_per_byte);
 
 // Arena bytes for pictures of that size. The client uses server_count streams of the link.
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count);

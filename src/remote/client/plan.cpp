@@ -15,9 +15,8 @@ constexpr double kDisproved = 1.25;  // a link faster than estimated by more tha
 constexpr double kLinkBound = 1.15;  // rows that take this much longer than on the servers are bound by the link
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
 static_assert(kOrderRunsMax <= kRunCountMax && kRunRowsMax <= UINT8_MAX, "a request can express every order");
-// Nanoseconds per byte beyond which fewer bytes are worth more server time. Measured (codec_frames_test), per pixel of
-// RGB565: level 1 takes 400 ns and saves 1.5 bytes, level 6 takes another 300 ns and saves 0.06.
-constexpr double kDeflateNsPerByte = 250, kDeflateMoreNsPerByte = 5000;
+// Nanoseconds per byte beyond which coded rows pay. Measured (codec_frames_test), per pixel of RGB565 on an ARM926:
+constexpr double kCodeNsPerByte = 250;
 
 // Sets the order of a request's rows: the one in which the server's tracing and sending overlap best.
 void set_order(const SplitProblem& p, std::uint32_t server, FrameRequest* request) {
@@ -90,9 +89,7 @@ void finish_probe(Client* client, RemoteServer* server) {
 
 }  // namespace
 
-std::uint8_t deflate_level(double ns_per_byte) {
-  return ns_per_byte < kDeflateNsPerByte ? 0 : ns_per_byte < kDeflateMoreNsPerByte ? 1 : 6;
-}
+RowCoding row_coding(double ns_per_byte) { return ns_per_byte < kCodeNsPerByte ? RowCoding::raw : RowCoding::lossless; }
 
 void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
                   const SplitProblem* problem) {
@@ -118,7 +115,7 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   client->model.servers[index].chunk_rows = ordered ? kChunkRowsMin : kChunkRowsEven;
   const std::uint32_t chunk_rows = ordered ? kChunkRowsMax : kChunkRowsEven;
   message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, client->settings.height));
-  message.frame_request.deflate_level = deflate_level(server->ns_per_byte);
+  message.frame_request.coding = row_coding(server->ns_per_byte);
   bool like_the_last = server->asked.frame > 0 && is_change(message.frame_request, server->asked);
   message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
   server->late_rows += server->due_rows;

@@ -45,9 +45,9 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   chunk->price = session->price;
   for (std::uint32_t row = row_begin; row < row_end; ++row) chunk->pixels_traced += count_pixels(renderer, row);
   std::uint32_t byte_count =
-      encode_rows(session->encoder, row_begin, row_count,
+      encode_rows(session->encoder, request.frame, row_begin, row_count,
                   session->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes),
-                  request.deflate_level, at + prefix, &chunk->encoding);
+                  request.coding, at + prefix, &chunk->encoding);
   CHECK_EQ(chunk->encoding >> kChunkNumberShift, 0);
   add_chunk_number(chunk, session->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};

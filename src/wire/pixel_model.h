@@ -1,0 +1,90 @@
+// The probabilities that both ends of the codec adapt, and the code of numbers and of pixels that differ from their
+// prediction. Coders are RangeEncoder or RangeDecoder: the same code serves both, so that they cannot disagree.
+#pragma once
+#include "wire/predict.h"
+#include "wire/range_coder.h"
+
+namespace pocketray {
+
+constexpr std::uint32_t kLengthsMax = 8;  // bits of a number above 0
+
+// Of numbers from 1: how many bits follow the first, and the one that follows it. The others are even.
+struct NumberModel {
+  Probability length[kLengthsMax], second[kLengthsMax];
+};
+
+constexpr std::uint32_t kPixelContexts = 64, kActivities = 4;
+
+// Of pixels predicted in one way.
+struct PixelModel {
+  Probability row_differs[4];  // any pixel of the block's row; by the rows beside and below
+  Probability differs[kPixelContexts];
+  Probability channel_differs[3][9][kActivities];  // by the signs of the channels before, 0, fall or rise
+  Probability sign[3][9];
+  NumberModel difference[3][kActivities];
+};
+
+struct BlockModel {
+  Probability is_spatial[3], is_same_motion[3], is_exact[3];  // by the blocks beside and below
+  Probability motion_differs[2][2], motion_sign[2];           // along x and y; y by whether x differs
+  NumberModel motion[2];
+};
+
+struct CodeModels {
+  PixelModel spatial, temporal;
+  BlockModel block;
+};
+static_assert(sizeof(CodeModels) % sizeof(Probability) == 0, "all members are probabilities");
+
+inline void restart_models(CodeModels* models) {
+  auto* p = reinterpret_cast<Probability*>(models);
+  for (std::size_t i = 0; i < sizeof *models / sizeof *p; ++i) p[i] = kEven;
+}
+
+inline std::uint32_t bits_after_first(std::uint32_t value) {
+  return 31u - static_cast<std::uint32_t>(__builtin_clz(value));
+}
+
+// A number from 1 that has at most `bits_max` bits, at most kLengthsMax. An encoder returns it, too.
+template <class Coder>
+std::uint32_t code_number(Coder* coder, NumberModel* model, std::uint32_t bits_max, std::uint32_t value) {
+  const std::uint32_t wanted = Coder::kEncodes ? bits_after_first(value) : 0;
+  std::uint32_t length = 0;
+  while (length + 1 < bits_max && coder->bit(&model->length[length], length < wanted)) ++length;
+  if (length == 0) return 1;
+  std::uint32_t rest = length - 1, number = 2 | coder->bit(&model->second[length], value >> rest & 1);
+  return number << rest | coder->even_bits(value & ((1u << rest) - 1), rest);
+}
+
+// A pixel other than its prediction: per channel, the difference modulo the channel's levels. `activity` tells how much
+// the pixel's neighbours differ; for later channels, it tells how much the one before does.
+template <class Pixel, class Coder>
+std::uint32_t code_difference(Coder* coder, PixelModel* model, std::uint32_t activity, std::uint32_t predicted,
+                              std::uint32_t pixel) {
+  std::uint32_t result = 0, signs = 0;
+  bool any = false;
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t levels = 1u << Pixel::kBits[i], from = channel_of<Pixel>(predicted, i);
+    std::uint32_t up = (channel_of<Pixel>(pixel, i) - from) & (levels - 1);  // of an encoder
+    bool falls = up > levels / 2;
+    const bool must_differ = i == 2 && !any;
+    signs *= 3;
+    if (must_differ || coder->bit(&model->channel_differs[i][signs / 3][activity], up != 0)) {
+      any = true;
+      falls = coder->bit(&model->sign[i][signs / 3], falls) != 0;
+      // At most levels / 2, which has as many bits as levels − 1.
+      const std::uint32_t size =
+          code_number(coder, &model->difference[i][activity], Pixel::kBits[i], falls ? levels - up : up);
+      up = falls ? 0u - size : size;
+      activity = size < 2 ? 1 : size < 4 ? 2 : 3;
+      signs += falls ? 1 : 2;
+    } else {
+      up = 0;
+      activity = i == 0 ? 0 : activity;
+    }
+    result |= ((from + up) & (levels - 1)) << Pixel::kShift[i];
+  }
+  return result;
+}
+
+}  // namespace pocketray
