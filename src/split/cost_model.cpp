@@ -158,8 +158,9 @@ void observe_server_rows(CostModel* model, std::uint32_t server, std::uint32_t r
     row->server_ns_seen = is_amount(work_ns) && part >= kPartMin ? static_cast<float>(work_ns / row_count / part) : 0;
     row->part_seen = static_cast<float>(part);
     row->server_seen = static_cast<std::uint8_t>(server);
-    // An unchanged row takes no bytes, which is as good a measurement as any.
-    if (is_amount(bytes)) smooth(&row->bytes, std::fmax(1, bytes / row_count));
+    // Bytes are counted, not timed: there is no noise to smooth, and under a moving camera the last frame is the best
+    // guess. An unchanged row takes no bytes, which is as good a measurement as any.
+    if (is_amount(bytes)) row->bytes = Smoothed(), smooth(&row->bytes, std::fmax(1, bytes / row_count));
   }
 }
 

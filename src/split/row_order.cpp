@@ -7,8 +7,8 @@
 namespace pocketray {
 namespace {
 
-// Measured by the overlap tests of split_report: smaller blocks compress worse, larger ones make the link wait. Blocks
-// lie on a grid of the picture, as rows compress better when cut as in the last frame.
+// Measured by the overlap tests of split_report: smaller blocks need more messages, larger ones make the link wait. Blocks
+// lie on a grid of the picture, so that rows are cut as in the last frame.
 constexpr std::uint32_t kBlockRows = 24, kBlocksMax = 40, kRunRowsMin = 2;
 static_assert(kBlocksMax + 1 < kOrderRunsMax, "some blocks can be cut");
 static_assert((kImageSideMax / kBlocksMax / kBlockRows + 1) * kBlockRows <= kRunRowsMax,

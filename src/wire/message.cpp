@@ -29,6 +29,19 @@ void choice(Io& io, T* value, T last) {
   io.require(bits <= static_cast<std::uint64_t>(last));
   *value = static_cast<T>(bits);
 }
+// A number rounded down to 11 significant bits: these, below 5 bits of how far they are shifted.
+template <class Io>
+void rounded(Io& io, std::uint32_t* value) {
+  constexpr std::uint32_t kBits = 11, kShiftMax = 32 - kBits;
+  const std::uint32_t length = *value > 0 ? 32 - static_cast<std::uint32_t>(__builtin_clz(*value)) : 0;
+  std::uint32_t shift = length > kBits ? length - kBits : 0;
+  std::uint64_t bits = *value >> shift | shift << kBits;
+  io.integer(&bits, 2);
+  const std::uint32_t kept = static_cast<std::uint32_t>(bits) & ((1u << kBits) - 1);
+  shift = static_cast<std::uint32_t>(bits >> kBits);
+  io.require(shift <= kShiftMax && (shift == 0 || kept >> (kBits - 1) != 0));
+  *value = shift <= kShiftMax ? kept << shift : 0;
+}
 template <class Io>
 void raw_real(Io& io, float* value) {
   std::uint32_t bits;
@@ -140,14 +153,11 @@ void fields(Io& io, Settings* settings) {
   number(io, &settings->forced_on), number(io, &settings->forced_off);  // every bit is an effect
 }
 
-// Which rows, and how they come.
+// Which rows, and in what order they come.
 template <class Io>
 void row_fields(Io& io, FrameRequest* m, std::uint32_t height) {
   number(io, &m->row_begin), number(io, &m->row_end);
   io.require(m->row_begin < m->row_end && m->row_end <= height);
-  number(io, &m->chunk_rows);
-  io.require(m->chunk_rows >= 1);
-  choice(io, &m->coding, RowCoding::near_lossless);
   io.length_of(&m->run_count);
   if (m->run_count > kRunCountMax) return;
   for (std::uint32_t i = 0; i < m->run_count; ++i) number(io, &m->runs[i].row_count), number(io, &m->runs[i].place);
@@ -164,6 +174,9 @@ void fields(Io& io, FrameRequest* m) {
   own_or_exposure(io, &m->exposure);
   choice(io, &m->dither, true);
   choice(io, &m->format, WireFormat::rgb888);
+  number(io, &m->chunk_rows);
+  io.require(m->chunk_rows >= 1);
+  choice(io, &m->coding, RowCoding::near_lossless);
   row_fields(io, m, m->settings.height);
 }
 
@@ -171,17 +184,27 @@ void fields(Io& io, FrameRequest* m) {
 template <class Io>
 void change_fields(Io& io, FrameRequest* m) {
   number(io, &m->frame), real(io, &m->seconds, Quantity::seconds);
-  fields(io, &m->camera);
+  point(io, &m->camera.eye), point(io, &m->camera.target);
   row_fields(io, m, kImageSideMax);
 }
 
 template <class Io>
 void fields(Io& io, RowChunk* m) {
-  number(io, &m->frame), number(io, &m->row_begin), number(io, &m->row_count);
-  io.require(m->row_count >= 1 && m->row_count <= kImageSideMax && m->row_begin <= kImageSideMax - m->row_count);
-  number(io, &m->pixel_ps), count(io, &m->price, Quantity::price), number(io, &m->pixels_traced);
+  number(io, &m->frame, 2), number(io, &m->row_begin), number(io, &m->row_count, 1);
+  io.require(m->row_count >= 1 && m->row_begin <= kImageSideMax - m->row_count);
+  rounded(io, &m->pixel_ps), number(io, &m->traced);
+  const std::uint8_t states_price = m->price != 0 ? kEncodingPrice : 0;
+  m->encoding = static_cast<std::uint8_t>(m->encoding | states_price);
   number(io, &m->encoding);
-  io.require(m->pixels_traced <= m->row_count * kImageSideMax), io.tail(&m->bytes);
+  const bool price_follows = (m->encoding & kEncodingPrice) != 0;
+  if (price_follows && io.has(2)) {
+    count(io, &m->price, Quantity::price);
+  } else {
+    io.require(!price_follows);
+    m->price = 0;
+  }
+  m->encoding = static_cast<std::uint8_t>(m->encoding & ~kEncodingPrice);
+  io.tail(&m->bytes);
 }
 template <class Io>
 void fields(Io& io, Cancel* m) {
@@ -271,14 +294,14 @@ constexpr PayloadSize kPayloadSizes[] = {
     {28, 0},                                         // scene_fetch
     {24, kPieceBytesMax},                            // scene_piece
     {92 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
-    {19, kChunkBytesMax},                            // row_chunk
+    {9, 2 + kChunkBytesMax},                         // row_chunk
     {4, 0},                                          // cancel
     {6, 0},                                          // error
     {8, 0},                                          // ping
     {10, kPingBytesMax},                             // pong
     {68 + kSettingsBytes, 0},                        // view_query
     {104, 0},                                        // view_entry
-    {67, kRunBytes* kRunCountMax},                   // frame_change
+    {40, kRunBytes* kRunCountMax},                   // frame_change
 };
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
 static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::frame_change) + 1, "one for each type");
@@ -288,7 +311,7 @@ constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
 
 std::uint32_t tail_bytes(const Message& m) {
   if (m.type == MessageType::scene_piece) return m.scene_piece.bytes.count;
-  if (m.type == MessageType::row_chunk) return m.row_chunk.bytes.count;
+  if (m.type == MessageType::row_chunk) return (m.row_chunk.price != 0 ? 2 : 0) + m.row_chunk.bytes.count;
   if (m.type == MessageType::pong) return m.pong.bytes.count;
   if (m.type == MessageType::frame_request || m.type == MessageType::frame_change)
     return kRunBytes * m.frame_request.run_count;
@@ -366,15 +389,15 @@ void encode_message(const Message& message, std::uint8_t* bytes) {
   number(writer, &sum);
 }
 
-std::uint32_t row_chunk_prefix_bytes() {
-  return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::row_chunk)].fields;
+std::uint32_t row_chunk_prefix_bytes(bool states_price) {
+  return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::row_chunk)].fields +
+         (states_price ? 2 : 0);
 }
 
 void take_change(const FrameRequest& change, FrameRequest* request) {
   request->frame = change.frame, request->seconds = change.seconds;
-  request->camera = change.camera;
+  request->camera.eye = change.camera.eye, request->camera.target = change.camera.target;
   request->row_begin = change.row_begin, request->row_end = change.row_end;
-  request->chunk_rows = change.chunk_rows, request->coding = change.coding;
   request->run_count = change.run_count;
   std::memcpy(request->runs, change.runs, sizeof request->runs);
 }

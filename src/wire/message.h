@@ -105,15 +105,28 @@ struct FrameRequest {
   RowRun runs[kRunCountMax];   // from top to bottom; their places are a permutation of 0 … run_count − 1
 };
 
+constexpr std::uint32_t kChunkRowsLimit = 255;  // of any chunk
+constexpr std::uint8_t kEncodingPrice = 2;      // bit of a chunk's encoding on the wire: the price follows
+
 struct RowChunk {
-  std::uint32_t frame = 0;
+  std::uint32_t frame = 0;  // received: its low 16 bits, see frame_of()
   std::uint16_t row_begin = 0, row_count = 0;
-  std::uint32_t pixel_ps = 0;        // server's work on a pixel of these rows, picoseconds; ~0u: that or more
-  std::uint16_t price = kPriceUnit;  // how long work takes now over how long it takes without other clients, in 256ths
-  std::uint32_t pixels_traced = 0;   // of these rows; the server kept the others from its last frame
+  std::uint32_t pixel_ps = 0;        // server's work on a pixel of these rows, picoseconds; arrives up to .1 % lower
+  std::uint16_t price = kPriceUnit;  // how long work takes now over how long it takes without other clients, in 256ths;
+                                     // 0: as the server said last
+  std::uint8_t traced = 0;           // 255ths of these pixels; the server kept the others from its last frame
   std::uint8_t encoding = 0;         // see codec.h
   Array<const std::uint8_t> bytes;
 };
+
+// The frame of a received chunk: the last one up to `latest` with these low bits.
+inline std::uint32_t frame_of(const RowChunk& chunk, std::uint32_t latest) {
+  return latest - ((latest - chunk.frame) & 0xFFFFu);
+}
+// Of so many pixels; 0 only if none was traced.
+inline std::uint8_t traced_part(std::uint64_t traced, std::uint64_t pixel_count) {
+  return static_cast<std::uint8_t>((255 * traced + pixel_count - 1) / pixel_count);
+}
 
 struct Cancel {
   std::uint32_t frame = 0;  // this one and all before
@@ -205,7 +218,7 @@ bool can_encode(const Message& message);
 void encode_message(const Message& message, std::uint8_t* bytes);
 
 // Bytes before the rows of a row_chunk, including the header: encode the rows there to avoid a copy.
-std::uint32_t row_chunk_prefix_bytes();
+std::uint32_t row_chunk_prefix_bytes(bool states_price);
 
 // Applies a frame_change to the previous request: number, time, camera, rows, chunks and compression level.
 void take_change(const FrameRequest& change, FrameRequest* request);

@@ -10,7 +10,7 @@ namespace pocketray {
 constexpr std::uint32_t kRunBytes = 2;  // of a RowRun
 
 // Reader and Writer process the fields of a message with the same function, fields(io, &message), so that both sides
-// agree. The length is checked before either runs.
+// agree. The length is checked before either runs, except for fields that may be absent.
 struct Reader {
   const std::uint8_t* at;
   const std::uint8_t* end;
@@ -21,6 +21,7 @@ struct Reader {
     for (std::uint32_t i = byte_count; i-- > 0;) *value = *value << 8 | at[i];
     at += byte_count;
   }
+  bool has(std::uint32_t byte_count) const { return static_cast<std::size_t>(end - at) >= byte_count; }
   void require(bool condition) { valid = valid && condition; }
   void text(char* text) {
     std::memcpy(text, at, kNameBytes);
@@ -48,6 +49,7 @@ struct Writer {
     for (std::uint32_t i = 0; i < byte_count; ++i) at[i] = static_cast<std::uint8_t>(*value >> 8 * i);
     at += byte_count;
   }
+  bool has(std::uint32_t) const { return true; }
   void require(bool condition) { CHECK(condition); }
   void text(char* text) {
     require(strnlen(text, kNameBytes) < kNameBytes);
@@ -67,6 +69,7 @@ struct Checker {
   bool valid = true;
 
   void integer(std::uint64_t*, std::uint32_t) {}
+  bool has(std::uint32_t) const { return true; }
   void require(bool condition) { valid = valid && condition; }
   void text(char* text) { require(strnlen(text, kNameBytes) < kNameBytes); }
   void tail(Array<const std::uint8_t>*) {}

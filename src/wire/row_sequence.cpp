@@ -41,7 +41,8 @@ void pass_rows(const FrameRequest& request, std::uint32_t row_count, RowSequence
 
 std::uint32_t next_chunk_rows(const FrameRequest& request, const RowSequence& sequence) {
   const std::uint32_t left = sequence.row_end - sequence.row_begin;
-  return left < request.chunk_rows ? left : request.chunk_rows;
+  const std::uint32_t most = request.chunk_rows < kChunkRowsLimit ? request.chunk_rows : kChunkRowsLimit;
+  return left < most ? left : most;
 }
 
 }  // namespace pocketray

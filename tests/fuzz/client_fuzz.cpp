@@ -102,7 +102,7 @@ void send_rows() {
   Message message;
   message.type = MessageType::row_chunk;
   RowChunk* chunk = &message.row_chunk;
-  chunk->frame = q.frame, chunk->pixel_ps = 10'000'000, chunk->pixels_traced = kFuzzWidth * row_count;
+  chunk->frame = q.frame, chunk->pixel_ps = 10'000'000, chunk->traced = 255;
   chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(row_count);
   const Bytes& picture = picture_of(q.format, q.seconds);
   std::uint32_t count =

@@ -110,7 +110,7 @@ Message RowSource::chunk(std::uint32_t frame, std::uint32_t row_begin, std::uint
   RowChunk* c = &message.row_chunk;
   c->frame = frame;
   c->row_begin = static_cast<std::uint16_t>(row_begin), c->row_count = static_cast<std::uint16_t>(row_count);
-  c->pixel_ps = kPixelPs, c->pixels_traced = width * row_count;
+  c->pixel_ps = kPixelPs, c->traced = 255;
   std::uint32_t count = encode_rows(encoder, frame, row_begin, row_count, pixels.data(), RowCoding::raw,
                                     bytes.back()->data(), &c->encoding);
   c->bytes = {bytes.back()->data(), count};

@@ -113,7 +113,7 @@ void say_rows(HostileServer* server, Connection* c, std::uint32_t frame, std::ui
   Message message;
   message.type = MessageType::row_chunk;
   RowChunk* chunk = &message.row_chunk;
-  chunk->frame = frame, chunk->pixel_ps = price(server), chunk->pixels_traced = shape.width * (end - begin);
+  chunk->frame = frame, chunk->pixel_ps = price(server), chunk->traced = 255;
   chunk->price = stated_price(server);
   chunk->row_begin = static_cast<std::uint16_t>(begin), chunk->row_count = static_cast<std::uint16_t>(end - begin);
   std::uint32_t count =

@@ -148,7 +148,7 @@ std::vector<Field> message_fields() {
                         take(m->type == MessageType::hello       ? &m->hello.price
                              : m->type == MessageType::row_chunk ? &m->row_chunk.price
                                                                  : &m->pong.price,
-                             x);
+                             x > UINT16_MAX ? 1 : x);  // 0 is none in a chunk
                       },
                       2});
   fields.push_back({Quantity::frame_rate, MessageType::view_entry,
@@ -164,13 +164,15 @@ std::vector<Field> message_fields() {
              : m->type == MessageType::view_entry ? &m->view_entry.camera
                                                   : &m->frame_request.camera;
     };
-    for (int i = 0; i < 9; ++i)
+    const bool is_change = type == MessageType::frame_change;  // has no up vector and no lens
+    for (int i = 0; i < (is_change ? 6 : 9); ++i)
       fields.push_back({Quantity::coordinate, type,
                         [=](Message* m, double x) {
                           Vec3* v = i < 3 ? &camera(m)->eye : i < 6 ? &camera(m)->target : &camera(m)->up;
                           take(i % 3 == 0 ? &v->x : i % 3 == 1 ? &v->y : &v->z, x);
                         },
                         4});
+    if (is_change) continue;
     fields.push_back(
         {Quantity::field_of_view, type, [=](Message* m, double x) { take(&camera(m)->vertical_fov, x); }, 4});
     fields.push_back(

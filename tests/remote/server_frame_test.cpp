@@ -396,7 +396,7 @@ TEST_CASE("server_traces_what_changes_for_a_client") {
                        right.begin() + static_cast<std::ptrdiff_t>(row_end * line),
                        picture.begin() + static_cast<std::ptrdiff_t>(row_begin * line)));
       std::uint32_t count = 0;
-      for (const RowChunk& chunk : client.chunks) count += chunk.pixels_traced;
+      for (const RowChunk& chunk : client.chunks) count += chunk.traced * chunk.row_count * 64u / 255;
       return count;
     };
     const bool coherent = mode != CoherenceMode::off;

@@ -113,6 +113,16 @@ TEST_CASE("cost_model_learns_that_rows_take_no_bytes") {
   CHECK(own.plan().boundary[0] < 30);
 }
 
+// Goal: a row is expected to take the bytes that it took last, since bytes have no noise.
+TEST_CASE("cost_model_expects_the_bytes_of_the_last_frame") {
+  OwnModel own(320, 240, 1);
+  for (double bytes : {900.0, 850.0, 10.0, 12000.0}) {
+    observe_server_rows(&own.model, 0, 10, 20, 1e6, bytes);
+    end_frame(&own.model);
+    for (std::uint32_t r = 10; r < 20; ++r) CHECK(own.model.rows[r].bytes.value == doctest::Approx(bytes / 10));
+  }
+}
+
 // Goal: a frame's measurements count once. Method: a server that was slow in one frame is not made slower by frames in
 // which it sends nothing.
 TEST_CASE("cost_model_counts_measurements_once") {

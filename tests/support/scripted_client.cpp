@@ -152,6 +152,8 @@ void ScriptedClient::poll() {
     if (decoded.state == DecodeState::need_more) break;
     if (come->message.type == MessageType::row_chunk) {
       RowChunk chunk = come->message.row_chunk;
+      chunk.frame = frame_of(chunk, frame);
+      price = chunk.price = chunk.price != 0 ? chunk.price : price;
       REQUIRE(take_chunk_number(&chunk, chunk_count++));
       REQUIRE(decode_rows(decoder, chunk));
       if (chunk.frame == frame) {

@@ -67,6 +67,7 @@ struct ScriptedClient {
   RowDecoder* decoder = nullptr;
   std::vector<RowChunk> chunks;  // of that frame, without their bytes
   std::uint32_t frame = 0, rows_come = 0, chunk_count = 0;
+  std::uint16_t price = 0;  // as the server said last in a chunk
 
   // Connects, and says hello on request.
   explicit ScriptedClient(ServerRig* rig, bool says_hello = true);

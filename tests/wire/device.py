@@ -280,18 +280,18 @@ DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, h
 def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
-    rows = struct.pack("<HHHB", r["first"], end, r["largest"], r["coding"]) + bytes(x for run in r["order"] for x in run)
+    rows = struct.pack("<HH", r["first"], end) + bytes(x for run in r["order"] for x in run)
     settings = struct.pack("<HHBBHBBfBBBBHfBfHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["selective"], r["resolution"], r["light_tolerance"],
                            r["environment_shadows"], r["on"], r["off"])
     view = struct.pack("<BH", r["stated"], r["index"]) + pack_camera(r["camera"])
     if kind == FRAME_CHANGE:
-        return message(kind, struct.pack("<Id", r["frame"], r["time"]) + pack_camera(r["camera"]) + rows)
+        return message(kind, struct.pack("<Id6f", r["frame"], r["time"], *r["camera"]["eye"], *r["camera"]["target"]) + rows)
     if kind == VIEW_QUERY:
         return message(kind, scene + view + settings + struct.pack("<B", r["measure"]))
     return message(kind, struct.pack("<I", r["frame"]) + scene + struct.pack("<d", r["time"]) + view + settings +
-                   struct.pack("<fBB", r["exposure"], r["dither"], r["format"]) + rows)
+                   struct.pack("<fBBHB", r["exposure"], r["dither"], r["format"], r["largest"], r["coding"]) + rows)
 
 
 class Device:
@@ -370,13 +370,14 @@ class Device:
         return dict(hash=fields[:16], size=size, index=index, count=count, triangles=triangles, name=name[0].decode())
 
     def take_chunk(self, fields, frame, r, due):
-        number, row, rows, _, self.price, traced, encoding = struct.unpack("<IHHIHIB", fields[:19])
-        data = fields[19:]
+        number, row, rows, _, traced, encoding = struct.unpack("<HHBHBB", fields[:9])
+        data = fields[9:]
+        if encoding & 2:
+            self.price, data = struct.unpack("<H", data[:2])[0], data[2:]
         check(self.price >= 256, "a chunk's price")
         self.traced += traced
-        check(traced <= rows * r["width"], "no more pixels are traced than the rows have")
-        check(number == frame, "a chunk is of the frame")
-        check(encoding >> 1 == self.chunk_count % 128, "chunks are counted")
+        check(number == frame & 0xFFFF, "a chunk is of the frame")
+        check(encoding >> 2 == self.chunk_count % 64, "chunks are counted")
         first, end = due[0]
         check(row + rows == end and row >= first, "the lowest rows of the next run come first")
         check(rows <= r["largest"], "a chunk of %d rows is no larger than asked" % rows)

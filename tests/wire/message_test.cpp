@@ -9,21 +9,12 @@
 #include <limits>
 
 #include "support/effort.h"
+#include "wire/raw_messages.h"
 #include "wire/sample_messages.h"
 
 using namespace pocketray;
 
 namespace {
-
-Decoded decode(const std::vector<std::uint8_t>& bytes, Message* message,
-               std::uint32_t message_bytes_max = kMessageBytesMax) {
-  return decode_message(bytes.data(), bytes.size(), message_bytes_max, message);
-}
-
-bool refused(const std::vector<std::uint8_t>& bytes) {
-  Message message;
-  return decode(bytes, &message).state == DecodeState::malformed;
-}
 
 std::vector<std::uint8_t> random_bytes(Rng* rng, std::uint32_t count) {
   std::vector<std::uint8_t> bytes(count);
@@ -43,27 +34,6 @@ void for_each_sample(std::uint64_t seed, int rounds, Act act) {
     }
 }
 
-// Sets the correct length and checksum of a message, whatever its fields hold.
-std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> message);
-
-std::uint32_t crc_of(const std::vector<std::uint8_t>& message) {
-  std::uint32_t crc = 0xFFFFFFFF;
-  for (std::size_t i = 0; i < message.size(); ++i) {
-    if (i >= 4 && i < 8) continue;
-    crc ^= message[i];
-    for (int bit = 0; bit < 8; ++bit) crc = crc & 1 ? crc >> 1 ^ 0xEDB88320u : crc >> 1;
-  }
-  return ~crc;
-}
-
-std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> message) {
-  std::uint32_t payload = static_cast<std::uint32_t>(message.size() - kHeaderBytes);
-  for (std::uint32_t i = 0; i < 3; ++i) message[1 + i] = static_cast<std::uint8_t>(payload >> 8 * i);
-  std::uint32_t crc = crc_of(message);
-  for (std::uint32_t i = 0; i < 4; ++i) message[4 + i] = static_cast<std::uint8_t>(crc >> 8 * i);
-  return message;
-}
-
 }  // namespace
 
 // Goal: the bytes follow PROTOCOL.md, so that others can write them. Method: three messages byte by byte; the checksum
@@ -81,10 +51,12 @@ TEST_CASE("message_bytes_are_the_protocol_s") {
                 0x01, 0x78, 0x56, 0x34, 0x12, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 0x40, 0x01}));
   m.type = MessageType::row_chunk;
   const std::uint8_t data[] = {0xAB, 0xCD};
-  m.row_chunk = {7, 258, 3, 0x00010000, 0x0140, 0x0201, 2, {data, 2}};
-  CHECK(encoded(m) ==
-        sealed({8, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0, 2, 1, 3, 0, 0, 0, 1, 0, 0x40, 1, 1, 2, 0, 0, 2, 0xAB, 0xCD}));
-  CHECK(row_chunk_prefix_bytes() == encoded(m).size() - 2);
+  m.row_chunk = {0x10203, 258, 4, 0x00010123, 0x0140, 5, 5, {data, 2}};
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 7, 0x40, 1, 0xAB, 0xCD}));
+  CHECK(row_chunk_prefix_bytes(true) == encoded(m).size() - 2);
+  m.row_chunk.price = 0;
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 5, 0xAB, 0xCD}));
+  CHECK(row_chunk_prefix_bytes(false) == encoded(m).size() - 2);
 }
 
 // Goal: reading returns what was written, field by field. Method: writing the result again gives the same bytes, which
@@ -131,13 +103,14 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::frame_request, [](Message* m) { m->frame_request.exposure += 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.dither ^= 1; }},
       {MessageType::frame_request, [](Message* m) { m->frame_request.chunk_rows -= 1; }},
-      {MessageType::frame_change, [](Message* m) { m->frame_request.frame ^= 1; }},
-      {MessageType::frame_change, [](Message* m) { m->frame_request.seconds += 1; }},
-      {MessageType::frame_change, [](Message* m) { m->frame_request.camera.eye.z += 1; }},
-      {MessageType::frame_change,
+      {MessageType::frame_request,
        [](Message* m) {
          m->frame_request.coding = m->frame_request.coding == RowCoding::raw ? RowCoding::lossless : RowCoding::raw;
        }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.frame ^= 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.seconds += 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.camera.eye.z += 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.camera.target.x += 1; }},
       {MessageType::frame_change,
        [](Message* m) {
          FrameRequest* q = &m->frame_request;
@@ -145,9 +118,9 @@ TEST_CASE("message_every_field_travels") {
          q->runs[0] = {4, 1}, q->runs[1] = {5, 0};
        }},
       {MessageType::hello, [](Message* m) { m->hello.price ^= 1; }},
-      {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1; }},
+      {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1u << 31; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.price ^= 1; }},
-      {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixels_traced ^= 1; }},
+      {MessageType::row_chunk, [](Message* m) { m->row_chunk.traced ^= 1; }},
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.price ^= 1; }},
@@ -260,19 +233,19 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 105, {2}},                   // dither
       {MessageType::frame_request, 8 + more + 106, {2}},                   // format
-      {MessageType::frame_request, 8 + more + 107, {5, 0, 5, 0}},          // no rows
-      {MessageType::frame_request, 8 + more + 109, {0xFF, 0xFF}},          // rows beyond the picture
-      {MessageType::frame_request, 8 + more + 111, {0, 0}},                // chunk rows
-      {MessageType::frame_request, 8 + more + 113, {3}},                   // coding
+      {MessageType::frame_request, 8 + more + 110, {5, 0, 5, 0}},          // no rows
+      {MessageType::frame_request, 8 + more + 112, {0xFF, 0xFF}},          // rows beyond the picture
+      {MessageType::frame_request, 8 + more + 107, {0, 0}},                // chunk rows
+      {MessageType::frame_request, 8 + more + 109, {3}},                   // coding
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
-      {MessageType::frame_change, 8 + 60, {5, 0, 5, 0}},                   // no rows
-      {MessageType::frame_change, 8 + 62, {0xFF, 0xFF}},                   // rows beyond any picture
-      {MessageType::frame_change, 8 + 64, {0, 0}},                         // chunk rows
-      {MessageType::frame_change, 8 + 66, {3}},                            // coding
-      {MessageType::row_chunk, 8 + 6, {0, 0}},
-      {MessageType::row_chunk, 8 + 4, {0xFF, 0x1F, 2, 0}},
-      {MessageType::row_chunk, 8 + 12, {0xFF, 0}},  // price
+      {MessageType::frame_change, 8 + 36, {5, 0, 5, 0}},                   // no rows
+      {MessageType::frame_change, 8 + 38, {0xFF, 0xFF}},                   // rows beyond any picture
+      {MessageType::row_chunk, 8 + 4, {0}},                                // rows
+      {MessageType::row_chunk, 8 + 2, {0xFF, 0x1F, 2}},                    // rows beyond any picture
+      {MessageType::row_chunk, 8 + 5, {0xFF, 0xB7}},                       // picoseconds shifted out
+      {MessageType::row_chunk, 8 + 5, {0xFF, 0x0B}},                       // picoseconds with too few bits
+      {MessageType::row_chunk, 8 + 8, {2, 0xFF, 0}},                       // price
       {MessageType::error, 8, {0, 0}},
       {MessageType::error, 8, {8, 0}},
       {MessageType::ping, 8 + 4, {1, 0, 1, 0}},
@@ -319,8 +292,8 @@ TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
     if (known) CHECK(refused(header(type, 1)));
   }
   CHECK(refused(header(9, 5)));
-  CHECK(refused(header(8, 19 + kChunkBytesMax + 1)));
-  CHECK(!refused(header(8, 19 + kChunkBytesMax)));
+  CHECK(refused(header(8, 11 + kChunkBytesMax + 1)));
+  CHECK(!refused(header(8, 11 + kChunkBytesMax)));
   CHECK(decode(header(8, 19 + 1000), &message, 8 + 19 + 999).state == DecodeState::malformed);
   CHECK(decode(header(8, 19 + 1000), &message, 8 + 19 + 1000).state == DecodeState::need_more);
 }
@@ -331,6 +304,11 @@ TEST_CASE("message_change_gives_the_request") {
   Rng rng = make_rng(9);
   using Field = std::function<void(FrameRequest*)>;
   const Field others[] = {
+      [](FrameRequest* r) { r->camera.up.x += 1; },
+      [](FrameRequest* r) { r->camera.vertical_fov += 0.01f; },
+      [](FrameRequest* r) { r->camera.vertical_extent += 1; },
+      [](FrameRequest* r) { r->chunk_rows ^= 1; },
+      [](FrameRequest* r) { r->coding = r->coding == RowCoding::raw ? RowCoding::lossless : RowCoding::raw; },
       [](FrameRequest* r) { r->scene.low ^= 1; },
       [](FrameRequest* r) { r->camera_stated ^= 1; },
       [](FrameRequest* r) { r->camera_index ^= 1; },
@@ -436,11 +414,11 @@ TEST_CASE("message_random_bytes_are_refused_or_wait") {
 
 // Goal: a chunk's bytes may already be in place.
 TEST_CASE("message_tail_may_lie_in_place") {
-  std::vector<std::uint8_t> buffer(row_chunk_prefix_bytes() + 5);
-  for (std::uint8_t i = 0; i < 5; ++i) buffer[row_chunk_prefix_bytes() + i] = i;
+  std::vector<std::uint8_t> buffer(row_chunk_prefix_bytes(true) + 5);
+  for (std::uint8_t i = 0; i < 5; ++i) buffer[row_chunk_prefix_bytes(true) + i] = i;
   Message m;
   m.type = MessageType::row_chunk;
-  m.row_chunk = {1, 2, 3, 4, kPriceUnit, 5, 0, {buffer.data() + row_chunk_prefix_bytes(), 5}};
+  m.row_chunk = {1, 2, 3, 4, kPriceUnit, 5, 0, {buffer.data() + row_chunk_prefix_bytes(true), 5}};
   std::vector<std::uint8_t> apart = encoded(m);
   encode_message(m, buffer.data());
   CHECK(buffer == apart);

@@ -65,7 +65,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   f->coding = static_cast<RowCoding>(next_u32(rng) % 3);
   m.row_chunk.frame = next_u32(rng), m.row_chunk.row_begin = narrow() % 4000;
   m.row_chunk.row_count = static_cast<std::uint16_t>(1 + next_u32(rng) % 100);
-  m.row_chunk.pixels_traced = next_u32(rng) % (m.row_chunk.row_count * kImageSideMax + 1);
+  m.row_chunk.traced = static_cast<std::uint8_t>(next_u32(rng));
   m.row_chunk.pixel_ps = next_u32(rng), m.row_chunk.encoding = static_cast<std::uint8_t>(next_u32(rng));
   m.row_chunk.bytes = bytes;
   m.cancel.frame = next_u32(rng);

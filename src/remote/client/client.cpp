@@ -31,7 +31,7 @@ CodecShape codec_shape(const Settings& settings, WireFormat format) {
 }
 
 std::size_t in_bytes(const CodecShape& shape) {
-  std::size_t chunk = row_chunk_prefix_bytes() + encoded_bytes_max(shape, shape.chunk_rows_max);
+  std::size_t chunk = row_chunk_prefix_bytes(true) + encoded_bytes_max(shape, shape.chunk_rows_max);
   return std::max(chunk, kInBytesMin);
 }
 
@@ -281,7 +281,7 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   bool current = chunk.frame == client->request.frame && !client->complete;
   if (!current || begin < s->frame.row_begin || end > s->frame.row_end) return;
   s->frame.rows_come += chunk.row_count;
-  if (chunk.pixels_traced == 0) client->share.kept_rows += chunk.row_count, client->share.kept_bytes += byte_count;
+  if (chunk.traced == 0) client->share.kept_rows += chunk.row_count, client->share.kept_bytes += byte_count;
   CHECK_LE(end, client->settings.height);
   s->frame.heard_ns = client_now_ns(*client);
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
@@ -299,8 +299,8 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
     a->first_ns = a->last_ns;
   else
     a->bytes += byte_count;
-  const double part = static_cast<double>(chunk.pixels_traced) / (client->settings.width * chunk.row_count);
-  observe_server_rows(&client->model, server, begin, end, work_ns, byte_count, std::fmin(1, part));
+  const double part = chunk.traced / 255.0;
+  observe_server_rows(&client->model, server, begin, end, work_ns, byte_count, part);
   observe_price(&client->model, server, price_ratio(chunk.price));
   if (!agrees_with_device(client, s, begin, end)) return;
   if (!client->options.has_scene) compare_with_others(client, s, begin, end);

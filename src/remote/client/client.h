@@ -93,15 +93,16 @@ struct RemoteServer {
   std::uint64_t quiet_until_ns = 0;  // until then its link is measured and others send no rows
   std::uint64_t anew_ns = 0;         // earliest time to measure its link again
   double probe_ns_per_pixel = 0;
-  Smoothed row_ns;                 // for a device without the scene: time from request to arrival of a row
-  FrameRequest asked;              // last request; frame 0: none on this connection
-  RowSequence due;                 // its rows that are still expected,
-  std::uint32_t due_rows = 0;      // and their number
-  std::uint64_t late_rows = 0;     // rows of earlier requests that may be in flight;
-  std::uint64_t late_at_ping = 0;  // their number when the ping was sent
-  bool more = false;               // unread input remains: one poll handles at most a frame's worth
-  bool unanswered = false;         // no answer since rows were requested; new requests do not extend the time
-  std::uint32_t chunk_count = 0;   // received on this connection
+  Smoothed row_ns;                   // for a device without the scene: time from request to arrival of a row
+  FrameRequest asked;                // last request; frame 0: none on this connection
+  RowSequence due;                   // its rows that are still expected,
+  std::uint32_t due_rows = 0;        // and their number
+  std::uint64_t late_rows = 0;       // rows of earlier requests that may be in flight;
+  std::uint64_t late_at_ping = 0;    // their number when the ping was sent
+  bool more = false;                 // unread input remains: one poll handles at most a frame's worth
+  bool unanswered = false;           // no answer since rows were requested; new requests do not extend the time
+  std::uint32_t chunk_count = 0;     // received on this connection
+  std::uint16_t price = kPriceUnit;  // as it said last
   ServerFrame frame;
   bool is_witness = false;   // asked for another server's row; its own rows of the frame
   ServerFrame frame_before;  // are then kept here

@@ -65,6 +65,7 @@ void take_hello(Client* client, RemoteServer* server, const Hello& hello) {
   if (client->settings.width > hello.image_side_max || client->settings.height > hello.image_side_max)
     return lose_server(client, server, "it does not render pictures of that size: use a smaller --size");
   observe_price(&client->model, index_of(*client, server), price_ratio(hello.price));
+  server->price = hello.price;
   enter(client, server, ServerPhase::asking);
   Message message;
   message.type = MessageType::scene_query;
@@ -93,13 +94,17 @@ bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
     server->late_rows = server->late_at_ping = 0;
     return true;
   }
-  if (chunk.frame > server->asked.frame || chunk.row_count > server->late_rows) return false;
+  if (chunk.row_count > server->late_rows) return false;
   server->late_rows -= chunk.row_count;
   server->late_at_ping -= server->late_at_ping < chunk.row_count ? server->late_at_ping : chunk.row_count;
   return true;
 }
 
 void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
+  chunk.frame = frame_of(chunk, server->asked.frame);
+  const bool states_price = chunk.price != 0;
+  if (!states_price) chunk.price = server->price;
+  server->price = chunk.price;
   if (!takes_owed_rows(server, chunk)) return lose_server(client, server, "it sent unrequested rows");
   if (chunk.bytes.count > encoded_bytes_max(server->decoder->state.shape, chunk.row_count))
     return lose_server(client, server, "it sent more bytes than its rows can take");
@@ -114,7 +119,7 @@ void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
     work_until(client, begin_ns + paced);
     unpacked_ns = paced;
   }
-  std::uint32_t bytes = row_chunk_prefix_bytes() + chunk.bytes.count;
+  std::uint32_t bytes = row_chunk_prefix_bytes(states_price) + chunk.bytes.count;
   observe_unpack(&client->model, bytes, static_cast<double>(unpacked_ns));
   accept_chunk(client, server, chunk, bytes);
 }

@@ -127,6 +127,7 @@ void take_pong(Client* client, RemoteServer* server, const Pong& pong) {
   server->ping_id = 0;
   server->frame.answers = true;
   observe_price(&client->model, index_of(*client, server), price_ratio(pong.price));
+  server->price = pong.price;
   if (server->phase == ServerPhase::measuring) return take_measuring_pong(client, server, ns, pong.bytes.count);
   if (server->phase != ServerPhase::ready) return;
   if (pong.bytes.count > 0) return take_ready_pong(client, server, ns, pong.bytes.count);

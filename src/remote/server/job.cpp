@@ -22,7 +22,7 @@ constexpr std::uint32_t kServerChunkPixels = 1u << 15;
 
 // Largest number of rows in a chunk of that shape.
 std::uint32_t chunk_rows_max(CodecShape shape) {
-  shape.chunk_rows_max = std::min(shape.height, std::max(1u, kServerChunkPixels / shape.width));
+  shape.chunk_rows_max = std::min({shape.height, kChunkRowsLimit, std::max(1u, kServerChunkPixels / shape.width)});
   while (shape.chunk_rows_max > 1 && !codec_shape_valid(shape)) shape.chunk_rows_max -= shape.chunk_rows_max / 8 + 1;
   return shape.chunk_rows_max;
 }
@@ -54,7 +54,7 @@ bool is_built_for(const Session& session) {
 std::uint32_t largest_chunk_rows(const Session& session) {
   std::uint32_t rows = session.job.request.chunk_rows;
   if (rows > session.shape.chunk_rows_max) rows = session.shape.chunk_rows_max;
-  while (rows > 0 && row_chunk_prefix_bytes() + encoded_bytes_max(session.shape, rows) > session.message_bytes_max)
+  while (rows > 0 && row_chunk_prefix_bytes(true) + encoded_bytes_max(session.shape, rows) > session.message_bytes_max)
     --rows;
   return rows;
 }

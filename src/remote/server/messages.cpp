@@ -46,7 +46,7 @@ void send_pong(Session* session, const Ping& ping, std::uint32_t pixel_ps) {
   reply.type = MessageType::pong;
   reply.pong.id = ping.id;
   reply.pong.pixel_ps = pixel_ps;
-  reply.pong.price = session->price;
+  reply.pong.price = session->price_stated = session->price;
   reply.pong.bytes.count = ping.reply_bytes;
   std::uint32_t byte_count = message_bytes(reply);
   std::uint8_t* at = reserve_output(&session->messages, byte_count);

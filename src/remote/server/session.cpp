@@ -33,7 +33,8 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   pack_rows(renderer.image.data, width, static_cast<int>(renderer.settings.height), static_cast<int>(row_begin),
             static_cast<int>(row_end), renderer.exposure, pack_format(request.format), Rotation::none, request.dither,
             session->pixels.data, line_bytes);
-  std::uint32_t prefix = row_chunk_prefix_bytes(), row_count = row_end - row_begin;
+  const bool states_price = session->price != session->price_stated;
+  std::uint32_t prefix = row_chunk_prefix_bytes(states_price), row_count = row_end - row_begin;
   std::uint8_t* at = reserve_output(&session->messages, prefix + encoded_bytes_max(session->shape, row_count));
   Message message;
   message.type = MessageType::row_chunk;
@@ -42,12 +43,15 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   chunk->row_begin = static_cast<std::uint16_t>(row_begin);
   chunk->row_count = static_cast<std::uint16_t>(row_count);
   chunk->pixel_ps = session->pixel_ps = picoseconds(session->job.work_ns, session->job.pixel_count);
-  chunk->price = session->price;
-  for (std::uint32_t row = row_begin; row < row_end; ++row) chunk->pixels_traced += count_pixels(renderer, row);
+  chunk->price = states_price ? session->price : 0;
+  session->price_stated = session->price;
+  std::uint64_t traced = 0;
+  for (std::uint32_t row = row_begin; row < row_end; ++row) traced += count_pixels(renderer, row);
+  chunk->traced = traced_part(traced, std::uint64_t(renderer.settings.width) * row_count);
   std::uint32_t byte_count =
       encode_rows(session->encoder, request.frame, row_begin, row_count,
-                  session->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes),
-                  request.coding, at + prefix, &chunk->encoding);
+                  session->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes), request.coding,
+                  at + prefix, &chunk->encoding);
   CHECK_EQ(chunk->encoding >> kChunkNumberShift, 0);
   add_chunk_number(chunk, session->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};

@@ -100,6 +100,7 @@ struct Session {
   double trace_ns = 0, probe_ns = 0;   // thread time of an expensive pixel, and of an exposure pixel; 0: unknown
   std::uint32_t pixel_ps = 0;          // recent work on a pixel
   std::uint16_t price = kPriceUnit;    // for the client, as of the last choice
+  std::uint16_t price_stated = 0;      // in the last chunk or pong; 0: in none
   std::uint64_t waiting_since_ns = 0;  // when it began waiting for its turn; 0: not waiting
 
   platform::LinkTimer message_timer, idle_timer, stall_timer, leave_timer;
