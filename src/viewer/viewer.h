@@ -12,6 +12,7 @@
 #include "session/open_scene.h"
 #include "session/servers.h"
 #include "viewer/hud.h"
+#include "viewer/motion.h"
 #include "viewer/side_by_side.h"
 
 namespace pocketray {
@@ -73,6 +74,9 @@ struct Viewer {
   bool hud = true, hud_shown = false, paused = false;
   bool traced = false, traced_shown = false;  // dims the pixels kept from the last frame; the screen does
   std::uint64_t event_ns = 0;                 // of the last button
+  bool pressed = false;                       // one was pressed since the camera last moved,
+  std::uint64_t pressed_ns = 0;               //   the first of them then
+  Motion motion;                              // its way to the screen
   std::uint32_t note_shown = 0,
                 hud_rows_shown = 0;  // on the screen: the note's number, and the rows the overlay covers
   std::uint64_t waiting_since_ns = 0;

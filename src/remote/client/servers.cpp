@@ -156,10 +156,10 @@ Status begin_frame(Servers* servers, Renderer* renderer, double seconds) {
   return begin_frame(renderer, &connected(servers)->client, seconds);
 }
 
-bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
+bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t slice_ns, const std::atomic<bool>* stop) {
   ConnectedServers* s = connected(servers);
   CHECK(s->started);
-  if (!advance_frame(renderer, &s->client, deadline_ns, stop)) return false;
+  if (!advance_frame(renderer, &s->client, client_now_ns(s->client) + slice_ns, stop)) return false;
   const FrameShare& share = s->client.share;
   ServersTotals* t = &s->totals;
   s->last = share;
