@@ -37,6 +37,8 @@ struct ServersState {
   bool cut_off = false;   // no rows for a while, on a device without the scene
   bool disputed = false;  // two servers sent different pixels, and this device has no scene to judge by
   std::uint32_t rows_done = 0;  // of the current frame
+  double left_ns = 0;           // estimated until it is complete; 0: it is
+  double anew_ns = 0;           // of a frame begun now; 0: unknown
 };
 
 // The merged picture: rows without padding.

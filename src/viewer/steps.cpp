@@ -8,6 +8,7 @@
 #include "engine/frame.h"
 #include "present/repack.h"
 #include "session/interrupt.h"
+#include "viewer/follow.h"
 #include "viewer/traced_overlay.h"
 
 namespace pocketray {
@@ -181,8 +182,10 @@ bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
     return complete;
   }
   std::uint64_t before = progressive->trace_ns;
+  const bool was_visible = progressive->shown_coarse;
   bool complete = advance_progressive(renderer, loop->tile_spans, slice_end(*renderer), progressive);
   loop->coherent.spent_ns += progressive->trace_ns - before;
+  if (!was_visible && progressive->shown_coarse) loop->coarse_ns = loop->prepare_ns + progressive->trace_ns;
   if (complete) {
     renderer->coherence_state.pixels_traced = progressive->pixels_traced;
     finish_coherent(renderer, &loop->coherent);
@@ -195,11 +198,25 @@ bool is_visible(const ViewerLoop& loop) {
   return loop.finished || (loop.coherent.all && loop.progressive.shown_coarse);
 }
 
+// Whether a visible picture gives way to one with newer input, which would be visible before the rest of this one is
+// traced. What is left of a frame of changes is not known.
+bool coarse_gives_way(const Renderer& renderer, const ViewerLoop& loop) {
+  const Progressive& p = loop.progressive;
+  if (!p.shown_coarse) return false;
+  if (!loop.coherent.all || p.pixels_traced == 0) return true;
+  const double pixel_ns = static_cast<double>(p.trace_ns) / static_cast<double>(p.pixels_traced);
+  PictureChoice choice;
+  choice.left_ns = pixel_ns * static_cast<double>(renderer.image.count - p.pixels_traced);
+  choice.anew_ns = static_cast<double>(loop.coarse_ns);
+  return gives_way(choice);
+}
+
 // Begins the next picture once the current one is visible, traces a slice of it and shows it.
 Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
-  // A moving camera is followed as soon as a coarse picture is visible. Time waits for the finished picture; so does
-  // the camera when finished frames are counted.
-  bool follow = loop->moved && loop->progressive.shown_coarse && viewer->options.frame_count == 0;
+  // A moving camera is followed once a coarse picture is visible, unless that is finished sooner than a new one is
+  // visible. Time waits for the finished picture; so does the camera when finished frames are counted.
+  bool follow =
+      loop->moved && viewer->options.frame_count == 0 && !loop->finished && coarse_gives_way(*renderer, *loop);
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
     const Clock& clock = *renderer->pace.clock;
     const std::uint64_t start = clock.now_ns();
@@ -272,13 +289,23 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
+// Whether the split frame under way gives way to one with newer input. Counted frames never do.
+bool split_gives_way(const Viewer& viewer, const ViewerLoop& loop) {
+  if (loop.finished || !loop.moved || viewer.options.frame_count > 0 || !viewer.options.drops_frames) return false;
+  const ServersState state = viewer.servers->backend->state(*viewer.servers);
+  return gives_way({state.left_ns, state.anew_ns, loop.dropped});
+}
+
 // Traces a slice of a split frame and shows the rows finished so far from both ends.
 Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
-  if (loop->finished && (loop->moved || loop->passed)) {
+  const bool drops = split_gives_way(*viewer, *loop);
+  if (drops || (loop->finished && (loop->moved || loop->passed))) {
     RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(servers.begin_frame(viewer->servers, renderer, loop->seconds));
     take_motion(&viewer->motion);
+    loop->dropped = drops;
+    viewer->frames_dropped += drops;
     loop->moved = loop->passed = loop->finished = false;
   }
   if (loop->finished && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
@@ -298,7 +325,7 @@ Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 
 // Chooses who renders the next picture: with servers in reach it completes soon, otherwise the device refines it alone.
 // When a server comes into reach, a picture still being refined is restarted with it, as a slow device may take
-// minutes. A moving camera is not followed within a split frame unless its servers are gone.
+// minutes. Within a split frame a moving camera is followed if its servers are gone, or as gives_way() says.
 Status step_with_servers(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
   if (!viewer->picture_merged || loop->finished) servers.tend(viewer->servers);

@@ -26,6 +26,7 @@ struct ViewOptions {
   std::uint32_t frame_count = 0;
   bool hud = true;             // shown from the start
   bool has_reference = false;  // the build has --side-by-side
+  bool drops_frames = true;    // a split frame that halts gives way to newer input; false: for comparisons
 };
 
 // Watches a file to reload it after a change, once writing has ended: when it looks the same twice in a row.
@@ -80,7 +81,7 @@ struct Viewer {
   std::uint32_t note_shown = 0,
                 hud_rows_shown = 0;  // on the screen: the note's number, and the rows the overlay covers
   std::uint64_t waiting_since_ns = 0;
-  std::uint32_t screenshot_count = 0, frames_finished = 0;
+  std::uint32_t screenshot_count = 0, frames_finished = 0, frames_dropped = 0;
 };
 
 // Bytes needed in the frame arena for viewing: span list and screenshot encoder.

@@ -1,10 +1,11 @@
-// Motion to photon: the record of latencies.
+// Motion to photon: the record of latencies, and when a picture gives way to a newer one.
 #include "viewer/motion.h"
 
 #include <doctest/doctest.h>
 
 #include <cstring>
 
+#include "viewer/follow.h"
 #include "viewer/stage.h"
 
 using namespace pocketray;
@@ -80,6 +81,48 @@ TEST_CASE("motion_record_has_room_for_every_latency") {
   CHECK(ms(motion, 1) == doctest::Approx(992).epsilon(0.02));
   show_motion(&motion, 3'600'000 * kMs);
   CHECK(latency_ns(Motion(), 0.5) == 0);
+}
+
+// Goal: a picture gives way only to one that is shown sooner, and never two in a row. Method: every case.
+TEST_CASE("motion_picture_gives_way_to_a_sooner_one") {
+  CHECK(gives_way({100, 99, false}));
+  CHECK_FALSE(gives_way({99, 100, false}));
+  CHECK_FALSE(gives_way({100, 100, false}));
+  CHECK_FALSE(gives_way({100, 99, true}));
+  CHECK_FALSE(gives_way({100, 0, false}));
+  CHECK_FALSE(gives_way({0, 0, false}));
+}
+
+namespace {
+
+const Clock kScreenClock = {platform::kNullBackend.now_ns, platform::kNullBackend.sleep_ns};
+
+// Pictures finished while a button is held for two seconds, on a device that takes this long per pixel.
+std::uint32_t finished_while_held(double ns_per_pixel) {
+  Stage stage;
+  stage.press(1, platform::Button::right);
+  stage.leave(3);
+  stage.open("cube");
+  OpenScene opened;
+  Stage::load("cube", "off", &opened);
+  opened.renderer.pace.ns_per_pixel = ns_per_pixel;
+  opened.renderer.pace.clock = &kScreenClock;
+  bool again;
+  REQUIRE(run_viewer(&stage.viewer, &opened.renderer, &again).ok);
+  CHECK(stage.viewer.motion.total_ns > 0);
+  CHECK(ms(stage.viewer.motion, 1) < 150);  // a coarse picture is soon visible
+  return stage.viewer.frames_finished - 1;  // without the first
+}
+
+}  // namespace
+
+// Goal: on a device alone, a coarse picture gives way to a newer one, unless the rest of it is traced sooner than that
+// would be visible. Method: an emulated device that traces all of a picture in the slice of 25 ms that shows it coarse,
+// two thirds of it, or one third.
+TEST_CASE("viewer_completes_what_is_nearly_finished") {
+  CHECK(finished_while_held(1200) > 30);
+  CHECK(finished_while_held(2000) > 20);
+  CHECK(finished_while_held(4000) == 0);
 }
 
 // Goal: the viewer measures what the user sees, and says so on the overlay. Method: a scripted press on the null
