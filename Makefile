@@ -42,7 +42,7 @@ endif
 BUILD := $(if $(CROSS_PREFIX),build-$(CLASS)-$(notdir $(CROSS_PREFIX:%-=%)),build$(CLASS:%=-%))
 POCKETRAY := $(BUILD)/pocketray
 
-.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands package format tidy clean install help setup configure
+.PHONY: all run setup-tests test test-box hardcases softfloat mutants trials faults demo-split split-table motion-table fuzz flips bench bench-embree bench-povray bench-device contact-sheet mach-bands package format tidy clean install help setup configure
 all: configure
 	cmake --build $(BUILD) -j$(JOBS)$(if $(CLASS), --target pocketray)
 ifneq ($(CLASS),)
@@ -167,6 +167,11 @@ split-table: setup-tests configure
 	cmake --build $(BUILD) -j$(JOBS) --target test_split_report
 	$(BUILD)/test_split_report --no-skip --test-case=split_report_table
 
+# Motion to photon over links that lose packets, with and without dropping pictures.
+motion-table: setup-tests configure
+	cmake --build $(BUILD) -j$(JOBS) --target test_remote
+	$(BUILD)/test_remote --no-skip --test-case=motion_to_photon_table
+
 bench: configure
 	cmake --build $(BUILD) -j$(JOBS) --target pocketray
 	$(POCKETRAY) bench $(SCENE) --json -
@@ -247,6 +252,7 @@ help:
 	@echo "make flips        flip bits of the sample models FLIPS=$(FLIPS) times, import and render them (FLIP=n: just that one)"
 	@echo "make demo-split   run a render server and an emulated handheld (SCENE=, EMULATE=)"
 	@echo "make split-table  compare the chosen split with the best fixed one, for every device"
+	@echo "make motion-table measure motion to photon with a server, over links that lose packets"
 	@echo "make bench        measure cost per pixel and per effect of SCENE=$(SCENE), as JSON"
 	@echo "make bench-embree compare rays per second with Embree (SCENE=x: one scene, JSON=FILE, BUILD_JSON=FILE: write tables,"
 	@echo "                  BENCH_OPTIONS='--isa sse2 --rounds 31': see $(BUILD)/bench_embree --help)"

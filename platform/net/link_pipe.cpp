@@ -5,6 +5,18 @@
 #include "platform/check.h"
 
 namespace platform {
+namespace {
+
+constexpr std::uint64_t kProbeNs = 10'000'000, kAloneNs = 200'000'000;
+constexpr int kRepeatsMax = 8;
+
+LinkPiece* piece_at(LinkPipe* pipe, int i) { return &pipe->pieces[(pipe->piece_first + i) % kPiecesMax]; }
+
+bool is_struck(const LinkLine& line, std::uint64_t* random) {
+  return random_u64(random) % 1'000'000 < line.lost_per_million;
+}
+
+}  // namespace
 
 std::uint64_t line_arrival_ns(const LinkLine& line, std::size_t byte_count, std::uint64_t now_ns,
                               std::uint64_t* free_ns, std::uint64_t* random) {
@@ -55,9 +67,44 @@ void push_piece(LinkPipe* pipe, const unsigned char* bytes, std::size_t byte_cou
     pipe->bytes[(pipe->first + pipe->used + i) % pipe->capacity] =
         static_cast<unsigned char>(i == 0 ? bytes[i] ^ flip : bytes[i]);
   pipe->used += byte_count;
+  std::uint64_t own_ns = arrival_ns;
   if (arrival_ns < pipe->arrival_last_ns) arrival_ns = pipe->arrival_last_ns;
   pipe->arrival_last_ns = arrival_ns;
-  pipe->pieces[(pipe->piece_first + pipe->piece_count++) % kPiecesMax] = {arrival_ns, byte_count};
+  *piece_at(pipe, pipe->piece_count++) = {arrival_ns, byte_count, own_ns, false};
+}
+
+void lose_piece(const LinkLine& line, LinkPipe* pipe, std::uint64_t* random) {
+  if (line.lost_per_million == 0) return;
+  PLATFORM_CHECK_GT(pipe->piece_count, 0);
+  const int last = pipe->piece_count - 1;
+  const std::uint64_t round_trip_ns = 2 * line.latency_ns;
+  LinkPiece* piece = piece_at(pipe, last);
+  int first_changed = last;
+  if (is_struck(line, random)) {
+    std::uint64_t wait_ns = 2 * round_trip_ns + kProbeNs + (last == 0 ? kAloneNs : 0);
+    piece->lost = true;
+    piece->own_ns += wait_ns;
+    for (int i = 0; i < kRepeatsMax && is_struck(line, random); ++i) piece->own_ns += wait_ns *= 2;
+  } else {
+    for (int i = last - 1, later = 1; i >= 0 && later <= 3; --i) {
+      LinkPiece* before = piece_at(pipe, i);
+      if (!before->lost) {
+        ++later;
+        continue;
+      }
+      std::uint64_t repeated_ns = piece->own_ns + (later == 3 ? round_trip_ns : 2 * round_trip_ns + kProbeNs);
+      if (repeated_ns < before->own_ns) before->own_ns = repeated_ns;
+      first_changed = i;
+    }
+  }
+  // Nothing overtakes.
+  std::uint64_t arrival_ns = first_changed > 0 ? piece_at(pipe, first_changed - 1)->arrival_ns : 0;
+  for (int i = first_changed; i <= last; ++i) {
+    LinkPiece* at = piece_at(pipe, i);
+    if (arrival_ns < at->own_ns) arrival_ns = at->own_ns;
+    at->arrival_ns = arrival_ns;
+  }
+  pipe->arrival_last_ns = arrival_ns;
 }
 
 std::size_t due_bytes(const LinkPipe& pipe, std::uint64_t now_ns, const unsigned char** bytes) {

@@ -16,6 +16,7 @@ struct LinkLine {
   std::uint64_t bytes_per_second = 0;  // 0: no limit
   std::uint64_t latency_ns = 0;        // one way
   std::uint64_t jitter_ns = 0;         // maximum addition to the latency
+  std::uint32_t lost_per_million = 0;  // pieces lost and repeated
 };
 
 // When bytes sent now arrive, on a line that is busy until *free_ns, which is advanced. `random` is the state of
@@ -25,8 +26,10 @@ std::uint64_t line_arrival_ns(const LinkLine& line, std::size_t byte_count, std:
 std::uint64_t random_u64(std::uint64_t* state);
 
 struct LinkPiece {
-  std::uint64_t arrival_ns;
+  std::uint64_t arrival_ns;  // at the reader: after every piece before it
   std::size_t byte_count;
+  std::uint64_t own_ns;  // at the other end of the line
+  bool lost;             // repeated; own_ns is the repeated one's
 };
 
 struct LinkPipe {
@@ -53,6 +56,11 @@ std::size_t pipe_room(const LinkPipe& pipe);
 // Sends one piece of at most pipe_room() bytes; `flip` is XORed into its first byte.
 void push_piece(LinkPipe* pipe, const unsigned char* bytes, std::size_t byte_count, unsigned char flip,
                 std::uint64_t arrival_ns);
+// Loses the piece pushed last, or not: call after each push_piece(). As with TCP, a lost piece is repeated and those
+// after it wait: a round trip after the third later piece [RFC 5681, sec. 3.2], otherwise two round trips and 10 ms
+// after the last piece sent [RFC 8985, sec. 7.2] or, if it is the only one on its way, 200 ms more [Linux:
+// tcp_rto_min]. A piece repeated by time may be lost again.
+void lose_piece(const LinkLine& line, LinkPipe* pipe, std::uint64_t* random);
 // The contiguous bytes that have arrived by now, at most one piece, and their address.
 std::size_t due_bytes(const LinkPipe& pipe, std::uint64_t now_ns, const unsigned char** bytes);
 // Removes at most that many of them.

@@ -78,9 +78,10 @@ void receive(ShapedLink* link, Slot* slot) {
       std::uint64_t end_ns = link->clock_ns + line.latency_ns;
       slot->in.end_ns = end_ns < slot->in.arrival_last_ns ? slot->in.arrival_last_ns : end_ns;
     }
-    if (result == LinkResult::done)
-      push_piece(&slot->in, part, count, 0,
-                 line_arrival_ns(line, count, link->clock_ns, &link->line_free_ns[0], &link->random));
+    if (result != LinkResult::done) continue;
+    push_piece(&slot->in, part, count, 0,
+               line_arrival_ns(line, count, link->clock_ns, &link->line_free_ns[0], &link->random));
+    lose_piece(line, &slot->in, &link->random);
   }
 }
 
@@ -248,6 +249,7 @@ LinkResult write(Link* base, int stream, const void* bytes, std::size_t byte_cou
     if (take == 0) break;
     push_piece(&slot->out, static_cast<const unsigned char*>(bytes) + *byte_count, take, 0,
                line_arrival_ns(link->settings.line, take, link->clock_ns, &link->line_free_ns[1], &link->random));
+    lose_piece(link->settings.line, &slot->out, &link->random);
     *byte_count += take;
   }
   move(link, slot);
@@ -369,7 +371,7 @@ LinkBackend shaped_link_backend(const LinkBackend& inner) {
 
 ShapedLinkSettings shaped_link_settings(const Device& device) {
   ShapedLinkSettings settings;
-  settings.line = {device.link_bytes_per_second, device.link_latency_ns, device.link_jitter_ns};
+  settings.line = {device.link_bytes_per_second, device.link_latency_ns, device.link_jitter_ns, 0};
   return settings;
 }
 

@@ -12,7 +12,7 @@ namespace platform {
 
 struct ShapedLinkSettings {
   LinkLine line;           // bytes per second of each direction
-  std::uint64_t seed = 1;  // for the jitter
+  std::uint64_t seed = 1;  // for jitter and losses
 };
 // The wireless link of a device.
 ShapedLinkSettings shaped_link_settings(const Device& device);

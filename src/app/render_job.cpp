@@ -20,7 +20,7 @@ Status render_with_servers(Renderer* renderer, const RenderJob& job, double seco
   do {
     if (servers.state(*job.servers).cut_off)
       return failure("no server answers, and the scene does not fit in --memory: start a server, or raise --memory");
-    *complete = servers.advance_frame(job.servers, renderer, clock_ns() + kProgressNs, &interrupted);
+    *complete = servers.advance_frame(job.servers, renderer, kProgressNs, &interrupted);
     ServersState state = servers.state(*job.servers);
     if (state.disputed)
       return failure("frame discarded: two servers disagree about its pixels (--verify 0 skips the check)");

@@ -88,6 +88,15 @@ Status show(const ViewCommand& o, const Loading& loading, Viewer* viewer, bool* 
   return status;
 }
 
+// Prints how long the screen lagged behind the buttons, if any were used.
+void print_latency(const Viewer& viewer) {
+  const Motion& motion = viewer.motion;
+  if (motion.total_ns == 0) return;
+  std::printf("  motion to photon: %.1f ms median, %.1f ms 99th percentile, over %.1f s of motion\n",
+              latency_ns(motion, 0.5) * 1e-6, latency_ns(motion, 0.99) * 1e-6,
+              static_cast<double>(motion.total_ns) * 1e-9);
+}
+
 // Loads and shows the scene, with news as a message. False if the user quit while it was loading.
 bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer, Status* status, bool* again) {
   watch_scene(viewer);
@@ -189,6 +198,7 @@ int run(ViewCommand o) {
   ServersHandle closing_servers(viewer.servers);
   if (status.ok && !viewer.quit) status = view_scenes(&o, &viewer);
   closing_screen.reset();
+  print_latency(viewer);
   if (!status.ok) return report(status);
   return interrupted ? kExitInterrupted : kExitDone;
 }

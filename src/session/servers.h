@@ -37,6 +37,8 @@ struct ServersState {
   bool cut_off = false;   // no rows for a while, on a device without the scene
   bool disputed = false;  // two servers sent different pixels, and this device has no scene to judge by
   std::uint32_t rows_done = 0;  // of the current frame
+  double left_ns = 0;           // estimated until it is complete; 0: it is
+  double anew_ns = 0;           // of a frame begun now; 0: unknown
 };
 
 // The merged picture: rows without padding.
@@ -88,10 +90,10 @@ struct ServersBackend {
   Status (*start)(Servers* servers, Renderer* renderer, bool small_pixels, bool dither);
   // Ends what start() began, if it did. Call before the renderer's memory is given back, or close().
   void (*stop)(Servers* servers);
-  // Begin a frame, then advance it, each time until about `deadline_ns` of clock_ns(), until it is complete.
-  // begin_frame() abandons an unfinished frame.
+  // Begin a frame, then advance it, each time for about `slice_ns`, until it is complete. begin_frame() abandons an
+  // unfinished frame.
   Status (*begin_frame)(Servers* servers, Renderer* renderer, double seconds);
-  bool (*advance_frame)(Servers* servers, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop);
+  bool (*advance_frame)(Servers* servers, Renderer* renderer, std::uint64_t slice_ns, const std::atomic<bool>* stop);
   // Between frames: keeps connections and overtures going. Never blocks.
   void (*tend)(Servers* servers);
   ServersState (*state)(const Servers& servers);

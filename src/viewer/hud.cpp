@@ -70,6 +70,12 @@ void write_hud(const Renderer& renderer, const Progressive& progressive, CameraM
   add_effects(renderer.effects, text);
 }
 
+void write_latency(const Motion& motion, HudText* text) {
+  if (motion.total_ns == 0) return;
+  add_hud_line(text, "motion to photon %.0f ms, 99 %% within %.0f", latency_ns(motion, 0.5) * 1e-6,
+               latency_ns(motion, 0.99) * 1e-6);
+}
+
 void write_waiting(const char* what, double seconds, HudText* text) {
   CHECK(what != nullptr);
   text->line_count = 0;

@@ -3,6 +3,7 @@
 #include "engine/progressive.h"
 #include "present/hud_text.h"
 #include "session/camera_control.h"
+#include "viewer/motion.h"
 
 namespace pocketray {
 
@@ -15,5 +16,7 @@ struct HudNote {
 
 // Milliseconds per frame, nanoseconds per pixel of the picture, rays, memory, what coherence saved, effects on.
 void write_hud(const Renderer& renderer, const Progressive& progressive, CameraMode mode, HudText* text);
+// Motion to photon, once there is any.
+void write_latency(const Motion& motion, HudText* text);
 void write_waiting(const char* what, double seconds, HudText* text);
 }  // namespace pocketray

@@ -8,6 +8,7 @@
 #include "engine/frame.h"
 #include "present/repack.h"
 #include "session/interrupt.h"
+#include "viewer/follow.h"
 #include "viewer/traced_overlay.h"
 
 namespace pocketray {
@@ -20,17 +21,20 @@ constexpr std::uint64_t kSliceNs = 25 * kMillisecond;  // between two polls of t
 constexpr std::uint64_t kIdleNs = 8 * kMillisecond, kLongIdleNs = 33 * kMillisecond;
 constexpr std::uint64_t kLongIdleAfterNs = 1000 * kMillisecond;
 
+// End of the slice that begins now, by the clock of local frames.
+std::uint64_t slice_end(const Renderer& renderer) { return renderer.pace.clock->now_ns() + kSliceNs; }
+
 bool dims_kept_pixels(const Viewer& viewer) {
   return viewer.traced && !viewer.picture_merged && !shows_side_by_side(viewer);
 }
 
-// Packs and shows the changed rows.
-void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
+// Packs and shows the changed rows. False if the screen takes no picture now.
+bool show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
                std::uint32_t row_end) {
   CHECK(row_begin <= row_end && row_end <= renderer.settings.height);
   SealPause pause(takes_memory(*viewer->backend));
   platform::Page page = viewer->backend->begin_frame();
-  if (!page.pixels) return;
+  if (!page.pixels) return false;
   if (page.age != 1 || quarter_turned(*viewer)) row_begin = 0, row_end = renderer.settings.height;
   std::uint32_t note = note_now(*viewer);
   HudText shown;
@@ -63,6 +67,14 @@ void show_rows(Viewer* viewer, const Renderer& renderer, const HudText& text, st
   } else {
     viewer->backend->end_frame(static_cast<int>(row_begin), static_cast<int>(row_end));
   }
+  return true;
+}
+
+// The same. `whole`: the whole screen then shows the picture under way.
+void show_picture(Viewer* viewer, const Renderer& renderer, const HudText& text, std::uint32_t row_begin,
+                  std::uint32_t row_end, bool whole) {
+  if (show_rows(viewer, renderer, text, row_begin, row_end) && whole)
+    show_motion(&viewer->motion, viewer->backend->now_ns());
 }
 
 // True if the overlays on the screen are up to date.
@@ -79,6 +91,7 @@ bool goes_on(const Viewer& viewer) { return viewer.options.frame_count > 0 && !s
 
 void write_picture_lines(const Viewer& viewer, const Renderer& renderer, ViewerLoop* loop) {
   write_hud(renderer, loop->progressive, loop->control.mode, &loop->hud);
+  write_latency(viewer.motion, &loop->hud);
   if (viewer.budget) write_budget_lines(*viewer.budget, &loop->hud);
   if (viewer.servers) viewer.servers->backend->write_lines(*viewer.servers, true, &loop->hud);
 }
@@ -130,7 +143,7 @@ Status refine(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
     loop->progressive = afresh();
   }
-  loop->exact = advance_progressive(renderer, loop->tile_spans, clock_ns() + kSliceNs, &loop->progressive);
+  loop->exact = advance_progressive(renderer, loop->tile_spans, slice_end(*renderer), &loop->progressive);
   write_picture_lines(*viewer, *renderer, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);
@@ -160,7 +173,7 @@ void mark_changed_rows(const Renderer& renderer, Progressive* progressive) {
 bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
   Progressive* progressive = &loop->progressive;
   if (!loop->coherent.all) {
-    bool complete = advance_coherent(renderer, clock_ns() + kSliceNs, nullptr, &loop->coherent);
+    bool complete = advance_coherent(renderer, slice_end(*renderer), nullptr, &loop->coherent);
     progressive->pixels_traced = renderer->image.count;  // the picture has all of them
     progressive->trace_ns = loop->prepare_ns + loop->coherent.spent_ns;
     progressive->shown_coarse = true;
@@ -169,8 +182,10 @@ bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
     return complete;
   }
   std::uint64_t before = progressive->trace_ns;
-  bool complete = advance_progressive(renderer, loop->tile_spans, clock_ns() + kSliceNs, progressive);
+  const bool was_visible = progressive->shown_coarse;
+  bool complete = advance_progressive(renderer, loop->tile_spans, slice_end(*renderer), progressive);
   loop->coherent.spent_ns += progressive->trace_ns - before;
+  if (!was_visible && progressive->shown_coarse) loop->coarse_ns = loop->prepare_ns + progressive->trace_ns;
   if (complete) {
     renderer->coherence_state.pixels_traced = progressive->pixels_traced;
     finish_coherent(renderer, &loop->coherent);
@@ -179,16 +194,36 @@ bool advance_picture(Renderer* renderer, ViewerLoop* loop) {
   return complete;
 }
 
+bool is_visible(const ViewerLoop& loop) {
+  return loop.finished || (loop.coherent.all && loop.progressive.shown_coarse);
+}
+
+// Whether a visible picture gives way to one with newer input, which would be visible before the rest of this one is
+// traced. What is left of a frame of changes is not known.
+bool coarse_gives_way(const Renderer& renderer, const ViewerLoop& loop) {
+  const Progressive& p = loop.progressive;
+  if (!p.shown_coarse) return false;
+  if (!loop.coherent.all || p.pixels_traced == 0) return true;
+  const double pixel_ns = static_cast<double>(p.trace_ns) / static_cast<double>(p.pixels_traced);
+  PictureChoice choice;
+  choice.left_ns = pixel_ns * static_cast<double>(renderer.image.count - p.pixels_traced);
+  choice.anew_ns = static_cast<double>(loop.coarse_ns);
+  return gives_way(choice);
+}
+
 // Begins the next picture once the current one is visible, traces a slice of it and shows it.
 Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
-  // A moving camera is followed as soon as a coarse picture is visible. Time waits for the finished picture; so does
-  // the camera when finished frames are counted.
-  bool follow = loop->moved && loop->progressive.shown_coarse && viewer->options.frame_count == 0;
+  // A moving camera is followed once a coarse picture is visible, unless that is finished sooner than a new one is
+  // visible. Time waits for the finished picture; so does the camera when finished frames are counted.
+  bool follow =
+      loop->moved && viewer->options.frame_count == 0 && !loop->finished && coarse_gives_way(*renderer, *loop);
   if (follow || (loop->finished && (loop->moved || loop->passed))) {
-    std::uint64_t start = clock_ns();
+    const Clock& clock = *renderer->pace.clock;
+    const std::uint64_t start = clock.now_ns();
     RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(prepare_frame(renderer, loop->seconds));
-    loop->prepare_ns = clock_ns() - start;
+    take_motion(&viewer->motion);
+    loop->prepare_ns = clock.now_ns() - start;
     loop->progressive = Progressive();
     begin_coherent(renderer, &loop->coherent);
     loop->progressive.is_coherent = true;
@@ -206,7 +241,7 @@ Status step_picture(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (loop->finished || loop->coherent.all) write_picture_lines(*viewer, *renderer, loop);
   std::uint32_t begin = 0, end = 0;
   take_dirty_rows(&loop->progressive, &begin, &end);
-  show_rows(viewer, *renderer, loop->hud, begin, end);
+  show_picture(viewer, *renderer, loop->hud, begin, end, is_visible(*loop));
   return success();
 }
 
@@ -233,6 +268,7 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   if (due) {
     RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(begin_budget_frame(budget, renderer));
+    take_motion(&viewer->motion);
     RETURN_IF_ERROR(render_coherent(renderer, loop->seconds, &interrupted));
     traced = clock_ns();
     loop->progressive = {};
@@ -242,7 +278,7 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
     loop->moved = loop->passed = false;
   }
   write_picture_lines(*viewer, *renderer, loop);
-  show_rows(viewer, *renderer, loop->hud, 0, renderer->settings.height);
+  show_picture(viewer, *renderer, loop->hud, 0, renderer->settings.height, !interrupted);
   if (!due || interrupted) return success();
   end_budget_frame(budget, traced - start + paced_ns(renderer->pace, 0, viewer->pack_ns));
   ++viewer->frames_finished;
@@ -253,31 +289,43 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   return success();
 }
 
+// Whether the split frame under way gives way to one with newer input. Counted frames never do.
+bool split_gives_way(const Viewer& viewer, const ViewerLoop& loop) {
+  if (loop.finished || !loop.moved || viewer.options.frame_count > 0 || !viewer.options.drops_frames) return false;
+  const ServersState state = viewer.servers->backend->state(*viewer.servers);
+  return gives_way({state.left_ns, state.anew_ns, loop.dropped});
+}
+
 // Traces a slice of a split frame and shows the rows finished so far from both ends.
 Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
-  if (loop->finished && (loop->moved || loop->passed)) {
+  const bool drops = split_gives_way(*viewer, *loop);
+  if (drops || (loop->finished && (loop->moved || loop->passed))) {
     RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(servers.begin_frame(viewer->servers, renderer, loop->seconds));
+    take_motion(&viewer->motion);
+    loop->dropped = drops;
+    viewer->frames_dropped += drops;
     loop->moved = loop->passed = loop->finished = false;
   }
   if (loop->finished && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
-  if (!loop->finished && servers.advance_frame(viewer->servers, renderer, clock_ns() + kSliceNs, nullptr)) {
+  if (!loop->finished && servers.advance_frame(viewer->servers, renderer, kSliceNs, nullptr)) {
     loop->finished = true;
     ++viewer->frames_finished;
     if (goes_on(*viewer)) loop->passed = true;
   }
   loop->hud.line_count = 0;
   servers.write_lines(*viewer->servers, false, &loop->hud);
+  write_latency(viewer->motion, &loop->hud);
   std::uint32_t begin = 0, end = 0;
   servers.take_rows(viewer->servers, &begin, &end);
-  show_rows(viewer, *renderer, loop->hud, begin, end);
+  show_picture(viewer, *renderer, loop->hud, begin, end, loop->finished);
   return success();
 }
 
 // Chooses who renders the next picture: with servers in reach it completes soon, otherwise the device refines it alone.
 // When a server comes into reach, a picture still being refined is restarted with it, as a slow device may take
-// minutes. A moving camera is not followed within a split frame unless its servers are gone.
+// minutes. Within a split frame a moving camera is followed if its servers are gone, or as gives_way() says.
 Status step_with_servers(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
   if (!viewer->picture_merged || loop->finished) servers.tend(viewer->servers);

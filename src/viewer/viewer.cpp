@@ -43,6 +43,7 @@ void take_events(Viewer* viewer) {
     viewer->held[static_cast<int>(event.button)] = down;
     viewer->event_ns = viewer->backend->now_ns();
     if (!down) continue;
+    if (!viewer->pressed) viewer->pressed = true, viewer->pressed_ns = event.time_ns;
     if (event.button == Button::hud || event.button == Button::y) viewer->hud = !viewer->hud;
     if (event.button == Button::x) viewer->paused = !viewer->paused;
     if (event.button == Button::screenshot) viewer->screenshot = true;
@@ -222,13 +223,19 @@ Status open_screen(const platform::ScreenOptions& options, Viewer* viewer, platf
 Status step_scene(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   std::uint64_t now = viewer->backend->now_ns();
   if (loop->last_ns == 0) loop->last_ns = now;  // the first picture shows the begin of the animation
-  float elapsed = static_cast<float>(std::min<std::uint64_t>(now - loop->last_ns, 250 * kMillisecond)) * 1e-9f;
+  const std::uint64_t last_ns = loop->last_ns;
+  float elapsed = static_cast<float>(std::min<std::uint64_t>(now - last_ns, 250 * kMillisecond)) * 1e-9f;
   loop->last_ns = now;
   bool moved = move_camera(&loop->control, read_input(*viewer), elapsed);
   if (viewer->change_mode)
     loop->control.mode = loop->control.mode == CameraMode::orbit ? CameraMode::fly : CameraMode::orbit;
   loop->camera_moved = (loop->camera_moved || moved) && !viewer->home;
   if (viewer->home) reset_camera(&loop->control);
+  if (moved || viewer->home) {
+    const std::uint64_t pressed_ns = viewer->pressed ? std::min(viewer->pressed_ns, now) : now;
+    note_motion(&viewer->motion, loop->moving ? last_ns : pressed_ns, now);
+  }
+  loop->moving = moved, viewer->pressed = false;
   if (moved || viewer->home) {
     // A shifted target rounds the view differently; the scene's own view must give its own pixels.
     RETURN_IF_ERROR(set_camera(renderer, viewer->home ? loop->control.scene : loop->control.camera));
@@ -349,6 +356,7 @@ Status run_viewer(Viewer* viewer, Renderer* renderer, bool* again) {
   take_kept_view(*viewer, renderer, &loop);
   loop.finished = true;  // no picture in progress
   viewer->picture_merged = false;
+  drop_motion(&viewer->motion);
   *again = false;
   viewer->reload = viewer->dropped[0] != 0;  // dropped while this scene was loading
   Status status;

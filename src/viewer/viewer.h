@@ -12,6 +12,7 @@
 #include "session/open_scene.h"
 #include "session/servers.h"
 #include "viewer/hud.h"
+#include "viewer/motion.h"
 #include "viewer/side_by_side.h"
 
 namespace pocketray {
@@ -25,6 +26,7 @@ struct ViewOptions {
   std::uint32_t frame_count = 0;
   bool hud = true;             // shown from the start
   bool has_reference = false;  // the build has --side-by-side
+  bool drops_frames = true;    // a split frame that halts gives way to newer input; false: for comparisons
 };
 
 // Watches a file to reload it after a change, once writing has ended: when it looks the same twice in a row.
@@ -73,10 +75,13 @@ struct Viewer {
   bool hud = true, hud_shown = false, paused = false;
   bool traced = false, traced_shown = false;  // dims the pixels kept from the last frame; the screen does
   std::uint64_t event_ns = 0;                 // of the last button
+  bool pressed = false;                       // one was pressed since the camera last moved,
+  std::uint64_t pressed_ns = 0;               //   the first of them then
+  Motion motion;                              // its way to the screen
   std::uint32_t note_shown = 0,
                 hud_rows_shown = 0;  // on the screen: the note's number, and the rows the overlay covers
   std::uint64_t waiting_since_ns = 0;
-  std::uint32_t screenshot_count = 0, frames_finished = 0;
+  std::uint32_t screenshot_count = 0, frames_finished = 0, frames_dropped = 0;
 };
 
 // Bytes needed in the frame arena for viewing: span list and screenshot encoder.

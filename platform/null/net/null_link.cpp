@@ -57,9 +57,10 @@ void send_piece(NullLink* link, Slot* to, const unsigned char* bytes, std::size_
   bool shares_radio = !pipe->trickles && !to->elsewhere;
   std::uint64_t* free_ns = shares_radio ? &link->line_free_ns[to->device] : &pipe->trickle_free_ns;
   std::uint64_t bytes_per_second = pipe->trickles ? 1 : to->elsewhere ? 0 : settings.bytes_per_second;
-  LinkLine line = {bytes_per_second, settings.latency_ns, settings.jitter_ns};
+  LinkLine line = {bytes_per_second, settings.latency_ns, settings.jitter_ns, settings.lost_per_million};
   std::uint64_t arrival_ns = line_arrival_ns(line, byte_count, link->clock_ns, free_ns, &link->random);
   push_piece(pipe, bytes, byte_count, flip, pipe->silent ? kNever : arrival_ns);
+  if (!pipe->silent) lose_piece(line, pipe, &link->random);
 }
 
 // Applies a fault to the line; false: the connection is gone.

@@ -31,9 +31,10 @@ struct NullLinkSettings {
   std::uint64_t bytes_per_second = 0;  // 0: no limit
   std::uint64_t latency_ns = 0;        // one way
   std::uint64_t jitter_ns = 0;         // maximum addition for every piece; the order stays
+  std::uint32_t lost_per_million = 0;  // pieces lost and repeated; see lose_piece()
   std::size_t pipe_bytes = 65536;      // in transit in one direction of a connection at most, including unread bytes
   std::uint64_t clock_step_ns = 1000;  // advance of each now_ns(), so that busy-waiting loops end
-  std::uint64_t seed = 1;              // for jitter, flipped bits and steps of the clock
+  std::uint64_t seed = 1;              // for jitter, losses, flipped bits and steps of the clock
   const NullFault* faults = nullptr;   // from the caller, until close_all()
   int fault_count = 0;                 // at most kNullFaultsMax
 };

@@ -75,18 +75,6 @@ double time_to_spare(const Client& client, double come_share) {
   return kWaitShare * alone + come_share * change * come - idle;
 }
 
-// Time the device would need for the missing rows, estimated from this frame and from earlier ones, whichever is
-// longer.
-double rows_left_ns(const Client& client) {
-  double known = 0, rows = 0;
-  for (std::uint32_t r = 0; r < client.model.rows.count; ++r) {
-    const RowModel& row = client.model.rows[r];
-    if (client.merge.rows[r].state == RowState::missing) known += device_row_ns(row);
-    if (!is_done(client.merge.rows[r])) rows += static_cast<double>(row.device_part);
-  }
-  return std::max(known, device_pixel_ns(client) * client.settings.width * rows);
-}
-
 // True if the servers' rows are due before the device could render one, or late by less than that, and the device would
 // still finish about as early as alone if none arrived.
 bool is_worth_waiting(const Client& client) {
@@ -174,7 +162,8 @@ bool take_latest_row(Client* client, std::uint32_t* row_begin, std::uint32_t* ro
   return false;
 }
 
-void cancel_rest(Client* client) {
+// `given_up`: the frame ends before its time, which tells nothing of a server that sent no rows yet.
+void cancel_rest(Client* client, bool given_up) {
   Message message;
   message.type = MessageType::cancel;
   message.cancel.frame = client->request.frame;
@@ -182,7 +171,7 @@ void cancel_rest(Client* client) {
     RemoteServer* server = &client->servers[i];
     if (!server->frame.open) continue;
     // None of its rows came in time, so it takes at least this long to start.
-    if (server->frame.rows_come == 0 && server->phase == ServerPhase::ready)
+    if (!given_up && server->frame.rows_come == 0 && server->phase == ServerPhase::ready)
       observe_start(&client->model, i, static_cast<double>(client_now_ns(*client) - server->frame.asked_ns));
     server->frame.open = false;
     bool sent = send_message(&server->messages, message);
@@ -319,7 +308,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
                         bool unchanged) {
   CHECK(!unchanged || client->complete);
   if (!client->complete) {
-    cancel_rest(client);
+    cancel_rest(client, true);
     end_frame(&client->model);
   }
   CHECK_EQ(renderer.settings.width, client->settings.width);
@@ -419,7 +408,7 @@ void end_client_frame(Client* client) {
   measure_link(client);
   if (!client->options.has_scene) learn_row_times(client);
   if (client->joined) ++client->frames_with_servers;
-  cancel_rest(client);
+  cancel_rest(client, false);
   if (!client->unchanged) end_frame(&client->model);
 }
 

@@ -1,6 +1,6 @@
 // Shared by the client's files: client.cpp has the frame, plan.cpp the split, peer.cpp the connections, ping.cpp the
 // measurement of links, thin.cpp the differences on a device without the scene, verify.cpp and witness.cpp the checks
-// of servers' pixels.
+// of servers' pixels, outlook.cpp how long a frame will take.
 #pragma once
 #include "remote/client/client.h"
 
@@ -94,6 +94,12 @@ bool is_witnessed(Client* client);
 
 // Takes as long as the emulated device takes for `pixel_count` pixels; returns that time.
 std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t begin_ns);
+
+// ---- outlook.cpp
+
+// Time the device would need for the missing rows, estimated from this frame and from earlier ones, whichever is
+// longer.
+double rows_left_ns(const Client& client);
 
 // ---- client.cpp
 

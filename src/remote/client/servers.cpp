@@ -10,6 +10,7 @@
 #include "platform/net/shaped_link.h"
 #include "platform/net/tcp.h"
 #include "remote/client/frame.h"
+#include "remote/client/outlook.h"
 #include "remote/encryption.h"
 
 namespace pocketray {
@@ -156,10 +157,10 @@ Status begin_frame(Servers* servers, Renderer* renderer, double seconds) {
   return begin_frame(renderer, &connected(servers)->client, seconds);
 }
 
-bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t deadline_ns, const std::atomic<bool>* stop) {
+bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t slice_ns, const std::atomic<bool>* stop) {
   ConnectedServers* s = connected(servers);
   CHECK(s->started);
-  if (!advance_frame(renderer, &s->client, deadline_ns, stop)) return false;
+  if (!advance_frame(renderer, &s->client, client_now_ns(s->client) + slice_ns, stop)) return false;
   const FrameShare& share = s->client.share;
   ServersTotals* t = &s->totals;
   s->last = share;
@@ -176,6 +177,13 @@ bool advance_frame(Servers* servers, Renderer* renderer, std::uint64_t deadline_
 
 void tend_client(Servers* servers) { advance_client(&connected(servers)->client, 0); }
 
+// Servers were asked for rows of a picture and gave none: they may not give any of the next one, either.
+bool gave_nothing(const FrameShare& share) {
+  auto some = [](std::uint32_t count) { return count > 0; };
+  return std::any_of(std::begin(share.row_end), std::end(share.row_end), some) &&
+         std::none_of(std::begin(share.server_rows), std::end(share.server_rows), some);
+}
+
 // Servers count as in use once one has passed its overture, as a refined picture shows sooner than a complete one.
 ServersState state_of(const Servers& servers) {
   const ConnectedServers& s = connected(servers);
@@ -187,6 +195,8 @@ ServersState state_of(const Servers& servers) {
   state.cut_off = is_cut_off(client);
   state.disputed = client.verifier.disputed;
   state.rows_done = client.merge.row_count_done;
+  const FrameOutlook outlook = outlook_of(client);
+  state.left_ns = outlook.left_ns, state.anew_ns = gave_nothing(s.last) ? 0 : outlook.anew_ns;
   return state;
 }
 

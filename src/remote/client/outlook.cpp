@@ -1,0 +1,78 @@
+#include "remote/client/outlook.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "remote/client/parts.h"
+
+namespace pocketray {
+namespace {
+
+constexpr double kNeverNs = 1e18;
+
+// Time for what servers may still send of the frame under way: they drop the rest of it between two chunks.
+double chunk_ns(const Client& client) {
+  double bytes = 0, longest = 0;
+  for (const RowModel& row : client.model.rows) bytes += static_cast<double>(row.bytes.value);
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const RemoteServer& server = client.servers[i];
+    if (!server.frame.open) continue;
+    const double rows = std::min(server.due_rows, kChunkRowsMax);
+    longest = std::max(longest, rows * static_cast<double>(client.model.servers[i].ns_per_byte.value));
+  }
+  return longest * bytes / client.settings.height;
+}
+
+// Time until a server's last row: what it is late by, once more, and then the rest at the predicted speed.
+double server_left_ns(const Client& client, std::uint32_t i, double due_ns, std::uint64_t now_ns) {
+  const ServerFrame& f = client.servers[i].frame;
+  CHECK_LT(f.row_begin, f.row_end);
+  auto since = [](std::uint64_t at, std::uint64_t from) { return at > from ? static_cast<double>(at - from) : 0; };
+  const double asked_ns = since(f.asked_ns, client.begin_ns) + static_cast<double>(client.prepare_ns);
+  const double whole_ns = std::max(0.0, due_ns - asked_ns);
+  const double start_ns = std::min(whole_ns, static_cast<double>(client.model.servers[i].start_ns.value));
+  const double part = std::min(1.0, f.rows_come / static_cast<double>(f.row_end - f.row_begin));
+  const double late_ns = since(now_ns, f.asked_ns) - start_ns - part * (whole_ns - start_ns);
+  return std::max(0.0, late_ns) + (1 - part) * (whole_ns - start_ns);
+}
+
+// The same of the last of them; kNeverNs if none is to send anything.
+double servers_left_ns(const Client& client, double due_ns) {
+  double longest = 0;
+  for (std::uint32_t i = 0; i < client.server_count; ++i)
+    if (client.servers[i].frame.open)
+      longest = std::max(longest, server_left_ns(client, i, due_ns, client_now_ns(client)));
+  return longest > 0 ? longest : kNeverNs;
+}
+
+}  // namespace
+
+double rows_left_ns(const Client& client) {
+  double known = 0, rows = 0;
+  for (std::uint32_t r = 0; r < client.model.rows.count; ++r) {
+    const RowModel& row = client.model.rows[r];
+    if (client.merge.rows[r].state == RowState::missing) known += device_row_ns(row);
+    if (!is_done(client.merge.rows[r])) rows += static_cast<double>(row.device_part);
+  }
+  return std::max(known, device_pixel_ns(client) * client.settings.width * rows);
+}
+
+FrameOutlook outlook_of(const Client& client) {
+  FrameOutlook outlook;
+  const FrameShare& share = client.share;
+  const double due = share.predicted_ns > 0 ? share.predicted_ns : share.measured_ns;
+  if (client.complete || due <= 0) return outlook;
+  outlook.anew_ns = due + chunk_ns(client);
+  const double elapsed = static_cast<double>(client_elapsed_ns(client));
+  // Requests that wait until a link is measured would wait again; a frame with all rows is complete at the next look.
+  if (elapsed < due || client.held || has_all_rows(client)) {
+    outlook.left_ns = has_all_rows(client) ? 1 : std::max(1.0, due - elapsed);
+    return outlook;
+  }
+  // They share the rows that are left.
+  const double own_ns = client.options.has_scene ? std::max(1.0, rows_left_ns(client)) : kNeverNs;
+  outlook.left_ns = 1 / (1 / own_ns + 1 / servers_left_ns(client, due));
+  return outlook;
+}
+
+}  // namespace pocketray
