@@ -14,7 +14,7 @@ struct Block {
 };
 
 // Whether the block lies within the picture once moved.
-inline bool may_move(const CodecShape& shape, const Block& block, Motion motion) {
+inline bool may_move(const CodecShape& shape, const Block& block, BlockMotion motion) {
   const std::int32_t x = static_cast<std::int32_t>(block.column) + motion.x;
   const std::int32_t y = static_cast<std::int32_t>(block.row_begin) + motion.y;
   return x >= 0 && x + static_cast<std::int32_t>(block.width) <= static_cast<std::int32_t>(shape.width) && y >= 0 &&
@@ -23,7 +23,7 @@ inline bool may_move(const CodecShape& shape, const Block& block, Motion motion)
 
 // The pixels of the frame before from which a row of the block is predicted.
 template <class Pixel>
-const std::uint8_t* moved_row(const CodecState& s, const Block& block, Motion motion, std::uint32_t row) {
+const std::uint8_t* moved_row(const CodecState& s, const Block& block, BlockMotion motion, std::uint32_t row) {
   const std::int32_t from = static_cast<std::int32_t>(row) + motion.y;
   const std::int32_t column = static_cast<std::int32_t>(block.column) + motion.x;
   return row_before(s, static_cast<std::uint32_t>(from)) + static_cast<std::uint32_t>(column) * Pixel::kBytes;
@@ -51,7 +51,7 @@ bool code_choice(Coder* coder, BlockModel* model, const CodecShape& shape, const
     return true;
   }
   const bool same = choice->motion == beside.motion;
-  Motion motion = beside.motion;
+  BlockMotion motion = beside.motion;
   if (!coder->bit(&model->is_same_motion[context(BlockKind::exact)], same)) {
     const std::int32_t x = code_motion(coder, model, 0, false, beside.motion.x, choice->motion.x);
     const std::int32_t y = code_motion(coder, model, 1, x != beside.motion.x, beside.motion.y, choice->motion.y);
@@ -196,7 +196,7 @@ void code_pixels(Coder* coder, CodecState* s, const Block& block, const BlockCho
 }
 
 template <class Pixel>
-void copy_block(CodecState* s, const Block& block, Motion motion) {
+void copy_block(CodecState* s, const Block& block, BlockMotion motion) {
   for (std::uint32_t row = block.row_begin; row < block.row_end; ++row) {
     std::memcpy(picture_row(*s, row) + block.column * Pixel::kBytes, moved_row<Pixel>(*s, block, motion, row),
                 block.width * Pixel::kBytes);

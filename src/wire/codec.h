@@ -38,10 +38,10 @@ bool codec_shape_valid(const CodecShape& shape);
 constexpr std::uint32_t kBlockColumns = 8, kBlockRows = 8;
 
 // Where a block was in the frame before, relative to where it is, in pixels.
-struct Motion {
+struct BlockMotion {
   std::int16_t x = 0, y = 0;
 };
-inline bool operator==(Motion a, Motion b) { return a.x == b.x && a.y == b.y; }
+inline bool operator==(BlockMotion a, BlockMotion b) { return a.x == b.x && a.y == b.y; }
 
 enum class BlockKind : std::uint8_t {
   spatial,   // predicted from neighbours
@@ -50,7 +50,7 @@ enum class BlockKind : std::uint8_t {
 };
 struct BlockChoice {
   BlockKind kind = BlockKind::spatial;
-  Motion motion;  // of a spatial block: the one it would have
+  BlockMotion motion;  // of a spatial block: the one it would have
 };
 
 // Both ends start with a black picture and change it alike, so that they always hold the same. Of every row they keep

@@ -28,7 +28,7 @@ const std::uint8_t* source_row(const MotionSearch& search, const Block& block, s
 
 // Stops at `enough`.
 template <class Pixel>
-std::uint32_t temporal_cost(const MotionSearch& search, const Block& block, Motion motion, std::uint32_t enough) {
+std::uint32_t temporal_cost(const MotionSearch& search, const Block& block, BlockMotion motion, std::uint32_t enough) {
   std::uint32_t cost = 0;
   for (std::uint32_t row = block.row_begin; row < block.row_end && cost < enough; ++row) {
     const std::uint8_t* pixels = source_row<Pixel>(search, block, row);
@@ -68,10 +68,10 @@ void choose_block(const MotionSearch& search, const Block& block, const BlockCho
   CHECK_LT(block.row_begin, block.row_end);
   CHECK_LE(block.row_end, search.state->shape.height);
   CHECK_LE(block.column + block.width, search.state->shape.width);
-  Motion best = beside.motion;
+  BlockMotion best = beside.motion;
   std::uint32_t lowest = UINT32_MAX;
   auto try_motion = [&](int x, int y) {
-    const Motion motion = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
+    const BlockMotion motion = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
     const std::uint32_t price = motion == beside.motion ? 0 : kOtherMotion;
     if (lowest <= price || !may_move(search.state->shape, block, motion)) return false;
     const std::uint32_t cost = price + temporal_cost<Pixel>(search, block, motion, lowest - price);
@@ -81,7 +81,7 @@ void choose_block(const MotionSearch& search, const Block& block, const BlockCho
   };
   try_motion(beside.motion.x, beside.motion.y);
   if (!(below.motion == beside.motion)) try_motion(below.motion.x, below.motion.y);
-  const Motion still;
+  const BlockMotion still;
   if (!(still == beside.motion) && !(still == below.motion)) try_motion(0, 0);
   const std::uint32_t spatial = lowest > 0 ? spatial_cost<Pixel>(search, block, lowest) : 0;
   // Follows each direction that is better as long as it is.
