@@ -98,6 +98,21 @@ TEST_CASE("cluster_sends_the_rows_of_one_server_in_the_order_asked_for") {
     }
 }
 
+// Goal: helpers take the exposure that rank 0 has measured. Method: a scene without one; another view of it afterwards.
+TEST_CASE("cluster_has_one_exposure") {
+  ClusterRig c(3, small_options());
+  ScriptedClient client(&c.rig);
+  FrameRequest request = frame_request("seesaw", 1, 64, 96);
+  request.scene = small_store().scenes.back().hash;
+  for (request.frame = 1; request.frame <= 3; ++request.frame) {
+    request.seconds = request.frame;
+    client.request(request);
+    client.wait_for_rows(96);
+    CHECK(client.picture() == rendered_here(request, small_store()));
+  }
+  CHECK(c.ranks.lead->helped_share() > 0.1);
+}
+
 // Goal: expensive rows are given in parts. Method: pixels that by their settings could take 10 µs per light point.
 TEST_CASE("cluster_shares_parts_of_expensive_rows") {
   ClusterRig c(3, small_options());

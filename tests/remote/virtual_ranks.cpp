@@ -3,6 +3,8 @@
 #include <cstring>
 
 #include "base/seal.h"
+#include "scene/baked.h"
+#include "scene/builtin_helpers.h"
 
 namespace pocketray {
 namespace {
@@ -47,8 +49,13 @@ const TeamBackend kVirtualBackend = {send, receive, [](void*, int) { std::abort(
 
 const SceneStore& small_store() {
   static SceneStore store;
-  if (store.scenes.empty())
-    for (const char* name : {"seesaw", "cube"}) REQUIRE(store_scene(name, name, 1u << 30, &store).ok);
+  if (!store.scenes.empty()) return store;
+  for (const char* name : {"seesaw", "cube"}) REQUIRE(store_scene(name, name, 1u << 30, &store).ok);
+  std::unique_ptr<BuiltScene> dim = build_builtin("seesaw");
+  dim->scene.info.auto_exposure = 1;
+  std::vector<std::uint8_t> bytes(baked_size(dim->scene));
+  baked_write(dim->scene, bytes.data());
+  REQUIRE(store_baked_scene("dim", bytes.data(), bytes.size(), 1u << 30, &store).ok);
   return store;
 }
 

@@ -15,9 +15,6 @@ constexpr std::uint32_t kFirstPixels = 8;
 constexpr std::uint64_t kPieceNs = kSliceNs / 2;
 // Pixels below which the time of a piece is mostly its overhead. Chosen: a row of a small screen.
 constexpr std::uint32_t kTimedPixels = 64;
-// Rows per thread of a piece: those of a strip of tiles, or half of them if there are few; fewer cost more each
-// (measured: a row of cornell by itself 2.4 times as much, four together 1.1 times).
-constexpr std::uint32_t kStripRows = 8, kFewRows = 4;
 
 }  // namespace
 
@@ -68,13 +65,10 @@ void ClusterLead::begin(Session* session) {
   }
 }
 
-// Besides the rest of the next chunk: another one, which the ranks trace while the first is encoded, or two strips per
-// thread. More would be in vain if the client cancels.
 std::uint32_t ClusterLead::window_of(const Slot& slot) const {
   const FrameJob& job = slot.session->job;
   const std::uint32_t unsent = slot.share.front - job.rows_sent, chunk = next_chunk_rows(job.request, job.sent);
-  const std::uint32_t ahead = std::max<std::uint32_t>(job.request.chunk_rows, 2 * kStripRows * thread_count());
-  return (chunk > unsent ? chunk - unsent : 0) + ahead;
+  return window_rows(chunk > unsent ? chunk - unsent : 0, job.request.chunk_rows, thread_count());
 }
 
 PieceLimits ClusterLead::limits_of(const Slot& slot, std::uint32_t index, std::uint32_t window) const {
@@ -82,18 +76,15 @@ PieceLimits ClusterLead::limits_of(const Slot& slot, std::uint32_t index, std::u
   const Session& session = *slot.session;
   PieceLimits limits;
   limits.window = window;
-  limits.rows = kFewRows * rank.threads;
   limits.pixels = kFirstPixels * rank.threads;
   if (session.trace_ns > 0)
     limits.pixels = slice_pixels(session.renderer.settings, session.renderer.light_points.count, session.trace_ns,
                                  kPieceNs * rank.threads);
-  // Half of what the rank would get of the free rows if all got as much as they can trace.
   double speed = 0;
-  for (const Rank& other : ranks_) speed += other.pixel_ns > 0 && !other.is_lost ? 1 / other.pixel_ns : 0;
-  if (rank.pixel_ns > 0) {
-    const double part = free_rows(slot.share, window) / (2 * rank.pixel_ns * speed);
-    if (part > kStripRows * rank.threads) limits.rows = static_cast<std::uint32_t>(part) / kStripRows * kStripRows;
-  }
+  for (const Rank& other : ranks_)
+    if (other.pixel_ns > 0 && !other.is_lost && !other.is_silent) speed += 1 / other.pixel_ns;
+  const double part = rank.pixel_ns > 0 ? 1 / rank.pixel_ns / speed : 0;
+  limits.rows = piece_rows(free_rows(slot.share, slot.share.count), std::min(part, 1.0), rank.threads);
   limits.any = !slot.keeps_rows;
   return limits;
 }
@@ -139,7 +130,6 @@ void ClusterLead::end_own_or_other(Slot* slot, std::uint32_t index, const RowPie
 bool ClusterLead::trace_own(Slot* slot, bool any) {
   PieceLimits limits = limits_of(*slot, 0, window_of(*slot));
   limits.any = any;
-  limits.rows = std::min(limits.rows, kStripRows * ranks_[0].threads);  // answers wait meanwhile
   RowPiece piece;
   if (!take_piece(&slot->share, 0, limits, &piece)) return false;
   const std::uint64_t start = clock_ns();

@@ -45,6 +45,12 @@ struct PieceLimits {
   std::uint32_t window = 1, rows = 1, pixels = 1;  // window: rows counted from the front
   bool any = true;                                 // also rows that others had in the last frame
 };
+// Rows of the window that begins with the rest of a chunk: another chunk, which the ranks trace while the first is
+// encoded, or two strips of tiles per thread. More would be in vain if the client cancels.
+std::uint32_t window_rows(std::uint32_t rest, std::uint32_t chunk_rows, std::uint32_t thread_count);
+// Rows that a rank gets at once: a strip of tiles per thread, or half of it if fewer rows are left for it, as much as
+// it can trace while the others trace theirs. speed_part: of the speed of all ranks; 0: unknown.
+std::uint32_t piece_rows(std::uint32_t left_count, double speed_part, std::uint32_t rank_threads);
 // Rows of the window that nobody has.
 std::uint32_t free_rows(const RowShare& share, std::uint32_t window);
 // Gives that rank its next piece; false if there is none for it. A row of more pixels than allowed is given in parts.
