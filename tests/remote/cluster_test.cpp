@@ -56,8 +56,8 @@ struct ClusterRig {
   VirtualRanks ranks;
   ServerRig rig;
   ClusterRig(std::uint32_t count, const ServerOptions& options,
-             const std::function<void(std::uint32_t, ServerOptions*)>& adapt = {})
-      : ranks(count, options, adapt),
+             const std::function<void(std::uint32_t, ServerOptions*)>& adapt = {}, std::uint64_t shared_ns_min = 0)
+      : ranks(count, options, adapt, shared_ns_min),
         rig(welcomed(&ranks), platform::NullLinkSettings(), platform::kNullLink, small_store()) {}
 
  private:
@@ -150,6 +150,28 @@ TEST_CASE("cluster_traces_only_what_changed") {
   CHECK(counts[0] == 128 * 96);
   CHECK(counts[1] == 0);
   CHECK(counts[3] < 128 * 96 / 2);
+}
+
+// Goal: frames with little work are rank 0's alone, the first excepted, and are shared again once there is more.
+// Method: a limit that no frame reaches, whatever the machine, and then none.
+TEST_CASE("cluster_does_not_share_what_is_soon_done") {
+  for (std::uint64_t limit : {~std::uint64_t(0) / 4, std::uint64_t(0)}) {
+    ClusterRig c(3, small_options(CoherenceMode::on), {}, limit);
+    ScriptedClient client(&c.rig);
+    FrameRequest request = frame_request("seesaw", 1, 128, 96);
+    std::uint64_t messages[6];
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      request.frame = 1 + i;
+      request.seconds = i / 30.0;
+      messages[i] = c.ranks.message_count;
+      client.request(request);
+      client.wait_for_rows(96);
+      CHECK(client.picture() == rendered_here(request));
+    }
+    CHECK(messages[1] > messages[0]);
+    CHECK((messages[5] > messages[2]) == (limit == 0));
+    CHECK(traced(client) < 128 * 96 / 2);
+  }
 }
 
 // Goal: a new request replaces the old one, whose late rows are ignored; two clients at once get their own rows.

@@ -62,7 +62,7 @@ const SceneStore& small_store() {
 Status VirtualRanks::welcome() { return lead->welcome(small_store()); }
 
 VirtualRanks::VirtualRanks(std::uint32_t count, const ServerOptions& given,
-                           const std::function<void(std::uint32_t, ServerOptions*)>& adapt)
+                           const std::function<void(std::uint32_t, ServerOptions*)>& adapt, std::uint64_t shared_ns_min)
     : options(given) {
   for (std::uint32_t rank = 0; rank < count; ++rank) {
     seats.push_back(std::make_unique<Seat>());
@@ -73,7 +73,7 @@ VirtualRanks::VirtualRanks(std::uint32_t count, const ServerOptions& given,
     static_cast<VirtualRanks*>(context)->log.push_back(line);
   };
   options.log_context = this;
-  lead = std::make_unique<ClusterLead>(of(0), options, "the same");
+  lead = std::make_unique<ClusterLead>(of(0), options, "the same", shared_ns_min);
   for (std::uint32_t rank = 1; rank < count; ++rank) {
     ServerOptions own = options;
     if (adapt) adapt(rank, &own);

@@ -35,9 +35,10 @@ struct VirtualRanks {
   std::vector<std::string> log;
   ServerOptions options;
 
-  // `adapt` changes the options of a rank.
+  // `adapt` changes the options of a rank. Every frame is shared unless shared_ns_min is given.
   explicit VirtualRanks(std::uint32_t count, const ServerOptions& given = ServerOptions(),
-                        const std::function<void(std::uint32_t rank, ServerOptions*)>& adapt = {});
+                        const std::function<void(std::uint32_t rank, ServerOptions*)>& adapt = {},
+                        std::uint64_t shared_ns_min = 0);
   Team of(std::uint32_t rank);
   // Sends them the scenes. To be called once, before a server steps.
   Status welcome();

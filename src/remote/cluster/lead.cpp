@@ -39,12 +39,14 @@ bool same_work(const ClusterTrace& a, const ClusterTrace& b) {
 
 }  // namespace
 
-ClusterLead::ClusterLead(const Team& team, const ServerOptions& options, std::string identity)
+ClusterLead::ClusterLead(const Team& team, const ServerOptions& options, std::string identity,
+                         std::uint64_t shared_ns_min)
     : team_(team),
       options_(options),
       identity_(std::move(identity)),
       ranks_(team.size),
-      slots_(static_cast<std::size_t>(options.client_count_max)) {
+      slots_(static_cast<std::size_t>(options.client_count_max)),
+      shared_ns_min_(shared_ns_min) {
   CHECK(leads(team));
   CHECK_LT(team.size, std::uint32_t(kNoRank));
   helpers_table_.context = this;

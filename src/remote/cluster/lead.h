@@ -9,10 +9,15 @@
 
 namespace pocketray {
 
+// Frames with less work than that are rank 0's alone. Chosen: four times what sharing one costs, about half a
+// millisecond of messages and waits.
+constexpr std::uint64_t kSharedNsMin = 2'000'000;
+
 class ClusterLead {
  public:
   // Takes all memory that does not depend on scenes. `identity` must be that of the helpers.
-  ClusterLead(const Team& team, const ServerOptions& options, std::string identity);
+  ClusterLead(const Team& team, const ServerOptions& options, std::string identity,
+              std::uint64_t shared_ns_min = kSharedNsMin);
   ClusterLead(const ClusterLead&) = delete;
   ClusterLead& operator=(const ClusterLead&) = delete;
 
@@ -46,12 +51,15 @@ class ClusterLead {
     Session* session = nullptr;
     std::uint64_t job_number = 0;
     bool is_begun = false, keeps_rows = false;
+    bool is_shared = true, was_shared = true;  // this frame, and the one before
+    std::uint64_t work_ns = 0;                 // of all ranks, for this frame
     RowShare share;
     std::vector<Preparation> preparations;             // by rank
     std::uint32_t pixels_done = 0, pixels_traced = 0;  // since the last slice
   };
 
   void begin(Session* session);
+  bool is_worth_sharing(const Slot& slot) const;
   Slice trace(Session* session, std::uint64_t slice_ns);
   Slot* slot_of(Session* session);
   bool is_current(const Slot& slot, const ClusterJob& job) const;
@@ -80,6 +88,7 @@ class ClusterLead {
   std::vector<Rank> ranks_;
   std::vector<Slot> slots_;
   std::uint32_t slot_count_ = 0;
+  std::uint64_t shared_ns_min_;
   Status failed_;
   std::uint64_t pixels_traced_ = 0, pixels_helped_ = 0;
 };

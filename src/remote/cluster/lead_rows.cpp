@@ -48,19 +48,33 @@ void ClusterLead::prepare(Slot* slot, std::uint32_t rank) {
   slot->preparations[rank] = Preparation::asked;
 }
 
+// Judges by the last frame if it was complete. The first one after a change costs more, since ranks then trace rows
+// whole that others had.
+bool ClusterLead::is_worth_sharing(const Slot& slot) const {
+  const RowShare& share = slot.share;
+  if (!slot.is_begun || share.front < share.count || slot.is_shared != slot.was_shared) return slot.is_shared;
+  const FrameRequest& request = slot.session->job.request;
+  const std::uint64_t row_ns = slot.work_ns / share.count, rows = request.row_end - request.row_begin;
+  return row_ns * rows >= (slot.is_shared ? shared_ns_min_ : 2 * shared_ns_min_);
+}
+
 void ClusterLead::begin(Session* session) {
   CHECK(has_job(*session) && !session->job.is_view_query && session->own_exposure > 0);
   Slot* slot = slot_of(session);
+  const bool is_shared = is_worth_sharing(*slot);
+  slot->was_shared = slot->is_shared, slot->is_shared = is_shared;
   slot->job_number = session->job_number;
   slot->is_begun = false;
+  slot->work_ns = 0;
   slot->pixels_done = slot->pixels_traced = 0;
   std::fill(slot->preparations.begin(), slot->preparations.end(), Preparation::none);
   session->job.row_pixels = slot->share.row_pixels.data();
   // No more helpers than rows besides the first.
   const std::uint32_t rows = session->job.request.row_end - session->job.request.row_begin;
   for (std::uint32_t rank = 1; rank < team_.size; ++rank) {
-    if (rank >= rows) slot->preparations[rank] = Preparation::refused;
-    if (rank >= rows || ranks_[rank].is_lost || ranks_[rank].is_silent) continue;
+    const bool helps = is_shared && rank < rows;
+    if (!helps) slot->preparations[rank] = Preparation::refused;
+    if (!helps || ranks_[rank].is_lost || ranks_[rank].is_silent) continue;
     if (ranks_[rank].asked_count < kAskedMax) prepare(slot, rank);
   }
 }
@@ -119,6 +133,7 @@ void ClusterLead::end_own_or_other(Slot* slot, std::uint32_t index, const RowPie
   end_piece(&slot->share, static_cast<std::uint16_t>(index), piece);
   slot->pixels_done += pixel_count(piece);
   slot->pixels_traced += traced;
+  slot->work_ns += took_ns;
   pixels_traced_ += traced;
   if (index > 0) pixels_helped_ += traced;
   const double ns = static_cast<double>(took_ns + 1) / std::max(traced, 1u);
@@ -152,7 +167,8 @@ Slice ClusterLead::trace(Session* session, std::uint64_t slice_ns) {
   const std::uint64_t start = clock_ns();
   // Rows that others had in the last frame, and that would have to be traced whole, are left to them for so long.
   const double whole_ns = session->trace_ns * share->width / ranks_[0].threads;
-  for (bool any = !slot->keeps_rows;; any = !slot->keeps_rows) {
+  const bool leaves_rows = slot->keeps_rows && slot->is_shared;
+  for (bool any = !leaves_rows;; any = !leaves_rows) {
     while (take_answer(0)) {
     }
     give(slot);
