@@ -212,7 +212,8 @@ int run(const ServeOptions& o, ServeOnRanks on_ranks) {
 void add_serve_command(Command program, const Team& team, ServeOnRanks on_ranks, int* exit_status) {
   auto o = std::make_shared<ServeOptions>();
   o->team = team;
-  Command command = program.add_subcommand("serve", "run a render server that traces part of each frame for devices");
+  Command command = program.add_subcommand(
+      "serve", "run a render server that traces part of each frame for devices; under mpirun, on all ranks");
   command
       .add_option("--listen", o->listen,
                   "HOST:PORT to listen on; port 0 takes any free one; addresses that other machines can reach need "
@@ -227,7 +228,7 @@ void add_serve_command(Command program, const Team& team, ServeOnRanks on_ranks,
       "--scenes", o->scenes,
       "folder of scenes to offer besides the built-in ones, without its subfolders: .pray files and, on a desktop, "
       "models");
-  command.add_option("--threads", o->threads, "tracing threads, shared by all clients; 0: one per core")
+  command.add_option("--threads", o->threads, "tracing threads of each rank, shared by all clients; 0: one per core")
       .capture_default_str();
   command
       .add_option("--clients", o->clients, "maximum number of clients; further ones are told that the server is busy")
