@@ -79,7 +79,11 @@ int run_command(int argument_count, char** arguments, const Team& team) {
   add_compare_command(program, &exit_status);
 #endif
 #ifdef POCKETRAY_HAVE_NETWORK
-  add_serve_command(program, &exit_status);
+  ServeOnRanks on_ranks = nullptr;
+#ifdef POCKETRAY_HAVE_MPI
+  on_ranks = serve_on_ranks;
+#endif
+  add_serve_command(program, team, on_ranks, &exit_status);
   add_scenes_command(program, &exit_status);
   add_keygen_command(program, &exit_status);
 #endif

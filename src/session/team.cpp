@@ -92,12 +92,13 @@ Status check_team_command(const Team& team, const char* word, bool* is_needed) {
   CHECK(is_needed != nullptr);
   *is_needed = true;
   if (team.size == 1) return success();
-  for (const char* shared : {"reference", "accuracy", "render"})
+  for (const char* shared : {"reference", "accuracy", "render", "serve"})
     if (word && std::strcmp(word, shared) == 0) return success();
   *is_needed = leads(team);
   if (!word || word[0] == '-') return success();  // help, or an error
   return failure(
-      "`%.40s` does not run on several ranks, only reference, accuracy and render do: start it without mpirun", word);
+      "`%.40s` does not run on several ranks, only reference, accuracy, render and serve do: start it without mpirun",
+      word);
 }
 
 int run_in_team(const Team& team, const std::function<int()>& lead, const std::function<Status()>& open,

@@ -122,6 +122,55 @@ expect accuracy_of_2 0 'index.html' accuracy cube "${tiny[@]}" --rounds 1 --refe
 check accuracy_reference cmp sweep_one/reference-model.pfm sweep_two/reference-model.pfm
 check accuracy_other_reference cmp sweep_one/reference-physical.pfm sweep_two/reference-physical.pfm
 
+# serve: a client's pictures are those of one program; ranks trace a part; they end together, and clients go on alone.
+if "$program" --help | grep -q '^ *serve '; then
+  serve() {  # RANKS OPTION... : in the background; $address is where
+    ranks "$1"
+    start serve --listen 127.0.0.1:0 --threads 1 "${@:2}"
+    check "serve_on_$1_listens" wait_for 300 grep -q '^listening' run.out
+    address=$(sed -n 's/^listening on \([0-9.:]*\): .*/\1/p' run.out)
+    ranks_running=$(pgrep -P "$running" -f "$program")
+    alone
+  }
+  all_gone() {  # a process that has ended has no program file, even if nobody waits for it
+    for rank in $ranks_running; do ! readlink "/proc/$rank/exe" >/dev/null || return 1; done
+  }
+  sequence=(seesaw --size 64x48 --threads 1 --frames 0:15)
+  alone
+  expect served_alone 0 'per frame' render "${sequence[@]}" -o one/s.ppm
+  expect orbit_alone 0 'per frame' render "${sequence[@]}" --orbit 7 -o one/o.ppm
+  for n in 2 3; do
+    serve $n
+    check serve_on_${n}_tells_its_ranks grep -q "^listening.*: [0-9]* scenes, $n ranks with $n threads" run.out
+    expect_in_use "shared_with_$n" 'render servers: the device rendered' render "${sequence[@]}" --server "$address" -o two/s.ppm
+    expect "thin_with_$n" 0 'per frame' render "${sequence[@]}" --orbit 7 --memory 700K --server "$address" -o two/o.ppm
+    for i in 00 01 07 08 15; do
+      check "shared_with_${n}_$i" cmp one/s-00$i.ppm two/s-00$i.ppm
+      check "thin_with_${n}_$i" cmp one/o-00$i.ppm two/o-00$i.ppm
+    done
+    ranks 2
+    expect "port_of_${n}_is_taken" 1 'another program is listening' serve --listen "$address"
+    kill -INT "$running"
+    wait "$running"
+    check serve_on_${n}_ends_all_ranks wait_for 50 all_gone
+    check serve_on_${n}_tells_what_others_traced grep -q '^[1-9].* clients, .*; ranks besides 0 traced [1-9]' run.out
+  done
+  many=(seesaw --size 160x120 --coherence off --frames 0:99)
+  serve 2
+  "$program" render "${many[@]}" --emulate tablet -o two/k.ppm --server "$address" >device.out 2>&1 &
+  device=$!
+  wait_for 300 saved two/k-0009.ppm
+  kill -KILL "$(helper)"
+  wait "$running"
+  check serve_ends_with_a_rank test $? -ne 0
+  check serve_ends_with_all_ranks wait_for 50 all_gone
+  wait "$device"
+  check device_goes_on test $? -eq 0
+  check device_tells_the_loss grep -q "$address.* continuing without it" device.out
+  expect kept_alone 0 '' render "${many[@]}" -o one/k.ppm
+  check kept_frames diff <(cat one/k-*.ppm | md5sum) <(cat two/k-*.ppm | md5sum)
+fi
+
 # Errors: one line, exit status 1, no rank left behind.
 ranks 3
 expect refused 1 '`bench` does not run on several ranks' bench cube
@@ -150,6 +199,10 @@ odd reference nowhere.glb
 expect odd_without_scene 1 'rank 1: nowhere.glb' "${reference[@]}" --samples 2000000 -o odd.pfm
 odd reference furnace
 expect odd_scene 1 'rank 1: its scene or program is not that of rank 0' "${reference[@]}" --samples 2000000 -o odd.pfm
+if "$program" --help | grep -q '^ *serve '; then
+  odd serve --memory=32M
+  expect odd_options 1 'rank 1: its program or options are not those of rank 0' serve --memory=64M --listen 127.0.0.1:0
+fi
 odd render cube
 "${run[@]}" render seesaw "${tiny[@]}" --turntable 3600 -o one/odd.png >odd.out 2>&1
 check odd_frames test $? -eq 1

@@ -131,7 +131,8 @@ TEST_CASE("team_refuses_commands_that_do_not_share_their_work") {
       CAPTURE(rank);
       CAPTURE(word);
       const std::string name = word;
-      const bool is_shared = name == "reference" || name == "accuracy" || name == "render", is_option = word[0] == '-';
+      const bool is_shared = name == "reference" || name == "accuracy" || name == "render" || name == "serve",
+                 is_option = word[0] == '-';
       bool is_needed;
       Status status = check_team_command(fake.of(rank), word, &is_needed);
       CHECK(status.ok == (is_shared || is_option));

@@ -18,9 +18,10 @@ namespace pocketray {
 namespace {
 
 constexpr int kTag = 1;
-// Between looks for a message: at first short, so that an answer is soon there, later long, so that waiting costs
-// neither time nor caches of what is measured meanwhile (a look takes some microseconds).
-constexpr std::uint64_t kLookNsMin = 20'000, kLookNsMax = 20'000'000;
+// Between looks for a message: a fiftieth of the time since the last one. So an answer is soon there, a render server's
+// next request is hardly kept waiting, and a long wait costs neither time nor caches of what is measured meanwhile (a
+// look takes some microseconds).
+constexpr std::uint64_t kLookNsMin = 20'000, kLookNsMax = 20'000'000, kLookPart = 50;
 // A large message leaves only while its sender is inside MPI; so long at most.
 constexpr double kSendSeconds = 0.05;
 
@@ -30,7 +31,8 @@ struct Sent {
 };
 
 struct MpiTeam {
-  std::list<Sent> sent;  // not arrived yet
+  std::list<Sent> sent;        // not arrived yet
+  std::uint64_t heard_ns = 0;  // when the last message came
 };
 
 void sleep_ns(std::uint64_t ns) {
@@ -47,11 +49,13 @@ bool forget_arrived(MpiTeam* team) {
   return team->sent.empty();
 }
 
-// Calls is_there() until it is true, or the time has passed; sleeps in between.
+// Calls is_there() until it is true, or the time has passed; sleeps in between, the longer the more time has passed
+// since `since_ns`.
 template <class IsThere>
-bool look_for(double seconds, IsThere&& is_there) {
+bool look_for(double seconds, std::uint64_t since_ns, IsThere&& is_there) {
   const std::uint64_t start = clock_ns();
-  for (std::uint64_t pause = kLookNsMin; !is_there(); pause = std::min(pause * 3 / 2, kLookNsMax)) {
+  while (!is_there()) {
+    const std::uint64_t pause = std::max(kLookNsMin, std::min((clock_ns() - since_ns) / kLookPart, kLookNsMax));
     const double left = seconds - static_cast<double>(clock_ns() - start) * 1e-9;
     if (left <= 0) return false;
     sleep_ns(std::min(pause, static_cast<std::uint64_t>(left * 1e9) + 1));
@@ -66,14 +70,14 @@ void send(void* context, std::uint32_t to, const std::uint8_t* bytes, std::size_
   Sent& sent = team->sent.back();
   MPI_Isend(sent.bytes.data(), static_cast<int>(byte_count), MPI_BYTE, static_cast<int>(to), kTag, MPI_COMM_WORLD,
             &sent.request);
-  look_for(kSendSeconds, [&] { return forget_arrived(team); });
+  look_for(kSendSeconds, clock_ns(), [&] { return forget_arrived(team); });
 }
 
 bool receive(void* context, double seconds, TeamMessage* message) {
   MpiTeam* team = static_cast<MpiTeam*>(context);
   MPI_Message handle;
   MPI_Status status;
-  const bool there = look_for(seconds, [&] {
+  const bool there = look_for(seconds, team->heard_ns, [&] {
     forget_arrived(team);
     int is_there = 0;
     MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &is_there, &handle, &status);
@@ -81,6 +85,7 @@ bool receive(void* context, double seconds, TeamMessage* message) {
   });
   if (!there) return false;
   int byte_count = 0;
+  team->heard_ns = clock_ns();
   MPI_Get_count(&status, MPI_BYTE, &byte_count);
   CHECK_GT(byte_count, 0);
   message->from = static_cast<std::uint32_t>(status.MPI_SOURCE);

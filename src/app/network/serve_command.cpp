@@ -25,6 +25,7 @@ struct ServeOptions {
   std::uint32_t threads = 0, image_side_max = 2048;
   double idle_seconds = 300;
   bool insecure_lan = false;
+  Team team;
 };
 
 struct Serving {
@@ -77,7 +78,8 @@ Status find_address(const ServeOptions& o, platform::LinkAddress* address) {
 
 Status read_options(const ServeOptions& o, ServerOptions* options) {
   RETURN_IF_ERROR(parse_bytes(o.memory, &options->client_memory_bytes));
-  RETURN_IF_ERROR(choose_thread_count(o.threads, std::thread::hardware_concurrency(), &options->thread_count));
+  RETURN_IF_ERROR(choose_thread_count(team_threads(o.team, o.threads), std::thread::hardware_concurrency(),
+                                      &options->thread_count));
   RETURN_IF_ERROR(parse_coherence(o.coherence, &options->coherence));
   options->client_count_max = o.clients;
   options->image_side_max = o.image_side_max;
@@ -112,66 +114,106 @@ Status open_link(const ServeOptions& o, int stream_count, Serving* serving) {
   return serving->link ? success() : failure("%s", error.text);
 }
 
-Status start(const ServeOptions& o, Serving* serving, ServerOptions* options) {
-  platform::LinkAddress address;
-  RETURN_IF_ERROR(find_address(o, &address));
-  RETURN_IF_ERROR(read_options(o, options));
-  SceneStoreOptions store_options;
-  store_options.folder = o.scenes;
+Status read_cluster_options(const ServeOptions& o, ClusterOptions* options) {
+  RETURN_IF_ERROR(read_options(o, &options->server));
   std::size_t scene_bytes;
   RETURN_IF_ERROR(parse_bytes(o.scene_memory, &scene_bytes, "--scene-memory"));
-  store_options.bytes_max = scene_bytes;
+  options->scene_bytes_max = scene_bytes;
+  const ServerOptions& server = options->server;
+  char text[160];
+  std::snprintf(text, sizeof text, "%d %zu %zu %zu %d %u %d", static_cast<int>(kWireVersion), sizeof(FrameRequest),
+                server.client_memory_bytes, scene_bytes, server.client_count_max, server.image_side_max,
+                static_cast<int>(server.coherence));
+  options->identity = text;
+  return success();
+}
 
+Status start(const ServeOptions& o, const ServeCluster& cluster, const SceneStoreOptions& store_options,
+             Serving* serving, ServerOptions* options) {
+  platform::LinkAddress address;
+  RETURN_IF_ERROR(find_address(o, &address));
   RETURN_IF_ERROR(plan_streams(options));
   RETURN_IF_ERROR(open_link(o, server_stream_count(*options), serving));
   // Takes the address first, so that one already in use is reported before the slow reading of scenes.
   RETURN_IF_ERROR(open_server(*options, serving->store, serving->link, address, &serving->server));
   RETURN_IF_ERROR(open_scene_store(store_options, &serving->store));
   for (const std::string& warning : serving->store.warnings) print_note(warning);
-  return success();
+  return cluster.welcome ? cluster.welcome(serving->store) : success();
 }
 
-void print_start(const ServeOptions& o, const Serving& serving, const ServerOptions& options) {
+std::string threads_of(const ServeCluster& cluster, const ServerOptions& options) {
+  const std::uint32_t count = cluster.thread_count ? cluster.thread_count() : options.thread_count;
+  const std::string threads = std::to_string(count) + (count == 1 ? " thread" : " threads");
+  return cluster.helpers ? std::to_string(cluster.rank_count) + " ranks with " + threads : threads;
+}
+
+void print_start(const ServeOptions& o, const ServeCluster& cluster, const Serving& serving,
+                 const ServerOptions& options) {
   for (const StoredScene& scene : serving.store.scenes)
     std::printf("  %-24s %9s triangles %8.1f MiB\n", scene.name, grouped(scene.scene.triangles.count).c_str(),
                 static_cast<double>(scene.byte_count) / (1 << 20));
   if (!o.key.empty())
     std::printf("  only for holders of the key in %s, encrypted; %.1f MiB for that\n", o.key.c_str(),
                 static_cast<double>(encrypted_link_need(server_stream_count(options))) / (1 << 20));
-  std::printf("listening on %s: %zu scenes, %u thread%s, %d clients of %.0f MiB each; Ctrl-C stops it\n",
-              server_address(*serving.server), serving.store.scenes.size(), options.thread_count,
-              options.thread_count == 1 ? "" : "s", options.client_count_max,
-              static_cast<double>(options.client_memory_bytes) / (1 << 20));
+  std::printf("listening on %s: %zu scenes, %s, %d clients of %.0f MiB each; Ctrl-C stops it\n",
+              server_address(*serving.server), serving.store.scenes.size(), threads_of(cluster, options).c_str(),
+              options.client_count_max, static_cast<double>(options.client_memory_bytes) / (1 << 20));
   std::fflush(stdout);
 }
 
-int run(const ServeOptions& o) {
+void print_totals(const ServerTotals& totals, const ServeCluster& cluster) {
+  char line[200];
+  int length = std::snprintf(line, sizeof line, "%" PRIu64 " clients, %s frames, %s rows, %.1f MiB sent",
+                             totals.client_count, grouped(totals.frame_count).c_str(),
+                             grouped(totals.row_count).c_str(), static_cast<double>(totals.byte_count) / (1 << 20));
+  if (cluster.helped_share)
+    std::snprintf(line + length, sizeof line - static_cast<std::size_t>(length),
+                  "; ranks besides 0 traced %.0f %% of the pixels", 100 * cluster.helped_share());
+  (void)platform::print_line_at_once(line);
+}
+
+// Serves until an interrupt; on several ranks, on rank 0.
+int serve(const ServeOptions& o, const ClusterOptions& given, const ServeCluster& cluster) {
   constexpr std::uint64_t kStepNs = 100'000'000;  // longest delay until an interrupt is noticed
-  platform::survive_closed_pipes();
   Serving serving;
-  ServerOptions options;
-  Status status = start(o, &serving, &options);
+  ServerOptions options = given.server;
+  options.helpers = cluster.helpers;
+  SceneStoreOptions store_options;
+  store_options.folder = o.scenes;
+  store_options.bytes_max = given.scene_bytes_max;
+  Status status = start(o, cluster, store_options, &serving, &options);
   if (!status.ok) return report(status);
-  print_start(o, serving, options);
+  print_start(o, cluster, serving, options);
   seal_memory();
-  while (!interrupted) step_server(serving.server, kStepNs);
+  while (!interrupted && status.ok) {
+    step_server(serving.server, kStepNs);
+    if (cluster.tend) status = cluster.tend();
+  }
   unseal_memory();
   ServerTotals totals = server_totals(*serving.server);
   close_server(serving.server);
   serving.server = nullptr;
-  char line[160];
-  std::snprintf(line, sizeof line, "%" PRIu64 " clients, %s frames, %s rows, %.1f MiB sent", totals.client_count,
-                grouped(totals.frame_count).c_str(), grouped(totals.row_count).c_str(),
-                static_cast<double>(totals.byte_count) / (1 << 20));
-  (void)platform::print_line_at_once(line);
-  return kExitInterrupted;
+  print_totals(totals, cluster);
+  return status.ok ? kExitInterrupted : report(status);
+}
+
+int run(const ServeOptions& o, ServeOnRanks on_ranks) {
+  platform::survive_closed_pipes();
+  auto read = [&](ClusterOptions* options) { return read_cluster_options(o, options); };
+  auto lead = [&](const ClusterOptions& options, const ServeCluster& cluster) { return serve(o, options, cluster); };
+  if (o.team.size > 1 && on_ranks) return on_ranks(o.team, read, lead);
+  ClusterOptions options;
+  Status status = read(&options);
+  return status.ok ? serve(o, options, ServeCluster()) : report(status);
 }
 
 }  // namespace
 
-void add_serve_command(Command program, int* exit_status) {
+void add_serve_command(Command program, const Team& team, ServeOnRanks on_ranks, int* exit_status) {
   auto o = std::make_shared<ServeOptions>();
-  Command command = program.add_subcommand("serve", "run a render server that traces part of each frame for devices");
+  o->team = team;
+  Command command = program.add_subcommand(
+      "serve", "run a render server that traces part of each frame for devices; under mpirun, on all ranks");
   command
       .add_option("--listen", o->listen,
                   "HOST:PORT to listen on; port 0 takes any free one; addresses that other machines can reach need "
@@ -186,7 +228,7 @@ void add_serve_command(Command program, int* exit_status) {
       "--scenes", o->scenes,
       "folder of scenes to offer besides the built-in ones, without its subfolders: .pray files and, on a desktop, "
       "models");
-  command.add_option("--threads", o->threads, "tracing threads, shared by all clients; 0: one per core")
+  command.add_option("--threads", o->threads, "tracing threads of each rank, shared by all clients; 0: one per core")
       .capture_default_str();
   command
       .add_option("--clients", o->clients, "maximum number of clients; further ones are told that the server is busy")
@@ -207,7 +249,7 @@ void add_serve_command(Command program, int* exit_status) {
                   "its memory allows it")
       .capture_default_str();
   add_isa_option(command, &o->isa);
-  command.callback([=] { *exit_status = run(*o); });
+  command.callback([=] { *exit_status = run(*o, on_ranks); });
 }
 
 }  // namespace pocketray

@@ -170,6 +170,7 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
     case JobStage::plan:
       return plan(session, tools, code);
     case JobStage::aim:
+      if (tools.helpers && !session->job.is_view_query) tools.helpers->begin(tools.helpers->context, session);
       return aim(session);
     case JobStage::own_exposure:
     case JobStage::view_exposure:
@@ -179,7 +180,8 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
       break;
     case JobStage::rows:
       CHECK(session->encoder != nullptr && session->built_scene == session->job.scene);
-      *slice = trace_slice(session, slice_ns);
+      *slice = tools.helpers ? tools.helpers->trace(tools.helpers->context, session, slice_ns)
+                             : trace_slice(session, slice_ns);
       break;
   }
   return success();

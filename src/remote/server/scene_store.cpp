@@ -72,8 +72,8 @@ Status read_bytes(const std::string& path, std::uint64_t bytes_left, StoredScene
   return success();
 }
 
-Status read_scene(const std::string& path, std::uint64_t bytes_left, StoredScene* stored) {
-  RETURN_IF_ERROR(read_bytes(path, bytes_left, stored));
+// Opens the bytes.
+Status open_stored(std::uint64_t bytes_left, StoredScene* stored) {
   if (stored->byte_count > bytes_left) return too_many_bytes(bytes_left);
   RETURN_IF_ERROR(baked_open(stored->bytes, stored->byte_count, &stored->scene));
   stored->hash = content_hash(stored->bytes, stored->byte_count);
@@ -96,13 +96,25 @@ void set_name(const std::string& name, StoredScene* stored) {
   make_printable(stored->name, length);
 }
 
+// Adds an opened scene, or gives its memory back.
+Status add_scene(const std::string& name, Status status, StoredScene* stored, SceneStore* store) {
+  if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server holds at most 65535 scenes");
+  if (status.ok && !find_scene(*store, stored->hash)) {
+    set_name(name, stored);
+    store->scenes.push_back(*stored);
+  } else {
+    release(stored);
+  }
+  return status;
+}
+
+}  // namespace
+
 std::uint64_t stored_bytes(const SceneStore& store) {
   std::uint64_t sum = 0;
   for (const StoredScene& stored : store.scenes) sum += stored.byte_count + stored.accel_bytes;
   return sum;
 }
-
-}  // namespace
 
 SceneStore::~SceneStore() {
   for (StoredScene& stored : scenes) release(&stored);
@@ -111,15 +123,21 @@ SceneStore::~SceneStore() {
 Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store) {
   CHECK(store != nullptr);
   StoredScene stored;
-  Status status = read_scene(path, bytes_left, &stored);
-  if (status.ok && store->scenes.size() == UINT16_MAX) status = failure("a server holds at most 65535 scenes");
-  if (status.ok && !find_scene(*store, stored.hash)) {
-    set_name(name, &stored);
-    store->scenes.push_back(stored);
-  } else {
-    release(&stored);
-  }
-  return status;
+  Status status = read_bytes(path, bytes_left, &stored);
+  if (status.ok) status = open_stored(bytes_left, &stored);
+  return add_scene(name, status, &stored, store);
+}
+
+Status store_baked_scene(const std::string& name, const std::uint8_t* bytes, std::size_t byte_count,
+                         std::uint64_t bytes_left, SceneStore* store) {
+  CHECK(bytes != nullptr && store != nullptr);
+  if (byte_count > bytes_left) return too_many_bytes(bytes_left);
+  StoredScene stored;
+  std::uint8_t* copy = take_aligned(byte_count, &stored.baked_block);
+  if (!copy) return failure("cannot get %zu bytes of memory", byte_count);
+  std::memcpy(copy, bytes, byte_count);
+  stored.bytes = copy, stored.byte_count = byte_count;
+  return add_scene(name, open_stored(bytes_left, &stored), &stored, store);
 }
 
 Status open_scene_store(const SceneStoreOptions& options, SceneStore* store) {

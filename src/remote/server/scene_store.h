@@ -43,6 +43,13 @@ Status open_scene_store(const SceneStoreOptions& options, SceneStore* store);
 // not add a scene twice.
 Status store_scene(const std::string& name, const std::string& path, std::uint64_t bytes_left, SceneStore* store);
 
+// The same for the bytes of a baked file, which are copied.
+Status store_baked_scene(const std::string& name, const std::uint8_t* bytes, std::size_t byte_count,
+                         std::uint64_t bytes_left, SceneStore* store);
+
+// Of all scenes with their accelerators.
+std::uint64_t stored_bytes(const SceneStore& store);
+
 // Null if there is none.
 const StoredScene* find_scene(const SceneStore& store, const ContentHash& hash);
 

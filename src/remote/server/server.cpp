@@ -150,6 +150,7 @@ Status check_options(const ServerOptions& o) {
     return failure("the number of threads is %u: it must lie in 1 … %u", o.thread_count, kThreadCountMax);
   if (o.image_side_max < 1 || o.image_side_max > kImageSideMax)
     return failure("the longest picture side may be at most %u pixels, not %u", kImageSideMax, o.image_side_max);
+  CHECK(!o.helpers || !is_paced(o.pace));  // an emulated CPU works alone
   return success();
 }
 

@@ -13,6 +13,8 @@ namespace pocketray {
 
 constexpr int kServerClientsMax = 64;  // chosen: with the default memory, they take 4 GiB
 
+struct HelperRanks;  // session.h
+
 // Defaults, chosen: eight clients take half a GiB, and the radiance of the largest picture takes 48 of a client's 64
 // MiB. A client itself gives up after 3 s (client.h), so 10 s end only what is lost. A viewer at rest sends nothing; it
 // keeps its place for minutes unless another needs it (kMakeWayNs).
@@ -23,6 +25,7 @@ struct ServerOptions {
   std::uint32_t image_side_max = 2048;                     // pixels; larger pictures are refused
   std::uint32_t thread_count = 1;                          // for tracing, shared by all clients
   CoherenceMode coherence = CoherenceMode::automatic;      // as far as a client's memory allows
+  const HelperRanks* helpers = nullptr;                    // that render with this program; null: none
   Pace pace;                                               // the CPU to emulate: cost of pixels,
   std::uint64_t message_ns = 0, byte_ps = 0;               // of a message and a byte of its answer (0: none),
   const float* row_costs = nullptr;                        // and relative cost of rows; see row_costs.h

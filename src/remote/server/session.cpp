@@ -28,11 +28,8 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   CHECK_LE(row_end - row_begin, session->shape.chunk_rows_max);
   const FrameRequest& request = session->job.request;
   const Renderer& renderer = session->renderer;
-  int width = static_cast<int>(renderer.settings.width),
-      line_bytes = width * static_cast<int>(pixel_bytes(request.format));
-  pack_rows(renderer.image.data, width, static_cast<int>(renderer.settings.height), static_cast<int>(row_begin),
-            static_cast<int>(row_end), renderer.exposure, pack_format(request.format), Rotation::none, request.dither,
-            session->pixels.data, line_bytes);
+  const std::uint32_t* row_pixels = session->job.row_pixels;
+  if (!row_pixels) pack_session_rows(session, row_begin, row_end);
   const bool states_price = session->price != session->price_stated;
   std::uint32_t prefix = row_chunk_prefix_bytes(states_price), row_count = row_end - row_begin;
   std::uint8_t* at = reserve_output(&session->messages, prefix + encoded_bytes_max(session->shape, row_count));
@@ -46,12 +43,13 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   chunk->price = states_price ? session->price : 0;
   session->price_stated = session->price;
   std::uint64_t traced = 0;
-  for (std::uint32_t row = row_begin; row < row_end; ++row) traced += count_pixels(renderer, row);
+  for (std::uint32_t row = row_begin; row < row_end; ++row)
+    traced += row_pixels ? row_pixels[row] : count_pixels(renderer, row);
   chunk->traced = traced_part(traced, std::uint64_t(renderer.settings.width) * row_count);
+  const std::size_t line_bytes = std::size_t(renderer.settings.width) * pixel_bytes(request.format);
   std::uint32_t byte_count =
-      encode_rows(session->encoder, request.frame, row_begin, row_count,
-                  session->pixels.data + std::size_t(row_begin) * static_cast<std::size_t>(line_bytes), request.coding,
-                  at + prefix, &chunk->encoding);
+      encode_rows(session->encoder, request.frame, row_begin, row_count, session->pixels.data + row_begin * line_bytes,
+                  request.coding, at + prefix, &chunk->encoding);
   CHECK_EQ(chunk->encoding >> kChunkNumberShift, 0);
   add_chunk_number(chunk, session->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};
@@ -183,6 +181,16 @@ bool can_work(const Session& session) {
   return session.job.stage != JobStage::rows || (has_rows(session.job.traced) && unsent < next_chunk_rows(session));
 }
 
+void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t row_end) {
+  const Renderer& renderer = session->renderer;
+  const FrameRequest& request = session->job.request;
+  CHECK(row_begin < row_end && row_end <= renderer.settings.height);
+  const int width = static_cast<int>(renderer.settings.width);
+  pack_rows(renderer.image.data, width, static_cast<int>(renderer.settings.height), static_cast<int>(row_begin),
+            static_cast<int>(row_end), renderer.exposure, pack_format(request.format), Rotation::none, request.dither,
+            session->pixels.data, width * static_cast<int>(pixel_bytes(request.format)));
+}
+
 std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_count, double known_ns,
                            std::uint64_t slice_ns) {
   double most = kLightPointNs * settings.samples_per_pixel * (1.0 + light_point_count);
@@ -221,14 +229,14 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns) {
   RowRange ranges[kRunCountMax];
   const std::uint32_t range_count = next_ranges(*job, slice.row_count, ranges);
   for (std::uint32_t i = 0; i < range_count; ++i) {
-    finish_shared_rows(&session->renderer, ranges[i].begin, ranges[i].end);
+    if (!job->row_pixels) finish_shared_rows(&session->renderer, ranges[i].begin, ranges[i].end);
     pass_rows(job->request, ranges[i].end - ranges[i].begin, &job->traced);
   }
   job->rows_traced += slice.row_count;
   job->traced_columns = slice.column_end;
   job->work_ns += took_ns;
   job->pixel_count += slice.pixel_count;
-  if (slice.traced_count > 0)
+  if (slice.traced_count > 0 && !job->row_pixels)
     session->trace_ns = dear_pixel_ns(session->trace_ns, static_cast<double>(took_ns + 1) / slice.traced_count);
 }
 

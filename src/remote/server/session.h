@@ -54,6 +54,9 @@ struct FrameJob {
   std::uint32_t traced_columns;
   std::uint64_t work_ns, pixel_count;  // of rows traced but not completely sent
   std::uint64_t took_ns;               // CPU time so far
+  // Of each row of the picture, the pixels traced, if several ranks share the job: its complete rows are then packed.
+  // Null: this program alone renders.
+  const std::uint32_t* row_pixels;
 };
 
 // Work traced at once: whole rows, or pixels of a slow row, or pixels of an exposure.
@@ -63,11 +66,23 @@ struct Slice {
   bool is_probe;
 };
 
+struct Session;
+
+// Other ranks that trace rows of all jobs together with this one; remote/cluster/ has them.
+struct HelperRanks {
+  void* context;
+  // Tells them of a job before its frame is prepared, and sets its row_pixels.
+  void (*begin)(void* context, Session* session);
+  // Traces next pixels of the job with them, for about `slice_ns`, and packs rows that are complete.
+  Slice (*trace)(void* context, Session* session, std::uint64_t slice_ns);
+};
+
 // Rendering resources shared by all clients.
 struct JobTools {
   std::uint32_t thread_count;
   Workers* workers;
   CoherenceMode coherence;
+  const HelperRanks* helpers = nullptr;
 };
 
 struct Session {
@@ -147,6 +162,8 @@ inline double dear_pixel_ns(double known_ns, double new_ns) {
 std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
 // Traces the next pixels of the job, for about `slice_ns`.
 Slice trace_slice(Session* session, std::uint64_t slice_ns);
+// Packs rows of the image in the session's picture.
+void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t row_end);
 // Accounts for a slice that took that much CPU time.
 void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns);
 // Queues completely traced chunks as far as the queue has room; the last one ends the job.

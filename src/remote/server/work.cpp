@@ -138,7 +138,8 @@ void begin_work(Server* server, int index) {
     send_chunks(session);
   } else {
     WireError code;
-    JobTools tools = {server->options.thread_count, server->workers, server->options.coherence};
+    const ServerOptions& o = server->options;
+    JobTools tools = {o.thread_count, server->workers, o.coherence, o.helpers};
     Status status = step_job(session, tools, kSliceNs, &work->slice, &code);
     if (!status.ok) {
       std::uint32_t frame = session->job.request.frame;
