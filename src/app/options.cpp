@@ -209,6 +209,12 @@ void add_servers_options(Command command, ServersOptions* o) {
                   "default: as many as 1 % of the time allows. A server caught with a wrong pixel is dropped. N "
                   "pixels catch one wrong row of R in a frame with a probability of at least 1 - (1 - 1/R)^N")
       .group(group);
+  command
+      .add_flag(
+          "--near-lossless", o->near_lossless,
+          "let servers send pixels of which each channel is off by one level of its format, for about half of the "
+          "bytes; otherwise every pixel is exact")
+      .group(group);
   command.add_option("--price", o->price, "price of 10^6 bytes from a server, in any unit").group(group);
   command.add_option("--energy-pixel", o->energy_pixel, "cost of rendering a pixel on the device, in that unit")
       .group(group);

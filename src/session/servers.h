@@ -23,6 +23,7 @@ struct ServersOptions {
   std::string key;  // file of the key that encrypts the links; empty: they are not encrypted
   double device_share = kBestShare;
   int verify = kVerifyAuto;  // servers' pixels to check per frame
+  bool near_lossless = false;  // servers' pixels may be off by a level of their format in each channel
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "session/interrupt.h"
 #include "session/measure.h"
 #include "split/closed_form.h"
+#include "split_report/row_streams.h"
 
 namespace pocketray {
 namespace {
@@ -35,11 +36,9 @@ struct WholeFrames {
 struct Experiment {
   SplitSetup setup;
   VirtualWorld world;
-  std::vector<unsigned char> memory, whole_memory;
+  std::vector<unsigned char> memory;
   Client client;
   CameraControl camera;
-  RowEncoder* whole = nullptr;
-  std::vector<std::uint8_t> whole_chunk;
   std::vector<double> times;
   std::uint32_t frame = 0;  // along the path
   std::uint64_t* frames_done = nullptr;
@@ -49,15 +48,6 @@ struct Experiment {
     if (setup.device) setup.device->camera = camera.home;  // for the next experiment's path
   }
 };
-
-void open_whole_encoder(Experiment* e) {
-  const Settings& settings = e->setup.device->settings;
-  CodecShape shape = {settings.width, settings.height, std::min(kChunkRowsMax, settings.height), e->setup.format};
-  e->whole_memory.resize(row_encoder_need(shape) + kArenaAlignment);
-  e->whole_chunk.resize(encoded_bytes_max(shape, shape.chunk_rows_max));
-  Arena arena = make_arena("whole frames", e->whole_memory.data(), e->whole_memory.size());
-  make_row_encoder(shape, &arena, &e->whole);
-}
 
 Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_t* frames_done, Experiment* e) {
   CHECK(setup.device != nullptr && setup.store != nullptr);
@@ -83,7 +73,6 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   Arena arena = make_arena("client", e->memory.data(), e->memory.size());
   RETURN_IF_ERROR(make_client(options, renderer->settings, setup.scene, e->world.link, e->world.addresses.data(),
                               setup.server_count, &arena, &e->client));
-  open_whole_encoder(e);
   return success();
 }
 
@@ -101,22 +90,6 @@ Status next_frame(Experiment* e, bool* complete) {
   return success();
 }
 
-// Bytes of the picture if no part of it was sent before.
-double whole_bytes(Experiment* e) {
-  CHECK(e->whole != nullptr);
-  restart_row_encoder(e->whole);
-  const RowCoding coding = row_coding(e->client.servers[0].ns_per_byte);
-  std::uint32_t height = e->client.settings.height;
-  double sum = 0;
-  for (std::uint32_t end = height; end > 0;) {  // upward, as servers send them
-    std::uint8_t encoding;
-    const std::uint32_t count = std::min(kChunkRowsMax, end), row = end - count;
-    end = row;
-    sum += encode_rows(e->whole, 1, row, count, merged_row(e->client, row), coding, e->whole_chunk.data(), &encoding);
-  }
-  return sum;
-}
-
 // Renders frames until all servers are in use and their speed and the link's are known.
 Status settle(Experiment* e, bool* complete) {
   *complete = true;
@@ -131,7 +104,7 @@ Status settle(Experiment* e, bool* complete) {
 // Runs the path from its start `lap_count` times, skipping the first frames of each lap, which follow a jump and
 // perhaps a change of share. A lap before them does not count either: a stream that has already seen a small picture's
 // path compresses it better.
-Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, double* whole) {
+Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, bool* complete, RowStreams* whole) {
   const Settings& settings = e->client.settings;
   const std::uint32_t frame_count = lap_count * e->setup.frame_count;
   CHECK_LE(frame_count, e->times.size());
@@ -154,7 +127,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     point->row_count += double(settings.height - share.device_rows) / frame_count;
     for (std::uint32_t i = 0; i < e->setup.server_count; ++i)
       point->server_rows[i] += double(share.server_rows[i]) / frame_count;
-    if (whole) *whole += whole_bytes(e) / frame_count;
+    if (whole) send_picture(whole, merged_row(e->client, 0), row_coding(e->client.servers[0].ns_per_byte, false));
   }
   CHECK(!*complete || measured == frame_count);
   if (*complete) point->ns_per_pixel = range_of(e->times.data(), frame_count).median;
@@ -224,7 +197,17 @@ Status measure_split(const SplitSetup& setup, std::uint32_t step_count, Progress
   bool complete;
   RETURN_IF_ERROR(open_experiment(setup, progress, &frames_done, &e));
   RETURN_IF_ERROR(settle(&e, &complete));
-  if (complete) RETURN_IF_ERROR(measure_point(&e, kChosenLaps, &figures->chosen, &complete, &figures->whole_bytes));
+  RowStreams whole;
+  open_row_streams({e.client.settings.width, e.client.settings.height,
+                    std::min(kChunkRowsMax, e.client.settings.height), setup.format},
+                   &whole);
+  if (complete) RETURN_IF_ERROR(measure_point(&e, kChosenLaps, &figures->chosen, &complete, &whole));
+  if (whole.picture_count > 1) {
+    const double changes = whole.picture_count - 1;
+    figures->whole_bytes = whole.first.bytes / whole.picture_count;
+    figures->lossless_bytes = whole.lossless.bytes / changes, figures->near_bytes = whole.near.bytes / changes;
+    figures->near_error = std::sqrt(whole.near.squares / changes);
+  }
   // 1. The ends first, so that they exist for comparison after an interrupt.
   std::vector<SplitPoint>* sweep = &figures->sweep;
   if (complete) RETURN_IF_ERROR(measure_share(&e, 1, sweep, &complete));

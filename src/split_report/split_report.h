@@ -46,7 +46,9 @@ struct PaperRow {
 struct SplitFigures {
   SplitPoint chosen, best, local;  // the program's choice; the sweep's minimum; the device alone
   std::vector<SplitPoint> sweep;   // by m
-  double whole_bytes = 0;          // of a frame with every row sent in full, compressed like the chosen ones
+  double whole_bytes = 0;          // of a frame if it were a connection's first
+  // Of a frame, all rows, after the one before; the second's error, root mean square, in levels of the format.
+  double lossless_bytes = 0, near_bytes = 0, near_error = 0;
   std::vector<PaperRow> paper;
 };
 

@@ -69,17 +69,6 @@ struct Neighbours {
   std::uint32_t left, below, corner, beyond;  // beyond: right of `below`
 };
 
-// Whether all channels are within the tolerance.
-template <class Pixel>
-bool is_close(std::uint32_t a, std::uint32_t b, std::uint32_t tolerance) {
-  if (a == b || tolerance == 0) return a == b;
-  for (int i = 0; i < 3; ++i) {
-    const std::uint32_t p = channel_of<Pixel>(a, i), q = channel_of<Pixel>(b, i);
-    if ((p < q ? q - p : p - q) > tolerance) return false;
-  }
-  return true;
-}
-
 // A row of a block: its pixels in the picture, those below and before it, and an encoder's.
 struct BlockRow {
   std::uint8_t* here;

@@ -102,6 +102,10 @@ void restart_row_decoder(RowDecoder* decoder);
 // unusable until restarted: end the connection.
 [[nodiscard]] bool decode_rows(RowDecoder* decoder, const RowChunk& chunk);
 
+// Whether no channel of any pixel differs by more levels than the tolerance.
+bool pixels_close(WireFormat format, const std::uint8_t* a, const std::uint8_t* b, std::uint32_t pixel_count,
+                  std::uint32_t tolerance);
+
 // First byte of a row in the picture.
 inline std::uint8_t* picture_row(const CodecState& s, std::uint32_t row) {
   return s.versions.data +

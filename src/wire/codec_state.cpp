@@ -84,4 +84,16 @@ void put_raw_rows(CodecState* state, std::uint32_t row_begin, std::uint32_t row_
   for (BlockChoice& block : state->blocks) block = {};  // an encoder may have tried to code the rows
 }
 
+bool pixels_close(WireFormat format, const std::uint8_t* a, const std::uint8_t* b, std::uint32_t pixel_count,
+                  std::uint32_t tolerance) {
+  const std::uint32_t bytes = pixel_bytes(format);
+  if (std::memcmp(a, b, std::size_t(pixel_count) * bytes) == 0) return true;
+  if (tolerance == 0) return false;
+  for (const std::uint8_t* end = a + std::size_t(pixel_count) * bytes; a < end; a += bytes, b += bytes)
+    if (!(format == WireFormat::rgb565 ? is_close<Pixel565>(Pixel565::load(a), Pixel565::load(b), tolerance)
+                                       : is_close<Pixel888>(Pixel888::load(a), Pixel888::load(b), tolerance)))
+      return false;
+  return true;
+}
+
 }  // namespace pocketray

@@ -49,4 +49,15 @@ std::uint32_t predict(std::uint32_t left, std::uint32_t below, std::uint32_t cor
   return result;
 }
 
+// Whether all channels are within the tolerance.
+template <class Pixel>
+bool is_close(std::uint32_t a, std::uint32_t b, std::uint32_t tolerance) {
+  if (a == b || tolerance == 0) return a == b;
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t p = channel_of<Pixel>(a, i), q = channel_of<Pixel>(b, i);
+    if ((p < q ? q - p : p - q) > tolerance) return false;
+  }
+  return true;
+}
+
 }  // namespace pocketray

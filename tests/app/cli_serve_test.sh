@@ -120,6 +120,11 @@ if [ $# -eq 0 ] && "${run[@]}" --help | grep -q '^ *serve '; then  # not under a
   expect servers_too_many 1 'at most 8' "${one[@]}" $(printf -- "--server $address %.0s" 1 2 3 4 5 6 7 8 9)
   for value in -2 1025; do expect "verify_$value" 1 '0 … 1024' "${one[@]}" --server "$address" --verify=$value; done
   expect verify_without_a_server 1 '--server' "${one[@]}" --verify=3
+  expect near_lossless_without_a_server 1 '--server' "${one[@]}" --near-lossless
+  # Goal: near-lossless pictures look the same. Method: an emulated radio, over which rows are coded.
+  expect_in_use near_lossless_is_used 'render servers: the device rendered' render seesaw "${shared[@]}" --emulate pi-zero \
+    --coherence off --server "$address" --near-lossless -o near.ppm
+  expect near_lossless_looks_the_same 0 '' compare alone-0007.ppm near-0007.ppm --fail-above 0.02
   expect_in_use verify_prints_its_odds 'of their pixels per frame checked, which catches one wrong row per frame with a probability of' \
     render seesaw "${shared[@]}" --server "$address" --verify 9 -o verified.ppm
   for value in 1.5 -0.5; do expect "share_$value" 1 '0 … 1' "${one[@]}" --server "$address" --share=$value; done

@@ -142,6 +142,9 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
           {"kept_rows_per_frame", s.chosen.kept_rows},
           {"kept_row_bytes_per_frame", s.chosen.kept_bytes},
           {"whole_bytes_per_frame", s.whole_bytes},
+          {"lossless_bytes_per_frame", s.lossless_bytes},
+          {"near_lossless_bytes_per_frame", s.near_bytes},
+          {"near_lossless_error_levels", s.near_error},
           {"raw_bytes_per_frame", pixel_count(*setup.device) * pixel_bytes(setup.format)}};
 }
 
@@ -165,9 +168,12 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
   double raw = pixel_count(*setup.device) * pixel_bytes(setup.format);
   double sent = s.chosen.row_count / setup.device->settings.height;
   std::printf(
-      "bytes per frame at the chosen m: %.0f, of which %.0f message overhead; rows sent without deltas: %.0f "
-      "compressed, %.0f raw\n",
+      "bytes per frame at the chosen m: %.0f, of which %.0f message overhead; the same rows in a first frame: %.0f; "
+      "as pixels: %.0f\n",
       s.chosen.bytes, s.chosen.bytes - s.chosen.row_bytes, s.whole_bytes * sent, raw * sent);
+  if (s.near_bytes > 0)
+    std::printf("all rows: %.0f bytes lossless, %.0f near-lossless with an error of %.2f levels (--near-lossless)\n",
+                s.lossless_bytes, s.near_bytes, s.near_error);
   if (s.chosen.kept_rows > 0)
     std::printf("of these, chunks in which no pixel could change: %.0f bytes, %.1f rows\n", s.chosen.kept_bytes,
                 s.chosen.kept_rows);

@@ -26,6 +26,7 @@ struct ClientOptions {
   double cost_per_device_pixel = 0, cost_per_byte = 0;  // energy, in the unit of the cost cap
   double cost_per_megabyte = 0;                         // price of 10⁶ bytes
   double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; negative: the best
+  bool near_lossless = false;                           // servers' pixels may be a level off per channel
   bool device_goes_on = true;                           // goes on into missing rows; false: for comparisons
   Pace pace;                                            // the CPU to emulate
   const float* row_costs = nullptr;                     // relative row costs on it; see row_costs.h
@@ -178,7 +179,7 @@ struct Client {
 };
 
 // How rows should come over a link of that speed.
-RowCoding row_coding(double ns_per_byte);
+RowCoding row_coding(double ns_per_byte, bool near_lossless);
 
 // Arena bytes for pictures of that size. The client uses server_count streams of the link.
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count);
@@ -223,6 +224,8 @@ std::uint64_t client_now_ns(const Client& client);
 inline std::uint64_t client_elapsed_ns(const Client& client) {
   return client_now_ns(client) - client.begin_ns + client.prepare_ns;
 }
+// Levels by which an honest server's channels may be off.
+inline std::uint32_t pixel_tolerance(const Client& client) { return client.options.near_lossless ? 1 : 0; }
 // Start of a row in client->pixels.
 inline std::uint8_t* merged_row(const Client& client, std::uint32_t row) {
   return client.pixels.data + std::size_t(row) * client.settings.width * pixel_bytes(client.options.format);

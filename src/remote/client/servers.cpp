@@ -76,6 +76,8 @@ Status check(const ServersOptions& o) {
   if (o.addresses.empty() && !o.key.empty()) return failure("--key encrypts links to render servers: add --server");
   if (o.addresses.empty() && o.verify != kVerifyAuto)
     return failure("--verify checks pixels of render servers: add --server");
+  if (o.addresses.empty() && o.near_lossless)
+    return failure("--near-lossless applies to pixels of render servers: add --server");
   bool any = o.price > 0 || o.energy_pixel > 0 || o.energy_byte > 0 || o.cost_weight_ms > 0 || o.cost_cap > 0;
   if (o.addresses.empty() && (any || o.device_share != kBestShare))
     return failure("shares, prices and energies apply to render servers: add --server");
@@ -137,6 +139,7 @@ Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, boo
   options.pace = renderer->pace;
   options.has_scene = !s->is_thin;
   options.check_count = s->options.verify;
+  options.near_lossless = s->options.near_lossless;
   options.entropy = platform::random_bytes;
   options.log = print_line;
   s->totals = ServersTotals();

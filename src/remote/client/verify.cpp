@@ -107,8 +107,9 @@ std::uint32_t find_wrong(const Client& client, std::uint32_t begin, std::uint32_
   CHECK(begin <= end && end <= client.verifier.spans.count);
   std::size_t bytes = pixel_bytes(client.options.format);
   std::uint32_t i = begin;
-  while (i < end && std::memcmp(merged_row(client, v.spans[i].row) + v.spans[i].column_begin * bytes,
-                                v.pixels.data + i * bytes, bytes) == 0)
+  while (i < end &&
+         pixels_close(client.options.format, merged_row(client, v.spans[i].row) + v.spans[i].column_begin * bytes,
+                      v.pixels.data + i * bytes, 1, pixel_tolerance(client)))
     ++i;
   return i;
 }
@@ -217,13 +218,14 @@ void begin_checks(Client* client) {
 
 bool agrees_with_device(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end) {
   if (client->verifier.check_count == 0) return true;
-  std::size_t bytes = pixel_bytes(client->options.format), row_bytes = client->settings.width * bytes;
+  const std::size_t bytes = pixel_bytes(client->options.format);
   for (std::uint32_t row = row_begin; row < row_end; ++row) {
     if (client->merge.rows[row].state != RowState::device) continue;
     const std::uint8_t *right = merged_row(*client, row), *sent = picture_row(server->decoder->state, row);
-    if (std::memcmp(right, sent, row_bytes) == 0) continue;
+    const std::uint32_t width = client->settings.width, tolerance = pixel_tolerance(*client);
+    if (pixels_close(client->options.format, right, sent, width, tolerance)) continue;
     std::uint32_t column = 0;
-    while (std::memcmp(right + column * bytes, sent + column * bytes, bytes) == 0) ++column;
+    while (pixels_close(client->options.format, right + column * bytes, sent + column * bytes, 1, tolerance)) ++column;
     char proof[160];
     write_proof(*client, row, column, sent + column * bytes, right + column * bytes, proof);
     drop_liar(client, server, proof);

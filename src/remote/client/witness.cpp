@@ -142,6 +142,11 @@ void tell_dispute(Client* client) {
   v->disputed = true;
 }
 
+// Two servers' versions of a row. Both may be a tolerance away from what is right.
+bool rows_agree(const Client& client, const std::uint8_t* a, const std::uint8_t* b) {
+  return pixels_close(client.options.format, a, b, client.settings.width, 2 * pixel_tolerance(client));
+}
+
 // Drops the one that differs from the judge, if exactly one does.
 void judge(Client* client) {
   Verifier* v = &client->verifier;
@@ -149,7 +154,7 @@ void judge(Client* client) {
   CHECK_LT(d->judge, client->server_count);
   const std::uint8_t* third = picture_row(client->servers[d->judge].decoder->state, d->row);
   bool agrees[2];
-  for (int k = 0; k < 2; ++k) agrees[k] = std::memcmp(v->versions[k].data, third, row_bytes(*client)) == 0;
+  for (int k = 0; k < 2; ++k) agrees[k] = rows_agree(*client, v->versions[k].data, third);
   if (agrees[0] == agrees[1]) return;
   char proof[160];
   std::snprintf(proof, sizeof proof, "frame %u, row %u differs from two other servers", client->request.frame, d->row);
@@ -178,7 +183,7 @@ void compare_with_others(Client* client, RemoteServer* server, std::uint32_t row
   for (std::uint32_t row = row_begin; row < row_end; ++row) {
     const MergeRow& merged = client->merge.rows[row];
     if (merged.state != RowState::server || merged.server == index_of(*client, server)) continue;
-    if (std::memcmp(merged_row(*client, row), picture_row(server->decoder->state, row), row_bytes(*client)) != 0)
+    if (!rows_agree(*client, merged_row(*client, row), picture_row(server->decoder->state, row)))
       open_dispute(client, row, merged.server, index_of(*client, server));
     else if (server->is_witness)
       count_row(client, merged.server);
