@@ -128,11 +128,12 @@ void code_row(Coder* coder, PixelModel* model, const BlockRow& row, std::uint32_
               std::uint8_t* differs) {
   Neighbours n = first_neighbours<Pixel>(row);
   for (std::uint32_t i = 0;;) {
-    const std::uint32_t history = beside | differs[i] << 1 | differs[i + 1] << 2;
+    const std::uint32_t history = beside | std::uint32_t(differs[i]) << 1 | std::uint32_t(differs[i + 1]) << 2;
     std::uint32_t predicted, context, activity;
     if (row.before) {
       predicted = Pixel::load(row.before + i * Pixel::kBytes);
-      context = history | (predicted != n.left) << 3 | (predicted != n.below) << 4 | (n.left != n.below) << 5;
+      const std::uint32_t a = predicted != n.left, b = predicted != n.below, c = n.left != n.below;
+      context = history | a << 3 | b << 4 | c << 5;
       activity = (history & 1) + (history >> 1 & 1) + (history >> 2);
     } else {
       predicted = predict<Pixel>(n.left, n.below, n.corner);
@@ -173,7 +174,7 @@ void code_pixels(Coder* coder, CodecState* s, const Block& block, const BlockCho
     std::uint8_t* beside = &s->rows_differ[i];
     bool differs = false;
     if (Coder::kEncodes) differs = row_differs<Pixel>(row, tolerance);
-    below_differs = coder->bit(&model->row_differs[below_differs | (*beside >> 1) << 1], differs);
+    below_differs = coder->bit(&model->row_differs[below_differs | (*beside & 2u)], differs);
     if (below_differs) {
       code_row<Pixel>(coder, model, row, *beside & 1u, tolerance, s->differs.data + 1 + block.column);
     } else {

@@ -1,6 +1,7 @@
 // Measuring link and servers when the device's rows are slow and it rarely polls.
 #include <doctest/doctest.h>
 
+#include "remote/client/parts.h"
 #include "split_rig.h"
 
 using namespace pocketray;
@@ -21,6 +22,18 @@ SplitRigOptions slow_link() {
   options.line.latency_ns = static_cast<std::uint64_t>(kLatencyNs);
   return options;
 }
+
+// The tablet of Aranha et al. 2007 and its radio.
+SplitRigOptions tablet() {
+  SplitRigOptions options;
+  options.width = 160, options.height = 120;
+  options.device_ns = 8841, options.server_ns = {989};
+  options.compares = false;
+  options.line.bytes_per_second = 2'375'000;
+  options.line.latency_ns = 1'000'000;
+  return options;
+}
+constexpr double kTabletNsPerByte = 421, kTooLongNs = 60'000'000;
 
 }  // namespace
 
@@ -52,4 +65,39 @@ TEST_CASE("client_start_is_measured_while_the_device_is_at_work") {
     CHECK(static_cast<double>(rig.client.model.servers[s].start_ns.value) < 8 * kLatencyNs);
   rig.client.options.device_share = -1;
   CHECK(rig.frame(2).device_rows == 0);
+}
+
+// Goal: an answer time that was seen late in the overture does not stay: the first rows of a frame show that the server
+// starts sooner. Method: a start set far too high.
+TEST_CASE("client_start_is_bounded_by_the_first_rows") {
+  SplitRig rig(tablet());
+  for (int i = 0; i < 4; ++i) rig.frame(0.1 * i);
+  RemoteServer* server = &rig.client.servers[0];
+  REQUIRE(server->phase == ServerPhase::ready);
+  Smoothed* start = &rig.client.model.servers[0].start_ns;
+  *start = Smoothed(), start->value = static_cast<float>(kTooLongNs);
+  server->round_trip_ns = kTooLongNs;
+  for (int i = 4; i < 10; ++i) rig.frame(0.1 * i);
+  CHECK(static_cast<double>(start->value) < kTooLongNs / 3);
+  CHECK(static_cast<double>(start->value) > 2e6);
+  CHECK(server->round_trip_ns < kTooLongNs / 2);
+}
+
+// Goal: a link measured again is not taken for one without limits because an answer without payload once took longer
+// than one with. Method: a round trip set far too high before the measurement.
+TEST_CASE("client_link_measured_again_keeps_its_limits") {
+  SplitRig rig(tablet());
+  for (int i = 0; i < 4; ++i) rig.frame(0.1 * i);
+  RemoteServer* server = &rig.client.servers[0];
+  REQUIRE(server->phase == ServerPhase::ready);
+  for (int round = 0; round < 4; ++round) {
+    server->round_trip_ns = kTooLongNs, server->scaled = kUnsound;
+    for (int i = 0; i < 12; ++i) {
+      rig.frame(1 + round + 0.02 * i);
+      const double ns_per_byte = static_cast<double>(rig.client.model.servers[0].ns_per_byte.value);
+      REQUIRE(ns_per_byte > kTabletNsPerByte / 2);
+      REQUIRE(ns_per_byte < 3 * kTabletNsPerByte);
+      rig.idle(500'000'000);
+    }
+  }
 }

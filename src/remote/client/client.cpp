@@ -278,10 +278,18 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   const double work_ns = 1e-3 * chunk.pixel_ps * client->settings.width * chunk.row_count;
   const double render_ns = work_ns * price_ratio(chunk.price);
   s->frame.render_ns += render_ns;
-  if (s->frame.first_ns == 0)
+  if (s->frame.first_ns == 0) {
     s->frame.first_ns = s->frame.heard_ns;
-  else
+    // Pings may all have been seen late. Without its work, the first chunk bounds the start from above.
+    const double start_ns = static_cast<double>(s->frame.heard_ns - s->frame.asked_ns) - work_ns;
+    const Smoothed& known = client->model.servers[server].start_ns;
+    if (s->phase == ServerPhase::ready && is_known(known) && start_ns < static_cast<double>(known.value)) {
+      observe_start(&client->model, server, start_ns);
+      s->round_trip_ns = std::min(s->round_trip_ns, start_ns);
+    }
+  } else {
     s->frame.bytes_behind += byte_count, s->frame.render_behind_ns += render_ns;
+  }
   Arrivals* a = &client->arrivals;
   a->last_ns = client_now_ns(*client);
   if (a->first_ns == 0)

@@ -86,13 +86,13 @@ void take_measuring_pong(Client* client, RemoteServer* server, double ns, std::u
   enter(client, server, ServerPhase::probing);
 }
 
-// Measures the link of a server in use again. An answer that was seen late or delayed by rows still bounds the link
-// from below.
+// Measures the link of a server in use again. An answer that was seen late, delayed by rows, or no later than twice one
+// without a payload, whose time may have been too long, still bounds the link from below.
 void take_ready_pong(Client* client, RemoteServer* server, double ns, std::uint32_t byte_count) {
   server->quiet_until_ns = 0;
   ServerModel* model = &client->model.servers[index_of(*client, server)];
-  double ns_per_byte = ns_per_byte_of(*server, ns, byte_count);
-  bool sound = is_sound(*client, *server, ns, byte_count);
+  const bool sound = is_sound(*client, *server, ns, byte_count) && ns > 2 * server->round_trip_ns;
+  const double ns_per_byte = sound ? ns_per_byte_of(*server, ns, byte_count) : ns / byte_count;
   if (!sound && !(ns_per_byte < static_cast<double>(model->ns_per_byte.value))) return;
   server->ns_per_byte = ns_per_byte;
   model->ns_per_byte = Smoothed();
