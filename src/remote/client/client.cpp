@@ -21,8 +21,9 @@ constexpr double kWaitShare = 0.03;  // of a frame's time that the device may wa
 constexpr double kCertainPart = 0.5;  // of a row's estimated time, since rows are measured several at a time
 // Of a frame's predicted time, and of the device's alone, after which the device waits for no more rows.
 constexpr double kLateFactor = 1.03;
-constexpr double kLookNs = 20e6;      // between two polls of the link: about a display frame
-constexpr double kLooksWatched = 16;  // polls in a watched frame. They slow the device's packets,
+constexpr double kStartDisproved = 2;  // chosen
+constexpr double kLookNs = 20e6;       // between two polls of the link: about a display frame
+constexpr double kLooksWatched = 16;   // polls in a watched frame. They slow the device's packets,
 constexpr std::uint64_t kWatchedFirst = 4,
                         kWatchedEvery = 16;  // so only the first frames and some later ones are watched
 
@@ -280,10 +281,12 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   s->frame.render_ns += render_ns;
   if (s->frame.first_ns == 0) {
     s->frame.first_ns = s->frame.heard_ns;
-    // Pings may all have been seen late. Without its work, the first chunk bounds the start from above.
+    // Pings may all have been seen late. Without its work, the first chunk bounds the start from above; as the link's
+    // jitter does the same to single frames, only one far too long is corrected.
     const double start_ns = static_cast<double>(s->frame.heard_ns - s->frame.asked_ns) - work_ns;
     const Smoothed& known = client->model.servers[server].start_ns;
-    if (s->phase == ServerPhase::ready && is_known(known) && start_ns < static_cast<double>(known.value)) {
+    if (s->phase == ServerPhase::ready && is_known(known) &&
+        kStartDisproved * start_ns < static_cast<double>(known.value)) {
       observe_start(&client->model, server, start_ns);
       s->round_trip_ns = std::min(s->round_trip_ns, start_ns);
     }
