@@ -71,7 +71,7 @@ double crowding(const Lanes& lanes, const Account& account) {
 std::uint16_t price_of(double address_crowding, double connection_crowding) {
   CHECK(address_crowding >= 1 && connection_crowding >= 1);
   const double price = kPriceUnit * address_crowding * connection_crowding;
-  return price < limit_of(Quantity::price).high ? static_cast<std::uint16_t>(price + 0.5) : UINT16_MAX;
+  return static_cast<std::uint16_t>(price < limit_of(Quantity::price).high ? price + 0.5 : UINT16_MAX);
 }
 
 std::uint64_t address_key(const char* name) {
