@@ -1,6 +1,7 @@
 #include "wire/motion_search.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "base/check.h"
 
@@ -24,6 +25,11 @@ template <class Pixel>
 const std::uint8_t* source_row(const MotionSearch& search, const Block& block, std::uint32_t row) {
   return search.pixels +
          (std::size_t(row - search.row_begin) * search.state->shape.width + block.column) * Pixel::kBytes;
+}
+
+// Whether a code can express how a motion differs from that of the block beside.
+bool can_code(BlockMotion from, BlockMotion to) {
+  return std::abs(to.x - from.x) <= kNumberMax && std::abs(to.y - from.y) <= kNumberMax;
 }
 
 // Stops at `enough`.
@@ -73,7 +79,8 @@ void choose_block(const MotionSearch& search, const Block& block, const BlockCho
   auto try_motion = [&](int x, int y) {
     const BlockMotion motion = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
     const std::uint32_t price = motion == beside.motion ? 0 : kOtherMotion;
-    if (lowest <= price || !may_move(search.state->shape, block, motion)) return false;
+    if (lowest <= price || !can_code(beside.motion, motion) || !may_move(search.state->shape, block, motion))
+      return false;
     const std::uint32_t cost = price + temporal_cost<Pixel>(search, block, motion, lowest - price);
     if (cost >= lowest) return false;
     lowest = cost, best = motion;
@@ -101,6 +108,7 @@ void choose_block(const MotionSearch& search, const Block& block, const BlockCho
   } else {
     *choice = {BlockKind::temporal, best};
   }
+  CHECK(choice->kind == BlockKind::spatial || can_code(beside.motion, choice->motion));
 }
 
 template void choose_block<Pixel565>(const MotionSearch&, const Block&, const BlockChoice&, const BlockChoice&,

@@ -7,6 +7,7 @@
 namespace pocketray {
 
 constexpr std::uint32_t kLengthsMax = 8;  // bits of a number above 0
+constexpr int kNumberMax = (1 << kLengthsMax) - 1;
 
 // Of numbers from 1: how many bits follow the first, and the one that follows it. The others are even.
 struct NumberModel {

@@ -156,6 +156,34 @@ TEST_CASE("codec_moved_noise_takes_its_motion") {
   }
 }
 
+// Goal: motions of neighbours that are further apart than a code can express cost bytes, not pixels. Method: noise in
+// two halves that move apart, faster by a pixel from frame to frame, so that each block knows its motion from below.
+TEST_CASE("codec_motions_far_apart_keep_pixels") {
+  CodecShape shape = {1024, 16, 8, WireFormat::rgb565};
+  CodecEnds ends(shape);
+  Rng rng = make_rng(11);
+  constexpr std::int32_t kWide = 1 << 15;
+  std::vector<std::uint16_t> scene(kWide * 16);
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::uint32_t before = i > 0 ? scene[i - 1] >> 5 : 32, step = next_u32(&rng) % 5;
+    scene[i] = static_cast<std::uint16_t>(((before + step < 2 ? 0 : before + step - 2) & 63) << 5);
+  }
+  std::int32_t moved = 0;
+  for (std::int32_t speed = 0; speed <= 150; ++speed) {
+    moved += speed;
+    Bytes picture(1024 * 16 * 2);
+    for (std::int32_t y = 0; y < 16; ++y)
+      for (std::int32_t x = 0; x < 1024; ++x) {
+        const std::int32_t from = kWide / 2 + (x < 512 ? x - moved : x + moved);
+        Pixel565::store(&picture[static_cast<std::size_t>(y * 1024 + x) * 2],
+                        scene[static_cast<std::size_t>(y * kWide + from)]);
+      }
+    const std::size_t bytes = ends.send(picture, RowCoding::lossless);
+    REQUIRE(ends.holds(picture));
+    if (speed > 0 && speed < 120) CHECK(2 * bytes < picture.size());
+  }
+}
+
 // Goal: restarted ends behave like new ones: the same bytes again, and a broken decoder works again.
 TEST_CASE("codec_restarted_is_as_new") {
   Rng rng = make_rng(4);
