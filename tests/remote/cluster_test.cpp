@@ -46,6 +46,12 @@ void check_order(const FrameRequest& request, const ScriptedClient& client) {
   CHECK(!has_rows(at));
 }
 
+bool too_slow() {
+  constexpr bool kSlow = kEffortDivisor > 6;
+  if (kSlow) MESSAGE("skipped: it takes minutes under emulation");
+  return kSlow;
+}
+
 std::uint32_t traced(const ScriptedClient& client) {
   std::uint32_t count = 0;
   for (const RowChunk& chunk : client.chunks)
@@ -74,6 +80,7 @@ struct ClusterRig {
 // Goal: pixels and their order are those of one server, whatever ranks there are, and helpers trace a part. Method: 1
 // to 64 ranks of unequal speed, random orders of a moving scene's rows, with and without coherence.
 TEST_CASE("cluster_sends_the_rows_of_one_server_in_the_order_asked_for") {
+  if (too_slow()) return;
   Rng rng = make_rng(43);
   for (std::uint32_t count : {1u, 2u, 3u, 64u})
     for (CoherenceMode mode : {CoherenceMode::off, CoherenceMode::on}) {
@@ -101,6 +108,7 @@ TEST_CASE("cluster_sends_the_rows_of_one_server_in_the_order_asked_for") {
 
 // Goal: helpers take the exposure that rank 0 has measured. Method: a scene without one; another view of it afterwards.
 TEST_CASE("cluster_has_one_exposure") {
+  if (too_slow()) return;
   ClusterRig c(3, small_options());
   ScriptedClient client(&c.rig);
   FrameRequest request = frame_request("seesaw", 1, 64, 96);
@@ -116,6 +124,7 @@ TEST_CASE("cluster_has_one_exposure") {
 
 // Goal: expensive rows are given in parts. Method: pixels that by their settings could take 10 µs per light point.
 TEST_CASE("cluster_shares_parts_of_expensive_rows") {
+  if (too_slow()) return;
   ClusterRig c(3, small_options());
   ScriptedClient client(&c.rig);
   int part_count = 0;
@@ -136,6 +145,7 @@ TEST_CASE("cluster_shares_parts_of_expensive_rows") {
 
 // Goal: a rank keeps its rows for the next frame. Method: a still view again, and one in which little moves.
 TEST_CASE("cluster_traces_only_what_changed") {
+  if (too_slow()) return;
   ClusterRig c(3, small_options(CoherenceMode::on));
   ScriptedClient client(&c.rig);
   FrameRequest request = frame_request("seesaw", 1, 128, 96);
@@ -156,6 +166,7 @@ TEST_CASE("cluster_traces_only_what_changed") {
 // Goal: frames with little work are rank 0's alone, the first excepted, and are shared again once there is more.
 // Method: a limit that no frame reaches, whatever the machine, and then none.
 TEST_CASE("cluster_does_not_share_what_is_soon_done") {
+  if (too_slow()) return;
   for (std::uint64_t limit : {~std::uint64_t(0) / 4, std::uint64_t(0)}) {
     ClusterRig c(3, small_options(CoherenceMode::on), {}, limit);
     ScriptedClient client(&c.rig);
@@ -178,6 +189,7 @@ TEST_CASE("cluster_does_not_share_what_is_soon_done") {
 // Goal: a new request replaces the old one, whose late rows are ignored; two clients at once get their own rows.
 // Method: slow ranks; requests of another size, camera and time before the last is complete.
 TEST_CASE("cluster_ignores_late_rows_of_a_cancelled_frame") {
+  if (too_slow()) return;
   Rng rng = make_rng(44);
   ClusterRig c(4, small_options(CoherenceMode::automatic));
   ScriptedClient client(&c.rig), other(&c.rig);
@@ -206,6 +218,7 @@ TEST_CASE("cluster_ignores_late_rows_of_a_cancelled_frame") {
 // Goal: a rank that answers what it was not asked is reported in one line and gets no more rows; every pixel is right.
 // Method: other rows, another frame, rows that are missing or too many, an answer twice, no message at all.
 TEST_CASE("cluster_does_without_a_rank_that_lies") {
+  if (too_slow()) return;
   for (int lie = 0; lie < 7; ++lie) {
     CAPTURE(lie);
     ClusterRig c(3, small_options());
@@ -242,6 +255,7 @@ TEST_CASE("cluster_does_without_a_rank_that_lies") {
 // Goal: a rank that stops answering costs a moment, and none of the pixels; it is used again when it answers. Method:
 // one that loses its work after some rows; then what it was sent is done at last.
 TEST_CASE("cluster_goes_on_without_a_rank_that_does_not_answer") {
+  if (too_slow()) return;
   ClusterRig c(2, small_options());
   ScriptedClient client(&c.rig);
   FrameRequest request = frame_request("seesaw", 1, 64, 96);
@@ -271,6 +285,7 @@ TEST_CASE("cluster_goes_on_without_a_rank_that_does_not_answer") {
 
 // Goal: a rank that cannot prepare a frame says why; the others render it. Method: one with less memory than the rest.
 TEST_CASE("cluster_goes_on_without_a_rank_that_cannot_help") {
+  if (too_slow()) return;
   auto adapt = [](std::uint32_t rank, ServerOptions* options) {
     if (rank == 1) options->client_memory_bytes = kSessionBytesMin;
   };
@@ -290,6 +305,7 @@ TEST_CASE("cluster_goes_on_without_a_rank_that_cannot_help") {
 // Goal: a rank with another program or other options, or one that fails, ends the service with one line. Method:
 // another identity; a failure while serving.
 TEST_CASE("cluster_names_the_rank_that_fails") {
+  if (too_slow()) return;
   VirtualRanks ranks(3, small_options());
   ranks.seats[2]->helper = std::make_unique<ClusterHelper>(ranks.of(2), ranks.options, 1u << 30, "another");
   ranks.seats[2]->messages.clear();

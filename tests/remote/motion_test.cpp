@@ -90,6 +90,7 @@ TEST_CASE("motion_is_seen_sooner_where_packets_are_lost") {
 // Goal: a button held while a server says nothing still moves the screen. Method: a server that is silent for two
 // seconds, which the device bridges alone: one picture gives way, none after it until the server speaks again.
 TEST_CASE("motion_goes_on_while_a_server_is_silent") {
+  if (too_slow()) return;
   MotionOptions o;
   o.lost_per_million = 0, o.silence_at = 8, o.silence_for = 2;
   MotionResult results[2];
@@ -101,6 +102,7 @@ TEST_CASE("motion_goes_on_while_a_server_is_silent") {
 
 // Goal: counted frames are all completed, however late. Method: a link that loses much, and a count.
 TEST_CASE("motion_drops_no_counted_frame") {
+  if (too_slow()) return;
   MotionOptions o;
   o.lost_per_million = 60'000, o.frame_count = 110, o.turn_seconds = 20;
   const MotionResult r = run_motion(o);
