@@ -209,6 +209,7 @@ void add_view_command(Command program, const OptionalParts& parts, int* exit_sta
   auto o = std::make_shared<ViewCommand>();
   o->parts = parts;
   o->view.has_reference = parts.side_by_side != nullptr;
+  o->servers.coarse_first = true;
   Command command = program.add_subcommand("view", "show a scene in a window or on a device's framebuffer");
   add_scene_options(command, &o->common, false);
   command.add_option("--scenes", o->scenes, "without SCENE: folder of .pray files to choose from")

@@ -22,7 +22,8 @@ struct ServersOptions {
   std::vector<std::string> addresses;
   std::string key;  // file of the key that encrypts the links; empty: they are not encrypted
   double device_share = kBestShare;
-  int verify = kVerifyAuto;  // servers' pixels to check per frame
+  int verify = kVerifyAuto;    // servers' pixels to check per frame
+  bool coarse_first = false;   // long frames begin with a coarse picture
   bool near_lossless = false;  // servers' pixels may be off by a level of their format in each channel
   double price = 0, energy_pixel = 0, energy_byte = 0, cost_weight_ms = 0, cost_cap = 0;
 };
@@ -39,7 +40,8 @@ struct ServersState {
   bool disputed = false;  // two servers sent different pixels, and this device has no scene to judge by
   std::uint32_t rows_done = 0;  // of the current frame
   double left_ns = 0;           // estimated until it is complete; 0: it is
-  double anew_ns = 0;           // of a frame begun now; 0: unknown
+  double anew_ns = 0;           // until one begun now would be, or its coarse picture; 0: unknown
+  bool coarse_shown = false;    // every row of the picture is of the current frame, many of them coarse
 };
 
 // The merged picture: rows without padding.

@@ -293,19 +293,20 @@ Status step_budgeted(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
 bool split_gives_way(const Viewer& viewer, const ViewerLoop& loop) {
   if (loop.finished || !loop.moved || viewer.options.frame_count > 0 || !viewer.options.drops_frames) return false;
   const ServersState state = viewer.servers->backend->state(*viewer.servers);
-  return gives_way({state.left_ns, state.anew_ns, loop.dropped});
+  return gives_way({state.left_ns, state.anew_ns, loop.dropped && !state.coarse_shown});
 }
 
 // Traces a slice of a split frame and shows the rows finished so far from both ends.
 Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   const ServersBackend& servers = *viewer->servers->backend;
   const bool drops = split_gives_way(*viewer, *loop);
+  const bool was_shown = loop->coarse_shown;
   if (drops || (loop->finished && (loop->moved || loop->passed))) {
     RETURN_IF_ERROR(end_refining(renderer, loop));
     RETURN_IF_ERROR(servers.begin_frame(viewer->servers, renderer, loop->seconds));
     take_motion(&viewer->motion);
-    loop->dropped = drops;
-    viewer->frames_dropped += drops;
+    loop->dropped = drops && !was_shown;
+    viewer->frames_dropped += loop->dropped;
     loop->moved = loop->passed = loop->finished = false;
   }
   if (loop->finished && is_overlay_shown(*viewer)) return idle(viewer, renderer, loop);
@@ -319,7 +320,8 @@ Status step_merged(Viewer* viewer, Renderer* renderer, ViewerLoop* loop) {
   write_latency(viewer->motion, &loop->hud);
   std::uint32_t begin = 0, end = 0;
   servers.take_rows(viewer->servers, &begin, &end);
-  show_picture(viewer, *renderer, loop->hud, begin, end, loop->finished);
+  loop->coarse_shown = servers.state(*viewer->servers).coarse_shown;
+  show_picture(viewer, *renderer, loop->hud, begin, end, loop->finished || loop->coarse_shown);
   return success();
 }
 

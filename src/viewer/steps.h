@@ -19,7 +19,8 @@ struct ViewerLoop {
   bool finished = false;
   std::uint64_t prepare_ns = 0;  // of the current picture
   std::uint64_t coarse_ns = 0;   // that the last one took until it was visible
-  bool dropped = false;          // the last split picture gave way to a newer one
+  bool dropped = false;          // the last split picture gave way to a newer one before it was visible
+  bool coarse_shown = false;     // the screen shows the split picture under way, coarse
   bool moving = false;           // a button moves the camera
   // With a budget: frames since camera or time moved, and how many of the latest had the same settings.
   std::uint32_t still_frames = 0, steady_frames = 0;

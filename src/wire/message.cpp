@@ -177,6 +177,7 @@ void fields(Io& io, FrameRequest* m) {
   number(io, &m->chunk_rows);
   io.require(m->chunk_rows >= 1);
   choice(io, &m->coding, RowCoding::near_lossless);
+  choice(io, &m->coarse_first, true);
   row_fields(io, m, m->settings.height);
 }
 
@@ -185,6 +186,7 @@ template <class Io>
 void change_fields(Io& io, FrameRequest* m) {
   number(io, &m->frame), real(io, &m->seconds, Quantity::seconds);
   point(io, &m->camera.eye), point(io, &m->camera.target);
+  choice(io, &m->coarse_first, true);
   row_fields(io, m, kImageSideMax);
 }
 
@@ -205,6 +207,11 @@ void fields(Io& io, RowChunk* m) {
   }
   m->encoding = static_cast<std::uint8_t>(m->encoding & ~kEncodingPrice);
   io.tail(&m->bytes);
+}
+template <class Io>
+void fields(Io& io, CoarsePicture* m) {
+  number(io, &m->frame, 2);
+  io.tail(&m->pixels);
 }
 template <class Io>
 void fields(Io& io, Cancel* m) {
@@ -278,6 +285,8 @@ void fields_of_type(Io& io, Message* m) {
       return fields(io, &m->view_entry);
     case MessageType::frame_change:
       return change_fields(io, &m->frame_request);
+    case MessageType::coarse_picture:
+      return fields(io, &m->coarse_picture);
   }
 }
 
@@ -293,7 +302,7 @@ constexpr PayloadSize kPayloadSizes[] = {
     {96, 0},                                         // scene_entry
     {28, 0},                                         // scene_fetch
     {24, kPieceBytesMax},                            // scene_piece
-    {92 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
+    {93 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
     {9, 2 + kChunkBytesMax},                         // row_chunk
     {4, 0},                                          // cancel
     {6, 0},                                          // error
@@ -301,10 +310,11 @@ constexpr PayloadSize kPayloadSizes[] = {
     {10, kPingBytesMax},                             // pong
     {68 + kSettingsBytes, 0},                        // view_query
     {104, 0},                                        // view_entry
-    {40, kRunBytes* kRunCountMax},                   // frame_change
+    {41, kRunBytes* kRunCountMax},                   // frame_change
+    {2, kChunkBytesMax},                             // coarse_picture
 };
 constexpr std::uint32_t kTypeCount = sizeof kPayloadSizes / sizeof kPayloadSizes[0];
-static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::frame_change) + 1, "one for each type");
+static_assert(kTypeCount == static_cast<std::uint32_t>(MessageType::coarse_picture) + 1, "one for each type");
 
 // A hello of another version ends after magic and version, or continues in any way.
 constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
@@ -313,6 +323,7 @@ std::uint32_t tail_bytes(const Message& m) {
   if (m.type == MessageType::scene_piece) return m.scene_piece.bytes.count;
   if (m.type == MessageType::row_chunk) return (m.row_chunk.price != 0 ? 2 : 0) + m.row_chunk.bytes.count;
   if (m.type == MessageType::pong) return m.pong.bytes.count;
+  if (m.type == MessageType::coarse_picture) return m.coarse_picture.pixels.count;
   if (m.type == MessageType::frame_request || m.type == MessageType::frame_change)
     return kRunBytes * m.frame_request.run_count;
   return 0;
@@ -394,9 +405,14 @@ std::uint32_t row_chunk_prefix_bytes(bool states_price) {
          (states_price ? 2 : 0);
 }
 
+std::uint32_t coarse_prefix_bytes() {
+  return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::coarse_picture)].fields;
+}
+
 void take_change(const FrameRequest& change, FrameRequest* request) {
   request->frame = change.frame, request->seconds = change.seconds;
   request->camera.eye = change.camera.eye, request->camera.target = change.camera.target;
+  request->coarse_first = change.coarse_first;
   request->row_begin = change.row_begin, request->row_end = change.row_end;
   request->run_count = change.run_count;
   std::memcpy(request->runs, change.runs, sizeof request->runs);

@@ -14,7 +14,7 @@
 namespace pocketray {
 
 // Adding a setting to requests adds 1 to the version; for any other change of the format, raise the first number.
-constexpr std::uint16_t kWireVersion = 12 + (kSettingCount - 6);
+constexpr std::uint16_t kWireVersion = 13 + (kSettingCount - 6);
 constexpr std::uint32_t kHeaderBytes = 8;
 constexpr std::uint32_t kPieceBytesMax = 1u << 16;  // of a scene, per message
 constexpr std::uint32_t kPingBytesMax = 1u << 16;   // of a pong's payload
@@ -23,21 +23,22 @@ constexpr std::uint32_t kMessageBytesMax = kHeaderBytes + kChunkBytesMax + 64;
 constexpr std::uint32_t kNameBytes = 64;
 
 enum class MessageType : std::uint8_t {
-  hello = 1,      // both, first
-  scene_list,     // device: which scene has this index?
-  scene_query,    // device: do you have this scene?
-  scene_entry,    // server: answer to either
-  scene_fetch,    // device: send bytes of a scene's baked file
-  scene_piece,    // server
-  frame_request,  // device
-  row_chunk,      // server
-  cancel,         // device
-  error,          // both
-  ping,           // device
-  pong,           // server
-  view_query,     // device: how is this scene seen?
-  view_entry,     // server
-  frame_change,   // device: a frame_request like the previous one
+  hello = 1,       // both, first
+  scene_list,      // device: which scene has this index?
+  scene_query,     // device: do you have this scene?
+  scene_entry,     // server: answer to either
+  scene_fetch,     // device: send bytes of a scene's baked file
+  scene_piece,     // server
+  frame_request,   // device
+  row_chunk,       // server
+  cancel,          // device
+  error,           // both
+  ping,            // device
+  pong,            // server
+  view_query,      // device: how is this scene seen?
+  view_entry,      // server
+  frame_change,    // device: a frame_request like the previous one
+  coarse_picture,  // server: of a frame, before its rows
 };
 
 struct Hello {
@@ -101,6 +102,7 @@ struct FrameRequest {
   std::uint16_t row_begin = 0, row_end = 0;
   std::uint16_t chunk_rows = 1;  // of a chunk, at most; no chunk has rows of two runs
   RowCoding coding = RowCoding::lossless;
+  bool coarse_first = false;   // a coarse picture of the whole frame may come before the rows
   std::uint8_t run_count = 0;  // 0: all rows are one run
   RowRun runs[kRunCountMax];   // from top to bottom; their places are a permutation of 0 … run_count − 1
 };
@@ -119,13 +121,27 @@ struct RowChunk {
   Array<const std::uint8_t> bytes;
 };
 
-// The frame of a received chunk: the last one up to `latest` with these low bits.
-inline std::uint32_t frame_of(const RowChunk& chunk, std::uint32_t latest) {
-  return latest - ((latest - chunk.frame) & 0xFFFFu);
+// The frame of a received chunk or coarse picture: the last one up to `latest` with these low bits.
+inline std::uint32_t frame_of(std::uint32_t low_bits, std::uint32_t latest) {
+  return latest - ((latest - low_bits) & 0xFFFFu);
 }
 // Of so many pixels; 0 only if none was traced.
 inline std::uint8_t traced_part(std::uint64_t traced, std::uint64_t pixel_count) {
   return static_cast<std::uint8_t>((255 * traced + pixel_count - 1) / pixel_count);
+}
+
+// Of each square of kCoarseSide × kCoarseSide pixels, counted from the top left corner, the top left pixel.
+constexpr std::uint32_t kCoarseSide = 8;
+struct CoarsePicture {
+  std::uint32_t frame = 0;  // received: its low 16 bits
+  Array<const std::uint8_t> pixels;
+};
+constexpr std::uint32_t coarse_count(std::uint32_t pixel_count) {
+  return (pixel_count + kCoarseSide - 1) / kCoarseSide;
+}
+// Of the pixels of a coarse picture.
+constexpr std::uint32_t coarse_bytes(std::uint32_t width, std::uint32_t height, WireFormat format) {
+  return coarse_count(width) * coarse_count(height) * pixel_bytes(format);
 }
 
 struct Cancel {
@@ -192,6 +208,7 @@ struct Message {
   Pong pong;
   ViewQuery view_query;
   ViewEntry view_entry;
+  CoarsePicture coarse_picture;
 };
 
 enum class DecodeState { need_more, message, malformed };
@@ -219,8 +236,10 @@ void encode_message(const Message& message, std::uint8_t* bytes);
 
 // Bytes before the rows of a row_chunk, including the header: encode the rows there to avoid a copy.
 std::uint32_t row_chunk_prefix_bytes(bool states_price);
+// The same before the pixels of a coarse picture.
+std::uint32_t coarse_prefix_bytes();
 
-// Applies a frame_change to the previous request: number, time, camera, rows, chunks and compression level.
+// Applies a frame_change to the previous request: number, time, camera, rows and their order, coarse picture.
 void take_change(const FrameRequest& change, FrameRequest* request);
 // Whether a frame_change can express how `request` differs from `before`.
 bool is_change(const FrameRequest& request, const FrameRequest& before);

@@ -114,6 +114,16 @@ void send_rows() {
   send(message);
 }
 
+void send_coarse() {
+  const FrameRequest& q = peer->request;
+  const Bytes pixels(coarse_bytes(kFuzzWidth, kFuzzHeight, q.format), 0x5A);
+  Message message;
+  message.type = MessageType::coarse_picture;
+  message.coarse_picture.frame = q.frame;
+  message.coarse_picture.pixels = {pixels.data(), static_cast<std::uint32_t>(pixels.size())};
+  send(message);
+}
+
 void answer(const Message& asked) {
   static const std::uint8_t zeros[kPingBytesMax] = {};
   const StoredScene& stored = fuzz_store().scenes[0];
@@ -152,7 +162,7 @@ void answer(const Message& asked) {
       else
         peer->request = asked.frame_request;
       peer->due = first_rows(peer->request);
-      return;
+      return peer->request.coarse_first ? send_coarse() : void();
     case MessageType::cancel:
       peer->due = RowSequence();
       return;
@@ -217,6 +227,7 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
   ClientOptions o;
   o.has_scene = flags & 1;
   o.format = flags & 2 ? WireFormat::rgb888 : WireFormat::rgb565;
+  o.coarse_after_ns = flags & 16 ? 1 : 0;
   o.pace.ns_per_pixel = kDeviceNs;
   o.silence_timeout_ns = o.prepare_timeout_ns = o.connect_timeout_ns = 300 * kMs;
   o.retry_ns_min = kMs, o.retry_ns_max = 20 * kMs;
@@ -236,7 +247,7 @@ void share_frames(FuzzInput* input, std::uint8_t flags) {
       if (!o.has_scene && took > 500 * kMs) break;
       CHECK_LT(took, 20'000 * kMs);
     }
-    fuzz_counts.frames += has_all_rows(client);
+    fuzz_counts.frames += has_all_rows(client), fuzz_counts.coarse += client.coarse_shown;
     fuzz_counts.server_rows += client.share.server_rows[0];
     for (int i = 0; i < 4; ++i) advance_client(&client, 5 * kMs);
   }

@@ -160,6 +160,11 @@ std::vector<FuzzSeed> client_seeds() {
     bytes[0] = flags;
     seeds.push_back({kNames[flags], bytes});
   }
+  for (std::uint8_t flags : {16, 19}) {
+    Bytes bytes(16, 0);
+    bytes[0] = flags;
+    seeds.push_back({flags == 16 ? "thin_coarse" : "scene_coarse", bytes});
+  }
   Bytes inquiry(16, 0);
   inquiry[0] = 8;
   seeds.push_back({"inquiry", inquiry});

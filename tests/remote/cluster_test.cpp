@@ -93,11 +93,16 @@ TEST_CASE("cluster_sends_the_rows_of_one_server_in_the_order_asked_for") {
         FrameRequest request = frame_request("seesaw", frame, 64, 96);
         request.seconds = frame / 2 * 0.25;
         request.format = frame % 3 == 0 ? WireFormat::rgb565 : WireFormat::rgb888;
-        request.dither = frame % 2 == 0;
+        request.dither = request.coarse_first = frame % 2 == 0;
         set_order(&rng, &request);
         client.request(request);
         client.wait_for_rows(96);
         CHECK(client.picture() == rendered_here(request));
+        if (request.coarse_first) {
+          const auto come = client.wait_for(MessageType::coarse_picture);
+          const auto& pixels = come->message.coarse_picture.pixels;
+          CHECK(std::vector<std::uint8_t>(pixels.begin(), pixels.end()) == squares_of(client.picture(), request));
+        }
         check_order(request, client);
         CHECK((traced(client) == 64 * 96 || mode == CoherenceMode::on));
       }

@@ -82,6 +82,7 @@ FaultPlan draw_faults(std::uint64_t seed) {
     e->back_frame = e->frame + 1 + static_cast<int>(random.below(4));
   }
   plan.has_scene = true;
+  plan.coarse_first = false;
   plan.check_count = kCheckCountAuto;
   plan.rows = "alike";
   for (float& cost : plan.row_costs) cost = 1;
@@ -108,6 +109,7 @@ FaultPlan draw_hostile_faults(std::uint64_t seed) {
                             1 + static_cast<int>(random.below(3))};
   }
   plan.has_scene = random.below(6) != 0;
+  plan.coarse_first = seed % 2 == 1;
   // A flood refills the link as soon as it is read: the device is nearby.
   bool floods = std::any_of(plan.malice, plan.malice + plan.server_count,
                             [](Malice m) { return m >= Malice::pongs && m <= Malice::repeated_rows; });
@@ -122,9 +124,10 @@ FaultPlan draw_hostile_faults(std::uint64_t seed) {
 
 const char* malice_name(Malice malice) {
   static const char* const kNames[kMaliceCount] = {
-      "none",          "pongs",         "entries",     "errors",      "old rows",  "wrong pixels",
-      "foreign rows",  "repeated rows", "free pixels", "dear pixels", "any price", "another scene",
-      "another hello", "quick pongs",   "dawdles",     "flaps",       "junk",      "a device's messages"};
+      "none",           "pongs",         "entries",     "errors",      "old rows",  "wrong pixels",
+      "foreign rows",   "repeated rows", "free pixels", "dear pixels", "any price", "another scene",
+      "another hello",  "quick pongs",   "dawdles",     "flaps",       "junk",      "a device's messages",
+      "coarse pictures"};
   return kNames[static_cast<int>(malice)];
 }
 

@@ -51,8 +51,9 @@ enum class Malice : std::uint8_t {
   flaps,            // greets, then dies, stalls or reports an error at varying points
   junk,             // sends malformed messages
   device_messages,  // sends messages that only devices send
+  coarse_pictures,  // sends coarse pictures at any time, some of another size
 };
-constexpr int kMaliceCount = 18;
+constexpr int kMaliceCount = 19;
 const char* malice_name(Malice malice);
 
 // Behaviour of other clients of the servers.
@@ -93,7 +94,8 @@ struct FaultPlan {
   int check_count;  // servers' pixels checked per frame, as in ClientOptions
   Neighbour neighbours[kNeighboursMax];
   int neighbour_count;
-  bool has_scene;  // false: the device leaves all to the servers
+  bool has_scene;     // false: the device leaves all to the servers
+  bool coarse_first;  // it asks for a coarse picture of every frame
   std::uint64_t seed;
 };
 

@@ -297,6 +297,7 @@ void open_fault_world(const FaultPlan& given, FaultWorld* w) {
   const Settings& settings = device_renderer(plan)->settings;
   ClientOptions o;
   o.has_scene = plan.has_scene;
+  o.coarse_after_ns = plan.coarse_first ? 1 : 0;
   o.format = plan.format, o.dither = plan.dither, o.device_share = plan.device_share;
   o.check_count = plan.check_count;
   o.pace.ns_per_pixel = plan.device_ns;

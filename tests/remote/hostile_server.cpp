@@ -85,6 +85,19 @@ void say_pong(HostileServer* server, Connection* c, std::uint32_t id, std::uint3
   say(c, message);
 }
 
+// Of the right size or another.
+void say_coarse(HostileServer* server, Connection* c) {
+  const FrameRequest& q = c->request;
+  std::uint32_t byte_count = coarse_bytes(q.settings.width, q.settings.height, q.format);
+  if (server->random.below(4) == 0) byte_count += static_cast<std::uint32_t>(server->random.below(3)) - 1;
+  const std::vector<std::uint8_t> pixels(byte_count, static_cast<std::uint8_t>(server->random.below(256)));
+  Message message;
+  message.type = MessageType::coarse_picture;
+  message.coarse_picture.frame = q.frame - static_cast<std::uint32_t>(server->random.below(2));
+  message.coarse_picture.pixels = {pixels.data(), byte_count};
+  say(c, message);
+}
+
 void say_error(HostileServer* server, Connection* c) {
   Message message;
   message.type = MessageType::error;
@@ -157,6 +170,7 @@ void take_request(HostileServer* server, Connection* c, const FrameRequest& requ
   else
     c->request = request;
   c->due = first_rows(c->request);
+  if (c->request.coarse_first && server->settings.malice == Malice::coarse_pictures) say_coarse(server, c);
   plan_chunk(server, c);
 }
 
@@ -174,6 +188,8 @@ void flood(HostileServer* server, Connection* c) {
     } else if (malice == Malice::old_rows && c->request.frame > 1 && server->old_rows_left-- > 0) {
       std::uint32_t row = static_cast<std::uint32_t>(random->below(c->request.settings.height));
       say_rows(server, c, c->request.frame - 1, row, row + 1, random->below(2));
+    } else if (malice == Malice::coarse_pictures && server->random.below(64) == 0) {
+      say_coarse(server, c);
     } else if (malice == Malice::device_messages) {
       Message message;
       message.type = random->below(2) ? MessageType::cancel : MessageType::scene_list;

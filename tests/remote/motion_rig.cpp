@@ -138,7 +138,7 @@ MotionResult run_motion(const MotionOptions& o) {
   auto servers = std::make_unique<ConnectedServers>();
   servers->link = world.link;
   servers->addresses = world.addresses;
-  servers->options.verify = 0;
+  servers->options.verify = 0, servers->options.coarse_first = o.coarse_first;
 
   Device screen;
   device = &screen;

@@ -13,7 +13,7 @@ struct MotionOptions {
   std::uint64_t bytes_per_second = 2'375'000 / 16, round_trip_ns = 2'000'000;
   std::uint32_t lost_per_million = 10'000;
   std::uint64_t seed = 1;
-  bool drops_frames = true;
+  bool drops_frames = true, coarse_first = false;
   std::uint32_t frame_count = 0;           // as in ViewOptions
   double turn_seconds = 8;                 // of which the first two do not count
   double silence_at = 0, silence_for = 0;  // seconds: the server does nothing meanwhile; 0: no such time

@@ -75,7 +75,7 @@ TEST_CASE("motion_is_seen_sooner_where_packets_are_lost") {
     o.round_trip_ns = round_trip_ms * 1'000'000, o.device_ns = 16 * 46'000, o.lost_per_million = 60'000;
     o.turn_seconds = 12;
     Felt felt[2];
-    for (bool drops : {false, true}) o.drops_frames = drops, felt[drops] = feel(o, 8);
+    for (bool drops : {false, true}) o.drops_frames = drops, felt[drops] = feel(o, round_trip_ms == 2 ? 4 : 14);
     MESSAGE("median ", felt[0].median_ms, ", ", felt[1].median_ms, " ms, 99th percentile ", felt[0].late_ms, ", ",
             felt[1].late_ms, " ms, ", felt[1].dropped, " of ", felt[1].dropped + felt[1].shown, " dropped");
     CHECK(felt[0].dropped == 0);
@@ -111,24 +111,58 @@ TEST_CASE("motion_drops_no_counted_frame") {
   CHECK(r.frames_finished == 110);
 }
 
+// Goal: where pictures take long, coarse ones follow the camera and the picture at rest is the device's own; where they
+// do not, none comes. Method: the same turns with pictures eight times as dear as those above, and as dear; with and
+// without coarse pictures.
+TEST_CASE("motion_is_followed_by_coarse_pictures_where_frames_are_long") {
+  if (too_slow()) return;
+  for (double dear : {1.0, 8.0}) {
+    CAPTURE(dear);
+    MotionOptions o;
+    o.lost_per_million = 0, o.device_ns *= dear, o.server_ns *= dear, o.turn_seconds = 12;
+    MotionResult results[2];
+    for (bool coarse : {false, true}) o.coarse_first = coarse, results[coarse] = run_motion(o);
+    MESSAGE("median ", results[0].ms(0.5), ", ", results[1].ms(0.5), " ms, 99th percentile ", results[0].ms(0.99), ", ",
+            results[1].ms(0.99), " ms");
+    for (const MotionResult& r : results) CHECK(r.screen == r.own_screen);
+    CHECK(results[1].frames_dropped == 0);  // what was visible was not dropped
+    if (dear == 1) CHECK(results[1].ms(0.5) == doctest::Approx(results[0].ms(0.5)).epsilon(0.01));
+    if (dear > 1) CHECK(results[1].ms(0.5) < 0.1 * results[0].ms(0.5));
+    if (dear > 1) CHECK(results[1].ms(0.99) < 0.2 * results[0].ms(0.99));
+  }
+}
+
 // Prints the figures of tests/split_report/FIGURES.md; run by `make motion-table`.
 TEST_CASE("motion_to_photon_table" * doctest::skip()) {
   std::printf(
       "| ns per pixel | round trip | lost | policy | median | 99th percentile | longest gap | shown | dropped |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  auto print = [](MotionOptions o, double device_ns, const char* policy) {
+    o.width = 320, o.height = 240, o.bytes_per_second = 2'375'000;
+    o.device_ns = device_ns, o.turn_seconds = 32;
+    const Felt f = feel(o, o.lost_per_million > 0 ? 4 : 1);
+    std::printf("| %.0f | %u ms | %u %% | %s | %.0f | %.0f | %.0f | %u | %u |\n", device_ns,
+                static_cast<unsigned>(o.round_trip_ns / 1'000'000), o.lost_per_million / 10'000, policy, f.median_ms,
+                f.late_ms, f.gap_ms_max, f.shown, f.dropped);
+    std::fflush(stdout);
+  };
   for (double device_ns : {8841.0, 46000.0})
     for (std::uint32_t lost : {0u, 10'000u})
       for (std::uint64_t round_trip_ms : {2, 40})
         for (bool drops : {false, true}) {
           MotionOptions o;
-          o.width = 320, o.height = 240, o.bytes_per_second = 2'375'000;
-          o.device_ns = device_ns, o.server_ns = 989;
+          o.server_ns = 989;
           o.round_trip_ns = round_trip_ms * 1'000'000, o.lost_per_million = lost, o.drops_frames = drops;
-          o.turn_seconds = 32;
-          const Felt f = feel(o, lost > 0 ? 4 : 1);
-          std::printf("| %.0f | %u ms | %u %% | %s | %.0f | %.0f | %.0f | %u | %u |\n", device_ns,
-                      static_cast<unsigned>(round_trip_ms), lost / 10'000, drops ? "drops" : "completes", f.median_ms,
-                      f.late_ms, f.gap_ms_max, f.shown, f.dropped);
-          std::fflush(stdout);
+          print(o, device_ns, drops ? "drops" : "completes");
+        }
+  // 4 and 16 samples.
+  for (double samples : {4.0, 16.0})
+    for (std::uint32_t lost : {0u, 10'000u})
+      for (std::uint64_t round_trip_ms : {2, 40})
+        for (bool coarse : {false, true}) {
+          MotionOptions o;
+          o.server_ns = samples * 989;
+          o.round_trip_ns = round_trip_ms * 1'000'000, o.lost_per_million = lost, o.coarse_first = coarse;
+          print(o, samples * 8841, coarse ? "coarse first" : "drops");
         }
 }

@@ -59,10 +59,10 @@ void make_reporting(const SceneStore& store, const char* scene, const char* devi
 
 }  // namespace
 
-// Goal: a frame with the chosen split takes at most 5 % longer than with the best fixed share, and the network makes
+// Goal: a frame with the chosen split takes at most 3 % longer than with the best fixed share, and the network makes
 // none slower than the device alone. Method: three profiles, a sweep with more shares around the best;
 // split_report_table has the other profiles.
-TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
+TEST_CASE("split_report_chosen_share_is_within_3_percent_of_the_best") {
   struct Case {
     const char *scene, *device;
     std::uint32_t server_count;
@@ -85,7 +85,7 @@ TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
     CHECK(figures.sweep.size() >= kSteps);
     CHECK(figures.sweep.front().m == 0);
     CHECK(figures.sweep.back().m == 1);
-    CHECK(figures.chosen.ns_per_pixel <= 1.05 * figures.best.ns_per_pixel);
+    CHECK(figures.chosen.ns_per_pixel <= 1.03 * figures.best.ns_per_pixel);
     CHECK(figures.chosen.ns_per_pixel <= 1.05 * figures.local.ns_per_pixel);
     CHECK(figures.local.ns_per_pixel >= r.setup.device_ns);
     CHECK(figures.local.ns_per_pixel <= 1.05 * r.setup.device_ns);
@@ -209,7 +209,7 @@ TEST_CASE("split_report_table" * doctest::skip()) {
         for (std::uint32_t i = 0; i < server_count; ++i) std::printf(" %.0f", f.chosen.server_rows[i]);
         std::printf(" |\n");
         std::fflush(stdout);
-        CHECK(ratio <= 1.05);
+        CHECK(ratio <= 1.03);
         worst = std::max(worst, ratio);
       }
   std::printf("worst: %.3f\n", worst);

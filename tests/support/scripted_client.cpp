@@ -152,7 +152,7 @@ void ScriptedClient::poll() {
     if (decoded.state == DecodeState::need_more) break;
     if (come->message.type == MessageType::row_chunk) {
       RowChunk chunk = come->message.row_chunk;
-      chunk.frame = frame_of(chunk, frame);
+      chunk.frame = frame_of(chunk.frame, frame);
       price = chunk.price = chunk.price != 0 ? chunk.price : price;
       REQUIRE(take_chunk_number(&chunk, chunk_count++));
       REQUIRE(decode_rows(decoder, chunk));
@@ -227,6 +227,17 @@ FrameRequest frame_request(const std::string& scene, std::uint32_t frame, std::u
   request.row_end = static_cast<std::uint16_t>(height);
   request.chunk_rows = 8;
   return request;
+}
+
+std::vector<std::uint8_t> squares_of(const std::vector<std::uint8_t>& picture, const FrameRequest& request) {
+  const std::uint32_t bytes = pixel_bytes(request.format), width = request.settings.width;
+  std::vector<std::uint8_t> squares;
+  for (std::uint32_t y = 0; y < request.settings.height; y += kCoarseSide)
+    for (std::uint32_t x = 0; x < width; x += kCoarseSide) {
+      const auto at = picture.begin() + static_cast<std::ptrdiff_t>((std::size_t(y) * width + x) * bytes);
+      squares.insert(squares.end(), at, at + bytes);
+    }
+  return squares;
 }
 
 std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const SceneStore& store) {

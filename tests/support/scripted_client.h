@@ -96,6 +96,8 @@ FrameRequest frame_request(const std::string& scene, std::uint32_t frame, std::u
                            std::uint32_t height = 48);
 // The same frame from render_frame() and pack_rows().
 std::vector<std::uint8_t> rendered_here(const FrameRequest& request, const SceneStore& store = builtin_store());
+// The coarse picture of it: the top left pixel of each square.
+std::vector<std::uint8_t> squares_of(const std::vector<std::uint8_t>& picture, const FrameRequest& request);
 std::vector<std::uint8_t> bytes_of(const Message& message);
 
 }  // namespace pocketray

@@ -120,6 +120,12 @@ def test_frames(program, folder, device, scenes):
     for width, height in ((300, 1), (1, 70), (1, 1)):
         frame += 1
         device.frame(cornell, frame=frame, width=width, height=height, largest=70)
+    # A coarse picture of the whole frame before some of its rows; none if it is not asked for.
+    for kind, words in ((FRAME_REQUEST, dict(format=RGB888, coarse=1)), (FRAME_REQUEST, dict(format=RGB565)),
+                        (FRAME_CHANGE, dict(format=RGB565, coarse=1, first=20, end=30)), (FRAME_CHANGE, dict(format=RGB565))):
+        frame += 1
+        device.frame(cornell, kind, frame=frame, **words)
+        check(device.coarse == (device.picture.squares() if "coarse" in words else None), "a coarse picture: %s" % words)
     # Near-lossless rows, over several frames of a moving camera.
     for turn in range(4):
         frame += 1
@@ -201,19 +207,19 @@ def test_malformed(server, scenes):
               dict(cut_off=65.0), dict(filter=5), dict(normals=2), dict(indirect=5), dict(virtual_lights=0), dict(virtual_lights=513), dict(reconstruction=3), dict(selective=1.5), dict(selective=-0.5), dict(resolution=3), dict(light_tolerance=1.5), dict(light_tolerance=-0.5), dict(environment_shadows=257),
               dict(exposure=-1.0),
               dict(exposure=big), dict(exposure=8e-19), dict(dither=2), dict(format=2), dict(first=36), dict(first=9, end=9), dict(end=37),
-              dict(largest=0), dict(coding=3)]
+              dict(largest=0), dict(coding=3), dict(coarse=2)]
     # Orders that are none: too few rows, too many, an empty run, a place twice, a place beyond the last, too many runs.
     orders = [((35, 0),), ((37, 0),), ((0, 0), (36, 1)), ((20, 0), (16, 0)), ((20, 0), (16, 2)), ((1, 0),) * 65]
     values += [dict(order=order) for order in orders]
     cases = [request(cube, **v) for v in values]
-    cases += [request(cube, FRAME_CHANGE, time=nan), request(cube, FRAME_CHANGE, end=8193)]
+    cases += [request(cube, FRAME_CHANGE, time=nan), request(cube, FRAME_CHANGE, end=8193), request(cube, FRAME_CHANGE, coarse=2)]
     cases += [request(cube, FRAME_CHANGE, order=order) for order in orders]
     cases += [request(cube, VIEW_QUERY, measure=2), request(cube, VIEW_QUERY, samples=0)]
     cases += [message(SCENE_FETCH, cube + struct.pack("<QI", 0, 65537)), message(SCENE_FETCH, cube + struct.pack("<QI", MASK, 0)),
               message(PING, struct.pack("<II", 1, 65537)), message(ERROR, struct.pack("<HI", 0, 0)),
-              message(ERROR, struct.pack("<HI", 8, 0)), message(0), message(16), message(SCENE_LIST, b""),
+              message(ERROR, struct.pack("<HI", 8, 0)), message(0), message(17), message(SCENE_LIST, b""),
               message(SCENE_LIST, bytes(3)), message(ROW_CHUNK, bytes(600)), message(ROW_CHUNK, bytes(4) + b"\1\0\0\0\2"), hello()]
-    cases += [message(kind, bytes(size)) for kind, size in ((SCENE_ENTRY, 96), (SCENE_PIECE, 24), (PONG, 10))]
+    cases += [message(kind, bytes(size)) for kind, size in ((SCENE_ENTRY, 96), (SCENE_PIECE, 24), (PONG, 10), (COARSE_PICTURE, 14))]
     good = message(PING, bytes(8))
     cases += [good[:i] + bytes([good[i] ^ 1]) + good[i + 1:] for i in range(3, len(good))]
     for data in cases:
@@ -222,8 +228,8 @@ def test_malformed(server, scenes):
         check(device.closed(waits=data is cases[0]), "malformed bytes end the connection")
         device.socket.close()
     for data, code in ((good, MALFORMED), (b"GET / HTTP/1.1\r\n\r\n", MALFORMED), (hello(3), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\26\0"), WRONG_VERSION), (hello(22, bytes(234)), WRONG_VERSION),
-                       (message(HELLO, b"PRAY\25\0" + bytes(251)), MALFORMED), (hello(21, b"x"), MALFORMED),
+                       (message(HELLO, b"PRAY\27\0"), WRONG_VERSION), (hello(23, bytes(234)), WRONG_VERSION),
+                       (message(HELLO, b"PRAY\26\0" + bytes(251)), MALFORMED), (hello(22, b"x"), MALFORMED),
                        (message(HELLO, b"pray" + bytes(18)), MALFORMED), (message(HELLO, hello()[8:28] + b"\xff\0"), MALFORMED)):
         device = Device(server.address, greets=False)
         check(device.error(data, data.hex()[:80]) == (code, 0), "first message %s" % data[:16])

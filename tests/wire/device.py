@@ -4,7 +4,7 @@ import socket, struct, zlib
 
 MASK = 2**64 - 1
 HELLO, SCENE_LIST, SCENE_QUERY, SCENE_ENTRY, SCENE_FETCH, SCENE_PIECE, FRAME_REQUEST, ROW_CHUNK, CANCEL, ERROR, PING, PONG, \
-    VIEW_QUERY, VIEW_ENTRY, FRAME_CHANGE = range(1, 16)
+    VIEW_QUERY, VIEW_ENTRY, FRAME_CHANGE, COARSE_PICTURE = range(1, 17)
 WRONG_VERSION, MALFORMED, UNKNOWN_SCENE, TOO_LARGE, BAD_REQUEST, BUSY, CLOSING = range(1, 8)
 RGB565, RGB888 = 0, 1
 RED, GREEN, BLUE = range(3)
@@ -239,6 +239,10 @@ class Picture:
                 signs += (0,)
         return tuple(pixel)
 
+    def squares(self):
+        """The coarse picture of it."""
+        return [self.rows[y][x] for y in range(0, self.height, 8) for x in range(0, self.width, 8)]
+
     def compare(self, rgb, rows=None):
         """Whether it equals `rgb`, bytes of R, G and B, converted to this format."""
         first, end = rows or (0, self.height)
@@ -260,7 +264,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=21, more=b""):
+def hello(version=22, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
@@ -274,13 +278,13 @@ def pack_camera(camera):
 
 DEFAULTS = dict(frame=1, time=0.0, stated=0, index=0, camera=CAMERA, width=48, height=36, samples=1, depth=8, points=4, area_shadows=0, area_irradiance=1,
                 cut_off=0.5, filter=0, normals=0, indirect=0, reconstruction=2, virtual_lights=64, selective=0.0, resolution=0, light_tolerance=0.0625, environment_shadows=32, on=0, off=0, exposure=0.0, dither=0, format=RGB888, first=0, end=None,
-                largest=16, coding=1, order=(), measure=0)
+                largest=16, coding=1, coarse=0, order=(), measure=0)
 
 
 def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
-    rows = struct.pack("<HH", r["first"], end) + bytes(x for run in r["order"] for x in run)
+    rows = struct.pack("<BHH", r["coarse"], r["first"], end) + bytes(x for run in r["order"] for x in run)
     settings = struct.pack("<HHBBHBBfBBBBHfBfHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["selective"], r["resolution"], r["light_tolerance"],
@@ -306,7 +310,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\25\0", "the server says hello first, of version 21")
+            check(kind == HELLO and fields[:6] == b"PRAY\26\0", "the server says hello first, of version 22")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 
@@ -403,9 +407,17 @@ class Device:
         for rows, place in r["order"] or [(end - row, 0)]:
             due[place] = row, row + rows
             row += rows
+        chunks = self.chunk_count
         due = [due[place] for place in range(len(due))]  # runs in the order they are sent, without what has come
+        self.coarse = None
         while due:
             kind, fields = self.receive()
+            if kind == COARSE_PICTURE:
+                check(r["coarse"] and not self.coarse and self.chunk_count == chunks, "a coarse picture is due")
+                check(struct.unpack("<H", fields[:2])[0] == r["frame"] & 0xFFFF, "a coarse picture is of the frame")
+                size = 3 if r["format"] == RGB888 else 2
+                self.coarse = [self.picture.load(fields, at) for at in range(2, len(fields), size)]
+                continue
             if kind != ROW_CHUNK:
                 check(False, "rows come, not %s %s: %s" % (kind, fields[:6], changes))
                 break

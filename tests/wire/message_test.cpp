@@ -107,6 +107,9 @@ TEST_CASE("message_every_field_travels") {
        [](Message* m) {
          m->frame_request.coding = m->frame_request.coding == RowCoding::raw ? RowCoding::lossless : RowCoding::raw;
        }},
+      {MessageType::frame_request, [](Message* m) { m->frame_request.coarse_first ^= 1; }},
+      {MessageType::frame_change, [](Message* m) { m->frame_request.coarse_first ^= 1; }},
+      {MessageType::coarse_picture, [](Message* m) { m->coarse_picture.frame ^= 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.frame ^= 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.seconds += 1; }},
       {MessageType::frame_change, [](Message* m) { m->frame_request.camera.eye.z += 1; }},
@@ -233,14 +236,16 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1
       {MessageType::frame_request, 8 + more + 105, {2}},                   // dither
       {MessageType::frame_request, 8 + more + 106, {2}},                   // format
-      {MessageType::frame_request, 8 + more + 110, {5, 0, 5, 0}},          // no rows
-      {MessageType::frame_request, 8 + more + 112, {0xFF, 0xFF}},          // rows beyond the picture
+      {MessageType::frame_request, 8 + more + 111, {5, 0, 5, 0}},          // no rows
+      {MessageType::frame_request, 8 + more + 113, {0xFF, 0xFF}},          // rows beyond the picture
       {MessageType::frame_request, 8 + more + 107, {0, 0}},                // chunk rows
       {MessageType::frame_request, 8 + more + 109, {3}},                   // coding
+      {MessageType::frame_request, 8 + more + 110, {2}},                   // coarse first
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
-      {MessageType::frame_change, 8 + 36, {5, 0, 5, 0}},                   // no rows
-      {MessageType::frame_change, 8 + 38, {0xFF, 0xFF}},                   // rows beyond any picture
+      {MessageType::frame_change, 8 + 36, {2}},                            // coarse first
+      {MessageType::frame_change, 8 + 37, {5, 0, 5, 0}},                   // no rows
+      {MessageType::frame_change, 8 + 39, {0xFF, 0xFF}},                   // rows beyond any picture
       {MessageType::row_chunk, 8 + 4, {0}},                                // rows
       {MessageType::row_chunk, 8 + 2, {0xFF, 0x1F, 2}},                    // rows beyond any picture
       {MessageType::row_chunk, 8 + 5, {0xFF, 0xB7}},                       // picoseconds shifted out

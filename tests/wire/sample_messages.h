@@ -11,7 +11,7 @@
 
 namespace pocketray {
 
-constexpr int kMessageTypeCount = static_cast<int>(MessageType::frame_change);
+constexpr int kMessageTypeCount = static_cast<int>(MessageType::coarse_picture);
 
 // The message's array points to `tail`, which must outlive it.
 inline Message sample_message(MessageType type, Rng* rng, const std::vector<std::uint8_t>& tail) {
@@ -62,7 +62,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
       std::swap(f->runs[i].place, f->runs[next_u32(rng) % (i + 1)].place);
     }
   }
-  f->coding = static_cast<RowCoding>(next_u32(rng) % 3);
+  f->coding = static_cast<RowCoding>(next_u32(rng) % 3), f->coarse_first = next_u32(rng) % 2 != 0;
   m.row_chunk.frame = next_u32(rng), m.row_chunk.row_begin = narrow() % 4000;
   m.row_chunk.row_count = static_cast<std::uint16_t>(1 + next_u32(rng) % 100);
   m.row_chunk.traced = static_cast<std::uint8_t>(next_u32(rng));
@@ -79,6 +79,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   v->scene = hash, v->camera = f->camera, v->exposure = 1 + next_float(rng), v->frames_per_second = 1 + next_float(rng);
   v->effects = next_u32(rng) & kAllEffects, v->triangle_count = next_u32(rng);
   v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
+  m.coarse_picture.frame = next_u32(rng), m.coarse_picture.pixels = bytes;
   m.hello.price = price(), m.row_chunk.price = price(), m.pong.price = price();
   return m;
 }

@@ -36,13 +36,6 @@ std::size_t in_bytes(const CodecShape& shape) {
   return std::max(chunk, kInBytesMin);
 }
 
-void mark_dirty(Client* client, std::uint32_t begin, std::uint32_t end) {
-  CHECK(begin <= end && end <= client->settings.height);
-  if (client->dirty_begin == client->dirty_end) client->dirty_begin = begin, client->dirty_end = end;
-  client->dirty_begin = std::min(client->dirty_begin, begin);
-  client->dirty_end = std::max(client->dirty_end, end);
-}
-
 // True if the device polls often in this frame to see when rows arrive: in the first frames with a server and a few
 // later ones.
 bool is_watched(const Client& client) {
@@ -264,6 +257,13 @@ void advance_client(Client* client, std::uint64_t timeout_ns) {
   }
 }
 
+void mark_dirty(Client* client, std::uint32_t row_begin, std::uint32_t row_end) {
+  CHECK(row_begin <= row_end && row_end <= client->settings.height);
+  if (client->dirty_begin == client->dirty_end) client->dirty_begin = row_begin, client->dirty_end = row_end;
+  client->dirty_begin = std::min(client->dirty_begin, row_begin);
+  client->dirty_end = std::max(client->dirty_end, row_end);
+}
+
 void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::uint32_t byte_count) {
   std::uint32_t begin = chunk.row_begin, end = begin + chunk.row_count, server = index_of(*client, s);
   s->frame.bytes += byte_count;
@@ -274,6 +274,7 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   if (chunk.traced == 0) client->share.kept_rows += chunk.row_count, client->share.kept_bytes += byte_count;
   CHECK_LE(end, client->settings.height);
   s->frame.heard_ns = client_now_ns(*client);
+  s->frame.unseen_ns = client->unwatched_ns;
   if (s->frame.rows_come >= s->frame.row_end - s->frame.row_begin) s->frame.open = false;
   if (s->phase == ServerPhase::probing) s->probe_ns_per_pixel = 1e-3 * chunk.pixel_ps;
   const double work_ns = 1e-3 * chunk.pixel_ps * client->settings.width * chunk.row_count;
@@ -329,6 +330,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
   client->share = FrameShare();
   client->share.measured_ns = last.measured_ns;
   client->complete = client->joined = false;
+  client->coarse_asked = client->coarse_shown = false;
   client->waited_ns = 0, client->device_ns = 0, client->device_pixels = 0;
   client->unchanged = client->share.unchanged = unchanged;
   client->device_row = DeviceRow();
@@ -347,6 +349,7 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
   q->exposure = renderer.exposure;
   q->dither = client->options.dither;
   q->format = client->options.format;
+  q->coarse_first = false;
   unchanged ? void(client->merge.frame = q->frame) : begin_merge(&client->merge, q->frame);
   begin_checks(client);
   client->share.frame = q->frame;

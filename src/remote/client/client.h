@@ -27,6 +27,7 @@ struct ClientOptions {
   double cost_per_megabyte = 0;                         // price of 10⁶ bytes
   double device_share = -1;                             // in [0, 1]: a fixed m, for comparisons; negative: the best
   bool near_lossless = false;                           // servers' pixels may be a level off per channel
+  double coarse_after_ns = 0;                           // frames that take longer begin with a coarse picture; 0: none
   bool device_goes_on = true;                           // goes on into missing rows; false: for comparisons
   Pace pace;                                            // the CPU to emulate
   const float* row_costs = nullptr;                     // relative row costs on it; see row_costs.h
@@ -65,10 +66,11 @@ struct ServerFrame {
   std::uint32_t row_begin = 0, row_end = 0;  // asked for
   std::uint32_t rows_come = 0;               // of these received, including rows the device had already done
   std::uint64_t asked_ns = 0, bytes = 0;
-  std::uint64_t row_bytes = 0;     // of these, rows without message overhead
-  double render_ns = 0;            // for the received rows: the server's work at its price
-  bool open = false;               // more rows are expected
-  std::uint64_t heard_ns = 0;      // when the last rows came
+  std::uint64_t row_bytes = 0;  // of these, rows without message overhead
+  double render_ns = 0;         // for the received rows: the server's work at its price
+  bool open = false;            // more rows are expected
+  std::uint64_t heard_ns = 0;   // when the last rows came, as seen: at most unseen_ns earlier
+  std::uint64_t unseen_ns = 0;
   std::uint64_t first_ns = 0;      // when the first rows came
   std::uint64_t bytes_behind = 0;  // of the chunks after the first
   double render_behind_ns = 0;     // and the server's time for their rows
@@ -100,6 +102,7 @@ struct RemoteServer {
   std::uint32_t due_rows = 0;        // and their number
   std::uint64_t late_rows = 0;       // rows of earlier requests that may be in flight;
   std::uint64_t late_at_ping = 0;    // their number when the ping was sent
+  std::uint32_t coarse_due = 0;      // coarse pictures that may still come
   bool more = false;                 // unread input remains: one poll handles at most a frame's worth
   bool unanswered = false;           // no answer since rows were requested; new requests do not extend the time
   std::uint32_t chunk_count = 0;     // received on this connection
@@ -160,7 +163,10 @@ struct Client {
   // The current frame.
   FrameRequest request;
   bool complete = true, joined = false;
-  bool held = false;  // requests wait until a link is measured
+  bool coarse_asked = false;    // a server is to send a coarse picture of it first
+  bool coarse_shown = false;    // its pixels are in the rows that were missing when it came,
+  std::uint64_t coarse_ns = 0;  // so long after the frame's begin
+  bool held = false;            // requests wait until a link is measured
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
   std::uint64_t prepare_ns = 0;  // of work on it before it began
   mutable platform::LinkClock clock;

@@ -45,9 +45,10 @@ std::uint64_t take_row_time(Client* client, std::uint32_t row_begin, std::uint32
 struct ClientRows {
   Renderer* renderer;
   Client* client;
-  std::uint32_t row_begin = 0, row_end = 0;  // of the batch, or the row rendered in parts
-  std::uint32_t column_end = 0;              // of the part
-  std::uint64_t pixel_count = 0;             // to trace, of the batch
+  std::uint32_t row_begin = 0, row_end = 0;   // of the batch, or the row rendered in parts
+  std::uint32_t column_end = 0;               // of the part
+  std::uint64_t pixel_count = 0;              // to trace, of the batch
+  std::atomic<bool>* coarse_comes = nullptr;  // is set when a coarse picture has come
 };
 
 void hand_out(ClientRows* s, const SharedSpans& spans, SpanBatch* batch) {
@@ -147,7 +148,9 @@ bool merge_rows(void* context, const SpanBatch& batch) {
     end_client_frame(client);
     return true;
   }
+  const bool was_shown = client->coarse_shown;
   advance_client(client, busy ? 0 : kWaitNs);
+  if (client->coarse_shown && !was_shown) *s.coarse_comes = true;
   return false;
 }
 
@@ -194,7 +197,9 @@ bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns
   SpanSource source = {&rows, next_rows, merge_rows, pack_batch};
   source.is_coherent = true;
   source.deadline_ns = deadline_ns;
-  source.stop = stop;
+  std::atomic<bool> coarse_comes{false};
+  rows.coarse_comes = &coarse_comes;
+  source.stop = stop ? stop : &coarse_comes;
   source.now_ns = [](void* context) { return client_now_ns(*static_cast<ClientRows*>(context)->client); };
   source.pace = pace_batch;
   return trace_frame(renderer, source);
@@ -202,7 +207,9 @@ bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns
 
 Status render_frame(Renderer* renderer, Client* client, double seconds, const std::atomic<bool>* stop, bool* complete) {
   RETURN_IF_ERROR(begin_frame(renderer, client, seconds));
-  bool done = advance_frame(renderer, client, ~std::uint64_t(0), stop);
+  bool done = false;
+  do done = advance_frame(renderer, client, ~std::uint64_t(0), stop);
+  while (!done && stop == nullptr);
   if (complete) *complete = done;
   return success();
 }

@@ -8,8 +8,9 @@ namespace pocketray {
 
 // Prepares the scene for the time and requests the servers' rows.
 Status begin_frame(Renderer* renderer, Client* client, double seconds);
-// Renders and merges until about `deadline_ns` by client_now_ns(), at least a few rows, or until `stop` is set. True if
-// the frame is complete: in client->pixels, summarised in client->share.
+// Renders and merges until about `deadline_ns` by client_now_ns(), at least a few rows, or until `stop` is set; without
+// `stop`, also until a coarse picture comes. True if the frame is complete: in client->pixels, summarised in
+// client->share.
 bool advance_frame(Renderer* renderer, Client* client, std::uint64_t deadline_ns,
                    const std::atomic<bool>* stop = nullptr);
 // Does both for the whole frame, unless stopped. `complete` may be null.

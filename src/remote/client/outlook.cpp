@@ -62,7 +62,8 @@ FrameOutlook outlook_of(const Client& client) {
   const FrameShare& share = client.share;
   const double due = share.predicted_ns > 0 ? share.predicted_ns : share.measured_ns;
   if (client.complete || due <= 0) return outlook;
-  outlook.anew_ns = due + chunk_ns(client);
+  const double shown_ns = client.coarse_shown ? std::min(due, static_cast<double>(client.coarse_ns)) : due;
+  outlook.anew_ns = shown_ns + chunk_ns(client);
   const double elapsed = static_cast<double>(client_elapsed_ns(client));
   // Requests that wait until a link is measured would wait again; a frame with all rows is complete at the next look.
   if (elapsed < due || client.held || has_all_rows(client)) {

@@ -6,7 +6,7 @@ namespace pocketray {
 
 struct FrameOutlook {
   double left_ns = 0;  // until the frame under way is complete; 0: it is
-  double anew_ns = 0;  // of a frame begun now; 0: unknown
+  double anew_ns = 0;  // until one begun now would be, or its coarse picture, if this one had any; 0: unknown
 };
 
 // While the frame is within its predicted time, that counts. Then a server that is late by some time is taken to be

@@ -101,8 +101,19 @@ std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t
 // longer.
 double rows_left_ns(const Client& client);
 
+// ---- coarse.cpp
+
+// The next request asks for a coarse picture if a frame of that time wants one and none is asked for; 0: unknown.
+void want_coarse(Client* client, double frame_ns);
+// True while it may come any moment: at most for a tenth of the frame, since looking often slows the device.
+bool awaits_coarse(const Client& client);
+// Puts it where rows are missing.
+void show_coarse(Client* client, const CoarsePicture& coarse);
+
 // ---- client.cpp
 
+// Rows of client->pixels have changed.
+void mark_dirty(Client* client, std::uint32_t row_begin, std::uint32_t row_end);
 // Call when rows are decoded; `byte_count` is their size on the wire.
 void accept_chunk(Client* client, RemoteServer* server, const RowChunk& chunk, std::uint32_t byte_count);
 // Waits like a busy CPU: the link keeps receiving but is not polled.

@@ -45,6 +45,7 @@ void connect_server(Client* client, RemoteServer* server) {
 void greet_server(Client* client, RemoteServer* server) {
   CHECK(server->phase == ServerPhase::connecting);
   restart_row_decoder(server->decoder);
+  server->coarse_due = 0;
   server->pings_answered = server->pings_missed = 0, server->ping_id = 0, server->round_trip_ns = 0;
   server->chunk_count = 0, server->unanswered = false;
   server->quiet_until_ns = server->anew_ns = 0;
@@ -92,6 +93,7 @@ bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
     CHECK_LE(chunk.row_count, server->due_rows);
     server->due_rows -= chunk.row_count;
     server->late_rows = server->late_at_ping = 0;
+    server->coarse_due = 0;  // it would have come before
     return true;
   }
   if (chunk.row_count > server->late_rows) return false;
@@ -101,7 +103,7 @@ bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
 }
 
 void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
-  chunk.frame = frame_of(chunk, server->asked.frame);
+  chunk.frame = frame_of(chunk.frame, server->asked.frame);
   const bool states_price = chunk.price != 0;
   if (!states_price) chunk.price = server->price;
   server->price = chunk.price;
@@ -124,6 +126,17 @@ void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
   accept_chunk(client, server, chunk, bytes);
 }
 
+// Like rows, it may be that of an earlier request.
+void take_coarse(Client* client, RemoteServer* server, CoarsePicture coarse) {
+  if (server->coarse_due == 0) return lose_server(client, server, kUnasked);
+  coarse.frame = frame_of(coarse.frame, server->asked.frame);
+  server->coarse_due = coarse.frame == server->asked.frame ? 0 : server->coarse_due - 1;
+  if (coarse.pixels.count != coarse_bytes(client->settings.width, client->settings.height, client->options.format))
+    return lose_server(client, server, "it sent a coarse picture of another size");
+  server->frame.bytes += coarse_prefix_bytes() + coarse.pixels.count;
+  if (coarse.frame == client->request.frame && !client->complete) show_coarse(client, coarse);
+}
+
 void take(Client* client, RemoteServer* server, const Message& message) {
   bool greeted = server->phase != ServerPhase::greeting;
   if (message.type == MessageType::hello && !greeted) return take_hello(client, server, message.hello);
@@ -132,6 +145,8 @@ void take(Client* client, RemoteServer* server, const Message& message) {
   if (message.type == MessageType::pong && greeted) return take_pong(client, server, message.pong);
   if (message.type == MessageType::row_chunk && server->phase >= ServerPhase::probing)
     return take_chunk(client, server, message.row_chunk);
+  if (message.type == MessageType::coarse_picture && server->phase >= ServerPhase::probing)
+    return take_coarse(client, server, message.coarse_picture);
   if (message.type == MessageType::error) return lose_server(client, server, wire_error_text(message.error.code));
   lose_server(client, server, kUnasked);
 }

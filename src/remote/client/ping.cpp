@@ -15,6 +15,7 @@ constexpr double kUnwatchedInverse = 8,
                  kSizedUnwatchedInverse = 16;  // inverse fraction of an answer's time without polls
 constexpr double kSizingLookNs = 250e3;        // between polls while an answer with a payload is timed
 constexpr double kLongWorkNs = 100e6;  // and otherwise, so that servers and device do not take each other for lost
+constexpr double kCoarseLookNs = 4e6;  // chosen: while a coarse picture is due, a quarter of a display frame
 constexpr std::uint64_t kQuietNs = 400'000'000;  // longest hold on others' rows while a link is measured,
 constexpr std::uint64_t kAnewQuietNs = 200'000'000,
                         kAnewNs = 3'000'000'000;   // and while it is measured again, at this interval
@@ -169,7 +170,7 @@ double work_ns_max(const Client& client) {
     const RemoteServer& server = client.servers[i];
     if (server.phase != ServerPhase::waiting && server.ping_id != 0 && server.ping_bytes > 0) return kSizingLookNs;
   }
-  return kLongWorkNs;
+  return awaits_coarse(client) ? kCoarseLookNs : kLongWorkNs;
 }
 
 std::uint64_t wait_wanted_ns(const Client& client) {

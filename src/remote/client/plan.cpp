@@ -123,6 +123,8 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   bool like_the_last = server->asked.frame > 0 && is_change(message.frame_request, server->asked);
   message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
   server->late_rows += server->due_rows;
+  if (message.frame_request.coarse_first) ++server->coarse_due, client->coarse_asked = true;
+  client->request.coarse_first = false;
   server->asked = message.frame_request;
   server->due = first_rows(server->asked), server->due_rows = row_end - row_begin;
   if (!send_message(&server->messages, message)) return lose_server(client, server, "it stopped reading");
@@ -162,11 +164,17 @@ void share_rows(Client* client, std::uint64_t elapsed_ns) {
   for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
   predict_split(problem, &alone);
   client->share.local_ns = static_cast<double>(alone.time_ns + client->prepare_ns);
+  auto rows_of = [&](std::uint32_t i) { return client->split.boundary[i + 1] - client->split.boundary[i]; };
+  std::uint32_t largest = 0;
+  for (std::uint32_t i = 1; i < client->server_count; ++i)
+    if (rows_of(i) > rows_of(largest)) largest = i;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
     if (server->phase != ServerPhase::ready) continue;  // for others the overture's figure stands
     server->ns_per_byte = static_cast<double>(client->model.servers[i].ns_per_byte.value);
+    if (i == largest) want_coarse(client, client->share.predicted_ns);
     ask_for_rows(client, server, client->split.boundary[i], client->split.boundary[i + 1], &problem);
+    client->request.coarse_first = false;
   }
   client->joined = true;
 }
@@ -217,6 +225,27 @@ void bound_own_links(Client* client) {
   }
 }
 
+// A server's start is what its rows took beyond their work and bytes. Where others share the link, they may have waited
+// for it, so this bounds the start from above alone.
+void measure_starts(Client* client) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) count += client->servers[i].frame.rows_come > 0;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) {
+    const ServerFrame& f = client->servers[i].frame;
+    const ServerModel& model = client->model.servers[i];
+    if (client->servers[i].phase != ServerPhase::ready || f.open || f.rows_come < f.row_end - f.row_begin) continue;
+    if (f.rows_come == 0 || !is_known(model.start_ns)) continue;
+    const double transfer = static_cast<double>(f.bytes) * static_cast<double>(model.ns_per_byte.value);
+    const double part = std::min(1.0, static_cast<double>(model.chunk_rows) / f.rows_come);
+    const double work = std::max(f.render_ns, transfer) + part * std::min(f.render_ns, transfer);
+    const double latest = std::max(0.0, static_cast<double>(f.heard_ns - f.asked_ns) - work);
+    const double earliest = std::max(0.0, latest - static_cast<double>(f.unseen_ns));
+    const double known = static_cast<double>(model.start_ns.value);
+    if (known > latest) observe_start(&client->model, i, latest);
+    if (known < earliest && count == 1) observe_start(&client->model, i, earliest);
+  }
+}
+
 // Bytes per nanosecond that a server produces after its first chunk. Arrivals count from that one, whose rows may be
 // far cheaper than the rest.
 double rate_of(const ServerFrame& f) {
@@ -227,6 +256,7 @@ double rate_of(const ServerFrame& f) {
 }  // namespace
 
 void measure_link(Client* client) {
+  measure_starts(client);
   bound_own_links(client);
   const Arrivals& a = client->arrivals;
   double ns = static_cast<double>(a.last_ns - a.first_ns), bytes = static_cast<double>(a.bytes);

@@ -18,6 +18,8 @@ namespace pocketray {
 namespace {
 
 constexpr platform::LinkBackend const& kNet = platform::kTcpLink;
+// Chosen: the longest after which a picture still seems to follow the buttons at once.
+constexpr double kLongFrameNs = 100e6;
 
 platform::LinkOptions link_options(int stream_count_max, std::size_t byte_count,
                                    std::vector<std::max_align_t>* memory) {
@@ -140,6 +142,7 @@ Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, boo
   options.has_scene = !s->is_thin;
   options.check_count = s->options.verify;
   options.near_lossless = s->options.near_lossless;
+  if (s->options.coarse_first) options.coarse_after_ns = kLongFrameNs;
   options.entropy = platform::random_bytes;
   options.log = print_line;
   s->totals = ServersTotals();
@@ -199,6 +202,7 @@ ServersState state_of(const Servers& servers) {
   state.disputed = client.verifier.disputed;
   state.rows_done = client.merge.row_count_done;
   const FrameOutlook outlook = outlook_of(client);
+  state.coarse_shown = client.coarse_shown;
   state.left_ns = outlook.left_ns, state.anew_ns = gave_nothing(s.last) ? 0 : outlook.anew_ns;
   return state;
 }

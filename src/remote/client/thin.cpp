@@ -66,7 +66,9 @@ void divide(Client* client, const Run& run) {
     if (!is_idle(*server)) continue;
     so_far += speed_of(*client, *server);
     std::uint32_t end = run.begin + static_cast<std::uint32_t>(rows * std::min(1.0, so_far / speed_sum) + 0.5);
+    want_coarse(client, client->share.measured_ns);
     if (end > begin) ask_for_rows(client, server, begin, end);
+    client->request.coarse_first = false;
     begin = end;
   }
 }

@@ -145,7 +145,7 @@ Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
   const Renderer& renderer = session->renderer;
   std::uint32_t count = slice_pixels(renderer.settings, renderer.light_points.count, session->probe_ns, slice_ns);
   if (session->probe_ns == 0) count = std::min(count, kFirstPixels);
-  *slice = {0, 0, 0, 0, true};
+  *slice = {0, 0, 0, 0, true, false};
   float exposure = 0;
   bool done = probe_exposure(&session->renderer, &session->job.probe, count, &slice->pixel_count, &exposure);
   slice->traced_count = slice->pixel_count;
@@ -176,7 +176,11 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
     case JobStage::view_exposure:
       return probe(session, slice_ns, slice);
     case JobStage::search:
-      if (search_shared_rows(&session->renderer, kSearchPixels)) session->job.stage = JobStage::rows;
+      if (search_shared_rows(&session->renderer, kSearchPixels))
+        session->job.stage = wants_coarse(*session) ? JobStage::coarse : JobStage::rows;
+      break;
+    case JobStage::coarse:
+      *slice = trace_coarse(session, slice_ns);
       break;
     case JobStage::rows:
       CHECK(session->encoder != nullptr && session->built_scene == session->job.scene);

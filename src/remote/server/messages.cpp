@@ -151,6 +151,7 @@ bool take_message(Server* server, Session* session, const Message& message) {
     case MessageType::scene_entry:
     case MessageType::scene_piece:
     case MessageType::row_chunk:
+    case MessageType::coarse_picture:
     case MessageType::pong:
     case MessageType::view_entry:
       break;

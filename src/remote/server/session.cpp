@@ -4,7 +4,6 @@
 
 #include "base/check.h"
 #include "engine/shared_rows.h"
-#include "present/pack.h"
 
 namespace pocketray {
 namespace {
@@ -14,8 +13,6 @@ namespace {
 constexpr std::uint32_t kFirstPixels = 8;  // per thread, while the cost of pixels is unknown
 // Per light point and sample; measured: 512 points, 16 samples, 0.65 ms per pixel of cornell.
 constexpr double kLightPointNs = 80;
-
-PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 
 std::uint32_t picoseconds(std::uint64_t ns, std::uint64_t pixel_count) {
   CHECK_GT(pixel_count, 0u);
@@ -79,8 +76,8 @@ void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) 
   const SharedSpans part = list_part(renderer, row, begin, end);
   batch->spans = part.spans, batch->span_count = part.count;
   const std::uint32_t traced = static_cast<std::uint32_t>(span_pixel_count(part.spans, part.count));
-  source->slice = {0, end, end - begin, traced, false};
-  if (end == settings.width) source->slice = {1, 0, end - begin, traced, false};
+  source->slice = {0, end, end - begin, traced, false, false};
+  if (end == settings.width) source->slice = {1, 0, end - begin, traced, false, false};
 }
 
 void next_slice(void* context, SpanBatch* batch) {
@@ -118,7 +115,7 @@ void next_slice(void* context, SpanBatch* batch) {
   CHECK(rows > 0 && rows <= job.request.row_end);
   const SharedSpans spans = list_ranges(renderer, ranges, range_count);
   batch->spans = spans.spans, batch->span_count = spans.count;
-  source->slice = {rows, 0, rows * settings.width, traced, false};
+  source->slice = {rows, 0, rows * settings.width, traced, false, false};
 }
 
 }  // namespace
@@ -172,7 +169,7 @@ void drop_job(Session* session) {
 
 bool has_chunk(const Session& session) {
   return has_job(session) && session.job.stage == JobStage::rows && queued_bytes(session.messages) <= kAheadBytes &&
-         session.job.rows_traced - session.job.rows_sent >= next_chunk_rows(session);
+         (session.job.has_coarse || session.job.rows_traced - session.job.rows_sent >= next_chunk_rows(session));
 }
 
 bool can_work(const Session& session) {
@@ -226,6 +223,10 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns) {
     session->probe_ns = dear_pixel_ns(session->probe_ns, static_cast<double>(took_ns + 1) / slice.pixel_count);
     return;
   }
+  if (slice.is_coarse) {  // single pixels take longer than those of rows, but tell what a slice can have
+    if (session->trace_ns == 0) session->trace_ns = static_cast<double>(took_ns + 1) / slice.traced_count;
+    return;
+  }
   RowRange ranges[kRunCountMax];
   const std::uint32_t range_count = next_ranges(*job, slice.row_count, ranges);
   for (std::uint32_t i = 0; i < range_count; ++i) {
@@ -243,6 +244,10 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns) {
 void send_chunks(Session* session) {
   FrameJob* job = &session->job;
   while (has_chunk(*session)) {
+    if (job->has_coarse) {
+      send_coarse(session);
+      continue;
+    }
     std::uint32_t rows = next_chunk_rows(*session);
     send_chunk(session, job->sent.row_end - rows, job->sent.row_end);
     job->rows_sent += rows;

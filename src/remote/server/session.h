@@ -3,6 +3,7 @@
 #pragma once
 #include "engine/exposure.h"
 #include "platform/link.h"
+#include "present/pack.h"
 #include "remote/server/scene_store.h"
 #include "remote/server/share.h"
 #include "remote/stream.h"
@@ -11,7 +12,7 @@
 
 namespace pocketray {
 
-// Of any message from a device. Derived: twice the longest, a frame_request of 255 bytes (PROTOCOL.md), as settings may
+// Of any message from a device. Derived: twice the longest, a frame_request of 268 bytes (PROTOCOL.md), as settings may
 // be added.
 constexpr std::uint32_t kRequestBytesMax = 512;
 constexpr std::size_t kInputBytes = 4096;  // limit on unread input from a client; chosen: eight of the longest messages
@@ -38,6 +39,7 @@ enum class JobStage : std::uint8_t {
   aim,            // camera, time, lights
   search,         // for what may have changed since the last frame
   view_exposure,  // of a view_query, answered afterwards
+  coarse,         // the coarse picture, if one is wanted
   rows,
 };
 
@@ -52,8 +54,10 @@ struct FrameJob {
   RowSequence traced, sent;  // what is left to trace, and to send
   std::uint32_t rows_traced, rows_sent;
   std::uint32_t traced_columns;
-  std::uint64_t work_ns, pixel_count;  // of rows traced but not completely sent
-  std::uint64_t took_ns;               // CPU time so far
+  std::uint32_t coarse_row, coarse_column, coarse_rows;  // on the grid of the coarse picture: next pixel, rows at once
+  bool has_coarse;                                       // it is traced and waits to be sent
+  std::uint64_t work_ns, pixel_count;                    // of rows traced but not completely sent
+  std::uint64_t took_ns;                                 // CPU time so far
   // Of each row of the picture, the pixels traced, if several ranks share the job: its complete rows are then packed.
   // Null: this program alone renders.
   const std::uint32_t* row_pixels;
@@ -63,7 +67,7 @@ struct FrameJob {
 struct Slice {
   std::uint32_t row_count, column_end, pixel_count;  // column_end: the job's next traced_columns
   std::uint32_t traced_count;                        // of the pixels; the others are the last frame's
-  bool is_probe;
+  bool is_probe, is_coarse;
 };
 
 struct Session;
@@ -138,7 +142,7 @@ void send_error(Session* session, WireError code, std::uint32_t frame);
 inline bool has_job(const Session& session) { return session.job.scene != nullptr; }
 // Ends the job and charges the time of unsent rows as wasted.
 void drop_job(Session* session);
-// True if a chunk of the job is completely traced and may be queued.
+// True if the coarse picture or a chunk of the job is completely traced and may be queued.
 bool has_chunk(const Session& session);
 // True if there is a frame to render and the client keeps up with its output.
 bool can_work(const Session& session);
@@ -158,6 +162,12 @@ std::uint32_t slice_pixels(const Settings& settings, std::uint32_t light_point_c
 inline double dear_pixel_ns(double known_ns, double new_ns) {
   return new_ns > 0.875 * known_ns ? new_ns : 0.875 * known_ns;
 }
+// Whether the coarse picture is asked for and fits a message.
+bool wants_coarse(const Session& session);
+// Traces the next pixels of it, for about `slice_ns`; sends it.
+Slice trace_coarse(Session* session, std::uint64_t slice_ns);
+void send_coarse(Session* session);
+inline PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 // The next rows to trace, at most kRunCountMax ranges; returns their number.
 std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
 // Traces the next pixels of the job, for about `slice_ns`.
@@ -166,7 +176,7 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns);
 void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t row_end);
 // Accounts for a slice that took that much CPU time.
 void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns);
-// Queues completely traced chunks as far as the queue has room; the last one ends the job.
+// Queues the coarse picture and completely traced chunks as far as the queue has room; the last one ends the job.
 void send_chunks(Session* session);
 
 }  // namespace pocketray
