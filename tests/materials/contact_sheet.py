@@ -59,8 +59,25 @@ def write_environment(path, width=512, height=256):
                 file.write(bytes([int(x * scale) for x in color] + [exponent + 128]))
 
 
+def keep_default_scene(document):
+    """Empties the nodes of other scenes, which Blender would put upon it."""
+    scenes, nodes = document.get("scenes", []), document.get("nodes", [])
+    if not scenes:
+        return
+    document["scenes"], document["scene"] = [scenes[document.get("scene", 0)]], 0
+    left, kept = list(document["scenes"][0].get("nodes", [])), set()
+    while left:
+        index = left.pop()
+        if index not in kept:
+            kept.add(index)
+            left += nodes[index].get("children", [])
+    for index in set(range(len(nodes))) - kept:
+        nodes[index].pop("mesh", None)
+
+
 def relight(document):
     """Replaces the lights of a glTF document by the suns."""
+    keep_default_scene(document)
     for node in document.get("nodes", []):
         node.get("extensions", {}).pop("KHR_lights_punctual", None)
     used = set(document.get("extensionsUsed", [])) | {"KHR_lights_punctual"}

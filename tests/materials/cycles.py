@@ -39,10 +39,15 @@ def load(path):
     for item in list(bpy.data.objects):
         if item.type in ("LIGHT", "CAMERA"):
             bpy.data.objects.remove(item)
+    if not path.endswith(".obj"):
+        give_default_material()
     for material in bpy.data.materials:
         if material.use_nodes:
+            if path.endswith(".obj"):
+                use_color_and_texture(material.node_tree)
             use_gltf_alpha(material)
             use_gltf_diffuse(material.node_tree)
+            use_gltf_sides(material)
     for image in bpy.data.images:
         image.alpha_mode = "CHANNEL_PACKED"  # alpha leaves the colours alone
     bpy.context.scene.frame_set(0)
@@ -125,6 +130,56 @@ def scaled(tree, color, factor):
             value = socket.default_value
             target.default_value = value[:3] if hasattr(value, "__len__") else (value,) * 3
     return node.outputs[0]
+
+
+def give_default_material():
+    """Meshes without a material get glTF's: a white metal of roughness 1, times the colours of vertices. Blender's is grey."""
+    for mesh in bpy.data.meshes:
+        if any(mesh.materials):
+            continue
+        material = bpy.data.materials.new("default")
+        material.use_nodes = material.use_backface_culling = True
+        tree = material.node_tree
+        shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+        shader.inputs["Base Color"].default_value = (1, 1, 1, 1)
+        shader.inputs["Metallic"].default_value = shader.inputs["Roughness"].default_value = 1
+        if mesh.color_attributes:
+            colors = tree.nodes.new("ShaderNodeVertexColor")
+            colors.layer_name = mesh.color_attributes[0].name
+            tree.links.new(colors.outputs["Color"], shader.inputs["Base Color"])
+        mesh.materials.clear()
+        mesh.materials.append(material)
+
+
+def use_color_and_texture(tree):
+    """An OBJ's Kd and map_Kd are multiplied; Blender leaves out Kd where there is a texture."""
+    for node in [node for node in tree.nodes if node.type == "BSDF_PRINCIPLED"]:
+        color = node.inputs["Base Color"]
+        if not color.is_linked:
+            continue
+        factor = tree.nodes.new("ShaderNodeRGB")
+        factor.outputs[0].default_value = color.default_value
+        tree.links.new(scaled(tree, color, factor.outputs[0]), color)
+
+
+def use_gltf_sides(material):
+    """Single-sided faces are not seen from behind; they cast shadows either way."""
+    if not material.use_backface_culling:
+        return
+    tree = material.node_tree
+    surface = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
+    if not surface.is_linked:
+        return
+    side, path = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeLightPath")
+    seen, mix = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeMixShader")
+    seen.operation = "SUBTRACT"
+    seen.use_clamp = True
+    tree.links.new(side.outputs["Backfacing"], seen.inputs[0])
+    tree.links.new(path.outputs["Is Shadow Ray"], seen.inputs[1])
+    tree.links.new(seen.outputs[0], mix.inputs[0])
+    tree.links.new(surface.links[0].from_socket, mix.inputs[1])
+    tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], surface)
 
 
 def use_gltf_alpha(material):
