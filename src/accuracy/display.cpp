@@ -27,26 +27,33 @@ std::vector<float> encoded_light(const std::vector<double>& light) {
   return encoded;
 }
 
+std::vector<std::uint8_t> packed_pixels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
+                                        const OutputFormat& output) {
+  const int line_bytes = static_cast<int>(width) * output.format.bits_per_pixel / 8, rows = static_cast<int>(height);
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(line_bytes) * height);  // from the heap: aligned
+  pack_rows(radiance, static_cast<int>(width), rows, 0, rows, exposure, output.format, Rotation::none, output.dither,
+            pixels.data(), line_bytes);
+  return pixels;
+}
+
+Levels unpacked_levels(const std::uint8_t* pixels, std::uint32_t width, std::uint32_t height,
+                       const PixelFormat& format) {
+  CHECK(pixels != nullptr && pixel_format_valid(format));
+  const std::size_t bytes = static_cast<std::size_t>(format.bits_per_pixel / 8), count = std::size_t(width) * height;
+  Levels levels = {width, height, {}};
+  levels.rgb.reserve(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    int shown[3];
+    unpack_levels(format, read_pixel(format, pixels + i * bytes), shown);
+    for (int level : shown) levels.rgb.push_back(static_cast<std::uint8_t>(level));
+  }
+  CHECK_EQ(levels.rgb.size(), 3 * count);
+  return levels;
+}
+
 Levels displayed_levels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
                         const OutputFormat& output) {
-  int bytes = output.format.bits_per_pixel / 8, line_bytes = static_cast<int>(width) * bytes,
-      rows = static_cast<int>(height);
-  std::size_t line = static_cast<std::size_t>(line_bytes);
-  std::vector<std::uint32_t> packed((line * height + 3) / 4);  // aligned for whole pixels
-  std::uint8_t* pixels = reinterpret_cast<std::uint8_t*>(packed.data());
-  pack_rows(radiance, static_cast<int>(width), rows, 0, rows, exposure, output.format, Rotation::none, output.dither,
-            pixels, line_bytes);
-  Levels levels = {width, height, {}};
-  levels.rgb.reserve(std::size_t(3) * width * height);
-  for (std::uint32_t row = 0; row < height; ++row)
-    for (std::uint32_t column = 0; column < width; ++column) {
-      int shown[3];
-      unpack_levels(output.format,
-                    read_pixel(output.format, pixels + row * line + column * static_cast<std::size_t>(bytes)), shown);
-      for (int level : shown) levels.rgb.push_back(static_cast<std::uint8_t>(level));
-    }
-  CHECK_EQ(levels.rgb.size(), std::size_t(3) * width * height);
-  return levels;
+  return unpacked_levels(packed_pixels(radiance, width, height, exposure, output).data(), width, height, output.format);
 }
 
 std::vector<float> encoded_levels(const Levels& levels) {

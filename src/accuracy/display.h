@@ -11,7 +11,13 @@ std::vector<double> exposed_light(const Vec3* radiance, std::size_t pixel_count,
 // The same in sRGB, as input for FLIP, before any quantisation.
 std::vector<float> encoded_light(const std::vector<double>& light);
 
-// Radiance as the screen shows it, quantised to the pixel format. Not rotated.
+// Unpadded rows of pixels as the screen gets them; not rotated. Aligned for whole pixels.
+std::vector<std::uint8_t> packed_pixels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
+                                        const OutputFormat& output);
+// Unpadded rows of pixels as the screen shows them.
+Levels unpacked_levels(const std::uint8_t* pixels, std::uint32_t width, std::uint32_t height,
+                       const PixelFormat& format);
+// Radiance as the screen shows it, quantised to the pixel format: both of the above.
 Levels displayed_levels(const Vec3* radiance, std::uint32_t width, std::uint32_t height, float exposure,
                         const OutputFormat& output);
 // Levels in [0, 1], sRGB.

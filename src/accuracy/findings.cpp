@@ -44,6 +44,11 @@ bool gain_claimed(const Sweep& sweep, const KnobEnds& ends) {
   return ends.worst && ends.worst->flip - ends.best->flip > kClaimFactor * sweep.reference_flip;
 }
 
+bool is_paid_in_bytes(const KnobEnds& ends) {
+  return ends.worst && std::isfinite(ends.worst->bytes_per_frame) && std::isfinite(ends.best->bytes_per_frame) &&
+         ends.worst->bytes_per_frame != ends.best->bytes_per_frame;
+}
+
 std::string slope_text(const KnobFigures& knob) {
   if (!knob.has_slope) return knob.theory.empty() ? "" : "theory: " + knob.theory;
   auto hundredths = [](double v) { return (v <= -0.005 ? "−" : "") + format("%.2f", std::fabs(v)); };

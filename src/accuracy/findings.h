@@ -26,6 +26,9 @@ KnobEnds ends_of(const Sweep& sweep, const std::string& knob);
 // True if the best end is better by more than the reference's own error allows to claim.
 bool gain_claimed(const Sweep& sweep, const KnobEnds& ends);
 
+// True if the ends differ in the bytes of rows sent by a render server, and not in time.
+bool is_paid_in_bytes(const KnobEnds& ends);
+
 // "slope of its own RMSE over time −0.5 [−0.6, −0.4]; RMSE is off that law by 1 %; theory: …"; unknown parts are
 // omitted.
 std::string slope_text(const KnobFigures& knob);

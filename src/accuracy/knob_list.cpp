@@ -85,6 +85,21 @@ std::vector<Knob> make_knobs() {
        nullptr,
        false,
        false},
+#ifdef POCKETRAY_HAVE_NETWORK
+      {"near-lossless",
+       "rows from a render server of which each channel may be off by one level of the pixel format",
+       "display",
+       0,
+       nullptr,
+       "",
+       {0, 1},
+       {"on", "off"},
+       [](const Configuration& c) { return c.near_lossless ? 0.0 : 1.0; },
+       [](Configuration* c, double v) { c->near_lossless = v == 0; },
+       nullptr,
+       true,
+       false},
+#endif
   };
   knobs.insert(knobs.end(), others.begin(), others.end());
   return knobs;

@@ -33,7 +33,8 @@ std::string strip_figure(const Sweep& sweep, const PagePictures& pictures, const
   for (const Strip& strip : sweep.strips)
     if (strip.knob == knob)
       for (const StripRow& row : strip.rows)
-        rows += (rows.empty() ? "" : "; ") + escaped(row.label) + " (" + figure(row.ms) + " ms, FLIP " +
+        rows += (rows.empty() ? "" : "; ") + escaped(row.label) + " (" +
+                (std::isfinite(row.bytes) ? format("%.0f bytes", row.bytes) : figure(row.ms) + " ms") + ", FLIP " +
                 figure(row.flip) + ")";
   return "<figure class=\"strip\"><div class=\"box\">" + image(found->second, "Strip of " + knob) +
          "</div><figcaption>From the left: reference, setting, " + std::to_string(kDifferenceGain) +
@@ -69,11 +70,17 @@ std::string head_of(const Sweep& sweep, const PagePictures& pictures) {
 // Which knobs buy the most, in a sentence or two.
 std::string answer_of(const Sweep& sweep) {
   const KnobFigures *first = nullptr, *last = nullptr;
-  std::string free, idle;
+  std::string free, idle, sent;
   auto add = [](std::string* list, const std::string& name) { *list += (list->empty() ? "" : ", ") + escaped(name); };
   for (const KnobFigures* knob : knobs_by_price(sweep)) {
-    bool claimed = gain_claimed(sweep, ends_of(sweep, knob->name));
-    if (!claimed || !std::isfinite(knob->ms_per_flip)) {
+    KnobEnds ends = ends_of(sweep, knob->name);
+    bool claimed = gain_claimed(sweep, ends);
+    if (is_paid_in_bytes(ends)) {
+      sent +=
+          "<b>" + escaped(knob->name) + "</b> saves bytes from render servers, not time: " +
+          format("%.0f of %.0f", ends.best->bytes_per_frame - ends.worst->bytes_per_frame, ends.best->bytes_per_frame) +
+          " per frame for FLIP " + figure(ends.worst->flip - ends.best->flip, 2) + ". ";
+    } else if (!claimed || !std::isfinite(knob->ms_per_flip)) {
       add(&idle, knob->name);
     } else if (knob->ms_per_flip <= 0) {
       add(&free, knob->name);
@@ -88,6 +95,7 @@ std::string answer_of(const Sweep& sweep) {
             figure(first->ms_per_flip) + " ms</b> per frame. ";
   if (last != first)
     text += "<b>" + escaped(last->name) + "</b> buys the least: " + figure(last->ms_per_flip) + " ms. ";
+  text += sent;
   if (!free.empty()) text += "Better and no slower: " + free + ". ";
   if (!idle.empty()) text += "No gain that can be claimed: " + idle + ".";
   if (!first && free.empty() && !idle.empty()) text += " A reference with more samples may show one.";
@@ -103,6 +111,20 @@ std::string knob_section(const Sweep& sweep, const PagePictures& pictures, const
   if (pictures.plots.count(plot) == 0 && !slope.empty()) text += " On logarithmic scales: " + escaped(slope) + ".";
   return text + "</p>\n" + plot_figure(pictures, plot) + strip_figure(sweep, pictures, knob.name) +
          value_table(sweep, knob.name);
+}
+
+// How rows were sent, if they were.
+std::string sent_method(const Sweep& sweep) {
+  for (const Measured& m : sweep.measured)
+    if (std::isfinite(m.bytes_per_frame))
+      return format(
+          " Bytes per frame are of all rows of a picture from a render server, without the messages around them. For "
+          "them the camera orbits its target by %g° a frame and comes to rest in the picture that is judged, the last "
+          "of %u. Each picture goes through encoder and decoder, its rows predicted from the picture before and from "
+          "each other; the first, which has none before, does not count. “near-lossless on” shows what the decoder "
+          "then holds. Devices without a server have no such setting, and so it is not on the front.",
+          kSentOrbitDegrees, kSentFrames);
+  return "";
 }
 
 std::string method_of(const Sweep& sweep) {
@@ -126,7 +148,9 @@ std::string method_of(const Sweep& sweep) {
                     " With fewer than six rounds all intervals are ranges of the rounds, which cover less than 95 %.")
               : std::string()) +
          " Double precision is not this renderer in other arithmetic: it is the reference’s own tracer, without ray "
-         "packets and with its own hierarchy, and its time is that tracer’s.</p>\n<p class=\"soft\">A slope is the "
+         "packets and with its own hierarchy, and its time is that tracer’s." +
+         sent_method(sweep) +
+         "</p>\n<p class=\"soft\">A slope is the "
          "exponent s of RMSE² = floor² + (c timeˢ)², fitted in each round to all values of a knob by least squares of "
          "relative differences, where the reference can tell the errors apart: the median of the rounds, with its 95 % "
          "interval in brackets. The interval covers only the times; the deviation of RMSE from the law is given "

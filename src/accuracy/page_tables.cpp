@@ -44,10 +44,13 @@ std::string name_of(const Measured& m) {
   return escaped(m.knob == "several" ? m.value : m.knob + " " + m.value);
 }
 
-std::string end_text(const Sweep& sweep, const Measured* m) {
+std::string bytes_text(double bytes) { return std::isfinite(bytes) ? format("%.0f", bytes) : "–"; }
+
+std::string end_text(const Sweep& sweep, const Measured* m, bool in_bytes) {
   if (!m) return cell("–");
-  return cell("<b>" + escaped(m->value) + "</b><br /><small>" + figure(ms_of(sweep, m->ns_per_pixel.value)) +
-              " ms, FLIP " + figure(m->flip) + "</small>");
+  std::string price =
+      in_bytes ? bytes_text(m->bytes_per_frame) + " bytes" : figure(ms_of(sweep, m->ns_per_pixel.value)) + " ms";
+  return cell("<b>" + escaped(m->value) + "</b><br /><small>" + price + ", FLIP " + figure(m->flip) + "</small>");
 }
 
 std::string price_text(double price) {
@@ -61,13 +64,14 @@ std::string price_table(const Sweep& sweep) {
   std::string rows;
   for (const KnobFigures* knob : knobs_by_price(sweep)) {
     KnobEnds ends = ends_of(sweep, knob->name);
-    bool claimed = gain_claimed(sweep, ends);
+    bool claimed = gain_claimed(sweep, ends), in_bytes = is_paid_in_bytes(ends);
     double gain = ends.worst ? ends.worst->flip - ends.best->flip : kNotMeasured;
     rows += claimed ? "<tr>" : "<tr class=\"weak\">";
     rows += "<th><a href=\"#" + file_word(knob->name) + "\">" + escaped(knob->name) + "</a><br /><small>" +
-            escaped(knob->effect) + "</small></th>" + cell("<b>" + price_text(knob->ms_per_flip) + "</b>", "key") +
-            cell(figure(gain)) + end_text(sweep, ends.worst) + end_text(sweep, ends.standard) +
-            end_text(sweep, ends.best) + "</tr>\n";
+            escaped(knob->effect) + "</small></th>" +
+            cell("<b>" + (in_bytes ? "bytes" : price_text(knob->ms_per_flip)) + "</b>", "key") + cell(figure(gain)) +
+            end_text(sweep, ends.worst, in_bytes) + end_text(sweep, ends.standard, in_bytes) +
+            end_text(sweep, ends.best, in_bytes) + "</tr>\n";
   }
   return boxed(headings({"knob", "ms per .01 FLIP", "FLIP gained", "worst end", "baseline", "best end"}), rows);
 }
@@ -84,11 +88,12 @@ std::string front_table(const Sweep& sweep) {
 
 std::string value_table(const Sweep& sweep, const std::string& knob) {
   std::vector<const Measured*> values = values_of(sweep, knob);
-  bool counted = false;
+  bool counted = false, sent = is_paid_in_bytes(ends_of(sweep, knob));
   for (const Measured* m : values) counted = counted || std::isfinite(m->instructions_per_pixel);
   std::vector<std::string> names = {"value",    "ms per frame", "× baseline", "FLIP", "before output", "RMSE",
                                     "rel. MSE", "p99",          "max",        "bias", "PSNR, dB"};
   if (counted) names.push_back("instructions per pixel");
+  if (sent) names.push_back("bytes per frame");
   std::string rows;
   for (const Measured* m : values) {
     rows += m->is_default ? "<tr class=\"standard\">" : "<tr>";
@@ -108,6 +113,7 @@ std::string value_table(const Sweep& sweep, const std::string& knob) {
                                     std::isfinite(e.psnr) ? format("%.1f", e.psnr) : figure(e.psnr)})
       rows += claimed_cell(text, claimed);
     if (counted) rows += cell(figure(m->instructions_per_pixel, 4));
+    if (sent) rows += cell(bytes_text(m->bytes_per_frame));
     rows += "</tr>\n";
   }
   return boxed(headings(names), rows);

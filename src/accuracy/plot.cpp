@@ -144,13 +144,15 @@ Plot front_plot(const Sweep& sweep) {
 
 Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
   std::vector<const Measured*> shown = shown_of(sweep, knob.name);
-  std::vector<double> times, errors;
+  std::vector<double> costs, errors;
+  bool in_bytes = is_paid_in_bytes(ends_of(sweep, knob.name));
+  auto cost_of = [&](const Measured& m, double ns) { return in_bytes ? m.bytes_per_frame / 1000 : ms_of(sweep, ns); };
   for (const Measured* m : shown) {
-    times.push_back(ms_of(sweep, m->ns_per_pixel.value)), errors.push_back(m->flip);
+    costs.push_back(cost_of(*m, m->ns_per_pixel.value)), errors.push_back(m->flip);
     if (std::isfinite(m->errors.rmse)) errors.push_back(m->errors.rmse);
   }
   double limit = kClaimFactor * sweep.reference_flip;
-  Axis x = axis_of(times, 0, false), y = axis_of(errors, limit, true);
+  Axis x = axis_of(costs, 0, false), y = axis_of(errors, limit, true);
   std::vector<std::string> title = title_lines({knob.name + ": " + knob.what, slope_text(knob)});
   double above = 38 + 1.35 * kPlotFont * static_cast<double>(title.size()), height = 428 + above;
   PlotFrame frame = {0.16, 0.97, 120 / height, 1 - above / height, static_cast<int>(height)};
@@ -158,15 +160,15 @@ Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
   std::vector<PlotPoint> points, others;
   std::vector<std::string> labels;
   for (const Measured* m : shown) {
-    double ms = ms_of(sweep, m->ns_per_pixel.value), at = drawn_value(x, ms);
-    double low = std::max(x.low, std::min(at, ms_of(sweep, m->ns_per_pixel.low)));
-    double high = std::max(at, ms_of(sweep, m->ns_per_pixel.high));
+    double cost = cost_of(*m, m->ns_per_pixel.value), at = drawn_value(x, cost);
+    double low = std::max(x.low, std::min(at, cost_of(*m, m->ns_per_pixel.low)));
+    double high = std::max(at, cost_of(*m, m->ns_per_pixel.high));
     flip += format("%.8g %.8g %.8g %.8g\n", at, drawn_value(y, m->flip), low, high);
-    points.push_back({place_on(x, ms), place_on(y, m->flip)});
+    points.push_back({place_on(x, cost), place_on(y, m->flip)});
     labels.push_back(m->value + (m->is_default ? "*" : ""));
     if (!std::isfinite(m->errors.rmse)) continue;
     rmse += format("%.8g %.8g %.8g %.8g\n", at, drawn_value(y, m->errors.rmse), low, high);
-    others.push_back({place_on(x, ms), place_on(y, m->errors.rmse)});
+    others.push_back({place_on(x, cost), place_on(y, m->errors.rmse)});
   }
   points.insert(points.end(), others.begin(), others.end());
   std::string name = "knob_" + file_word(knob.name), plots;
@@ -180,7 +182,9 @@ Plot knob_plot(const Sweep& sweep, const KnobFigures& knob) {
   if (!rmse.empty()) data += data_block("rmse", rmse), add("rmse", "RMSE", "pt 5 lc rgb '#0072b2'");
   if (plots.empty()) plots = "1/0 title 'nothing was measured'";
   std::string body = frame_commands(frame) + axis_commands(x, 'x') + axis_commands(y, 'y') + title_commands(title) +
-                     "set xlabel 'milliseconds per frame' offset 0,0.3\nset ylabel 'error' offset 1.2,0\n" +
+                     "set xlabel '" +
+                     (in_bytes ? "kilobytes per frame from a render server" : "milliseconds per frame") +
+                     "' offset 0,0.3\nset ylabel 'error' offset 1.2,0\n" +
                      "set key at screen 0.5, screen 0.01 center bottom horizontal samplen 2\n" +
                      unclaimed_commands(y, limit, "FLIP not claimed") + label_commands(frame, points, labels, "black") +
                      "plot " + plots + "\n";
@@ -202,8 +206,11 @@ Plot price_plot(const Sweep& sweep) {
   std::string bars, names, labels;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     double price = knobs[i]->ms_per_flip, end = 0;
-    bool claimed = std::isfinite(price) && gain_claimed(sweep, ends_of(sweep, knobs[i]->name));
-    std::string text = claimed ? "free: better and no slower" : "no gain that can be claimed";
+    KnobEnds ends_there = ends_of(sweep, knobs[i]->name);
+    bool claimed = std::isfinite(price) && gain_claimed(sweep, ends_there);
+    std::string text = is_paid_in_bytes(ends_there) ? "paid in bytes, not in time"
+                       : claimed                    ? "free: better and no slower"
+                                                    : "no gain that can be claimed";
     if (has_price(sweep, *knobs[i])) {
       bars += format("%.8g %zu %.8g\n", x.low, i, price);
       text = figure(price), end = place_on(x, price);

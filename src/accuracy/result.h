@@ -23,12 +23,13 @@ struct Measured {
   Interval ns_per_pixel;
   Interval time_ratio;  // to the baseline of the same round
   double instructions_per_pixel = kNotMeasured;
-  double flip = kNotMeasured;         // mean, as the screen shows it: after quantisation and dither
-  double flip_before = kNotMeasured;  // mean, before them
-  PictureErrors errors;               // exposed linear light, clamped to the display range [0, 1]
-  bool pareto = false;                // no other is faster with at most its ꟻLIP
-  std::string missing;                // why there are no figures; empty: they exist
-  std::string note;                   // says what was timed if not this renderer
+  double bytes_per_frame = kNotMeasured;  // of its rows from a render server; only of the baseline and near-lossless
+  double flip = kNotMeasured;             // mean, as the screen shows it: after quantisation and dither
+  double flip_before = kNotMeasured;      // mean, before them
+  PictureErrors errors;                   // exposed linear light, clamped to the display range [0, 1]
+  bool pareto = false;                    // no other is faster with at most its ꟻLIP
+  std::string missing;                    // why there are no figures; empty: they exist
+  std::string note;                       // says what was timed if not this renderer
 };
 
 // Summary of a knob. Its configurations are those in `Sweep::measured` with its name, in the order of its values.
@@ -59,6 +60,7 @@ struct StripRow {
   double flip = 0;
   Levels picture;
   std::vector<float> flip_map;  // the error of each pixel, in [0, 1]
+  double bytes = kNotMeasured;  // of a frame's rows, shown in place of the time if a knob is paid in them
 };
 struct Strip {
   std::string knob;
@@ -85,5 +87,11 @@ struct Sweep {
 
 // Differences below this many times the reference's own error are not claimed.
 constexpr double kClaimFactor = 10;
+
+// Pictures whose rows a render server sends: the camera orbits its target by so many degrees a frame, and the last of
+// so many frames is judged. Its rows are predicted from a frame before, as almost all are. Chosen: the path of
+// split-report.
+constexpr double kSentOrbitDegrees = 1;
+constexpr std::uint32_t kSentFrames = 8;
 
 }  // namespace pocketray

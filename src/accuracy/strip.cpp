@@ -1,6 +1,7 @@
 #include "accuracy/strip.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -32,8 +33,8 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
 
 std::vector<std::string> row_text(const StripRow& row) {
   std::vector<std::string> lines = wrapped(row.label, kTextColumns);
-  for (std::string line : {std::string(), format("%.4g ms", row.ms), format("FLIP %.4f", row.flip)})
-    lines.push_back(line);
+  std::string price = std::isfinite(row.bytes) ? format("%.0f bytes", row.bytes) : format("%.4g ms", row.ms);
+  for (std::string line : {std::string(), price, format("FLIP %.4f", row.flip)}) lines.push_back(line);
   return lines;
 }
 

@@ -10,6 +10,7 @@ namespace pocketray {
 namespace {
 
 constexpr const char* kOtherTracerNote = "time of the reference's own tracer, not of the renderer in double precision";
+constexpr const char* kSentNote = "as shown after the codec; the time is of tracing, without a server";
 
 // The least accurate, the baseline's and the best of the available values, each once.
 std::vector<const SweepPoint*> levels_of(const SweepPlan& plan, const SweptKnob& swept) {
@@ -117,12 +118,13 @@ Measured measured_of(const SweepPoint& point, const PointFigures& f, const Point
     return m;
   }
   if (point.configuration.double_precision) m.note = kOtherTracerNote;
+  if (point.configuration.near_lossless) m.note = kSentNote;
   m.time_ratio = median_interval(ratios_of(f, baseline));
   m.ns_per_pixel = median_interval(f.ns_per_pixel);
   m.ns_per_pixel.value = m.time_ratio.value * median(baseline.ns_per_pixel);
   m.ns_per_pixel.low = std::min(m.ns_per_pixel.low, m.ns_per_pixel.value);
   m.ns_per_pixel.high = std::max(m.ns_per_pixel.high, m.ns_per_pixel.value);
-  m.instructions_per_pixel = f.instructions_per_pixel;
+  m.instructions_per_pixel = f.instructions_per_pixel, m.bytes_per_frame = f.bytes_per_frame;
   m.flip = f.flip, m.flip_before = f.flip_before, m.errors = f.errors;
   return m;
 }

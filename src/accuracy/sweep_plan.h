@@ -41,7 +41,7 @@ struct PointFigures {
   bool has_errors = false;
   double flip = 0, flip_before = 0;
   PictureErrors errors;
-  double instructions_per_pixel = kNotMeasured;
+  double instructions_per_pixel = kNotMeasured, bytes_per_frame = kNotMeasured;
   std::vector<double> ns_per_pixel;  // one per round
 };
 

@@ -1,23 +1,19 @@
 // What whole pictures would take on a connection of their own, however they are coded: for comparison with the rows
 // that are sent.
 #pragma once
-#include <vector>
-
-#include "wire/codec.h"
+#include "accuracy/network/row_stream.h"
 
 namespace pocketray {
 
-struct RowStream {
-  std::vector<unsigned char> memory;
-  RowEncoder* encoder = nullptr;
+struct CountedStream {
+  RowStream stream;
   double bytes = 0;    // of all pictures
   double squares = 0;  // squared error of a channel, in levels of the format, summed over the pictures' means
 };
 
 struct RowStreams {
-  RowStream first;           // each picture as the first of a connection
-  RowStream lossless, near;  // one picture after the other
-  std::vector<std::uint8_t> chunk;
+  CountedStream first;           // each picture as the first of a connection
+  CountedStream lossless, near;  // one picture after the other
   std::uint32_t picture_count = 0;
 };
 

@@ -18,6 +18,7 @@ Json measured_json(const Measured& m) {
   json["ns_per_pixel"] = interval_json(m.ns_per_pixel);
   json["time_ratio"] = interval_json(m.time_ratio);
   json["instructions_per_pixel"] = m.instructions_per_pixel;  // NaN and infinity become null
+  json["bytes_per_frame"] = m.bytes_per_frame;
   json["flip"] = m.flip;
   json["flip_before"] = m.flip_before;
   json["rmse"] = m.errors.rmse;
@@ -31,10 +32,11 @@ Json measured_json(const Measured& m) {
   return json;
 }
 
-void print_value(const Sweep& sweep, const Measured& m) {
-  std::printf("    %-16s %9.2f ms  ×%-7.3g ꟻLIP %.4f  RMSE %.5f%s%s\n", m.value.c_str(),
-              ms_of(sweep, m.ns_per_pixel.value), m.time_ratio.value, m.flip, m.errors.rmse,
-              m.is_default ? "  baseline" : "", m.pareto ? "  *" : "");
+void print_value(const Sweep& sweep, const Measured& m, bool in_bytes) {
+  std::printf("    %-16s %9.2f ms  ×%-7.3g ꟻLIP %.4f  RMSE %.5f", m.value.c_str(), ms_of(sweep, m.ns_per_pixel.value),
+              m.time_ratio.value, m.flip, m.errors.rmse);
+  if (in_bytes) std::printf("  %.0f bytes per frame", m.bytes_per_frame);
+  std::printf("%s%s\n", m.is_default ? "  baseline" : "", m.pareto ? "  *" : "");
 }
 
 // The least, the baseline's and the best value.
@@ -43,7 +45,7 @@ void print_knob(const Sweep& sweep, const KnobFigures& k) {
   KnobEnds ends = ends_of(sweep, k.name);
   for (const Measured* m : values_of(sweep, k.name))
     if (m == ends.worst || m == ends.standard || m == ends.best) {
-      print_value(sweep, *m);
+      print_value(sweep, *m, is_paid_in_bytes(ends));
       if (!m->note.empty()) std::printf("      (%s)\n", m->note.c_str());
     }
   if (k.ms_per_flip > 0) std::printf("    %.3g ms per .01 ꟻLIP\n", k.ms_per_flip);

@@ -19,7 +19,9 @@ double number_of(const Json& json) {
 }
 
 Json to_json(const PointFigures& f) {
-  Json json = {{"ns_per_pixel", f.ns_per_pixel}, {"instructions_per_pixel", number(f.instructions_per_pixel)}};
+  Json json = {{"ns_per_pixel", f.ns_per_pixel},
+               {"instructions_per_pixel", number(f.instructions_per_pixel)},
+               {"bytes_per_frame", number(f.bytes_per_frame)}};
   if (f.has_errors) {
     const PictureErrors& e = f.errors;
     json["errors"] = {number(f.flip), number(f.flip_before), number(e.rmse), number(e.rel_mse),
@@ -32,6 +34,7 @@ PointFigures figures_from(const Json& json) {
   PointFigures f;
   f.ns_per_pixel = json.at("ns_per_pixel").get<std::vector<double>>();
   f.instructions_per_pixel = number_of(json.at("instructions_per_pixel"));
+  f.bytes_per_frame = number_of(json.at("bytes_per_frame"));
   f.has_errors = json.contains("errors");
   if (!f.has_errors) return f;
   const Json& e = json.at("errors");
@@ -45,11 +48,12 @@ bool is_within(double value, double low, double high) { return value >= low && v
 
 // True if a sweep could have written it; other values could not be plotted.
 bool is_sane(const PointFigures& f) {
-  constexpr double kNsPerPixelMax = 1e15, kInstructionsPerPixelMax = 1e16;
+  constexpr double kNsPerPixelMax = 1e15, kInstructionsPerPixelMax = 1e16, kBytesPerFrameMax = 1e12;
   for (double ns : f.ns_per_pixel)
     if (!(ns > 0 && ns <= kNsPerPixelMax)) return false;
   if (!std::isnan(f.instructions_per_pixel) && !is_within(f.instructions_per_pixel, 0, kInstructionsPerPixelMax))
     return false;
+  if (!std::isnan(f.bytes_per_frame) && !is_within(f.bytes_per_frame, 0, kBytesPerFrameMax)) return false;
   const PictureErrors& e = f.errors;  // of light between 0 and 1
   return !f.has_errors || (is_within(f.flip, 0, 1) && is_within(f.flip_before, 0, 1) && is_within(e.rmse, 0, 1) &&
                            is_within(e.rel_mse, 0, 1 / kRelativeFloor) && is_within(e.p99, 0, 1) &&

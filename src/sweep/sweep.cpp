@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "accuracy/display.h"
+#include "accuracy/findings.h"
 #include "base/check.h"
 #include "base/limit_list.h"
 #include "base/rng.h"
@@ -17,6 +18,9 @@
 #include "sweep/instructions.h"
 #include "sweep/references.h"
 #include "sweep/rigs.h"
+#ifdef POCKETRAY_HAVE_NETWORK
+#include "sweep/network/sent_frames.h"
+#endif
 
 namespace pocketray {
 namespace {
@@ -78,12 +82,36 @@ Json key_of(const Run& run, const Rig& rig) {
   return key;
 }
 
-void find_errors(const Run& run, const Rig& rig, const Configuration& configuration, PointFigures* f) {
-  const Renderer& renderer = rig.opened.renderer;
+// The picture that the rig's renderer holds, as the screen shows it. *bytes_per_frame, unless null, receives the bytes
+// of its rows, in a build that can send them. After an interrupt *levels is meaningless.
+Status find_levels(const Run& run, Rig* rig, const Configuration& configuration, Levels* levels,
+                   double* bytes_per_frame) {
+  const Renderer& renderer = rig->opened.renderer;
+  *levels = displayed_levels(renderer.image.data, renderer.settings.width, renderer.settings.height, renderer.exposure,
+                             kOutputFormats[configuration.output]);
+#ifdef POCKETRAY_HAVE_NETWORK
+  if (!bytes_per_frame && !configuration.near_lossless) return success();
+  SentPicture sent;
+  RETURN_IF_ERROR(send_frames(rig, configuration, run.options.seconds, &sent));
+  CHECK(interrupted || configuration.near_lossless || sent.levels.rgb == levels->rgb);
+  *levels = std::move(sent.levels);
+  if (bytes_per_frame) *bytes_per_frame = sent.bytes_per_frame;
+#else
+  CHECK(!configuration.near_lossless);  // there is no such knob
+  (void)run, (void)bytes_per_frame;
+#endif
+  return success();
+}
+
+// After an interrupt there are none.
+Status find_errors(const Run& run, Rig* rig, const SweepPoint& point, PointFigures* f) {
+  const Renderer& renderer = rig->opened.renderer;
   std::uint32_t width = renderer.settings.width, height = renderer.settings.height;
+  Levels levels;
+  bool counts_bytes = &point == &run.plan.points[0] || point.configuration.near_lossless;
+  RETURN_IF_ERROR(find_levels(run, rig, point.configuration, &levels, counts_bytes ? &f->bytes_per_frame : nullptr));
+  if (interrupted) return success();
   std::vector<double> light = exposed_light(renderer.image.data, renderer.image.count, renderer.exposure);
-  Levels levels =
-      displayed_levels(renderer.image.data, width, height, renderer.exposure, kOutputFormats[configuration.output]);
   CHECK_EQ(light.size(), run.reference.mean.size());
   const ReferencePictures& reference = run.reference;
   double ppd = run.options.pixels_per_degree;
@@ -93,6 +121,7 @@ void find_errors(const Run& run, const Rig& rig, const Configuration& configurat
   f->errors.rmse = unbiased_rmse(reference.one, reference.other, light);
   f->errors.psnr = f->errors.rmse > 0 ? -20 * std::log10(f->errors.rmse) : std::numeric_limits<double>::infinity();
   f->has_errors = true;
+  return success();
 }
 
 // The order of a round: points at random, the baseline several times.
@@ -126,7 +155,9 @@ Status measure_round(Run* run, RoundProgress* progress, bool* whole) {
     if (!*whole) return success();
     times[i].push_back(ns_per_pixel);
     PointFigures* f = &run->state.points[id_of(point)];
-    if (!f->has_errors) find_errors(*run, *rig, point.configuration, f);
+    if (!f->has_errors) RETURN_IF_ERROR(find_errors(*run, rig, point, f));
+    *whole = f->has_errors;
+    if (!*whole) return success();
     if (run->state.counted.empty() && std::isnan(f->instructions_per_pixel))
       RETURN_IF_ERROR(count_instructions(rig, point.configuration, run->options.seconds, &f->instructions_per_pixel));
     progress->done += 1000 * point.price;
@@ -184,13 +215,14 @@ Status add_strip(Run* run, const SweptKnob& swept, Sweep* sweep, bool* whole) {
     RETURN_IF_ERROR(time_frame(rig, point.configuration, run->options.seconds, &ns_per_pixel));
     *whole = !interrupted;
     if (!*whole) return success();
-    const Renderer& renderer = rig->opened.renderer;
     StripRow row;
+    RETURN_IF_ERROR(find_levels(*run, rig, point.configuration, &row.picture, nullptr));
+    *whole = !interrupted;
+    if (!*whole) return success();
     row.label = point.knob + " " + point.value;
     row.ms = sweep->measured[i].ns_per_pixel.value * 1e-6 * sweep->width * sweep->height;
     row.flip = sweep->measured[i].flip;
-    row.picture = displayed_levels(renderer.image.data, sweep->width, sweep->height, renderer.exposure,
-                                   kOutputFormats[point.configuration.output]);
+    if (is_paid_in_bytes(ends_of(*sweep, strip.knob))) row.bytes = sweep->measured[i].bytes_per_frame;
     row.flip_map = flip_errors(run->reference.encoded, encoded_levels(row.picture), sweep->width, sweep->height,
                                run->options.pixels_per_degree);
     strip.rows.push_back(std::move(row));

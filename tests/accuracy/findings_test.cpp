@@ -56,3 +56,17 @@ TEST_CASE("findings_knobs_are_sorted_by_price") {
   for (const KnobFigures* knob : knobs_by_price(sweep)) order += knob->name + " ";
   CHECK(order == "cheap dear tiny unknown ");
 }
+
+// Goal: a knob is paid in bytes if its ends differ in them. Method: none; the baseline's alone; both, different and
+// equal.
+TEST_CASE("findings_tell_what_is_paid_in_bytes") {
+  Sweep sweep = sample_sweep();
+  CHECK(!is_paid_in_bytes(ends_of(sweep, "none")));
+  for (Measured& m : sweep.measured)
+    if (m.is_default) m.bytes_per_frame = 4000;
+  for (const char* knob : {"samples", "area-lights", "normals"}) CHECK(!is_paid_in_bytes(ends_of(sweep, knob)));
+  add_sent_knob(&sweep);
+  CHECK(is_paid_in_bytes(ends_of(sweep, "near-lossless")));
+  sweep.measured.back().bytes_per_frame = 2500;
+  CHECK(!is_paid_in_bytes(ends_of(sweep, "near-lossless")));
+}

@@ -75,3 +75,20 @@ TEST_CASE("knobs_apply_where_their_effect_is_on") {
   CHECK(find_output_format("rgb565-dithered") == Configuration().output);
   CHECK(find_output_format("rgb") == -1);
 }
+
+// Goal: only a build with a network knows near-lossless rows, which are off by default and neither a frame's setting
+// nor varied with others. Method: the list.
+TEST_CASE("knobs_send_rows_near_losslessly_with_a_network_alone") {
+  const Knob* found = nullptr;
+  for (const Knob& knob : knob_list())
+    if (std::string(knob.name) == "near-lossless") found = &knob;
+#ifdef POCKETRAY_HAVE_NETWORK
+  REQUIRE(found != nullptr);
+  CHECK_FALSE(found->is_setting);
+  CHECK(found->alone);
+  CHECK(value_label(*found, found->get(Configuration())) == "off");
+  CHECK(value_label(*found, found->values.front()) == "on");
+#else
+  CHECK(found == nullptr);
+#endif
+}

@@ -175,6 +175,25 @@ TEST_CASE("page_says_what_was_timed_and_how_surely") {
   CHECK(has(page, "fewer than six rounds"));
 }
 
+// Goal: what saves bytes and not time is told in bytes, with how they were counted. Method: a knob whose ends differ in
+// bytes; a page without one.
+TEST_CASE("page_tells_what_is_paid_in_bytes") {
+  Sweep sweep = sample_sweep();
+  CHECK(!has(page_of(sweep, {}), "ytes per frame"));
+  add_sent_knob(&sweep);
+  std::string page = page_of(sweep, {});
+  CHECK(markup_fault(page) == "");
+  CHECK(has(page,
+            "<b>near-lossless</b> saves bytes from render servers, not time: 1500 of 4000 per frame for "
+            "FLIP 0.010."));
+  CHECK(!has(page, "No gain that can be claimed"));
+  CHECK(has(page, "<th>bytes per frame</th>"));
+  CHECK(has(page, "<td>2500</td>"));
+  CHECK(has(page, "2500 bytes, FLIP 0.0900"));
+  CHECK(has(page, "orbits its target by 1° a frame"));
+  CHECK(has(page, "the last of 8."));
+}
+
 // Goal: every sweep produces all files, and missing figures do not appear as numbers. Method: a complete sweep; one
 // knob with one value, without errors, without figures; an empty one.
 TEST_CASE("report_has_no_gaps") {

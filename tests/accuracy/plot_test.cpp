@@ -76,6 +76,18 @@ TEST_CASE("plot_price_has_a_bar_for_each_knob_with_a_price") {
   CHECK(points_of(price_plot(sweep), "prices") == -1);
 }
 
+// Goal: a knob that is paid in bytes is plotted over them. Method: one beside knobs that are paid in time.
+TEST_CASE("plot_of_what_is_paid_in_bytes_has_them_as_its_axis") {
+  Sweep sweep = sample_sweep();
+  add_sent_knob(&sweep);
+  std::string script = knob_plot(sweep, sweep.knobs.back()).script;
+  CHECK(has(script, "set xlabel 'kilobytes per frame from a render server'"));
+  CHECK(has(script, "\n2.5 0.09 2.5 2.5\n"));
+  CHECK(has(script, "\n4 0.08 4 4\n"));
+  CHECK(has(knob_plot(sweep, sweep.knobs[0]).script, "set xlabel 'milliseconds per frame'"));
+  CHECK(has(price_plot(sweep).script, "'paid in bytes, not in time' at graph 0.0000"));
+}
+
 // Goal: every number in a script is valid, whatever the sweep. Method: sweeps without errors, with equal ones, with one
 // point and with none.
 TEST_CASE("plot_scripts_hold_numbers_alone") {

@@ -46,6 +46,15 @@ inline void add_knob(Sweep* sweep, const std::string& name, int values, double m
   sweep->strips.push_back(strip);
 }
 
+// Adds the knob of rows from render servers, which costs no time.
+inline void add_sent_knob(Sweep* sweep) {
+  add_knob(sweep, "near-lossless", 2, kNotMeasured);
+  Measured *on = &sweep->measured[sweep->measured.size() - 2], *off = &sweep->measured.back();
+  const double time = sweep->measured.front().ns_per_pixel.value;
+  *on = sample_measured("near-lossless", "on", time, 0.09), on->bytes_per_frame = 2500;
+  *off = sample_measured("near-lossless", "off", time, 0.08), off->bytes_per_frame = 4000, off->is_default = true;
+}
+
 inline void mark_front(Sweep* sweep) {
   std::vector<double> cost, error;
   for (const Measured& m : sweep->measured) {
