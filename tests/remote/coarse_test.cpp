@@ -51,6 +51,9 @@ TEST_CASE("coarse_picture_has_the_pixels_of_the_frame") {
         CHECK(std::vector<std::uint8_t>(coarse.pixels.begin(), coarse.pixels.end()) == squares_of(right, q));
       };
       FrameRequest q = frame_request("cornell", 0, 67, 45);
+      q.coarse_first = true;  // also while the cost of pixels is unknown
+      check(q);
+      q.coarse_first = false;
       check(q);
       q.coarse_first = true;
       for (WireFormat format : {WireFormat::rgb565, WireFormat::rgb888}) {
@@ -161,7 +164,7 @@ TEST_CASE("coarse_picture_that_is_not_due_ends_the_connection") {
       if (deviation == late && before == 0) return before = q.frame, std::vector<Message>();
       std::vector<Message> answers = r->rows.rows(q);
       if (deviation == late) {
-        answers.insert(answers.begin(), {coarse_message(before, pixels), coarse});
+        answers.insert(answers.begin(), coarse_message(before, pixels));
         return before = 0, answers;
       }
       answers.insert(deviation == after_rows ? answers.end() : answers.begin(), coarse);
@@ -170,6 +173,7 @@ TEST_CASE("coarse_picture_that_is_not_due_ends_the_connection") {
     };
     for (int i = 0; i < 6 && rig.log.empty(); ++i) {
       rig.frame();
+      if (deviation == late) CHECK(!rig.client.coarse_shown);
       CHECK(std::count(rig.client.pixels.begin(), rig.client.pixels.end(), 0x77) < int(rig.client.pixels.count) / 4);
     }
     CHECK(asked > 0);
