@@ -21,6 +21,8 @@ constexpr Device kDesktop = {"desktop",
                              117'500'000,
                              microseconds(100),
                              0,
+                             1.1,
+                             92,
                              10,
                              10};
 

@@ -27,6 +27,8 @@ constexpr Device kGp2x = {"gp2x",
                           1'000'000,
                           microseconds(500),
                           microseconds(500),
+                          175,
+                          4500,
                           0.56,
                           33};
 

@@ -30,6 +30,8 @@ constexpr Device kMiyoo = {"miyoo",
                            2'000'000,
                            microseconds(1500),
                            microseconds(2000),
+                           86,
+                           2200,
                            0.08,
                            kRadioNanojoules};
 

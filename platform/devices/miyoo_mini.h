@@ -30,6 +30,8 @@ constexpr Device kMiyooMini = {"miyoo-mini",
                                4'625'000,
                                microseconds(1500),
                                microseconds(2000),
+                               20,
+                               725,
                                0.45,
                                kRadioNanojoules};
 

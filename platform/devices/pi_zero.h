@@ -24,6 +24,8 @@ constexpr Device kPiZero = {"pi-zero",
                             4'625'000,
                             microseconds(1500),
                             microseconds(2000),
+                            35,
+                            900,
                             0.2,
                             kRadioNanojoules};
 

@@ -26,6 +26,8 @@ constexpr Device kTablet = {"tablet",
                             2'375'000,
                             microseconds(1500),
                             microseconds(1000),
+                            5,
+                            410,
                             7,
                             kRadioNanojoules};
 

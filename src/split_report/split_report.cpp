@@ -63,11 +63,11 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   ServerOptions server;
   server.thread_count = renderer->settings.threads;
   server.coherence = renderer->settings.coherence;
-  server.pace.ns_per_pixel = setup.server_ns;
+  server.pace.ns_per_pixel = setup.server_ns, server.encode = setup.encode;
   for (std::uint32_t i = 0; i < setup.server_count; ++i) RETURN_IF_ERROR(start_server(&e->world, i, server));
   ClientOptions options;
   options.format = setup.format;
-  options.pace.ns_per_pixel = setup.device_ns;
+  options.pace.ns_per_pixel = setup.device_ns, options.decode = setup.decode;
   options.check_count = 0;  // measures the split alone: spot checks would add 1 %
   e->memory.resize(client_need(renderer->settings, setup.format, setup.server_count) + kArenaAlignment);
   Arena arena = make_arena("client", e->memory.data(), e->memory.size());
@@ -127,7 +127,10 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     point->row_count += double(settings.height - share.device_rows) / frame_count;
     for (std::uint32_t i = 0; i < e->setup.server_count; ++i)
       point->server_rows[i] += double(share.server_rows[i]) / frame_count;
-    if (whole) send_picture(whole, merged_row(e->client, 0), row_coding(e->client.servers[0].ns_per_byte, false));
+    if (whole)
+      send_picture(
+          whole, merged_row(e->client, 0),
+          row_coding(e->client.servers[0].ns_per_byte, code_threshold(e->client, e->client.servers[0]), false));
   }
   CHECK(!*complete || measured == frame_count);
   if (*complete) point->ns_per_pixel = range_of(e->times.data(), frame_count).median;
@@ -162,6 +165,7 @@ Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::
   SplitSetup setup = given;
   setup.server_count = 1;
   setup.device_ns = row->device_ns, setup.server_ns = row->server_ns;
+  setup.decode = setup.encode = CodeCost();  // the paper's times include its own
   setup.line.latency_ns = setup.line.jitter_ns = 0;
   SplitPoint point;
   // A first run finds the compressed size of the rows.

@@ -18,6 +18,7 @@ struct SplitSetup {
   platform::NullLinkSettings line;
   std::uint32_t server_count = 1;
   double device_ns = 0, server_ns = 0;  // time per pixel on the device and on each server
+  CodeCost decode, encode;              // of rows on the device and on each server
   float orbit_degrees = 1;              // that the camera orbits its target per frame; 0: it stands still
   std::uint32_t frame_count = 8;        // in the path measured for each share
 };

@@ -53,6 +53,8 @@ void make_reporting(const SceneStore& store, const char* scene, const char* devi
   double widths = 320.0 / settings.width;
   r->setup.device_ns = kServerNs * device->slowdown / std::max(1, device->core_count) * widths,
   r->setup.server_ns = kServerNs * widths;
+  r->setup.decode = {widths * device->decode_pixel_ns, widths * device->decode_byte_ns};
+  r->setup.encode = {widths * 9, widths * 160};
   r->setup.frame_count = 4;
   r->setup.line.bytes_per_second = static_cast<std::uint64_t>(device->link_bytes_per_second / widths);
 }

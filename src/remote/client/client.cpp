@@ -69,13 +69,23 @@ double time_to_spare(const Client& client, double come_share) {
   return kWaitShare * alone + come_share * change * come - idle;
 }
 
-// True if the servers' rows are due before the device could render one, or late by less than that, and the device would
-// still finish about as early as alone if none arrived.
+// Time that the device will need to decode the rows still missing.
+double decoding_left_ns(const Client& client) {
+  double bytes = 0;
+  for (std::uint32_t row = 0; row < client.model.rows.count; ++row)
+    if (!is_done(client.merge.rows[row])) bytes += static_cast<double>(client.model.rows[row].bytes.value);
+  return bytes * static_cast<double>(client.model.unpack_ns_per_byte.value);
+}
+
+// True if the servers' rows are due before the device could render one and decode the others, or late by less than it
+// takes to render one, and the device would still finish about as early as alone if none arrived.
 bool is_worth_waiting(const Client& client) {
   double prepare = static_cast<double>(client.prepare_ns), due = client.share.predicted_ns - prepare;
   double elapsed = static_cast<double>(client_now_ns(client) - client.begin_ns),
          row = device_pixel_ns(client) * client.settings.width;
-  if (!client.joined || elapsed + row <= due || elapsed >= std::max(kLateFactor * due, due + row)) return false;
+  if (!client.joined || elapsed + row + decoding_left_ns(client) <= due ||
+      elapsed >= std::max(kLateFactor * due, due + row))
+    return false;
   bool any_guessed =
       std::any_of(client.model.rows.begin(), client.model.rows.end(), [](const RowModel& r) { return r.guessed; });
   double latest = kLateFactor * (client.share.local_ns - prepare);

@@ -10,6 +10,7 @@
 #include "remote/stream.h"
 #include "split/cost_model.h"
 #include "split/merge.h"
+#include "wire/code_cost.h"
 #include "wire/codec.h"
 #include "wire/row_sequence.h"
 
@@ -30,6 +31,7 @@ struct ClientOptions {
   double coarse_after_ns = 0;                           // frames that take longer begin with a coarse picture; 0: none
   bool device_goes_on = true;                           // goes on into missing rows; false: for comparisons
   Pace pace;                                            // the CPU to emulate
+  CodeCost decode;                                      // and what decoding takes there; 0: as here
   const float* row_costs = nullptr;                     // relative row costs on it; see row_costs.h
   bool has_scene = true;                                // false: the device only shows what servers render
   int check_count = kCheckCountAuto;  // servers' pixels to check per frame, at most kSpotChecksMax; 0: none
@@ -171,6 +173,7 @@ struct Client {
   std::uint64_t prepare_ns = 0;  // of work on it before it began
   mutable platform::LinkClock clock;
   std::uint64_t unwatched_ns = 0;  // time before the latest poll: input may have arrived that much earlier
+  Smoothed decode_ns, code_saves;  // per coded pixel: to decode it; bytes that its code saves
   Arrivals arrivals;
   DeviceRow device_row;
   double device_ns = 0;                          // spent on its own rows in this frame
@@ -184,8 +187,10 @@ struct Client {
   std::uint64_t progress_ns = 0;  // when missing rows last came
 };
 
-// How rows should come over a link of that speed.
-RowCoding row_coding(double ns_per_byte, bool near_lossless);
+// How rows should come over a link of that speed, where coding pays from `threshold` nanoseconds per byte on.
+RowCoding row_coding(double ns_per_byte, double threshold, bool near_lossless);
+// That threshold for a server, by what decoding has taken and saved on this device; near it, rows stay as they are.
+double code_threshold(const Client& client, const RemoteServer& server);
 
 // Arena bytes for pictures of that size. The client uses server_count streams of the link.
 std::size_t client_need(const Settings& settings, WireFormat format, std::uint32_t server_count);

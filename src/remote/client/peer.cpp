@@ -102,6 +102,12 @@ bool takes_owed_rows(RemoteServer* server, const RowChunk& chunk) {
   return true;
 }
 
+void learn_decoding(Client* client, std::uint64_t pixel_count, std::uint32_t code_bytes, std::uint64_t ns) {
+  const double pixels = static_cast<double>(pixel_count);
+  smooth(&client->decode_ns, static_cast<double>(ns) / pixels);
+  smooth(&client->code_saves, pixel_bytes(client->options.format) - code_bytes / pixels);
+}
+
 void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
   chunk.frame = frame_of(chunk.frame, server->asked.frame);
   const bool states_price = chunk.price != 0;
@@ -116,11 +122,13 @@ void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
   std::uint64_t begin_ns = client_now_ns(*client);
   if (!decode_rows(server->decoder, chunk)) return lose_server(client, server, "it sent rows that cannot be decoded");
   std::uint64_t unpacked_ns = client_now_ns(*client) - begin_ns;
-  if (client->options.pace.slowdown > 1) {
-    std::uint64_t paced = static_cast<std::uint64_t>(static_cast<double>(unpacked_ns) * client->options.pace.slowdown);
-    work_until(client, begin_ns + paced);
-    unpacked_ns = paced;
+  const std::uint64_t pixel_count = std::uint64_t(chunk.row_count) * client->settings.width;
+  const bool coded = chunk.encoding == kEncodingCoded;
+  if (client->options.decode.pixel_ns > 0) {
+    unpacked_ns = code_ns(client->options.decode, pixel_count, coded ? chunk.bytes.count : 0);
+    work_until(client, begin_ns + unpacked_ns);
   }
+  if (coded && chunk.traced > 0) learn_decoding(client, pixel_count, chunk.bytes.count, unpacked_ns);
   std::uint32_t bytes = row_chunk_prefix_bytes(states_price) + chunk.bytes.count;
   observe_unpack(&client->model, bytes, static_cast<double>(unpacked_ns));
   accept_chunk(client, server, chunk, bytes);

@@ -15,9 +15,11 @@ constexpr double kDisproved = 1.25;  // a link faster than estimated by more tha
 constexpr double kLinkBound = 1.15;  // rows that take this much longer than on the servers are bound by the link
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
 static_assert(kOrderRunsMax <= kRunCountMax && kRunRowsMax <= UINT8_MAX, "a request can express every order");
-// Nanoseconds per byte beyond which coded rows pay. Measured (tests/bench/device/codec_cost.py), per pixel of RGB565:
-// coding saves 1.9 bytes, and decoding takes a Cortex-A7 75 ns, an ARM926 250 ns, for which 40 and 130 ns a byte pay.
+// Nanoseconds per byte beyond which coded rows pay, until the device knows its own. Measured
+// (tests/bench/device/codec_cost.py), per pixel of RGB565: coding saves 1.9 bytes, and decoding takes a Cortex-A7 75
+// ns, an ARM926 250 ns, for which 40 and 130 ns a byte pay.
 constexpr double kCodeNsPerByte = 60;
+constexpr double kCodeMargin = 1.25;  // chosen: single frames decode faster or slower by less
 
 // Sets the order of a request's rows: the one in which the server's tracing and sending overlap best.
 void set_order(const SplitProblem& p, std::uint32_t server, FrameRequest* request) {
@@ -90,8 +92,15 @@ void finish_probe(Client* client, RemoteServer* server) {
 
 }  // namespace
 
-RowCoding row_coding(double ns_per_byte, bool near_lossless) {
-  if (ns_per_byte < kCodeNsPerByte) return RowCoding::raw;
+double code_threshold(const Client& client, const RemoteServer& server) {
+  const bool known = is_known(client.decode_ns) && is_known(client.code_saves);
+  if (!known) return kCodeNsPerByte;
+  const double pays = static_cast<double>(client.decode_ns.value) / static_cast<double>(client.code_saves.value);
+  return server.asked.coding == RowCoding::raw ? pays * kCodeMargin : pays / kCodeMargin;
+}
+
+RowCoding row_coding(double ns_per_byte, double threshold, bool near_lossless) {
+  if (ns_per_byte < threshold) return RowCoding::raw;
   return near_lossless ? RowCoding::near_lossless : RowCoding::lossless;
 }
 
@@ -119,7 +128,8 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   client->model.servers[index].chunk_rows = ordered ? kChunkRowsMin : kChunkRowsEven;
   const std::uint32_t chunk_rows = ordered ? kChunkRowsMax : kChunkRowsEven;
   message.frame_request.chunk_rows = static_cast<std::uint16_t>(std::min(chunk_rows, client->settings.height));
-  message.frame_request.coding = row_coding(server->ns_per_byte, client->options.near_lossless);
+  message.frame_request.coding =
+      row_coding(server->ns_per_byte, code_threshold(*client, *server), client->options.near_lossless);
   bool like_the_last = server->asked.frame > 0 && is_change(message.frame_request, server->asked);
   message.type = like_the_last ? MessageType::frame_change : MessageType::frame_request;
   server->late_rows += server->due_rows;

@@ -101,6 +101,7 @@ Status open_servers(const ServersOptions& options, const platform::Device* emula
   if (options.addresses.empty()) return success();
   auto s = std::make_unique<ConnectedServers>();
   s->options = options;
+  s->emulated = emulated;
   if (!options.key.empty()) RETURN_IF_ERROR(read_key(options.key, &s->key));
   for (const std::string& text : options.addresses) {
     platform::LinkAddress address;
@@ -139,6 +140,7 @@ Status start_client(Servers* servers, Renderer* renderer, bool small_pixels, boo
   options.cost_per_megabyte = s->options.price;
   options.device_share = s->options.device_share;
   options.pace = renderer->pace;
+  if (s->emulated) options.decode = {s->emulated->decode_pixel_ns, s->emulated->decode_byte_ns};
   options.has_scene = !s->is_thin;
   options.check_count = s->options.verify;
   options.near_lossless = s->options.near_lossless;

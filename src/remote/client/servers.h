@@ -10,6 +10,7 @@ struct ConnectedServers : Servers {
   ConnectedServers();
 
   ServersOptions options;
+  const platform::Device* emulated = nullptr;  // null: none
   std::vector<platform::LinkAddress> addresses;
   std::vector<std::max_align_t> tcp_memory, radio_memory, inquiry_memory;
   platform::Link* tcp = nullptr;

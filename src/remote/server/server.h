@@ -8,6 +8,7 @@
 #include "engine/pace.h"
 #include "platform/link.h"
 #include "remote/server/scene_store.h"
+#include "wire/code_cost.h"
 
 namespace pocketray {
 
@@ -29,6 +30,7 @@ struct ServerOptions {
   Pace pace;                                               // the CPU to emulate: cost of pixels,
   std::uint64_t message_ns = 0, byte_ps = 0;               // of a message and a byte of its answer (0: none),
   const float* row_costs = nullptr;                        // and relative cost of rows; see row_costs.h
+  CodeCost encode;                                         // and of coding rows; 0: none
   std::uint64_t message_timeout_ns = 10'000'000'000;       // for a complete message; for the hello, since connecting
   std::uint64_t idle_timeout_ns = 300'000'000'000;         // without a message and with nothing to send
   std::uint64_t stall_timeout_ns = 10'000'000'000;         // without the client reading anything

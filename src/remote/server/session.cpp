@@ -48,6 +48,8 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
       encode_rows(session->encoder, request.frame, row_begin, row_count, session->pixels.data + row_begin * line_bytes,
                   request.coding, at + prefix, &chunk->encoding);
   CHECK_EQ(chunk->encoding >> kChunkNumberShift, 0);
+  session->coded_pixels += std::uint64_t(renderer.settings.width) * row_count;
+  if (chunk->encoding & kEncodingCoded) session->code_bytes += byte_count;
   add_chunk_number(chunk, session->chunk_count++);
   chunk->bytes = {at + prefix, byte_count};
   send_message(session, message);

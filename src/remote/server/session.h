@@ -113,9 +113,10 @@ struct Session {
   float own_exposure = 0;                    // 0: not yet measured
 
   FrameJob job = {};
-  FrameRequest request;                // the last request, met or refused; frame 0: none
-  std::uint64_t job_number = 0;        // counts jobs, including those of earlier clients
-  std::uint32_t frame_last = 0;        // number of the last request
+  FrameRequest request;                            // the last request, met or refused; frame 0: none
+  std::uint64_t job_number = 0;                    // counts jobs, including those of earlier clients
+  std::uint32_t frame_last = 0;                    // number of the last request
+  std::uint64_t coded_pixels = 0, code_bytes = 0;  // since the server last took them
   double trace_ns = 0, probe_ns = 0;   // thread time of an expensive pixel, and of an exposure pixel; 0: unknown
   std::uint32_t pixel_ps = 0;          // recent work on a pixel
   std::uint16_t price = kPriceUnit;    // for the client, as of the last choice

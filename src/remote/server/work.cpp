@@ -118,6 +118,13 @@ std::uint64_t work_ns(const Server& server, const Session& session, const Work& 
   return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
 }
 
+// Time for rows coded since the last call, on the emulated CPU if there is one.
+std::uint64_t take_coding_ns(const Server& server, Session* session) {
+  const std::uint64_t pixels = session->coded_pixels, bytes = session->code_bytes;
+  session->coded_pixels = session->code_bytes = 0;
+  return is_paced(server.options.pace) ? code_ns(server.options.encode, pixels, bytes) : 0;
+}
+
 // Handles messages, queues rows that waited for room, prepares a frame or traces a part of it.
 void begin_work(Server* server, int index) {
   CHECK_LT(server->work.session, 0);
@@ -152,10 +159,11 @@ void begin_work(Server* server, int index) {
   work->begin_ns = start;
   work->end_ns = now;
   if (is_paced(server->options.pace)) {
-    took = work_ns(*server, *session, *work, took);
+    took = work_ns(*server, *session, *work, took) + take_coding_ns(*server, session);
     // Work that already waited when the CPU became free began at that moment.
     if (work->is_job && waited_since < server->cpu_free_ns && server->cpu_free_ns < start)
       work->begin_ns = server->cpu_free_ns;
+    if (server->cpu_free_ns > start) work->begin_ns = server->cpu_free_ns;  // it was coding rows
     if (work->begin_ns + took > now) work->end_ns = work->begin_ns + took;
     server->cpu_free_ns = work->end_ns;
   }
@@ -177,7 +185,9 @@ void end_work(Server* server) {
   session->waiting_since_ns = work->end_ns;
   std::uint64_t start = now_ns(server);
   send_chunks(session);
-  std::uint64_t sending = elapsed(start, now_ns(server));
+  const std::uint64_t coding = take_coding_ns(*server, session);
+  if (coding > 0) server->cpu_free_ns = now_ns(server) + coding;
+  std::uint64_t sending = elapsed(start, now_ns(server)) + coding;
   account_for(server, session, sending, true);
   if (has_job(*session)) {
     session->job.took_ns += sending;
