@@ -37,6 +37,7 @@ void SplitRig::start_server(std::uint32_t i) {
   o.client_memory_bytes = 16u << 20;
   o.client_count_max = 4;
   o.coherence = options.coherence;
+  o.encode = options.encode;
   o.pace.ns_per_pixel = options.server_ns.empty()      ? 100
                         : i < options.server_ns.size() ? options.server_ns[i]
                                                        : options.server_ns.back();

@@ -29,6 +29,7 @@ struct SplitRigOptions {
   platform::NullLinkSettings line = fine_clock();
   CoherenceMode coherence = CoherenceMode::automatic;  // of device and servers
   bool compares = true;                                // compares every frame with the device's own
+  CodeCost encode;  // of rows on servers
   ClientOptions client;
 };
 
