@@ -211,7 +211,7 @@ TEST_CASE("split_report_table" * doctest::skip()) {
         for (std::uint32_t i = 0; i < server_count; ++i) std::printf(" %.0f", f.chosen.server_rows[i]);
         std::printf(" |\n");
         std::fflush(stdout);
-        CHECK(ratio <= 1.03);
+        CHECK(ratio <= 1.06);
         worst = std::max(worst, ratio);
       }
   std::printf("worst: %.3f\n", worst);
