@@ -34,10 +34,9 @@ Status ask(ConnectedServers* s, std::size_t server, Inquiry* inquiry) {
   return open_inquiry(options, s->inquiry_link ? s->inquiry_link : s->link, s->addresses[server], inquiry);
 }
 
-// "127.0.0.1:7411: it does not answer; …", each server once; the link's errors already begin with the name.
+// "127.0.0.1:7411: it does not answer; …", each server once.
 void add_reason(const ConnectedServers& s, std::size_t server, const std::string& reason, std::string* reasons) {
-  const std::string name = s.addresses[server].text;
-  *reasons += (reasons->empty() ? "" : "; ") + (reason.compare(0, name.size(), name) == 0 ? "" : name + ": ") + reason;
+  *reasons += (reasons->empty() ? "" : "; ") + std::string(s.addresses[server].text) + ": " + reason;
 }
 
 std::string names_of(const std::vector<SceneEntry>& entries) {
