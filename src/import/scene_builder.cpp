@@ -275,6 +275,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   result->storage = builder->out;
   result->warning = warning_line(*builder);
   result->parts = named_parts(*builder);
+  result->files.assign(builder->files.paths.begin(), builder->files.paths.end());
   result->material_names = std::move(builder->material_names);
 }
 

@@ -189,7 +189,9 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
   if (!status.ok)
     return failure("%.100s does not fit in --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
                    megabytes(limit), memory_hint(" (", wanted, "be a start)").c_str(), status.message);
+  std::vector<std::string> files = std::move(opened->source.files);
   opened->source = SceneSource();
+  opened->source.files = std::move(files);
 
   Pace pace = opened->renderer.pace;
   Renderer* renderer = &opened->renderer;
