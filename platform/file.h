@@ -71,6 +71,12 @@ bool close_writer(FileWriter* writer, FileError* error);
 // Gives up: removes the data written; an older file of that name stays.
 void discard_writer(FileWriter* writer);
 
+// Begins a file that has its name while it grows: PATH holds these bytes, or what was there before; write_bytes() then
+// appends, and close_writer() ends it. For names that the user did not choose: whatever has the name is replaced, never
+// followed or opened, even a symbolic link or a pipe. A file keeps its permissions.
+bool open_growing_writer(const char* path, const void* bytes, std::size_t byte_count, FileWriter* writer,
+                         FileError* error);
+
 // From here on, only writers of "-" reach standard output, and what is printed there goes to standard error. Fails if
 // standard output is a terminal.
 bool keep_output_for_data(FileError* error);
@@ -80,6 +86,8 @@ bool is_output_for_data();
 bool can_write(const char* path, FileError* error);
 // Whether open_writer() would write there directly.
 bool is_device_or_pipe(const char* path);
+// Whether the last name of a path is of a regular file, not a link to one, or of nothing.
+bool is_plain_or_absent(const char* path);
 // Whether two paths name the same file, through links of either kind; the file need not exist yet. False for devices
 // and pipes.
 bool is_same_file(const char* one, const char* other);

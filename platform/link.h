@@ -13,11 +13,12 @@
 namespace platform {
 
 constexpr int kLinkStreamsMax = 256;  // of one Link, including listeners
+constexpr std::size_t kLinkNameBytes = 96;
 
 // Where to reach a peer, or where to wait for peers.
 struct LinkAddress {
   static constexpr int kPlacesMax = 4;
-  char text[96] = {0};                                   // as given, for messages
+  char text[kLinkNameBytes] = {0};                       // as given, for messages
   bool loopback = false;                                 // all places are on this machine
   int place_count = 0;                                   // a name may have several; connect() tries one after the other
   alignas(8) unsigned char places[kPlacesMax][32] = {};  // in the backend's format
@@ -60,7 +61,8 @@ struct LinkBackend {
   // Parses "HOST:PORT", "[IPv6]:PORT", or ":PORT" and "PORT" for this machine only. Looking up a name, unlike a number,
   // may take seconds and memory: resolve at the start, then connect as often as necessary.
   bool (*resolve)(const char* text, LinkAddress* address, Error* error);
-  // Begins to connect; returns the stream, or -1. The connection fails after `timeout_ns` without an outcome.
+  // Begins to connect; returns the stream, or -1, with an error that may begin with the address as given and ": ". The
+  // connection fails after `timeout_ns` without an outcome.
   int (*connect)(Link* link, const LinkAddress& address, std::uint64_t timeout_ns, Error* error);
   // done: connected; later: not yet; failed.
   LinkResult (*connected)(Link* link, int stream, Error* error);
@@ -68,7 +70,8 @@ struct LinkBackend {
   int (*listen)(Link* link, const LinkAddress& address, Error* error);
   // Accepts the next waiting peer. After `failed` the listener remains usable: only that peer is lost.
   LinkResult (*accept)(Link* link, int listener, int* stream, Error* error);
-  // "HOST:PORT" in numbers: of a listener its own, of a connection the peer's. Valid until the stream is closed.
+  // "HOST:PORT" in numbers: of a listener its own, of a connection the peer's; while connecting, the address as given.
+  // Valid until the stream is closed. Errors of a stream begin with it and ": ".
   const char* (*stream_name)(const Link* link, int stream);
 
   // Reads available bytes, 1 – `byte_count_max` of them.

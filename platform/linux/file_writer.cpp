@@ -176,6 +176,29 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
   return fail(error, "cannot be replaced with its permissions kept", number);
 }
 
+bool open_growing_writer(const char* path, const void* bytes, std::size_t byte_count, FileWriter* writer,
+                         FileError* error) {
+  PLATFORM_CHECK(path != nullptr && error != nullptr);
+  PLATFORM_CHECK_LT(writer->descriptor, 0);
+  *writer = FileWriter();
+  if (strlen(path) >= kWriterPathBytes) return fail_as_too_long(error);
+  Destination d;
+  strcpy(d.path, path);
+  d.is_there = lstat(path, &d.info) == 0 && S_ISREG(d.info.st_mode);
+  if (!open_part(d, writer, error)) return false;
+  write_bytes(writer, bytes, byte_count);
+  bool ok = !writer->failed && (!d.is_there || keep_permissions(d, writer->descriptor)) &&
+            bring_to_disk(writer->descriptor) && rename(writer->part, path) == 0;
+  if (!ok) {
+    fail(error, "cannot be written completely", errno);
+    discard_writer(writer);
+    return false;
+  }
+  bring_folder_to_disk(path);
+  writer->part[0] = 0;  // it has its name: from here on it is written directly
+  return true;
+}
+
 void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count) {
   PLATFORM_CHECK_GE(writer->descriptor, 0);
   PLATFORM_CHECK(bytes != nullptr || byte_count == 0);
@@ -263,6 +286,12 @@ bool is_device_or_pipe(const char* path) {
   Destination d;
   FileError error;
   return strcmp(path, "-") == 0 || (find_destination(path, &d, &error) && d.is_direct);
+}
+
+bool is_plain_or_absent(const char* path) {
+  PLATFORM_CHECK(path != nullptr);
+  struct stat info;
+  return lstat(path, &info) != 0 || S_ISREG(info.st_mode);
 }
 
 bool is_same_file(const char* one, const char* other) {

@@ -23,7 +23,8 @@ struct Slot {
   bool blocked;           // the inner link has no room until poll() reports some
   std::uint64_t news_ns;  // when the outcome of connecting becomes known
   LinkPipe in, out;
-  Error error;  // why it was lost
+  Error error;                // why it was lost
+  char name[kLinkNameBytes];  // of the inner stream, once that is closed
 };
 
 struct alignas(Slot) ShapedLink : Link {  // followed by its slots
@@ -55,7 +56,10 @@ std::uint64_t tell_clock(ShapedLink* link) {
 }
 
 void close_inner(ShapedLink* link, Slot* slot) {
-  if (slot->inner >= 0) net(link).close(link->inner, slot->inner);
+  if (slot->inner >= 0) {
+    std::snprintf(slot->name, sizeof slot->name, "%s", net(link).stream_name(link->inner, slot->inner));
+    net(link).close(link->inner, slot->inner);
+  }
   slot->inner = -1;
 }
 
@@ -209,7 +213,8 @@ LinkResult accept(Link* base, int listener, int* stream, Error* error) {
 const char* stream_name(const Link* base, int stream) {
   ShapedLink* link = shaped(const_cast<Link*>(base));
   const Slot* slot = slot_of(link, stream);
-  return slot ? net(link).stream_name(link->inner, slot->inner) : "";
+  if (!slot) return "";
+  return slot->inner >= 0 ? net(link).stream_name(link->inner, slot->inner) : slot->name;
 }
 
 LinkResult read(Link* base, int stream, void* bytes, std::size_t byte_count_max, std::size_t* byte_count,

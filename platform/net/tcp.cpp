@@ -28,7 +28,7 @@ struct Slot {
   int error_number;  // of the first place that failed; when broken: the reason
   LinkTimer timer;   // while connecting
   LinkAddress address;
-  char name[64];
+  char name[kLinkNameBytes];
 };
 
 struct alignas(Slot) TcpLink : Link {  // followed by its slots
@@ -184,7 +184,7 @@ int connect(Link* base, const LinkAddress& address, std::uint64_t timeout_ns, Er
   slot->phase = Phase::connecting;
   slot->address = address;
   slot->timer = link_timer(link->now_ns(), timeout_ns);
-  snprintf(slot->name, sizeof slot->name, "%.63s", address.text);
+  snprintf(slot->name, sizeof slot->name, "%s", address.text);
   try_places(slot);
   if (slot->file >= 0) return stream_of(link, slot);
   tell(address.text, slot->error_number ? slot->error_number : EADDRNOTAVAIL, error);

@@ -72,6 +72,8 @@ Status bake(const BakeOptions& o) {
   start = clock_ns();
   EnvironmentMemory environment;
   if (!o.environment.empty()) RETURN_IF_ERROR(set_environment(o.environment, &scene, &environment));
+  if (!environment.file.empty()) heap.files.push_back(environment.file);
+  RETURN_IF_ERROR(check_not_read(heap.files, {{"-o", o.output}, {"--json", o.json}}));
   SolvedRadiosity solved;
   if (o.radiosity) RETURN_IF_ERROR(solve_scene(o.input, std::thread::hardware_concurrency(), &scene, &solved));
   double solve_ms = static_cast<double>(clock_ns() - start) * 1e-6;

@@ -237,6 +237,7 @@ void add_bench_command(Command program, int* exit_status) {
   for (const char* chosen : {"--samples", "--depth", "--area-lights", "--cut-off", "--texture-filter", "--normals"})
     priced.excludes(command.get_option(chosen));
   command.callback([=] {
+    options->outputs = {{"--front", *front}};
     *exit_status =
         priced.count() > 0 ? run_front(*options, *front, *frames) : run(*options, *frames, !*no_prices, *sparse);
   });

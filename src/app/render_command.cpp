@@ -72,6 +72,14 @@ Status open_budgeted(const RenderOptions& o, const OutputBytes& bytes, RenderJob
   return success();
 }
 
+// Pictures and lists may not replace files that the scene is read from.
+Status check_pictures(const RenderJob& job, const SceneSource& source) {
+  if (source.files.empty()) return success();
+  RETURN_IF_ERROR(check_not_read(source.files, {{"--json", job.options.common.json}}));
+  for (const std::string& path : job.asked.paths) RETURN_IF_ERROR(check_not_read(source.files, {{"-o", path}}));
+  return success();
+}
+
 // Reads which frames are finished, with --resume, and begins to list those that will be.
 Status start_journal(const SceneSource& source, const Renderer& renderer, FrameJournal* journal, RenderJob* job) {
   if (!keeps_journal(job->options, job->asked)) return success();
@@ -126,6 +134,7 @@ Status open_job(const RenderOptions& given, Opened* o) {
   auto bytes = [job](const Settings& settings) { return output_bytes(job->options, job->asked, settings); };
   RETURN_IF_ERROR(options->budget.ms > 0 ? open_budgeted(*options, bytes, job, &o->scene, &o->budget)
                                          : open_scene_with(job->servers, options->common, bytes, &o->scene));
+  RETURN_IF_ERROR(check_pictures(*job, o->scene.source));
   Renderer* renderer = &o->scene.renderer;
   if (moves_camera(*options)) job->camera = make_camera_control(renderer->camera, subject_of(o->scene));
   RETURN_IF_ERROR(start_servers_for(*options, renderer, job));

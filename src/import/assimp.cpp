@@ -54,12 +54,12 @@ class MemoryStream : public Assimp::IOStream {
 // Opens only files beside the scene file.
 class FilesBeside : public Assimp::DefaultIOSystem {
  public:
-  FilesBeside(const std::string& scene_path, std::uint64_t byte_count_max)
-      : scene_path_(scene_path), byte_count_max_(byte_count_max) {}
+  FilesBeside(const std::string& scene_path, std::uint64_t byte_count_max, FilesRead* files)
+      : scene_path_(scene_path), byte_count_max_(byte_count_max), files_(files) {}
   bool Exists(const char* path) const override { return allowed(path) && DefaultIOSystem::Exists(path); }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     if (!Exists(path) || !std::strchr(mode, 'r')) return nullptr;
-    return new MemoryStream(read_file(path, byte_count_max_));  // the importer gives it back to Close
+    return new MemoryStream(read_file(path, byte_count_max_, files_));  // the importer gives it back to Close
   }
   void Close(Assimp::IOStream* stream) override { delete stream; }
 
@@ -78,6 +78,7 @@ class FilesBeside : public Assimp::DefaultIOSystem {
   }
   std::string scene_path_;
   std::uint64_t byte_count_max_;
+  FilesRead* files_;
 };
 
 struct AssimpReader {
@@ -170,7 +171,8 @@ std::string assimp_formats() {
 void import_assimp(const std::string& path, const std::string& ending, const Bytes& bytes, SceneBuilder* builder) {
   require_bytes(*builder, bytes.size(), 4, "the file");
   Assimp::Importer importer;
-  importer.SetIOHandler(new FilesBeside(path, builder->options.byte_count_max));  // the importer owns it
+  importer.SetIOHandler(
+      new FilesBeside(path, builder->options.byte_count_max, &builder->files));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   bool own_normals = ending != "stl";
   const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);

@@ -28,7 +28,8 @@ std::uint16_t linear_16(float srgb) {
 // The image of a texture: embedded (compressed, or plain BGRA texels) or a file beside the scene.
 Image load(SceneBuilder* builder, const std::string& scene_path, const aiScene& scene, const char* name) {
   const aiTexture* embedded = scene.GetEmbeddedTexture(name);
-  if (!embedded) return decode_image(builder, read_beside(scene_path, name, builder->options.byte_count_max), name);
+  if (!embedded)
+    return decode_image(builder, read_beside(scene_path, name, builder->options.byte_count_max, &builder->files), name);
   const std::uint8_t* data = reinterpret_cast<const std::uint8_t*>(embedded->pcData);
   if (embedded->mHeight == 0) return decode_image(builder, Bytes(data, data + embedded->mWidth), name);
   Image image;

@@ -16,6 +16,7 @@
 #include <memory>
 #include <new>
 
+#include "import/files.h"
 #include "import/import_error.h"
 #include "scene/baked.h"
 
@@ -136,9 +137,18 @@ std::string one_line(std::string name) {
   return name;
 }
 
-// A line for each material and each part.
+// In a line, a path with its line feeds as the one byte that no path has; and back.
+std::string exchanged(std::string path, char from, char to) {
+  std::replace(path.begin(), path.end(), from, to);
+  return path;
+}
+
+// A line for each file, each material and each part. Files, whose names are bounded, come first, as the end may be cut
+// off.
 std::string join_names(const ImportedScene& imported) {
+  static_assert(kFilesReadBytesMax <= kTextBytesMax / 2, "all files are told");
   std::string lines;
+  for (const std::string& path : imported.files) lines += "file " + exchanged(path, '\n', '\0') + '\n';
   for (const std::string& name : imported.material_names) lines += "material " + one_line(name) + '\n';
   for (const auto& part : imported.parts) {
     const Vec3 &low = part.second.low, &high = part.second.high;
@@ -153,13 +163,15 @@ std::string join_names(const ImportedScene& imported) {
 
 // Lines that the child may have sent wrong are left out.
 void split_names(const std::string& lines, ImportedScene* imported) {
-  const std::string material = "material ";
+  const std::string material = "material ", file = "file ";
   for (std::size_t at = 0, end; (end = lines.find('\n', at)) != std::string::npos; at = end + 1) {
     const std::string line = lines.substr(at, end - at);
     Box box;
     int used = 0;
     if (line.compare(0, material.size(), material) == 0)
       imported->material_names.push_back(line.substr(material.size()));
+    else if (line.compare(0, file.size(), file) == 0)
+      imported->files.push_back(exchanged(line.substr(file.size()), '\0', '\n'));
     else if (std::sscanf(line.c_str(), "part %a %a %a %a %a %a%n", &box.low.x, &box.low.y, &box.low.z, &box.high.x,
                          &box.high.y, &box.high.z, &used) == 6 &&
              used > 0 && static_cast<std::size_t>(used) < line.size() && is_finite(box.low) && is_finite(box.high) &&

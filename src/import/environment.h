@@ -15,6 +15,7 @@ struct ImportedEnvironment {
   std::vector<std::uint32_t> texels;
   Vec3 mean;  // radiance
   std::vector<Light> lights;
+  std::string file;  // that was read; empty: none
 };
 
 // A picture of linear radiance, rows from the top.

@@ -85,7 +85,8 @@ Vec3d picture_at(const RadiancePicture& picture, const Vec3d& direction) {
 }
 
 Status read_picture(const std::string& name, RadiancePicture* picture) {
-  const Bytes bytes = read_file(name, kFileBytesMax);
+  FilesRead files;
+  const Bytes bytes = read_file(name, kFileBytesMax, &files);
   if (bytes.size() >= 2 && bytes[0] == '#' && bytes[1] == '?') {
     const Status status = decode_radiance(bytes, picture);
     return status.ok ? status : failure("%.300s %.200s", name.c_str(), status.message);
@@ -106,6 +107,7 @@ Status read_picture(const std::string& name, RadiancePicture* picture) {
 Status read_environment(const std::string& name, ImportedEnvironment* environment) {
   *environment = ImportedEnvironment();
   if (name == "sky" || name.compare(0, 4, "sky:") == 0) return read_sky(name, environment);
+  environment->file = name;
   try {
     RadiancePicture picture;
     RETURN_IF_ERROR(read_picture(name, &picture));

@@ -13,11 +13,21 @@
 #include <cstring>
 #include <memory>
 
+#include "base/check.h"
 #include "import/import_error.h"
 
 namespace pocketray {
 
-Bytes read_file(const std::string& path, std::uint64_t byte_count_max) {
+static constexpr std::size_t kNoteBytes = 16;  // of a short name, beside its text
+
+void note_file(FilesRead* files, const std::string& path) {
+  CHECK(files != nullptr);
+  if (!files->paths.insert(path).second) return;
+  files->byte_count += path.size() + kNoteBytes;
+  if (files->byte_count > kFilesReadBytesMax) fail_import("it names too many files; merge some");
+}
+
+Bytes read_file(const std::string& path, std::uint64_t byte_count_max, FilesRead* files) {
   // Non-blocking, since open() on a pipe would wait for a writer. Checks the open descriptor, so that the checked file
   // is the one read.
   int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
@@ -28,6 +38,7 @@ Bytes read_file(const std::string& path, std::uint64_t byte_count_max) {
   struct stat info;
   if (!file || fstat(descriptor, &info) != 0) fail_import("cannot read %s: %s", path.c_str(), std::strerror(errno));
   if (!S_ISREG(info.st_mode)) fail_import("%s is not a regular file; name a scene file", path.c_str());
+  note_file(files, path);
   if (static_cast<std::uint64_t>(info.st_size) > byte_count_max)
     fail_import("%s has %lld bytes, more than the limit of %llu; use a smaller model", path.c_str(),
                 static_cast<long long>(info.st_size), static_cast<unsigned long long>(byte_count_max));
@@ -80,8 +91,9 @@ std::string find_beside(const std::string& scene_path, const std::string& name) 
   return folder;
 }
 
-Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max) {
-  return read_file(find_beside(scene_path, name), byte_count_max);
+Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max,
+                  FilesRead* files) {
+  return read_file(find_beside(scene_path, name), byte_count_max, files);
 }
 
 static int hex_digit(char c) {
@@ -121,8 +133,8 @@ static Bytes base64_decoded(const char* text, std::size_t size) {
   return result;
 }
 
-Bytes read_uri(const std::string& scene_path, const std::string& uri, std::uint64_t byte_count_max) {
-  if (uri.compare(0, 5, "data:") != 0) return read_beside(scene_path, percent_decoded(uri), byte_count_max);
+Bytes read_uri(const std::string& scene_path, const std::string& uri, std::uint64_t byte_count_max, FilesRead* files) {
+  if (uri.compare(0, 5, "data:") != 0) return read_beside(scene_path, percent_decoded(uri), byte_count_max, files);
   std::size_t comma = uri.find(',');
   if (comma == std::string::npos || comma < 7 || uri.compare(comma - 7, 7, ";base64") != 0)
     fail_import("a data URI is not base64; export the file again");

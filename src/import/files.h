@@ -1,6 +1,7 @@
 // Reads files beside the scene file. Names in a scene file cannot leave its folder.
 #pragma once
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,19 @@ namespace pocketray {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Reads the whole file. Throws ImportError if it cannot be read or is larger than `byte_count_max`, before allocating.
-Bytes read_file(const std::string& path, std::uint64_t byte_count_max);
+// The files that an import has opened, each once. Bounded, since a scene file may name any number.
+struct FilesRead {
+  std::set<std::string> paths;
+  std::size_t byte_count = 0;
+};
+constexpr std::size_t kFilesReadBytesMax = 512u << 10;  // chosen: five thousand long names
+
+// Adds a path; throws ImportError beyond kFilesReadBytesMax.
+void note_file(FilesRead* files, const std::string& path);
+
+// Reads the whole file and adds it to `files`. Throws ImportError if it cannot be read or is larger than
+// `byte_count_max`, before allocating.
+Bytes read_file(const std::string& path, std::uint64_t byte_count_max, FilesRead* files);
 
 // Path of the file `name` in the scene file at `scene_path`: relative, without "..", with '\' read as '/'. Throws
 // ImportError for any other name.
@@ -18,10 +30,11 @@ std::string path_beside(const std::string& scene_path, const std::string& name);
 // The same path, or if no such file exists, one that differs only in the case of ASCII letters, as on systems that do
 // not tell them apart.
 std::string find_beside(const std::string& scene_path, const std::string& name);
-Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max);
+Bytes read_beside(const std::string& scene_path, const std::string& name, std::uint64_t byte_count_max,
+                  FilesRead* files);
 
 // A glTF URI's bytes: "data:…;base64,…" or a percent-encoded relative path.
-Bytes read_uri(const std::string& scene_path, const std::string& uri, std::uint64_t byte_count_max);
+Bytes read_uri(const std::string& scene_path, const std::string& uri, std::uint64_t byte_count_max, FilesRead* files);
 
 // Lower-case ending without the dot; "" if none. Name without folders and ending.
 std::string path_ending(const std::string& path);

@@ -112,7 +112,7 @@ void fetch_buffers(GltfFile* file, const Json& root) {
     std::string uri = string_member(entry, "uri");
     tinygltf::Buffer buffer;
     if (!uri.empty()) {
-      buffer.data = read_uri(file->path, uri, file->builder->options.byte_count_max);
+      buffer.data = read_uri(file->path, uri, file->builder->options.byte_count_max, &file->builder->files);
     } else if (i == 0 && file->has_binary_chunk) {
       buffer.data.swap(file->binary_chunk);
     } else {

@@ -21,7 +21,7 @@ Image load_image(GltfFile* file, int index, TexelKind kind) {
   std::string name = "image " + std::to_string(index);
   Bytes bytes;
   if (!image.uri.empty()) {
-    bytes = read_uri(file->path, image.uri, file->builder->options.byte_count_max);
+    bytes = read_uri(file->path, image.uri, file->builder->options.byte_count_max, &file->builder->files);
   } else {
     std::size_t count = 0;
     const std::uint8_t* data = gltf_view(*file, image.bufferView, &count);

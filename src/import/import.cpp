@@ -36,6 +36,7 @@ void import_by_assimp(const std::string& path, const std::string& ending, const 
       [&](ImportedScene* imported) {
         SceneBuilder builder;
         builder.options = options;
+        note_file(&builder.files, path);
         import_assimp(path, ending, bytes, &builder);
         finish_scene(&builder, path_stem(path), imported);
       },
@@ -44,7 +45,8 @@ void import_by_assimp(const std::string& path, const std::string& ending, const 
 
 void import_any(const std::string& path, const ImportOptions& options, ImportedScene* result) {
   std::string ending = path_ending(path);
-  Bytes bytes = read_file(path, options.byte_count_max);
+  FilesRead files;
+  Bytes bytes = read_file(path, options.byte_count_max, &files);
   if (bytes.empty()) fail_import("the file is empty");
   bool gltf = is_gltf(ending, bytes);
   if (!gltf && ending != "obj" && ending != "ply") {
@@ -54,6 +56,7 @@ void import_any(const std::string& path, const ImportOptions& options, ImportedS
   }
   SceneBuilder builder;
   builder.options = options;
+  builder.files = std::move(files);
   if (gltf)
     import_gltf(path, std::move(bytes), &builder);
   else if (ending == "ply")

@@ -28,6 +28,7 @@ struct ImportedScene {
   std::shared_ptr<void> storage;            // owns what `scene` points at
   std::string warning;                      // one line listing ignored contents; empty if none
   std::vector<std::string> material_names;  // of the first materials; empty where the file has none
+  std::vector<std::string> files;           // that were read for it: its own, buffers, textures, …
   NamedBoxes parts;                         // nodes, objects or groups with a name, each with all below it
 };
 

@@ -31,7 +31,7 @@ class MaterialFiles : public tinyobj::MaterialReader {
                   std::map<std::string, int>* by_name, std::string* warning, std::string* error) override {
     Bytes bytes;
     try {
-      bytes = read_beside(scene_path_, name, builder_->options.byte_count_max / 16);
+      bytes = read_beside(scene_path_, name, builder_->options.byte_count_max / 16, &builder_->files);
       tidy_obj_text(&bytes);
     } catch (const ImportError& failure) {
       note_remark(builder_, std::string("materials are missing: ") + failure.what());

@@ -32,7 +32,8 @@ Vec3 bounded3(const float* c, float high) {
 bool load(SceneBuilder* builder, const std::string& scene_path, const std::string& name, Image* image) {
   if (name.empty()) return false;
   try {
-    *image = decode_image(builder, read_beside(scene_path, name, builder->options.byte_count_max), name);
+    *image =
+        decode_image(builder, read_beside(scene_path, name, builder->options.byte_count_max, &builder->files), name);
     shrink_image(image, builder->options.texture_side_max);
     return true;
   } catch (const ImportError& error) {

@@ -98,9 +98,16 @@ static void append_optional(std::vector<T>* all, const std::vector<T>& more, std
   all->resize(begin + count, filler);
 }
 
-static std::uint64_t vertex_bytes(const MeshData& mesh) {
-  return sizeof(Vec3) + (mesh.normals.empty() ? 0 : sizeof(Vec3)) + (mesh.uvs.empty() ? 0 : sizeof(Vec2)) +
-         (mesh.colors.empty() ? 0 : sizeof(Rgba16));
+// Bytes by which append_optional() makes an array longer.
+template <class T>
+static std::uint64_t optional_bytes(const std::vector<T>& all, const std::vector<T>& more, std::size_t end) {
+  return all.empty() && more.empty() ? 0 : (end - all.size()) * sizeof(T);
+}
+
+static std::uint64_t vertex_bytes(const SceneArrays& out, const MeshData& mesh) {
+  const std::size_t count = mesh.positions.size(), end = out.positions.size() + count;
+  return count * sizeof(Vec3) + optional_bytes(out.normals, mesh.normals, end) +
+         optional_bytes(out.uvs, mesh.uvs, end) + optional_bytes(out.colors, mesh.colors, end);
 }
 
 static void require_coordinate(const Vec3& p, const MeshData& mesh) {
@@ -114,7 +121,7 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   SceneArrays& out = *builder->out;
   std::size_t begin = out.positions.size(), count = mesh.positions.size(), triangle_count = mesh.indices.size() / 3;
   if (count == 0) return;
-  charge_bytes(builder, count * vertex_bytes(mesh) + triangle_count * sizeof(Triangle), "the geometry");
+  charge_bytes(builder, vertex_bytes(out, mesh) + triangle_count * sizeof(Triangle), "the geometry");
   if (begin + count > kVertexCountMax) fail_import("more than %u vertices; simplify the model", kVertexCountMax);
   if (out.triangles.size() + triangle_count > kTriangleCountMax)
     fail_import("more than %u triangles; simplify the model", kTriangleCountMax);
@@ -179,9 +186,11 @@ static Array<const T> view(const std::vector<T>& v) {
 }
 
 // Poses moving vertices by animation 0 at time 0.
-static void pose_at_start(const Scene& scene, SceneArrays* out) {
+static void pose_at_start(const Scene& scene, const SceneBuilder& builder) {
+  SceneArrays* out = builder.out.get();
   if (scene.moving_meshes.empty()) return;
   std::size_t bytes = pose_need(scene) + kArenaAlignment;
+  require_bytes(builder, bytes, 1, "the pose");
   std::vector<std::uint8_t> block(bytes);
   Arena arena = make_arena("pose", block.data(), bytes);
   Pose pose = make_pose(scene, &arena);
@@ -237,7 +246,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.grains.empty()) out.grains.resize(out.materials.size());
-  make_tangents(&out);
+  make_tangents(builder);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())
     out.rest_normals.resize(out.rest_positions.size(), Vec3{0, 0, 0});
@@ -262,10 +271,11 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.morph_positions = view(out.morph_positions), scene.morph_normals = view(out.morph_normals);
   Status status = validate_scene(scene);
   if (!status.ok) fail_import("%s", status.message);
-  pose_at_start(scene, &out);
+  pose_at_start(scene, *builder);
   result->storage = builder->out;
   result->warning = warning_line(*builder);
   result->parts = named_parts(*builder);
+  result->files.assign(builder->files.paths.begin(), builder->files.paths.end());
   result->material_names = std::move(builder->material_names);
 }
 

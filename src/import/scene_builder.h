@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "import/files.h"
 #include "import/import.h"
 #include "scene/scene.h"
 
@@ -65,6 +66,7 @@ struct SceneBuilder {
   std::vector<std::string> material_names;  // of the first materials
   std::vector<PartSource> parts;
   std::uint64_t bytes_charged = 0;
+  FilesRead files;
   std::vector<std::string> unused;   // contents of the file that are not used
   std::vector<std::string> remarks;  // simplifications and repairs
 };

@@ -19,6 +19,10 @@ struct Sum {
   bool mirrored = false, unmirrored = false;
 };
 
+using Sums = std::map<VertexKey, Sum>;
+// An entry, three links and a colour beside it, and the heap's own word.
+constexpr std::uint64_t kSumBytes = sizeof(Sums::value_type) + 5 * sizeof(void*);
+
 bool needs_tangents(const SceneArrays& out, std::uint32_t material) {
   if (material < out.grains.size() && has_strength(out.grains[material])) return true;
   return material < out.material_maps.size() && out.material_maps[material].normal.texture != kNone;
@@ -39,7 +43,17 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
   return is_zero(p) || is_zero(q) ? 0 : det_acos(dot(p, q));
 }
 
-void add_triangle(const SceneArrays& out, const Triangle& t, std::map<VertexKey, Sum>* sums) {
+// The sum at a vertex, made if there is none.
+Sum* sum_at(const SceneBuilder& builder, std::uint32_t vertex, Sums* sums) {
+  const VertexKey key = key_of(*builder.out, vertex);
+  const auto found = sums->find(key);
+  if (found != sums->end()) return &found->second;
+  require_bytes(builder, sums->size() + 1, kSumBytes, "the tangents");
+  return &(*sums)[key];
+}
+
+void add_triangle(const SceneBuilder& builder, const Triangle& t, Sums* sums) {
+  const SceneArrays& out = *builder.out;
   Vec3d p[3];
   double u[3], v[3];
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -51,7 +65,7 @@ void add_triangle(const SceneArrays& out, const Triangle& t, std::map<VertexKey,
   if (area == 0 || is_zero(face)) return;
   const Vec3d along = ((p[1] - p[0]) * (v[2] - v[0]) - (p[2] - p[0]) * (v[1] - v[0])) * (area < 0 ? -1.0 : 1.0);
   for (std::uint32_t i = 0; i < 3; ++i) {
-    Sum* sum = &(*sums)[key_of(out, t.vertex(i))];
+    Sum* sum = sum_at(builder, t.vertex(i), sums);
     (area < 0 ? sum->mirrored : sum->unmirrored) = true;
     Vec3d n = out.normals.empty() ? Vec3d{0, 0, 0} : normalize(to_double(out.normals[t.vertex(i)]));
     if (is_zero(n)) n = face;
@@ -68,12 +82,14 @@ PackedTangent pack(const Vec3d& tangent) {
 
 }  // namespace
 
-void make_tangents(SceneArrays* out) {
-  CHECK(out != nullptr);
-  std::map<VertexKey, Sum> sums;
+void make_tangents(SceneBuilder* builder) {
+  CHECK(builder != nullptr);
+  SceneArrays* out = builder->out.get();
+  Sums sums;
   for (const Triangle& t : out->triangles)
-    if (needs_tangents(*out, t.material()) && !out->uvs.empty()) add_triangle(*out, t, &sums);
+    if (needs_tangents(*out, t.material()) && !out->uvs.empty()) add_triangle(*builder, t, &sums);
   if (sums.empty()) return;
+  charge_bytes(builder, out->positions.size() * sizeof(PackedTangent), "the tangents");
   out->tangents.assign(out->positions.size(), PackedTangent());
   for (const Triangle& t : out->triangles)
     for (std::uint32_t i = 0; i < 3 && needs_tangents(*out, t.material()); ++i) {

@@ -4,11 +4,12 @@
 
 namespace pocketray {
 
-// Fills out->tangents if a material has a normal map or a grain, as MikkTSpace does [Mikkelsen 2008, "Simulation of
-// wrinkled surfaces revisited", sec. 4.3]: at a vertex, the triangles' ∂P/∂u, each made perpendicular to the vertex
-// normal and unit, are added by the angle that the triangle has there. Vertices of equal position, normal and texture
-// coordinates count as one. Zero, for the triangle's own frame: at vertices that move; that triangles of both
-// orientations in the texture share, which MikkTSpace would part; and of other materials.
-void make_tangents(SceneArrays* out);
+// Fills builder->out->tangents if a material has a normal map or a grain, as MikkTSpace does [Mikkelsen 2008,
+// "Simulation of wrinkled surfaces revisited", sec. 4.3]: at a vertex, the triangles' ∂P/∂u, each made perpendicular to
+// the vertex normal and unit, are added by the angle that the triangle has there. Vertices of equal position, normal
+// and texture coordinates count as one. Zero, for the triangle's own frame: at vertices that move; that triangles of
+// both orientations in the texture share, which MikkTSpace would part; and of other materials. Tangents and the memory
+// to make them count towards the import's limit.
+void make_tangents(SceneBuilder* builder);
 
 }  // namespace pocketray

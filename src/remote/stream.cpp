@@ -15,6 +15,19 @@ void compact(Array<std::uint8_t> bytes, std::size_t* begin, std::size_t* end) {
   *end -= *begin, *begin = 0;
 }
 
+// Removes the name that a link's error begins with (platform/link.h).
+void leave_out(const char* name, platform::Error* error) {
+  const std::size_t length = std::strlen(name);
+  if (length == 0 || std::strncmp(error->text, name, length) != 0) return;
+  const char* rest = error->text + length;
+  if (std::strncmp(rest, ": ", 2) == 0) std::memmove(error->text, rest + 2, std::strlen(rest + 2) + 1);
+}
+
+bool fail_unnamed(const MessageStream& s, platform::Error* error) {
+  leave_out(s.link->backend->stream_name(s.link, s.stream), error);
+  return false;
+}
+
 }  // namespace
 
 std::size_t message_stream_need(std::size_t in_bytes, std::size_t out_bytes) {
@@ -39,6 +52,24 @@ void start_message_stream(MessageStream* s, platform::Link* link, int connection
   s->link = link, s->stream = connection;
 }
 
+bool connect_message_stream(MessageStream* s, platform::Link* link, const platform::LinkAddress& address,
+                            std::uint64_t timeout_ns, platform::Error* error) {
+  CHECK(link != nullptr && error != nullptr);
+  const int connection = link->backend->connect(link, address, timeout_ns, error);
+  if (connection >= 0)
+    start_message_stream(s, link, connection);
+  else
+    leave_out(address.text, error);
+  return connection >= 0;
+}
+
+platform::LinkResult connected_message_stream(MessageStream* s, platform::Error* error) {
+  CHECK_GE(s->stream, 0);
+  const platform::LinkResult result = s->link->backend->connected(s->link, s->stream, error);
+  if (result == platform::LinkResult::failed) fail_unnamed(*s, error);
+  return result;
+}
+
 void close_message_stream(MessageStream* s) {
   if (s->stream >= 0) s->link->backend->close(s->link, s->stream);
   s->stream = -1;
@@ -50,7 +81,7 @@ bool flush_message_stream(MessageStream* s, platform::Error* error) {
     platform::LinkResult result = s->link->backend->write(s->link, s->stream, s->out.data + s->out_begin,
                                                           s->out_end - s->out_begin, &count, error);
     if (result == platform::LinkResult::later) return true;
-    if (result != platform::LinkResult::done) return false;
+    if (result != platform::LinkResult::done) return fail_unnamed(*s, error);
     s->out_begin += count, s->bytes_out += count;
     CHECK_LE(s->out_begin, s->out_end);  // nor sends more than it is given
   }
@@ -65,7 +96,7 @@ bool read_message_stream(MessageStream* s, platform::Error* error) {
     platform::LinkResult result =
         s->link->backend->read(s->link, s->stream, s->in.data + s->in_end, s->in.count - s->in_end, &count, error);
     if (result == platform::LinkResult::later) return true;
-    if (result == platform::LinkResult::failed) return false;
+    if (result == platform::LinkResult::failed) return fail_unnamed(*s, error);
     if (result == platform::LinkResult::ended) s->ended = true;
     s->in_end += count, s->bytes_in += count;
     CHECK_LE(s->in_end, s->in.count);  // a link reads no more than there is room for

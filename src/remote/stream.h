@@ -24,6 +24,14 @@ MessageStream make_message_stream(std::size_t in_bytes, std::size_t out_bytes, A
 
 // Starts over with a connection of the link.
 void start_message_stream(MessageStream* stream, platform::Link* link, int connection);
+
+// Errors from here on do not name the peer: callers do, as their users know it.
+
+// Begins to connect, and starts over with that connection.
+bool connect_message_stream(MessageStream* stream, platform::Link* link, const platform::LinkAddress& address,
+                            std::uint64_t timeout_ns, platform::Error* error);
+// As the link's connected().
+platform::LinkResult connected_message_stream(MessageStream* stream, platform::Error* error);
 void close_message_stream(MessageStream* stream);
 
 // Sends and receives as far as there is room. False if the connection is lost; `error` says why.

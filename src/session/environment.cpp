@@ -20,6 +20,7 @@ Status set_environment(const std::string& name, Scene* scene, EnvironmentMemory*
     return failure("the scene has %u lights, with the environment's %zu they are more than %u: use fewer",
                    scene->lights.count, read.lights.size(), kLightCountMax);
   memory->info = {read.info};
+  memory->file = read.file;
   memory->texels = std::move(read.texels);
   memory->lights.assign(scene->lights.begin(), scene->lights.end());
   memory->lights.insert(memory->lights.end(), read.lights.begin(), read.lights.end());
@@ -45,6 +46,7 @@ Status set_environment_if_requested(const std::string& name, Renderer* renderer,
   Scene* scene = &renderer->scene;
   EnvironmentMemory memory;
   RETURN_IF_ERROR(set_environment(name, scene, &memory));
+  if (!memory.file.empty()) source->files.push_back(memory.file);
   const std::size_t bytes = arena_need<EnvironmentInfo>(1) + arena_need<std::uint32_t>(memory.texels.size()) +
                             arena_need<Light>(memory.lights.size());
   Arena* arena = &renderer->scene_arena;

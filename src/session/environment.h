@@ -12,6 +12,7 @@ struct EnvironmentMemory {
   std::vector<EnvironmentInfo> info;
   std::vector<std::uint32_t> texels;
   std::vector<Light> lights;
+  std::string file;  // that it was read from; empty: none
 };
 
 // Gives the scene the environment of that name (import/environment.h) in place of its background, ambient term and

@@ -23,6 +23,7 @@ Status read_heap_scene(const std::string& name, const ModelOptions& options, Hea
   RETURN_IF_ERROR(import_model(name, import_options, &result->imported));
   result->scene = result->imported.scene;
   result->warning = result->imported.warning;
+  result->files = result->imported.files;
   return success();
 #else
   (void)options;

@@ -12,6 +12,7 @@ struct HeapScene {
   Scene scene;
   std::string warning;               // the importer's, one line; empty: none
   std::vector<std::uint8_t> memory;  // of a built-in scene
+  std::vector<std::string> files;    // that a model was read from
 #ifdef POCKETRAY_HAVE_IMPORT
   ImportedScene imported;
 #endif

@@ -15,6 +15,12 @@
 namespace pocketray {
 namespace {
 
+Status check_outputs_of(const CommonOptions& o, const std::vector<std::string>& files) {
+  RETURN_IF_ERROR(check_not_read(files, {{"--json", o.json}}));
+  RETURN_IF_ERROR(check_not_read(files, o.outputs));
+  return check_folder_not_read(files, o.output_folder);
+}
+
 Status set_pace(const CommonOptions& o, Renderer* renderer) {
   const platform::Device* device;
   RETURN_IF_ERROR(find_device(o, &device));
@@ -68,6 +74,7 @@ Status open_scene(const CommonOptions& o, const OpenHooks& hooks, OpenScene* ope
   SceneStorage storage;
   RETURN_IF_ERROR(hooks.load(o.scene, renderer, &opened->source, &storage));
   RETURN_IF_ERROR(set_environment_if_requested(o.environment, renderer, &opened->source, &storage));
+  RETURN_IF_ERROR(check_outputs_of(o, opened->source.files));
   RETURN_IF_ERROR(solve_if_requested(o.scene, renderer, &opened->source, &storage));
   if (hooks.loaded) RETURN_IF_ERROR(hooks.loaded(opened->source, renderer));
   Status planned = hooks.plan(renderer, storage, hooks.output_bytes(settings));

@@ -52,6 +52,29 @@ Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<Nam
   return success();
 }
 
+Status check_not_read(const std::vector<std::string>& files, const std::vector<NamedFile>& outputs) {
+  for (const NamedFile& output : outputs) {
+    if (!is_given(output) || output.path == "-" || platform::file_stamp(output.path.c_str()) == 0) continue;
+    for (const std::string& file : files)
+      if (platform::is_same_file(file.c_str(), output.path.c_str()))
+        return failure("%s %.200s would overwrite %.200s, which the scene is read from: name another file",
+                       output.option, output.path.c_str(), file.c_str());
+  }
+  return success();
+}
+
+Status check_folder_not_read(const std::vector<std::string>& files, const std::string& folder) {
+  if (folder.empty()) return success();
+  for (const std::string& file : files) {
+    const std::size_t slash = file.rfind('/');
+    const std::string within = folder + "/" + (slash == std::string::npos ? file : file.substr(slash + 1));
+    if (has_suffix(file.c_str(), ".png") && platform::is_same_file(file.c_str(), within.c_str()))
+      return failure("-o %.200s has %.200s, which the scene is read from: name another folder", folder.c_str(),
+                     file.c_str());
+  }
+  return success();
+}
+
 Status keep_output_for_data() {
   platform::survive_closed_pipes();
   platform::FileError error;

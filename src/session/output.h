@@ -21,6 +21,12 @@ bool has_suffix(const char* path, const char* suffix);
 // work. Inputs need not be files. Leaves no trace.
 Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
+// Fails if an output is a file that the scene was read from (SceneSource::files), through links too: its textures and
+// buffers are known once it is open. Call it then, before the work.
+Status check_not_read(const std::vector<std::string>& files, const std::vector<NamedFile>& outputs);
+// The same for a folder of results: fails if it has such a picture, which a result of that name would replace.
+Status check_folder_not_read(const std::vector<std::string>& files, const std::string& folder);
+
 // For commands that write data to standard output: what they print goes to standard error from here on, and a reader
 // that goes away fails the write instead of ending the program. Fails if standard output is a terminal.
 Status keep_output_for_data();

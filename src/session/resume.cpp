@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "base/check.h"
-#include "platform/file.h"
 
 namespace pocketray {
 namespace {
@@ -24,11 +23,30 @@ Status load_lines(const std::string& path, std::string* text) {
   return ok ? success() : failure("%.300s is not a list of finished frames: delete it, or drop --resume", path.c_str());
 }
 
+bool is_kept(const FrameJournal& journal) { return journal.writer.descriptor >= 0; }
+
+void close(FrameJournal* journal) {
+  platform::FileError error;
+  if (is_kept(*journal)) (void)platform::close_writer(&journal->writer, &error);  // what got lost only costs time
+}
+
+// Whether nothing has that name, or a journal, whatever its pictures show.
+bool is_free(const std::string& path) {
+  if (!platform::is_plain_or_absent(path.c_str())) return false;
+  if (platform::file_stamp(path.c_str()) == 0) return true;
+  platform::FileReader file;
+  platform::FileError error;
+  char head[sizeof kHead - 1];
+  const bool is_journal = platform::open_reader(path.c_str(), &file, &error) && file.byte_count >= sizeof head &&
+                          platform::read_bytes(&file, head, sizeof head, &error) &&
+                          std::memcmp(head, kHead, sizeof head) == 0;
+  platform::close_reader(&file);
+  return is_journal;
+}
+
 }  // namespace
 
-FrameJournal::~FrameJournal() {
-  if (file) std::fclose(file);
-}
+FrameJournal::~FrameJournal() { close(this); }
 
 std::string journal_path(const std::string& output) { return output + ".resume"; }
 
@@ -55,31 +73,30 @@ Status read_journal(const std::string& path, const std::string& identity, std::v
 
 Status begin_journal(const std::string& path, const std::string& identity, const std::vector<std::uint32_t>& finished,
                      FrameJournal* journal) {
-  CHECK(journal->file == nullptr);
+  CHECK(!is_kept(*journal));
   platform::FileError error;
   if (!platform::can_write(path.c_str(), &error)) return failure("%.300s %s", path.c_str(), error.text);
+  if (!is_free(path))
+    return failure("%.300s is not a list of finished frames, which is to be there: remove it, or name another -o",
+                   path.c_str());
   journal->path = path;
-  journal->file = std::fopen(path.c_str(), "w");
-  if (!journal->file) return failure("%.300s cannot be written", path.c_str());
-  std::setvbuf(journal->file, nullptr, _IONBF, 0);  // each number at once, and no buffer to allocate
   std::string text = kHead + identity + "\n";
   for (std::uint32_t frame : finished) text += std::to_string(frame) + "\n";
-  if (std::fwrite(text.data(), 1, text.size(), journal->file) == text.size()) return success();
-  return failure("%.300s could not be written completely: is the disk full?", path.c_str());
+  if (platform::open_growing_writer(path.c_str(), text.data(), text.size(), &journal->writer, &error)) return success();
+  return failure("%.300s %s", path.c_str(), error.text);
 }
 
 void add_to_journal(FrameJournal* journal, std::uint32_t frame) {
-  if (!journal->file) return;
+  if (!is_kept(*journal)) return;
   char line[16];
   const int length = std::snprintf(line, sizeof line, "%" PRIu32 "\n", frame);
   CHECK(length > 0 && length < static_cast<int>(sizeof line));
-  std::fwrite(line, 1, static_cast<std::size_t>(length), journal->file);
+  platform::write_bytes(&journal->writer, line, static_cast<std::size_t>(length));
 }
 
 void remove_journal(FrameJournal* journal) {
-  if (!journal->file) return;
-  std::fclose(journal->file);
-  journal->file = nullptr;
+  if (!is_kept(*journal)) return;
+  close(journal);
   std::remove(journal->path.c_str());
 }
 

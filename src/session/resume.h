@@ -1,10 +1,10 @@
 // Which pictures of an interrupted sequence are finished: a small text file beside them.
 #pragma once
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "base/status.h"
+#include "platform/file.h"
 
 namespace pocketray {
 
@@ -12,7 +12,7 @@ namespace pocketray {
 // finished one. A picture is replaced as a whole before its number is added, so numbers that get lost only cost time.
 struct FrameJournal {
   std::string path;
-  std::FILE* file = nullptr;  // null: none is kept
+  platform::FileWriter writer;  // closed: none is kept
 
   FrameJournal() = default;
   FrameJournal(const FrameJournal&) = delete;
@@ -25,7 +25,8 @@ std::string journal_path(const std::string& output);
 // Finds the finished frames of a journal written with the same identity; none if there is no journal. Fails if it is of
 // pictures made otherwise.
 Status read_journal(const std::string& path, const std::string& identity, std::vector<std::uint32_t>* finished);
-// Begins a journal with these frames. Its own memory is taken here, not later.
+// Begins a journal with these frames. Its own memory is taken here, not later. The user did not choose its name, so
+// anything there but a journal is refused: a link, a pipe, a file of other content.
 Status begin_journal(const std::string& path, const std::string& identity, const std::vector<std::uint32_t>& finished,
                      FrameJournal* journal);
 void add_to_journal(FrameJournal* journal, std::uint32_t frame);

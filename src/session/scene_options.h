@@ -1,6 +1,7 @@
 // Command-line options for a scene and its rendering, as text, and their parsing.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "accel/accel_list.h"
 #include "base/isa.h"
@@ -8,6 +9,7 @@
 #include "engine/renderer.h"
 #include "platform/devices/device_list.h"
 #include "scene/scene.h"
+#include "session/output.h"
 
 namespace pocketray {
 
@@ -31,6 +33,9 @@ struct CommonOptions {
   std::string environment;                     // import/environment.h; empty: the scene's
   std::string focus;                           // a part of the model; empty: all of it
   std::uint32_t threads = 0, camera_index = 0;
+  // What the command writes beside --json. None of it may replace a file that the scene is read from.
+  std::vector<NamedFile> outputs;
+  std::string output_folder;
   SettingOptions settings;
   std::string coherence = "off";
   std::uint32_t coherence_table = Settings().coherence_table;

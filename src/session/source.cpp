@@ -45,6 +45,7 @@ Status load_imported(const std::string& name, Renderer* renderer, SceneSource* s
   source->warning = imported.warning;
   source->material_names = imported.material_names;
   source->parts = imported.parts;
+  source->files = imported.files;
   // Copies from the heap into the block, in the form a device would map.
   std::size_t size = baked_size(imported.scene);
   auto* bytes = static_cast<std::uint8_t*>(arena_try_allocate(&renderer->scene_arena, size));

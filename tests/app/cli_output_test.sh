@@ -155,6 +155,48 @@ if "${run[@]}" render --help | grep -q glTF; then
   check linked_model_is_as_it_was cmp -s other.obj kept.obj
 fi
 
+# Goal: no command overwrites a file that its model or environment was read from, besides the one named: materials,
+# textures and buffers. Method: each as an output, by their names and through links of both kinds; all stay as they are.
+if "${run[@]}" render --help | grep -q glTF; then
+  mkdir shed && cd shed || exit 1
+  "${run[@]}" render cube --size 8x8 -o tile.png >/dev/null
+  printf 'mtllib shed.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl wall\nf 1/1 2/2 3/3\n' >shed.obj
+  printf 'newmtl wall\nKd 1 0 0\nmap_Kd Tile.PNG\n' >shed.mtl
+  printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0' >shed.bin
+  printf '%s' '{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"shed.bin"}],"bufferViews":[{"buffer":0,
+    "byteLength":36}],"accessors":[{"bufferView":0,"count":3,"type":"VEC3","componentType":5126}],"meshes":[{"primitives":
+    [{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]}' >shed.gltf
+  mkdir ../kept && cp * ../kept
+  ln tile.png hard.png && ln -s tile.png soft.png && ln tile.png walk-0001.png && ln tile.png walk.gif && ln tile.png hard.pfm
+  ln shed.mtl hard.pray
+  read_from='which the scene is read from'
+  for name in tile.png ./tile.png "$PWD/tile.png" hard.png soft.png; do
+    expect "render_over_a_texture_$name" 1 "^pocketray: -o $name would overwrite .*tile.png, $read_from: name another file" \
+      render shed.obj "${quick[@]}" -o "$name"
+    expect "plan_over_a_texture_$name" 1 "$read_from" plan shed.obj --json "$name"
+  done
+  expect render_json_over_materials 1 "$read_from" render shed.obj "${quick[@]}" -o refused.ppm --json shed.mtl
+  expect sequence_over_a_texture 1 "-o walk-0001.png would overwrite" render shed.obj "${quick[@]}" --turntable 3 -o walk.png
+  expect gif_over_a_texture 1 "$read_from" render shed.obj "${quick[@]}" --turntable 3 -o walk.gif
+  expect bench_over_a_texture 1 "$read_from" bench shed.obj "${quick[@]}" --frames 1 --json tile.png
+  expect bench_front_over_a_texture 1 "$read_from|not a" bench shed.obj "${quick[@]}" --frames 1 --front tile.png
+  expect bake_over_materials 1 "-o hard.pray would overwrite shed.mtl, $read_from" bake shed.obj -o hard.pray
+  expect bake_json_over_a_texture 1 "$read_from" bake shed.obj -o refused.pray --json tile.png
+  expect render_over_a_buffer 1 "$read_from" render shed.gltf "${quick[@]}" -o refused.ppm --json shed.bin
+  expect render_over_the_environment 1 "$read_from" render cube "${quick[@]}" --environment tile.png -o hard.png
+  expect bake_over_the_environment 1 "$read_from" bake cube --environment tile.png -o refused.pray --json hard.png
+  ! has reference || expect reference_over_a_texture 1 "--output hard.pfm .* $read_from" reference shed.obj "${quick[@]}" -o hard.pfm
+  for command in accuracy split-report coherence-report; do
+    has $command || continue
+    expect "${command}_over_materials" 1 "$read_from" $command shed.obj "${quick[@]}" -o ../swept_other --json shed.mtl
+    expect "${command}_among_textures" 1 "-o . has tile.png, $read_from: name another folder" $command shed.obj "${quick[@]}" -o .
+  done
+  for file in ../kept/*; do check "${file##*/}_is_as_it_was" cmp -s "$file" "${file##*/}"; done
+  check nothing_over_files_read_is_written test ! -e refused.ppm -a ! -e refused.pray -a ! -e walk-0000.png
+  expect beside_files_read 0 'refused' render shed.obj "${quick[@]}" -o not_refused.png
+  cd .. || exit 1
+fi
+
 # Goal: an output that cannot be written is reported before the work starts, and a folder for results is made. Method: work
 # that takes far too long to wait for.
 ages=(--size 2048x2048 --samples 16 --threads 1 --memory 512M)

@@ -116,6 +116,13 @@ echo nonsense >bad.ppm.resume
 expect resume_nonsense 1 'not a list of finished frames' render cube "${small[@]}" --frames 0:5 --resume -o bad.ppm
 mkdir taken.ppm.resume
 expect resume_taken 1 'taken.ppm.resume is a folder' render cube "${small[@]}" --frames 0:5 -o taken.ppm
+echo precious >diary
+for kind in diary_as_list linked_list list_to_nothing; do
+  case $kind in diary_as_list) cp diary $kind.ppm.resume ;; linked_list) ln -s diary $kind.ppm.resume ;; *) ln -s absent $kind.ppm.resume ;; esac
+  expect $kind 1 "$kind.ppm.resume is not a list of finished frames" render cube "${small[@]}" --frames 0:5 -o $kind.ppm
+  check ${kind}_nothing_is_rendered test ! -e $kind-0000.ppm
+done
+check diary_is_kept test "$(cat diary diary_as_list.ppm.resume)" = "$(printf 'precious\nprecious')" -a ! -e absent
 expect resume_a_still 1 'for sequences of numbered pictures' render cube "${small[@]}" --resume -o refused.ppm
 expect resume_a_gif 1 'for sequences of numbered pictures' render cube "${small[@]}" --turntable 3 --resume -o refused.gif
 expect resume_a_budget 1 'drop it' render seesaw "${small[@]}" --frames 0:3 --budget-ms 100 --resume -o refused.ppm

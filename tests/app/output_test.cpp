@@ -99,6 +99,62 @@ TEST_CASE("output_is_no_input") {
   CHECK(content(folder / "b.ppm").empty());
 }
 
+// Goal: files that a scene was read from are known by other names, too, and by nothing else. Method: links of both
+// kinds; in a folder, pictures alone count, as results are never named as models are.
+TEST_CASE("output_is_nothing_the_scene_was_read_from") {
+  Folder folder;
+  const std::string texture = folder / "tile.png", materials = folder / "a.mtl";
+  REQUIRE(write_file(texture, "tile").ok);
+  REQUIRE(write_file(materials, "newmtl").ok);
+  REQUIRE(write_file(folder / "other.png", "tile").ok);
+  REQUIRE(link(texture.c_str(), (folder / "hard.png").c_str()) == 0);
+  REQUIRE(symlink("tile.png", (folder / "soft.png").c_str()) == 0);
+  const std::vector<std::string> files = {materials, texture};
+  for (const char* name : {"tile.png", "hard.png", "soft.png", "a.mtl"}) {
+    const Status status = check_not_read(files, {{"-x", ""}, {"-o", folder / "new.png"}, {"--json", folder / name}});
+    CHECK_FALSE(status.ok);
+    CHECK(has(status, ("--json " + (folder / name) + " would overwrite ").c_str()));
+  }
+  CHECK(check_not_read(files, {{"-o", folder / "other.png"}, {"-p", "-"}, {"-q", "/dev/null"}}).ok);
+  CHECK(check_not_read({}, {{"-o", texture}}).ok);
+  CHECK(has(check_folder_not_read(files, folder.path), "tile.png, which the scene is read from: name another folder"));
+  CHECK(check_folder_not_read({materials}, folder.path).ok);
+  CHECK(check_folder_not_read(files, "").ok);
+  CHECK(check_folder_not_read(files, folder / "none").ok);
+}
+
+#if defined POCKETRAY_HAVE_IMPORT
+// Goal: no command overwrites a file that its model refers to. Method: the materials of a model as each output; they
+// and all else stay unchanged.
+TEST_CASE("output_is_no_file_of_the_model") {
+  Folder folder;
+  const std::string model = folder / "a.obj", materials = folder / "a.mtl";
+  REQUIRE(write_file(model, "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl one\nf 1 2 3\n").ok);
+  REQUIRE(write_file(materials, "newmtl one\nKd 1 0 0\n").ok);
+  for (const char* name : {"a.ppm", "a.gif", "a.pray", "s-0001.ppm"})
+    REQUIRE(link(materials.c_str(), (folder / name).c_str()) == 0);
+  const std::string before = content(materials);
+  const std::vector<std::string> render = {"render", model, "--size", "8x6", "-o"};
+  auto renders = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = render;
+    words.insert(words.end(), more.begin(), more.end());
+    return told_by(words, folder / "told").find("which the scene is read from") != std::string::npos;
+  };
+  CHECK(renders({folder / "a.ppm"}));
+  CHECK(renders({folder / "b.ppm", "--json", materials}));
+  CHECK(renders({folder / "a.gif", "--turntable", "3"}));
+  CHECK(renders({folder / "s.ppm", "--turntable", "3"}));
+  CHECK(run({"bake", model, "-o", folder / "a.pray"}) == 1);
+  CHECK(run({"bake", model, "-o", folder / "b.pray", "--json", materials}) == 1);
+  CHECK(run({"plan", model, "--json", materials}) == 1);
+  CHECK(run({"bench", model, "--size", "8x6", "--frames", "1", "--json", materials}) == 1);
+  CHECK(run({"bench", model, "--size", "8x6", "--frames", "1", "--front", materials}) == 1);
+  CHECK(content(materials) == before);
+  for (const char* name : {"b.ppm", "s-0000.ppm", "s.ppm.resume", "b.pray"}) CHECK(content(folder / name).empty());
+  CHECK(run({"render", model, "--size", "8x6", "-o", folder / "b.ppm"}) == 0);
+}
+#endif
+
 // Goal: a baked scene must end in .pray, so that a slip cannot overwrite a model. Method: other names, and outputs that
 // may have any name.
 TEST_CASE("output_of_bake_is_named_so") {

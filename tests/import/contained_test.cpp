@@ -41,6 +41,7 @@ void make_triangle(ImportedScene* imported) {
   imported->warning = "not used: a hat";
   imported->parts = {{"brim of hat", {{-1, 0.1f, 0}, {1, 1e30f, 3}}}, {"two\nlines", {{0, 0, 0}, {0, 0, 0}}}};
   imported->material_names = {"felt", "", "two\nlines"};
+  imported->files = {"hat.dae", "two\nlines.png", " file x"};
 }
 
 }  // namespace
@@ -62,6 +63,7 @@ TEST_CASE("contained_scene_and_warning_arrive") {
     CHECK(result.parts[0].second.high == Vec3{1, 1e30f, 3});
     CHECK(result.parts[1].first == "two lines");
     CHECK(result.material_names == std::vector<std::string>{"felt", "", "two lines"});
+    CHECK(result.files == std::vector<std::string>{"hat.dae", "two\nlines.png", " file x"});
   }
   int after = dup(0);
   close(after);

@@ -6,6 +6,7 @@
 
 #include "import/gltf_writer.h"
 #include "import/import_testing.h"
+#include "import/scene_builder.h"
 
 using namespace pocketray;
 
@@ -142,6 +143,23 @@ TEST_CASE("import_byte_count_max_bounds_file_and_scene") {
   CHECK(load(folder.write("a.glb", w.glb(instanced)), options).scene.triangles.count == 30000);
   options.byte_count_max = 1 << 20;
   CHECK(contains(error_of("a.glb", w.glb(instanced), options), "beyond 1 MiB"));
+}
+
+// Goal: every byte of the geometry counts towards the limit, also what fills in for meshes without normals, texture
+// coordinates or colours where others have them. Method: what is charged is what is there, in both orders.
+TEST_CASE("import_counts_what_fills_in_for_other_meshes") {
+  MeshData rich, poor;
+  rich.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  rich.normals.assign(3, {0, 0, 1}), rich.uvs.resize(3), rich.colors.resize(3), rich.indices = {0, 1, 2};
+  poor.positions.resize(1000), poor.indices = {0, 1, 2};
+  for (const auto& meshes : {std::make_pair(rich, poor), std::make_pair(poor, rich)}) {
+    SceneBuilder builder;
+    append_mesh(&builder, meshes.first, Transform());
+    append_mesh(&builder, meshes.second, Transform());
+    const SceneArrays& out = *builder.out;
+    CHECK(out.normals.size() == 1003);
+    CHECK(builder.bytes_charged == 1003 * (2 * sizeof(Vec3) + sizeof(Vec2) + sizeof(Rgba16)) + 2 * sizeof(Triangle));
+  }
 }
 
 // Goal: no prefix of a file and no flipped byte crashes the reader. Method: a .glb, an OBJ with its MTL and a PLY, cut

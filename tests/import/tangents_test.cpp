@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "import/import_error.h"
+
 using namespace pocketray;
 
 namespace {
@@ -31,13 +33,20 @@ SceneArrays cylinder(int columns, bool smooth, bool mirrored_half = false) {
   return out;
 }
 
+void make_tangents_of(SceneArrays* arrays) {
+  SceneBuilder builder;
+  std::swap(*builder.out, *arrays);
+  make_tangents(&builder);
+  std::swap(*builder.out, *arrays);
+}
+
 }  // namespace
 
 // Goal: tangents follow the curved surface, not its triangles: on a smooth cylinder they are perpendicular to normal
 // and axis at every vertex. Method: closed form, to within the quantum of 1/127.
 TEST_CASE("tangents_are_averaged_at_vertices") {
   SceneArrays out = cylinder(12, true);
-  make_tangents(&out);
+  make_tangents_of(&out);
   REQUIRE(out.tangents.size() == out.positions.size());
   for (std::size_t i = 2; i + 2 < out.tangents.size(); ++i) {  // not at the seam, which has one triangle's alone
     const Vec3 t = unpacked(out.tangents[i]) / 127.0f, n = out.normals[i], expected = cross({0, 1, 0}, n);
@@ -54,7 +63,7 @@ TEST_CASE("tangents_are_weighted_by_angle") {
   out.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 1, 0}};
   out.uvs = {{0, 0}, {1, 0}, {0, 1}, {-1, 2}};
   out.triangles = {Triangle(0, 1, 2, 0), Triangle(0, 2, 3, 0)};
-  make_tangents(&out);
+  make_tangents_of(&out);
   const Vec3 expected = normalize(Vec3{2, 0, 0} + normalize(Vec3{1, 1, 0}));
   CHECK(length(unpacked(out.tangents[0]) / 127.0f - expected) < 0.01f);
 }
@@ -64,17 +73,17 @@ TEST_CASE("tangents_are_weighted_by_angle") {
 TEST_CASE("tangents_are_left_out") {
   SceneArrays plain = cylinder(6, true);
   plain.grains.clear();
-  make_tangents(&plain);
+  make_tangents_of(&plain);
   CHECK(plain.tangents.empty());
   SceneArrays moving = cylinder(6, true);
   MovingMesh mesh = {};
   mesh.vertex_begin = 2, mesh.vertex_count = 3;
   moving.moving_meshes.push_back(mesh);
-  make_tangents(&moving);
+  make_tangents_of(&moving);
   for (std::size_t i = 0; i < moving.tangents.size(); ++i)
     CHECK(is_zero(unpacked(moving.tangents[i])) == (i >= 2 && i < 5));
   SceneArrays folded = cylinder(6, true, true);
-  make_tangents(&folded);
+  make_tangents_of(&folded);
   for (std::size_t i = 0; i < folded.tangents.size(); ++i)
     CHECK(is_zero(unpacked(folded.tangents[i])) == (i == 6 || i == 7));
 }
@@ -93,9 +102,31 @@ TEST_CASE("tangents_join_vertices_of_the_same_place") {
     }
     parted.triangles.push_back(Triangle(first, first + 1, first + 2, 0));
   }
-  make_tangents(&out), make_tangents(&parted);
+  make_tangents_of(&out), make_tangents_of(&parted);
   for (std::size_t t = 0; t < out.triangles.size(); ++t)
     for (std::uint32_t i = 0; i < 3; ++i)
       CHECK(unpacked(out.tangents[out.triangles[t].vertex(i)]) ==
             unpacked(parted.tangents[parted.triangles[t].vertex(i)]));
+}
+
+// Goal: tangents and the memory to make them count towards the limit of the import. Method: limits from nothing upward
+// admit the whole only where a node for every vertex fits, each at least its data.
+TEST_CASE("tangents_stay_within_the_import_limit") {
+  const std::size_t vertex_count = cylinder(500, true).positions.size();
+  std::uint64_t admitted = 0;
+  for (std::uint64_t limit = 1000; admitted == 0 && limit < 1u << 20; limit += 1000) {
+    SceneBuilder builder;
+    *builder.out = cylinder(500, true);
+    builder.options.byte_count_max = limit;
+    ImportedScene result;
+    try {
+      finish_scene(&builder, "a", &result);
+      admitted = limit;
+      CHECK(builder.bytes_charged == vertex_count * sizeof(PackedTangent));
+    } catch (const ImportError& error) {
+      CHECK(std::string(error.what()) == "the tangents would take the scene beyond 0 MiB; use a smaller model");
+    }
+  }
+  CHECK(admitted >= vertex_count * (32 + 26 + sizeof(PackedTangent)));  // a vertex's bits, and their sum
+  CHECK(admitted < vertex_count * 200);
 }

@@ -254,6 +254,37 @@ TEST_CASE("file_behind_a_link_is_written") {
   remove_folder(within.c_str());
 }
 
+// Goal: a growing file replaces what has its name, at once and as a whole, and touches nothing that a link leads to; a
+// pipe is not waited for. Method: nothing there, a file with a second name, a link, a pipe; a folder stays.
+TEST_CASE("file_grows_under_its_name") {
+  Folder folder;
+  FileError error;
+  REQUIRE(write_file(folder.file("precious"), "untouched", &error));
+  REQUIRE(link(folder.file("precious").c_str(), folder.file("hard").c_str()) == 0);
+  REQUIRE(chmod(folder.file("hard").c_str(), 0640) == 0);
+  REQUIRE(symlink("precious", folder.file("soft").c_str()) == 0);
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  for (const char* name : {"hard", "new", "pipe", "soft"}) {
+    CAPTURE(name);
+    CHECK(is_plain_or_absent(folder.file(name).c_str()) == (std::string(name) == "hard" || std::string(name) == "new"));
+    FileWriter writer;
+    REQUIRE(open_growing_writer(folder.file(name).c_str(), "one", 3, &writer, &error));
+    CHECK(content_of(folder.file(name)) == "one");
+    write_bytes(&writer, " two", 4);
+    CHECK(content_of(folder.file(name)) == "one two");
+    CHECK(close_writer(&writer, &error));
+    CHECK(S_ISREG(mode_of(folder.file(name))));
+  }
+  CHECK((mode_of(folder.file("hard")) & 0777) == 0640);
+  CHECK(content_of(folder.file("precious")) == "untouched");
+  CHECK(folder.names() == std::vector<std::string>{"hard", "new", "pipe", "precious", "soft"});
+  FileWriter writer;
+  REQUIRE(make_folder(folder.file("within").c_str(), &error));
+  CHECK_FALSE(open_growing_writer(folder.file("within").c_str(), "one", 3, &writer, &error));
+  CHECK(writer.descriptor < 0);
+  CHECK(folder.names().size() == 6);
+}
+
 // Goal: a link planted at the part's name cannot make us write another file, and files left by killed programs do no
 // harm. Method: links and files of all the likely names, to a file that must not change.
 TEST_CASE("file_part_is_no_one_elses") {

@@ -193,3 +193,24 @@ TEST_CASE("client_leaves_a_server_that_dribbles") {
     CHECK(rig.fake.now() - begin < 5'000 * kMs);
   }
 }
+
+// Goal: the line about a lost server names it as the user did, and in no other way. Method: a name that is no number,
+// with a server that hangs up, and with none.
+TEST_CASE("client_logs_a_lost_server_by_one_name") {
+  HostileRig rig;
+  platform::LinkAddress* address = &rig.client.servers[0].address;
+  const std::string number = address->text;
+  std::snprintf(address->text, sizeof address->text, "attic.example:7474");
+  rig.frames_until_ready();
+  rig.fake.hang_up();
+  rig.frame(), rig.frame();
+  REQUIRE(rig.log.size() == 1);
+  CHECK_MESSAGE(rig.log[0].compare(0, 27, "server attic.example:7474: ") == 0, rig.log[0]);
+  CHECK_MESSAGE(rig.log[0].find("127.0.0.1") == std::string::npos, rig.log[0]);
+
+  HostileRig alone;
+  platform::kNullLink.close(alone.fake.link, alone.fake.listener);
+  for (int i = 0; i < 3; ++i) alone.frame();
+  REQUIRE(alone.log.size() == 1);
+  CHECK_MESSAGE(alone.log[0].find("server " + number + ": nothing is listening there") == 0, alone.log[0]);
+}

@@ -202,6 +202,21 @@ TEST_CASE("inquiry_gives_up_on_silence") {
   CHECK(has(list_scenes(&stopped, &entries).message, "interrupted"));
 }
 
+// Goal: reasons leave the server's name to the caller, which puts it in front. Method: a server that hangs up, and
+// none.
+TEST_CASE("inquiry_reasons_do_not_name_the_server") {
+  FakeServer* serving = nullptr;
+  FakeServer fake([&](const Message&) -> std::vector<Message> { return serving->hang_up(), std::vector<Message>(); });
+  serving = &fake;
+  for (const char* reason : {"the peer ", "nothing is listening there"}) {
+    Inquiry inquiry;
+    const Status status = open_inquiry(InquiryOptions(), fake.link, fake.address, &inquiry);
+    CHECK_FALSE(status.ok);
+    CHECK_MESSAGE(std::strncmp(status.message, reason, std::strlen(reason)) == 0, status.message);
+    platform::kNullLink.close(fake.link, fake.listener);
+  }
+}
+
 // Goal: an inquiry can be stopped however fast a server answers. Method: a server whose answers are always ready, so
 // that the device never waits; stopped at the first piece of a scene, and while reading a list.
 TEST_CASE("inquiry_stops_while_a_server_never_makes_it_wait") {

@@ -381,3 +381,25 @@ TEST_CASE("server_says_that_it_ends") {
   CHECK(client.closed);
   CHECK(client.has_error(WireError::closing));
 }
+
+// Goal: a line of the log has the client's address once. Method: a reset in each direction, while rows are on their
+// way.
+TEST_CASE("server_logs_a_lost_client_by_one_name") {
+  for (bool to_device : {false, true}) {
+    CAPTURE(to_device);
+    const std::size_t greeting = hello_bytes().size(), asking = request_bytes(frame_request("cube", 1)).size();
+    const platform::NullFault fault = {platform::LinkFault::reset, 0, to_device, greeting + asking / 2};
+    platform::NullLinkSettings settings;
+    settings.faults = &fault, settings.fault_count = 1;
+    ServerRig rig(ServerOptions(), settings);
+    ScriptedClient client(&rig);
+    rig.run_until([&] { return client_count(*rig.server) == 1; });
+    client.request(frame_request("cube", 1));
+    rig.run_until([&] { return client.poll(), rig.logged("disconnected after"); });
+    REQUIRE_FALSE(rig.log.empty());
+    const std::string& line = rig.log.back();
+    const std::string name = line.substr(0, line.find(' '));
+    CHECK_MESSAGE(line.find(": the peer closed the connection") != std::string::npos, line);
+    CHECK_MESSAGE(line.find(name, name.size()) == std::string::npos, line);
+  }
+}

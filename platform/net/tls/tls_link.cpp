@@ -24,7 +24,10 @@ void close_inner(TlsLink* link, TlsSlot* slot) {
     if (slot->tls.heap.used_max > link->record.heap_bytes_max) link->record.heap_bytes_max = slot->tls.heap.used_max;
     tls_end(&slot->tls);
   }
-  if (slot->inner >= 0) net(link).close(link->inner, slot->inner);
+  if (slot->inner >= 0) {
+    std::snprintf(slot->name, sizeof slot->name, "%s", net(link).stream_name(link->inner, slot->inner));
+    net(link).close(link->inner, slot->inner);
+  }
   slot->inner = -1;
 }
 
@@ -45,7 +48,7 @@ LinkResult break_off(TlsLink* link, TlsSlot* slot, Error* error) {
 }
 
 bool begin(TlsLink* link, TlsSlot* slot, Error* error) {
-  std::snprintf(slot->name, sizeof slot->name, "%.63s", net(link).stream_name(link->inner, slot->inner));
+  std::snprintf(slot->name, sizeof slot->name, "%s", net(link).stream_name(link->inner, slot->inner));
   if (!tls_begin(&slot->tls, &link->config, slot->accepted, link->inner, slot->inner, slot->memory,
                  kTlsStreamHeapBytes)) {
     tls_tell(slot->tls, slot->name, error);
@@ -214,8 +217,8 @@ LinkResult tls_fail(TlsLink* link, TlsSlot* slot, Error* error) {
 
 LinkResult tls_fail_in_time(TlsLink* link, TlsSlot* slot, Error* error) {
   std::snprintf(slot->error.text, sizeof slot->error.text,
-                slot->accepted ? "%.63s: it did not complete a TLS handshake"
-                               : "%.63s: no answer to the TLS handshake: does it use TLS, and has it a key (--key)?",
+                slot->accepted ? "%.95s: it did not complete a TLS handshake"
+                               : "%.95s: no answer to the TLS handshake: does it use TLS, and has it a key (--key)?",
                 slot->name);
   ++link->record.failures;
   return break_off(link, slot, error);

@@ -17,9 +17,9 @@ struct TlsSlot {
   bool ended;       // the peer said farewell
   LinkTimer timer;  // for the handshake, and when closing
   TlsStream tls;
-  unsigned char* memory;  // kTlsStreamHeapBytes
-  Error error;            // why it is broken
-  char name[64];
+  unsigned char* memory;      // kTlsStreamHeapBytes
+  Error error;                // why it is broken
+  char name[kLinkNameBytes];  // once the inner stream is closed, and for errors
 };
 
 struct alignas(TlsSlot) TlsLink : Link {  // followed by its slots, waits and heaps

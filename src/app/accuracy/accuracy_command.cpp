@@ -112,7 +112,10 @@ void add_accuracy_command(Command program, const Team& team, int* exit_status) {
   command.add_flag("--restart", o->restart, "discard the measurements in the folder and start over");
   add_json_option(command, &o->common.json);
   command.add_option("--counting-folder", o->counting_folder, "").group("");  // for the run under valgrind
-  command.callback([=] { *exit_status = run(*o); });
+  command.callback([=] {
+    o->common.output_folder = o->folder;
+    *exit_status = run(*o);
+  });
 }
 
 }  // namespace pocketray

@@ -210,7 +210,10 @@ void add_coherence_report_command(Command program, int* exit_status) {
                    "also measure sides from 1 to 128: memory, time and pixels traced; no side changes a picture");
   command.add_flag("--compare", o->compare, "also run the image-space methods of Badt and Chapman");
   add_json_option(command, &o->common.json);
-  command.callback([=] { *exit_status = run(*o); });
+  command.callback([=] {
+    o->common.output_folder = o->folder;
+    *exit_status = run(*o);
+  });
 }
 
 }  // namespace pocketray

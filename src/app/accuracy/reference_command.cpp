@@ -173,7 +173,10 @@ void add_reference_command(Command program, const Team& team, int* exit_status) 
       .capture_default_str();
   command.add_option("--time", c->options.seconds, "seconds into the animation").capture_default_str();
   add_json_option(command, &c->options.common.json);
-  command.callback([=] { *exit_status = run(*c); });
+  command.callback([=] {
+    c->options.common.outputs = {{"--output", c->goal.path}};
+    *exit_status = run(*c);
+  });
 }
 
 }  // namespace pocketray

@@ -335,7 +335,10 @@ void add_split_report_command(Command program, int* exit_status) {
       .range(1.0, 1e9);
   command.add_flag("--no-paper", o->no_paper, "skip the paper's table");
   add_json_option(command, &o->common.json);
-  command.callback([=] { *exit_status = run(*o); });
+  command.callback([=] {
+    o->common.output_folder = o->folder;
+    *exit_status = run(*o);
+  });
 }
 
 }  // namespace pocketray

@@ -33,12 +33,11 @@ Status wait_for_news(Inquiry* q, bool want_write, std::uint64_t left_ns) {
 
 Status connect(Inquiry* q, const platform::LinkAddress& address) {
   platform::Error error;
-  int stream = q->link->backend->connect(q->link, address, q->options.connect_timeout_ns, &error);
-  if (stream < 0) return failure("%s", error.text);
-  start_message_stream(&q->messages, q->link, stream);
+  if (!connect_message_stream(&q->messages, q->link, address, q->options.connect_timeout_ns, &error))
+    return failure("%s", error.text);
   platform::LinkTimer timer = platform::link_timer(now_ns(*q), q->options.connect_timeout_ns);
   for (;;) {
-    platform::LinkResult result = q->link->backend->connected(q->link, stream, &error);
+    platform::LinkResult result = connected_message_stream(&q->messages, &error);
     if (result == platform::LinkResult::done) return success();
     if (result == platform::LinkResult::failed) return failure("%s", error.text);
     std::uint64_t left = platform::link_timer_left(&timer, now_ns(*q));

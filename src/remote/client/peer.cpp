@@ -32,13 +32,9 @@ void tell(Client* client, const char* format, ...) {
 void connect_server(Client* client, RemoteServer* server) {
   CHECK(server->phase == ServerPhase::waiting);
   platform::Error error;
-  int stream =
-      client->link->backend->connect(client->link, server->address, client->options.connect_timeout_ns, &error);
-  if (stream < 0) {
-    lose_server(client, server, error.text);
-    return;
-  }
-  start_message_stream(&server->messages, client->link, stream);
+  if (!connect_message_stream(&server->messages, client->link, server->address, client->options.connect_timeout_ns,
+                              &error))
+    return lose_server(client, server, error.text);
   enter(client, server, ServerPhase::connecting);
 }
 
@@ -264,10 +260,7 @@ void lose_server(Client* client, RemoteServer* server, const char* reason) {
                      : next > client->options.retry_ns_max ? client->options.retry_ns_max
                                                            : next;
   server->timer = platform::link_timer(now, server->retry_ns);
-  const char* name = server->address.text;
-  bool named = std::strncmp(reason, name, std::strlen(name)) == 0;  // the link's errors begin with the name
-  if (!server->told)
-    tell(client, "server %s%s%s; continuing without it and retrying", named ? "" : name, named ? "" : ": ", reason);
+  if (!server->told) tell(client, "server %s: %s; continuing without it and retrying", server->address.text, reason);
   server->told = true;
 }
 
@@ -301,7 +294,7 @@ void advance_server(Client* client, RemoteServer* server) {
   }
   if (server->phase == ServerPhase::connecting) {
     platform::Error error;
-    platform::LinkResult result = client->link->backend->connected(client->link, server->messages.stream, &error);
+    platform::LinkResult result = connected_message_stream(&server->messages, &error);
     if (result == platform::LinkResult::failed) return lose_server(client, server, error.text);
     if (result != platform::LinkResult::done) return;
     greet_server(client, server);

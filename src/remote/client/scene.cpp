@@ -34,10 +34,9 @@ Status ask(ConnectedServers* s, std::size_t server, Inquiry* inquiry) {
   return open_inquiry(options, s->inquiry_link ? s->inquiry_link : s->link, s->addresses[server], inquiry);
 }
 
-// "127.0.0.1:7411: it does not answer; …", each server once; the link's errors already begin with the name.
+// "127.0.0.1:7411: it does not answer; …", each server once.
 void add_reason(const ConnectedServers& s, std::size_t server, const std::string& reason, std::string* reasons) {
-  const std::string name = s.addresses[server].text;
-  *reasons += (reasons->empty() ? "" : "; ") + (reason.compare(0, name.size(), name) == 0 ? "" : name + ": ") + reason;
+  *reasons += (reasons->empty() ? "" : "; ") + std::string(s.addresses[server].text) + ": " + reason;
 }
 
 std::string names_of(const std::vector<SceneEntry>& entries) {
@@ -190,7 +189,9 @@ Status open_thin(ConnectedServers* s, const CommonOptions& o, const OutputNeed& 
   if (!status.ok)
     return failure("%.100s does not fit in --memory %.1fM%s, and no server can render it; %s", o.scene.c_str(),
                    megabytes(limit), memory_hint(" (", wanted, "be a start)").c_str(), status.message);
+  std::vector<std::string> files = std::move(opened->source.files);
   opened->source = SceneSource();
+  opened->source.files = std::move(files);
 
   Pace pace = opened->renderer.pace;
   Renderer* renderer = &opened->renderer;

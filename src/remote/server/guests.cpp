@@ -199,12 +199,8 @@ void seat(Server* server, Guest* guest, const Hello& hello) {
   log_line(&server->log, now, "%s connected", session->name);
 }
 
-// The link's errors begin with the name.
 void log_guest(Server* server, const Guest& guest, const char* reason) {
-  const char* name = name_of(*server, guest);
-  const std::size_t length = std::strlen(name);
-  if (std::strncmp(reason, name, length) == 0 && std::strncmp(reason + length, ": ", 2) == 0) reason += length + 2;
-  log_line(&server->log, now_ns(server), "%s disconnected: %s", name, reason);
+  log_line(&server->log, now_ns(server), "%s disconnected: %s", name_of(*server, guest), reason);
 }
 
 // Reads the first message; the bytes after it belong to the session.

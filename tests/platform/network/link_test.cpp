@@ -70,6 +70,40 @@ TEST_CASE("link_refused_is_told_at_once") {
   }
 }
 
+// Goal: an error begins with the stream's name, whole, however long its address is written: callers that know the peer
+// by a name of their own leave it out. Method: the longest text, with nobody there; a peer that resets.
+TEST_CASE("link_errors_begin_with_the_streams_name") {
+  for (const LinkBackend* net : kLinks) {
+    CAPTURE(net->name);
+    LinkRig rig(*net);
+    int device = -1, server = -1;
+    REQUIRE_MESSAGE(rig.pair(&device, &server), rig.error.text);
+    const std::string name = net->stream_name(rig.link, server);
+    net->close(rig.link, device);
+    LinkResult result = LinkResult::later;
+    for (int i = 0; i < 100 && result != LinkResult::failed; ++i) {
+      std::size_t count;
+      result = net->write(rig.link, server, "x", 1, &count, &rig.error);
+      rig.wait(server, true, false, kMs);
+    }
+    CHECK(result == LinkResult::failed);
+    CHECK(std::string(rig.error.text).compare(0, name.size() + 2, name + ": ") == 0);
+
+    net->close(rig.link, rig.listener);
+    LinkAddress address = rig.address;
+    std::memset(address.text, 'h', sizeof address.text - 1);
+    const int stream = net->connect(rig.link, address, 2000 * kMs, &rig.error);
+    std::string called = address.text;
+    if (stream >= 0) {
+      rig.wait(stream, false, true);
+      called = net->stream_name(rig.link, stream);
+      CHECK(net->connected(rig.link, stream, &rig.error) == LinkResult::failed);
+      CHECK(called == net->stream_name(rig.link, stream));
+    }
+    CHECK_MESSAGE(std::string(rig.error.text).compare(0, called.size() + 2, called + ": ") == 0, rig.error.text);
+  }
+}
+
 // Goal: a port in use cannot be used again, and the error says so. Method: listen on the rig's port.
 TEST_CASE("link_listens_once_on_a_port") {
   for (const LinkBackend* net : kLinks) {
