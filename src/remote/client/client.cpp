@@ -69,14 +69,6 @@ double time_to_spare(const Client& client, double come_share) {
   return kWaitShare * alone + come_share * change * come - idle;
 }
 
-// Time that the device will need to decode the rows still missing.
-double decoding_left_ns(const Client& client) {
-  double bytes = 0;
-  for (std::uint32_t row = 0; row < client.model.rows.count; ++row)
-    if (!is_done(client.merge.rows[row])) bytes += static_cast<double>(client.model.rows[row].bytes.value);
-  return bytes * static_cast<double>(client.model.unpack_ns_per_byte.value);
-}
-
 // True if the servers' rows are due before the device could render one and decode the others, or late by less than it
 // takes to render one, and the device would still finish about as early as alone if none arrived.
 bool is_worth_waiting(const Client& client) {

@@ -57,6 +57,13 @@ double rows_left_ns(const Client& client) {
   return std::max(known, device_pixel_ns(client) * client.settings.width * rows);
 }
 
+double decoding_left_ns(const Client& client) {
+  double bytes = 0;
+  for (std::uint32_t row = 0; row < client.model.rows.count; ++row)
+    if (!is_done(client.merge.rows[row])) bytes += static_cast<double>(client.model.rows[row].bytes.value);
+  return bytes * static_cast<double>(client.model.unpack_ns_per_byte.value);
+}
+
 FrameOutlook outlook_of(const Client& client) {
   FrameOutlook outlook;
   const FrameShare& share = client.share;

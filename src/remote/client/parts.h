@@ -100,6 +100,8 @@ std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t
 // Time the device would need for the missing rows, estimated from this frame and from earlier ones, whichever is
 // longer.
 double rows_left_ns(const Client& client);
+// Time it will need to decode them.
+double decoding_left_ns(const Client& client);
 
 // ---- coarse.cpp
 
