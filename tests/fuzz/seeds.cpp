@@ -147,8 +147,8 @@ std::vector<FuzzSeed> text_seeds() {
           seed("callgrind", 5, "version: 1\ndesc: Trigger: --dump-before=work\nevents: Ir\ntotals: 123456\n"),
           seed("state", 6,
                R"({"key": {}, "rounds": 1, "counted": "", "references": ["a"], "points": {"samples 4": )"
-               R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "errors": [0.1, 0.1, 0.01, 0.1, 0.1, )"
-               R"(0.1, 0.1, "inf"]}}})")};
+               R"({"ns_per_pixel": [812.5], "instructions_per_pixel": "none", "bytes_per_frame": 9500.5, "errors": [0.1, )"
+               R"(0.1, 0.01, 0.1, 0.1, 0.1, 0.1, "inf"]}}})")};
 }
 
 // A well-behaved server with each kind of device; then one that changes, drops, repeats and adds messages.

@@ -61,10 +61,10 @@ void make_reporting(const SceneStore& store, const char* scene, const char* devi
 
 }  // namespace
 
-// Goal: a frame with the chosen split takes at most 3 % longer than with the best fixed share, and the network makes
+// Goal: a frame with the chosen split takes at most 5 % longer than with the best fixed share, and the network makes
 // none slower than the device alone. Method: three profiles, a sweep with more shares around the best;
 // split_report_table has the other profiles.
-TEST_CASE("split_report_chosen_share_is_within_3_percent_of_the_best") {
+TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
   struct Case {
     const char *scene, *device;
     std::uint32_t server_count;
@@ -87,7 +87,8 @@ TEST_CASE("split_report_chosen_share_is_within_3_percent_of_the_best") {
     CHECK(figures.sweep.size() >= kSteps);
     CHECK(figures.sweep.front().m == 0);
     CHECK(figures.sweep.back().m == 1);
-    CHECK(figures.chosen.ns_per_pixel <= 1.03 * figures.best.ns_per_pixel);
+    CHECK(figures.chosen.ns_per_pixel <= 1.05 * figures.best.ns_per_pixel);
+    if (c.server_count == 1) CHECK(figures.chosen.ns_per_pixel <= 1.01 * figures.best.ns_per_pixel);
     CHECK(figures.chosen.ns_per_pixel <= 1.05 * figures.local.ns_per_pixel);
     CHECK(figures.local.ns_per_pixel >= r.setup.device_ns);
     CHECK(figures.local.ns_per_pixel <= 1.05 * r.setup.device_ns);
