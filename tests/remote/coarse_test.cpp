@@ -50,7 +50,7 @@ TEST_CASE("coarse_picture_has_the_pixels_of_the_frame") {
         CHECK(coarse.frame == frame);
         CHECK(std::vector<std::uint8_t>(coarse.pixels.begin(), coarse.pixels.end()) == squares_of(right, q));
       };
-      FrameRequest q = frame_request("cornell", 0, 131, 45);
+      FrameRequest q = frame_request("cube", 0, 131, 45);
       q.coarse_first = true;  // also while the cost of pixels is unknown
       check(q);
       q.coarse_first = false;
