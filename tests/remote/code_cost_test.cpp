@@ -5,6 +5,7 @@
 
 #include "remote/client/parts.h"
 #include "split_rig.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -16,6 +17,12 @@ SplitRigOptions moving_scene() {
   o.coherence = CoherenceMode::off;
   o.line.bytes_per_second = 2'000'000;  // slow enough that rows are coded
   return o;
+}
+
+// Times are virtual: real CPUs tell as much.
+bool too_slow() {
+  if (kEffortDivisor > 6) MESSAGE("skipped: it takes a minute under emulation");
+  return kEffortDivisor > 6;
 }
 
 // Means over frames after the first ones.
@@ -37,6 +44,7 @@ Mean mean_of(SplitRig* rig) {
 // Goal: decoding and coding take an emulated device and server their time. Method: the servers' rows alone, with costs
 // of pixels that exceed all others.
 TEST_CASE("code_cost_is_taken") {
+  if (too_slow()) return;
   SplitRigOptions o = moving_scene();
   o.client.device_share = 0, o.client.device_goes_on = false;
   SplitRig free(o);
@@ -60,6 +68,7 @@ TEST_CASE("code_cost_is_taken") {
 // Goal: a device that must decode the servers' rows takes none of theirs that would keep it from that. Method: a row of
 // the device takes a part of the servers' frame, and decoding what is left of it and more.
 TEST_CASE("code_cost_leaves_rows_to_servers") {
+  if (too_slow()) return;
   SplitRigOptions o = moving_scene();
   o.server_ns = {10'000}, o.device_ns = 500'000;
   o.client.decode = {8'000, 0};  // 31 ms a frame, 32 ms a row of the device, 25 ms to decode a frame
@@ -75,6 +84,7 @@ TEST_CASE("code_cost_leaves_rows_to_servers") {
 // Goal: rows come coded where that pays on this device. Method: devices that decode quickly and slowly, over a link
 // between both; a device that knows nothing yet goes by the link alone.
 TEST_CASE("code_cost_decides_how_rows_come") {
+  if (too_slow()) return;
   for (double pixel_ns : {50.0, 5'000.0}) {
     CAPTURE(pixel_ns);
     SplitRigOptions o = moving_scene();  // 500 ns a byte: 1.5 µs a pixel of RGB888
@@ -94,6 +104,7 @@ TEST_CASE("code_cost_decides_how_rows_come") {
 // Goal: frames take as long as predicted over a link with jitter, where the quickest ping overstates how late a server
 // starts. Method: the servers' rows alone, after some frames.
 TEST_CASE("code_cost_and_start_predict_frames") {
+  if (too_slow()) return;
   SplitRigOptions o = moving_scene();
   o.server_ns = {10'000}, o.device_ns = 200'000;
   o.line.latency_ns = 1'500'000, o.line.jitter_ns = 4'000'000;
