@@ -19,7 +19,8 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
 // guesses and leave out cache misses; latency and jitter are guesses where no source is named.
 //
 // Decoding takes an ARM926 35 clocks a pixel and 900 a byte of code, a Cortex-A7 24 and 870, an x86-64 core 1.1 ns and
-// 92 (tests/bench/device/codec_cost.py, with frames of cornell and statue in both formats).
+// 92 (tests/bench/device/codec_cost.py, with frames of cornell and statue in both formats). Here an ARM920T and an
+// ARM1176 count as an ARM926, and the tablet takes longer than x86-64 by its slowdown.
 //
 // A byte by radio takes 1,096 nJ: receiving by Wi-Fi takes a phone 137 mW for each Mbit/s [Huang et al. 2012, "A Close
 // Examination of Performance and Power Characteristics of 4G LTE Networks", table 4].

@@ -77,8 +77,9 @@ Status begin_journal(const std::string& path, const std::string& identity, const
   platform::FileError error;
   if (!platform::can_write(path.c_str(), &error)) return failure("%.300s %s", path.c_str(), error.text);
   if (!is_free(path))
-    return failure("%.300s is not a list of finished frames, which is to be there: remove it, or name another -o",
-                   path.c_str());
+    return failure(
+        "%.300s is not a list of finished frames, for which this name is needed: remove it, or name another -o",
+        path.c_str());
   journal->path = path;
   std::string text = kHead + identity + "\n";
   for (std::uint32_t frame : finished) text += std::to_string(frame) + "\n";

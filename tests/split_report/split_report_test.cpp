@@ -54,7 +54,7 @@ void make_reporting(const SceneStore& store, const char* scene, const char* devi
   r->setup.device_ns = kServerNs * device->slowdown / std::max(1, device->core_count) * widths,
   r->setup.server_ns = kServerNs * widths;
   r->setup.decode = {widths * device->decode_pixel_ns, widths * device->decode_byte_ns};
-  r->setup.encode = {widths * 9, widths * 160};
+  r->setup.encode = {widths * kServerEncode.pixel_ns, widths * kServerEncode.byte_ns};
   r->setup.frame_count = 4;
   r->setup.line.bytes_per_second = static_cast<std::uint64_t>(device->link_bytes_per_second / widths);
 }

@@ -47,9 +47,6 @@ Status measure_pixel_ns(Renderer* renderer, double* ns) {
   return status;
 }
 
-// Measured on one core of an AMD EPYC: frames of cornell and statue in both formats (test_wire -tc="codec_*").
-constexpr CodeCost kServerEncode = {9, 160};
-
 Status make_setup(const ReportOptions& o, const platform::Device& device, Renderer* renderer, SplitSetup* setup) {
   double here_ns = 0;
   if (o.device_ns <= 0 || o.server_ns <= 0) RETURN_IF_ERROR(measure_pixel_ns(renderer, &here_ns));

@@ -75,9 +75,8 @@ bool is_worth_waiting(const Client& client) {
   double prepare = static_cast<double>(client.prepare_ns), due = client.share.predicted_ns - prepare;
   double elapsed = static_cast<double>(client_now_ns(client) - client.begin_ns),
          row = device_pixel_ns(client) * client.settings.width;
-  if (!client.joined || elapsed + row + decoding_left_ns(client) <= due ||
-      elapsed >= std::max(kLateFactor * due, due + row))
-    return false;
+  if (!client.joined || elapsed >= std::max(kLateFactor * due, due + row)) return false;
+  if (elapsed + row <= due && elapsed + row + decoding_left_ns(client) <= due) return false;
   bool any_guessed =
       std::any_of(client.model.rows.begin(), client.model.rows.end(), [](const RowModel& r) { return r.guessed; });
   double latest = kLateFactor * (client.share.local_ns - prepare);
