@@ -8,14 +8,13 @@
 #include "accuracy/display.h"
 #include "accuracy/flip.h"
 #include "scene/builtin_helpers.h"
-#include "support/effort.h"
 #include "support/generated_scene.h"
 
 using namespace pocketray;
 
 namespace {
 
-constexpr std::uint32_t kWidth = effort_side(160), kHeight = effort_side(120), kFrames = 4;
+constexpr std::uint32_t kWidth = 160, kHeight = 120, kFrames = 4;
 
 // Cornell from a camera that moves sideways by a hundredth of its distance per frame.
 std::vector<Picture> moving_frames(float* exposure) {
