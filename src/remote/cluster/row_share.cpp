@@ -74,8 +74,8 @@ std::uint32_t piece_rows(std::uint32_t left_count, double speed_part, std::uint3
 }
 
 std::uint32_t free_rows(const RowShare& share, std::uint32_t window) {
-  const auto begin = share.rows.begin();
-  return static_cast<std::uint32_t>(std::count_if(begin + share.front, begin + window_end(share, window),
+  const SharedRow* rows = share.rows.data();
+  return static_cast<std::uint32_t>(std::count_if(rows + share.front, rows + window_end(share, window),
                                                   [](const SharedRow& row) { return row.rank == kNoRank; }));
 }
 
