@@ -23,6 +23,8 @@ constexpr Device kDesktop = {"desktop",
                              0,
                              1.1,
                              92,
+                             75,
+                             24,
                              10,
                              10};
 

@@ -29,6 +29,8 @@ constexpr Device kGp2x = {"gp2x",
                           microseconds(500),
                           175,
                           4500,
+                          15'500,
+                          27'000,
                           0.56,
                           33};
 

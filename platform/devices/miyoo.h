@@ -32,6 +32,8 @@ constexpr Device kMiyoo = {"miyoo",
                            microseconds(2000),
                            86,
                            2200,
+                           7600,
+                           13'200,
                            0.08,
                            kRadioNanojoules};
 

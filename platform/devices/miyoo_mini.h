@@ -32,6 +32,8 @@ constexpr Device kMiyooMini = {"miyoo-mini",
                                microseconds(2000),
                                20,
                                725,
+                               670,
+                               290,
                                0.45,
                                kRadioNanojoules};
 

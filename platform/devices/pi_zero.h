@@ -26,6 +26,8 @@ constexpr Device kPiZero = {"pi-zero",
                             microseconds(2000),
                             35,
                             900,
+                            3100,
+                            5400,
                             0.2,
                             kRadioNanojoules};
 

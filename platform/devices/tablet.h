@@ -28,6 +28,8 @@ constexpr Device kTablet = {"tablet",
                             microseconds(1000),
                             5,
                             410,
+                            335,
+                            107,
                             7,
                             kRadioNanojoules};
 

@@ -29,6 +29,10 @@ std::uint64_t paced_ns(const Pace& pace, std::uint64_t pixel_count, std::uint64_
   return pace.slowdown > 1 ? to_ns(static_cast<double>(elapsed_ns) * pace.slowdown) : elapsed_ns;
 }
 
+std::uint64_t paced_prepare_ns(const Pace& pace, std::uint64_t elapsed_ns) {
+  return pace.ns_per_pixel > 0 ? to_ns(pace.prepare_ns) : paced_ns(pace, 0, elapsed_ns);
+}
+
 void pace_spans(const Pace& pace, const Span* spans, std::uint32_t span_count, std::uint32_t thread_count,
                 std::uint64_t* span_ns) {
   CHECK_GE(thread_count, 1u);

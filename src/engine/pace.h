@@ -14,6 +14,7 @@ extern const Clock kSystemClock;  // clock_ns()
 struct Pace {
   double slowdown = 1;                      // time on the device over time here, per thread; at least 1
   double ns_per_pixel = 0;                  // > 0: fixed cost of a pixel on the device, replacing `slowdown`
+  double prepare_ns = 0;                    // with it: of a frame before its first pixel: pose, refit
   const char* device = nullptr;             // its name, for display; null: none
   const std::atomic<bool>* stop = nullptr;  // set: the user wants to leave, so waits end
   const Clock* clock = &kSystemClock;       // times frames, paced or not
@@ -24,6 +25,8 @@ inline bool is_paced(const Pace& pace) { return pace.slowdown > 1 || pace.ns_per
 
 // How long work on that many pixels that took `elapsed_ns` here should take. Pure: for callers that wait by themselves.
 std::uint64_t paced_ns(const Pace& pace, std::uint64_t pixel_count, std::uint64_t elapsed_ns);
+// The same of preparing a frame.
+std::uint64_t paced_prepare_ns(const Pace& pace, std::uint64_t elapsed_ns);
 // Converts the spans' costs here to costs on the device; `thread_count` threads traced them.
 void pace_spans(const Pace& pace, const Span* spans, std::uint32_t span_count, std::uint32_t thread_count,
                 std::uint64_t* span_ns);

@@ -75,7 +75,8 @@ Fronts make_fronts(const SplitFigures& figures, const DeviceEnergy& energy, std:
   Fronts fronts;
   for (const SplitPoint& p : figures.sweep) {
     const double ms = p.ns_per_pixel * pixel_count * 1e-6;
-    const double nanojoules = p.device_pixels * energy.pixel_nanojoules + p.bytes * energy.byte_nanojoules;
+    const double nanojoules = p.device_pixels * energy.pixel_nanojoules + p.bytes * energy.byte_nanojoules +
+                              p.prepared * energy.prepare_nanojoules;
     fronts.energy.push_back({p.m, ms, nanojoules * 1e-6, false});
     fronts.bytes.push_back({p.m, ms, p.bytes * 1e-3, false});
   }

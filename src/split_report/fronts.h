@@ -10,8 +10,9 @@ namespace pocketray {
 
 // Of the device, beyond what it takes idle.
 struct DeviceEnergy {
-  double pixel_nanojoules = 0;  // to render a pixel
-  double byte_nanojoules = 0;   // to receive a byte
+  double pixel_nanojoules = 0;    // to render a pixel
+  double byte_nanojoules = 0;     // to receive a byte
+  double prepare_nanojoules = 0;  // to prepare a frame
 };
 
 struct FrontPoint {

@@ -63,11 +63,13 @@ Status open_experiment(const SplitSetup& setup, Progress* progress, std::uint64_
   ServerOptions server;
   server.thread_count = renderer->settings.threads;
   server.coherence = renderer->settings.coherence;
-  server.pace.ns_per_pixel = setup.server_ns, server.encode = setup.encode;
+  server.pace.ns_per_pixel = setup.server_ns, server.pace.prepare_ns = setup.server_prepare_ns;
+  server.encode = setup.encode;
   for (std::uint32_t i = 0; i < setup.server_count; ++i) RETURN_IF_ERROR(start_server(&e->world, i, server));
   ClientOptions options;
   options.format = setup.format;
-  options.pace.ns_per_pixel = setup.device_ns, options.decode = setup.decode;
+  options.pace.ns_per_pixel = setup.device_ns, options.pace.prepare_ns = setup.device_prepare_ns;
+  options.decode = setup.decode;
   options.check_count = 0;  // measures the split alone: spot checks would add 1 %
   e->memory.resize(client_need(renderer->settings, setup.format, setup.server_count) + kArenaAlignment);
   Arena arena = make_arena("client", e->memory.data(), e->memory.size());
@@ -120,6 +122,7 @@ Status measure_point(Experiment* e, std::uint32_t lap_count, SplitPoint* point, 
     e->times[measured++] = share.measured_ns / (double(settings.width) * settings.height);
     point->m += double(share.device_rows) / settings.height / frame_count;
     point->device_pixels += double(share.device_pixels) / frame_count;
+    point->prepared += double(e->client.prepared) / frame_count;
     point->bytes += double(share.bytes_in + share.bytes_out) / frame_count;
     point->row_bytes += double(share.row_bytes) / frame_count;
     point->kept_rows += double(share.kept_rows) / frame_count;
@@ -165,7 +168,8 @@ Status measure_paper_row(const SplitSetup& given, double* bytes_per_pixel, std::
   SplitSetup setup = given;
   setup.server_count = 1;
   setup.device_ns = row->device_ns, setup.server_ns = row->server_ns;
-  setup.decode = setup.encode = CodeCost();  // the paper's times include its own
+  setup.decode = setup.encode = CodeCost();               // the paper's times include its own,
+  setup.device_prepare_ns = setup.server_prepare_ns = 0;  // and nothing moves there
   setup.line.latency_ns = setup.line.jitter_ns = 0;
   SplitPoint point;
   // A first run finds the compressed size of the rows.

@@ -4,6 +4,7 @@
 #pragma once
 #include <vector>
 
+#include "engine/prepare_cost.h"
 #include "remote/client/client.h"
 #include "session/progress.h"
 #include "split_report/virtual_world.h"
@@ -13,6 +14,7 @@ namespace pocketray {
 // Of a server. Measured on one core of an AMD EPYC: frames of cornell and statue in both formats (test_wire
 // -tc="codec_*").
 constexpr CodeCost kServerEncode = {9, 160};
+constexpr PrepareCost kServerPrepare = {75, 24};  // as on the desktop (platform/devices)
 
 struct SplitSetup {
   Renderer* device = nullptr;         // built; its own pace is ignored
@@ -21,10 +23,11 @@ struct SplitSetup {
   WireFormat format = WireFormat::rgb888;
   platform::NullLinkSettings line;
   std::uint32_t server_count = 1;
-  double device_ns = 0, server_ns = 0;  // time per pixel on the device and on each server
-  CodeCost decode, encode;              // of rows on the device and on each server
-  float orbit_degrees = 1;              // that the camera orbits its target per frame; 0: it stands still
-  std::uint32_t frame_count = 8;        // in the path measured for each share
+  double device_ns = 0, server_ns = 0;                  // time per pixel on the device and on each server
+  double device_prepare_ns = 0, server_prepare_ns = 0;  // and of a frame before its first pixel
+  CodeCost decode, encode;                              // of rows on the device and on each server
+  float orbit_degrees = 1;        // that the camera orbits its target per frame; 0: it stands still
+  std::uint32_t frame_count = 8;  // in the path measured for each share
 };
 
 // Figures of a share; means over frames unless stated otherwise.
@@ -32,6 +35,7 @@ struct SplitPoint {
   double m = 0;                              // the device's share of the rows
   double ns_per_pixel = 0;                   // of the median frame
   double device_pixels = 0;                  // traced by the device
+  double prepared = 0;                       // of the frames, the part that the device prepared
   double bytes = 0;                          // received and sent per frame
   double row_bytes = 0;                      // of these, rows without message overhead
   double row_count = 0;                      // sent by servers

@@ -33,6 +33,8 @@ TEST_CASE("device_list_has_plausible_and_distinct_entries") {
     CHECK(device.link_jitter_ns <= 2 * device.link_latency_ns);
     CHECK((device.decode_pixel_ns >= 1 && device.decode_pixel_ns <= 1000));
     CHECK((device.decode_byte_ns >= 10 * device.decode_pixel_ns && device.decode_byte_ns <= 100'000));
+    CHECK((device.prepare_triangle_ns >= 10 && device.prepare_triangle_ns <= 100'000));
+    CHECK((device.prepare_vertex_ns >= 10 && device.prepare_vertex_ns <= 100'000));
     CHECK((device.core_watts >= 0.01 && device.core_watts <= 50));
     CHECK((device.byte_nanojoules >= 1 && device.byte_nanojoules <= 10'000));
     std::set<int> keys;

@@ -1,9 +1,6 @@
 // How long a device waits for servers that start well but deliver nothing, and what it logs.
 #include <doctest/doctest.h>
 
-#include <cmath>
-
-#include "engine/frame.h"
 #include "hostile_rig.h"
 
 using namespace pocketray;
@@ -124,32 +121,6 @@ TEST_CASE("client_backs_off_from_a_server_that_comes_and_goes") {
     CHECK(rig.fake.connection_count <= 9);
     CHECK(rig.log.size() <= 18);
   }
-}
-
-// Goal: the reported speed-up includes the device's preparation of a frame, which servers do not save; the split does
-// not depend on it. Method: frames whose preparation takes half a minute, as stated by the device.
-TEST_CASE("client_counts_preparation") {
-  constexpr std::uint64_t kPrepareNs = 30'000'000'000;
-  std::uint32_t rows[2];
-  for (std::uint64_t prepare_ns : {std::uint64_t(0), kPrepareNs}) {
-    SplitRigOptions options;
-    SplitRig rig(options);
-    Renderer* renderer = &rig.device->renderer;
-    double alone_ns = options.device_ns * options.width * options.height;
-    for (int i = 0; i < 8; ++i) {
-      REQUIRE(prepare_frame(renderer, 0).ok);
-      begin_client_frame(&rig.client, *renderer, 0, prepare_ns);
-      REQUIRE(advance_frame(renderer, &rig.client, ~std::uint64_t(0)));
-    }
-    const FrameShare& share = rig.client.share;
-    rows[prepare_ns > 0] = share.device_rows;
-    double prepare = static_cast<double>(prepare_ns);
-    CHECK(share.measured_ns > prepare);
-    CHECK(share.measured_ns < prepare + alone_ns);
-    CHECK(std::fabs(share.predicted_ns - share.measured_ns) < 0.2 * alone_ns);
-    CHECK(std::fabs(share.local_ns - prepare - alone_ns) < 0.1 * alone_ns);
-  }
-  CHECK(rows[0] == rows[1]);
 }
 
 // Goal: a device that is done with its own rows goes on with those that its server would send last, so that the two

@@ -20,7 +20,7 @@ SplitRig::SplitRig(const SplitRigOptions& given) : options(given) {
   settings.coherence = options.coherence;
   device = make_renderer(built->scene, settings);
   ClientOptions o = options.client;
-  o.pace.ns_per_pixel = options.device_ns;
+  o.pace.ns_per_pixel = options.device_ns, o.pace.prepare_ns = options.device_prepare_ns;
   o.log = [](void* rig, const char* line) { static_cast<SplitRig*>(rig)->log.push_back(line); };
   o.log_context = this;
   client_memory.resize(client_need(settings, o.format, options.server_count) + kArenaAlignment);
@@ -38,6 +38,7 @@ void SplitRig::start_server(std::uint32_t i) {
   o.client_count_max = 4;
   o.coherence = options.coherence;
   o.encode = options.encode;
+  o.pace.prepare_ns = options.server_prepare_ns;
   o.pace.ns_per_pixel = options.server_ns.empty()      ? 100
                         : i < options.server_ns.size() ? options.server_ns[i]
                                                        : options.server_ns.back();

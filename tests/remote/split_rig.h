@@ -24,12 +24,13 @@ struct SplitRigOptions {
   const char* scene = "cornell";
   std::uint32_t width = 64, height = 48;
   std::uint32_t server_count = 1;
-  double device_ns = 1000;             // per pixel
-  std::vector<double> server_ns = {};  // per pixel; missing entries repeat the last; empty: 100
+  double device_ns = 1000;                              // per pixel
+  double device_prepare_ns = 0, server_prepare_ns = 0;  // per frame
+  std::vector<double> server_ns = {};                   // per pixel; missing entries repeat the last; empty: 100
   platform::NullLinkSettings line = fine_clock();
   CoherenceMode coherence = CoherenceMode::automatic;  // of device and servers
   bool compares = true;                                // compares every frame with the device's own
-  CodeCost encode;  // of rows on servers
+  CodeCost encode;                                     // of rows on servers
   ClientOptions client;
 };
 

@@ -23,16 +23,18 @@ TEST_CASE("fronts_have_what_no_other_beats") {
   for (const FrontPoint& p : points) CHECK(p.on_front == (p.m == 0.0 || p.m == 0.1 || p.m == 0.3));
 }
 
-// Goal: energy is that of the device's pixels and of the bytes. Method: a sweep by hand.
+// Goal: energy is that of the device's pixels, of the bytes, and of the frames that the device prepared. Method: a
+// sweep by hand.
 TEST_CASE("fronts_count_pixels_and_bytes") {
   SplitFigures figures;
   figures.sweep.resize(2);
   figures.sweep[0].m = 0, figures.sweep[0].ns_per_pixel = 500, figures.sweep[0].bytes = 40'000;
   figures.sweep[1].m = 1, figures.sweep[1].ns_per_pixel = 9000, figures.sweep[1].device_pixels = 1000;
-  const Fronts fronts = make_fronts(figures, {7000, 1100}, 1000);
+  figures.sweep[1].prepared = 0.5;
+  const Fronts fronts = make_fronts(figures, {7000, 1100, 6e6}, 1000);
   CHECK(fronts.energy[0].ms == doctest::Approx(0.5));
   CHECK(fronts.energy[0].cost == doctest::Approx(44));
-  CHECK(fronts.energy[1].cost == doctest::Approx(7));
+  CHECK(fronts.energy[1].cost == doctest::Approx(10));
   CHECK(fronts.bytes[0].cost == doctest::Approx(40));
   CHECK(fronts.bytes[1].cost == 0);
   CHECK((fronts.energy[1].on_front && fronts.bytes[1].on_front));

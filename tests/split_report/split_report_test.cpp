@@ -95,6 +95,53 @@ TEST_CASE("split_report_chosen_share_is_within_5_percent_of_the_best") {
   }
 }
 
+// Goal: what it takes the device to pose a moving scene counts, and it is left out where servers had better render all.
+// Method: a device that takes long for it; its times alone and with a server, and what a sweep says of small shares.
+TEST_CASE("split_report_prices_preparation") {
+  constexpr double kPrepareNs = 60e6;
+  for (const CoherenceMode mode : {CoherenceMode::off, CoherenceMode::on}) {
+    Reporting r;
+    make_reporting(builtin_store(), "seesaw", "pi-zero", 1, &r);
+    Settings settings = r.device->renderer.settings;
+    settings.width = 64, settings.height = 60, settings.coherence = mode;
+    r.device = make_renderer(stored_scene(builtin_store(), "seesaw").scene, settings);
+    r.setup.device = &r.device->renderer;
+    r.setup.orbit_degrees = 0;
+    r.setup.frame_count = 16;
+    r.setup.device_prepare_ns = kPrepareNs, r.setup.server_prepare_ns = 0.5e6;
+    SplitFigures figures;
+    Progress progress = start_progress("split", split_frame_count(r.setup, kSteps));
+    REQUIRE(measure_split(r.setup, kSteps, &progress, &figures).ok);
+    const double pixels = settings.width * settings.height;
+    CHECK(figures.chosen.ns_per_pixel <= 1.05 * figures.best.ns_per_pixel);
+    CHECK(figures.best.m == 0);
+    CHECK(figures.chosen.prepared == 0);
+    CHECK(figures.chosen.ns_per_pixel * pixels < 0.5 * kPrepareNs);
+    for (const SplitPoint& p : figures.sweep) {
+      CAPTURE(p.m);
+      CHECK(p.prepared == (p.m > 0 ? 1 : 0));
+      CHECK((p.m == 0 || p.ns_per_pixel * pixels >= kPrepareNs));
+    }
+  }
+}
+
+// Goal: preparing a frame costs what moves: vertices, twice where skinned, a third without normals, and all triangles.
+// Method: a scene of three meshes by hand.
+TEST_CASE("split_report_counts_what_moves") {
+  MovingMesh meshes[3] = {};
+  meshes[0].vertex_count = 1, meshes[1].vertex_count = 10;
+  meshes[2].vertex_count = 100, meshes[2].skin = 0;
+  Vec3 normal;
+  Scene scene;
+  scene.triangles.count = 7;
+  const PrepareCost cost = {1000, 3};
+  CHECK(prepare_ns(cost, scene) == 0);
+  scene.moving_meshes = {meshes, 3};
+  CHECK(prepare_ns(cost, scene) == doctest::Approx(7000 + 211));
+  scene.normals = {&normal, 1};
+  CHECK(prepare_ns(cost, scene) == doctest::Approx(7000 + 3 * 211));
+}
+
 // Goal: every ready server gets rows, and each makes the frame faster. Method: a device with a nearly free link, where
 // all servers are worth the same; the second and third are still being measured when the first frame is split. A sweep
 // alone would not show this, as it has the same servers.

@@ -59,6 +59,9 @@ Status make_setup(const ReportOptions& o, const platform::Device& device, Render
   setup->server_count = o.server_count;
   setup->device_ns = o.device_ns > 0 ? o.device_ns : here_ns * device.slowdown / renderer->settings.threads;
   setup->server_ns = o.server_ns > 0 ? o.server_ns : here_ns;
+  const PrepareCost cost = {device.prepare_triangle_ns, device.prepare_vertex_ns};
+  setup->device_prepare_ns = prepare_ns(cost, renderer->scene);
+  setup->server_prepare_ns = prepare_ns(kServerPrepare, renderer->scene);
   setup->decode = {device.decode_pixel_ns, device.decode_byte_ns};
   setup->encode = kServerEncode;
   setup->orbit_degrees = o.orbit_degrees;
@@ -89,6 +92,7 @@ Extras make_extras(const platform::Device& device, const SplitSetup& setup, cons
   Extras extras;
   // W · ns = nJ; all cores are busy.
   extras.energy.pixel_nanojoules = device.core_watts * setup.device->settings.threads * setup.device_ns;
+  extras.energy.prepare_nanojoules = device.core_watts * setup.device_prepare_ns;
   extras.energy.byte_nanojoules = device.byte_nanojoules;
   extras.fronts = make_fronts(figures, extras.energy, static_cast<std::uint32_t>(pixel_count(*setup.device)));
   double pixels = 0, bytes = 0;
@@ -138,6 +142,9 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
           {"height", settings.height},
           {"device_ns_per_pixel", setup.device_ns},
           {"server_ns_per_pixel", setup.server_ns},
+          {"device_prepare_ms", setup.device_prepare_ns * 1e-6},
+          {"server_prepare_ms", setup.server_prepare_ns * 1e-6},
+          {"prepared_frames", s.chosen.prepared},
           {"link_bytes_per_second", setup.line.bytes_per_second},
           {"bytes_per_frame", s.chosen.bytes},
           {"row_bytes_per_frame", s.chosen.row_bytes},
@@ -176,6 +183,11 @@ void print_bytes(const SplitSetup& setup, const SplitFigures& s) {
   if (s.near_bytes > 0)
     std::printf("all rows: %.0f bytes lossless, %.0f near-lossless with an error of %.2f levels (--near-lossless)\n",
                 s.lossless_bytes, s.near_bytes, s.near_error);
+  if (setup.device_prepare_ns > 0)
+    std::printf(
+        "to pose what moves and refit the accelerator: %.3g ms on the device, which did so in %.0f %% of the "
+        "frames, and %.2g ms on a server\n",
+        setup.device_prepare_ns * 1e-6, 100 * s.chosen.prepared, setup.server_prepare_ns * 1e-6);
   if (s.chosen.kept_rows > 0)
     std::printf("of these, chunks in which no pixel could change: %.0f bytes, %.1f rows\n", s.chosen.kept_bytes,
                 s.chosen.kept_rows);

@@ -10,20 +10,14 @@
 namespace pocketray {
 namespace {
 
-// Derived: the buffers hold the longest messages queued at once and the longest ping. Derived: a network may cost 5 %
-// of a frame, of which waiting takes 3, spot checks 1 and the first estimate of a link what is left. Measured, by `make
-// split-table` (within 1.05 of the best fixed split on every device and link) and `make faults` (within 1.05 of the
-// device alone): kCertainPart, kLateFactor, kLooksWatched and the frames watched.
+// Derived: the buffers hold the longest messages queued at once and the longest ping. Measured as in outlook.cpp:
+// kLooksWatched and the frames watched.
 constexpr std::size_t kOutBytes = 1024;     // for requests waiting to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
-constexpr double kWaitShare = 0.03;  // of a frame's time that the device may wait in vain: within the 5 % a network may
-                                     // cost, of which spot checks take 1 %
-constexpr double kCertainPart = 0.5;  // of a row's estimated time, since rows are measured several at a time
-// Of a frame's predicted time, and of the device's alone, after which the device waits for no more rows.
-constexpr double kLateFactor = 1.03;
-constexpr double kStartDisproved = 2;  // chosen
-constexpr double kLookNs = 20e6;       // between two polls of the link: about a display frame
-constexpr double kLooksWatched = 16;   // polls in a watched frame. They slow the device's packets,
+constexpr double kStartDisproved = 2;       // chosen
+constexpr double kWaitedMax = 0.1;    // of a first chunk's time, for others; chosen: starts need not be known better
+constexpr double kLookNs = 20e6;      // between two polls of the link: about a display frame
+constexpr double kLooksWatched = 16;  // polls in a watched frame. They slow the device's packets,
 constexpr std::uint64_t kWatchedFirst = 4,
                         kWatchedEvery = 16;  // so only the first frames and some later ones are watched
 
@@ -42,54 +36,12 @@ bool is_watched(const Client& client) {
   return client.frames_with_servers < kWatchedFirst || client.frames_with_servers % kWatchedEvery == 0;
 }
 
-// How much longer the device may idle in this frame and still finish within 1 + kWaitShare times its time alone, even
-// if nothing more arrives. The estimate is conservative: rows count with their time in this frame or, scaled down as
-// far as this frame's rows are cheaper, in earlier frames. Rows the device never rendered count kCertainPart of the
-// mean; arrived rows count `come_share` of the time they saved.
-double time_to_spare(const Client& client, double come_share) {
-  auto is_measured = [](const RowModel& row) { return is_known(row.device_ns) && !row.guessed; };
-  double seen = 0, seen_before = 0, others = 0, come = 0, unknown = 0;
-  for (std::uint32_t r = 0; r < client.model.rows.count; ++r) {
-    const RowModel& row = client.model.rows[r];
-    if (!is_measured(row)) {
-      if (!(row.device_ns_seen > 0)) ++unknown;
-      continue;
-    }
-    double before = device_row_ns(row);
-    if (row.device_ns_seen > 0)
-      seen += static_cast<double>(row.device_ns_seen * row.device_part), seen_before += before;
-    else
-      others += before, come += client.merge.rows[r].state == RowState::server ? before : 0;
-  }
-  // Rows rendered together share their mean, so a few of them can make a frame look slower than the last.
-  double change = seen_before > 0 ? std::min(1.0, seen / seen_before) : 1;
-  double alone = std::max(client.device_ns, std::min(client.device_ns + change * others, seen_before + others));
-  alone += kCertainPart * unknown * device_pixel_ns(client) * client.settings.width;
-  double idle = static_cast<double>(client_now_ns(client) - client.begin_ns) - client.device_ns;
-  return kWaitShare * alone + come_share * change * come - idle;
-}
-
-// True if the servers' rows are due before the device could render one and decode the others, or late by less than it
-// takes to render one, and the device would still finish about as early as alone if none arrived.
-bool is_worth_waiting(const Client& client) {
-  double prepare = static_cast<double>(client.prepare_ns), due = client.share.predicted_ns - prepare;
-  double elapsed = static_cast<double>(client_now_ns(client) - client.begin_ns),
-         row = device_pixel_ns(client) * client.settings.width;
-  if (!client.joined || elapsed >= std::max(kLateFactor * due, due + row)) return false;
-  if (elapsed + row <= due && elapsed + row + decoding_left_ns(client) <= due) return false;
-  bool any_guessed =
-      std::any_of(client.model.rows.begin(), client.model.rows.end(), [](const RowModel& r) { return r.guessed; });
-  double latest = kLateFactor * (client.share.local_ns - prepare);
-  return elapsed + rows_left_ns(client) <= latest && (any_guessed || time_to_spare(client, kCertainPart) > 0);
-}
-
 // Rows that the device may render between two polls of the link; few while servers are connected.
 std::uint32_t rows_between_looks(const Client& client) {
   bool any = false;
   for (std::uint32_t i = 0; i < client.server_count; ++i) any = any || client.servers[i].phase != ServerPhase::waiting;
   double row_ns = device_pixel_ns(client) * client.settings.width, look_ns = kLookNs;
-  if (client.joined && is_watched(client))
-    look_ns = std::min(look_ns, (client.share.predicted_ns - static_cast<double>(client.prepare_ns)) / kLooksWatched);
+  if (client.joined && is_watched(client)) look_ns = std::min(look_ns, client.share.predicted_ns / kLooksWatched);
   look_ns = std::min(look_ns, work_ns_max(client));
   if (!any) return client.settings.height;
   // By this frame's rows so far and by earlier frames, as rows below the sky cost more.
@@ -118,11 +70,25 @@ void look_at_servers(Client* client, std::uint64_t timeout_ns) {
   client->unwatched_ns = begin > client->looked_ns ? begin - client->looked_ns : 0;
   client->link->backend->poll(client->link, waits, wait_count, timeout_ns);
   std::uint64_t now = client_now_ns(*client);
-  std::uint64_t since = std::max(client->looked_ns, client->begin_ns);
+  std::uint64_t since = std::max(client->looked_ns, client->arrivals.asked_ns);
   client->arrivals.gap_ns_max = std::max(client->arrivals.gap_ns_max, now > since ? now - since : 0);
   client->looked_ns = now;
   for (std::uint32_t i = 0; i < client->server_count; ++i) advance_server(client, &client->servers[i]);
   let_join(client);
+}
+
+// The least that a server can have taken before it began to trace its first chunk, which has just come and took
+// `render_ns`; 0 where others' chunks may have kept that one waiting for a link that they share.
+double least_start_ns(const Client& client, const RemoteServer& server, double render_ns, std::uint32_t byte_count) {
+  const CostModel& model = client.model;
+  const ServerFrame& f = server.frame;
+  const double sent_ns = byte_count * static_cast<double>(model.servers[index_of(client, &server)].ns_per_byte.value);
+  const double took_ns = static_cast<double>(f.heard_ns - f.asked_ns) - static_cast<double>(f.unseen_ns);
+  double sharers = 0;
+  for (std::uint32_t i = 0; i < client.server_count; ++i)
+    if (&client.servers[i] != &server && client.servers[i].frame.row_end > 0) ++sharers;
+  const double waited_ns = sharers * byte_count * static_cast<double>(model.link_ns_per_byte.value);
+  return waited_ns < kWaitedMax * took_ns ? took_ns - render_ns - sent_ns : 0;
 }
 
 bool is_missing(const Client& client, std::uint32_t row) { return client.merge.rows[row].state == RowState::missing; }
@@ -133,6 +99,11 @@ bool is_awaited(const Client& client, std::uint32_t row) {
     if (f.open && f.row_begin <= row && row < f.row_end) return true;
   }
   return false;
+}
+
+bool awaits_rows(const Client& client) {
+  return std::any_of(client.servers, client.servers + client.server_count,
+                     [](const RemoteServer& server) { return server.frame.open; });
 }
 
 // Takes a missing row that no server is about to send; otherwise the one that its server will send last, the topmost
@@ -283,6 +254,7 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   s->frame.render_ns += render_ns;
   if (s->frame.first_ns == 0) {
     s->frame.first_ns = s->frame.heard_ns;
+    s->frame.start_ns_min = least_start_ns(*client, *s, render_ns, byte_count);
     // Pings may all have been seen late. Without its work, the first chunk bounds the start from above; as the link's
     // jitter does the same to single frames, only one far too long is corrected.
     const double start_ns = static_cast<double>(s->frame.heard_ns - s->frame.asked_ns) - work_ns;
@@ -317,8 +289,8 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   mark_dirty(client, begin, end);
 }
 
-void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns,
-                        bool unchanged) {
+void begin_client_frame(Client* client, const Renderer& renderer, const FrameStart& start) {
+  const bool unchanged = start.unchanged;
   CHECK(!unchanged || client->complete);
   if (!client->complete) {
     cancel_rest(client, true);
@@ -335,12 +307,13 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
   client->waited_ns = 0, client->device_ns = 0, client->device_pixels = 0;
   client->unchanged = client->share.unchanged = unchanged;
   client->device_row = DeviceRow();
-  client->begin_ns = client_now_ns(*client);
-  client->prepare_ns = prepare_ns;
+  client->begin_ns = start.begin_ns;
+  client->prepared = start.prepared || !client->options.has_scene, client->prepare_ns = start.prepare_ns;
   client->arrivals = Arrivals();
+  client->arrivals.asked_ns = client_now_ns(*client);
   FrameRequest* q = &client->request;
   ++q->frame;
-  q->scene = client->scene, q->seconds = seconds;
+  q->scene = client->scene, q->seconds = start.seconds;
   q->camera_stated = client->options.has_scene ||
                      renderer.camera_overridden;  // without the scene, an animated camera moves as on the server
   q->camera_index = static_cast<std::uint16_t>(renderer.camera_index);
@@ -364,25 +337,33 @@ void begin_client_frame(Client* client, const Renderer& renderer, double seconds
     any = any || server->phase == ServerPhase::ready;
   }
   client->held = !unchanged && any && wants_quiet(*client);
-  if (any && client->options.has_scene && !client->held && !unchanged) share_rows(client, 0);
+  if (any && client->options.has_scene && !client->held && !unchanged) share_rows(client);
   advance_client(client, 0);
 }
 
+void device_is_ready(Client* client, std::uint64_t prepare_ns) {
+  CHECK(!client->prepared);
+  client->prepared = true, client->prepare_ns = prepare_ns;
+}
+
+bool has_device_rows(const Client& client) {
+  if (!client.options.has_scene || has_all_rows(client)) return false;
+  const std::uint32_t own_end = client.joined ? client.split.boundary[0] : client.settings.height;
+  if (client.merge.next_row < own_end) return true;
+  return !awaits_rows(client) || (client.options.device_goes_on && !is_worth_waiting(client));
+}
+
 bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end) {
-  if (!client->options.has_scene) return false;
   CHECK_GT(row_count_max, 0u);
+  CHECK(client->prepared);
+  if (!has_device_rows(*client)) return false;
   row_count_max = std::min(row_count_max, rows_between_looks(*client));
   std::uint32_t own_end = client->joined ? client->split.boundary[0] : client->settings.height;
   std::uint32_t next = client->merge.next_row;
-  if (next < own_end) {
+  if (next < own_end)
     row_count_max = std::min(row_count_max, own_end - next);
-  } else {
-    // Takes servers' missing rows one at a time, as they may arrive any moment.
-    bool awaited = false;
-    for (std::uint32_t i = 0; i < client->server_count; ++i) awaited = awaited || client->servers[i].frame.open;
-    if (awaited && (!client->options.device_goes_on || is_worth_waiting(*client))) return false;
-    if (awaited) return take_latest_row(client, row_begin, row_end);
-  }
+  else if (awaits_rows(*client))  // takes servers' missing rows one at a time, as they may arrive any moment
+    return take_latest_row(client, row_begin, row_end);
   return take_rows(&client->merge, row_count_max, row_begin, row_end);
 }
 

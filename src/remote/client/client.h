@@ -74,6 +74,7 @@ struct ServerFrame {
   std::uint64_t heard_ns = 0;   // when the last rows came, as seen: at most unseen_ns earlier
   std::uint64_t unseen_ns = 0;
   std::uint64_t first_ns = 0;      // when the first rows came
+  double start_ns_min = 0;         // the least that the server can have taken before it began to trace them
   std::uint64_t bytes_behind = 0;  // of the chunks after the first
   double render_behind_ns = 0;     // and the server's time for their rows
   bool answers = false;            // it has answered since the request, even if only a ping
@@ -120,7 +121,7 @@ struct FrameShare {
   std::uint32_t frame = 0;
   double predicted_ns = 0;                          // by the chosen split; 0: unknown
   bool unchanged = false;                           // equals the last frame, whose rows it keeps
-  double measured_ns = 0;                           // from its preparation to its completion
+  double measured_ns = 0;                           // from its begin to its completion
   double local_ns = 0;                              // predicted for the device alone; 0: unknown
   std::uint32_t device_rows = 0;                    // rendered by the device
   std::uint64_t device_pixels = 0;                  // traced for them
@@ -137,6 +138,7 @@ struct FrameShare {
 
 // Arrival of a frame's rows, from the first chunk, whose start is unknown, to the last.
 struct Arrivals {
+  std::uint64_t asked_ns = 0;                          // when rows could first be requested
   std::uint64_t first_ns = 0, last_ns = 0, bytes = 0;  // bytes: of the chunks after the first
   std::uint64_t gap_ns_max = 0;                        // between two polls of the link
 };
@@ -170,7 +172,8 @@ struct Client {
   std::uint64_t coarse_ns = 0;  // so long after the frame's begin
   bool held = false;            // requests wait until a link is measured
   std::uint64_t begin_ns = 0, waited_ns = 0, looked_ns = 0;
-  std::uint64_t prepare_ns = 0;  // of work on it before it began
+  bool prepared = false;         // the device can trace its pixels,
+  std::uint64_t prepare_ns = 0;  // which took so long
   mutable platform::LinkClock clock;
   std::uint64_t unwatched_ns = 0;  // time before the latest poll: input may have arrived that much earlier
   Smoothed decode_ns, code_saves;  // per coded pixel: to decode it; bytes that its code saves
@@ -204,12 +207,21 @@ void close_client(Client* client);
 // Advances connections, overtures and arriving rows; blocks for at most `timeout_ns`.
 void advance_client(Client* client, std::uint64_t timeout_ns);
 
-// Begins a frame: plans the split and requests the servers' rows. The renderer must be prepared or, without the scene,
-// have the camera and exposure; `prepare_ns` is the time that took. `seconds` is the animation time. Abandons an
-// unfinished frame.
-void begin_client_frame(Client* client, const Renderer& renderer, double seconds, std::uint64_t prepare_ns,
-                        bool unchanged = false);
-// The rows for the device to render next, at most `row_count_max`; false if none are left.
+// What is known of a frame when rows of it are requested.
+struct FrameStart {
+  double seconds = 0;            // animation time
+  std::uint64_t begin_ns = 0;    // when its input was known, by client_now_ns()
+  bool prepared = false;         // the renderer is; otherwise it has camera and exposure, and device_is_ready() follows
+  std::uint64_t prepare_ns = 0;  // that took so long
+  bool unchanged = false;        // its pixels are those of the last frame
+};
+// Begins a frame: plans the split and requests the servers' rows. Abandons an unfinished frame.
+void begin_client_frame(Client* client, const Renderer& renderer, const FrameStart& start);
+// True while the device has rows to render: its own, or servers' that are not worth waiting for.
+bool has_device_rows(const Client& client);
+// The renderer of a frame under way has been prepared, which took `prepare_ns`.
+void device_is_ready(Client* client, std::uint64_t prepare_ns);
+// The rows for the device to render next, at most `row_count_max`; false if it has none.
 bool take_device_rows(Client* client, std::uint32_t row_count_max, std::uint32_t* row_begin, std::uint32_t* row_end);
 // Call when the device has rendered them in `ns` of wall-clock time into client->pixels.
 void finish_device_rows(Client* client, std::uint32_t row_begin, std::uint32_t row_end, std::uint64_t ns,
@@ -231,10 +243,8 @@ bool take_merged_rows(Client* client, std::uint32_t* row_begin, std::uint32_t* r
 
 // By the link's clock, but monotonic.
 std::uint64_t client_now_ns(const Client& client);
-// Time in the current frame, preparation included.
-inline std::uint64_t client_elapsed_ns(const Client& client) {
-  return client_now_ns(client) - client.begin_ns + client.prepare_ns;
-}
+// Time since the begin of the current frame.
+inline std::uint64_t client_elapsed_ns(const Client& client) { return client_now_ns(client) - client.begin_ns; }
 // Levels by which an honest server's channels may be off.
 inline std::uint32_t pixel_tolerance(const Client& client) { return client.options.near_lossless ? 1 : 0; }
 // Start of a row in client->pixels.

@@ -96,6 +96,8 @@ void next_rows(void* context, SpanBatch* batch) {
   if (row->in_parts && client->merge.rows[row->row].state != RowState::taken) row->in_parts = false;
   if (row->in_parts) return next_part(s, batch);
   if (has_all_rows(*client)) return;
+  if (!has_device_rows(*client)) return;
+  if (!client->prepared) prepare_device(s->renderer, client);
   double pixel_ns = device_pixel_ns(*client), row_ns = pixel_ns * renderer.settings.width;
   bool is_long = row_ns == 0 || row_ns > work_ns_max(*client);
   if (!take_changed_rows(s, is_long)) return;
@@ -143,7 +145,8 @@ bool merge_rows(void* context, const SpanBatch& batch) {
   if ((!busy || finish_batch(s, batch)) && has_all_rows(*client) && is_verified(s.renderer, client)) {
     if (client->options.has_scene) {
       end_shared_rows(s.renderer);
-      client->kept_count = s.renderer->coherence.signature.known ? s.renderer->coherence.kept_count : 0;
+      const Coherence& c = s.renderer->coherence;
+      client->kept_count = client->prepared && c.signature.known ? c.kept_count : 0;
     }
     end_client_frame(client);
     return true;
@@ -154,23 +157,52 @@ bool merge_rows(void* context, const SpanBatch& batch) {
   return false;
 }
 
-// Prepares the frame and finds what the device must trace of each row. *unchanged: the picture is the last frame's.
-Status prepare_rows(Renderer* renderer, Client* client, double seconds, bool* unchanged) {
+// Prepares the frame and finds what the device must trace of each row. Sets `unchanged` and how long it took.
+Status prepare_rows(Renderer* renderer, Client* client, FrameStart* start) {
+  const std::uint64_t begin_ns = client_now_ns(*client);
   end_shared_rows(renderer);  // of a frame that was given up
-  RETURN_IF_ERROR(prepare_frame(renderer, seconds));
-  std::uint64_t start = renderer->pace.clock->now_ns();
+  RETURN_IF_ERROR(prepare_frame(renderer, start->seconds));
+  const std::uint64_t posed_ns = renderer->pace.clock->now_ns();
   begin_shared_rows(renderer, 0, renderer->settings.height);
-  *unchanged = client->complete && client->kept_count > 0 && client->kept_count == renderer->coherence.kept_count &&
-               is_shared_frame_unchanged(*renderer) && renderer->exposure == client->request.exposure;
+  start->unchanged = client->complete && client->kept_count > 0 &&
+                     client->kept_count == renderer->coherence.kept_count && is_shared_frame_unchanged(*renderer) &&
+                     renderer->exposure == client->request.exposure;
   search_shared_rows(renderer, ~0u);
   const float width = static_cast<float>(renderer->settings.width);
   for (std::uint32_t row = 0; row < renderer->settings.height; ++row)
     client->model.rows[row].device_part = static_cast<float>(count_pixels(*renderer, row)) / width;
-  wait_for_pace(&renderer->pace, 0, start);
+  wait_for_pace(&renderer->pace, 0, posed_ns);
+  start->prepared = true;
+  start->prepare_ns = client_now_ns(*client) - begin_ns;
+  // With an emulated CPU, the renderer's pace has already covered this time.
+  const Pace& pace = client->options.pace;
+  if (!is_paced(renderer->pace) && is_paced(pace)) {
+    start->prepare_ns = paced_prepare_ns(pace, start->prepare_ns);
+    work_until(client, begin_ns + start->prepare_ns);
+  }
+  observe_device_start(&client->model, static_cast<double>(start->prepare_ns));
   return success();
 }
 
+// Whether servers are asked for rows of the frame before the device has posed the scene and refitted its accelerator.
+// Where nothing moves, little is gained; where nothing has changed, no rows are needed; and where a node moves the
+// camera, only the pose tells it.
+bool asks_first(const Renderer& renderer, const Client& client, double seconds) {
+  const Array<const Camera>& cameras = renderer.scene.cameras;
+  const bool camera_known = renderer.camera_overridden || renderer.camera_index >= cameras.count ||
+                            cameras[renderer.camera_index].node == kNone;
+  return client.options.has_scene && camera_known && renderer.pose.positions.count > 0 && !client.unchanged &&
+         seconds != client.request.seconds;
+}
+
 }  // namespace
+
+void prepare_device(Renderer* renderer, Client* client) {
+  FrameStart start;
+  start.seconds = client->request.seconds;
+  CHECK(prepare_rows(renderer, client, &start).ok);  // time and camera have been checked
+  device_is_ready(client, start.prepare_ns);
+}
 
 std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t begin_ns) {
   return take_time_at(client, client->options.pace, pixel_count, begin_ns);
@@ -178,13 +210,11 @@ std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t
 
 Status begin_frame(Renderer* renderer, Client* client, double seconds) {
   RETURN_IF_ERROR(check_limit(Quantity::seconds, seconds));
-  std::uint64_t begin_ns = client_now_ns(*client);
-  bool unchanged = false;
-  if (client->options.has_scene) RETURN_IF_ERROR(prepare_rows(renderer, client, seconds, &unchanged));
-  // With an emulated CPU, its pace has already covered this time.
-  std::uint64_t prepare_ns =
-      is_paced(renderer->pace) ? client_now_ns(*client) - begin_ns : take_time(client, 0, begin_ns);
-  begin_client_frame(client, *renderer, seconds, prepare_ns, unchanged);
+  FrameStart start;
+  start.seconds = seconds, start.begin_ns = client_now_ns(*client);
+  if (client->options.has_scene && !asks_first(*renderer, *client, seconds))
+    RETURN_IF_ERROR(prepare_rows(renderer, client, &start));
+  begin_client_frame(client, *renderer, start);
   return success();
 }
 

@@ -6,7 +6,8 @@
 
 namespace pocketray {
 
-// Prepares the scene for the time and requests the servers' rows.
+// Requests the servers' rows, and prepares the scene for the time, unless servers may well render all rows of a moving
+// scene: then it is prepared once the device has rows to render or pixels to check.
 Status begin_frame(Renderer* renderer, Client* client, double seconds);
 // Renders and merges until about `deadline_ns` by client_now_ns(), at least a few rows, or until `stop` is set; without
 // `stop`, also until a coarse picture comes. True if the frame is complete: in client->pixels, summarised in

@@ -51,8 +51,8 @@ std::uint64_t wait_wanted_ns(const Client& client);
 
 // The device's time per pixel, by this frame or earlier ones; 0: unknown.
 double device_pixel_ns(const Client& client);
-// Plans the split `elapsed_ns` into the frame and sends the requests.
-void share_rows(Client* client, std::uint64_t elapsed_ns);
+// Plans the split and sends the requests.
+void share_rows(Client* client);
 // Requests rows from a server, without finished rows at the ends: in the order that takes least by the problem, or from
 // the bottom upward.
 void ask_for_rows(Client* client, RemoteServer* server, std::uint32_t row_begin, std::uint32_t row_end,
@@ -92,6 +92,8 @@ bool is_witnessed(Client* client);
 
 // ---- frame.cpp
 
+// Prepares the device for the frame under way.
+void prepare_device(Renderer* renderer, Client* client);
 // Takes as long as the emulated device takes for `pixel_count` pixels; returns that time.
 std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t begin_ns);
 
@@ -100,8 +102,22 @@ std::uint64_t take_time(Client* client, std::uint64_t pixel_count, std::uint64_t
 // Time the device would need for the missing rows, estimated from this frame and from earlier ones, whichever is
 // longer.
 double rows_left_ns(const Client& client);
-// Time it will need to decode them.
+// Time it will need to prepare the frame, as far as it has not yet.
+double preparing_left_ns(const Client& client);
+// Time it will need to decode the missing rows.
 double decoding_left_ns(const Client& client);
+
+// Derived: a network may cost 5 % of a frame, of which spot checks take 1 and the first estimate of a link what is
+// left.
+constexpr double kWaitShare = 0.03;  // of a frame's time that the device may wait in vain
+// How much longer the device may idle in this frame and still finish within 1 + kWaitShare times its time alone, even
+// if nothing more arrives. The estimate is conservative: rows count with their time in this frame or, scaled down as
+// far as this frame's rows are cheaper, in earlier frames. Rows the device never rendered count kCertainPart of the
+// mean; arrived rows count `come_share` of the time they saved.
+double time_to_spare(const Client& client, double come_share);
+// True if the servers' rows are due before the device could render one and decode the others, or late by less than it
+// takes to render one, and the device would still finish about as early as alone if none arrived.
+bool is_worth_waiting(const Client& client);
 
 // ---- coarse.cpp
 

@@ -156,24 +156,29 @@ double device_pixel_ns(const Client& client) {
   return count ? sum / (width * count) : 0;
 }
 
-void share_rows(Client* client, std::uint64_t elapsed_ns) {
+void share_rows(Client* client) {
   CHECK(client->options.has_scene && !client->complete);
   SplitProblem problem = make_problem(&client->model, client->options.wish);
-  // Times count from the begin of the frame: the device can render from then on, servers start when asked.
+  // Times count from the begin of the frame: the device can render once it is prepared, servers start when asked.
+  const std::uint64_t elapsed_ns = client_elapsed_ns(*client);
   auto from_now = [&](std::uint64_t* start_ns) { *start_ns = std::min(kRowTableMax, *start_ns + elapsed_ns); };
+  if (client->prepared)
+    problem.device_start_ns = std::min(kRowTableMax, client->prepare_ns);
+  else
+    from_now(&problem.device_start_ns);
   from_now(&problem.link_start_ns);
   for (std::uint32_t i = 0; i < client->server_count; ++i) from_now(&problem.servers[i].start_ns);
   if (client->options.device_share >= 0)
     client->split = split_by_share(*client, problem);
   else
-    client->split = elapsed_ns > 0 ? find_split(problem, &client->workspace)
-                                   : next_split(problem, client->split, &client->workspace);
-  client->share.predicted_ns = static_cast<double>(client->split.time_ns + client->prepare_ns);
+    client->split = client->device_pixels > 0 ? find_split(problem, &client->workspace)
+                                              : next_split(problem, client->split, &client->workspace);
+  client->share.predicted_ns = static_cast<double>(client->split.time_ns);
   Split alone;
   alone.server_count = client->server_count;
   for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
   predict_split(problem, &alone);
-  client->share.local_ns = static_cast<double>(alone.time_ns + client->prepare_ns);
+  client->share.local_ns = static_cast<double>(alone.time_ns);
   auto rows_of = [&](std::uint32_t i) { return client->split.boundary[i + 1] - client->split.boundary[i]; };
   std::uint32_t largest = 0;
   for (std::uint32_t i = 1; i < client->server_count; ++i)
@@ -202,7 +207,7 @@ void let_join(Client* client) {
   if (client->held ? wants_quiet(*client)
                    : !is_settled(*client) && client->merge.next_row < client->settings.height / 4)
     return;
-  share_rows(client, client_now_ns(*client) - client->begin_ns);
+  share_rows(client);
 }
 
 namespace {
@@ -218,13 +223,14 @@ void measure_own_links(Client* client) {
   }
 }
 
-// All of a server's rows came within the frame, however rarely the device polled, so its link is at least that fast.
+// All of a server's rows came since they were asked for, however rarely the device polled, so its link is at least
+// that fast.
 // Its actual speed must be measured.
 void bound_own_links(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     RemoteServer* server = &client->servers[i];
     Smoothed* ns_per_byte = &client->model.servers[i].ns_per_byte;
-    double ns = static_cast<double>(server->frame.heard_ns - client->begin_ns);
+    double ns = static_cast<double>(server->frame.heard_ns - server->frame.asked_ns);
     double bytes = static_cast<double>(server->frame.bytes_behind);
     bool disproved = kDisproved * ns < bytes * static_cast<double>(ns_per_byte->value);
     if (server->phase != ServerPhase::ready || bytes == 0 || !disproved) continue;
@@ -235,8 +241,9 @@ void bound_own_links(Client* client) {
   }
 }
 
-// A server's start is what its rows took beyond their work and bytes. Where others share the link, they may have waited
-// for it, so this bounds the start from above alone.
+// A server's start, preparation of the frame included, is what its rows took beyond their work and bytes. Where others
+// share the link, they may have waited for it, so this bounds the start from above; the first chunk bounds it from
+// below.
 void measure_starts(Client* client) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i) count += client->servers[i].frame.rows_come > 0;
@@ -249,10 +256,11 @@ void measure_starts(Client* client) {
     const double part = std::min(1.0, static_cast<double>(model.chunk_rows) / f.rows_come);
     const double work = std::max(f.render_ns, transfer) + part * std::min(f.render_ns, transfer);
     const double latest = std::max(0.0, static_cast<double>(f.heard_ns - f.asked_ns) - work);
-    const double earliest = std::max(0.0, latest - static_cast<double>(f.unseen_ns));
+    const double whole = count == 1 ? latest - static_cast<double>(f.unseen_ns) : 0;
+    const double earliest = std::max(f.start_ns_min, whole);
     const double known = static_cast<double>(model.start_ns.value);
     if (known > latest) observe_start(&client->model, i, latest);
-    if (known < earliest && count == 1) observe_start(&client->model, i, earliest);
+    if (known < earliest) observe_start(&client->model, i, earliest);
   }
 }
 

@@ -43,6 +43,7 @@ std::uint32_t due_count(Client* client, std::uint32_t sender_count) {
   v->frame = client->request.frame;
   double pixel_ns = kLonePixelFactor * device_pixel_ns(*client);
   if (is_known(v->check_ns)) pixel_ns = static_cast<double>(v->check_ns.value);
+  pixel_ns += preparing_left_ns(*client);
   double frame_ns = static_cast<double>(client_now_ns(*client) - client->begin_ns);
   // Without a known pixel cost, because the device renders none, one pixel measures it.
   double paid = pixel_ns > 0 ? kCheckShare * frame_ns / pixel_ns : 1;
@@ -163,6 +164,7 @@ bool check_pixels(Renderer* renderer, Client* client) {
   allot_checks(&v->random, due, pixels, client->server_count, counts);
   for (std::uint32_t i = 0; i < client->server_count; ++i)
     ends[i] = span_count = pick_pixels(client, i, counts[i], span_count);
+  if (span_count > 0 && !client->prepared) prepare_device(renderer, client);
   if (span_count > 0) render_pixels(renderer, client, span_count);
   bool honest = true;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {

@@ -145,7 +145,8 @@ Status probe(Session* session, std::uint64_t slice_ns, Slice* slice) {
   const Renderer& renderer = session->renderer;
   std::uint32_t count = slice_pixels(renderer.settings, renderer.light_points.count, session->probe_ns, slice_ns);
   if (session->probe_ns == 0) count = std::min(count, kFirstPixels);
-  *slice = {0, 0, 0, 0, true, false};
+  *slice = {};
+  slice->is_probe = true;
   float exposure = 0;
   bool done = probe_exposure(&session->renderer, &session->job.probe, count, &slice->pixel_count, &exposure);
   slice->traced_count = slice->pixel_count;
@@ -171,6 +172,7 @@ Status step_job(Session* session, const JobTools& tools, std::uint64_t slice_ns,
       return plan(session, tools, code);
     case JobStage::aim:
       if (tools.helpers && !session->job.is_view_query) tools.helpers->begin(tools.helpers->context, session);
+      slice->is_preparation = !session->job.is_view_query;
       return aim(session);
     case JobStage::own_exposure:
     case JobStage::view_exposure:

@@ -68,6 +68,7 @@ struct Slice {
   std::uint32_t row_count, column_end, pixel_count;  // column_end: the job's next traced_columns
   std::uint32_t traced_count;                        // of the pixels; the others are the last frame's
   bool is_probe, is_coarse;
+  bool is_preparation;  // of a frame before its first pixel
 };
 
 struct Session;

@@ -114,6 +114,7 @@ Pace pace_of(const Server& server, const Session& session, const Slice& slice) {
 std::uint64_t work_ns(const Server& server, const Session& session, const Work& work, std::uint64_t took) {
   const ServerOptions& o = server.options;
   if (!is_paced(o.pace)) return took;
+  if (work.slice.is_preparation) return paced_prepare_ns(o.pace, took);
   if (work.message_count == 0) return paced_ns(pace_of(server, session, work.slice), work.slice.traced_count, took);
   return static_cast<std::uint64_t>(work.message_count) * o.message_ns + work.byte_count * o.byte_ps / 1000;
 }
