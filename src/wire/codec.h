@@ -14,7 +14,7 @@ constexpr std::uint8_t kEncodingCoded = 1;
 // The bits above number the chunks of a connection, which exposes repeated and reordered ones. The sender adds them to
 // the result of encode_rows(); the receiver removes them before decode_rows(). False if `count`, the number of chunks
 // before, differs.
-constexpr int kChunkNumberShift = 2;
+constexpr int kChunkNumberShift = 3;
 inline void add_chunk_number(RowChunk* chunk, std::uint32_t count) {
   chunk->encoding = static_cast<std::uint8_t>(chunk->encoding | count << kChunkNumberShift);
 }

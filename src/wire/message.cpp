@@ -195,17 +195,19 @@ void fields(Io& io, RowChunk* m) {
   number(io, &m->frame, 2), number(io, &m->row_begin), number(io, &m->row_count, 1);
   io.require(m->row_count >= 1 && m->row_begin <= kImageSideMax - m->row_count);
   rounded(io, &m->pixel_ps), number(io, &m->traced);
-  const std::uint8_t states_price = m->price != 0 ? kEncodingPrice : 0;
-  m->encoding = static_cast<std::uint8_t>(m->encoding | states_price);
+  const int stated = (m->price != 0 ? kEncodingPrice : 0) | (m->prepare_ns != 0 ? kEncodingPreparation : 0);
+  m->encoding = static_cast<std::uint8_t>(m->encoding | stated);
   number(io, &m->encoding);
-  const bool price_follows = (m->encoding & kEncodingPrice) != 0;
-  if (price_follows && io.has(2)) {
-    count(io, &m->price, Quantity::price);
-  } else {
-    io.require(!price_follows);
-    m->price = 0;
-  }
-  m->encoding = static_cast<std::uint8_t>(m->encoding & ~kEncodingPrice);
+  auto follows = [&](std::uint8_t bit) {
+    const bool wanted = (m->encoding & bit) != 0, there = io.has(2);
+    io.require(there || !wanted);
+    return wanted && there;
+  };
+  follows(kEncodingPrice) ? count(io, &m->price, Quantity::price) : void(m->price = 0);
+  const bool states_preparation = follows(kEncodingPreparation);
+  states_preparation ? rounded(io, &m->prepare_ns) : void(m->prepare_ns = 0);
+  io.require(states_preparation == (m->prepare_ns > 0));
+  m->encoding = static_cast<std::uint8_t>(m->encoding & ~(kEncodingPrice | kEncodingPreparation));
   io.tail(&m->bytes);
 }
 template <class Io>
@@ -303,7 +305,7 @@ constexpr PayloadSize kPayloadSizes[] = {
     {28, 0},                                         // scene_fetch
     {24, kPieceBytesMax},                            // scene_piece
     {93 + kSettingsBytes, kRunBytes* kRunCountMax},  // frame_request
-    {9, 2 + kChunkBytesMax},                         // row_chunk
+    {9, 4 + kChunkBytesMax},                         // row_chunk
     {4, 0},                                          // cancel
     {6, 0},                                          // error
     {8, 0},                                          // ping
@@ -321,7 +323,8 @@ constexpr std::uint32_t kForeignHelloBytesMin = 6, kForeignHelloBytesMax = 256;
 
 std::uint32_t tail_bytes(const Message& m) {
   if (m.type == MessageType::scene_piece) return m.scene_piece.bytes.count;
-  if (m.type == MessageType::row_chunk) return (m.row_chunk.price != 0 ? 2 : 0) + m.row_chunk.bytes.count;
+  if (m.type == MessageType::row_chunk)
+    return (m.row_chunk.price != 0 ? 2u : 0) + (m.row_chunk.prepare_ns != 0 ? 2u : 0) + m.row_chunk.bytes.count;
   if (m.type == MessageType::pong) return m.pong.bytes.count;
   if (m.type == MessageType::coarse_picture) return m.coarse_picture.pixels.count;
   if (m.type == MessageType::frame_request || m.type == MessageType::frame_change)
@@ -400,9 +403,9 @@ void encode_message(const Message& message, std::uint8_t* bytes) {
   number(writer, &sum);
 }
 
-std::uint32_t row_chunk_prefix_bytes(bool states_price) {
+std::uint32_t row_chunk_prefix_bytes(bool states_price, bool states_preparation) {
   return kHeaderBytes + kPayloadSizes[static_cast<std::uint32_t>(MessageType::row_chunk)].fields +
-         (states_price ? 2 : 0);
+         (states_price ? 2u : 0) + (states_preparation ? 2u : 0);
 }
 
 std::uint32_t coarse_prefix_bytes() {

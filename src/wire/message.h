@@ -108,7 +108,8 @@ struct FrameRequest {
 };
 
 constexpr std::uint32_t kChunkRowsLimit = 255;  // of any chunk
-constexpr std::uint8_t kEncodingPrice = 2;      // bit of a chunk's encoding on the wire: the price follows
+// Bits of a chunk's encoding on the wire: the price follows; after it, how long the server prepared the frame.
+constexpr std::uint8_t kEncodingPrice = 2, kEncodingPreparation = 4;
 
 struct RowChunk {
   std::uint32_t frame = 0;  // received: its low 16 bits, see frame_of()
@@ -119,6 +120,8 @@ struct RowChunk {
   std::uint8_t traced = 0;           // 255ths of these pixels; the server kept the others from its last frame
   std::uint8_t encoding = 0;         // see codec.h
   Array<const std::uint8_t> bytes;
+  std::uint32_t prepare_ns = 0;  // server's work on the frame before its first pixel; arrives up to .1 % lower; 0: not
+                                 // stated
 };
 
 // The frame of a received chunk or coarse picture: the last one up to `latest` with these low bits.
@@ -235,7 +238,7 @@ bool can_encode(const Message& message);
 void encode_message(const Message& message, std::uint8_t* bytes);
 
 // Bytes before the rows of a row_chunk, including the header: encode the rows there to avoid a copy.
-std::uint32_t row_chunk_prefix_bytes(bool states_price);
+std::uint32_t row_chunk_prefix_bytes(bool states_price, bool states_preparation);
 // The same before the pixels of a coarse picture.
 std::uint32_t coarse_prefix_bytes();
 

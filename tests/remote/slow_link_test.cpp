@@ -3,6 +3,7 @@
 
 #include "remote/client/parts.h"
 #include "split_rig.h"
+#include "support/effort.h"
 
 using namespace pocketray;
 
@@ -100,4 +101,32 @@ TEST_CASE("client_link_measured_again_keeps_its_limits") {
       rig.idle(500'000'000);
     }
   }
+}
+
+// Goal: that servers start and end apart is not taken for a slow link. Method: three servers on links of their own with
+// jitter, which take long to code their rows; what the device believes of each link after every frame.
+TEST_CASE("slow_link_is_not_what_servers_do_one_after_another") {
+  constexpr std::uint64_t kBytesPerSecond = 475'000;
+  double worst = 0;
+  for (int run = 0; run < effort(12); ++run) {
+    SplitRigOptions options;
+    options.scene = "statue", options.width = 64, options.height = 240;
+    options.server_count = 3, options.server_ns = {3000.0 + 200 * run}, options.device_ns = 16000;
+    options.line.bytes_per_second = kBytesPerSecond;
+    options.line.latency_ns = 1'500'000, options.line.jitter_ns = 1'000'000;
+    options.encode = {45, 800};
+    options.client.check_count = 0;
+    options.compares = false;
+    SplitRig rig(options);
+    const Camera home = rig.device->renderer.camera;
+    for (int frame = 0; frame < 40; ++frame) {
+      Camera camera = home;
+      camera.eye = home.eye + 0.01f * static_cast<float>(frame % 10) * cross(home.target - home.eye, home.up);
+      REQUIRE(set_camera(&rig.device->renderer, camera).ok);
+      rig.frame(0);
+      for (const ServerModel& server : rig.client.model.servers)
+        worst = std::max(worst, static_cast<double>(server.ns_per_byte.value));
+    }
+  }
+  CHECK(worst < 1.3e9 / kBytesPerSecond);
 }

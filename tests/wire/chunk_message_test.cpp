@@ -24,6 +24,10 @@ TEST_CASE("message_chunk_abbreviates_its_numbers") {
     const std::uint32_t ps = i == 0 ? ~0u : next_u32(&rng) >> next_u32(&rng) % 32;
     m.row_chunk = {1, 2, 3, ps, 0, 5, 0, {nullptr, 0}};
     REQUIRE(decode(encoded(m), &read).state == DecodeState::message);
+    REQUIRE(read.row_chunk.prepare_ns == 0);
+    m.row_chunk.prepare_ns = ps;
+    REQUIRE(decode(encoded(m), &read).state == DecodeState::message);
+    REQUIRE(read.row_chunk.prepare_ns == read.row_chunk.pixel_ps);
     REQUIRE(read.row_chunk.pixel_ps <= ps);
     REQUIRE(ps - read.row_chunk.pixel_ps <= ps / 1024);
   }
@@ -33,16 +37,22 @@ TEST_CASE("message_chunk_abbreviates_its_numbers") {
   CHECK(traced_part(640, 640) == 255);
 }
 
-// Goal: a chunk that says that its price follows, but ends, is refused, whatever lies behind it in memory.
+// Goal: a chunk that says that its price or preparation follows, but ends, is refused, whatever lies behind it in
+// memory.
 TEST_CASE("message_chunk_without_its_price_is_refused") {
   Message m;
   m.type = MessageType::row_chunk;
   m.row_chunk = {1, 2, 3, 4, 0, 5, 0, {nullptr, 0}};
   std::vector<std::uint8_t> bytes = encoded(m);
-  REQUIRE(bytes.size() == row_chunk_prefix_bytes(false));
-  bytes.back() |= kEncodingPrice;
-  for (std::size_t more = 0; more < 4; ++more, bytes.push_back(1)) {
-    bytes[1] = static_cast<std::uint8_t>(bytes.size() - kHeaderBytes);
-    CHECK(refused(sealed(bytes)) == (more < 2));
+  REQUIRE(bytes.size() == row_chunk_prefix_bytes(false, false));
+  for (int stated : {kEncodingPrice | 0, kEncodingPreparation | 0, kEncodingPrice | kEncodingPreparation}) {
+    CAPTURE(stated);
+    std::vector<std::uint8_t> longer = bytes;
+    longer.back() = static_cast<std::uint8_t>(longer.back() | stated);
+    const std::size_t wanted = stated == (kEncodingPrice | kEncodingPreparation) ? 4 : 2;
+    for (std::size_t more = 0; more < 6; ++more, longer.push_back(1)) {
+      longer[1] = static_cast<std::uint8_t>(longer.size() - kHeaderBytes);
+      CHECK(refused(sealed(longer)) == (more < wanted));
+    }
   }
 }

@@ -84,8 +84,9 @@ def test_frames(program, folder, device, scenes):
     # Rows of another scene over those of the first, in two parts of one frame.
     moved = rendered(program, folder, "seesaw", "--time", "0.5")
     frame += 1
-    device.frame(seesaw, frame=frame, time=0.5, format=RGB888)
+    device.frame(seesaw, frame=frame, time=0.5, format=RGB888, largest=8)
     check(device.picture.compare(moved), "seesaw at half a second")
+    check(device.preparations > 0, "a moving scene takes its time")
     frame += 1
     device.frame(cornell, frame=frame, end=10)
     check(device.picture.compare(rgb, (0, 10)) and device.picture.compare(moved, (10, 36)), "the upper rows alone")

@@ -305,6 +305,7 @@ class Device:
         self.bytes = b""
         self.chunk_count = 0
         self.traced = 0
+        self.preparations = 0
         self.encodings = set()
         self.picture = None
         if greets:
@@ -379,9 +380,14 @@ class Device:
         if encoding & 2:
             self.price, data = struct.unpack("<H", data[:2])[0], data[2:]
         check(self.price >= 256, "a chunk's price")
+        if encoding & 4:
+            check(self.chunk_count == self.frame_chunk, "a frame's first chunk alone states its preparation")
+            check(struct.unpack("<H", data[:2])[0] > 0, "a preparation takes some time")
+            self.preparations += 1
+            data = data[2:]
         self.traced += traced
         check(number == frame & 0xFFFF, "a chunk is of the frame")
-        check(encoding >> 2 == self.chunk_count % 64, "chunks are counted")
+        check(encoding >> 3 == self.chunk_count % 32, "chunks are counted")
         first, end = due[0]
         check(row + rows == end and row >= first, "the lowest rows of the next run come first")
         check(rows <= r["largest"], "a chunk of %d rows is no larger than asked" % rows)
@@ -407,7 +413,7 @@ class Device:
         for rows, place in r["order"] or [(end - row, 0)]:
             due[place] = row, row + rows
             row += rows
-        chunks = self.chunk_count
+        chunks = self.frame_chunk = self.chunk_count
         due = [due[place] for place in range(len(due))]  # runs in the order they are sent, without what has come
         self.coarse = None
         while due:

@@ -51,12 +51,17 @@ TEST_CASE("message_bytes_are_the_protocol_s") {
                 0x01, 0x78, 0x56, 0x34, 0x12, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 0x40, 0x01}));
   m.type = MessageType::row_chunk;
   const std::uint8_t data[] = {0xAB, 0xCD};
-  m.row_chunk = {0x10203, 258, 4, 0x00010123, 0x0140, 5, 5, {data, 2}};
-  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 7, 0x40, 1, 0xAB, 0xCD}));
-  CHECK(row_chunk_prefix_bytes(true) == encoded(m).size() - 2);
+  m.row_chunk = {0x10203, 258, 4, 0x00010123, 0x0140, 5, 9, {data, 2}};
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 11, 0x40, 1, 0xAB, 0xCD}));
+  CHECK(row_chunk_prefix_bytes(true, false) == encoded(m).size() - 2);
+  m.row_chunk.prepare_ns = 0x00010123;
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 15, 0x40, 1, 4, 0x34, 0xAB, 0xCD}));
+  CHECK(row_chunk_prefix_bytes(true, true) == encoded(m).size() - 2);
   m.row_chunk.price = 0;
-  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 5, 0xAB, 0xCD}));
-  CHECK(row_chunk_prefix_bytes(false) == encoded(m).size() - 2);
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 13, 4, 0x34, 0xAB, 0xCD}));
+  m.row_chunk.prepare_ns = 0;
+  CHECK(encoded(m) == sealed({8, 0, 0, 0, 0, 0, 0, 0, 3, 2, 2, 1, 4, 4, 0x34, 5, 9, 0xAB, 0xCD}));
+  CHECK(row_chunk_prefix_bytes(false, false) == encoded(m).size() - 2);
 }
 
 // Goal: reading returns what was written, field by field. Method: writing the result again gives the same bytes, which
@@ -123,6 +128,7 @@ TEST_CASE("message_every_field_travels") {
       {MessageType::hello, [](Message* m) { m->hello.price ^= 1; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.pixel_ps ^= 1u << 31; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.price ^= 1; }},
+      {MessageType::row_chunk, [](Message* m) { m->row_chunk.prepare_ns ^= 1u << 31; }},
       {MessageType::row_chunk, [](Message* m) { m->row_chunk.traced ^= 1; }},
       {MessageType::error, [](Message* m) { m->error.frame ^= 1; }},
       {MessageType::pong, [](Message* m) { m->pong.pixel_ps ^= 1; }},
@@ -249,6 +255,8 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::row_chunk, 8 + 4, {0}},                                // rows
       {MessageType::row_chunk, 8 + 2, {0xFF, 0x1F, 2}},                    // rows beyond any picture
       {MessageType::row_chunk, 8 + 5, {0xFF, 0xB7}},                       // picoseconds shifted out
+      {MessageType::row_chunk, 8 + 11, {0xFF, 0xB7}},                      // preparation shifted out
+      {MessageType::row_chunk, 8 + 11, {0, 0}},                            // preparation that takes no time
       {MessageType::row_chunk, 8 + 5, {0xFF, 0x0B}},                       // picoseconds with too few bits
       {MessageType::row_chunk, 8 + 8, {2, 0xFF, 0}},                       // price
       {MessageType::error, 8, {0, 0}},
@@ -297,7 +305,7 @@ TEST_CASE("message_impossible_lengths_are_refused_from_the_header") {
     if (known) CHECK(refused(header(type, 1)));
   }
   CHECK(refused(header(9, 5)));
-  CHECK(refused(header(8, 11 + kChunkBytesMax + 1)));
+  CHECK(refused(header(8, 13 + kChunkBytesMax + 1)));
   CHECK(!refused(header(8, 11 + kChunkBytesMax)));
   CHECK(decode(header(8, 19 + 1000), &message, 8 + 19 + 999).state == DecodeState::malformed);
   CHECK(decode(header(8, 19 + 1000), &message, 8 + 19 + 1000).state == DecodeState::need_more);
@@ -419,11 +427,12 @@ TEST_CASE("message_random_bytes_are_refused_or_wait") {
 
 // Goal: a chunk's bytes may already be in place.
 TEST_CASE("message_tail_may_lie_in_place") {
-  std::vector<std::uint8_t> buffer(row_chunk_prefix_bytes(true) + 5);
-  for (std::uint8_t i = 0; i < 5; ++i) buffer[row_chunk_prefix_bytes(true) + i] = i;
+  const std::uint32_t prefix = row_chunk_prefix_bytes(true, false);
+  std::vector<std::uint8_t> buffer(prefix + 5);
+  for (std::uint8_t i = 0; i < 5; ++i) buffer[prefix + i] = i;
   Message m;
   m.type = MessageType::row_chunk;
-  m.row_chunk = {1, 2, 3, 4, kPriceUnit, 5, 0, {buffer.data() + row_chunk_prefix_bytes(true), 5}};
+  m.row_chunk = {1, 2, 3, 4, kPriceUnit, 5, 0, {buffer.data() + prefix, 5}};
   std::vector<std::uint8_t> apart = encoded(m);
   encode_message(m, buffer.data());
   CHECK(buffer == apart);

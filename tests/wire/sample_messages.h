@@ -67,7 +67,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   m.row_chunk.row_count = static_cast<std::uint16_t>(1 + next_u32(rng) % 100);
   m.row_chunk.traced = static_cast<std::uint8_t>(next_u32(rng));
   m.row_chunk.pixel_ps = next_u32(rng), m.row_chunk.encoding = static_cast<std::uint8_t>(next_u32(rng));
-  m.row_chunk.bytes = bytes;
+  m.row_chunk.bytes = bytes, m.row_chunk.prepare_ns = next_u32(rng) | 1;
   m.cancel.frame = next_u32(rng);
   m.error.code = static_cast<WireError>(1 + next_u32(rng) % 7), m.error.frame = next_u32(rng);
   m.ping.id = next_u32(rng), m.ping.reply_bytes = next_u32(rng) % (kPingBytesMax + 1);

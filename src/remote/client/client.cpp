@@ -15,9 +15,8 @@ namespace {
 constexpr std::size_t kOutBytes = 1024;     // for requests waiting to be sent
 constexpr std::size_t kInBytesMin = 20000;  // holds the ping that measures the bandwidth
 constexpr double kStartDisproved = 2;       // chosen
-constexpr double kWaitedMax = 0.1;    // of a first chunk's time, for others; chosen: starts need not be known better
-constexpr double kLookNs = 20e6;      // between two polls of the link: about a display frame
-constexpr double kLooksWatched = 16;  // polls in a watched frame. They slow the device's packets,
+constexpr double kLookNs = 20e6;            // between two polls of the link: about a display frame
+constexpr double kLooksWatched = 16;        // polls in a watched frame. They slow the device's packets,
 constexpr std::uint64_t kWatchedFirst = 4,
                         kWatchedEvery = 16;  // so only the first frames and some later ones are watched
 
@@ -26,7 +25,7 @@ CodecShape codec_shape(const Settings& settings, WireFormat format) {
 }
 
 std::size_t in_bytes(const CodecShape& shape) {
-  std::size_t chunk = row_chunk_prefix_bytes(true) + encoded_bytes_max(shape, shape.chunk_rows_max);
+  std::size_t chunk = row_chunk_prefix_bytes(true, true) + encoded_bytes_max(shape, shape.chunk_rows_max);
   return std::max(chunk, kInBytesMin);
 }
 
@@ -75,20 +74,6 @@ void look_at_servers(Client* client, std::uint64_t timeout_ns) {
   client->looked_ns = now;
   for (std::uint32_t i = 0; i < client->server_count; ++i) advance_server(client, &client->servers[i]);
   let_join(client);
-}
-
-// The least that a server can have taken before it began to trace its first chunk, which has just come and took
-// `render_ns`; 0 where others' chunks may have kept that one waiting for a link that they share.
-double least_start_ns(const Client& client, const RemoteServer& server, double render_ns, std::uint32_t byte_count) {
-  const CostModel& model = client.model;
-  const ServerFrame& f = server.frame;
-  const double sent_ns = byte_count * static_cast<double>(model.servers[index_of(client, &server)].ns_per_byte.value);
-  const double took_ns = static_cast<double>(f.heard_ns - f.asked_ns) - static_cast<double>(f.unseen_ns);
-  double sharers = 0;
-  for (std::uint32_t i = 0; i < client.server_count; ++i)
-    if (&client.servers[i] != &server && client.servers[i].frame.row_end > 0) ++sharers;
-  const double waited_ns = sharers * byte_count * static_cast<double>(model.link_ns_per_byte.value);
-  return waited_ns < kWaitedMax * took_ns ? took_ns - render_ns - sent_ns : 0;
 }
 
 bool is_missing(const Client& client, std::uint32_t row) { return client.merge.rows[row].state == RowState::missing; }
@@ -252,9 +237,9 @@ void accept_chunk(Client* client, RemoteServer* s, const RowChunk& chunk, std::u
   const double work_ns = 1e-3 * chunk.pixel_ps * client->settings.width * chunk.row_count;
   const double render_ns = work_ns * price_ratio(chunk.price);
   s->frame.render_ns += render_ns;
+  if (chunk.prepare_ns > 0) s->frame.prepare_ns = chunk.prepare_ns * price_ratio(chunk.price);
   if (s->frame.first_ns == 0) {
     s->frame.first_ns = s->frame.heard_ns;
-    s->frame.start_ns_min = least_start_ns(*client, *s, render_ns, byte_count);
     // Pings may all have been seen late. Without its work, the first chunk bounds the start from above; as the link's
     // jitter does the same to single frames, only one far too long is corrected.
     const double start_ns = static_cast<double>(s->frame.heard_ns - s->frame.asked_ns) - work_ns;

@@ -70,11 +70,11 @@ struct ServerFrame {
   std::uint64_t asked_ns = 0, bytes = 0;
   std::uint64_t row_bytes = 0;  // of these, rows without message overhead
   double render_ns = 0;         // for the received rows: the server's work at its price
+  double prepare_ns = 0;        // and that before them
   bool open = false;            // more rows are expected
   std::uint64_t heard_ns = 0;   // when the last rows came, as seen: at most unseen_ns earlier
   std::uint64_t unseen_ns = 0;
   std::uint64_t first_ns = 0;      // when the first rows came
-  double start_ns_min = 0;         // the least that the server can have taken before it began to trace them
   std::uint64_t bytes_behind = 0;  // of the chunks after the first
   double render_behind_ns = 0;     // and the server's time for their rows
   bool answers = false;            // it has answered since the request, even if only a ping

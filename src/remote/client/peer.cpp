@@ -125,7 +125,7 @@ void take_chunk(Client* client, RemoteServer* server, RowChunk chunk) {
     work_until(client, begin_ns + unpacked_ns);
   }
   if (coded && chunk.traced > 0) learn_decoding(client, pixel_count, chunk.bytes.count, unpacked_ns);
-  std::uint32_t bytes = row_chunk_prefix_bytes(states_price) + chunk.bytes.count;
+  std::uint32_t bytes = row_chunk_prefix_bytes(states_price, chunk.prepare_ns != 0) + chunk.bytes.count;
   observe_unpack(&client->model, bytes, static_cast<double>(unpacked_ns));
   accept_chunk(client, server, chunk, bytes);
 }

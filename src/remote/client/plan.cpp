@@ -139,7 +139,10 @@ void request_rows(Client* client, RemoteServer* server, std::uint32_t row_begin,
   server->due = first_rows(server->asked), server->due_rows = row_end - row_begin;
   if (!send_message(&server->messages, message)) return lose_server(client, server, "it stopped reading");
   std::uint64_t bytes = server->frame.bytes, row_bytes = server->frame.row_bytes;
-  server->frame = {row_begin, row_end, 0, client_now_ns(*client), bytes, row_bytes, 0, true};
+  server->frame = ServerFrame();
+  server->frame.row_begin = row_begin, server->frame.row_end = row_end;
+  server->frame.asked_ns = client_now_ns(*client), server->frame.bytes = bytes, server->frame.row_bytes = row_bytes;
+  server->frame.open = true;
   if (!server->unanswered)
     server->timer = platform::link_timer(server->frame.asked_ns, silence_limit_ns(*client, *server));
   server->unanswered = true;
@@ -242,8 +245,8 @@ void bound_own_links(Client* client) {
 }
 
 // A server's start, preparation of the frame included, is what its rows took beyond their work and bytes. Where others
-// share the link, they may have waited for it, so this bounds the start from above; the first chunk bounds it from
-// below.
+// share the link, they may have waited for it, so this bounds the start from above; a round trip and the preparation
+// that the server states bound it from below.
 void measure_starts(Client* client) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i) count += client->servers[i].frame.rows_come > 0;
@@ -256,8 +259,8 @@ void measure_starts(Client* client) {
     const double part = std::min(1.0, static_cast<double>(model.chunk_rows) / f.rows_come);
     const double work = std::max(f.render_ns, transfer) + part * std::min(f.render_ns, transfer);
     const double latest = std::max(0.0, static_cast<double>(f.heard_ns - f.asked_ns) - work);
-    const double whole = count == 1 ? latest - static_cast<double>(f.unseen_ns) : 0;
-    const double earliest = std::max(f.start_ns_min, whole);
+    const double prepared = f.prepare_ns > 0 ? client->servers[i].round_trip_ns + f.prepare_ns : 0;
+    const double earliest = count == 1 ? latest - static_cast<double>(f.unseen_ns) : std::min(latest, prepared);
     const double known = static_cast<double>(model.start_ns.value);
     if (known > latest) observe_start(&client->model, i, latest);
     if (known < earliest) observe_start(&client->model, i, earliest);
@@ -280,17 +283,23 @@ void measure_link(Client* client) {
   double ns = static_cast<double>(a.last_ns - a.first_ns), bytes = static_cast<double>(a.bytes);
   if (bytes == 0 || ns < kGapsMin * static_cast<double>(a.gap_ns_max)) return;
   measure_own_links(client);
-  double rate = 0;  // bytes per nanosecond from all servers
+  double rate = 0;     // bytes per nanosecond from all servers
+  double longest = 0;  // that a server takes to trace its rows and to send them one after the other
   std::uint32_t count = 0, last = 0;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const ServerFrame& f = client->servers[i].frame;
     if (f.rows_come == 0 || client->servers[i].phase != ServerPhase::ready) continue;
     rate += rate_of(f);
+    const double sent_ns =
+        static_cast<double>(f.bytes) * static_cast<double>(client->model.servers[i].ns_per_byte.value);
+    longest = std::max(longest, f.render_ns + sent_ns);
     ++count, last = i;
   }
   Smoothed* link = &client->model.link_ns_per_byte;
   double before = is_known(*link) ? static_cast<double>(link->value) : 0;
   bool link_bound = rate > 0 && ns / bytes * rate > kLinkBound, better = ns / bytes < before;
+  // Several servers start and end apart, which stretches the time between the first and the last of their rows.
+  if (count > 1 && ns < kLinkBound * longest) link_bound = false;
   if (count == 0 || !(link_bound || better)) return;
   smooth(link, ns / bytes);
   if (count == 1 && link_bound) observe_transfer(&client->model, last, bytes, ns);

@@ -54,7 +54,8 @@ bool is_built_for(const Session& session) {
 std::uint32_t largest_chunk_rows(const Session& session) {
   std::uint32_t rows = session.job.request.chunk_rows;
   if (rows > session.shape.chunk_rows_max) rows = session.shape.chunk_rows_max;
-  while (rows > 0 && row_chunk_prefix_bytes(true) + encoded_bytes_max(session.shape, rows) > session.message_bytes_max)
+  while (rows > 0 &&
+         row_chunk_prefix_bytes(true, true) + encoded_bytes_max(session.shape, rows) > session.message_bytes_max)
     --rows;
   return rows;
 }

@@ -28,7 +28,9 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   const std::uint32_t* row_pixels = session->job.row_pixels;
   if (!row_pixels) pack_session_rows(session, row_begin, row_end);
   const bool states_price = session->price != session->price_stated;
-  std::uint32_t prefix = row_chunk_prefix_bytes(states_price), row_count = row_end - row_begin;
+  const std::uint64_t prepare_ns = session->job.rows_sent == 0 ? session->job.prepare_ns : 0;
+  const bool states_preparation = prepare_ns >= kPreparationStatedNs;
+  std::uint32_t prefix = row_chunk_prefix_bytes(states_price, states_preparation), row_count = row_end - row_begin;
   std::uint8_t* at = reserve_output(&session->messages, prefix + encoded_bytes_max(session->shape, row_count));
   Message message;
   message.type = MessageType::row_chunk;
@@ -39,6 +41,7 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
   chunk->pixel_ps = session->pixel_ps = picoseconds(session->job.work_ns, session->job.pixel_count);
   chunk->price = states_price ? session->price : 0;
   session->price_stated = session->price;
+  if (states_preparation) chunk->prepare_ns = static_cast<std::uint32_t>(std::min<std::uint64_t>(prepare_ns, ~0u));
   std::uint64_t traced = 0;
   for (std::uint32_t row = row_begin; row < row_end; ++row)
     traced += row_pixels ? row_pixels[row] : count_pixels(renderer, row);

@@ -21,6 +21,8 @@ constexpr std::size_t kReplyBytesMax = kPieceBytesMax + 128;
 // Renders more rows only while at most this much waits to be sent: system buffers keep the link busy meanwhile, and
 // rows sent too early cannot be cancelled. Chosen: 3 ms of a 10 Mbit/s link.
 constexpr std::size_t kAheadBytes = 4096;
+// Chosen: a tenth of the shortest round trip of interest. A server that prepares a frame for less does not say so.
+constexpr std::uint64_t kPreparationStatedNs = 100'000;
 
 // The smallest block of a session: its buffers and a small picture of a small scene. Chosen: the message buffers take
 // 1.1 MiB and the radiance of a 320×240 picture 0.9.
@@ -57,7 +59,8 @@ struct FrameJob {
   std::uint32_t coarse_row, coarse_column, coarse_rows;  // on the grid of the coarse picture: next pixel, rows at once
   bool has_coarse;                                       // it is traced and waits to be sent
   std::uint64_t work_ns, pixel_count;                    // of rows traced but not completely sent
-  std::uint64_t took_ns;                                 // CPU time so far
+  std::uint64_t took_ns;                                 // CPU time so far,
+  std::uint64_t prepare_ns;                              // of this before the first pixel
   // Of each row of the picture, the pixels traced, if several ranks share the job: its complete rows are then packed.
   // Null: this program alone renders.
   const std::uint32_t* row_pixels;

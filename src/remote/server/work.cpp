@@ -182,6 +182,7 @@ void end_work(Server* server) {
   account_for(server, session, took, is_job);
   if (is_job) (goes_on ? session->job.took_ns : session->ended_took_ns) += took;  // of an abandoned frame: wasted
   if (!goes_on) return;
+  if (work->slice.is_preparation) session->job.prepare_ns = took;
   if (work->slice.pixel_count > 0) end_slice(session, work->slice, took);
   session->waiting_since_ns = work->end_ns;
   std::uint64_t start = now_ns(server);
