@@ -54,8 +54,8 @@ const NullFault* fault_at(NullLink* link, Slot* to, std::size_t* byte_count) {
 void send_piece(NullLink* link, Slot* to, const unsigned char* bytes, std::size_t byte_count, unsigned char flip) {
   const NullLinkSettings& settings = link->settings;
   LinkPipe* pipe = &to->in;
-  bool shares_radio = !pipe->trickles && !to->elsewhere;
-  std::uint64_t* free_ns = shares_radio ? &link->line_free_ns[to->device] : &pipe->trickle_free_ns;
+  bool shares_radio = !pipe->trickles && !to->elsewhere && !settings.lines_apart;
+  std::uint64_t* free_ns = shares_radio ? &link->line_free_ns[to->device] : &pipe->free_ns;
   std::uint64_t bytes_per_second = pipe->trickles ? 1 : to->elsewhere ? 0 : settings.bytes_per_second;
   LinkLine line = {bytes_per_second, settings.latency_ns, settings.jitter_ns, settings.lost_per_million};
   std::uint64_t arrival_ns = line_arrival_ns(line, byte_count, link->clock_ns, free_ns, &link->random);

@@ -28,7 +28,8 @@ struct NullFault {
 };
 
 struct NullLinkSettings {
-  std::uint64_t bytes_per_second = 0;  // 0: no limit
+  std::uint64_t bytes_per_second = 0;  // each way; 0: no limit
+  bool lines_apart = false;            // every connection has these to itself; otherwise all share one radio
   std::uint64_t latency_ns = 0;        // one way
   std::uint64_t jitter_ns = 0;         // maximum addition for every piece; the order stays
   std::uint32_t lost_per_million = 0;  // pieces lost and repeated; see lose_piece()

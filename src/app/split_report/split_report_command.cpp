@@ -74,10 +74,11 @@ std::string title_of(const ReportOptions& o, const SplitSetup& s) {
   char text[400];
   std::snprintf(text, sizeof text,
                 "%.200s, %ux%u, on %s with %u server%s: %.4g ns per pixel on the device, %.4g ns on a server; link "
-                "%.3g MB/s, %.3g ms",
+                "%.3g MB/s, %.3g ms and up to %.3g ms of jitter",
                 o.common.scene.c_str(), settings.width, settings.height, o.common.emulate.c_str(), s.server_count,
                 s.server_count == 1 ? "" : "s", s.device_ns, s.server_ns,
-                static_cast<double>(s.line.bytes_per_second) * 1e-6, static_cast<double>(s.line.latency_ns) * 1e-6);
+                static_cast<double>(s.line.bytes_per_second) * 1e-6, static_cast<double>(s.line.latency_ns) * 1e-6,
+                static_cast<double>(s.line.jitter_ns) * 1e-6);
   return text;
 }
 
@@ -146,6 +147,8 @@ Json to_json(const ReportOptions& o, const SplitSetup& setup, const SplitFigures
           {"server_prepare_ms", setup.server_prepare_ns * 1e-6},
           {"prepared_frames", s.chosen.prepared},
           {"link_bytes_per_second", setup.line.bytes_per_second},
+          {"link_latency_ms", static_cast<double>(setup.line.latency_ns) * 1e-6},
+          {"link_jitter_ms", static_cast<double>(setup.line.jitter_ns) * 1e-6},
           {"bytes_per_frame", s.chosen.bytes},
           {"row_bytes_per_frame", s.chosen.row_bytes},
           {"kept_rows_per_frame", s.chosen.kept_rows},
