@@ -130,3 +130,32 @@ TEST_CASE("slow_link_is_not_what_servers_do_one_after_another") {
   }
   CHECK(worst < 1.3e9 / kBytesPerSecond);
 }
+
+// Goal: a device that finds its servers' link slow assumes only now and then that it is faster, and takes that back.
+// Method: three servers on one link that bounds the split; trials once the split has settled, and what is left of them.
+TEST_CASE("slow_link_is_rarely_assumed_to_be_faster") {
+  constexpr std::uint64_t kBytesPerSecond = 300'000;
+  SplitRigOptions options;
+  options.width = 64, options.height = 96;
+  options.server_count = 3, options.server_ns = {300}, options.device_ns = 8000;
+  options.line.bytes_per_second = kBytesPerSecond;
+  options.client.check_count = 0;
+  options.compares = false;
+  SplitRig rig(options);
+  Renderer* renderer = &rig.device->renderer;
+  std::uint32_t trials = 0, limited = 0;
+  double fastest = 1e9;
+  for (std::uint32_t frame = 0; frame < 160; ++frame) {
+    Camera camera = renderer->camera;
+    camera.eye = camera.eye + 0.005f * cross(camera.target - camera.eye, camera.up);
+    REQUIRE(set_camera(renderer, camera).ok);
+    rig.frame(0);
+    if (frame < 96) continue;
+    limited += rig.client.link_trial.limited;
+    trials += rig.client.link_trial.before > 0;
+    fastest = std::min(fastest, static_cast<double>(rig.client.model.link_ns_per_byte.value));
+  }
+  CHECK(limited >= 60);
+  CHECK(trials <= 12);
+  CHECK(fastest > 0.88e9 / kBytesPerSecond);
+}

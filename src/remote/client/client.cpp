@@ -387,6 +387,7 @@ void end_client_frame(Client* client) {
   share->bytes_in = since(share->bytes_in, client->bytes_in_before);
   share->bytes_out = since(share->bytes_out, client->bytes_out_before);
   measure_link(client);
+  try_link(client);
   if (!client->options.has_scene) learn_row_times(client);
   if (client->joined) ++client->frames_with_servers;
   cancel_rest(client, false);

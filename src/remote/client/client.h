@@ -143,6 +143,13 @@ struct Arrivals {
   std::uint64_t gap_ns_max = 0;                        // between two polls of the link
 };
 
+// Steps by which a link that limits the split is assumed to be faster, as servers may not share it at all.
+struct LinkTrial {
+  bool limited = false;                     // the frame's split is bound by the link
+  float before = 0;                         // its time per byte before the trial under way; 0: none
+  std::uint64_t rest = 1, rests_until = 0;  // in frames with servers; the rest doubles with each trial that fails
+};
+
 // A row that the device renders in parts because it takes longer than the time between polls.
 struct DeviceRow {
   bool in_parts = false;  // such a row is in progress
@@ -185,6 +192,7 @@ struct Client {
   bool unchanged = false;                        // the frame equals the last one: nothing is requested
   std::uint32_t dirty_begin = 0, dirty_end = 0;  // rows changed since take_merged_rows()
   std::uint64_t frames_with_servers = 0;         // since a server came into use
+  LinkTrial link_trial;
   std::uint64_t bytes_in_before = 0, bytes_out_before = 0;
   FrameShare share;               // of the last complete frame
   std::uint64_t progress_ns = 0;  // when missing rows last came

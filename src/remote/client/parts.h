@@ -65,6 +65,8 @@ void let_join(Client* client);
 // Measures the link by the frame's rows. Rows come as fast as the slower of servers and link: if the servers were
 // faster, or the link did better than estimated, their rate is its speed.
 void measure_link(Client* client);
+// Takes the link of several servers for faster, or takes that back, as the frame has shown.
+void try_link(Client* client);
 
 // ---- thin.cpp: the device without the scene
 

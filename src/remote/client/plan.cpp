@@ -10,9 +10,12 @@ namespace pocketray {
 namespace {
 
 // Measured by `make split-table` unless said otherwise: with less, noise of single frames moves the split.
-constexpr double kGapsMin = 4;       // polls in which rows must arrive for their time to count
-constexpr double kDisproved = 1.25;  // a link faster than estimated by more than this is not noise
-constexpr double kLinkBound = 1.15;  // rows that take this much longer than on the servers are bound by the link
+constexpr double kGapsMin = 4;         // polls in which rows must arrive for their time to count
+constexpr double kDisproved = 1.25;    // a link faster than estimated by more than this is not noise
+constexpr double kLinkBound = 1.15;    // rows that take this much longer than on the servers are bound by the link
+constexpr double kLinkLimited = 0.97;  // of a frame's time: with more, its split is bound by the link
+constexpr double kLinkFaster = 0.95, kLinkKept = 1.02;  // chosen: a trial that fails costs a twentieth of a frame
+constexpr std::uint64_t kLinkRestMax = 64;  // frames without such trials; chosen: they cost a thousandth then
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
 static_assert(kOrderRunsMax <= kRunCountMax && kRunRowsMax <= UINT8_MAX, "a request can express every order");
 // Nanoseconds per byte beyond which coded rows pay, until the device knows its own. Measured
@@ -177,6 +180,9 @@ void share_rows(Client* client) {
     client->split = client->device_pixels > 0 ? find_split(problem, &client->workspace)
                                               : next_split(problem, client->split, &client->workspace);
   client->share.predicted_ns = static_cast<double>(client->split.time_ns);
+  const std::uint64_t link_ns = problem.link_ns[problem.row_count] - problem.link_ns[client->split.boundary[0]];
+  client->link_trial.limited =
+      link_ns > 0 && static_cast<double>(problem.link_start_ns + link_ns) >= kLinkLimited * client->share.predicted_ns;
   Split alone;
   alone.server_count = client->server_count;
   for (std::uint32_t& boundary : alone.boundary) boundary = problem.row_count;
@@ -313,6 +319,26 @@ void measure_link(Client* client) {
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     scale(&client->model.servers[i].ns_per_byte, factor);
     client->servers[i].scaled *= factor;
+  }
+}
+
+void try_link(Client* client) {
+  LinkTrial* trial = &client->link_trial;
+  Smoothed* link = &client->model.link_ns_per_byte;
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < client->server_count; ++i) count += client->servers[i].frame.rows_come > 0;
+  if (!trial->limited || count < 2 || !is_known(*link)) return;
+  const float before = trial->before;
+  trial->before = 0;
+  if (client->share.measured_ns > kLinkKept * client->share.predicted_ns) {
+    if (before == 0) return;
+    scale(link, static_cast<double>(before / link->value));
+    trial->rests_until = client->frames_with_servers + trial->rest;
+    trial->rest = std::min(2 * trial->rest, kLinkRestMax);
+  } else if (client->frames_with_servers >= trial->rests_until) {
+    if (before > 0) trial->rest = 1;
+    trial->before = link->value;
+    scale(link, kLinkFaster);
   }
 }
 
