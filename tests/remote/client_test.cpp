@@ -113,7 +113,7 @@ TEST_CASE("client_takes_what_links_of_their_own_allow") {
   for (std::uint32_t count = 1; count <= (kEffortDivisor > 1 ? 1 : 4); ++count) {
     CAPTURE(count);
     SplitRigOptions options;
-    options.width = 160, options.height = 240;
+    options.width = kEffortDivisor > 1 ? 24 : 160, options.height = 240;
     options.device_ns = 8841, options.server_ns = {989}, options.server_count = count;
     options.client.check_count = 0;
     options.compares = false;
@@ -134,7 +134,7 @@ TEST_CASE("client_takes_what_links_of_their_own_allow") {
     const double transfer_ns = bytes / pixels * kNsPerByte;
     const ClosedSplit ideal = overlapped_split({options.device_ns, 989.0 / count, transfer_ns / count});
     std::printf("%u servers: full overlap %4.0f ns per pixel, here %4.0f\n", count, ideal.ns_per_pixel, ns);
-    CHECK(ns <= 1.05 * ideal.ns_per_pixel);
+    CHECK(ns <= (kEffortDivisor > 1 ? 1.3 : 1.05) * ideal.ns_per_pixel);
     CHECK(ns >= 0.95 * ideal.ns_per_pixel);
   }
 }
