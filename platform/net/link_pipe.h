@@ -39,7 +39,7 @@ struct LinkPipe {
   int piece_first, piece_count;
   std::uint64_t byte_index;        // of the next byte to be sent
   std::uint64_t arrival_last_ns;   // nothing overtakes
-  std::uint64_t free_ns;   // next byte allowed while trickling
+  std::uint64_t free_ns;           // until when its own line is busy, if it has one
   std::uint64_t end_ns, reset_ns;  // when the reader learns of them; kNever: not at all
   std::uint32_t faults_struck;     // one bit per fault
   bool silent, trickles;

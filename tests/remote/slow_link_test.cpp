@@ -103,7 +103,7 @@ TEST_CASE("client_link_measured_again_keeps_its_limits") {
   }
 }
 
-// Goal: that servers start and end apart is not taken for a slow link. Method: three servers on links of their own with
+// Goal: that servers start and end apart is not taken for a slow link. Method: three servers on one radio with
 // jitter, which take long to code their rows; what the device believes of each link after every frame.
 TEST_CASE("slow_link_is_not_what_servers_do_one_after_another") {
   constexpr std::uint64_t kBytesPerSecond = 475'000;

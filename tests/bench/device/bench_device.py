@@ -106,18 +106,24 @@ class Count:
                 self.parts[part] = self.parts.get(part, 0) + instructions
 
 
-def count_pixels(machine, program, scene, plugin, folder, symbols, options, effects="auto"):
+def add_counted(count, machine, program, plugin, folder, symbols, arguments, sign=1):
+    """Runs the program and adds its counts, or subtracts them. Returns what it printed."""
     qemu, cpu, _, weights = machine
+    out = os.path.join(folder, "count.txt")
+    command = [qemu, "-cpu", cpu, "-plugin", f"{plugin},out={out}", "-d", "plugin", program, *arguments]
+    run = subprocess.run(command, capture_output=True, text=True)
+    if run.returncode:
+        fail(f"{os.path.basename(program)} {' '.join(arguments[:2])} failed: {run.stderr.strip()}")
+    count.add_run(out, symbols, weights, sign)
+    return run.stdout
+
+
+def count_pixels(machine, program, scene, plugin, folder, symbols, options, effects="auto"):
     count = Count()
     for (width, height), sign in zip(SIZES, (1, -1)):
-        out = os.path.join(folder, "count.txt")
-        command = [qemu, "-cpu", cpu, "-plugin", f"{plugin},out={out}", "-d", "plugin", program, "render", scene,
-                   "--size", f"{width}x{height}", "--threads", "1", "--effects", effects, *options,
-                   "-o", os.path.join(folder, "out.raw")]
-        run = subprocess.run(command, capture_output=True, text=True)
-        if run.returncode:
-            fail(f"{os.path.basename(program)} failed on {os.path.basename(scene)}: {run.stderr.strip()}")
-        count.add_run(out, symbols, weights, sign)
+        arguments = ["render", scene, "--size", f"{width}x{height}", "--threads", "1", "--effects", effects, *options,
+                     "-o", os.path.join(folder, "out.raw")]
+        add_counted(count, machine, program, plugin, folder, symbols, arguments, sign)
     return count
 
 

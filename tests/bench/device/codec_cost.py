@@ -16,15 +16,8 @@ FRAMES, WIDTH, HEIGHT = 4, 320, 240
 
 
 def count(machine, program, plugin, folder, symbols, arguments):
-    qemu, cpu, _, weights = machine
-    out = os.path.join(folder, "count.txt")
-    command = [qemu, "-cpu", cpu, "-plugin", f"{plugin},out={out}", "-d", "plugin", program, *arguments]
-    run = subprocess.run(command, capture_output=True, text=True)
-    if run.returncode:
-        bench_device.fail(f"{program} failed: {run.stderr.strip()}")
     result = bench_device.Count()
-    result.add_run(out, symbols, weights, 1)
-    return result, int(run.stdout)
+    return result, int(bench_device.add_counted(result, machine, program, plugin, folder, symbols, arguments))
 
 
 def main():

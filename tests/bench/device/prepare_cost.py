@@ -16,16 +16,10 @@ FRAMES = (2, 6)
 
 
 def cycles_of(machine, program, plugin, folder, symbols, scene, frame_count):
-    qemu, cpu, _, weights = machine
-    out = os.path.join(folder, "count.txt")
-    command = [qemu, "-cpu", cpu, "-plugin", f"{plugin},out={out}", "-d", "plugin", program, "render", scene, "--size",
-               "1x1", "--threads", "1", "--coherence", "off", "--frames", f"0:{frame_count - 1}", "-o",
-               os.path.join(folder, "out.raw")]
-    run = subprocess.run(command, capture_output=True, text=True)
-    if run.returncode:
-        bench_device.fail(f"{program} failed: {run.stderr.strip()}")
+    arguments = ["render", scene, "--size", "1x1", "--threads", "1", "--coherence", "off", "--frames",
+                 f"0:{frame_count - 1}", "-o", os.path.join(folder, "out.raw")]
     count = bench_device.Count()
-    count.add_run(out, symbols, weights, 1)
+    bench_device.add_counted(count, machine, program, plugin, folder, symbols, arguments)
     return count.cycles
 
 
