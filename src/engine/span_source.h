@@ -11,12 +11,19 @@ namespace pocketray {
 
 constexpr std::uint64_t kNoDeadline = ~std::uint64_t(0);
 
+// Work that one thread does while the others trace. It may not touch what they write.
+struct Errand {
+  void (*run)(void* context) = nullptr;  // null: none
+  void* context = nullptr;
+};
+
 struct SpanBatch {
   const Span* spans = nullptr;       // owned by the source; must stay valid until the batch is finished
   std::uint32_t span_count = 0;      // 0: nothing to trace now
   std::uint64_t* span_ns = nullptr;  // receives the cost of each span; null: not measured
   std::uint32_t pitch = 1;           // of the grid of pixels that the spans are on; trace_spans.h
   std::uint32_t spans_at_once = 0;   // that a thread takes; 0: a strip of tiles, fewer towards the end
+  Errand errand;                     // done once, beside the spans; not without any
   bool stoppable = false;            // true: a stop may leave the last spans untraced; false: it waits for the batch
 
   // Set by the loop.

@@ -25,9 +25,9 @@ void trace_batch(Renderer* renderer, const SpanSource& source, SpanBatch* batch)
   CHECK(batch->spans != nullptr);
   std::uint64_t begin_ns = now_ns(*renderer, source);
   batch->done_count =
-      trace_with(renderer->workers,
-                 {batch->spans, batch->span_count, source.aov, renderer->image.data, renderer->tracers.data,
-                  batch->span_ns, batch->stoppable ? source.stop : nullptr, batch->pitch, batch->spans_at_once});
+      trace_with(renderer->workers, {batch->spans, batch->span_count, source.aov, renderer->image.data,
+                                     renderer->tracers.data, batch->span_ns, batch->stoppable ? source.stop : nullptr,
+                                     batch->pitch, batch->spans_at_once, batch->errand});
   CHECK(batch->done_count == batch->span_count || batch->stoppable);
   CHECK_LE(batch->done_count, batch->span_count);
   if (source.pack) source.pack(source.context, *batch);

@@ -50,11 +50,13 @@ struct SpanQueue {
   const TraceJob& job;
   std::uint32_t thread_count;
   std::atomic<std::uint32_t> next_span{0}, done_count{0};
+  std::atomic<bool> errand_waits{job.errand.run != nullptr};
 };
 
 void take_spans(void* context, std::uint32_t thread) {
   SpanQueue* queue = static_cast<SpanQueue*>(context);
   const TraceJob& job = queue->job;
+  if (queue->errand_waits.load() && queue->errand_waits.exchange(false)) job.errand.run(job.errand.context);
   for (;;) {
     if (job.stop && job.stop->load(std::memory_order_relaxed)) return;
     std::uint32_t begin = queue->next_span.load(), count;

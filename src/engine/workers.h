@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "shade/trace_spans.h"
+#include "engine/span_source.h"
 
 namespace pocketray {
 
@@ -33,6 +33,7 @@ struct TraceJob {
   std::uint64_t* span_ns;                      // cost of each span, equal for spans taken together; null: not measured
   const std::atomic<bool>* stop = nullptr;     // set: skip the remaining spans
   std::uint32_t pitch = 1, spans_at_once = 0;  // as in SpanBatch
+  Errand errand = {};                          // done by the first thread that is free
 };
 
 // Traces all spans and returns how many were done. If `workers` is null, the caller's thread does all of it.

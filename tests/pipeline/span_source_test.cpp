@@ -72,7 +72,7 @@ void check_sparse_lists(const Scene& scene, Settings settings, Rng* rng) {
 struct ByHand {
   Renderer* renderer;
   std::uint64_t now_ns = 1000, pace_ns = 0;
-  std::uint32_t row = 0, next_count = 0, empty_every = 0;
+  std::uint32_t row = 0, next_count = 0, empty_every = 0, errand_every = 0, errand_count = 0;
   std::uint64_t took_ns = 0;
   std::atomic<bool> stop{false};
   std::uint32_t stop_after = ~0u;
@@ -82,6 +82,8 @@ SpanSource by_hand(ByHand* hand) {
   SpanSource source = {hand};
   source.next = [](void* context, SpanBatch* batch) {
     ByHand* h = static_cast<ByHand*>(context);
+    if (h->errand_every && h->row % h->errand_every == 0)
+      batch->errand = {[](void* counts) { ++static_cast<ByHand*>(counts)->errand_count; }, h};
     if (h->empty_every && ++h->next_count % h->empty_every == 0) return;
     batch->spans = &h->renderer->spans[h->row];
     batch->span_count = 1;
@@ -112,8 +114,9 @@ struct Subject {
   std::unique_ptr<TestRenderer> test;
   Renderer* renderer;
 
-  Subject() {
+  explicit Subject(std::uint32_t threads = 1) {
     settings = settings_for(kAllFeatures, 37, 29);
+    settings.threads = threads;
     expected = render_picture(generated->scene, settings, 0);
     test = make_renderer(generated->scene, settings);
     renderer = &test->renderer;
@@ -184,6 +187,19 @@ TEST_CASE("frame_loop_asks_on_after_empty_batches") {
   CHECK(trace_frame(subject.renderer, by_hand(&hand)));
   CHECK(hand.next_count > subject.settings.height);
   CHECK(same_picture(picture_of(*subject.renderer), subject.expected));
+}
+
+// Goal: a batch's errand is run once, whoever traces, and not without spans. Method: an errand with every fifth row,
+// one thread and four, empty batches between.
+TEST_CASE("frame_loop_runs_errands_once") {
+  for (std::uint32_t threads : {1u, 4u}) {
+    Subject subject(threads);
+    ByHand hand;
+    hand.renderer = subject.renderer, hand.empty_every = 3, hand.errand_every = 5;
+    CHECK(trace_frame(subject.renderer, by_hand(&hand)));
+    CHECK(hand.errand_count == 6);
+    CHECK(same_picture(picture_of(*subject.renderer), subject.expected));
+  }
 }
 
 // Goal: a deadline ends a call after at least one batch, by the source's clock and pace, and the next call continues; a

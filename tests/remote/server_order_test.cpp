@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "base/rng.h"
 #include "support/effort.h"
@@ -10,6 +11,34 @@
 #include "wire/row_sequence.h"
 
 using namespace pocketray;
+
+// Goal: several threads code rows beside the next ones: the first rows come at once, others a slice later, the last
+// ones with those before. Method: rows sent after each step, with one thread and with two, of a frame whose pixels'
+// cost is known.
+TEST_CASE("server_codes_rows_beside_the_next_ones") {
+  for (std::uint32_t threads : {1u, 2u}) {
+    ServerOptions options;
+    options.thread_count = threads, options.coherence = CoherenceMode::off;
+    ServerRig rig(options);
+    ScriptedClient client(&rig);
+    FrameRequest request = frame_request("cube", 1);
+    request.chunk_rows = 8;
+    client.request(request);
+    client.wait_for_rows(48);
+    request.frame = 2, request.seconds = 1;
+    client.request(request);
+    std::vector<std::uint64_t> sent;
+    while (sent.empty() || sent.back() < 48) {
+      rig.step();
+      const std::uint64_t rows = server_totals(*rig.server).row_count - 48;
+      if (rows > 0) sent.push_back(rows);
+    }
+    client.wait_for_rows(48);
+    CHECK(client.picture() == rendered_here(request));
+    CHECK(sent == (threads == 1 ? std::vector<std::uint64_t>{8, 16, 24, 32, 40, 48}
+                                : std::vector<std::uint64_t>{8, 8, 16, 24, 32, 48}));
+  }
+}
 
 // Goal: rows come in the order asked for, and the picture is the same, however many threads trace and whatever part of
 // the rows changed. Method: random orders of all rows and of some, still and moving, with one to sixteen threads.

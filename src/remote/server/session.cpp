@@ -62,12 +62,25 @@ void send_chunk(Session* session, std::uint32_t row_begin, std::uint32_t row_end
 // Rows of the next chunk to send; 0: all sent.
 std::uint32_t next_chunk_rows(const Session& session) { return next_chunk_rows(session.job.request, session.job.sent); }
 
+// Rows to trace until another chunk is complete.
+std::uint32_t rows_to_next_chunk(const FrameJob& job) {
+  std::uint32_t unsent = job.rows_traced - job.rows_sent, rows;
+  for (RowSequence at = job.sent; unsent >= (rows = next_chunk_rows(job.request, at)); unsent -= rows)
+    pass_rows(job.request, rows, &at);
+  return rows - unsent;
+}
+
 // A slice of a job as one batch of spans.
 struct SliceSource {
   Session* session;
   std::uint64_t slice_ns;
   Slice slice = {};
 };
+
+void code_beside(void* session) {
+  static_cast<Session*>(session)->job.codes_beside = false;
+  send_chunks(static_cast<Session*>(session));
+}
 
 // The next pixels of a row, divided evenly among threads.
 void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) {
@@ -96,10 +109,11 @@ void next_slice(void* context, SpanBatch* batch) {
     pixels_max = slice_pixels(settings, session.renderer.light_points.count, session.trace_ns * settings.threads,
                               source->slice_ns * settings.threads);
   Renderer* renderer = &source->session->renderer;
+  if (job.codes_beside) batch->errand = {code_beside, source->session};
   if (job.traced_columns > 0 || pixels_max < count_pixels(*renderer, job.traced.row_end - 1))
     return next_part(source, pixels_max, batch);
   // The rest of the chunk, but enough rows to keep all threads busy to the end.
-  std::uint32_t rest = next_chunk_rows(session) - (job.rows_traced - job.rows_sent);
+  const std::uint32_t rest = rows_to_next_chunk(job);
   std::uint32_t wanted = settings.threads > 1 ? std::max(rest, 2 * settings.threads) : rest;
   wanted = std::min(wanted, listed_rows_max(*renderer));
   RowRange ranges[kRunCountMax];
@@ -167,6 +181,7 @@ void drop_job(Session* session) {
   if (!has_job(*session)) return;
   CHECK_LE(job->rows_sent, job->rows_traced);
   job->scene = nullptr;
+  job->codes_beside = false;
   session->ended_took_ns += job->took_ns;
   if (!job->is_view_query && job->rows_traced > 0)
     session->ended_sent_ns += job->took_ns * job->rows_sent / job->rows_traced;
@@ -174,13 +189,15 @@ void drop_job(Session* session) {
 
 bool has_chunk(const Session& session) {
   return has_job(session) && session.job.stage == JobStage::rows && queued_bytes(session.messages) <= kAheadBytes &&
+         !session.job.codes_beside &&
          (session.job.has_coarse || session.job.rows_traced - session.job.rows_sent >= next_chunk_rows(session));
 }
 
 bool can_work(const Session& session) {
   if (!has_job(session) || queued_bytes(session.messages) > kAheadBytes) return false;
   std::uint32_t unsent = session.job.rows_traced - session.job.rows_sent;
-  return session.job.stage != JobStage::rows || (has_rows(session.job.traced) && unsent < next_chunk_rows(session));
+  if (session.job.stage != JobStage::rows) return true;
+  return has_rows(session.job.traced) && (session.job.codes_beside || unsent < next_chunk_rows(session));
 }
 
 void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t row_end) {
@@ -218,6 +235,7 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns) {
   SpanSource spans = {&source, next_slice, [](void*, const SpanBatch&) { return true; }};
   spans.is_coherent = true;
   trace_frame(&session->renderer, spans);
+  if (session->job.codes_beside) code_beside(session);  // no pixel had to be traced
   return source.slice;
 }
 

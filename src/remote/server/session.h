@@ -58,6 +58,7 @@ struct FrameJob {
   std::uint32_t traced_columns;
   std::uint32_t coarse_row, coarse_column, coarse_rows;  // on the grid of the coarse picture: next pixel, rows at once
   bool has_coarse;                                       // it is traced and waits to be sent
+  bool codes_beside;                                     // its finished chunk is coded beside the next slice
   std::uint64_t work_ns, pixel_count;                    // of rows traced but not completely sent
   std::uint64_t took_ns;                                 // CPU time so far,
   std::uint64_t prepare_ns;                              // of this before the first pixel
@@ -122,6 +123,7 @@ struct Session {
   std::uint32_t frame_last = 0;                    // number of the last request
   std::uint64_t coded_pixels = 0, code_bytes = 0;  // since the server last took them
   double trace_ns = 0, probe_ns = 0;   // thread time of an expensive pixel, and of an exposure pixel; 0: unknown
+  double code_pixel_ns = 0;            // to code a pixel, as last measured
   std::uint32_t pixel_ps = 0;          // recent work on a pixel
   std::uint16_t price = kPriceUnit;    // for the client, as of the last choice
   std::uint16_t price_stated = 0;      // in the last chunk or pong; 0: in none
@@ -175,13 +177,14 @@ void send_coarse(Session* session);
 inline PixelFormat pack_format(WireFormat format) { return format == WireFormat::rgb565 ? kRgb565 : kRgb888; }
 // The next rows to trace, at most kRunCountMax ranges; returns their number.
 std::uint32_t next_ranges(const FrameJob& job, std::uint32_t row_count, RowRange* ranges);
-// Traces the next pixels of the job, for about `slice_ns`.
+// Traces the next pixels of the job, for about `slice_ns`, and codes the finished chunk beside them if it codes_beside.
 Slice trace_slice(Session* session, std::uint64_t slice_ns);
 // Packs rows of the image in the session's picture.
 void pack_session_rows(Session* session, std::uint32_t row_begin, std::uint32_t row_end);
 // Accounts for a slice that took that much CPU time.
 void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns);
-// Queues the coarse picture and completely traced chunks as far as the queue has room; the last one ends the job.
+// Codes and queues the coarse picture and completely traced chunks as far as the queue has room; the last one ends the
+// job.
 void send_chunks(Session* session);
 
 }  // namespace pocketray

@@ -7,6 +7,9 @@
 namespace pocketray {
 namespace {
 
+// Chosen: coding takes a tenth of the time of a slice, of which all threads but one would wait.
+constexpr double kBesideSlices = 10;
+
 std::uint64_t elapsed(std::uint64_t begin, std::uint64_t end) { return end > begin ? end - begin : 0; }
 
 // Accounts for finished frames and forgives debt for the time passed.
@@ -126,6 +129,43 @@ std::uint64_t take_coding_ns(const Server& server, Session* session) {
   return is_paced(server.options.pace) ? code_ns(server.options.encode, pixels, bytes) : 0;
 }
 
+// Codes finished rows and charges the time.
+void code_chunks(Server* server, Session* session) {
+  std::uint64_t start = now_ns(server);
+  const std::uint64_t pixels = session->coded_pixels;
+  session->job.codes_beside = false;
+  send_chunks(session);
+  CHECK_GE(session->coded_pixels, pixels);
+  const std::uint64_t coded = session->coded_pixels - pixels;
+  const std::uint64_t coding = take_coding_ns(*server, session);
+  if (coding > 0) server->cpu_free_ns = now_ns(server) + coding;
+  std::uint64_t sending = elapsed(start, now_ns(server)) + coding;
+  if (coded > 0) session->code_pixel_ns = static_cast<double>(sending) / static_cast<double>(coded);
+  account_for(server, session, sending, true);
+  if (has_job(*session)) {
+    session->job.took_ns += sending;
+  } else {
+    session->ended_took_ns += sending;
+    session->ended_sent_ns += sending;
+  }
+}
+
+// Whether to code finished rows beside the next slice, which delays them until its end but leaves no thread idle. Not
+// the first ones, for which the link waits. An emulated CPU has one core.
+bool pays_to_wait(const Server& server, const Session& session, std::uint64_t slice_ns) {
+  if (!server.workers || is_paced(server.options.pace) || server.options.helpers) return false;
+  const FrameJob& job = session.job;
+  if (!has_chunk(session) || job.rows_sent == 0 || !has_rows(job.traced)) return false;
+  const std::uint64_t pixels = std::uint64_t(job.rows_traced - job.rows_sent) * session.shape.width;
+  return static_cast<double>(slice_ns) <= kBesideSlices * session.code_pixel_ns * static_cast<double>(pixels);
+}
+
+// Codes rows that wait for a slice of their session, unless it comes next.
+void code_waiting(Server* server, const Session* next) {
+  for (Session& session : server->sessions)
+    if (&session != next && has_job(session) && session.job.codes_beside) code_chunks(server, &session);
+}
+
 // Handles messages, queues rows that waited for room, prepares a frame or traces a part of it.
 void begin_work(Server* server, int index) {
   CHECK_LT(server->work.session, 0);
@@ -137,6 +177,7 @@ void begin_work(Server* server, int index) {
   work->address = session->address;
   work->job_number = session->job_number;
   work->is_job = !(in_turn(*server) && (wants_messages(*session) || has_chunk(*session)));
+  code_waiting(server, work->is_job ? session : nullptr);
   std::uint64_t start = now_ns(server), waited_since = session->waiting_since_ns;
   if (!work->is_job && wants_messages(*session)) {
     std::uint64_t queued = queued_in_all(session->messages);
@@ -185,18 +226,8 @@ void end_work(Server* server) {
   if (work->slice.is_preparation) session->job.prepare_ns = took;
   if (work->slice.pixel_count > 0) end_slice(session, work->slice, took);
   session->waiting_since_ns = work->end_ns;
-  std::uint64_t start = now_ns(server);
-  send_chunks(session);
-  const std::uint64_t coding = take_coding_ns(*server, session);
-  if (coding > 0) server->cpu_free_ns = now_ns(server) + coding;
-  std::uint64_t sending = elapsed(start, now_ns(server)) + coding;
-  account_for(server, session, sending, true);
-  if (has_job(*session)) {
-    session->job.took_ns += sending;
-  } else {
-    session->ended_took_ns += sending;
-    session->ended_sent_ns += sending;
-  }
+  session->job.codes_beside = pays_to_wait(*server, *session, took);
+  if (!session->job.codes_beside) code_chunks(server, session);
   if (session->pixel_ps) server->pixel_ps = session->pixel_ps;
 }
 

@@ -1,0 +1,64 @@
+"""Time that real servers take for a frame as the camera orbits, from its request to its last byte, over loopback to a
+client that decodes nothing. Programs are compared interleaved.
+Usage: serve_time.py [--scene NAME] [--threads N] [--frames N] PROGRAM..."""
+import argparse, math, os, re, statistics, struct, subprocess, sys, time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "wire"))
+sys.dont_write_bytecode = True
+from device import *
+from conformance import Server, list_scenes
+
+
+def orbited(camera, degrees):
+    (ex, ey, ez), (tx, ty, tz) = camera["eye"], camera["target"]
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return dict(camera, eye=(tx + c * (ex - tx) + s * (ez - tz), ey, tz - s * (ex - tx) + c * (ez - tz)))
+
+
+def timed(device, scene, frame, camera, exposure):
+    """Milliseconds to the first row and to the last, and bytes."""
+    data = request(scene["hash"], frame=frame, stated=1, camera=camera, exposure=exposure, width=320, height=240,
+                   largest=8)
+    begin, rows, size, first = time.perf_counter(), 0, 0, None
+    device.send(data)
+    while rows < 240:
+        kind, fields = device.receive()
+        assert kind == ROW_CHUNK, "rows answer a request"
+        first = first or time.perf_counter()
+        rows, size = rows + fields[4], size + len(fields) + 8
+    return (first - begin) * 1e3, (time.perf_counter() - begin) * 1e3, size
+
+
+def main():
+    options = argparse.ArgumentParser()
+    options.add_argument("--scene", default="cornell")
+    options.add_argument("--threads", default="0")
+    options.add_argument("--frames", type=int, default=40)
+    options.add_argument("programs", nargs="+")
+    o = options.parse_args()
+    servers = [Server(program, "--coherence", "off", threads=o.threads) for program in o.programs]
+    devices = [Device(server.address) for server in servers]
+    times = [[] for _ in servers]
+    for device, server, frames in zip(devices, servers, times):
+        scene = list_scenes(device)[o.scene]
+        fields = device.ask(request(scene["hash"], VIEW_QUERY), VIEW_ENTRY)
+        v = struct.unpack("<11fIffII6f", fields[16:])
+        camera = dict(eye=v[0:3], target=v[3:6], up=v[6:9], fov=v[9], extent=v[10], projection=v[11])
+        frames.append((scene, camera, v[12]))
+    for frame in range(1, o.frames + 4):
+        for device, frames in zip(devices, times):
+            scene, camera, exposure = frames[0]
+            frames.append(timed(device, scene, frame, orbited(camera, frame), exposure))
+    for program, frames in zip(o.programs, times):
+        counted = frames[4:]
+        first, last, size = (statistics.median(f[i] for f in counted) for i in range(3))
+        print("%s: %.2f ms to the first row, %.2f to the last, %.1f kB" % (program, first, last, size / 1e3))
+    if len(times) > 1:
+        ratios = [a[1] / b[1] for a, b in zip(times[1][4:], times[0][4:])]
+        print("second over first: %.3f (median of %d ratios)" % (statistics.median(ratios), len(ratios)))
+    for server in servers:
+        server.end()
+
+
+if __name__ == "__main__":
+    main()
