@@ -1,5 +1,8 @@
 // The CPU of an emulated device: work takes as long as it would there. The results stay the same, bit for bit.
 #pragma once
+#include <atomic>
+
+#include "base/span.h"
 #include "engine/workers.h"
 
 namespace pocketray {

@@ -1,6 +1,7 @@
 #include "engine/trace_frame.h"
 
 #include "base/check.h"
+#include "engine/trace_with.h"
 
 namespace pocketray {
 namespace {

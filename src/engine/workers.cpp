@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -37,44 +38,6 @@ std::uint64_t clock_ns() {
 }
 
 namespace {
-
-// Spans to take at once: those of a strip of tiles, fewer towards the end so that all threads finish together.
-std::uint32_t spans_at_once(const Span* spans, std::uint32_t left, std::uint32_t thread_count) {
-  std::uint32_t share = left / (2 * thread_count), count = strip_span_count(spans, left);
-  if (thread_count > 1)
-    while (count > 1 && count > share) count /= 2;
-  return count;
-}
-
-struct SpanQueue {
-  const TraceJob& job;
-  std::uint32_t thread_count;
-  std::atomic<std::uint32_t> next_span{0}, done_count{0};
-  std::atomic<bool> errand_waits{job.errand.run != nullptr};
-};
-
-void take_spans(void* context, std::uint32_t thread) {
-  SpanQueue* queue = static_cast<SpanQueue*>(context);
-  const TraceJob& job = queue->job;
-  if (queue->errand_waits.load() && queue->errand_waits.exchange(false)) job.errand.run(job.errand.context);
-  for (;;) {
-    if (job.stop && job.stop->load(std::memory_order_relaxed)) return;
-    std::uint32_t begin = queue->next_span.load(), count;
-    do {
-      if (begin >= job.span_count) return;
-      const std::uint32_t left = job.span_count - begin;
-      count = job.spans_at_once ? std::min(job.spans_at_once, left)
-                                : spans_at_once(job.spans + begin, left, queue->thread_count);
-    } while (!queue->next_span.compare_exchange_weak(begin, begin + count));
-    std::uint64_t start = job.span_ns ? clock_ns() : 0;
-    trace_spans(&job.tracers[thread], &job.spans[begin], count, job.aov, job.image, job.pitch);
-    if (job.span_ns) {
-      std::uint64_t each = (clock_ns() - start) / count;
-      for (std::uint32_t i = 0; i < count; ++i) job.span_ns[begin + i] = each;
-    }
-    queue->done_count.fetch_add(count);
-  }
-}
 
 struct ItemQueue {
   std::uint32_t end;
@@ -169,15 +132,6 @@ std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t e
   run_with(workers, take_items, &queue);
   std::uint32_t next = queue.next;
   return next < end ? next : end;
-}
-
-std::uint32_t trace_with(Workers* w, const TraceJob& job) {
-  CHECK(job.span_count == 0 || (job.spans != nullptr && job.image != nullptr));
-  CHECK(job.tracers != nullptr);
-  SpanQueue queue{job, worker_thread_count(w)};
-  run_with(w, take_spans, &queue);
-  CHECK_LE(queue.done_count.load(), job.span_count);
-  return queue.done_count;
 }
 
 }  // namespace pocketray

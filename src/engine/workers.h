@@ -1,9 +1,6 @@
-// Threads that take a few spans at a time. Started before the seal; the picture does not depend on their number.
+// Threads that share the work of a frame. Started before the seal; the picture does not depend on their number.
 #pragma once
-#include <atomic>
 #include <cstdint>
-
-#include "engine/span_source.h"
 
 namespace pocketray {
 
@@ -23,21 +20,6 @@ void run_with(Workers* workers, void (*work)(void* context, std::uint32_t thread
 // done, or each thread has left because take() returned false: the first item that none took.
 std::uint32_t share_items(Workers* workers, std::uint32_t begin, std::uint32_t end,
                           bool (*take)(void* context, std::uint32_t thread, std::uint32_t item), void* context);
-
-struct TraceJob {
-  const Span* spans;
-  std::uint32_t span_count;
-  Aov aov;
-  Vec3* image;
-  Tracer* tracers;                             // one per thread
-  std::uint64_t* span_ns;                      // cost of each span, equal for spans taken together; null: not measured
-  const std::atomic<bool>* stop = nullptr;     // set: skip the remaining spans
-  std::uint32_t pitch = 1, spans_at_once = 0;  // as in SpanBatch
-  Errand errand = {};                          // done by the first thread that is free
-};
-
-// Traces all spans and returns how many were done. If `workers` is null, the caller's thread does all of it.
-std::uint32_t trace_with(Workers* workers, const TraceJob& job);
 
 std::uint64_t clock_ns();  // monotonic
 

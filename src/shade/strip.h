@@ -18,6 +18,9 @@ constexpr std::uint32_t morton_place(std::uint32_t column, std::uint32_t row) {
   return m;
 }
 
+// Columns of a packet in a strip of that many rows: several tiles side by side if they have few.
+constexpr std::uint32_t packet_columns(std::uint32_t row_count) { return kTileSide * (kTileRows / row_count); }
+
 struct TileStrip {
   std::uint32_t row, column;                      // of the first tile's first pixel
   std::uint32_t row_count;                        // up to the last row with a pixel, at most kTileRows

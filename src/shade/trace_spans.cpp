@@ -77,7 +77,7 @@ void trace_pixels(Tracer* tracer, const Tile& tile, std::uint32_t pitch, const P
 void trace_strip(Tracer* tracer, const TileStrip& strip, std::uint32_t pitch, const PixelRows& image) {
   if (strip.tile_count == 0) return;
   CHECK(strip.row_count >= 1 && strip.row_count <= kTileRows);
-  const std::uint32_t tiles_max = kTileRows / strip.row_count;
+  const std::uint32_t tiles_max = packet_columns(strip.row_count) / kTileSide;
   Tile tile;
   for (std::uint32_t i = 0; i < strip.tile_count; i += tiles_max) {
     tile.count = 0;

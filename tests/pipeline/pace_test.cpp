@@ -25,9 +25,9 @@ struct Subject {
   std::unique_ptr<TestRenderer> test;
   Renderer* renderer = nullptr;
 
-  explicit Subject(std::uint32_t threads = 1) {
+  explicit Subject(std::uint32_t threads = 1, std::uint32_t samples = 1) {
     Settings settings = settings_for(kFeatures, 96, 72);
-    settings.threads = threads;
+    settings.threads = threads, settings.samples_per_pixel = samples;
     test = make_renderer(generated->scene, settings);
     renderer = &test->renderer;
   }
@@ -96,6 +96,19 @@ TEST_CASE("pace_slows_a_frame_by_its_factor") {
     CHECK(rows_ms() >= 0.6 * slowdown * used_ms);  // the rest is preparing the frame, sleeping and waking
     CHECK(frame_ms >= rows_ms() - 0.2);            // waits are exact to 0.2 ms
   }
+}
+
+// Goal: rows that several threads trace in parts have the time of all of them. Method: against the processor's time;
+// the rest of it is preparing the frame and waking threads.
+TEST_CASE("rows_have_the_time_of_all_threads") {
+  Subject subject(6, 16);
+  subject.trace_ms();
+  const double begin = static_cast<double>(std::clock());
+  subject.trace_ms();
+  const double used_ns = 1e9 * (static_cast<double>(std::clock()) - begin) / CLOCKS_PER_SEC;
+  double rows_ns = 0;
+  for (std::uint64_t ns : subject.renderer->row_ns) rows_ns += static_cast<double>(ns);
+  CHECK(rows_ns >= 0.6 * used_ns);
 }
 
 // Goal: the picture is the same at any pace. Method: whole frames with one and two threads, bit by bit.

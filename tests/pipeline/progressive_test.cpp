@@ -142,6 +142,32 @@ TEST_CASE("progressive_shows_final_pixels_lit_by_virtual_lights") {
   }
 }
 
+// Goal: threads divide a frame, and a few rows of one, without more work: into whole tiles. Method: boxes, triangles
+// and rays counted, exactly, of all rows and of the eight that a server traces at once.
+TEST_CASE("threads_divide_rows_by_tiles") {
+  for (const char* name : {"cornell", "seesaw"})
+    for (std::uint32_t row_count : {8u, 75u}) {
+      auto built = build_builtin(name);
+      Settings settings;
+      settings.width = 100, settings.height = 75;
+      Work alone = {};
+      for (std::uint32_t threads : {1u, 2u, 3u, 6u}) {
+        CAPTURE(name);
+        CAPTURE(row_count);
+        CAPTURE(threads);
+        settings.threads = threads;
+        auto test = make_renderer(built->scene, settings);
+        REQUIRE(prepare_frame(&test->renderer, 0.3).ok);
+        SpanList list = whole_frame(&test->renderer);
+        list.spans += settings.height - row_count, list.span_count = row_count;
+        CHECK(trace_frame(&test->renderer, list_source(&list)));
+        const Work work = work_of(test->renderer);
+        if (threads == 1) alone = work;
+        CHECK(work == alone);
+      }
+    }
+}
+
 // Goal: refining a frame costs little more than rendering it, however many threads: the fine tiles are those of a
 // direct frame, and the coarse picture takes a ray in 64. Where rays are traced one by one, nothing is traced twice.
 // Method: boxes, triangles and rays counted, exactly; a band of few rows included.

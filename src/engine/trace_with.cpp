@@ -1,0 +1,133 @@
+#include "engine/trace_with.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "base/check.h"
+#include "shade/strip.h"
+
+namespace pocketray {
+namespace {
+
+// Of a strip that may be divided, chosen: 3 KiB of a thread's stack. Strips of more are ragged, as after a small
+// change.
+constexpr std::uint32_t kDividedSpansMax = 512;
+
+// Spans that a thread takes at once, or the columns of them that lie in one of several parts.
+struct Piece {
+  std::uint32_t begin, count;
+  std::uint32_t part = 0, part_count = 1;
+  std::uint32_t column_begin = 0, column_end = 0;  // of all parts
+  std::uint32_t side = 1;                          // columns of which a part has a multiple
+};
+
+struct SpanQueue {
+  const TraceJob& job;
+  std::uint32_t thread_count;
+  std::mutex mutex;  // of what follows
+  std::uint32_t next_span = 0;
+  Piece next = {0, 0};  // with parts that nobody has taken, if part < part_count
+  bool errand_waits = job.errand.run != nullptr;
+};
+
+// Divides a strip of tiles into about that many parts: whole packets if there is one for each thread.
+void divide(const Span* spans, std::uint32_t wanted, std::uint32_t thread_count, Piece* piece) {
+  std::uint32_t begin = ~0u, end = 0, row_end = 0;
+  for (std::uint32_t i = 0; i < piece->count; ++i) {
+    begin = std::min<std::uint32_t>(begin, spans[i].column_begin);
+    end = std::max<std::uint32_t>(end, spans[i].column_end);
+    row_end = std::max<std::uint32_t>(row_end, spans[i].row + 1);
+  }
+  if (begin >= end) return;
+  const std::uint32_t columns = end - begin, packet = packet_columns(row_end - spans[0].row);
+  const std::uint32_t parts_max = std::max(columns / packet, std::min(columns, thread_count));
+  piece->part_count = std::max(1u, std::min(parts_max, wanted));
+  piece->column_begin = begin, piece->column_end = end;
+  if (piece->part_count * packet <= columns) piece->side = packet;
+}
+
+std::uint32_t column_of(const Piece& piece, std::uint32_t part) {
+  CHECK_LE(part, piece.part_count);
+  if (part == piece.part_count) return piece.column_end;
+  const std::uint32_t columns = piece.column_end - piece.column_begin;
+  return piece.column_begin + columns * part / piece.part_count / piece.side * piece.side;
+}
+
+// The next spans of the queue: those of a strip of tiles, towards the end in parts so that all threads finish together.
+// Parts are columns of the strip, since tiles of fewer rows would cost more per pixel.
+Piece next_spans(const SpanQueue& queue) {
+  const TraceJob& job = queue.job;
+  const std::uint32_t left = job.span_count - queue.next_span;
+  const Span* spans = job.spans + queue.next_span;
+  if (job.spans_at_once) return {queue.next_span, std::min(job.spans_at_once, left)};
+  Piece piece = {queue.next_span, strip_span_count(spans, left)};
+  if (queue.thread_count == 1 || piece.count > kDividedSpansMax) return piece;
+  divide(spans, (piece.count * 2 * queue.thread_count + left - 1) / left, queue.thread_count, &piece);
+  return piece;
+}
+
+// False: there is none, or the job was stopped. Strips of which a part is taken are completed.
+bool take_piece(SpanQueue* queue, Piece* piece) {
+  const TraceJob& job = queue->job;
+  Piece* next = &queue->next;
+  if (next->count == 0 || ++next->part == next->part_count) {
+    if (queue->next_span == job.span_count) return *next = {0, 0}, false;
+    if (job.stop && job.stop->load(std::memory_order_relaxed)) return *next = {0, 0}, false;
+    *next = next_spans(*queue);
+    queue->next_span += next->count;
+    if (job.span_ns) std::fill_n(job.span_ns + next->begin, next->count, 0);
+  }
+  *piece = *next;
+  return true;
+}
+
+void trace_piece(const TraceJob& job, std::uint32_t thread, const Piece& piece) {
+  const Span* spans = job.spans + piece.begin;
+  Span clipped[kDividedSpansMax];
+  std::uint32_t count = piece.count;
+  if (piece.part_count > 1) {
+    const std::uint32_t begin = column_of(piece, piece.part), end = column_of(piece, piece.part + 1);
+    count = 0;
+    for (std::uint32_t i = 0; i < piece.count; ++i) {
+      Span span = spans[i];
+      span.column_begin = static_cast<std::uint16_t>(std::max<std::uint32_t>(span.column_begin, begin));
+      span.column_end = static_cast<std::uint16_t>(std::min<std::uint32_t>(span.column_end, end));
+      if (span.column_begin < span.column_end) clipped[count++] = span;
+    }
+    spans = clipped;
+  }
+  trace_spans(&job.tracers[thread], spans, count, job.aov, job.image, job.pitch);
+}
+
+void take_spans(void* context, std::uint32_t thread) {
+  SpanQueue* queue = static_cast<SpanQueue*>(context);
+  const TraceJob& job = queue->job;
+  std::unique_lock<std::mutex> lock(queue->mutex);
+  if (queue->errand_waits) {
+    queue->errand_waits = false;
+    lock.unlock();
+    job.errand.run(job.errand.context);
+    lock.lock();
+  }
+  for (Piece piece; take_piece(queue, &piece);) {
+    lock.unlock();
+    const std::uint64_t start = job.span_ns ? clock_ns() : 0;
+    trace_piece(job, thread, piece);
+    const std::uint64_t each = job.span_ns ? (clock_ns() - start) / piece.count : 0;
+    lock.lock();
+    for (std::uint32_t i = 0; job.span_ns && i < piece.count; ++i) job.span_ns[piece.begin + i] += each;
+  }
+}
+
+}  // namespace
+
+std::uint32_t trace_with(Workers* w, const TraceJob& job) {
+  CHECK(job.span_count == 0 || (job.spans != nullptr && job.image != nullptr));
+  CHECK(job.tracers != nullptr);
+  SpanQueue queue{job, worker_thread_count(w)};
+  run_with(w, take_spans, &queue);
+  CHECK_LE(queue.next_span, job.span_count);
+  return queue.next_span;  // all that were taken are done
+}
+
+}  // namespace pocketray
