@@ -1,6 +1,6 @@
 """Time that real servers take for a frame as the camera orbits, from its request to its last byte, over loopback to a
-client that decodes nothing. Programs are compared interleaved.
-Usage: serve_time.py [--scene NAME] [--threads N] [--frames N] PROGRAM..."""
+client that decodes nothing. Programs and numbers of threads are compared interleaved, with the first pair.
+Usage: serve_time.py [--scene NAME] [--threads N,N...] [--frames N] PROGRAM..."""
 import argparse, math, os, re, statistics, struct, subprocess, sys, time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "wire"))
@@ -36,7 +36,8 @@ def main():
     options.add_argument("--frames", type=int, default=40)
     options.add_argument("programs", nargs="+")
     o = options.parse_args()
-    servers = [Server(program, "--coherence", "off", threads=o.threads) for program in o.programs]
+    pairs = [(program, threads) for program in o.programs for threads in o.threads.split(",")]
+    servers = [Server(program, "--coherence", "off", threads=threads) for program, threads in pairs]
     devices = [Device(server.address) for server in servers]
     times = [[] for _ in servers]
     for device, server, frames in zip(devices, servers, times):
@@ -49,13 +50,11 @@ def main():
         for device, frames in zip(devices, times):
             scene, camera, exposure = frames[0]
             frames.append(timed(device, scene, frame, orbited(camera, frame), exposure))
-    for program, frames in zip(o.programs, times):
-        counted = frames[4:]
-        first, last, size = (statistics.median(f[i] for f in counted) for i in range(3))
-        print("%s: %.2f ms to the first row, %.2f to the last, %.1f kB" % (program, first, last, size / 1e3))
-    if len(times) > 1:
-        ratios = [a[1] / b[1] for a, b in zip(times[1][4:], times[0][4:])]
-        print("second over first: %.3f (median of %d ratios)" % (statistics.median(ratios), len(ratios)))
+    for (program, threads), frames in zip(pairs, times):
+        first, last, size = (statistics.median(f[i] for f in frames[4:]) for i in range(3))
+        ratio = statistics.median(a[1] / b[1] for a, b in zip(frames[4:], times[0][4:]))
+        print("%s, %s thread%s: %.2f ms to the first row, %.2f to the last, %.3f of the first; %.1f kB" %
+              (program, threads, "s"[threads == "1":], first, last, ratio, size / 1e3))
     for server in servers:
         server.end()
 
