@@ -84,6 +84,22 @@ TEST_CASE("client_start_is_bounded_by_the_first_rows") {
   CHECK(server->round_trip_ns < kTooLongNs / 2);
 }
 
+// Goal: of two servers that start alike, the one whose answers once came sooner does not get more rows for it, where the
+// link keeps up. Method: a start set far too low.
+TEST_CASE("client_start_is_bounded_by_the_last_rows") {
+  SplitRigOptions options = tablet();
+  options.server_count = 2;
+  SplitRig rig(options);
+  for (int i = 0; i < 12; ++i) rig.frame(0.1 * i);
+  REQUIRE(is_settled(rig.client));
+  const Smoothed* other = &rig.client.model.servers[0].start_ns;
+  Smoothed* start = &rig.client.model.servers[1].start_ns;
+  *start = Smoothed(), start->value = 1e5f;
+  for (int i = 12; i < 24; ++i) rig.frame(0.1 * i);
+  CHECK(static_cast<double>(start->value) > 0.7 * static_cast<double>(other->value));
+  CHECK(static_cast<double>(start->value) < 1.5 * static_cast<double>(other->value));
+}
+
 // Goal: a link measured again is not taken for one without limits because an answer without payload once took longer
 // than one with. Method: a round trip set far too high before the measurement.
 TEST_CASE("client_link_measured_again_keeps_its_limits") {

@@ -14,6 +14,10 @@ constexpr double kGapsMin = 4;         // polls in which rows must arrive for th
 constexpr double kDisproved = 1.25;    // a link faster than estimated by more than this is not noise
 constexpr double kLinkBound = 1.15;    // rows that take this much longer than on the servers are bound by the link
 constexpr double kLinkLimited = 0.97;  // of a frame's time: with more, its split is bound by the link
+// Of a frame's time that sending takes: with less, the link keeps up with several servers. At .9 it does not (a split
+// is off by 30 %).
+constexpr double kLightLink = 0.5;
+constexpr double kRaise = 0.5;  // of a start's distance from its lower bound, as jitter raises that for single frames
 constexpr double kLinkFaster = 0.95, kLinkKept = 1.02;  // chosen: a trial that fails costs a twentieth of a frame
 constexpr std::uint64_t kLinkRestMax = 64;  // frames without such trials; chosen: they cost a thousandth then
 constexpr std::uint32_t kProbeRowsMax = 16, kProbeDivisor = 15;  // of the rows: 16 of 240
@@ -250,26 +254,61 @@ void bound_own_links(Client* client) {
   }
 }
 
+// What a frame's rows took on a link that all servers share.
+struct LinkUse {
+  std::uint32_t server_count = 0;     // that sent rows
+  double sent_ns = 0, chunks_ns = 0;  // to send their rows, and a chunk of each
+  double longest_ns = 0;              // from a request to the last row
+};
+
+double chunk_part(const ServerModel& model, const ServerFrame& f) {
+  CHECK_GT(f.rows_come, 0u);
+  return std::min(1.0, static_cast<double>(model.chunk_rows) / f.rows_come);
+}
+
+double shared_link_ns(const Client& client, const ServerFrame& f) {
+  return static_cast<double>(f.bytes) * static_cast<double>(client.model.link_ns_per_byte.value);
+}
+
+LinkUse link_use(const Client& client) {
+  LinkUse use;
+  for (std::uint32_t i = 0; i < client.server_count; ++i) {
+    const ServerFrame& f = client.servers[i].frame;
+    if (f.rows_come == 0) continue;
+    const double sent_ns = shared_link_ns(client, f);
+    ++use.server_count;
+    use.sent_ns += sent_ns, use.chunks_ns += sent_ns * chunk_part(client.model.servers[i], f);
+    use.longest_ns = std::max(use.longest_ns, static_cast<double>(f.heard_ns - f.asked_ns));
+  }
+  return use;
+}
+
 // A server's start, preparation of the frame included, is what its rows took beyond their work and bytes. Where others
-// share the link, they may have waited for it, so this bounds the start from above; a round trip and the preparation
-// that the server states bound it from below.
+// share the link, they may have waited for it, so this bounds the start from above. A round trip and the preparation
+// that the server states bound it from below; so do its rows, where the link keeps up, as its last chunk then waits for
+// one of each other server at most.
 void measure_starts(Client* client) {
-  std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < client->server_count; ++i) count += client->servers[i].frame.rows_come > 0;
+  const LinkUse use = link_use(*client);
+  const bool keeps_up = is_known(client->model.link_ns_per_byte) && use.sent_ns < kLightLink * use.longest_ns;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const ServerFrame& f = client->servers[i].frame;
     const ServerModel& model = client->model.servers[i];
     if (client->servers[i].phase != ServerPhase::ready || f.open || f.rows_come < f.row_end - f.row_begin) continue;
     if (f.rows_come == 0 || !is_known(model.start_ns)) continue;
     const double transfer = static_cast<double>(f.bytes) * static_cast<double>(model.ns_per_byte.value);
-    const double part = std::min(1.0, static_cast<double>(model.chunk_rows) / f.rows_come);
+    const double part = chunk_part(model, f);
     const double work = std::max(f.render_ns, transfer) + part * std::min(f.render_ns, transfer);
     const double latest = std::max(0.0, static_cast<double>(f.heard_ns - f.asked_ns) - work);
-    const double prepared = f.prepare_ns > 0 ? client->servers[i].round_trip_ns + f.prepare_ns : 0;
-    const double earliest = count == 1 ? latest - static_cast<double>(f.unseen_ns) : std::min(latest, prepared);
-    const double known = static_cast<double>(model.start_ns.value);
+    const double seen = latest - static_cast<double>(f.unseen_ns), known = static_cast<double>(model.start_ns.value);
     if (known > latest) observe_start(&client->model, i, latest);
-    if (known < earliest) observe_start(&client->model, i, earliest);
+    if (use.server_count == 1) {
+      if (known < seen) observe_start(&client->model, i, seen);
+      continue;
+    }
+    const double prepared = f.prepare_ns > 0 ? client->servers[i].round_trip_ns + f.prepare_ns : 0;
+    const double waited = use.chunks_ns - part * shared_link_ns(*client, f);
+    const double earliest = std::max(std::min(latest, prepared), keeps_up ? seen - waited : 0);
+    if (known < earliest) observe_start(&client->model, i, known + kRaise * (earliest - known));
   }
 }
 
