@@ -152,16 +152,24 @@ TEST_CASE("preparation_left_out_keeps_no_picture") {
   CHECK(rig.client.prepared);
 }
 
-// Goal: the model's start of each server includes its preparation, also where several share a link. Method: servers
-// that prepare for 3 ms behind a latency of half a millisecond each way.
+// Goal: the model's start of each server includes its preparation, also where several share a link, whether it keeps up
+// with them or not. Method: servers that prepare for 3 ms behind a latency of half a millisecond each way.
 TEST_CASE("preparation_of_servers_is_in_their_start") {
-  for (std::uint32_t count : {1u, 2u, 3u}) {
+  struct Case {
+    std::uint32_t count;
+    std::uint64_t bytes_per_second;
+  };
+  for (const auto& [count, bytes_per_second] : {Case{1, 0}, Case{2, 0}, Case{3, 0}, Case{2, 500'000}}) {
     if (kEffortDivisor > 6 && count != 2) continue;
     CAPTURE(count);
+    CAPTURE(bytes_per_second);
     SplitRigOptions options = moving_scene(1e4, 1);
     options.server_ns = {1000};
     options.server_count = count;
     options.server_prepare_ns = 3 * kMillisecond;
+    if (bytes_per_second > 0)
+      options.width = 160, options.height = 120, options.server_ns = {100},
+      options.line.bytes_per_second = bytes_per_second;
     SplitRig rig(options);
     double seconds = settle(&rig, 40);
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -14,9 +14,9 @@ constexpr double kGapsMin = 4;         // polls in which rows must arrive for th
 constexpr double kDisproved = 1.25;    // a link faster than estimated by more than this is not noise
 constexpr double kLinkBound = 1.15;    // rows that take this much longer than on the servers are bound by the link
 constexpr double kLinkLimited = 0.97;  // of a frame's time: with more, its split is bound by the link
-// Of a frame's time that sending takes: with less, the link keeps up with several servers. At .9 it does not (a split
-// is off by 30 %).
-constexpr double kLightLink = 0.5;
+// Time to send all rows over that to trace a server's: with less, the link keeps up with several servers. At .9, some
+// splits are off by 7 %.
+constexpr double kLightLink = 0.7;
 constexpr double kRaise = 0.5;  // of a start's distance from its lower bound, as jitter raises that for single frames
 constexpr double kLinkFaster = 0.95, kLinkKept = 1.02;  // chosen: a trial that fails costs a twentieth of a frame
 constexpr std::uint64_t kLinkRestMax = 64;  // frames without such trials; chosen: they cost a thousandth then
@@ -258,7 +258,7 @@ void bound_own_links(Client* client) {
 struct LinkUse {
   std::uint32_t server_count = 0;     // that sent rows
   double sent_ns = 0, chunks_ns = 0;  // to send their rows, and a chunk of each
-  double longest_ns = 0;              // from a request to the last row
+  double render_ns = 0;               // the longest time to trace a server's rows
 };
 
 double chunk_part(const ServerModel& model, const ServerFrame& f) {
@@ -278,7 +278,7 @@ LinkUse link_use(const Client& client) {
     const double sent_ns = shared_link_ns(client, f);
     ++use.server_count;
     use.sent_ns += sent_ns, use.chunks_ns += sent_ns * chunk_part(client.model.servers[i], f);
-    use.longest_ns = std::max(use.longest_ns, static_cast<double>(f.heard_ns - f.asked_ns));
+    use.render_ns = std::max(use.render_ns, f.render_ns);
   }
   return use;
 }
@@ -289,7 +289,7 @@ LinkUse link_use(const Client& client) {
 // one of each other server at most.
 void measure_starts(Client* client) {
   const LinkUse use = link_use(*client);
-  const bool keeps_up = is_known(client->model.link_ns_per_byte) && use.sent_ns < kLightLink * use.longest_ns;
+  const bool keeps_up = is_known(client->model.link_ns_per_byte) && use.sent_ns < kLightLink * use.render_ns;
   for (std::uint32_t i = 0; i < client->server_count; ++i) {
     const ServerFrame& f = client->servers[i].frame;
     const ServerModel& model = client->model.servers[i];
