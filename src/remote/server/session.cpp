@@ -64,6 +64,7 @@ std::uint32_t next_chunk_rows(const Session& session) { return next_chunk_rows(s
 
 // Rows to trace until another chunk is complete.
 std::uint32_t rows_to_next_chunk(const FrameJob& job) {
+  CHECK(has_rows(job.traced));
   std::uint32_t unsent = job.rows_traced - job.rows_sent, rows;
   for (RowSequence at = job.sent; unsent >= (rows = next_chunk_rows(job.request, at)); unsent -= rows)
     pass_rows(job.request, rows, &at);
