@@ -101,8 +101,9 @@ void make_crop_spans(const PixelBox& crop, Renderer* renderer, RenderJob* job) {
   if (crop.width == 0) return;
   job->crop_spans = arena_array<Span>(&renderer->frame_arena, static_cast<std::size_t>(crop.height));
   for (int i = 0; i < crop.height; ++i)
-    divide_row(static_cast<std::uint32_t>(crop.top + i), static_cast<std::uint32_t>(crop.left),
-               static_cast<std::uint32_t>(crop.left + crop.width), 1, &job->crop_spans[static_cast<std::uint32_t>(i)]);
+    job->crop_spans[static_cast<std::uint32_t>(i)] =
+        row_span(static_cast<std::uint32_t>(crop.top + i), static_cast<std::uint32_t>(crop.left),
+                 static_cast<std::uint32_t>(crop.left + crop.width));
 }
 
 Status start_animation(Renderer* renderer, AnimationFile* animation, RenderJob* job) {

@@ -32,7 +32,7 @@ struct SharedRows {
   std::uint32_t tile_row = 0;       // the next to search
   std::uint32_t known_rows = 0;     // of the last frame ...
   std::uint64_t known_changes = 0;  // ... and pixels to trace in these
-  Span parts[2 * kThreadCountMax];  // of a row, or several rows apart
+  Span parts[2 * kThreadCountMax];  // a part of a row, or several rows apart
 };
 
 // Deviations from the look that a scene brings or gets; initially none.

@@ -141,9 +141,8 @@ SharedSpans list_part(Renderer* renderer, std::uint32_t row, std::uint32_t begin
     if (count != 1) return {c->spans.data, count};
     begin = c->spans[0].column_begin, end = c->spans[0].column_end;
   }
-  const std::uint32_t parts = std::min(renderer->settings.threads, end - begin);
-  divide_row(row, begin, end, parts, rows->parts);
-  return {rows->parts, parts};
+  rows->parts[0] = row_span(row, begin, end);
+  return {rows->parts, 1};
 }
 
 void finish_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_t row_end) {

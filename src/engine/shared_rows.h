@@ -24,8 +24,7 @@ std::uint32_t count_pixels(const Renderer& renderer, std::uint32_t row);
 std::uint32_t end_of_part(const Renderer& renderer, std::uint32_t row, std::uint32_t begin,
                           std::uint32_t pixel_count_max);
 
-// The spans to trace, until the next call: of rows, at most listed_rows_max() of them; of a part of a row, divided
-// among the threads if it is whole.
+// The spans to trace, until the next call: of rows, at most listed_rows_max() of them; of a part of a row.
 struct SharedSpans {
   const Span* spans;
   std::uint32_t count;  // 0: none of their pixels can have changed

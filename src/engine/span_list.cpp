@@ -47,14 +47,10 @@ SpanList row_bands(Renderer* renderer) {
   return list;
 }
 
-void divide_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end, std::uint32_t part_count, Span* spans) {
+Span row_span(std::uint32_t row, std::uint32_t begin, std::uint32_t end) {
   CHECK_LE(begin, end);
-  CHECK_LT(0u, part_count);
   CHECK(row < kImageSideMax && end <= kImageSideMax);  // a span's numbers are 16 bits wide
-  std::uint32_t count = end - begin;
-  for (std::uint32_t i = 0; i < part_count; ++i)
-    spans[i] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin + count * i / part_count),
-                static_cast<std::uint16_t>(begin + count * (i + 1) / part_count)};
+  return {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(end)};
 }
 
 }  // namespace pocketray

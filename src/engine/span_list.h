@@ -26,8 +26,7 @@ SpanList whole_frame(Renderer* renderer);
 // The same in bands of rows, each just high enough to keep all threads busy.
 SpanList row_bands(Renderer* renderer);
 
-// Divides pixels [begin, end) of a row into `part_count` (at least 1) spans of about equal length. No span is empty if
-// there are that many pixels.
-void divide_row(std::uint32_t row, std::uint32_t begin, std::uint32_t end, std::uint32_t part_count, Span* spans);
+// Pixels [begin, end) of a row.
+Span row_span(std::uint32_t row, std::uint32_t begin, std::uint32_t end);
 
 }  // namespace pocketray

@@ -26,7 +26,7 @@ struct SpanQueue {
   std::uint32_t thread_count;
   std::mutex mutex;  // of what follows
   std::uint32_t next_span = 0;
-  Piece next = {0, 0};  // with parts that nobody has taken, if part < part_count
+  Piece last = {0, 0};  // taken; if parts of it are left, they come next
   bool errand_waits = job.errand.run != nullptr;
 };
 
@@ -69,15 +69,15 @@ Piece next_spans(const SpanQueue& queue) {
 // False: there is none, or the job was stopped. Strips of which a part is taken are completed.
 bool take_piece(SpanQueue* queue, Piece* piece) {
   const TraceJob& job = queue->job;
-  Piece* next = &queue->next;
-  if (next->count == 0 || ++next->part == next->part_count) {
-    if (queue->next_span == job.span_count) return *next = {0, 0}, false;
-    if (job.stop && job.stop->load(std::memory_order_relaxed)) return *next = {0, 0}, false;
-    *next = next_spans(*queue);
-    queue->next_span += next->count;
-    if (job.span_ns) std::fill_n(job.span_ns + next->begin, next->count, 0);
+  Piece* last = &queue->last;
+  if (last->count == 0 || ++last->part == last->part_count) {
+    if (queue->next_span == job.span_count) return *last = {0, 0}, false;
+    if (job.stop && job.stop->load(std::memory_order_relaxed)) return *last = {0, 0}, false;
+    *last = next_spans(*queue);
+    queue->next_span += last->count;
+    if (job.span_ns) std::fill_n(job.span_ns + last->begin, last->count, 0);
   }
-  *piece = *next;
+  *piece = *last;
   return true;
 }
 

@@ -78,12 +78,9 @@ struct SliceSource {
   Slice slice = {};
 };
 
-void code_beside(void* session) {
-  static_cast<Session*>(session)->job.codes_beside = false;
-  send_chunks(static_cast<Session*>(session));
-}
+void code_beside(void* session) { send_chunks(static_cast<Session*>(session)); }
 
-// The next pixels of a row, divided evenly among threads.
+// The next pixels of a row.
 void next_part(SliceSource* source, std::uint32_t pixels_max, SpanBatch* batch) {
   const FrameJob& job = source->session->job;
   const Settings& settings = source->session->renderer.settings;
@@ -182,7 +179,6 @@ void drop_job(Session* session) {
   if (!has_job(*session)) return;
   CHECK_LE(job->rows_sent, job->rows_traced);
   job->scene = nullptr;
-  job->codes_beside = false;
   session->ended_took_ns += job->took_ns;
   if (!job->is_view_query && job->rows_traced > 0)
     session->ended_sent_ns += job->took_ns * job->rows_sent / job->rows_traced;
@@ -236,7 +232,7 @@ Slice trace_slice(Session* session, std::uint64_t slice_ns) {
   SpanSource spans = {&source, next_slice, [](void*, const SpanBatch&) { return true; }};
   spans.is_coherent = true;
   trace_frame(&session->renderer, spans);
-  if (session->job.codes_beside) code_beside(session);  // no pixel had to be traced
+  if (session->job.codes_beside) send_chunks(session);  // no pixel had to be traced
   return source.slice;
 }
 
@@ -267,6 +263,7 @@ void end_slice(Session* session, const Slice& slice, std::uint64_t took_ns) {
 
 void send_chunks(Session* session) {
   FrameJob* job = &session->job;
+  job->codes_beside = false;
   while (has_chunk(*session)) {
     if (job->has_coarse) {
       send_coarse(session);

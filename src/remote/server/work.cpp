@@ -133,7 +133,6 @@ std::uint64_t take_coding_ns(const Server& server, Session* session) {
 void code_chunks(Server* server, Session* session) {
   std::uint64_t start = now_ns(server);
   const std::uint64_t pixels = session->coded_pixels;
-  session->job.codes_beside = false;
   send_chunks(session);
   CHECK_GE(session->coded_pixels, pixels);
   const std::uint64_t coded = session->coded_pixels - pixels;
