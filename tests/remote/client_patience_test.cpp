@@ -1,7 +1,10 @@
 // How long a device waits for servers that start well but deliver nothing, and what it logs.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "hostile_rig.h"
+#include "remote/client/parts.h"
 
 using namespace pocketray;
 
@@ -154,5 +157,26 @@ TEST_CASE("client_goes_on_with_the_rows_a_server_sends_last") {
   }
   CHECK(taken == expected);
   CHECK(has_all_rows(*client));
+  end_client_frame(client);
+}
+
+// Goal: a device waits for answers a part of the time that its own rows take, of which a guess for rows that it never
+// rendered says nothing. Method: the time left to wait in a frame under way, with guesses a hundred times as high.
+TEST_CASE("client_waits_no_longer_for_rows_it_never_measured") {
+  HostileRig rig;
+  rig.frames_until_ready();
+  Client* client = &rig.client;
+  client->options.device_share = 0.25;
+  REQUIRE(begin_frame(&rig.device->renderer, client, 0).ok);
+  std::uint32_t begin, end, guesses = 0;
+  REQUIRE(take_device_rows(client, 2, &begin, &end));
+  finish_device_rows(client, begin, end, 1000, (end - begin) * kWidth);
+  const double left_ns = time_to_spare(*client, 0);
+  for (RowModel& row : client->model.rows)
+    if (row.guessed) ++guesses, row.device_ns.value *= 100;
+  CHECK_GT(guesses, kHeight / 2);
+  CHECK(std::fabs(time_to_spare(*client, 0) - left_ns) < 1000);  // the clock goes on
+  while (take_device_rows(client, 8, &begin, &end))
+    finish_device_rows(client, begin, end, 1000, (end - begin) * kWidth);
   end_client_frame(client);
 }
