@@ -14,6 +14,8 @@ void survive_closed_pipes();
 
 // From here on, standard output and error go to the end of that file, which is created if missing.
 bool log_to_file(const char* path, FileError* error);
+// Takes that back: the file has again what it had before, and what is printed goes where it went.
+void withdraw_log();
 
 // From here on, what is printed is lost, except that the end of it goes to the standard error of old if the program
 // aborts.

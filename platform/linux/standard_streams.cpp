@@ -17,6 +17,12 @@ namespace {
 // block.
 constexpr size_t kLineBytesMax = 4096;
 
+// Where a program that logs to a file printed before, and that file's size then.
+int printed_to = -1, complained_to = -1;
+off_t logged_before = 0;
+
+int duplicate(int descriptor) { return fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1); }
+
 // Standard error of old, of a program that keeps quiet.
 int loud_error = -1;
 
@@ -47,17 +53,28 @@ bool log_to_file(const char* path, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
   int file = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY, 0666);
   fflush(nullptr);
+  if (printed_to < 0) printed_to = duplicate(STDOUT_FILENO), complained_to = duplicate(STDERR_FILENO);
+  logged_before = file >= 0 ? lseek(file, 0, SEEK_END) : 0;
   bool ok = file >= 0 && dup2(file, STDOUT_FILENO) >= 0 && dup2(file, STDERR_FILENO) >= 0;
   if (!ok) snprintf(error->text, sizeof error->text, "cannot be written: %s", strerror(errno));
   if (file > STDERR_FILENO) close(file);
   return ok;
 }
 
+void withdraw_log() {
+  PLATFORM_CHECK(printed_to >= 0);
+  fflush(nullptr);
+  // Pipes and devices keep what they got.
+  if (logged_before >= 0 && ftruncate(STDERR_FILENO, logged_before) != 0) errno = 0;
+  dup2(printed_to, STDOUT_FILENO);
+  dup2(complained_to, STDERR_FILENO);
+}
+
 void keep_quiet() {
   PLATFORM_CHECK(loud_error < 0);
   FILE* printed = tmpfile();
   const int nowhere = printed ? fileno(printed) : open("/dev/null", O_RDWR | O_CLOEXEC);
-  loud_error = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  loud_error = duplicate(STDERR_FILENO);
   fflush(nullptr);
   dup2(nowhere, STDERR_FILENO);
   const int output = open("/dev/null", O_WRONLY | O_CLOEXEC);

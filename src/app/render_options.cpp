@@ -77,10 +77,13 @@ const char* incoherent_because(const RenderOptions& o, Aov aov) {
   return aov != Aov::none ? "--aov: drop --aov or --coherence" : nullptr;
 }
 
+std::vector<NamedFile> inputs_of(const RenderOptions& o) {
+  return {{"SCENE", o.common.scene}, {"--front", o.budget.front}, {"--key", o.servers.key}};
+}
+
 Status check_path(const RenderOptions& o, const std::string& path, RenderRequest* request) {
   request->paths.push_back(path);
-  return check_outputs({{"SCENE", o.common.scene}, {"--front", o.budget.front}},
-                       {{"-o", path}, {"--json", o.common.json}});
+  return check_outputs(inputs_of(o), {{"-o", path}, {"--json", o.common.json}});
 }
 
 // Standard output has no ending: PNG unless --format says otherwise.
@@ -139,7 +142,7 @@ Status check_raw(const RenderOptions& o, const RenderRequest& request) {
 
 Status check_resume(const RenderOptions& o, const RenderRequest& request) {
   if (keeps_journal(o, request))
-    return check_outputs({{"SCENE", o.common.scene}}, {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
+    return check_outputs(inputs_of(o), {{"-o", journal_path(o.output)}, {"--json", o.common.json}});
   if (!o.resume) return success();
   if (!o.servers.addresses.empty() || o.budget.ms > 0)
     return failure(

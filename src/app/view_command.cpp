@@ -97,6 +97,14 @@ void print_latency(const Viewer& viewer) {
               static_cast<double>(motion.total_ns) * 1e-9);
 }
 
+// Fails if the log is one of the files that the scene was read from, and leaves that as it was.
+Status check_log(const ViewCommand& o, const OpenScene& opened) {
+  if (o.log.empty()) return success();
+  Status status = check_not_read(opened.source.files, {{"--log", o.log}});
+  if (!status.ok) platform::withdraw_log();
+  return status;
+}
+
 // Loads and shows the scene, with news as a message. False if the user quit while it was loading.
 bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer, Status* status, bool* again) {
   watch_scene(viewer);
@@ -106,6 +114,7 @@ bool load_and_show(const ViewCommand& o, const std::string& news, Viewer* viewer
     return false;
   }
   *status = loading.status;
+  if (status->ok) *status = check_log(o, *loading.opened);
   if (status->ok && !news.empty()) tell(viewer, news.c_str());
   if (status->ok) *status = show(o, loading, viewer, again);
   return true;
@@ -175,10 +184,18 @@ Status let_pick(ViewCommand* o, Viewer* viewer) {
   return success();
 }
 
-int run(ViewCommand o) {
+// From here on, messages go to the file of --log.
+Status start_log(const ViewCommand& o) {
+  if (o.log.empty()) return success();
+  RETURN_IF_ERROR(check_not_input({{"SCENE", o.common.scene}, {"--front", o.budget.front}, {"--key", o.servers.key}},
+                                  {"--log", o.log}));
   platform::FileError error;
-  if (!o.log.empty() && !platform::log_to_file(o.log.c_str(), &error))
-    return report(failure("--log: %.300s %s", o.log.c_str(), error.text));
+  if (!platform::log_to_file(o.log.c_str(), &error)) return failure("--log: %.300s %s", o.log.c_str(), error.text);
+  return success();
+}
+
+int run(ViewCommand o) {
+  if (Status logged = start_log(o); !logged.ok) return report(logged);
   o.view.hud = !o.no_hud;
   Viewer viewer;
   Settings size;

@@ -34,14 +34,19 @@ bool has_suffix(const char* path, const char* suffix) {
   return std::strcmp(at, suffix) == 0 && at[-1] != '/';
 }
 
+Status check_not_input(const std::vector<NamedFile>& inputs, const NamedFile& output) {
+  for (const NamedFile& input : inputs)
+    if (is_given(output) && is_file(input) && is_same(input, output))
+      return failure("%s %.200s would overwrite the input %.200s of %s: name another file", output.option,
+                     output.path.c_str(), input.path.c_str(), input.option);
+  return success();
+}
+
 Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const NamedFile& output = outputs[i];
     if (!is_given(output)) continue;
-    for (const NamedFile& input : inputs)
-      if (is_file(input) && is_same(input, output))
-        return failure("%s %.200s would overwrite the input %.200s of %s: name another file", output.option,
-                       output.path.c_str(), input.path.c_str(), input.option);
+    RETURN_IF_ERROR(check_not_input(inputs, output));
     for (std::size_t k = 0; k < i; ++k)
       if (is_given(outputs[k]) && is_same(outputs[k], output))
         return failure("%s and %s name the same file, %.300s: name two files", outputs[k].option, output.option,

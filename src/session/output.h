@@ -21,6 +21,9 @@ bool has_suffix(const char* path, const char* suffix);
 // work. Inputs need not be files. Leaves no trace.
 Status check_outputs(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
+// The part of it for a file that is appended to.
+Status check_not_input(const std::vector<NamedFile>& inputs, const NamedFile& output);
+
 // Fails if an output is a file that the scene was read from (SceneSource::files), through links too: its textures and
 // buffers are known once it is open. Call it then, before the work.
 Status check_not_read(const std::vector<std::string>& files, const std::vector<NamedFile>& outputs);

@@ -132,6 +132,10 @@ expect render_over_the_scene 1 '-o hard.ppm would overwrite the input seen.pray'
 cp real/a.front front.ppm && ln -f front.ppm the.front
 expect render_over_the_front 1 'of --front' \
   render cube "${quick[@]}" --budget-ms 1000000 --front the.front -o front.ppm
+touch the.key && ln the.key key.ppm
+! has scenes || expect render_over_the_key 1 'key.ppm would overwrite the input the.key of --key' \
+  render cube "${quick[@]}" --server :1 --key the.key -o key.ppm
+! has scenes || expect scenes_over_the_key 1 'of --key' scenes --server :1 --key the.key --json key.ppm
 ln -s front.ppm flight-0001.ppm
 expect sequence_over_the_front 1 'flight-0001.ppm would overwrite the input the.front' \
   render seesaw "${quick[@]}" --frames 0:2 --budget-ms 1000000 --front the.front -o flight.ppm
@@ -185,6 +189,12 @@ if "${run[@]}" render --help | grep -q glTF; then
   expect render_over_a_buffer 1 "$read_from" render shed.gltf "${quick[@]}" -o refused.ppm --json shed.bin
   expect render_over_the_environment 1 "$read_from" render cube "${quick[@]}" --environment tile.png -o hard.png
   expect bake_over_the_environment 1 "$read_from" bake cube --environment tile.png -o refused.pray --json hard.png
+  ! has view || expect log_over_the_scene 1 '--log shed.obj would overwrite the input shed.obj of SCENE' \
+    view shed.obj "${quick[@]}" --screen null --frames 1 --log shed.obj
+  for name in shed.mtl soft.png; do
+    ! has view || expect "log_over_$name" 1 "--log $name would overwrite .* $read_from" \
+      view shed.obj "${quick[@]}" --screen null --frames 1 --log "$name"
+  done
   ! has reference || expect reference_over_a_texture 1 "--output hard.pfm .* $read_from" reference shed.obj "${quick[@]}" -o hard.pfm
   for command in accuracy split-report coherence-report; do
     has $command || continue

@@ -20,7 +20,8 @@ int lead(AccuracyOptions options) {
   Sweep sweep;
   bool whole;
   SweptFront front;
-  Status status = check_outputs({{"SCENE", options.common.scene}}, {{"--json", options.common.json}});
+  Status status = check_outputs({{"SCENE", options.common.scene}, {"--reference", options.reference}},
+                                {{"--json", options.common.json}});
   if (status.ok) status = name_reference(&options);
   if (status.ok) status = measure_sweep(options, &sweep, &whole, &front);
   if (!status.ok) return report(status);

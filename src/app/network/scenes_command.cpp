@@ -31,7 +31,7 @@ void print(const std::string& server, const std::vector<OfferedScene>& scenes) {
 
 int run(const ScenesOptions& o) {
   Servers* servers = nullptr;
-  Status status = check_outputs({}, {{"--json", o.json}});
+  Status status = check_outputs({{"--key", o.servers.key}}, {{"--json", o.json}});
   if (status.ok) status = kRenderServers.open(o.servers, nullptr, &servers);
   ServersHandle closing(servers);
   if (!status.ok) return report(status);
