@@ -35,15 +35,16 @@ inline BoxBeam make_box_beam(const Beam& beam, const Box& bounds) {
   return b;
 }
 
-// Which of the four boxes of a BVH node a ray of the beam can meet: those for which there is a t at which the beam's
-// box and the other overlap. These are six linear inequalities, so no ray that meets a box is missed. (Where a product
-// is not a number, the bound stays.)
-inline unsigned meets(const BoxBeam& b, const float (&bounds)[6][4]) {
+// Which of four pairs of boxes have a box around both that a ray of the beam can meet: those for which there is a t at
+// which the beam's box and it overlap. These are six linear inequalities, so no ray that meets a box is missed. (Where
+// a product is not a number, the bound stays.)
+inline unsigned meets_both(const BoxBeam& b, const float (&one)[6][4], const float (&other)[6][4]) {
   Float4 begin = Float4::splat(0), end = Float4::splat(b.t_max), zero = begin;
   Mask4 inside = zero <= zero;
   for (int axis = 0; axis < 3; ++axis) {
-    const Float4 limit[2] = {Float4::load(bounds[3 + axis]) - Float4::splat(b.low[axis]),
-                             Float4::splat(b.high[axis]) - Float4::load(bounds[axis])};
+    const Float4 low = min(Float4::load(one[axis]), Float4::load(other[axis])),
+                 high = max(Float4::load(one[3 + axis]), Float4::load(other[3 + axis]));
+    const Float4 limit[2] = {high - Float4::splat(b.low[axis]), Float4::splat(b.high[axis]) - low};
     for (int side = 0; side < 2; ++side) {
       const int sign = b.sign[2 * axis + side];
       const Float4 t = limit[side] * Float4::splat(b.inverse[2 * axis + side]);

@@ -8,7 +8,7 @@
 #include "accel/bvh.h"
 #include "base/check.h"
 #include "scene/animate.h"
-#include "temporal/box_beam.h"
+#include "temporal/triangle_beam.h"
 
 namespace pocketray {
 namespace {
@@ -42,6 +42,8 @@ Sizes sizes_of(const Scene& scene) {
   return sizes;
 }
 
+std::size_t place_count(const Scene& scene) { return (std::size_t(scene.triangles.count) + 31) / 32; }
+
 // Copies the moving vertices' positions or normals and marks those that differ from the copy.
 void follow(const MovingGeometry& moving, Array<const Vec3> from, Array<Vec3> copy, std::uint32_t* changed) {
   std::uint32_t k = 0;
@@ -55,6 +57,14 @@ void follow(const MovingGeometry& moving, Array<const Vec3> from, Array<Vec3> co
   CHECK_EQ(k, copy.count);
 }
 
+// Which triangles of a leaf have changed, a bit each.
+unsigned changed_lanes(const MovingGeometry& m, const TriangleBlock& leaf, std::uint32_t count) {
+  unsigned changed = 0;
+  for (std::uint32_t k = 0; k < count; ++k)
+    changed |= static_cast<unsigned>(m.triangle_changed[leaf.triangle[k] & ~kUnhittableBit] != 0) << k;
+  return changed;
+}
+
 // Marks the children of the nodes below which a triangle has changed.
 void mark_nodes(MovingGeometry* m) {
   BvhView bvh(m->now.data.data);
@@ -65,10 +75,7 @@ void mark_nodes(MovingGeometry* m) {
       const std::uint32_t child = bvh.nodes[i].child[lane];
       bool any = false;
       if (child & kLeafBit) {
-        const std::uint32_t* ids =
-            leaf_ids(kBlockLeaves, leaf_at(kBlockLeaves, m->now.data.data, child & kLeafIndexMask));
-        for (std::uint32_t k = 0; k < leaf_triangle_count(child); ++k)
-          any |= m->triangle_changed[ids[k] & ~kUnhittableBit] != 0;
+        any = changed_lanes(*m, bvh.leaves[child & kLeafIndexMask], leaf_triangle_count(child)) != 0;
       } else {
         any = m->node_changed[child] != 0;
       }
@@ -84,7 +91,8 @@ std::size_t moving_geometry_need(const Scene& scene, EffectMask mask) {
   if (!can_move(scene, mask)) return 0;
   Sizes n = sizes_of(scene);
   std::size_t bytes = arena_need<Triangle>(n.triangles) + arena_need<std::uint32_t>(n.triangles) +
-                      arena_need<std::uint8_t>(n.triangles) + 2 * arena_need<std::uint32_t>(scene.moving_meshes.count) +
+                      arena_need<MovingPlaces>(place_count(scene)) + arena_need<std::uint8_t>(n.triangles) +
+                      2 * arena_need<std::uint32_t>(scene.moving_meshes.count) +
                       arena_need<std::uint32_t>(scene.positions.count / 32 + 1);
   for (Array<const Vec3> each : {scene.positions, scene.normals})
     if (each.count) bytes = size_sum(bytes, arena_need<Vec3>(n.vertices));
@@ -104,9 +112,14 @@ MovingGeometry make_moving_geometry(const FrameData& frame, Arena* keep, Arena* 
   m.triangles = arena_array<Triangle>(keep, n.triangles);
   m.ids = arena_array<std::uint32_t>(keep, n.triangles);
   m.triangle_changed = arena_array_zeroed<std::uint8_t>(keep, n.triangles);
+  m.places = arena_array<MovingPlaces>(keep, place_count(scene));
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < scene.triangles.count; ++i)
-    if (moves(scene, scene.triangles[i])) m.triangles[count] = scene.triangles[i], m.ids[count++] = i;
+  for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
+    if (i % 32 == 0) m.places[i / 32] = {0, count};
+    if (!moves(scene, scene.triangles[i])) continue;
+    m.places[i / 32].bits |= 1u << (i % 32);
+    m.triangles[count] = scene.triangles[i], m.ids[count++] = i;
+  }
   CHECK_EQ(count, n.triangles);
   m.run_begin = arena_array<std::uint32_t>(keep, scene.moving_meshes.count);
   m.run_end = arena_array<std::uint32_t>(keep, scene.moving_meshes.count);
@@ -152,25 +165,29 @@ void follow_geometry(const FrameData& frame, MovingGeometry* m) {
   mark_nodes(m);
 }
 
-std::uint32_t moving_index(const MovingGeometry& m, std::uint32_t triangle) {
-  const std::uint32_t* found = std::lower_bound(m.ids.begin(), m.ids.end(), triangle);
-  return found != m.ids.end() && *found == triangle ? static_cast<std::uint32_t>(found - m.ids.begin()) : kNoTriangle;
-}
-
 bool meets_change(const MovingGeometry& m, const Beam& beam) {
   if (!m.changed) return false;
   BvhView last(m.last.data.data), now(m.now.data.data);
-  const BoxBeam tested = make_box_beam(beam, merge(m.last.bounds, m.now.bounds));
+  const Box bounds = merge(m.last.bounds, m.now.bounds);
+  const BoxBeam tested = make_box_beam(beam, bounds);
+  BeamHull hull;
+  bool has_hull = false;
   std::uint32_t stack[kBvhStackSize];
   int top = 0;
   stack[top++] = 0;
   while (top > 0) {
     const std::uint32_t i = stack[--top];
     unsigned met = m.node_changed[i];
-    if (met) met &= meets(tested, now.nodes[i].bounds) | meets(tested, last.nodes[i].bounds);
+    if (met) met &= meets_both(tested, now.nodes[i].bounds, last.nodes[i].bounds);
     for (; met; met &= met - 1) {
       const std::uint32_t child = now.nodes[i].child[__builtin_ctz(met)];
-      if (child & kLeafBit) return true;
+      if (child & kLeafBit) {
+        if (!has_hull) hull = make_beam_hull(beam, tested, bounds), has_hull = true;
+        const TriangleBlock &is = now.leaves[child & kLeafIndexMask], &was = last.leaves[child & kLeafIndexMask];
+        const unsigned changed = changed_lanes(m, is, leaf_triangle_count(child));
+        if (may_meet(hull, is, changed) || may_meet(hull, was, changed)) return true;
+        continue;
+      }
       CHECK_LT(top, kBvhStackSize);
       stack[top++] = child;
     }

@@ -6,9 +6,15 @@
 
 namespace pocketray {
 
+// Of 32 triangles of the scene, those that can move, and how many before them can.
+struct MovingPlaces {
+  std::uint32_t bits, before;
+};
+
 struct MovingGeometry {
   Array<Triangle> triangles;
   Array<std::uint32_t> ids;                 // in the scene, ascending
+  Array<MovingPlaces> places;               // of the scene's triangles among these
   Array<std::uint32_t> run_begin, run_end;  // vertices of moving meshes
   Array<Vec3> positions, normals;           // copies of these vertices; no normals if the scene has none
   Array<std::uint32_t> vertex_changed;      // a bit for each vertex of the scene
@@ -29,7 +35,13 @@ MovingGeometry make_moving_geometry(const FrameData& frame, Arena* keep, Arena* 
 void follow_geometry(const FrameData& frame, MovingGeometry* moving);
 
 // Index of a triangle of the scene among the moving ones, or kNoTriangle.
-std::uint32_t moving_index(const MovingGeometry& moving, std::uint32_t triangle);
+inline std::uint32_t moving_index(const MovingGeometry& moving, std::uint32_t triangle) {
+  if (triangle / 32 >= moving.places.count) return kNoTriangle;
+  const MovingPlaces& places = moving.places[triangle / 32];
+  const std::uint32_t bit = 1u << (triangle % 32);
+  if (!(places.bits & bit)) return kNoTriangle;
+  return places.before + static_cast<std::uint32_t>(__builtin_popcount(places.bits & (bit - 1)));
+}
 
 // Whether a ray of the beam can meet a changed triangle, where it was or where it is.
 bool meets_change(const MovingGeometry& moving, const Beam& beam);

@@ -141,6 +141,24 @@ TEST_CASE("coherent_frame_in_slices_equals_whole_one") {
   }
 }
 
+// Goal: each triangle that can move is found among them, and no other. Method: looked for in the list.
+TEST_CASE("moving_triangles_are_found_among_all") {
+  Settings settings;
+  settings.width = 64, settings.height = 48;
+  Pair pair = make_pair("seesaw", settings);
+  const MovingGeometry& m = pair.coherent->renderer.coherence.moving;
+  REQUIRE(m.ids.count > 0);
+  std::uint32_t next = 0, wrong = 0;
+  for (std::uint32_t i = 0; i < pair.coherent->renderer.scene.triangles.count; ++i) {
+    const bool can_move = next < m.ids.count && m.ids[next] == i;
+    wrong += moving_index(m, i) != (can_move ? next : kNoTriangle);
+    next += can_move;
+  }
+  CHECK_EQ(next, m.ids.count);
+  CHECK_EQ(wrong, 0);
+  CHECK_EQ(moving_index(m, kNoTriangle), kNoTriangle);
+}
+
 // Goal: what memory does not allow is left out, with a reason. Method: a block in which only the plain frame fits.
 TEST_CASE("coherence_without_room_is_left_out") {
   Settings settings;

@@ -1,0 +1,229 @@
+// Light and shadows that changed on first hits that did not.
+#include <algorithm>
+
+#include "accel/accel_list.h"
+#include "base/check.h"
+#include "shade/filters.h"
+#include "shade/interleaved.h"
+#include "temporal/tile_search.h"
+
+namespace pocketray {
+namespace {
+
+constexpr float kInfinity = __builtin_inff();
+
+// A shadow ray's filter, for triangles of the moving geometry.
+struct MovingFilter {
+  const MovingGeometry* moving;
+  HitFilter inner;
+};
+bool accept_moving(const void* context, std::uint32_t triangle, float u, float v) {
+  const auto& f = *static_cast<const MovingFilter*>(context);
+  return f.inner.accept(f.inner.context, f.moving->ids[triangle], u, v);
+}
+// The same for all other triangles of the scene.
+bool accept_static(const void* context, std::uint32_t triangle, float u, float v) {
+  const auto& f = *static_cast<const MovingFilter*>(context);
+  if (moving_index(*f.moving, triangle) != kNoTriangle) return false;
+  return !f.inner.accept || f.inner.accept(f.inner.context, triangle, u, v);
+}
+
+// All shadow rays from the points to the light.
+Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points, float room) {
+  const Box from = {points.low - Vec3{room, room, room}, points.high + Vec3{room, room, room}};
+  if (run.sample == find_light_sampler(Effect::directional_light))
+    return beam_along(from, {-light.direction, -light.direction}, kInfinity);
+  // A ray that starts beside its point ends as far beside the light.
+  return {from.low, from.high, light.position - points.low, light.position - points.high, 1};
+}
+
+// The receivers whose shadow ray to the light may meet a change, found in groups; without those that need no look.
+std::uint64_t find_suspects(const TileSearch& t, const LightRun& run, const LightPoint& light, float room,
+                            std::uint64_t idle) {
+  constexpr std::uint32_t kGroup = 16;  // a quarter of a whole tile; smaller groups cost more than they save
+  std::uint64_t suspects = 0;
+  for (std::uint32_t begin = 0; begin < t.receiver_count; begin += kGroup) {
+    const std::uint32_t end = std::min(begin + kGroup, t.receiver_count);
+    Box points = empty_box();
+    std::uint64_t group = 0;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      if ((t.changed | idle) & bit_of(t.pixels, t.receiver[k])) continue;
+      group |= std::uint64_t(1) << k;
+      points = merge(points, t.point[k]);
+    }
+    if (group && meets_change(*t.search.moving, shadow_beam(run, light, points, room))) suspects |= group;
+  }
+  return suspects;
+}
+
+struct ShadowRays {
+  SegmentPacket rays;
+  std::uint64_t pixel[kPacketMax];  // of each, as a bit of the tile
+};
+
+// Which of the rays `which` something blocks; bit i is ray i.
+std::uint64_t blocked_among(const AccelTraversal& traversal, const Accel& accel, const ShadowRays& s,
+                            std::uint64_t which, const HitFilter* filter, TraceStats* stats) {
+  if (which == 0) return 0;
+  SegmentPacket some;
+  std::uint8_t place[kPacketMax];
+  some.count = 0;
+  for (std::uint64_t rest = which; rest; rest &= rest - 1) {
+    place[some.count] = static_cast<std::uint8_t>(__builtin_ctzll(rest));
+    set_ray(&some, some.count, ray_of(s.rays, place[some.count]));
+    ++some.count;
+  }
+  std::uint64_t found = traversal.occluded_packet(accel, some, filter, stats), blocked = 0;
+  for (std::uint32_t i = 0; i < some.count; ++i) blocked |= (found >> i & 1) << place[i];
+  return blocked;
+}
+
+// The shadow rays of the receivers to the light; those that cast none are idle.
+void list_shadow_rays(TileSearch* t, const LightRun& run, const LightPoint& light, float room, KnownShadows* known,
+                      ShadowRays* s) {
+  s->rays.count = 0;
+  for (std::uint64_t rest = find_suspects(*t, run, light, room, known->idle); rest; rest &= rest - 1) {
+    const std::uint32_t k = static_cast<std::uint32_t>(__builtin_ctzll(rest));
+    const Surface& surface = surface_of(t, k);
+    const std::uint64_t bit = bit_of(t->pixels, t->receiver[k]);
+    LightSample sample;
+    if (!lights_up(t->frame, surface, run, light, &sample)) {
+      known->idle |= bit;
+      continue;
+    }
+    bool below = !(dot(surface.geometric, sample.direction) > 0);  // as in direct_light()
+    s->pixel[s->rays.count] = bit;
+    set_ray(&s->rays, s->rays.count++,
+            {below ? curved_origin(t->frame, surface) : safe_origin(surface, 1), sample.to_light, sample.t_max});
+  }
+}
+
+}  // namespace
+
+bool may_shade(const ChangeSearch& search, const TileHits& hits, const LightRun& run, const LightPoint& light) {
+  return meets_change(*search.moving, shadow_beam(run, light, hits.points, hits.room));
+}
+
+void find_lit_by(TileSearch* t, const LightRun& run, std::uint32_t light) {
+  const LightPoint &is = t->frame.lights[light], &was = t->search.last.lights[light];
+  for (std::uint32_t k = 0; k < t->receiver_count; ++k) {
+    if (t->changed & bit_of(t->pixels, t->receiver[k])) continue;
+    const Surface& s = surface_of(t, k);
+    LightSample sample;
+    if (lights_up(t->frame, s, run, was, &sample) || lights_up(t->frame, s, run, is, &sample))
+      t->changed |= bit_of(t->pixels, t->receiver[k]);
+  }
+}
+
+void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t light, float room, bool is_kept,
+                          KnownShadows* known) {
+  const FrameData& frame = t->frame;
+  const MovingGeometry& m = *t->search.moving;
+  ShadowRays s;
+  list_shadow_rays(t, run, frame.lights[light], room, known, &s);
+  if (s.rays.count == 0) return;
+  ShadowContext shadow = {&frame, frame.lights[light].material};
+  bool filtered = frame.filter_every_shadow || shadow.emitter != kNone;
+  bool clear = frame.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
+  MovingFilter context = {&m, {filtered ? frame.accept_opaque : nullptr, &shadow}};
+  HitFilter opaque = {accept_moving, &context}, other = {accept_static, &context};
+  const HitFilter* filter = filtered && !clear ? &opaque : nullptr;
+
+  std::uint64_t fresh = 0, was = 0;
+  for (std::uint32_t i = 0; i < s.rays.count; ++i) {
+    if (known->known & s.pixel[i])
+      was |= std::uint64_t((known->blocked & s.pixel[i]) != 0) << i;
+    else
+      fresh |= std::uint64_t(1) << i;
+  }
+  auto idle_of = [&](std::uint64_t which) {
+    t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(which));
+    return blocked_among(*frame.first_rays, frame.accel, s, which, &other, t->stats);
+  };
+  const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s.rays.count);
+  std::uint64_t idle = is_kept ? idle_of(fresh) : 0;
+  was |= blocked_among(kBvhAccel, m.last, s, fresh & ~idle, filter, t->stats);
+  const std::uint64_t is = blocked_among(kBvhAccel, m.now, s, all & ~idle, filter, t->stats);
+  t->counts->moving_rays += static_cast<std::uint64_t>(__builtin_popcountll(fresh & ~idle)) +
+                            static_cast<std::uint64_t>(__builtin_popcountll(all & ~idle));
+  std::uint64_t changed = clear ? was | is : was ^ is;
+  if (!is_kept) changed &= ~idle_of(changed);
+  for (std::uint32_t i = 0; i < s.rays.count; ++i) {
+    if (idle >> i & 1) known->idle |= s.pixel[i];
+    known->known |= s.pixel[i];
+    known->blocked = (is >> i & 1) ? known->blocked | s.pixel[i] : known->blocked & ~s.pixel[i];
+    if (changed >> i & 1) t->changed |= s.pixel[i];
+  }
+}
+
+namespace {
+
+// All shadow rays from the points towards a distant light.
+Beam distant_beam(const EnvironmentLight& light, const TileHits& hits) {
+  const Vec3 room = {hits.room, hits.room, hits.room};
+  return beam_along({hits.points.low - room, hits.points.high + room}, {light.direction, light.direction}, kInfinity);
+}
+
+// Calls visit(index, light) for each distant light of the environment towards which the tile has a ray that can meet a
+// change. Stops when it returns false.
+template <class Visit>
+void for_each_distant_suspect(const ChangeSearch& search, const TileHits& hits, Visit visit) {
+  const FrameData& frame = *search.frame;
+  if (!has(frame.mask, Effect::environment_shadow) || is_empty(hits.points) || !search.moving->changed) return;
+  const EnvironmentLights& lights = *frame.environment_lights;
+  for (std::uint32_t i = 0; i < lights.count; ++i)
+    if (meets_change(*search.moving, distant_beam(lights.light[i], hits)) && !visit(i, lights.light[i])) return;
+}
+
+// Pixels of which a ray towards the environment is blocked where it was not, or no longer.
+void find_changed_openness(TileSearch* t, ShadowRays* s) {
+  if (s->rays.count == 0) return;
+  const FrameData& frame = t->frame;
+  const MovingGeometry& m = *t->search.moving;
+  ShadowContext shadow = {&frame, kNone};
+  MovingFilter context = {&m, {frame.filter_every_shadow ? frame.accept_opaque : nullptr, &shadow}};
+  HitFilter opaque = {accept_moving, &context}, other = {accept_static, &context};
+  const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
+  const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s->rays.count);
+  const std::uint64_t changed = blocked_among(kBvhAccel, m.last, *s, all, filter, t->stats) ^
+                                blocked_among(kBvhAccel, m.now, *s, all, filter, t->stats);
+  const std::uint64_t hidden = blocked_among(*frame.first_rays, frame.accel, *s, changed, &other, t->stats);
+  t->counts->moving_rays += 2 * s->rays.count;
+  t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(changed));
+  for (std::uint32_t i = 0; i < s->rays.count; ++i)
+    if ((changed & ~hidden) >> i & 1) t->given |= s->pixel[i];
+  s->rays.count = 0;
+}
+
+}  // namespace
+
+bool is_open_to_change(const ChangeSearch& search, const TileHits& hits) {
+  bool any = false;
+  for_each_distant_suspect(search, hits, [&](std::uint32_t, const EnvironmentLight&) { return !(any = true); });
+  return any;
+}
+
+void find_other_light(TileSearch* t, const TileHits& hits) {
+  if (!has(t->frame.mask, Effect::environment_shadow)) return;
+  t->given |= t->changed;  // no receivers: their rays are not looked at
+  ShadowRays s;
+  s.rays.count = 0;
+  for_each_distant_suspect(t->search, hits, [&](std::uint32_t index, const EnvironmentLight& light) {
+    for (std::uint32_t k = 0; k < t->receiver_count; ++k) {
+      const std::uint32_t i = t->receiver[k];
+      if (morton_place(t->pixels.x[i] % kPatternSide, t->pixels.y[i] % kPatternSide) != index % kPatternPixels)
+        continue;
+      if (t->given & bit_of(t->pixels, i)) continue;
+      const Surface& surface = surface_of(t, k);
+      if (is_zero(surface.diffuse) || !arrives(light, surface)) continue;
+      s.pixel[s.rays.count] = bit_of(t->pixels, i);
+      set_ray(&s.rays, s.rays.count++, {safe_origin(surface, 1), light.direction, kInfinity});
+      if (s.rays.count == kPacketMax) find_changed_openness(t, &s);
+    }
+    return true;
+  });
+  find_changed_openness(t, &s);
+  t->changed |= t->given;
+}
+
+}  // namespace pocketray
