@@ -7,7 +7,7 @@
 
 namespace pocketray {
 
-// A beam prepared for tests against boxes within `bounds`.
+// A beam prepared for tests against boxes within some bounds.
 struct BoxBeam {
   // The beam's planes, low and high of each axis: slope·t ≤ limit of a box, as t ≤ or ≥ limit · inverse by the slope's
   // sign, or, for slope 0, 0 ≤ limit.
@@ -35,6 +35,8 @@ inline BoxBeam make_box_beam(const Beam& beam, const Box& bounds) {
   return b;
 }
 
+inline namespace POCKETRAY_ISA {
+
 // Which of four pairs of boxes have a box around both that a ray of the beam can meet: those for which there is a t at
 // which the beam's box and it overlap. These are six linear inequalities, so no ray that meets a box is missed. (Where
 // a product is not a number, the bound stays.)
@@ -59,4 +61,5 @@ inline unsigned meets_both(const BoxBeam& b, const float (&one)[6][4], const flo
   return bits(inside & (begin * Float4::splat(1 - 0x1p-20f) <= end));
 }
 
+}  // namespace POCKETRAY_ISA
 }  // namespace pocketray

@@ -170,12 +170,18 @@ void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, Tr
   CHECK_LT(thread, c->counts.count);
   CHECK_LT(tile_row, c->tile_rows);
   const std::uint64_t known = known_pixels(*c, tile_row);
-  for (std::uint32_t tile = tile_row * c->tile_columns; tile < (tile_row + 1) * c->tile_columns; ++tile) {
+  const std::uint32_t row_begin = tile_row * c->tile_columns, row_end = row_begin + c->tile_columns;
+  const bool searches = known != 0 && !c->plan.tables_only;
+  Suspects suspects = {};
+  for (std::uint32_t tile = row_begin; tile < row_end; ++tile) {
+    if (searches && (tile - row_begin) % kSuspectTiles == 0)
+      suspects = suspects_of(c->search, tile, std::min(tile + kSuspectTiles, row_end));
     const std::uint64_t unknown = ~known & pixels_in_picture(*c, tile);
     std::uint64_t found = 0, given = unknown;
     if (known != 0)
-      found = c->plan.tables_only ? find_blocks(*c, tile) & known
-                                  : find_changed_pixels(c->search, tile, known, &given, &c->counts[thread], stats);
+      found = c->plan.tables_only
+                  ? find_blocks(*c, tile) & known
+                  : find_changed_pixels(c->search, tile, suspects, known, &given, &c->counts[thread], stats);
     if (c->given.count) c->given[tile] = given;
     if (!c->plan.tables_only) forget_shadows(c->search, tile, unknown);
     c->changed[tile] = found | unknown;

@@ -7,12 +7,12 @@ namespace {
 
 constexpr float kInfinity = __builtin_inff();
 
-// The beam of all camera rays of a square of pixels, up to a distance.
-Beam camera_beam(const CameraRays& c, std::uint32_t column, std::uint32_t row, std::uint32_t side, float t_max) {
+// The beam of all camera rays of some pixels, up to a distance.
+Beam camera_beam(const CameraRays& c, const PixelRect& pixels, float t_max) {
   Box origins = empty_box(), directions = empty_box();
   for (int corner = 0; corner < 4; ++corner) {
-    float x = static_cast<float>(column + (corner & 1 ? side : 0));
-    float y = static_cast<float>(row + (corner & 2 ? side : 0));
+    float x = static_cast<float>(pixels.column + (corner & 1 ? pixels.width : 0));
+    float y = static_cast<float>(pixels.row + (corner & 2 ? pixels.height : 0));
     float sx = 2 * x / c.width - 1, sy = 1 - 2 * y / c.height;
     Vec3 aside = c.right * sx + c.up * sy;
     origins = merge(origins, c.orthographic ? c.eye + aside : c.eye);
@@ -46,8 +46,7 @@ std::uint32_t list_seen(TileSearch* t, float t_max, std::uint8_t* pixels) {
   bool meets[2][2];
   for (std::uint32_t y = 0; y < 2; ++y)
     for (std::uint32_t x = 0; x < 2; ++x)
-      meets[y][x] = meets_change(*t->search.moving,
-                                 camera_beam(t->frame.camera, p.column + kSide * x, p.row + kSide * y, kSide, t_max));
+      meets[y][x] = sees_change(t->search, {p.column + kSide * x, p.row + kSide * y, kSide, kSide}, t_max);
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < p.count; ++i) {
     if (!meets[p.y[i] / kSide][p.x[i] / kSide]) continue;
@@ -61,9 +60,8 @@ std::uint32_t list_seen(TileSearch* t, float t_max, std::uint8_t* pixels) {
 
 }  // namespace
 
-bool sees_change(const ChangeSearch& search, const TileHits& hits, std::uint32_t column, std::uint32_t row) {
-  return search.moving->changed &&
-         meets_change(*search.moving, camera_beam(search.frame->camera, column, row, kChangeTileSide, hits.t_max));
+bool sees_change(const ChangeSearch& search, const PixelRect& pixels, float t_max) {
+  return search.moving->changed && meets_change(*search.moving, camera_beam(search.frame->camera, pixels, t_max));
 }
 
 void find_changed_hits(TileSearch* t, float t_max) {

@@ -8,7 +8,7 @@
 #include "accel/bvh.h"
 #include "base/check.h"
 #include "scene/animate.h"
-#include "temporal/triangle_beam.h"
+#include "temporal/beam_search.h"
 
 namespace pocketray {
 namespace {
@@ -55,14 +55,6 @@ void follow(const MovingGeometry& moving, Array<const Vec3> from, Array<Vec3> co
     }
   }
   CHECK_EQ(k, copy.count);
-}
-
-// Which triangles of a leaf have changed, a bit each.
-unsigned changed_lanes(const MovingGeometry& m, const TriangleBlock& leaf, std::uint32_t count) {
-  unsigned changed = 0;
-  for (std::uint32_t k = 0; k < count; ++k)
-    changed |= static_cast<unsigned>(m.triangle_changed[leaf.triangle[k] & ~kUnhittableBit] != 0) << k;
-  return changed;
 }
 
 // Marks the children of the nodes below which a triangle has changed.
@@ -167,32 +159,11 @@ void follow_geometry(const FrameData& frame, MovingGeometry* m) {
 
 bool meets_change(const MovingGeometry& m, const Beam& beam) {
   if (!m.changed) return false;
-  BvhView last(m.last.data.data), now(m.now.data.data);
-  const Box bounds = merge(m.last.bounds, m.now.bounds);
-  const BoxBeam tested = make_box_beam(beam, bounds);
-  BeamHull hull;
-  bool has_hull = false;
-  std::uint32_t stack[kBvhStackSize];
-  int top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const std::uint32_t i = stack[--top];
-    unsigned met = m.node_changed[i];
-    if (met) met &= meets_both(tested, now.nodes[i].bounds, last.nodes[i].bounds);
-    for (; met; met &= met - 1) {
-      const std::uint32_t child = now.nodes[i].child[__builtin_ctz(met)];
-      if (child & kLeafBit) {
-        if (!has_hull) hull = make_beam_hull(beam, tested, bounds), has_hull = true;
-        const TriangleBlock &is = now.leaves[child & kLeafIndexMask], &was = last.leaves[child & kLeafIndexMask];
-        const unsigned changed = changed_lanes(m, is, leaf_triangle_count(child));
-        if (may_meet(hull, is, changed) || may_meet(hull, was, changed)) return true;
-        continue;
-      }
-      CHECK_LT(top, kBvhStackSize);
-      stack[top++] = child;
-    }
-  }
-  return false;
+  const BoundedBeam bounded = bounded_beam(beam, merge(m.last.bounds, m.now.bounds));
+#if defined(POCKETRAY_HAVE_NEON32)
+  if (active_isa() == Isa::kNeon && bounded.is_tame) return meets_change_neon(m, bounded);
+#endif
+  return meets_change(m, bounded);
 }
 
 void for_each_changed_box(const MovingGeometry& m, void (*visit)(void* context, const Box& box), void* context) {

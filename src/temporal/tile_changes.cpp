@@ -52,16 +52,17 @@ bool has_light_changed(const ChangeSearch& search, const LightRun& run, std::uin
   return std::memcmp(&search.last.light_polygons[lamp], &run.polygons[lamp], sizeof(LightPolygon)) != 0;
 }
 
-// Calls visit(run, light, has_changed) for each light that has changed, or to which the tile has a ray that can meet a
-// change. Stops when it returns false.
+// Calls visit(run, light, has_changed) for each light, of those that are suspect, that has changed, or to which the
+// tile has a ray that can meet a change. Stops when it returns false.
 template <class Visit>
-void for_each_suspect(const ChangeSearch& search, const TileHits& hits, Visit visit) {
+void for_each_suspect(const ChangeSearch& search, const TileHits& hits, std::uint64_t suspects, Visit visit) {
   const FrameData& frame = *search.frame;
   if (is_empty(hits.points)) return;
   const bool casts = has(frame.mask, Effect::shadow) && search.moving->changed;
   for (int r = 0; r < frame.light_run_count; ++r) {
     const LightRun& run = frame.light_runs[r];
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      if (i < kSuspectLights && !(suspects >> i & 1)) continue;
       const bool has_changed = has_light_changed(search, run, i);
       if (!has_changed && (!casts || !may_shade(search, hits, run, frame.lights[i]))) continue;
       if (!visit(run, i, has_changed)) return;
@@ -84,17 +85,20 @@ std::uint64_t find_marked(const ChangeSearch& search, std::uint32_t column, std:
   return found;
 }
 
-std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known_pixels,
-                              std::uint64_t* given, ChangeCounts* counts, TraceStats* stats) {
+std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, const Suspects& suspects,
+                              std::uint64_t known_pixels, std::uint64_t* given, ChangeCounts* counts,
+                              TraceStats* stats) {
   const FrameData& frame = *search.frame;
   const TileHits& hits = search.tiles[tile];
   const std::uint32_t column = tile % search.tile_columns * kChangeTileSide,
                       row = tile / search.tile_columns * kChangeTileSide;
   const std::uint64_t marked = find_marked(search, column, row) & known_pixels;
-  const bool seen = sees_change(search, hits, column, row);
+  const bool seen = suspects.seen && sees_change(search, {column, row, kChangeTileSide, kChangeTileSide}, hits.t_max);
   bool any = seen;
-  if (!any) for_each_suspect(search, hits, [&](const LightRun&, std::uint32_t, bool) { return !(any = true); });
-  if (!any && !is_open_to_change(search, hits)) return marked;
+  if (!any)
+    for_each_suspect(search, hits, suspects.lights,
+                     [&](const LightRun&, std::uint32_t, bool) { return !(any = true); });
+  if (!any && !(suspects.open && is_open_to_change(search, hits))) return marked;
   const TilePixels pixels = pixels_of(frame.settings, column, row, known_pixels);
   if (pixels.count == 0) return 0;
   TileSearch t(search, pixels, marked, *given, counts, stats);
@@ -105,7 +109,7 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, st
     find_receivers(&t);
     find_other_light(&t, hits);
     KnownShadows* known = known_shadows(search, sample, tile);
-    for_each_suspect(search, hits, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
+    for_each_suspect(search, hits, suspects.lights, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
       const bool is_kept = light < search.known_lights;
       KnownShadows none, *of_light = is_kept ? &known[light] : &none;
       // A light that changed: what is known holds for the pixels that it did not reach, and does not now.
@@ -137,9 +141,28 @@ void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_
   }
 }
 
-std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
-                                  std::uint64_t* given, ChangeCounts* counts, TraceStats* stats) {
-  const std::uint64_t changed = find_changes_of(search, tile, known, given, counts, stats);
+Suspects suspects_of(const ChangeSearch& search, std::uint32_t begin, std::uint32_t end) {
+  TileHits all;
+  for (std::uint32_t tile = begin; tile < end; ++tile) {
+    const TileHits& hits = search.tiles[tile];
+    all.points = merge(all.points, hits.points);
+    all.room = std::max(all.room, hits.room), all.t_max = std::max(all.t_max, hits.t_max);
+  }
+  const std::uint32_t column = begin % search.tile_columns * kChangeTileSide,
+                      row = begin / search.tile_columns * kChangeTileSide;
+  Suspects suspects = {};
+  suspects.seen = sees_change(search, {column, row, (end - begin) * kChangeTileSide, kChangeTileSide}, all.t_max);
+  suspects.open = is_open_to_change(search, all);
+  for_each_suspect(search, all, ~std::uint64_t(0), [&](const LightRun&, std::uint32_t light, bool) {
+    if (light < kSuspectLights) suspects.lights |= std::uint64_t(1) << light;
+    return light < kSuspectLights;
+  });
+  return suspects;
+}
+
+std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, const Suspects& suspects,
+                                  std::uint64_t known, std::uint64_t* given, ChangeCounts* counts, TraceStats* stats) {
+  const std::uint64_t changed = find_changes_of(search, tile, suspects, known, given, counts, stats);
   forget_shadows(search, tile, changed);
   return changed;
 }

@@ -55,10 +55,21 @@ struct ChangeCounts {
   std::uint64_t static_rays = 0;  // shadow rays against everything else
 };
 
+// What some tiles next to each other may have rays to that meet a change: the camera, the environment, and of the first
+// lights, bit i for light i.
+struct Suspects {
+  bool seen, open;
+  std::uint64_t lights;
+};
+constexpr std::uint32_t kSuspectLights = 64;  // further ones are always suspect
+constexpr std::uint32_t kSuspectTiles = 8;    // looked at together
+// Of the tiles [begin, end) of a row.
+Suspects suspects_of(const ChangeSearch& search, std::uint32_t begin, std::uint32_t end);
+
 // Of the tile's pixels `known`, whose last frame is kept, bit 8·y + x for each that must be traced again. Adds to
 // `given` those that may give other light to the pixels about them (shade/interleaved.h).
-std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, std::uint64_t known,
-                                  std::uint64_t* given, ChangeCounts* counts, TraceStats* stats);
+std::uint64_t find_changed_pixels(const ChangeSearch& search, std::uint32_t tile, const Suspects& suspects,
+                                  std::uint64_t known, std::uint64_t* given, ChangeCounts* counts, TraceStats* stats);
 // What is known of the shadows of pixels that are traced again no longer holds.
 void forget_shadows(const ChangeSearch& search, std::uint32_t tile, std::uint64_t changed);
 

@@ -24,6 +24,10 @@ inline Ray sample_ray(const FrameData& frame, const TilePixels& p, std::uint32_t
                     static_cast<float>(p.row + p.y[i]) + offset.y);
 }
 
+struct PixelRect {
+  std::uint32_t column, row, width, height;
+};
+
 struct TileSearch {
   const ChangeSearch& search;
   const FrameData& frame;
@@ -53,8 +57,8 @@ struct TileSearch {
         hits(nullptr) {}
 };
 
-// Whether a camera ray of the tile may meet a change.
-bool sees_change(const ChangeSearch& search, const TileHits& hits, std::uint32_t column, std::uint32_t row);
+// Whether a camera ray of some pixels, these among others, may meet a change; `t_max` is of the farthest hit.
+bool sees_change(const ChangeSearch& search, const PixelRect& pixels, float t_max);
 // Pixels whose first hits may have changed; `t_max` is of the farthest.
 void find_changed_hits(TileSearch* t, float t_max);
 

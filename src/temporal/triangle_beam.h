@@ -13,6 +13,10 @@ struct BeamHull {
   bool is_bounded;              // otherwise nothing can be proved
 };
 
+// Coordinates between these have products of three that are, with their errors, far from the smallest and the largest
+// floats.
+constexpr float kTameMin = 0x1p-40f, kTameMax = 0x1p40f;
+
 // Where all of the beam has left the bounds.
 inline float leaves_at(const BoxBeam& b, const Box& bounds) {
   float t = b.t_max;
@@ -24,15 +28,29 @@ inline float leaves_at(const BoxBeam& b, const Box& bounds) {
   return std::fmax(t, 0.0f) * (1 + 0x1p-20f);
 }
 
-inline BeamHull make_beam_hull(const Beam& beam, const BoxBeam& tested, const Box& bounds) {
+// A beam, what it is tested with against boxes, and the bounds of these.
+struct BoundedBeam {
+  Beam beam;
+  BoxBeam tested;
+  Box bounds;
+  bool is_tame;  // far enough from the smallest and the largest floats that flushed denormals matter to no test
+};
+
+inline BoundedBeam bounded_beam(const Beam& beam, const Box& bounds) {
+  const float size = max_component(max(max(abs(beam.low), abs(beam.high)), max(abs(bounds.low), abs(bounds.high)))),
+              slope = max_component(max(abs(beam.low_slope), abs(beam.high_slope)));
+  return {beam, make_box_beam(beam, bounds), bounds, size > kTameMin && size < kTameMax && slope < kTameMax};
+}
+
+inline BeamHull make_beam_hull(const BoundedBeam& b) {
   BeamHull hull;
-  const float t = leaves_at(tested, bounds);
+  const Beam& beam = b.beam;
+  const float t = leaves_at(b.tested, b.bounds);
   const Vec3 low = beam.low + beam.low_slope * t, high = beam.high + beam.high_slope * t;
-  Vec3 size = max(max(abs(beam.low), abs(beam.high)), max(abs(bounds.low), abs(bounds.high)));
+  Vec3 size = max(max(abs(beam.low), abs(beam.high)), max(abs(b.bounds.low), abs(b.bounds.high)));
   size = max(size, max(abs(low), abs(high)));
-  // Products of three such numbers and their errors are far above the smallest float.
   const float most = max_component(size);
-  hull.is_bounded = t < __builtin_inff() && most > 0x1p-40f && most < 0x1p100f;
+  hull.is_bounded = most > kTameMin && most < kTameMax && t < __builtin_inff();
   if (!hull.is_bounded) return hull;
   hull.scale = 1 / most;
   float longest = 0;
@@ -48,6 +66,8 @@ inline BeamHull make_beam_hull(const Beam& beam, const BoxBeam& tested, const Bo
     for (float& component : hull.direction) component /= longest;
   return hull;
 }
+
+inline namespace POCKETRAY_ISA {
 
 struct Points4 {
   Float4 at[3];
@@ -73,7 +93,8 @@ inline Mask4 are_apart_along(const BeamHull& hull, const Points4& normal, const 
     }
   }
   const Float4 a = dot(normal, corner[0]), b = dot(normal, corner[1]), c = dot(normal, corner[2]);
-  return (max(max(a, b), c) < min(low[0], low[1])) | (max(high[0], high[1]) < min(min(a, b), c));
+  const Float4 flushed = Float4::splat(0x1p-100f);  // more than flushed denormals add up to
+  return (max(max(a, b), c) + flushed < min(low[0], low[1])) | (max(high[0], high[1]) + flushed < min(min(a, b), c));
 }
 
 // Which of the triangles `among`, a bit each, a ray of the beam may meet.
@@ -92,4 +113,5 @@ inline unsigned may_meet(const BeamHull& hull, const TriangleBlock& block, unsig
   return among;
 }
 
+}  // namespace POCKETRAY_ISA
 }  // namespace pocketray

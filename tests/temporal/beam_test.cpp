@@ -45,7 +45,7 @@ bool meets_triangle(const Beam& beam, const Vec3 (&corner)[3]) {
   for (int lane = 0; lane < 4; ++lane)
     for (int i = 0; i < 3; ++i)
       for (int axis = 0; axis < 3; ++axis) block.vertex[i][axis][lane] = corner[i][axis];
-  const unsigned met = may_meet(make_beam_hull(beam, make_box_beam(beam, bounds), bounds), block, 15);
+  const unsigned met = may_meet(make_beam_hull(bounded_beam(beam, bounds)), block, 15);
   CHECK((met == 0 || met == 15));
   return met != 0;
 }
