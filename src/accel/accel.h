@@ -16,6 +16,8 @@ struct Accel {
   Array<const Triangle> triangles;
   Box bounds = empty_box();
   float least_coordinate = 0;      // no coordinate but 0 is nearer to 0; 0: unknown
+  Array<const MovingMesh> moving;  // after settle(): the vertices that can move
+  float least_still = 0;           // after settle(): as least_coordinate, of all others
   Array<const std::uint8_t> data;  // the structure itself; of `grid`, queries change it: grid.h
 };
 
@@ -54,6 +56,9 @@ struct AccelInfo : AccelTraversal {
   // Builds over the triangles of `accel` (positions and triangles are set). Keeps data in `keep`; uses and releases
   // `scratch`. Never fails, since sizes are planned.
   void (*build)(Accel* accel, Arena* keep, Arena* scratch);
+  // Marks in writable data what refit() can leave as it is: triangles without a vertex in these runs, which must
+  // outlive the accelerator. Null: nothing.
+  void (*settle)(Accel* accel, Array<std::uint8_t> data, Array<const MovingMesh> moving);
   // Adapts writable data to moved positions with unchanged topology. Null: build() again for every frame.
   void (*refit)(Accel* accel, Array<std::uint8_t> data);
   // Adopts baked data, aligned to 64, after checking every index, bound and vertex in it against the geometry.

@@ -83,6 +83,7 @@ const AccelInfo kBruteAccel = {
     brute_need,
     brute_scratch_need,
     brute_build,
+    nullptr,
     brute_refit,
     brute_adopt,
     largest_of_all,

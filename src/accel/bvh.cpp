@@ -30,6 +30,9 @@ struct Hierarchy {
   static const AccelTraversal& kernels() { return *kKernels[static_cast<int>(active_isa())]; }
   static std::size_t need(std::uint32_t triangle_count) { return bvh_need(kLeaves, triangle_count); }
   static void build(Accel* accel, Arena* keep, Arena* scratch) { bvh_build(kLeaves, accel, keep, scratch); }
+  static void settle(Accel* accel, Array<std::uint8_t> data, Array<const MovingMesh> moving) {
+    bvh_settle(kLeaves, accel, data, moving);
+  }
   static void refit(Accel* accel, Array<std::uint8_t> data) { bvh_refit(kLeaves, accel, data); }
   static Status adopt(Accel* accel, Array<const std::uint8_t> data) { return bvh_adopt(kLeaves, accel, data); }
   static void closest(const Accel& accel, const Ray& ray, const HitFilter* filter, Hit* hit, TraceStats* stats) {
@@ -56,6 +59,7 @@ struct Hierarchy {
             need,
             bvh_scratch_need,
             build,
+            settle,
             refit,
             adopt,
             largest};

@@ -43,7 +43,8 @@ constexpr std::uint32_t kCompactMagic = 0x34435642;  // "BVC4"
 struct alignas(64) BvhNode {
   float bounds[6][4];         // low x, y, z, then high x, y, z, of the four children
   std::uint32_t child[4];     // children in use come first
-  std::uint32_t reserved[4];  // 0
+  std::uint32_t still;        // bit i: refits leave child i as it is; 0 in files
+  std::uint32_t reserved[3];  // 0
 };
 static_assert(sizeof(BvhNode) == 128, "two cache lines");
 
@@ -116,6 +117,7 @@ inline Box node_box(const BvhNode& node) {
 std::size_t bvh_need(const LeafKind& kind, std::uint32_t triangle_count);
 std::size_t bvh_scratch_need(std::uint32_t triangle_count);
 void bvh_build(const LeafKind& kind, Accel* accel, Arena* keep, Arena* scratch);
+void bvh_settle(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data, Array<const MovingMesh> moving);
 void bvh_refit(const LeafKind& kind, Accel* accel, Array<std::uint8_t> data);
 Status bvh_adopt(const LeafKind& kind, Accel* accel, Array<const std::uint8_t> data);
 float bvh_largest(const LeafKind& kind, const Accel& accel, const TriangleQuery& query);

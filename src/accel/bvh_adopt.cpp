@@ -49,7 +49,7 @@ Status check_node(Walk* walk, const Visit& visit, Visit* stack, std::uint32_t* s
     std::uint32_t child = node.child[lane];
     Box box = child_box(node, lane), none = no_child_box();
     ended = ended || child == kNoChild;
-    bool sound = node.reserved[lane] == 0;
+    bool sound = (lane == 0 ? node.still : node.reserved[lane - 1]) == 0;
     if (ended) {
       sound = sound && child == kNoChild && same_box(box, none);
     } else if (child & kLeafBit) {

@@ -81,8 +81,9 @@ struct Builder {
 
 BvhNode* clear_node(Builder* builder, std::uint32_t index) {
   BvhNode* node = &builder->nodes[index];
+  node->still = 0;
+  for (std::uint32_t& word : node->reserved) word = 0;
   for (int lane = 0; lane < 4; ++lane) {
-    node->reserved[lane] = 0;
     node->child[lane] = kNoChild;
     set_child_box(node, lane, no_child_box());
   }

@@ -67,6 +67,7 @@ const AccelInfo kGridAccel = {
     scratch_need,
     build,
     nullptr,
+    nullptr,
     adopt,
     largest_of_all,
     true,

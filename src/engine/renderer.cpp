@@ -157,6 +157,8 @@ Status build_renderer_unexposed(Renderer* renderer) {
   CHECK(renderer->accel_info != nullptr && renderer->image.empty());  // planned, and not built before
   std::uint64_t start = clock_ns();
   RETURN_IF_ERROR(adopt_or_build(renderer));
+  if (moves(*renderer) && renderer->accel_info->refit && renderer->accel_info->settle)
+    renderer->accel_info->settle(&renderer->accel, renderer->accel_data, renderer->scene.moving_meshes);
   renderer->timings.build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
 
   if (moves(*renderer)) renderer->pose = make_pose(renderer->scene, &renderer->persistent_arena);

@@ -8,6 +8,7 @@
 #include "accel/bvh.h"
 #include "base/check.h"
 #include "scene/animate.h"
+#include "scene/moving.h"
 #include "temporal/beam_search.h"
 
 namespace pocketray {
@@ -20,24 +21,13 @@ bool can_move(const Scene& scene, EffectMask mask) {
   return has(mask, Effect::animation) && is_animated(scene) && scene.moving_meshes.count > 0;
 }
 
-bool moves(const Scene& scene, std::uint32_t vertex) {
-  const MovingMesh* end = scene.moving_meshes.end();
-  const MovingMesh* next = std::upper_bound(scene.moving_meshes.begin(), end, vertex,
-                                            [](std::uint32_t v, const MovingMesh& m) { return v < m.vertex_begin; });
-  return next != scene.moving_meshes.begin() && vertex - next[-1].vertex_begin < next[-1].vertex_count;
-}
-
-bool moves(const Scene& scene, const Triangle& t) {
-  return moves(scene, t.vertex(0)) || moves(scene, t.vertex(1)) || moves(scene, t.vertex(2));
-}
-
 struct Sizes {
   std::uint32_t triangles = 0, vertices = 0;
 };
 
 Sizes sizes_of(const Scene& scene) {
   Sizes sizes;
-  for (const Triangle& t : scene.triangles) sizes.triangles += moves(scene, t);
+  for (const Triangle& t : scene.triangles) sizes.triangles += moves(scene.moving_meshes, t);
   for (const MovingMesh& mesh : scene.moving_meshes) sizes.vertices += mesh.vertex_count;
   return sizes;
 }
@@ -108,7 +98,7 @@ MovingGeometry make_moving_geometry(const FrameData& frame, Arena* keep, Arena* 
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
     if (i % 32 == 0) m.places[i / 32] = {0, count};
-    if (!moves(scene, scene.triangles[i])) continue;
+    if (!moves(scene.moving_meshes, scene.triangles[i])) continue;
     m.places[i / 32].bits |= 1u << (i % 32);
     m.triangles[count] = scene.triangles[i], m.ids[count++] = i;
   }

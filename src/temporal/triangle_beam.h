@@ -1,5 +1,7 @@
 // Beams against triangles, four at a time: a plane between them proves that no ray of the beam meets the triangle.
 #pragma once
+#include <algorithm>
+
 #include "accel/triangle.h"
 #include "temporal/box_beam.h"
 
@@ -23,9 +25,9 @@ inline float leaves_at(const BoxBeam& b, const Box& bounds) {
   for (int axis = 0; axis < 3; ++axis) {
     const float limit[2] = {bounds.high[axis] - b.low[axis], b.high[axis] - bounds.low[axis]};
     for (int side = 0; side < 2; ++side)
-      if (b.sign[2 * axis + side] > 0) t = std::fmin(t, limit[side] * b.inverse[2 * axis + side]);
+      if (b.sign[2 * axis + side] > 0) t = std::min(t, limit[side] * b.inverse[2 * axis + side]);
   }
-  return std::fmax(t, 0.0f) * (1 + 0x1p-20f);
+  return std::max(t, 0.0f) * (1 + 0x1p-20f);
 }
 
 // A beam, what it is tested with against boxes, and the bounds of these.
@@ -60,7 +62,7 @@ inline BeamHull make_beam_hull(const BoundedBeam& b) {
     hull.low[0][axis] = beam.low[axis] - slack, hull.high[0][axis] = beam.high[axis] + slack;
     hull.low[1][axis] = low[axis] - slack, hull.high[1][axis] = high[axis] + slack;
     hull.direction[axis] = (low[axis] + high[axis]) - (beam.low[axis] + beam.high[axis]);
-    longest = std::fmax(longest, std::fabs(hull.direction[axis]));
+    longest = std::max(longest, std::fabs(hull.direction[axis]));
   }
   if (longest > 0)
     for (float& component : hull.direction) component /= longest;
