@@ -22,8 +22,8 @@ constexpr std::uint16_t kEscape = 1, kBackspace = 14, kTab = 15, kE = 18, kT = 2
 // 92 (tests/bench/device/codec_cost.py, with frames of cornell and statue in both formats). Here an ARM920T and an
 // ARM1176 count as an ARM926, and the tablet takes longer than x86-64 by its slowdown.
 //
-// Preparing a frame of a moving scene takes an ARM926 3,100 clocks a triangle and 5,400 a moving vertex, a Cortex-A7 800
-// and 350, an x86-64 core 75 and 24 ns (tests/bench/device/prepare_cost.py; `bench seesaw` for x86-64).
+// Preparing a frame of a moving scene takes an ARM926 3,100 clocks a moving triangle and 5,400 a moving vertex, a
+// Cortex-A7 800 and 350, an x86-64 core 75 and 24 ns (tests/bench/device/prepare_cost.py; `bench seesaw` for x86-64).
 //
 // A byte by radio takes 1,096 nJ: receiving by Wi-Fi takes a phone 137 mW for each Mbit/s [Huang et al. 2012, "A Close
 // Examination of Performance and Power Characteristics of 4G LTE Networks", table 4].
@@ -48,7 +48,7 @@ struct Device {
 
   // Time to decode rows of a render server on one core, for emulation: per pixel and per byte of code.
   double decode_pixel_ns, decode_byte_ns;
-  // Time to prepare a frame of a moving scene on one core: per triangle, and per vertex that moves (prepare_cost.h).
+  // Time to prepare a frame of a moving scene on one core: per triangle and per vertex that move (prepare_cost.h).
   double prepare_triangle_ns, prepare_vertex_ns;
 
   // For the fronts of split-report: energy beyond that of the device idle.

@@ -1,5 +1,5 @@
-// What it takes an emulated machine to prepare a frame of a moving scene: a time per triangle that moves, to
-// refit its leaf, and one per such vertex. Skinned vertices count twice, those without normals a third. The clocks that
+// What it takes an emulated machine to prepare a frame of a moving scene: a time per triangle that moves, to refit its
+// leaf, and one per such vertex. Skinned vertices count twice, those without normals a third. The clocks that
 // tests/bench/device/prepare_cost.py counts for four scenes of more than 3,000 triangles are met to within 13 %; joints
 // are not counted, so small scenes with many of them take up to 1.8 times as long.
 #pragma once

@@ -125,21 +125,23 @@ TEST_CASE("split_report_prices_preparation") {
   }
 }
 
-// Goal: preparing a frame costs what moves: vertices, twice where skinned, a third without normals, and all triangles.
-// Method: a scene of three meshes by hand.
+// Goal: preparing a frame costs what moves: vertices, twice where skinned, a third without normals, and triangles with
+// such a vertex. Method: a scene of three meshes by hand, and of three triangles, one of which stands still.
 TEST_CASE("split_report_counts_what_moves") {
   MovingMesh meshes[3] = {};
   meshes[0].vertex_count = 1, meshes[1].vertex_count = 10;
   meshes[2].vertex_count = 100, meshes[2].skin = 0;
+  meshes[1].vertex_begin = 5, meshes[2].vertex_begin = 20;
+  const Triangle triangles[] = {{1, 2, 3, 0}, {1, 2, 14, 0}, {119, 2, 4, 0}};
   Vec3 normal;
   Scene scene;
-  scene.triangles.count = 7;
+  scene.triangles = {triangles, 3};
   const PrepareCost cost = {1000, 3};
   CHECK(prepare_ns(cost, scene) == 0);
   scene.moving_meshes = {meshes, 3};
-  CHECK(prepare_ns(cost, scene) == doctest::Approx(7000 + 211));
+  CHECK(prepare_ns(cost, scene) == doctest::Approx(2000 + 211));
   scene.normals = {&normal, 1};
-  CHECK(prepare_ns(cost, scene) == doctest::Approx(7000 + 3 * 211));
+  CHECK(prepare_ns(cost, scene) == doctest::Approx(2000 + 3 * 211));
 }
 
 // Goal: every ready server gets rows, and each makes the frame faster. Method: a device with a nearly free link, where
