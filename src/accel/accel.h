@@ -57,7 +57,7 @@ struct AccelInfo : AccelTraversal {
   // `scratch`. Never fails, since sizes are planned.
   void (*build)(Accel* accel, Arena* keep, Arena* scratch);
   // Marks in writable data what refit() can leave as it is: triangles without a vertex in these runs, which must
-  // outlive the accelerator. Null: nothing.
+  // outlive the accelerator. Null: it leaves nothing.
   void (*settle)(Accel* accel, Array<std::uint8_t> data, Array<const MovingMesh> moving);
   // Adapts writable data to moved positions with unchanged topology. Null: build() again for every frame.
   void (*refit)(Accel* accel, Array<std::uint8_t> data);

@@ -155,7 +155,7 @@ Suspects suspects_of(const ChangeSearch& search, std::uint32_t begin, std::uint3
   suspects.open = is_open_to_change(search, all);
   for_each_suspect(search, all, ~std::uint64_t(0), [&](const LightRun&, std::uint32_t light, bool) {
     if (light < kSuspectLights) suspects.lights |= std::uint64_t(1) << light;
-    return light < kSuspectLights;
+    return light < kSuspectLights;  // they come in ascending order
   });
   return suspects;
 }
