@@ -54,7 +54,7 @@ std::uint64_t file_stamp(const char* path);
 // - An existing file keeps its permissions, and its owner and group if the system allows that. A file without write
 //   permission is refused, even if its folder would allow a new one.
 // - Anything other than a regular file (a device, a pipe, a FIFO) is written directly, as are standard output ("-",
-//   /dev/stdout) and other descriptors (/dev/fd/3).
+//   /dev/stdout) and other descriptors (/dev/fd/3). A FIFO without a reader is waited for, see stop_waiting_if().
 constexpr std::size_t kWriterPathBytes = 1024;
 struct FileWriter {
   int descriptor = -1;
@@ -63,6 +63,8 @@ struct FileWriter {
   char part[kWriterPathBytes + 32] = {0};  // the file written until then
 };
 bool open_writer(const char* path, FileWriter* writer, FileError* error);
+// open_writer() asks this now and then while it waits for the reader of a FIFO; true: it gives up. Null: it waits on.
+void stop_waiting_if(bool (*stopped)());
 // After a failure further data is ignored; close_writer() reports the failure.
 void write_bytes(FileWriter* writer, const void* bytes, std::size_t byte_count);
 // Replaces bytes written before. False, and nothing happens, where they are written directly.

@@ -31,7 +31,7 @@ int open_regular(const char* path, struct stat* info, FileError* error) {
   bool ok = fstat(descriptor, info) == 0 || fail(error, "cannot be examined", errno);
   if (ok && !S_ISREG(info->st_mode)) {
     ok = false;
-    snprintf(error->text, sizeof error->text, "is not a regular file: name a regular file");
+    snprintf(error->text, sizeof error->text, "is a folder, a pipe or a device: put a regular file there");
   }
   if (ok) return descriptor;
   close(descriptor);

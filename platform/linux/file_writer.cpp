@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <initializer_list>
@@ -147,11 +148,36 @@ void bring_folder_to_disk(const char* path) {
   close(descriptor);
 }
 
+bool (*is_stopped)() = nullptr;
+
+// Opens what is not a regular file. A pipe waits for its reader; open() would wait on after Ctrl-C.
+int open_direct(const char* path) {
+  constexpr struct timespec kLook = {0, 20'000'000};
+  for (;;) {
+    const int descriptor = open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor >= 0) {
+      const int flags = fcntl(descriptor, F_GETFL);
+      if (flags >= 0 && fcntl(descriptor, F_SETFL, flags & ~O_NONBLOCK) == 0) return descriptor;
+      const int number = errno;
+      close(descriptor);
+      errno = number;
+      return -1;
+    }
+    struct stat info;
+    if (errno != ENXIO || stat(path, &info) != 0 || !S_ISFIFO(info.st_mode)) return -1;
+    errno = EINTR;
+    if (is_stopped && is_stopped()) return -1;
+    nanosleep(&kLook, nullptr);
+  }
+}
+
 void remove_part(FileWriter* writer) {
   if (writer->part[0]) unlink(writer->part);
 }
 
 }  // namespace
+
+void stop_waiting_if(bool (*stopped)()) { is_stopped = stopped; }
 
 bool open_writer(const char* path, FileWriter* writer, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
@@ -164,8 +190,11 @@ bool open_writer(const char* path, FileWriter* writer, FileError* error) {
   Destination d;
   if (!find_destination(path, &d, error)) return false;
   if (d.is_direct) {
-    writer->descriptor =
-        d.descriptor >= 0 ? fcntl(d.descriptor, F_DUPFD_CLOEXEC, 3) : open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC);
+    writer->descriptor = d.descriptor >= 0 ? fcntl(d.descriptor, F_DUPFD_CLOEXEC, 3) : open_direct(path);
+    if (writer->descriptor < 0 && errno == EINTR) {
+      snprintf(error->text, sizeof error->text, "is a pipe that nobody read before the interruption");
+      return false;
+    }
     return writer->descriptor >= 0 || fail(error, "cannot be written", errno);
   }
   if (!open_part(d, writer, error)) return false;

@@ -51,7 +51,13 @@ void survive_closed_pipes() { signal(SIGPIPE, SIG_IGN); }
 
 bool log_to_file(const char* path, FileError* error) {
   PLATFORM_CHECK(path != nullptr && error != nullptr);
-  int file = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY, 0666);
+  // Not waiting: whatever reads a pipe would have to be there before anything is shown.
+  int file = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, 0666);
+  if (file < 0 && errno == ENXIO) {
+    snprintf(error->text, sizeof error->text, "is a pipe that nobody reads: start its reader first");
+    return false;
+  }
+  if (file >= 0) fcntl(file, F_SETFL, fcntl(file, F_GETFL) & ~O_NONBLOCK);
   fflush(nullptr);
   if (printed_to < 0) printed_to = duplicate(STDOUT_FILENO), complained_to = duplicate(STDERR_FILENO);
   logged_before = file >= 0 ? lseek(file, 0, SEEK_END) : 0;

@@ -120,6 +120,12 @@ bool open_window(const ScreenOptions& options, const char** what) {
   SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "nearest");
   *what = "start SDL";
   if (SDL_Init(SDL_INIT_VIDEO) != 0) return false;
+  // Where no display answers, SDL draws for nobody, which is for those who ask for it.
+  const char* driver = SDL_GetCurrentVideoDriver();
+  if (!is_set("SDL_VIDEODRIVER") && driver && (!std::strcmp(driver, "offscreen") || !std::strcmp(driver, "dummy"))) {
+    SDL_SetError("no display answers at DISPLAY or WAYLAND_DISPLAY");
+    return false;
+  }
   SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER);  // without controllers the keyboard still works
   int scale = options.scale > 0 ? options.scale : comfortable_scale(state.view_width, state.view_height);
   *what = "open a window";

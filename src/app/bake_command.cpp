@@ -91,7 +91,7 @@ Status bake(const BakeOptions& o) {
   if (!heap.warning.empty()) print_note(heap.warning);
   if (o.json != "-")
     std::printf("%s: %s, %s, %s, %.2f MiB (accelerator %.2f MiB), read in %.0f ms, built in %.0f ms\n",
-                o.output == "-" ? "standard output" : o.output.c_str(),
+                o.output == "-" ? "standard output" : shown(o.output).c_str(),
                 counted(scene.triangles.count, "triangle").c_str(), counted(scene.materials.count, "material").c_str(),
                 counted(scene.textures.count, "texture").c_str(), static_cast<double>(byte_count) / (1 << 20),
                 static_cast<double>(accel_bytes) / (1 << 20), read_ms, build_ms);

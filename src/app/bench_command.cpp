@@ -11,6 +11,7 @@
 #include "session/cache.h"
 #include "session/interrupt.h"
 #include "session/measure.h"
+#include "session/note.h"
 #include "session/output.h"
 #include "session/report.h"
 
@@ -74,7 +75,7 @@ Json to_json(const CommonOptions& options, const Renderer& renderer, Measurement
 
 void print_table(const CommonOptions& options, const Renderer& renderer, Measurement* m) {
   Range pixel = range_of(m->ns_per_pixel.data(), m->frame_count);
-  std::printf("%s: %s triangles, %u×%u, %u thread%s, %s, %u frame%s%s\n", options.scene.c_str(),
+  std::printf("%s: %s triangles, %u×%u, %u thread%s, %s, %u frame%s%s\n", shown(options.scene).c_str(),
               grouped(renderer.scene.triangles.count).c_str(), renderer.settings.width, renderer.settings.height,
               renderer.settings.threads, renderer.settings.threads == 1 ? "" : "s", isa_name(active_isa()),
               m->frame_count, m->frame_count == 1 ? "" : "s", emulation_text(renderer.pace).c_str());
@@ -172,10 +173,10 @@ Json front_json(const CommonOptions& options, const Renderer& renderer, const Op
 
 void print_front(const CommonOptions& options, const Renderer& renderer, const OpenFront& front, const Front& measured,
                  std::uint32_t rounds) {
-  std::printf("%s: %u×%u, %u thread%s, %u round%s%s; prices saved in %s\n", options.scene.c_str(),
+  std::printf("%s: %u×%u, %u thread%s, %u round%s%s; prices saved in %s\n", shown(options.scene).c_str(),
               renderer.settings.width, renderer.settings.height, renderer.settings.threads,
               renderer.settings.threads == 1 ? "" : "s", rounds, rounds == 1 ? "" : "s",
-              emulation_text(renderer.pace).c_str(), front.path.empty() ? "no file" : front.path.c_str());
+              emulation_text(renderer.pace).c_str(), front.path.empty() ? "no file" : shown(front.path).c_str());
   for (std::uint32_t i = 0; i < measured.count; ++i) {
     const Candidate& c = measured.candidates[i];
     char quality[kFrontLineMax];

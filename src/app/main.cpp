@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "platform/standard_streams.h"
 #include "session/interrupt.h"
+#include "session/note.h"
 #include "session/output.h"
 #include "session/report.h"
 #ifdef POCKETRAY_HAVE_ACCURACY
@@ -94,12 +95,12 @@ int run_command(int argument_count, char** arguments, const Team& team) {
   try {
     ParseResult parsed = line.parse({arguments + 1, arguments + argument_count});
     if (!parsed.error.empty()) {
-      std::fprintf(stderr, "pocketray: %s (see --help)\n", parsed.error.c_str());
+      print_note(parsed.error + " (see --help)");
       return parsed.usage ? kExitUsage : kExitInput;
     }
     std::fputs(parsed.help.c_str(), stdout);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "pocketray: %s\n", error.what());
+    print_note(error.what());
     abort_team(team, kExitInput);
     return kExitInput;
   }

@@ -7,6 +7,7 @@
 #include "app/options.h"
 #include "effect/effect_list.h"
 #include "session/measure.h"
+#include "session/note.h"
 #include "session/output.h"
 #include "session/picture.h"
 #include "session/report.h"
@@ -31,7 +32,7 @@ void print_contents(const std::string& name, const Renderer& renderer) {
   const Scene& scene = renderer.scene;
   const auto emitting = std::count_if(scene.materials.begin(), scene.materials.end(),
                                       [](const Material& material) { return !is_zero(material.emission); });
-  std::printf("%s: %s, %s, %s, %s", name.c_str(), counted(scene.triangles.count, "triangle").c_str(),
+  std::printf("%s: %s, %s, %s, %s", shown(name).c_str(), counted(scene.triangles.count, "triangle").c_str(),
               counted(scene.materials.count, "material").c_str(), counted(scene.textures.count, "texture").c_str(),
               counted(scene.lights.count, "light").c_str());
   if (emitting > 0) std::printf(", %s", counted(static_cast<std::uint64_t>(emitting), "emitting material").c_str());

@@ -58,8 +58,7 @@ Status check_shareable(const RenderOptions& o, const RenderRequest& request) {
 }
 
 Status check_budget_and_orbit(const RenderOptions& o, Aov aov) {
-  if (!(std::fabs(o.orbit_degrees) <= 360))
-    return failure("--orbit is %g: it must lie in -360 … 360", static_cast<double>(o.orbit_degrees));
+  if (!(std::fabs(o.orbit_degrees) <= 360)) return failure("--orbit must lie in -360 … 360");
   if (o.orbit_degrees != 0 && o.frames.empty())
     return failure("--orbit turns the camera from frame to frame: add --frames 0:359, or use --turntable 360");
   if (o.budget.ms == 0) return success();

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/check.h"
+#include "session/note.h"
 
 namespace pocketray {
 namespace {
@@ -39,8 +40,8 @@ void print_summary(const RenderSummary& s) {
     print_effects(renderer.effects);
     print_memory(renderer.memory);
   }
-  if (s.files.size() > 1) std::printf("%s … ", s.files.front().c_str());
-  std::printf("%s: ", s.files.back() == "-" ? "standard output" : s.files.back().c_str());
+  if (s.files.size() > 1) std::printf("%s … ", shown(s.files.front()).c_str());
+  std::printf("%s: ", s.files.back() == "-" ? "standard output" : shown(s.files.back()).c_str());
   if (s.frame_count > s.files.size())
     std::printf("%s at %g per second, ", counted(s.frame_count, "frame").c_str(),
                 frame_rate(*s.options, renderer.scene.info));

@@ -37,7 +37,7 @@ Bytes read_file(const std::string& path, std::uint64_t byte_count_max, FilesRead
   if (!file) close(descriptor);
   struct stat info;
   if (!file || fstat(descriptor, &info) != 0) fail_import("cannot read %s: %s", path.c_str(), std::strerror(errno));
-  if (!S_ISREG(info.st_mode)) fail_import("%s is not a regular file; name a scene file", path.c_str());
+  if (!S_ISREG(info.st_mode)) fail_import("%s is a folder, a pipe or a device; put a regular file there", path.c_str());
   note_file(files, path);
   if (static_cast<std::uint64_t>(info.st_size) > byte_count_max)
     fail_import("%s has %lld bytes, more than the limit of %llu; use a smaller model", path.c_str(),

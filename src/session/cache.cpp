@@ -31,6 +31,8 @@ Status make_cache(const std::string& path, const char* option) {
   for (std::size_t at = folder.find('/', 1); at != std::string::npos; at = folder.find('/', at + 1))
     if (platform::file_stamp(folder.substr(0, at).c_str()) == 0)
       (void)platform::make_folder(folder.substr(0, at).c_str(), &error);
+  if (platform::is_device_or_pipe(path.c_str()))  // nobody chose it
+    return failure("%.300s is a pipe or a device, where %s keeps what it measured: remove it", path.c_str(), option);
   return check_outputs({}, {{option, path}});
 }
 

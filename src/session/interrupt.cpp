@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "platform/file.h"
+
 namespace pocketray {
 
 std::atomic<bool> interrupted{false};
@@ -14,8 +16,11 @@ extern "C" void on_interrupt(int number) {
 }  // namespace
 
 void catch_interrupts() {
+  platform::stop_waiting_if([] { return interrupted.load(); });
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGXFSZ, SIG_IGN);                                                   // the write fails
+  if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
 }
 
 }  // namespace pocketray

@@ -6,7 +6,7 @@ namespace pocketray {
 
 extern std::atomic<bool> interrupted;
 
-// Catches SIGINT and SIGTERM from now on; a second one ends the program at once.
+// Catches SIGINT, SIGTERM and SIGHUP from now on; a second one ends the program at once.
 void catch_interrupts();
 
 }  // namespace pocketray

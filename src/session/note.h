@@ -4,7 +4,9 @@
 
 namespace pocketray {
 
-// Prints "pocketray: text", with control characters in names of files and peers made harmless.
-void print_note(std::string text);
+// Text with control characters in names of files and peers made harmless, for a terminal.
+std::string shown(std::string text);
+// Prints "pocketray: text", shown().
+void print_note(const std::string& text);
 
 }  // namespace pocketray

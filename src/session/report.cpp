@@ -10,10 +10,12 @@
 
 namespace pocketray {
 
-void print_note(std::string text) {
+std::string shown(std::string text) {
   make_printable(&text[0], text.size());
-  std::fprintf(stderr, "pocketray: %s\n", text.c_str());
+  return text;
 }
+
+void print_note(const std::string& text) { std::fprintf(stderr, "pocketray: %s\n", shown(text).c_str()); }
 
 int report(const Status& status) {
   if (status.ok) return kExitDone;

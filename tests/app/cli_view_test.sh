@@ -13,6 +13,10 @@ fi
 unset SDL_VIDEODRIVER
 expect view_unknown_screen 1 'sdl2' view cube "${small[@]}" --screen crt
 
+# Goal: a display that does not answer is no screen; SDL would draw for nobody. Method: one that is not there.
+DISPLAY=:77 WAYLAND_DISPLAY= "${run[@]}" view cube "${small[@]}" --screen sdl2 --frames 1 >/dev/null 2>&1
+check view_on_a_display_that_is_gone test $? -eq 1
+
 # Goal: without a screen the viewer runs only if asked to, and otherwise reports what it tried. Method: no display, and
 # no framebuffer; one that is named and is not there; a folder for screenshots that cannot be.
 if [ ! -e /dev/fb0 ]; then
@@ -43,6 +47,7 @@ if [ $# -eq 0 ]; then
   "${run[@]}" bake cube -o live.pray >/dev/null
   "${run[@]}" bake seesaw -o other.pray >/dev/null
   cp live.pray good.pray
+  : >view.err
   "${run[@]}" view live.pray "${small[@]}" --screen null >view.out 2>view.err &
   viewing=$!
   told() { grep -c "$1" view.err; }

@@ -211,6 +211,6 @@ TEST_CASE("import_unknown_endings_empty_and_absent_files") {
   CHECK(contains(error_of("a.txt", "hello"), "gltf glb obj"));
   CHECK(contains(error_of("a.obj", ""), "empty"));
   CHECK(contains(load_error("/nowhere/a.glb"), "cannot read"));
-  CHECK(contains(load_error("/"), "not a regular file"));
+  CHECK(contains(load_error("/"), "put a regular file there"));
   CHECK(contains(error_of("a.obj", "v 0 0 0\n"), "no triangles"));
 }

@@ -17,7 +17,7 @@ TEST_CASE("file_errors_say_why") {
   Folder folder;
   FileError error;
   CHECK(content_of(folder.file("a")) == "cannot be opened: No such file or directory");
-  CHECK(content_of(folder.path) == "is not a regular file: name a regular file");
+  CHECK(content_of(folder.path) == "is a folder, a pipe or a device: put a regular file there");
   REQUIRE(write_file(folder.file("a"), "", &error));
   CHECK(content_of(folder.file("a")) == "is empty: create it again");
   CHECK_FALSE(write_file(folder.file("no/a"), "x", &error));
@@ -54,8 +54,8 @@ TEST_CASE("file_that_is_none_is_refused_at_once") {
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
   REQUIRE(symlink("loop", folder.file("loop").c_str()) == 0);
   alarm(20);
-  CHECK(content_of(folder.file("pipe")) == "is not a regular file: name a regular file");
-  CHECK(content_of("/dev/zero") == "is not a regular file: name a regular file");
+  CHECK(content_of(folder.file("pipe")) == "is a folder, a pipe or a device: put a regular file there");
+  CHECK(content_of("/dev/zero") == "is a folder, a pipe or a device: put a regular file there");
   CHECK(content_of("/dev/tty").find("bytes") == std::string::npos);
   CHECK(content_of(folder.file("loop")).find("cannot be opened") == 0);
   alarm(0);

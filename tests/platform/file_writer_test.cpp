@@ -341,6 +341,11 @@ TEST_CASE("file_writer_writes_descriptors_and_pipes") {
   REQUIRE(waitpid(child, &status, 0) == child);
   CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
   CHECK(S_ISFIFO(mode_of(folder.file("pipe"))));
+  FileWriter writer;
+  stop_waiting_if([] { return true; });
+  CHECK_FALSE(open_writer(folder.file("pipe").c_str(), &writer, &error));
+  stop_waiting_if(nullptr);
+  CHECK(std::string(error.text).find("nobody read") != std::string::npos);
 }
 
 // Goal: can_write() predicts open_writer() and leaves no trace. Method: each kind, compared with open_writer().

@@ -156,7 +156,9 @@ TEST_CASE("neighbours_cost_a_light_client_half_its_frames_at_most") {
                         {Attack::given_up, "frames given up", 20, false},
                         {Attack::views, "view queries", 20, true},
                         {Attack::pings, "pings", 20, true},
+                        {Attack::fetches, "fetches of a scene", 20, false},
                         {Attack::small_messages, "small messages", 20, false},
+                        {Attack::silence, "silence", 20, false},
                         {Attack::light_frames, "light frames", 1, false},
                         {Attack::heavy_frames, "heavy frames, the client's own", 1, false, true}};
   for (const Case& c : cases) {

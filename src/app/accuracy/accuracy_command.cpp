@@ -6,6 +6,7 @@
 #include "app/options.h"
 #include "budget/front_file.h"
 #include "session/gnuplot.h"
+#include "session/note.h"
 #include "session/output.h"
 #include "sweep/instructions.h"
 #include "sweep/reference_team.h"
@@ -27,7 +28,7 @@ int lead(AccuracyOptions options) {
   if (!status.ok) return report(status);
   if (!whole) {
     std::fprintf(stderr, "pocketray: interrupted; measurements so far are in %s: run the same command to continue\n",
-                 options.folder.c_str());
+                 shown(options.folder).c_str());
     return kExitInterrupted;
   }
   status = save_text(options.folder, "accuracy.csv", sweep_csv(sweep));
@@ -48,9 +49,9 @@ int lead(AccuracyOptions options) {
   if (status.ok && !options.common.json.empty()) status = write_json(options.common.json, sweep_json(sweep));
   if (status.ok && options.common.json != "-") {
     print_sweep(sweep);
-    std::printf("open %s/index.html for the results; %s/accuracy.csv has every figure\n", options.folder.c_str(),
-                options.folder.c_str());
-    if (kept) std::printf("saved the front in %s, for --budget-ms of render and view\n", front.path.c_str());
+    std::printf("open %s/index.html for the results; %s/accuracy.csv has every figure\n", shown(options.folder).c_str(),
+                shown(options.folder).c_str());
+    if (kept) std::printf("saved the front in %s, for --budget-ms of render and view\n", shown(front.path).c_str());
   }
   return report(status);
 }

@@ -168,8 +168,8 @@ int run(const ReportOptions& o) {
   status = write_folder(o, coherence);
   if (status.ok && !o.common.json.empty()) status = write_json(o.common.json, report_json(coherence));
   if (status.ok && o.common.json != "-" && !o.folder.empty())
-    std::printf("open %s/index.html for plots and pictures; %s/frames.csv has every frame\n", o.folder.c_str(),
-                o.folder.c_str());
+    std::printf("open %s/index.html for plots and pictures; %s/frames.csv has every frame\n", shown(o.folder).c_str(),
+                shown(o.folder).c_str());
   if (status.ok && interrupted) {
     std::fprintf(stderr, "pocketray: interrupted; %zu finished frame%s kept\n", finished,
                  finished == 1 ? " is" : "s are");

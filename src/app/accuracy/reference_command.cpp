@@ -5,6 +5,7 @@
 
 #include "app/options.h"
 #include "platform/file.h"
+#include "session/note.h"
 #include "session/output.h"
 #include "sweep/reference_run.h"
 #include "sweep/reference_team.h"
@@ -76,8 +77,9 @@ Status tell(const ReferenceCommand& c, const Rig& rig, const Accumulation& sum) 
   std::vector<RegionError> regions = region_errors(p, sum.width, sum.height, c.goal.pixels_per_degree);
   const std::string& json = c.options.common.json;
   if (json != "-") {
-    std::printf("%s: %s reference, %llu samples per pixel, its own error ꟻLIP %.4f, RMSE %.5f\n", c.goal.path.c_str(),
-                c.kind.c_str(), static_cast<unsigned long long>(samples_of(sum)), p.flip, p.rmse);
+    std::printf("%s: %s reference, %llu samples per pixel, its own error ꟻLIP %.4f, RMSE %.5f\n",
+                shown(c.goal.path).c_str(), c.kind.c_str(), static_cast<unsigned long long>(samples_of(sum)), p.flip,
+                p.rmse);
     print_regions(regions);
   }
   if (json.empty()) return success();
@@ -118,7 +120,7 @@ int lead(ReferenceCommand command) {
   if (!status.ok) return report(status);
   if (whole) return kExitDone;
   std::fprintf(stderr, "pocketray: interrupted; samples so far are in %s: run the same command to continue\n",
-               command.goal.path.c_str());
+               shown(command.goal.path).c_str());
   return kExitInterrupted;
 }
 

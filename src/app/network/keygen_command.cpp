@@ -2,12 +2,14 @@
 #include "app/network/network_commands.h"
 #include "platform/entropy.h"
 #include "platform/net/key_file.h"
+#include "session/note.h"
 #include "session/report.h"
 
 namespace pocketray {
 namespace {
 
 int run(const std::string& path) {
+  if (path == "-") return report(failure("-o -: a key needs a file that only its owner may read: name one"));
   platform::SharedKey key;
   platform::FileError error;
   if (!platform::random_bytes(key.bytes, sizeof key.bytes))
@@ -16,7 +18,7 @@ int run(const std::string& path) {
   platform::wipe(&key, sizeof key);
   if (!ok) return report(failure("%.200s: %s", path.c_str(), error.text));
   std::printf("%s: copy it to the server and to the device, and give it to `serve` and beside --server: --key %s\n",
-              path.c_str(), path.c_str());
+              shown(path).c_str(), shown(path).c_str());
   return kExitDone;
 }
 

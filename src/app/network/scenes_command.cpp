@@ -4,6 +4,7 @@
 #include "app/network/network_commands.h"
 #include "app/options.h"
 #include "remote/client/servers.h"
+#include "session/note.h"
 #include "session/output.h"
 #include "session/report.h"
 
@@ -23,7 +24,7 @@ Json to_json(const std::vector<OfferedScene>& scenes) {
 }
 
 void print(const std::string& server, const std::vector<OfferedScene>& scenes) {
-  std::printf("%s: %zu scene%s\n", server.c_str(), scenes.size(), scenes.size() == 1 ? "" : "s");
+  std::printf("%s: %zu scene%s\n", shown(server).c_str(), scenes.size(), scenes.size() == 1 ? "" : "s");
   for (const OfferedScene& scene : scenes)
     std::printf("  %-24s %9s triangles %12s bytes\n", scene.name.c_str(), grouped(scene.triangle_count).c_str(),
                 grouped(scene.byte_count).c_str());

@@ -153,7 +153,7 @@ void print_start(const ServeOptions& o, const ServeCluster& cluster, const Servi
     std::printf("  %-24s %9s triangles %8.1f MiB\n", scene.name, grouped(scene.scene.triangles.count).c_str(),
                 static_cast<double>(scene.byte_count) / (1 << 20));
   if (!o.key.empty())
-    std::printf("  only for holders of the key in %s, encrypted; %.1f MiB for that\n", o.key.c_str(),
+    std::printf("  only for holders of the key in %s, encrypted; %.1f MiB for that\n", shown(o.key).c_str(),
                 static_cast<double>(encrypted_link_need(server_stream_count(options))) / (1 << 20));
   std::printf("listening on %s: %zu scenes, %s, %d clients of %.0f MiB each; Ctrl-C stops it\n",
               server_address(*serving.server), serving.store.scenes.size(), threads_of(cluster, options).c_str(),

@@ -9,6 +9,7 @@
 #include "engine/frame.h"
 #include "session/interrupt.h"
 #include "session/measure.h"
+#include "session/note.h"
 #include "session/output.h"
 #include "session/report.h"
 #include "session/scene_identity.h"
@@ -282,7 +283,10 @@ int run(const ReportOptions& o) {
   SplitFigures figures;
   status = measure(o, setup, &figures);
   if (!status.ok) return report(status);
-  if (figures.chosen.ns_per_pixel <= 0) return kExitInterrupted;
+  if (figures.chosen.ns_per_pixel <= 0) {
+    print_note("interrupted before the first point of the sweep; nothing is kept");
+    return kExitInterrupted;
+  }
   const Extras extras = make_extras(*device, setup, figures);
   if (o.common.json != "-") {
     std::printf("pixels, rows and messages are real; time is simulated, at these costs\n");

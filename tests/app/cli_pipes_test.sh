@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Pipes that nobody reads, file size limits, signals, and names that a terminal would obey. Usage: cli_pipes_test.sh
+# PROGRAM [EMULATOR...]
+. "$(dirname "$0")/cli.sh"
+
+tiny=(--size 8x6 --threads 1)
+has() { "${run[@]}" --help | grep -q "^ *$1 "; }
+# Runs a command in the background, sends it a signal after three seconds and kills it after ten more.
+signalled() {  # signal words...
+  timeout --foreground -s "$1" -k 10 3 "${run[@]}" "${@:2}" >told 2>&1
+}
+
+# Goal: a command that waits for a pipe's reader ends on the first Ctrl-C, and says what it waited for. Method: pipes that
+# nobody reads, as each kind of output.
+for pair in "pipe.ppm render cube ${tiny[*]} -o" "pipe.json render cube ${tiny[*]} -o a.ppm --json" "pipe.pray bake cube -o"; do
+  read -ra command <<<"$pair"
+  mkfifo "${command[0]}"
+  signalled INT "${command[@]:1}" "${command[0]}"
+  check "wait_ends_for_${command[0]}" grep -q 'is a pipe that nobody read' told
+done
+mkfifo log
+expect log_to_a_pipe 1 'is a pipe that nobody reads: start its reader first' view cube "${tiny[@]}" --screen null --frames 1 --log log
+cat log >piped &
+reader=$!
+sleep 0.3
+expect log_to_a_reader 0 '' view cube "${tiny[@]}" --screen null --frames 1 --log log
+kill $reader 2>/dev/null
+wait $reader 2>/dev/null
+
+# Goal: a pipe in the place of what is kept between runs hangs no command, and costs no result. Method: of each kind.
+export XDG_CACHE_HOME=$PWD/cache
+expect prices_are_kept 0 '' render cube "${tiny[@]}" --budget-ms 5 -o a.ppm
+kept=$(ls cache/pocketray/*.front)
+rm "$kept" && mkfifo "$kept"
+expect pipe_of_prices 0 'is a pipe or a device, where --front keeps what it measured: remove it' render cube "${tiny[@]}" --budget-ms 5 -o b.ppm
+check picture_in_spite_of_it test -s b.ppm
+expect pipe_of_prices_in_bench 1 'remove it' bench cube --frames 1 "${tiny[@]}" --front
+if has accuracy; then
+  expect samples_are_kept 0 '' accuracy cube "${tiny[@]}" --rounds 1 --reference-samples 2 -o swept
+  for kept in cache/pocketray/*.pfm; do rm "$kept" && mkfifo "$kept"; done
+  expect pipe_of_samples 0 'where the cache keeps what it measured: remove it' accuracy cube "${tiny[@]}" --rounds 1 --reference-samples 2 -o again
+fi
+unset XDG_CACHE_HOME
+
+# Goal: a file that reaches the limit of sizes, and a terminal that closes, leave nothing behind. Method: a limit of one
+# block; SIGHUP in a long sequence.
+(ulimit -f 1 && "${run[@]}" render cube --size 320x240 -o large.ppm >told 2>&1)
+check size_limit test $? -eq 1
+check size_limit_is_told grep -q 'could not be written completely' told
+signalled HUP render seesaw --size 640x480 --frames 0:350 -o long.gif
+check nothing_is_left test -z "$(find . -name '*.part')" -a ! -e large.ppm
+
+# Goal: no name reaches the terminal with control characters in it. Method: files, folders and words that have some, of
+# both kinds, in what is printed by every command that names them.
+harmful=$'e\xc2\x9b31m\x1b[31m'
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$harmful.obj"
+shows_none() { ! LC_ALL=C grep -q $'[\x01-\x08\x0b-\x1f\x7f]\|\xc2[\x80-\x9f]' told; }
+while read -ra command; do
+  "${run[@]}" "${command[@]//NAME/$harmful}" >told 2>&1
+  check "shows_no_controls_${command[*]}" shows_none
+done <<'END'
+plan NAME.obj
+bench NAME.obj --frames 1 --size 8x6 --no-prices
+render cube --size 8x6 -o NAME.ppm
+render cube --size 8x6 -o NAME.nothing
+bake NAME.obj -o NAME.pray
+keygen -o NAME.key
+NAME
+render --NAME
+scenes --server NAME
+END
+if has keygen; then expect key_to_standard_output 1 'a key needs a file' keygen -o -; fi
+
+finish
