@@ -21,8 +21,6 @@ constexpr std::uint32_t kNumbersPerBounce = 3;
 constexpr std::uint32_t kWalksMeasured = 256;
 constexpr EffectMask kLights =
     bit(Effect::point_light) | bit(Effect::spot_light) | bit(Effect::directional_light) | bit(Effect::area_light);
-// Chosen: of the lights wanted, so many are aimed at, so that paths which grow longer seldom leave more.
-constexpr double kFilled = 15.0 / 16;
 // Three numbers at the light, three per bounce: multiples of the square roots of primes, modulo one. Their fractions
 // are spread evenly [Weyl 1916], from the first on, which those of Halton's sequence in large bases are not.
 constexpr double kPrimes[kNumbersPerBounce * (kBounceMax + 1)] = {
@@ -272,7 +270,7 @@ void place_virtual_lights(FrameData* frame) {
   const double wanted = frame->settings.virtual_lights, per_walk = lights->lights_per_walk;
   CHECK_LE(wanted, kVirtualLightMax);
   const double walk_max = 2 * wanted;  // a walk that meets nothing leaves no light
-  const double walks = per_walk * walk_max > kFilled * wanted ? std::ceil(kFilled * wanted / per_walk) : walk_max;
+  const double walks = per_walk * walk_max > wanted ? std::ceil(wanted / per_walk) : walk_max;
   const double total = total_flux(*frame);
   lights->count = 0;
   std::uint32_t walk_count = 0;

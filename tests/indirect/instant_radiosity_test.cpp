@@ -104,7 +104,7 @@ TEST_CASE("hard_42_virtual_lights_have_the_reflected_power") {
     CAPTURE(count);
     std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(count));
     const VirtualLights& lights = lights_of(*t);
-    CHECK(lights.count <= count);
+    CHECK(lights.count <= count * 9 / 8);
     CHECK(lights.count >= count * 7 / 8);
     CHECK(power_of(lights) ==
           doctest::Approx(4 * kPi * kPi * kAlbedo / (1 - kAlbedo)).epsilon(count < 128 ? 0.2 : 0.1));
@@ -271,11 +271,11 @@ TEST_CASE("instant_radiosity_replaces_lights_one_by_one") {
 // server would differ. Method: renderers that begin otherwise, then render the same frame, of a scene with a lamp.
 TEST_CASE("instant_radiosity_sends_as_many_walks_whatever_came_before") {
   auto built = build_builtin("cornell");
-  const Settings settings = instant(300, 8, 6);
+  const Settings settings = instant(512, 8, 6);
   std::unique_ptr<TestRenderer> t = make_renderer(built->scene, settings);
   REQUIRE(render_frame(&t->renderer, 4).ok);
   Settings first = settings;
-  first.virtual_lights = 64, first.points_per_area_light = 1, first.normals = NormalMode::flat;
+  first.virtual_lights = 64, first.points_per_area_light = 9, first.normals = NormalMode::flat;
   std::unique_ptr<TestRenderer> other = make_renderer(built->scene, first);
   REQUIRE(render_frame(&other->renderer, 9).ok);
   REQUIRE(change_settings(&other->renderer, settings).ok);
@@ -336,4 +336,17 @@ TEST_CASE("instant_radiosity_is_shadowed") {
     return most;
   };
   CHECK(brightest(0) < 0.2f * brightest(bit(Effect::shadow)));
+}
+
+// Goal: lights too faint for a ray of their own arrive as the others do: all of their light where nothing is in the
+// way. Method: an empty room, with shadows and without, has the same bits.
+TEST_CASE("instant_radiosity_of_an_empty_room_needs_no_shadows") {
+  Room room(false);
+  Settings settings = instant(128), without = settings;
+  without.forced_off = bit(Effect::shadow);
+  std::unique_ptr<TestRenderer> a = rendered(room.scene, settings), b = rendered(room.scene, without);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a->renderer.image.count; ++i)
+    different += !same_pixel(a->renderer.image[i], b->renderer.image[i]);
+  CHECK(different == 0);
 }
