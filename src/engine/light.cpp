@@ -78,8 +78,11 @@ void light_scene(Renderer* renderer) {
     place_environment_lights(renderer->scene, renderer->settings.environment_shadows, renderer->environment_lights);
   renderer->frame.environment_lights = renderer->environment_lights;
   if (!is_lit(*renderer)) {
-    place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
-                 renderer->light_points, &renderer->frame);
+    const Array<const Light> lights =
+        renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights;
+    if (has(renderer->effects.mask, Effect::instant_radiosity) && virtual_lights_of(renderer->frame.indirect)->area < 0)
+      measure_walks(renderer->frame, lights, renderer->light_points);
+    place_lights(lights, renderer->light_points, &renderer->frame);
     CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
     if (has(renderer->effects.mask, Effect::area_light)) {
       place_point_groups(renderer->point_groups, renderer->point_order, renderer->point_place, &renderer->frame);

@@ -6,7 +6,7 @@
 namespace pocketray {
 
 Vec3 virtual_irradiance(const VirtualLights& lights, const Vec3& point, const Vec3& normal) {
-  CHECK_LE(lights.count, kVirtualLightMax);
+  CHECK_LE(lights.count, kVirtualLightRoom);
   Vec3 sum = {0, 0, 0}, to_light;
   for (std::uint32_t i = 0; i < lights.count; ++i)
     sum += virtual_irradiance(lights, lights.light[i], point, normal, &to_light);

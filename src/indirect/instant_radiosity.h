@@ -11,9 +11,11 @@ namespace pocketray {
 struct VirtualLight {
   Vec3 position, normal, intensity;
 };
+constexpr std::uint32_t kVirtualLightRoom = kVirtualLightMax + kVirtualLightMax / 4;  // paths differ in length
 struct VirtualLights {
-  VirtualLight light[kVirtualLightMax];
+  VirtualLight light[kVirtualLightRoom];
   std::uint32_t count = 0;
+  double lights_per_walk = 0, area = -1;  // of the scene, by measure_walks(); area −1: not measured yet
   // Bound of the geometry term, cos cos / distance²: without it, a light would be infinitely bright where it lies
   // [Keller97, sec. 4]. It takes away light near edges, less the more lights there are: HARDCASES row 41.
   float geometry_max = 0;

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "base/fmath.h"
 #include "brdf/directions.h"
+#include "plan/plan_lights.h"
 #include "shade/filters.h"
 #include "shade/lights.h"
 #include "shade/material_maps.h"
@@ -17,6 +18,9 @@ namespace {
 // bounces would need more of kPrimes.
 constexpr std::uint32_t kBounceMax = 8;
 constexpr std::uint32_t kNumbersPerBounce = 3;
+constexpr std::uint32_t kWalksMeasured = 256;
+constexpr EffectMask kLights =
+    bit(Effect::point_light) | bit(Effect::spot_light) | bit(Effect::directional_light) | bit(Effect::area_light);
 // Three numbers at the light, three per bounce: multiples of the square roots of primes, modulo one. Their fractions
 // are spread evenly [Weyl 1916], from the first on, which those of Halton's sequence in large bases are not.
 constexpr double kPrimes[kNumbersPerBounce * (kBounceMax + 1)] = {
@@ -37,15 +41,8 @@ struct Particle {
   float range = 0;  // of the light, on the way from it; 0: no limit
 };
 
-// What lights are placed by must not follow every movement of the scene, or each would change all of the light: six
-// bits of a length or an area, and a box that changes in steps of a sixteenth to a thirty-second of its longest edge.
-double rounded(double v) {
-  CHECK(v >= 0);
-  int exponent;
-  const double fraction = std::frexp(v, &exponent);
-  return std::ldexp(std::floor(fraction * 64 + 0.5), exponent - 6);
-}
-
+// What lights are placed by must not follow every movement of the scene, or each would change all of the light: a box
+// that changes in steps of a sixteenth to a thirty-second of its longest edge.
 struct Surroundings {
   Vec3d low, high;
 };
@@ -150,24 +147,22 @@ bool scatter(const FrameData& frame, const Surface& s, Walk* walk, Particle* p) 
   return true;
 }
 
-// Follows a particle and leaves a light at each diffuse surface. False if there is no room for all of them.
-bool follow(const FrameData& frame, Particle particle, std::uint32_t count_max, Walk* walk, VirtualLights* lights) {
+// Follows a particle and leaves a light at each diffuse surface, while there is room.
+void follow(const FrameData& frame, Particle particle, Walk* walk, VirtualLights* lights) {
   TraceStats stats;
   for (std::uint32_t bounce = 0; bounce < kBounceMax; ++bounce) {
     Hit hit;
     frame.accel_info->closest(frame.accel, particle.ray, visible_filter(frame), &hit, &stats);
-    if (hit.triangle == kNoTriangle) return true;
+    if (hit.triangle == kNoTriangle) return;
     Surface s;
     frame.first_surface(frame, particle.ray, hit, &s);
     particle.flux = particle.flux * window_at(bounce == 0 ? particle.range : 0, hit.t);
-    if (!is_zero(s.diffuse)) {
-      if (lights->count == count_max) return false;
+    if (!is_zero(s.diffuse) && lights->count < kVirtualLightRoom) {
       Vec3d intensity = particle.flux * to_double(s.diffuse) * (1 / kPi);
       lights->light[lights->count++] = {safe_origin(s, 1), s.geometric, to_float(intensity)};
     }
-    if (!scatter(frame, s, walk, &particle)) return true;
+    if (!scatter(frame, s, walk, &particle)) return;
   }
-  return true;
 }
 
 // Bits of three coordinates in turn, ten of each.
@@ -185,8 +180,8 @@ std::uint32_t morton_code(const Surroundings& s, const Vec3& p) {
 // Puts lights that are close together next to each other, by insertion, which keeps the order of equal ones.
 void sort_lights(const FrameData& frame, VirtualLights* lights) {
   const Surroundings surroundings = surroundings_of(frame.accel.bounds);
-  CHECK_LE(lights->count, kVirtualLightMax);
-  std::uint32_t code[kVirtualLightMax];
+  CHECK_LE(lights->count, kVirtualLightRoom);
+  std::uint32_t code[kVirtualLightRoom];
   for (std::uint32_t i = 0; i < lights->count; ++i) {
     VirtualLight light = lights->light[i];
     std::uint32_t own = morton_code(surroundings, light.position), at = i;
@@ -221,39 +216,70 @@ bool pick(const FrameData& frame, double total, double u, const LightRun** run, 
   return total > 0;  // rounding: the last one
 }
 
+// The sum over all lights of their flux.
+double total_flux(const FrameData& frame) {
+  double total = 0;
+  for (int r = 0; r < frame.light_run_count; ++r)
+    for (std::uint32_t i = frame.light_runs[r].begin; i < frame.light_runs[r].end; ++i)
+      total += max_component(flux_of(frame, frame.light_runs[r], frame.lights[i]));
+  return total;
+}
+
+// Sends walk `index` from a light. False if none shines.
+bool send(const FrameData& frame, double total, std::uint32_t index, VirtualLights* lights) {
+  Walk walk = {index + 1};
+  const LightRun* run = nullptr;
+  const LightPoint* light = nullptr;
+  double probability = 1;
+  if (!pick(frame, total, walk.next(), &run, &light, &probability) || !light) return false;
+  Particle particle = emit(frame, *run, *light, &walk);
+  particle.flux = particle.flux / probability;
+  follow(frame, particle, &walk, lights);
+  return true;
+}
+
 }  // namespace
+
+void measure_walks(const FrameData& frame, Array<const Light> scene_lights, Array<LightPoint> points) {
+  VirtualLights* lights = virtual_lights_of(frame.indirect);
+  CHECK(lights != nullptr);
+  FrameData plain = frame;  // nothing that settings decide
+  plain.settings = Settings();
+  plain.settings.points_per_area_light = 1;
+  plain.mask = frame.mask & kLights;
+  plain.first_surface = find_surface_function(0);
+  plain.visible_filter = HitFilter();
+  place_lights(scene_lights, points, &plain);
+  const double total = total_flux(plain);
+  lights->lights_per_walk = 0;
+  std::uint32_t found = 0;
+  for (std::uint32_t i = 0; i < kWalksMeasured; ++i) {
+    lights->count = 0;
+    if (!send(plain, total, i, lights)) break;
+    found += lights->count;
+  }
+  lights->count = 0;
+  lights->lights_per_walk = static_cast<double>(found) / kWalksMeasured;
+  lights->area = surface_area(frame);
+}
 
 void place_virtual_lights(FrameData* frame) {
   CHECK(frame != nullptr && frame->first_surface != nullptr);
   VirtualLights* lights = virtual_lights_of(frame->indirect);
-  CHECK(lights != nullptr);
-  const std::uint32_t wanted = frame->settings.virtual_lights;
+  CHECK(lights != nullptr && lights->area >= 0);
+  const double wanted = frame->settings.virtual_lights, per_walk = lights->lights_per_walk;
   CHECK_LE(wanted, kVirtualLightMax);
+  const double walk_max = 2 * wanted;  // a walk that meets nothing leaves no light
+  const double walks = per_walk * walk_max > wanted ? std::ceil(wanted / per_walk) : walk_max;
+  const double total = total_flux(*frame);
   lights->count = 0;
-  double total = 0, area = rounded(surface_area(*frame));
-  for (int r = 0; r < frame->light_run_count; ++r)
-    for (std::uint32_t i = frame->light_runs[r].begin; i < frame->light_runs[r].end; ++i)
-      total += max_component(flux_of(*frame, frame->light_runs[r], frame->lights[i]));
   std::uint32_t walk_count = 0;
-  while (walk_count < 2 * wanted) {  // a walk that meets nothing leaves no light
-    Walk walk = {walk_count + 1};
-    const LightRun* run = nullptr;
-    const LightPoint* light = nullptr;
-    double probability = 1;
-    if (!pick(*frame, total, walk.next(), &run, &light, &probability) || !light) break;
-    Particle particle = emit(*frame, *run, *light, &walk);
-    particle.flux = particle.flux / probability;
-    std::uint32_t before = lights->count;
-    if (!follow(*frame, particle, wanted, &walk, lights)) {
-      lights->count = before;
-      break;
-    }
-    ++walk_count;
-  }
-  float scale = walk_count ? static_cast<float>(1.0 / walk_count) : 0;
+  while (walk_count < walks && send(*frame, total, walk_count, lights)) ++walk_count;
+  const float scale = walk_count ? static_cast<float>(1.0 / walk_count) : 0;
   // A patch of a light's share of the surfaces gives at most π times its radiance, where it lies. A quarter of that is
   // measured: ꟻLIP against full transport falls on cornell, cube and seesaw, the mean by .014 at most.
-  lights->geometry_max = area > 0 ? static_cast<float>(0.25 * kPi * lights->count / area) : 0;
+  const double usual_count = walk_count * per_walk;
+  lights->geometry_max = lights->area > 0 ? static_cast<float>(0.25 * kPi * usual_count / lights->area) : 0;
   float sum = 0;
   for (std::uint32_t i = 0; i < lights->count; ++i) {
     VirtualLight& light = lights->light[i];

@@ -9,6 +9,7 @@ namespace pocketray {
 namespace {
 
 struct DistantSource {
+  static constexpr float kFaint = 0;  // behind a body overhead, light along the ground is not faint
   const EnvironmentLights& lights;
   std::uint32_t count;
 

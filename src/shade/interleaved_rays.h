@@ -1,42 +1,71 @@
 // The shadow rays of interleaved sources.
 #pragma once
+#include <algorithm>
+
 #include "base/check.h"
 #include "shade/filters.h"
 #include "shade/interleaved.h"
 
 namespace pocketray {
 
-// Source: count, those close to each other in sequence, and arrives(index, surface, origin, &light, &ray): false if the
-// surface is turned away from it.
+constexpr std::uint32_t kSourcesOfPixelMax = (kVirtualLightRoom + kPatternPixels - 1) / kPatternPixels;
+static_assert(kEnvironmentLightMax <= kVirtualLightRoom, "virtual lights are the most sources");
+// A source that reaches a pixel if nothing is in the way.
+struct InterleavedRay {
+  Vec3 light;
+  float most;  // its brightest channel
+  Ray ray;
+};
+
+// Source: count; kFaint: of a pixel's sources, those that give less than this share of their mean get no ray, and as
+// much of their light arrives as of the others'; arrives(index, surface, origin, &light, &ray): false if the surface is
+// turned away from it. Rays of
+// a tile run to a point each, in no order that would make a shaft of them: each is traced by itself.
 template <class Source>
 void gather_interleaved(const FrameData& frame, const InterleavedPoints& points, const Source& source,
                         bool casts_shadows, TraceStats* stats, std::uint64_t* rays, InterleavedLight* light) {
   CHECK_LE(points.count, kPacketMax);
-  Vec3 origin[kPacketMax], sent[kPacketMax];
-  std::uint8_t sender[kPacketMax];
-  for (std::uint32_t i = 0; i < points.count; ++i)
-    light[i] = InterleavedLight(), origin[i] = safe_origin(*points.surface[i], 1);
+  CHECK_LE(source.count, kSourcesOfPixelMax * kPatternPixels);
   ShadowContext context = {&frame, kNone};
-  HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
-  SegmentPacket packet;
-  for (std::uint32_t first = 0; first < source.count; first += kPatternPixels) {
-    packet.count = 0;
-    for (std::uint32_t i = 0; i < points.count; ++i) {
-      const std::uint32_t index = first + points.place[i];
-      Ray ray;
-      if (is_zero(points.surface[i]->diffuse) || index >= source.count) continue;
-      if (!source.arrives(index, *points.surface[i], origin[i], &sent[packet.count], &ray)) continue;
-      light[i].open += sent[packet.count];
-      sender[packet.count] = static_cast<std::uint8_t>(i);
-      set_ray(&packet, packet.count++, ray);
+  const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
+  const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
+  InterleavedRay sent[kSourcesOfPixelMax];
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const Surface& surface = *points.surface[i];
+    InterleavedLight* sum = &light[i];
+    *sum = InterleavedLight();
+    if (is_zero(surface.diffuse)) continue;
+    const Vec3 origin = safe_origin(surface, 1);
+    std::uint32_t count = 0;
+    float all = 0;
+    for (std::uint32_t index = points.place[i]; index < source.count; index += kPatternPixels) {
+      InterleavedRay* r = &sent[count];
+      if (!source.arrives(index, surface, origin, &r->light, &r->ray)) continue;
+      r->most = max_component(r->light);
+      all += r->most, sum->open += r->light;
+      ++count;
     }
-    *rays += packet.count;
-    std::uint64_t blocked = 0;
-    if (packet.count > 0 && casts_shadows)
-      blocked =
-          frame.first_rays->occluded_packet(frame.accel, packet, frame.filter_every_shadow ? &opaque : nullptr, stats);
-    for (std::uint32_t k = 0; k < packet.count; ++k)
-      if (!(blocked >> k & 1)) light[sender[k]].lit += sent[k];
+    if (!casts_shadows) {
+      sum->lit = sum->open;
+      continue;
+    }
+    const float least = count > 0 ? Source::kFaint * all / static_cast<float>(count) : 0;
+    Vec3 faint = {0, 0, 0};
+    float traced = 0, arrived = 0;
+    for (const InterleavedRay* r = sent; r < sent + count; ++r) {
+      if (r->most < least) {
+        faint += r->light;
+        continue;
+      }
+      ++*rays;
+      traced += r->most;
+      if (frame.first_rays->occluded(frame.accel, r->ray, filter, stats)) continue;
+      sum->lit += r->light, arrived += r->most;
+    }
+    if (arrived == traced)
+      sum->lit = sum->open;
+    else if (arrived > 0)
+      sum->lit += faint * (arrived / traced);
   }
 }
 

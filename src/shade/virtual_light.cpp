@@ -10,6 +10,8 @@ namespace {
 constexpr float kRayEnd = 1 - 0x1p-10f;
 
 struct VirtualSource {
+  // Chosen: a quarter of the rays are spared, and ꟻLIP against full transport changes by less than .003.
+  static constexpr float kFaint = 0.5f;
   const VirtualLights& lights;
   std::uint32_t count;
 

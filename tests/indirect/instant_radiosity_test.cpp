@@ -8,6 +8,7 @@
 #include "base/fmath.h"
 #include "effect/setting_list.h"
 #include "indirect/instant_radiosity.h"
+#include "scene/builtin_helpers.h"
 #include "support/divided_picture.h"
 #include "support/generated_scene.h"
 
@@ -103,8 +104,8 @@ TEST_CASE("hard_42_virtual_lights_have_the_reflected_power") {
     CAPTURE(count);
     std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(count));
     const VirtualLights& lights = lights_of(*t);
-    CHECK(lights.count <= count);
-    CHECK(lights.count >= count - 9);
+    CHECK(lights.count <= count * 9 / 8);
+    CHECK(lights.count >= count * 7 / 8);
     CHECK(power_of(lights) ==
           doctest::Approx(4 * kPi * kPi * kAlbedo / (1 - kAlbedo)).epsilon(count < 128 ? 0.2 : 0.1));
     for (std::uint32_t i = 0; i < lights.count; ++i) CHECK(max_component(abs(lights.light[i].position)) < 1);
@@ -236,13 +237,52 @@ TEST_CASE("instant_radiosity_keeps_lights_whose_paths_nothing_crosses") {
       const VirtualLights& now = lights_of(*turned);
       REQUIRE(now.count == before.count);
       CHECK(std::equal(now.light, now.light + now.count, before.light, same_light));
-      CHECK(now.geometry_max == before.geometry_max);
     }
-    std::unique_ptr<TestRenderer> outside = rendered(RoomWithTurningBoxes(sun, 0, 0.6f).scene, instant(64));
+    std::unique_ptr<TestRenderer> outside = rendered(RoomWithTurningBoxes(sun, 0, 1.0f).scene, instant(64));
     std::uint32_t kept = lights_kept(before, lights_of(*outside));
     CHECK(kept > before.count / 4);
     if (!sun) CHECK(kept < before.count);
   }
+}
+
+// Goal: as objects move, lights are replaced one by one: no light depends on how long the paths of others are. Method:
+// the animation of seesaw; between frames, a walk or two changes, of which each leaves nine lights at most.
+TEST_CASE("instant_radiosity_replaces_lights_one_by_one") {
+  auto built = build_builtin("seesaw");
+  std::unique_ptr<TestRenderer> t = make_renderer(built->scene, instant(64, 8, 6));
+  VirtualLights last;
+  std::uint32_t changes = 0;
+  for (int frame = 0; frame <= 350; ++frame) {
+    CAPTURE(frame);
+    REQUIRE(render_frame(&t->renderer, frame / 25.0).ok);
+    const VirtualLights& now = lights_of(*t);
+    if (frame > 0) {
+      const std::uint32_t lost = last.count - lights_kept(last, now);
+      CHECK(lost <= 9);
+      CHECK(now.geometry_max == last.geometry_max);
+      changes += lost > 0;
+    }
+    last = now;
+  }
+  CHECK(changes > 50);
+}
+
+// Goal: how many walks there are does not depend on settings or the time at which a renderer begins, or the rows of a
+// server would differ. Method: renderers that begin otherwise, then render the same frame, of a scene with a lamp.
+TEST_CASE("instant_radiosity_sends_as_many_walks_whatever_came_before") {
+  auto built = build_builtin("cornell");
+  const Settings settings = instant(512, 8, 6);
+  std::unique_ptr<TestRenderer> t = make_renderer(built->scene, settings);
+  REQUIRE(render_frame(&t->renderer, 4).ok);
+  Settings first = settings;
+  first.virtual_lights = 64, first.points_per_area_light = 9, first.normals = NormalMode::flat;
+  std::unique_ptr<TestRenderer> other = make_renderer(built->scene, first);
+  REQUIRE(render_frame(&other->renderer, 9).ok);
+  REQUIRE(change_settings(&other->renderer, settings).ok);
+  REQUIRE(render_frame(&other->renderer, 4).ok);
+  const VirtualLights &a = lights_of(*t), &b = lights_of(*other);
+  REQUIRE(a.count == b.count);
+  CHECK(std::equal(a.light, a.light + a.count, b.light, same_light));
 }
 
 // Goal: the same where the moving object is what ends the scene. Method: boxes rise by a hundredth over the room.
@@ -296,4 +336,17 @@ TEST_CASE("instant_radiosity_is_shadowed") {
     return most;
   };
   CHECK(brightest(0) < 0.2f * brightest(bit(Effect::shadow)));
+}
+
+// Goal: lights too faint for a ray of their own arrive as the others do: all of their light where nothing is in the
+// way. Method: an empty room, with shadows and without, has the same bits.
+TEST_CASE("instant_radiosity_of_an_empty_room_needs_no_shadows") {
+  Room room(false);
+  Settings settings = instant(128), without = settings;
+  without.forced_off = bit(Effect::shadow);
+  std::unique_ptr<TestRenderer> a = rendered(room.scene, settings), b = rendered(room.scene, without);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a->renderer.image.count; ++i)
+    different += !same_pixel(a->renderer.image[i], b->renderer.image[i]);
+  CHECK(different == 0);
 }
