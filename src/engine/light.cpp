@@ -87,7 +87,10 @@ void light_scene(Renderer* renderer) {
     }
     if (has(renderer->effects.mask, Effect::source_selection))
       place_light_tree(renderer->light_nodes, renderer->light_order, &renderer->frame);
-    if (has(renderer->effects.mask, Effect::instant_radiosity)) place_virtual_lights(&renderer->frame);
+    if (has(renderer->effects.mask, Effect::instant_radiosity)) {
+      renderer->frame.cone = {0, 0};  // of the last frame's camera, which their walks do not see
+      place_virtual_lights(&renderer->frame);
+    }
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
     renderer->frame.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};
