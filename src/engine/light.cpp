@@ -3,6 +3,7 @@
 #include "base/color.h"
 #include "effect/setting_list.h"
 #include "engine/prepare.h"
+#include "engine/recolor.h"
 #include "indirect/surroundings.h"
 #include "plan/place_light_polygons.h"
 #include "plan/place_light_tree.h"
@@ -79,7 +80,7 @@ void light_scene(Renderer* renderer) {
   renderer->frame.environment_lights = renderer->environment_lights;
   if (!is_lit(*renderer)) {
     place_lights(renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights,
-                 renderer->light_points, &renderer->frame);
+                 opened_materials(*renderer), renderer->light_points, &renderer->frame);
     CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
     if (has(renderer->effects.mask, Effect::area_light)) {
       place_point_groups(renderer->point_groups, renderer->point_order, renderer->point_place, &renderer->frame);
