@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "engine/recolor.h"
 #include "plan/plan_memory.h"
 
 namespace pocketray {
@@ -49,7 +50,8 @@ FrameKind kind_of(const CoherentFrame& frame) {
 void make_coherent(Renderer* renderer) {
   if (!renderer->coherence_state.planned) return;
   make_coherence(renderer->frame,
-                 coherence_plan(renderer->settings, renderer->light_point_count_max, renderer->light_polygons.count),
+                 coherence_plan(renderer->settings, renderer->light_point_count_max, renderer->light_polygons.count,
+                                recolorable_count(*renderer)),
                  &renderer->persistent_arena, &renderer->frame_arena, &renderer->coherence);
 }
 

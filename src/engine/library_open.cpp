@@ -73,6 +73,7 @@ Status read_options(const pocketray_options* given, Request* q) {
   s->threads = static_cast<std::uint32_t>(o.threads);
   RETURN_IF_ERROR(check_choice("measure_exposure", o.measure_exposure, 2));
   RETURN_IF_ERROR(check_choice("movable", o.movable, 2));
+  RETURN_IF_ERROR(check_choice("recolorable", o.recolorable, 2));
   RETURN_IF_ERROR(check_choice("coherence", o.coherence, 3));
   s->coherence = static_cast<CoherenceMode>(o.coherence);
   if (o.coherence_table < 1 || o.coherence_table > static_cast<int>(kCoherenceTableSideMax))
@@ -205,6 +206,7 @@ pocketray_result plan_request(const Request& q, const SceneStorage& storage, Ren
   renderer->camera_index = index;
   renderer->accel_info = q.accel;
   renderer->light_count_max = q.options.light_count_max;
+  renderer->recolorable = q.options.recolorable != 0;
   Status status = plan_renderer(renderer, storage, progressive_need(q.settings));
   if (renderer->memory.total_bytes == SIZE_MAX) status = failure("the scene needs more memory than this CPU addresses");
   bool too_small =

@@ -3,6 +3,7 @@
 #include "base/color.h"
 #include "effect/setting_list.h"
 #include "engine/prepare.h"
+#include "engine/recolor.h"
 #include "indirect/surroundings.h"
 #include "plan/place_light_polygons.h"
 #include "plan/place_light_tree.h"
@@ -82,7 +83,7 @@ void light_scene(Renderer* renderer) {
         renderer->pose.lights.count ? Array<const Light>(renderer->pose.lights) : renderer->scene.lights;
     if (has(renderer->effects.mask, Effect::instant_radiosity) && virtual_lights_of(renderer->frame.indirect)->area < 0)
       measure_walks(renderer->frame, lights, renderer->light_points);
-    place_lights(lights, renderer->light_points, &renderer->frame);
+    place_lights(lights, opened_materials(*renderer), renderer->light_points, &renderer->frame);
     CHECK_LE(renderer->frame.lights.count, renderer->light_points.count);
     if (has(renderer->effects.mask, Effect::area_light)) {
       place_point_groups(renderer->point_groups, renderer->point_order, renderer->point_place, &renderer->frame);
@@ -90,7 +91,10 @@ void light_scene(Renderer* renderer) {
     }
     if (has(renderer->effects.mask, Effect::source_selection))
       place_light_tree(renderer->light_nodes, renderer->light_order, &renderer->frame);
-    if (has(renderer->effects.mask, Effect::instant_radiosity)) place_virtual_lights(&renderer->frame);
+    if (has(renderer->effects.mask, Effect::instant_radiosity)) {
+      renderer->frame.cone = {0, 0};  // of the last frame's camera, which their walks do not see
+      place_virtual_lights(&renderer->frame);
+    }
     bool spawns = has(renderer->effects.mask, Effect::mirror) || has(renderer->effects.mask, Effect::refraction) ||
                   has(renderer->effects.mask, Effect::alpha_blend);
     renderer->frame.radiance_bounds = spawns ? radiance_bounds(renderer->frame) : RadianceBounds{};

@@ -36,7 +36,7 @@
 
 #define POCKETRAY_VERSION_MAJOR 0
 #define POCKETRAY_VERSION_MINOR 2
-#define POCKETRAY_VERSION_PATCH 1
+#define POCKETRAY_VERSION_PATCH 2
 #define POCKETRAY_VERSION_NUMBER \
   (POCKETRAY_VERSION_MAJOR * 65536u + POCKETRAY_VERSION_MINOR * 256u + POCKETRAY_VERSION_PATCH)
 
@@ -151,9 +151,12 @@ typedef struct pocketray_options {
   /* Since 0.2.1 */
   int coherence;       /* POCKETRAY_COHERENCE_… */
   int coherence_table; /* side of the tables of rays behind mirrors and glass, in blocks of pixels, 1 … 1024 */
+  /* Since 0.2.2 */
+  int recolorable; /* 1: reserve memory for pocketray_set_material() */
+  int reserved;
 } pocketray_options;
 #define POCKETRAY_OPTIONS_INIT \
-  { sizeof(pocketray_options), 320, 240, 1, 0, NULL, NULL, 0, 0, NULL, NULL, NULL, 0, 0, 0, 16 }
+  { sizeof(pocketray_options), 320, 240, 1, 0, NULL, NULL, 0, 0, NULL, NULL, NULL, 0, 0, 0, 16, 0, 0 }
 
 typedef struct pocketray_effect {
   const char* name;          /* as in options.effects; never freed */
@@ -239,6 +242,36 @@ POCKETRAY_API pocketray_result pocketray_get_lights(const pocketray_instance* in
 /* Replaces all of them by at most options.light_count_max lights. */
 POCKETRAY_API pocketray_result pocketray_set_lights(pocketray_instance* instance, const pocketray_light* lights,
                                                     uint32_t light_count);
+
+/* The colours of a material, 0 … 1 each unless stated otherwise, and its texture. Since 0.2.2. */
+typedef struct pocketray_material {
+  size_t struct_size;
+  float diffuse[3];                           /* albedo; × texture × vertex colour */
+  float specular[3], mirror[3];               /* reflectance of the highlight at normal incidence, and of the mirror */
+  float specular_tinted[3], mirror_tinted[3]; /* the parts of these that texture and vertex colour tint, as of metals */
+  float transmission[3];                      /* of glass; 0: it is opaque */
+  float absorption[3];                        /* per scene unit within glass; 0 … 1e18 */
+  float emission[3];                          /* radiance; × its own texture, which stays; 0 … 1e18 */
+  uint32_t texture;                           /* one of the scene's, as its other materials use it, or POCKETRAY_NONE */
+  uint32_t reserved;
+} pocketray_material;
+#define POCKETRAY_MATERIAL_INIT                                                                                       \
+  {                                                                                                                   \
+    sizeof(pocketray_material), {0.8f, 0.8f, 0.8f}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, \
+        {0, 0, 0}, POCKETRAY_NONE, 0                                                                                  \
+  }
+
+/* A material, of plan.material_count. Get: as the next frame shows it. Set: recolours what it is on, textures it anew,
+ * or dims a lamp, down to 0; change what get returned. The scene as opened decides for good what is simulated and which
+ * materials are lamps. Light that the scene stores with its surfaces (effect radiosity) stays as it was solved.
+ * POCKETRAY_ERROR_LIMIT: options.recolorable did not ask for this, the material calls for an effect that the scene as
+ * opened does not (a mirror, a first texture, …), or emits where none did. POCKETRAY_ERROR_ARGUMENT: a number is out of
+ * range, or a texture of the material already makes what was changed (metallic-roughness maps: all colours but
+ * absorption and emission). */
+POCKETRAY_API pocketray_result pocketray_get_material(const pocketray_instance* instance, uint32_t material,
+                                                      pocketray_material* result);
+POCKETRAY_API pocketray_result pocketray_set_material(pocketray_instance* instance, uint32_t material,
+                                                      const pocketray_material* changed);
 
 /* Radiance where a ray hits nothing, and constant indirect light: radiance from everywhere; 0 … 1e18. */
 POCKETRAY_API pocketray_result pocketray_get_surroundings(const pocketray_instance* instance, float background[3],

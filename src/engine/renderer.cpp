@@ -9,6 +9,7 @@
 #include "engine/coherent.h"
 #include "engine/exposure.h"
 #include "engine/frame.h"
+#include "engine/recolor.h"
 #include "plan/place_light_polygons.h"
 #include "plan/plan_effects.h"
 #include "plan/plan_lights.h"
@@ -85,7 +86,9 @@ Status adopt_or_build(Renderer* renderer) {
 Status plan_with(Renderer* renderer, const AccelInfo& accel, const SceneStorage& storage, const OutputNeed& output) {
   renderer->accel_info = &accel;
   CoherenceState* coherence = &renderer->coherence_state;
-  Status status = plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, storage,
+  SceneStorage stored = storage;
+  stored.recolorable = recolorable_count(*renderer);
+  Status status = plan_memory(renderer->scene, renderer->settings, renderer->effects, accel, stored,
                               {renderer->light_points.count, renderer->selected_light_max}, output, &renderer->memory,
                               &coherence->unplanned_because);
   coherence->planned = !coherence->unplanned_because;
@@ -162,6 +165,7 @@ Status build_renderer_unexposed(Renderer* renderer) {
   renderer->timings.build_ms = static_cast<double>(clock_ns() - start) * 1e-6;
 
   if (moves(*renderer)) renderer->pose = make_pose(renderer->scene, &renderer->persistent_arena);
+  make_recolorable(renderer);
   const std::size_t used = renderer->persistent_arena.used;
   renderer->frame.indirect = prepare_indirect(renderer->scene, renderer->effects.mask, &renderer->persistent_arena);
   CHECK_LE(renderer->persistent_arena.used - used, indirect_need(renderer->scene, renderer->effects.mask));
@@ -233,9 +237,10 @@ Status change_settings(Renderer* renderer, const Settings& settings) {
   CHECK_EQ(settings.forced_on, now.forced_on);
   CHECK_EQ(settings.forced_off, now.forced_off);
   RETURN_IF_ERROR(validate_settings(settings));
-  EffectPlan effects = plan_effects(renderer->scene, settings);
+  const Scene scene = opened_scene(*renderer);
+  EffectPlan effects = plan_effects(scene, settings);
   std::uint32_t point_count;
-  RETURN_IF_ERROR(light_point_count(renderer->scene, settings, effects.mask, &point_count));
+  RETURN_IF_ERROR(light_point_count(scene, settings, effects.mask, &point_count));
   if (point_count > renderer->light_point_count_max)
     return failure("the lights need %u points, memory is planned for %u: plan for that many", point_count,
                    renderer->light_point_count_max);

@@ -61,10 +61,13 @@ struct Renderer {
   Array<PointGroup> point_groups;           // of area lights
   Array<std::uint8_t> point_order, point_place;
   Array<LightPolygon> light_polygons;
-  Array<LightNode> light_nodes;             // of source selection
+  Array<LightNode> light_nodes;  // of source selection
   Array<std::uint32_t> light_order;
   Array<LightEntry> light_entries;                  // search_entry_count() of them per thread
   std::uint32_t light_count_max = 0;                // lights that may be set later; their points are planned for
+  bool recolorable = false;                         // memory is reserved to change materials
+  Array<Material> materials;                        // the scene's, where they may change
+  Array<const Material> opened_materials;           // those that the scene was opened with; see recolor.h
   EnvironmentLights* environment_lights = nullptr;  // if planned
   FrameData frame;
   Array<Span> spans;                           // one per scanline

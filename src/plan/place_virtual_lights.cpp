@@ -249,7 +249,7 @@ void measure_walks(const FrameData& frame, Array<const Light> scene_lights, Arra
   plain.mask = frame.mask & kLights;
   plain.first_surface = find_surface_function(0);
   plain.visible_filter = HitFilter();
-  place_lights(scene_lights, points, &plain);
+  place_lights(scene_lights, frame.scene->materials, points, &plain);
   const double total = total_flux(plain);
   lights->lights_per_walk = 0;
   std::uint32_t found = 0;

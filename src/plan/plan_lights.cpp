@@ -20,7 +20,7 @@ namespace {
 constexpr Effect kKinds[] = {Effect::point_light, Effect::spot_light, Effect::directional_light, Effect::area_light};
 static_assert(sizeof kKinds / sizeof kKinds[0] == sizeof FrameData::light_runs / sizeof(LightRun), "a run for each");
 
-bool is_emissive(const Scene& scene, std::uint32_t material) { return !is_zero(scene.materials[material].emission); }
+bool is_emissive(const Material& m) { return !is_zero(m.emission); }
 
 Effect effect_of(LightKind kind) {
   return kind == LightKind::point  ? Effect::point_light
@@ -136,8 +136,8 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
   std::uint64_t n = 0;
   for (const Light& light : scene.lights) n += has(mask, effect_of(light.kind));
   if (has(mask, Effect::area_light))
-    for (std::uint32_t i = 0; i < scene.materials.count; ++i)
-      if (is_emissive(scene, i)) n += settings.points_per_area_light;
+    for (const Material& m : scene.materials)
+      if (is_emissive(m)) n += settings.points_per_area_light;
   if (n > kPointLightCountMax)
     return failure("the scene's lights need %llu light points, at most %u are supported: use fewer per area light",
                    static_cast<unsigned long long>(n), kPointLightCountMax);
@@ -145,17 +145,17 @@ Status light_point_count(const Scene& scene, const Settings& settings, EffectMas
   return success();
 }
 
-void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame) {
+void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<LightPoint> points, FrameData* frame) {
   CHECK(frame != nullptr && frame->scene != nullptr);
-  const Scene& scene = *frame->scene;
+  CHECK_EQ(lamps.count, frame->scene->materials.count);
   std::uint32_t count = 0;
   frame->light_run_count = 0;
   for (Effect kind : kKinds) {
     if (!has(frame->mask, kind)) continue;
     std::uint32_t begin = count;
     if (kind == Effect::area_light) {
-      for (std::uint32_t m = 0; m < scene.materials.count; ++m)
-        if (is_emissive(scene, m)) count += place_area_light(*frame, m, points.data + count);
+      for (std::uint32_t m = 0; m < lamps.count; ++m)
+        if (is_emissive(lamps[m])) count += place_area_light(*frame, m, points.data + count);
     } else {
       for (const Light& light : lights)
         if (effect_of(light.kind) == kind) points[count++] = to_point(light);

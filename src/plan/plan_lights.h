@@ -9,8 +9,9 @@ namespace pocketray {
 Status light_point_count(const Scene& scene, const Settings& settings, EffectMask mask, std::uint32_t* count);
 
 // Fills `points` (light_point_count() of them) from posed lights and frame->positions, and sets the frame's lights and
-// runs for the effects of its mask. Allocates nothing.
-void place_lights(Array<const Light> lights, Array<LightPoint> points, FrameData* frame);
+// runs for the effects of its mask. Materials are area lights where those of `lamps` emit, the ones that were counted,
+// however dim they are now. Allocates nothing.
+void place_lights(Array<const Light> lights, Array<const Material> lamps, Array<LightPoint> points, FrameData* frame);
 
 // Upper bounds of the radiance along any ray, for the cut-off: emission, direct light at the smallest distance of every
 // light from the geometry, and the most that up to ray_depth interreflections at the strongest mirror can add; rounded

@@ -43,12 +43,12 @@ double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 
 
 }  // namespace
 
-CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count,
-                             std::uint32_t area_light_count) {
+CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count, std::uint32_t area_light_count,
+                             std::uint32_t recolorable) {
   CoherencePlan plan;
   plan.width = settings.width, plan.height = settings.height;
   plan.samples = settings.samples_per_pixel, plan.threads = settings.threads, plan.light_points = light_point_count;
-  plan.area_lights = area_light_count;
+  plan.area_lights = area_light_count, plan.recolorable = recolorable;
   plan.table_side = settings.coherence_table, plan.tables_only = settings.coherence_by_tables;
   return plan;
 }
@@ -82,6 +82,8 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   add_part(plan, "indirect light", ArenaKind::persistent, indirect_need(scene, effects.mask));
   add_part(plan, "environment shadows", ArenaKind::persistent,
            plans_environment_lights(scene, settings) ? arena_need<EnvironmentLights>(1) : 0);
+  add_part(plan, "materials", ArenaKind::persistent,
+           storage.recolorable ? arena_need<Material>(storage.recolorable) : 0);
   const bool has_groups = has_point_groups(settings, effects.mask);
   add_part(
       plan, "lights", ArenaKind::persistent,
@@ -102,8 +104,9 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
   std::size_t pixel_count = static_cast<std::size_t>(settings.width) * settings.height;
   add_part(plan, "radiance", ArenaKind::persistent, arena_need<Vec3>(pixel_count));
   if (with_coherence) {
-    add_part(plan, "coherence", ArenaKind::persistent,
-             coherence_need(scene, effects.mask, coherence_plan(settings, lights.points, polygons)));
+    add_part(
+        plan, "coherence", ArenaKind::persistent,
+        coherence_need(scene, effects.mask, coherence_plan(settings, lights.points, polygons, storage.recolorable)));
     scratch = std::max(scratch, coherence_scratch_need(scene, effects.mask));
   }
   // The scratch of a single build is free again when the first frame is shown, so output shares its part of the frame

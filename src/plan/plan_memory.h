@@ -31,7 +31,8 @@ struct MemoryPlan {
 
 // Where the scene's data is before planning.
 struct SceneStorage {
-  std::size_t arena_bytes = 0;  // already taken from the scene arena
+  std::size_t arena_bytes = 0;    // already taken from the scene arena
+  std::uint32_t recolorable = 0;  // materials of which a copy is kept, so that they can change
 };
 
 // At most.
@@ -55,7 +56,8 @@ struct OutputNeed {
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
                    const SceneStorage& storage, const PlannedLights& lights, const OutputNeed& output, MemoryPlan* plan,
                    const char** without_coherence = nullptr);
-CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count, std::uint32_t area_light_count);
+CoherencePlan coherence_plan(const Settings& settings, std::uint32_t light_point_count, std::uint32_t area_light_count,
+                             std::uint32_t recolorable = 0);
 
 // The same for a device that only shows what others render: its plan has only the output.
 Status plan_output_memory(const Settings& settings, const OutputNeed& output, MemoryPlan* plan);

@@ -1,6 +1,7 @@
 // Static content: geometry, materials, textures, lights, cameras.
 #include <cstring>
 
+#include "base/check.h"
 #include "base/limit_list.h"
 #include "scene/baked.h"
 #include "scene/texel_blocks.h"
@@ -54,7 +55,7 @@ Status validate_info(const SceneInfo& info) {
   return check_fields("info", 0, fields);
 }
 
-Status validate_material(const Scene& scene, std::uint32_t index) {
+Status check_material(const Scene& scene, std::uint32_t index) {
   const Material& m = scene.materials[index];
   const FieldRange fields[] = {
       {"diffuse.x", m.diffuse.x, 0, 1},
@@ -181,8 +182,14 @@ Status validate_geometry(const Scene& scene) {
   return success();
 }
 
+Status validate_material(const Scene& scene, std::uint32_t index) {
+  CHECK_LT(index, scene.materials.count);
+  RETURN_IF_ERROR(check_material(scene, index));
+  return scene.material_maps.count ? validate_maps(scene, index) : success();
+}
+
 Status validate_materials(const Scene& scene) {
-  for (std::uint32_t i = 0; i < scene.materials.count; ++i) RETURN_IF_ERROR(validate_material(scene, i));
+  for (std::uint32_t i = 0; i < scene.materials.count; ++i) RETURN_IF_ERROR(check_material(scene, i));
   for (std::uint32_t i = 0; i < scene.textures.count; ++i) RETURN_IF_ERROR(validate_texture(scene, i));
   return success();
 }

@@ -61,7 +61,9 @@ Status check_normals(const char* array, Array<const Vec3> normals);
 
 Status validate_geometry(const Scene& scene);
 Status validate_materials(const Scene& scene);
+Status validate_material(const Scene& scene, std::uint32_t index);  // with its maps
 Status validate_material_maps(const Scene& scene);
+Status validate_maps(const Scene& scene, std::uint32_t index);  // of one material
 Status validate_grains(const Scene& scene);
 Status check_texture_use(const char* array, const char* field, std::uint32_t index, const TextureUse& use,
                          const Scene& scene);

@@ -19,7 +19,7 @@ Status check_texture_use(const char* array, const char* field, std::uint32_t ind
   return success();
 }
 
-static Status validate_maps(const Scene& scene, std::uint32_t index) {
+Status validate_maps(const Scene& scene, std::uint32_t index) {
   const Material& m = scene.materials[index];
   const MaterialMaps& maps = scene.material_maps[index];
   const FieldRange fields[] = {

@@ -45,7 +45,7 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
   bytes = size_sum(bytes, arena_need<LightPolygon>(plan.area_lights));
   bytes = size_sum(bytes, arena_need<Span>(kSpanRows * row_spans_max(plan.width)));
-  bytes = size_sum(bytes, 2 * arena_need<std::uint8_t>(plan.height));
+  bytes = size_sum(bytes, 2 * arena_need<std::uint8_t>(plan.height) + recoloring_need(plan.recolorable));
   if (!keeps_tables(mask, plan)) return bytes;
   bytes = size_sum(bytes, arena_need(pixels) + arena_need<MarkingObserver>(plan.threads));
   return size_sum(bytes, ray_tables_need(plan.width, plan.height, plan.table_side));
@@ -60,6 +60,7 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   *c = Coherence();
   c->plan = plan;
   c->moving = make_moving_geometry(frame, keep, scratch);
+  if (plan.recolorable) c->recoloring = make_recoloring(plan.recolorable, keep);
   c->tile_columns = tiles_along(plan.width), c->tile_rows = tiles_along(plan.height);
   const std::size_t tiles = std::size_t(c->tile_columns) * c->tile_rows;
   c->first_hits = arena_array_zeroed<Hit>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
@@ -86,6 +87,10 @@ bool fits(const Coherence& c, const FrameData& frame) {
          (c.given.count > 0 || !has(frame.mask, Effect::environment_shadow));
 }
 
+void recolor(Coherence* c, std::uint32_t material, const Material& was, const Material& is, const Scene& scene) {
+  if (c->recoloring.marks.count) mark_material(was, is, scene, material, &c->recoloring);
+}
+
 bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   CHECK(frame.settings.width == c->plan.width && frame.settings.height == c->plan.height);
   CHECK(why != nullptr);
@@ -96,6 +101,8 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   if (!*why && c->tables.words.count && !is_empty(frame.accel.bounds) &&
       !contains(c->tables.bounds, frame.accel.bounds))
     *why = "the scene outgrew the tables' grid";
+  take_marks(&c->recoloring);
+  if (!*why && c->recoloring.any) *why = follow_recoloring(frame, c->moving, &c->recoloring);
   for (ChangeCounts& counts : c->counts) counts = ChangeCounts();
   std::fill(c->row_traced.begin(), c->row_traced.end(), std::uint8_t(0));
   bool lights_changed =
@@ -127,6 +134,7 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
     begin_dirty(&c->tables);
     for_each_changed_box(
         c->moving, [](void* tables, const Box& box) { add_dirty(static_cast<RayTables*>(tables), box); }, &c->tables);
+    if (c->recoloring.any) add_recolored(frame, c->recoloring, &c->tables);
   }
   // Tiles that are not searched, since others trace their rows, may have changed in any way.
   std::fill(c->given.begin(), c->given.end(), is_unchanged(*c) ? 0 : ~std::uint64_t(0));
@@ -135,7 +143,7 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   return true;
 }
 
-bool is_unchanged(const Coherence& c) { return !c.moving.changed && !c.search.lights_changed; }
+bool is_unchanged(const Coherence& c) { return !c.moving.changed && !c.search.lights_changed && !c.recoloring.any; }
 
 namespace {
 
@@ -182,6 +190,7 @@ void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, Tr
       found = c->plan.tables_only
                   ? find_blocks(*c, tile) & known
                   : find_changed_pixels(c->search, tile, suspects, known, &given, &c->counts[thread], stats);
+    if (searches && c->recoloring.any) found |= find_recolored(c->recoloring, c->search, tile, known, &given);
     if (c->given.count) c->given[tile] = given;
     if (!c->plan.tables_only) forget_shadows(c->search, tile, unknown);
     c->changed[tile] = found | unknown;

@@ -8,6 +8,7 @@
 #include "base/span.h"
 #include "temporal/frame_signature.h"
 #include "temporal/ray_observer.h"
+#include "temporal/recoloring.h"
 #include "temporal/tile_changes.h"
 
 namespace pocketray {
@@ -20,12 +21,14 @@ constexpr EffectMask kNotFollowed =
 struct CoherencePlan {
   std::uint32_t width, height, samples, threads, light_points, area_lights;  // at most
   std::uint32_t table_side;
-  bool tables_only;  // the paper's way: every ray in tables, whole blocks traced again
+  bool tables_only;           // the paper's way: every ray in tables, whole blocks traced again
+  std::uint32_t recolorable;  // materials that may change; 0: none does
 };
 
 struct Coherence {
   CoherencePlan plan = {};
   MovingGeometry moving;
+  Recoloring recoloring;
   RayTables tables;  // no words: none are kept
   Array<Hit> first_hits;
   Array<std::uint8_t> marked;  // a byte for each pixel: 1 if it has rays in the tables
@@ -61,6 +64,9 @@ bool fits(const Coherence& c, const FrameData& frame);
 
 // Forgets the last frame.
 inline void forget_frame(Coherence* c) { c->signature.known = c->following = false; }
+
+// Between frames: a material has changed.
+void recolor(Coherence* c, std::uint32_t material, const Material& was, const Material& is, const Scene& scene);
 
 // Follows the frame's geometry and compares it with the last frame. True: find_changes() tells which pixels to trace.
 // False: all of them, and *why tells why, for people.

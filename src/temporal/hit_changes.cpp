@@ -7,7 +7,8 @@ namespace {
 
 constexpr float kInfinity = __builtin_inff();
 
-// The beam of all camera rays of some pixels, up to a distance.
+}  // namespace
+
 Beam camera_beam(const CameraRays& c, const PixelRect& pixels, float t_max) {
   Box origins = empty_box(), directions = empty_box();
   for (int corner = 0; corner < 4; ++corner) {
@@ -21,6 +22,8 @@ Beam camera_beam(const CameraRays& c, const PixelRect& pixels, float t_max) {
   // These directions are as long as camera_ray()'s, or longer.
   return beam_along(origins, directions, t_max);
 }
+
+namespace {
 
 // Whether the ray's first hit, which was `last` and stays as it is, is another one now that its nearest moving triangle
 // is `moving`.

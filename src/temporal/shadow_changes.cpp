@@ -28,7 +28,8 @@ bool accept_static(const void* context, std::uint32_t triangle, float u, float v
   return !f.inner.accept || f.inner.accept(f.inner.context, triangle, u, v);
 }
 
-// All shadow rays from the points to the light.
+}  // namespace
+
 Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points, float room) {
   const Box from = {points.low - Vec3{room, room, room}, points.high + Vec3{room, room, room}};
   if (run.sample == find_light_sampler(Effect::directional_light))
@@ -36,6 +37,13 @@ Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points
   // A ray that starts beside its point ends as far beside the light.
   return {from.low, from.high, light.position - points.low, light.position - points.high, 1};
 }
+
+Beam distant_beam(const EnvironmentLight& light, const Box& points, float room) {
+  const Vec3 around = {room, room, room};
+  return beam_along({points.low - around, points.high + around}, {light.direction, light.direction}, kInfinity);
+}
+
+namespace {
 
 // The receivers whose shadow ray to the light may meet a change, found in groups; without those that need no look.
 std::uint64_t find_suspects(const TileSearch& t, const LightRun& run, const LightPoint& light, float room,
@@ -158,12 +166,6 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
 
 namespace {
 
-// All shadow rays from the points towards a distant light.
-Beam distant_beam(const EnvironmentLight& light, const TileHits& hits) {
-  const Vec3 room = {hits.room, hits.room, hits.room};
-  return beam_along({hits.points.low - room, hits.points.high + room}, {light.direction, light.direction}, kInfinity);
-}
-
 // Calls visit(index, light) for each distant light of the environment towards which the tile has a ray that can meet a
 // change. Stops when it returns false.
 template <class Visit>
@@ -172,7 +174,9 @@ void for_each_distant_suspect(const ChangeSearch& search, const TileHits& hits, 
   if (!has(frame.mask, Effect::environment_shadow) || is_empty(hits.points) || !search.moving->changed) return;
   const EnvironmentLights& lights = *frame.environment_lights;
   for (std::uint32_t i = 0; i < lights.count; ++i)
-    if (meets_change(*search.moving, distant_beam(lights.light[i], hits)) && !visit(i, lights.light[i])) return;
+    if (meets_change(*search.moving, distant_beam(lights.light[i], hits.points, hits.room)) &&
+        !visit(i, lights.light[i]))
+      return;
 }
 
 // Pixels of which a ray towards the environment is blocked where it was not, or no longer.

@@ -10,13 +10,6 @@
 namespace pocketray {
 namespace {
 
-// The point of a hit.
-Vec3 point_of(const FrameData& frame, const Hit& hit) {
-  const Triangle& t = frame.scene->triangles[hit.triangle];
-  return frame.positions[t.vertex(0)] * (1 - hit.u - hit.v) + frame.positions[t.vertex(1)] * hit.u +
-         frame.positions[t.vertex(2)] * hit.v;
-}
-
 TilePixels pixels_of(const Settings& settings, std::uint32_t column, std::uint32_t row, std::uint64_t known) {
   TilePixels p;
   p.column = column, p.row = row;

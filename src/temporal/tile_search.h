@@ -24,6 +24,13 @@ inline Ray sample_ray(const FrameData& frame, const TilePixels& p, std::uint32_t
                     static_cast<float>(p.row + p.y[i]) + offset.y);
 }
 
+// The point of a hit.
+inline Vec3 point_of(const FrameData& frame, const Hit& hit) {
+  const Triangle& t = frame.scene->triangles[hit.triangle];
+  return frame.positions[t.vertex(0)] * (1 - hit.u - hit.v) + frame.positions[t.vertex(1)] * hit.u +
+         frame.positions[t.vertex(2)] * hit.v;
+}
+
 struct PixelRect {
   std::uint32_t column, row, width, height;
 };
@@ -56,6 +63,12 @@ struct TileSearch {
         stats(stats_),
         hits(nullptr) {}
 };
+
+// All camera rays of some pixels, up to a distance.
+Beam camera_beam(const CameraRays& camera, const PixelRect& pixels, float t_max);
+// All shadow rays to a light, and towards one of the environment, from some points and at most `room` beside them.
+Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points, float room);
+Beam distant_beam(const EnvironmentLight& light, const Box& points, float room);
 
 // Whether a camera ray of some pixels, these among others, may meet a change; `t_max` is of the farthest hit.
 bool sees_change(const ChangeSearch& search, const PixelRect& pixels, float t_max);

@@ -44,6 +44,7 @@ typedef struct api_case {
   const char* name;
   void (*run)(void);
 } api_case;
-extern const api_case api_open_cases[], api_frame_cases[], api_scene_cases[], api_misuse_cases[], api_coherence_cases[]; /* a null name ends */
+extern const api_case api_open_cases[], api_frame_cases[], api_scene_cases[], api_misuse_cases[], api_coherence_cases[],
+    api_material_cases[]; /* a null name ends */
 
 #endif

@@ -117,7 +117,8 @@ int main(int argc, char** argv) {
   if (!path) path = API_FILE;
 #endif
   if (!path || !read_file(path)) return printf("usage: test_api FILE\n"), 2;
-  count = run(api_open_cases) + run(api_frame_cases) + run(api_scene_cases) + run(api_misuse_cases) + run(api_coherence_cases);
+  count = run(api_open_cases) + run(api_frame_cases) + run(api_scene_cases) + run(api_misuse_cases) +
+          run(api_coherence_cases) + run(api_material_cases);
   printf("%d cases, %d failures\n", count, api_failures);
   return api_failures > 0;
 }

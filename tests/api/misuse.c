@@ -71,6 +71,8 @@ static void options_out_of_range(void) {
   WRONG(o.coherence = -1, "coherence");
   WRONG(o.coherence_table = 0, "coherence_table is 0");
   WRONG(o.coherence_table = 1025, "coherence_table is 1025");
+  WRONG(o.recolorable = 2, "recolorable is 2");
+  WRONG(o.recolorable = -1, "recolorable is -1");
   WRONG(o.measure_exposure = -1, "measure_exposure");
   WRONG(o.movable = 7, "movable");
   WRONG(o.camera_index = 1, "no camera 1");
@@ -142,6 +144,7 @@ static void no_instance(void) {
   pocketray_camera camera = POCKETRAY_CAMERA_INIT;
   pocketray_light light = POCKETRAY_LIGHT_INIT;
   pocketray_node node = POCKETRAY_NODE_INIT;
+  pocketray_material material = POCKETRAY_MATERIAL_INIT;
   pocketray_frame frame = POCKETRAY_FRAME_INIT;
   pocketray_pixels pixels = api_pixels(&picture);
   const char* part = "instance";
@@ -161,6 +164,8 @@ static void no_instance(void) {
   wrong("set_surroundings", pocketray_set_surroundings(NULL, rgb, rgb), part);
   wrong("get_node", pocketray_get_node(NULL, 0, &node), part);
   wrong("set_node", pocketray_set_node(NULL, 0, rgb), part);
+  wrong("get_material", pocketray_get_material(NULL, 0, &material), part);
+  wrong("set_material", pocketray_set_material(NULL, 0, &material), part);
   wrong("get_exposure", pocketray_get_exposure(NULL, rgb), part);
   wrong("set_exposure", pocketray_set_exposure(NULL, 1), part);
   wrong("measure_exposure", pocketray_measure_exposure(NULL, 0, rgb), part);

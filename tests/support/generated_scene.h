@@ -102,7 +102,8 @@ struct TestRenderer {
   ~TestRenderer() { stop_workers(renderer.workers); }
 };
 std::unique_ptr<TestRenderer> make_renderer(const Scene& scene, const Settings& settings,
-                                            const AccelInfo* accel = nullptr, Status* status = nullptr);
+                                            const AccelInfo* accel = nullptr, Status* status = nullptr,
+                                            bool recolorable = false);
 
 // The picture of one frame.
 using Picture = std::vector<Vec3>;

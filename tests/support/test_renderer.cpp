@@ -9,7 +9,7 @@
 namespace pocketray {
 
 std::unique_ptr<TestRenderer> make_renderer(const Scene& scene, const Settings& settings, const AccelInfo* accel,
-                                            Status* status) {
+                                            Status* status, bool recolorable) {
   auto test = std::make_unique<TestRenderer>();
   std::size_t bytes = settings.memory_bytes;
   test->block.reset(new std::uint8_t[bytes]);
@@ -17,6 +17,7 @@ std::unique_ptr<TestRenderer> make_renderer(const Scene& scene, const Settings& 
   start_renderer(test->block.get(), bytes, settings, renderer);
   if (accel) renderer->accel_info = accel;
   renderer->scene = scene;
+  renderer->recolorable = recolorable;
   Status result = plan_renderer(renderer, SceneStorage(), 0);
   if (result.ok) {
     renderer->workers = start_workers(settings.threads);

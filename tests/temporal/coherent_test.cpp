@@ -44,10 +44,10 @@ bool same_frames(const Pair& pair, double seconds) {
 }  // namespace
 
 // Goal: HARDCASES 58 and 59. Method: differential, whole frames against coherent ones after random edits: moves down to
-// fractions of an ulp, deformations, deletions, additions, objects that leave the grid, lights, camera, settings, with
-// all effects, tables of all sizes, 1 to 3 threads and every accelerator; frames that were cut short or rendered
-// otherwise in between, or of which only some rows were traced. Seeds and their number may be set: POCKETRAY_SEED,
-// POCKETRAY_SCRIPTS.
+// fractions of an ulp, deformations, deletions, additions, objects that leave the grid, colours, textures, lights,
+// camera, settings, with all effects, tables of all sizes, 1 to 3 threads and every accelerator; frames that were cut
+// short or rendered otherwise in between, or of which only some rows were traced. Seeds and their number may be set:
+// POCKETRAY_SEED, POCKETRAY_SCRIPTS.
 TEST_CASE("hard_58_edited_frames_equal_whole_ones") {
   constexpr int kFrames = 20;
   const std::uint64_t first = seed_of_scripts();

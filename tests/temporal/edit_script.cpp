@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "accel/accel_list.h"
+#include "engine/recolor.h"
 
 namespace pocketray {
 namespace {
@@ -92,12 +93,22 @@ void edit_surroundings(EditScript* s) {
   }
 }
 
+void edit_material(EditScript* s) {
+  const std::vector<Material>& opened = s->generated->materials;
+  const std::uint32_t index = next_u32(&s->rng) % static_cast<std::uint32_t>(opened.size());
+  const Material m = recolored(opened[index], s->whole->renderer.materials[index],
+                               static_cast<std::uint32_t>(s->generated->textures.size()), &s->rng);
+  if (!check_recolored(&s->whole->renderer, index, m).ok) return;
+  for (Renderer* renderer : {&s->whole->renderer, &s->coherent->renderer}) (void)change_material(renderer, index, m);
+}
+
 void edit(EditScript* s) {
   const std::uint32_t kind = next_u32(&s->rng) % 32;
   if (kind < 12) edit_shape(s);
   if (kind >= 8 && kind < 18) s->seconds += next_in(&s->rng, 0, kind < 14 ? 0.02f : 0.7f);
   if (kind >= 18 && kind < 24) edit_light(s);
   if (kind == 24) edit_surroundings(s);
+  if (kind == 9 || kind == 16 || kind == 20 || kind > 26) edit_material(s);
   // Otherwise nothing changes.
 }
 
@@ -148,6 +159,37 @@ void add_many_lights(GeneratedScene* s, Rng* rng) {
 
 }  // namespace
 
+Material recolored(const Material& opened, Material m, std::uint32_t texture_count, Rng* rng) {
+  Vec3* const colors[] = {&m.diffuse, &m.diffuse, &m.specular, &m.mirror, &m.transmission, &m.absorption};
+  Vec3* color = colors[next_u32(rng) % 6];
+  switch (next_u32(rng) % 8) {
+    case 0:
+      *color = {color->y, color->z, color->x};
+      break;
+    case 1:
+      *color = *color * next_in(rng, 0.5f, 1);
+      break;
+    case 2:
+      *color = {0, 0, 0};
+      break;
+    case 3:
+      m.diffuse = next_vector(rng, 0.5f) + Vec3{0.5f, 0.5f, 0.5f};
+      break;
+    case 4:
+    case 5:
+      m.diffuse_texture.texture = next_u32(rng) % (texture_count + 1);
+      if (m.diffuse_texture.texture == texture_count) m.diffuse_texture.texture = kNone;
+      break;
+    case 6:
+      m.emission = opened.emission * (next_u32(rng) % 4 == 0 ? 0 : next_in(rng, 0.3f, 1.1f));
+      break;
+    default:
+      return opened;
+  }
+  m.specular_tinted = min(m.specular_tinted, m.specular), m.mirror_tinted = min(m.mirror_tinted, m.mirror);
+  return m;
+}
+
 EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
   EditScript s;
   s.rng = make_rng(seed, 58);
@@ -172,7 +214,7 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
   const AccelInfo* const accels[] = {nullptr, nullptr,
                                      kAccelList[next_u32(&s.rng) % (sizeof kAccelList / sizeof kAccelList[0])]};
   const AccelInfo* accel = accels[next_u32(&s.rng) % 3];
-  s.whole = make_renderer(s.generated->scene, plain, accel);
+  s.whole = make_renderer(s.generated->scene, plain, accel, nullptr, true);
   Settings settings = plain;
   const std::uint32_t sides[] = {1, 4, 16, 16, 64};
   settings.coherence = CoherenceMode::on;
@@ -181,7 +223,7 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
   settings.threads = 1 + next_u32(&s.rng) % 3;
   s.shares = next_u32(&s.rng) % 3 == 0;
   if (s.shares && next_u32(&s.rng) % 2) settings.coherence = CoherenceMode::automatic;
-  s.coherent = make_renderer(s.generated->scene, settings, accel);
+  s.coherent = make_renderer(s.generated->scene, settings, accel, nullptr, true);
   return s;
 }
 

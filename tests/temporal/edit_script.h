@@ -24,6 +24,9 @@ struct EditScript {
   std::uint64_t partial_frames = 0, pixels_traced = 0;  // of the frames that were not traced whole
 };
 
+// A material that may take the place of another, which is `m` now; mostly no brighter.
+Material recolored(const Material& opened, Material m, std::uint32_t texture_count, Rng* rng);
+
 // A scene with the features and animation; size, table, threads and accelerator follow from the seed.
 EditScript begin_script(std::uint32_t features, std::uint64_t seed);
 // Edits, renders both frames and compares them: true if every bit is equal.
