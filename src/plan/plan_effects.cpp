@@ -101,7 +101,7 @@ struct PlanWriter {
 };
 
 bool is_asked_for(const IndirectInfo& info, const Settings& settings) {
-  return settings.indirect == indirect_choice(static_cast<Effect>(__builtin_ctz(info.effects)));
+  return settings.indirect == indirect_choice(static_cast<Effect>(__builtin_ctzll(info.effects)));
 }
 
 // The method that --indirect asks for, or else the last one that the scene has by default; null: none. Without what the
@@ -120,7 +120,7 @@ const IndirectInfo* choose_indirect(const Scene& scene, const Settings& settings
 // Methods stand in for the same light, so a plan has only one of them. --effects cannot force another.
 void decide_indirect(const IndirectInfo& info, const IndirectInfo* chosen, const Scene& scene, const Settings& settings,
                      PlanWriter* w) {
-  Effect effect = static_cast<Effect>(__builtin_ctz(info.effects));
+  Effect effect = static_cast<Effect>(__builtin_ctzll(info.effects));
   const bool has_any = info.use(scene) != IndirectUse::nothing;
   if (&info == chosen || !has_any || (settings.forced_off & info.effects))
     w->set(effect, has_any, "%s", has_any ? info.present : info.absent);
