@@ -37,8 +37,9 @@ enum class Effect : std::uint8_t {
   source_selection,
   environment_shadow,
   anisotropy,
+  second_uv,
 };
-constexpr int kEffectCount = 32;
+constexpr int kEffectCount = 33;
 
 using EffectMask = std::uint64_t;
 constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }

@@ -126,6 +126,7 @@ static void plans_say_which_effects_and_why(void) {
   EXPECT(plan.memory_bytes == before.memory_bytes && plan.triangle_count == before.triangle_count);
   for (i = 0; i < plan.effect_count; ++i)
     EXPECT(plan.effects[i].on == before.effects[i].on && !strcmp(plan.effects[i].reason, before.effects[i].reason));
+  EXPECT(!find_effect(&before, "second-uv")->on && strstr(find_effect(&before, "second-uv")->reason, "none of "));
   pocketray_close(instance);
 }
 
@@ -135,7 +136,7 @@ static void plans_of_0_2_1_are_accepted(void) {
   pocketray_options options = api_options();
   pocketray_plan whole = make_plan(&source, &options), plan = whole;
   pocketray_instance* instance = api_open("cornell", &options, 0);
-  EXPECT(whole.effect_count == POCKETRAY_EFFECTS_MAX);
+  EXPECT(whole.effect_count == POCKETRAY_EFFECTS_MAX && whole.further_effect_count > 0);
   plan.struct_size = offsetof(pocketray_plan, further_effect_count);
   plan.further_effect_count = 77;
   plan.effect_count = plan.memory_part_count = 0;
