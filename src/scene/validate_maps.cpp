@@ -9,6 +9,7 @@ constexpr float kGrainSquareMax = 1.00001f;  // a unit vector, rounded
 
 Status check_texture_use(const char* array, const char* field, std::uint32_t index, const TextureUse& use,
                          const Scene& scene) {
+  CHECK(array != nullptr && field != nullptr);
   for (const auto& row : use.m)
     for (float x : row)
       if (!is_coordinate(x)) return failure("%s[%u].%s has a transform that is not finite", array, index, field);
@@ -22,7 +23,6 @@ Status check_texture_use(const char* array, const char* field, std::uint32_t ind
 }
 
 static Status validate_maps(const Scene& scene, std::uint32_t index) {
-  CHECK_LT(index, scene.material_maps.count);
   const Material& m = scene.materials[index];
   const MaterialMaps& maps = scene.material_maps[index];
   const FieldRange fields[] = {
