@@ -37,14 +37,14 @@ enum class Effect : std::uint8_t {
   source_selection,
   environment_shadow,
   anisotropy,
+  second_uv,
 };
-constexpr int kEffectCount = 32;
+constexpr int kEffectCount = 33;
 
-using EffectMask = std::uint32_t;
-constexpr EffectMask bit(Effect effect) { return 1u << static_cast<int>(effect); }
-static_assert(kEffectCount == 32,
-              "a mask has as many bits; more effects take a wider one, in files and on the wire too");
-constexpr EffectMask kAllEffects = ~EffectMask(0);
+using EffectMask = std::uint64_t;
+constexpr EffectMask bit(Effect effect) { return EffectMask(1) << static_cast<int>(effect); }
+static_assert(kEffectCount < 64, "more effects than bits of a mask take a wider one, on the wire too");
+constexpr EffectMask kAllEffects = bit(static_cast<Effect>(kEffectCount)) - 1;
 // Methods of indirect light: a plan has one of them or none; --indirect chooses.
 constexpr EffectMask kIndirectEffects = bit(Effect::ambient) | bit(Effect::radiosity) | bit(Effect::instant_radiosity);
 

@@ -37,7 +37,7 @@ constexpr SweepValues indirect_sweep() {
 // The choice of a method by its effect, one of kIndirectEffects.
 constexpr IndirectChoice indirect_choice(Effect effect) {
   const EffectMask before = kIndirectEffects & (bit(effect) - 1);
-  return static_cast<IndirectChoice>(static_cast<int>(IndirectChoice::first) + __builtin_popcount(before));
+  return static_cast<IndirectChoice>(static_cast<int>(IndirectChoice::first) + __builtin_popcountll(before));
 }
 
 constexpr EffectMask kReflecting = bit(Effect::mirror) | bit(Effect::refraction);

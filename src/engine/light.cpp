@@ -22,6 +22,7 @@
 #include "shade/shade.h"
 #include "shade/source_selection.h"
 #include "shade/surface.h"
+#include "shade/texture.h"
 #include "shade/tile_shadows.h"
 
 namespace pocketray {
@@ -49,6 +50,7 @@ void choose_kernels(Renderer* renderer) {
   renderer->frame.surface = find_surface_function(renderer->effects.mask);
   const EffectMask virtual_lights = bit(Effect::instant_radiosity) & kEffectsBuilt;
   renderer->frame.first_surface = find_surface_function(renderer->effects.mask & ~virtual_lights);
+  find_texture_functions(&renderer->frame);
   find_surroundings(&renderer->frame);
   if (renderer->effects.mask & kMapEffects & kEffectsBuilt)
     add_material_maps(&renderer->frame);

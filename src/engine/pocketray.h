@@ -171,6 +171,7 @@ typedef struct pocketray_memory_part {
 } pocketray_memory_part;
 
 #define POCKETRAY_EFFECTS_MAX 32
+#define POCKETRAY_FURTHER_EFFECTS_MAX 32
 #define POCKETRAY_MEMORY_PARTS_MAX 16
 
 /* The plan for a scene, options and settings. */
@@ -187,6 +188,9 @@ typedef struct pocketray_plan {
   uint32_t effect_count, memory_part_count;
   pocketray_effect effects[POCKETRAY_EFFECTS_MAX];
   pocketray_memory_part memory_parts[POCKETRAY_MEMORY_PARTS_MAX];
+  /* Since 0.2.2: the effects that come after those above */
+  uint32_t further_effect_count;
+  pocketray_effect further_effects[POCKETRAY_FURTHER_EFFECTS_MAX];
 } pocketray_plan;
 
 /* Plans without rendering: which effects are simulated and why, and how much memory pocketray_open() needs with the

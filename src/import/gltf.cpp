@@ -72,7 +72,7 @@ void import_gltf(const std::string& path, Bytes bytes, SceneBuilder* builder) {
   file.builder = builder;
   gltf_parse(&file, std::move(bytes));
   file.materials.assign(file.model.materials.size(), kNone);
-  file.material_uv_set.assign(file.model.materials.size(), -1);
+  file.uv_sets.resize(file.model.materials.size());
   gltf_visit_nodes(&file);
   gltf_mark_movers(&file);
   gltf_mark_joints(&file);

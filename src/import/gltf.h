@@ -28,6 +28,11 @@ struct GltfNode {
   std::uint32_t out_node = kNone;
 };
 
+// The TEXCOORD sets of a material that become its first and its second texture coordinates; -1: none.
+struct GltfUvSets {
+  int first = -1, second = -1;
+};
+
 struct GltfFile {
   std::string path;
   SceneBuilder* builder = nullptr;
@@ -39,13 +44,15 @@ struct GltfFile {
   std::size_t visible_count = 0;       // nodes of the default scene in `order`; the rest belong to joints outside of it
   std::map<int, std::uint32_t> skins;  // glTF skin → scene skin
   std::vector<std::uint32_t> materials;  // glTF index → scene index, made on first use
-  std::vector<int> material_uv_set;      // TEXCOORD set each material uses, -1: none; parallel to model.materials
+  std::vector<GltfUvSets> uv_sets;       // of each material; parallel to model.materials
+  GltfUvSets current_uv_sets;            // of the material being made
   std::uint32_t default_material = kNone;
   using ImageUse = std::pair<int, TexelKind>;
-  std::map<ImageUse, Image> images;            // decoded, for reading channels
-  using TexelUse = std::pair<ImageUse, bool>;  // whether with levels
-  std::map<TexelUse, TexelRun> texels;         // glTF image → its texels in the scene
-  std::map<ImageUse, std::uint32_t> textures;  // glTF texture → scene texture
+  std::map<ImageUse, Image> images;                // decoded, for reading channels
+  using TexelUse = std::pair<ImageUse, bool>;      // whether with levels
+  std::map<TexelUse, TexelRun> texels;             // glTF image → its texels in the scene
+  using TextureOfSet = std::pair<ImageUse, int>;   // whether of the second texture coordinates
+  std::map<TextureOfSet, std::uint32_t> textures;  // glTF texture → scene texture
 };
 
 // gltf.cpp: reads a .gltf or .glb into the builder.
@@ -70,7 +77,7 @@ std::vector<Vec3> gltf_vec3s(GltfFile* file, int accessor, const char* what, flo
 
 // gltf_texture.cpp
 const Image& gltf_image(GltfFile* file, int texture_index, TexelKind kind);
-// Scene texture and transform of a texture reference.
+// Scene texture and transform of a texture reference of the material being made.
 TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info, TexelKind kind = TexelKind::colors);
 // TEXCOORD set of the reference, after KHR_texture_transform.
 int gltf_uv_set(const tinygltf::TextureInfo& info);
@@ -92,10 +99,9 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
 float gltf_map_mean(GltfFile* file, int texture, int channel);
 // The model dimmed by the means of specular textures.
 MetallicRoughness gltf_mean_model(GltfFile* file, const tinygltf::Material& source, MetallicRoughness model);
-// The scene keeps one set of texture coordinates per vertex: that of the first texture that the material has; for a
-// grain without textures the first; -1: none.
-int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
-                       const MaterialMaps& maps, const Grain& grain);
+// The scene keeps two sets of texture coordinates per vertex: that of the normal texture, whose frame tangents are of,
+// or of the first other texture, and one more. A remark names textures of further ones, which use the first.
+GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source);
 
 // gltf_mesh.cpp: the primitives of a mesh that make triangles.
 std::vector<MeshData> gltf_mesh(GltfFile* file, int mesh);

@@ -106,32 +106,41 @@ void gltf_read_maps(GltfFile* file, const tinygltf::Material& source, bool is_cl
   maps->occlusion_strength = gltf_unit(source.occlusionTexture.strength);
 }
 
-int gltf_choose_uv_set(GltfFile* file, const tinygltf::Material& source, const Material& material,
-                       const MaterialMaps& maps, const Grain& grain) {
+GltfUvSets gltf_choose_uv_sets(GltfFile* file, const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const SpecularTextures specular = specular_textures(source);
+  const tinygltf::Value* anisotropy = gltf_extension(source.extensions, "KHR_materials_anisotropy");
+  const bool has_grain = anisotropy && gltf_number(*anisotropy, "anisotropyStrength", 0) > 0;
+  const bool is_lit = !gltf_extension(source.extensions, "KHR_materials_unlit");
+  const std::vector<double>& emission = source.emissiveFactor;
+  const bool glows = std::any_of(emission.begin(), emission.end(), [](double factor) { return factor > 0; });
   const struct {
     const char* name;
-    const TextureUse& use;
     tinygltf::TextureInfo info;
-  } all[] = {{"base colour", material.diffuse_texture, pbr.baseColorTexture},
-             {"metallic-roughness", maps.metallic_roughness, pbr.metallicRoughnessTexture},
-             {"specular", maps.specular, specular.share},
-             {"specular colour", maps.specular_color, specular.color},
-             {"normal", maps.normal, plain(source.normalTexture)},
-             {"emission", material.emission_texture, source.emissiveTexture},
-             {"occlusion", maps.occlusion, plain(source.occlusionTexture)},
-             {"anisotropy", grain.texture, anisotropy_texture(source)}};
-  const char* chosen = nullptr;
-  int set = -1;
+    bool is_used;
+  } all[] = {{"normal", plain(source.normalTexture), is_lit},
+             {"anisotropy", anisotropy_texture(source), is_lit && has_grain},
+             {"base colour", pbr.baseColorTexture, true},
+             {"metallic-roughness", pbr.metallicRoughnessTexture, is_lit},
+             {"specular", specular.share, is_lit},
+             {"specular colour", specular.color, is_lit},
+             {"emission", source.emissiveTexture, is_lit && glows},
+             {"occlusion", plain(source.occlusionTexture), is_lit}};
+  const char* first = nullptr;
+  GltfUvSets sets;
   for (const auto& texture : all) {
-    if (texture.use.texture == kNone) continue;
-    if (!chosen)
-      chosen = texture.name, set = gltf_uv_set(texture.info);
-    else if (gltf_uv_set(texture.info) != set)
-      note_remark(file->builder, std::string(texture.name) + " textures use the texture coordinates of the " + chosen);
+    if (!texture.is_used || texture.info.index < 0) continue;
+    const int set = gltf_uv_set(texture.info);
+    if (!first)
+      first = texture.name, sets.first = set;
+    else if (set != sets.first && sets.second < 0)
+      sets.second = set;
+    else if (set != sets.first && set != sets.second)
+      note_remark(file->builder, std::string(texture.name) + " textures use the texture coordinates of the " + first +
+                                     ", a third set being left out");
   }
-  return set < 0 && has_strength(grain) ? 0 : set;
+  if (!first && has_grain) sets.first = 0;
+  return sets;
 }
 
 }  // namespace pocketray

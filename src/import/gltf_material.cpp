@@ -153,11 +153,13 @@ std::uint32_t gltf_material(GltfFile* file, int index) {
   const bool translate = gltf_has_specular_glossiness(given);
   const tinygltf::Material translated = translate ? gltf_without_specular_glossiness(file, given) : kDefault;
   const tinygltf::Material& source = translate ? translated : given;
+  file->current_uv_sets = gltf_choose_uv_sets(file, source);
   MaterialMaps maps;
   Material material = convert(file, source, &maps);
   const Grain grain = read_grain(file, source, material);
-  if (index >= 0)
-    file->material_uv_set[static_cast<std::size_t>(index)] = gltf_choose_uv_set(file, source, material, maps, grain);
+  const bool needs_uvs = material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone ||
+                         has_map(maps) || has_strength(grain);
+  if (index >= 0 && needs_uvs) file->uv_sets[static_cast<std::size_t>(index)] = file->current_uv_sets;
   *known = add_material(file->builder, material, source.name);
   if (has_map(maps)) {
     out.material_maps.resize(*known);

@@ -69,8 +69,8 @@ void read_colors(GltfFile* file, int accessor, MeshData* mesh) {
   if (!colored) mesh->colors.clear();
 }
 
-void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
-  int set = primitive.material >= 0 ? file->material_uv_set[static_cast<std::size_t>(primitive.material)] : -1;
+void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, int set, const MeshData& mesh,
+              std::vector<Vec2>* uvs) {
   if (set < 0) return;
   int accessor = attribute(primitive, ("TEXCOORD_" + std::to_string(set)).c_str());
   if (accessor < 0) {
@@ -78,9 +78,9 @@ void read_uvs(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* me
     return;
   }
   std::vector<float> values = gltf_floats(file, accessor, 2, "TEXCOORD");
-  require_count(values.size() / 2, mesh->positions.size(), "TEXCOORD");
-  mesh->uvs.resize(mesh->positions.size());
-  for (std::size_t i = 0; i < mesh->uvs.size(); ++i) mesh->uvs[i] = {values[2 * i], values[2 * i + 1]};
+  require_count(values.size() / 2, mesh.positions.size(), "TEXCOORD");
+  uvs->resize(mesh.positions.size());
+  for (std::size_t i = 0; i < uvs->size(); ++i) (*uvs)[i] = {values[2 * i], values[2 * i + 1]};
 }
 
 void read_skin_weights(GltfFile* file, const tinygltf::Primitive& primitive, MeshData* mesh) {
@@ -142,7 +142,11 @@ MeshData read_primitive(GltfFile* file, const tinygltf::Primitive& primitive, co
     for (Vec3& n : mesh.normals) n = normalize(n);
   }
   mesh.material = gltf_material(file, primitive.material);
-  read_uvs(file, primitive, &mesh);
+  if (primitive.material >= 0) {
+    const GltfUvSets& sets = file->uv_sets[static_cast<std::size_t>(primitive.material)];
+    read_uvs(file, primitive, sets.first, mesh, &mesh.uvs);
+    read_uvs(file, primitive, sets.second, mesh, &mesh.second_uvs);
+  }
   if (colors >= 0) read_colors(file, colors, &mesh);
   if (attribute(primitive, "COLOR_1") >= 0) note_unused(file->builder, "second vertex colours");
   read_skin_weights(file, primitive, &mesh);

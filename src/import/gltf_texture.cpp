@@ -37,8 +37,9 @@ Wrap wrap_of(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
 
-std::uint32_t scene_texture(GltfFile* file, int index, TexelKind kind) {
-  auto known = file->textures.find({index, kind});
+std::uint32_t scene_texture(GltfFile* file, int index, TexelKind kind, int uv_set) {
+  const GltfFile::TextureOfSet key = {{index, kind}, uv_set};
+  auto known = file->textures.find(key);
   if (known != file->textures.end()) return known->second;
   const tinygltf::Texture& texture = texture_at(*file, index);
   tinygltf::Sampler sampler;
@@ -57,7 +58,8 @@ std::uint32_t scene_texture(GltfFile* file, int index, TexelKind kind) {
         file->texels.emplace(use, add_texels(file->builder, gltf_image(file, index, kind), kind, has_levels)).first;
   std::uint32_t result = add_texture(file->builder, texels->second, wrap_of(sampler.wrapS), wrap_of(sampler.wrapT),
                                      sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST);
-  file->textures[{index, kind}] = result;
+  file->builder->out->textures[result].uv_set = static_cast<std::uint8_t>(uv_set);
+  file->textures[key] = result;
   return result;
 }
 
@@ -86,7 +88,8 @@ int gltf_uv_set(const tinygltf::TextureInfo& info) {
 TextureUse gltf_texture_use(GltfFile* file, const tinygltf::TextureInfo& info, TexelKind kind) {
   TextureUse use;
   if (info.index < 0) return use;
-  use.texture = scene_texture(file, info.index, kind);
+  const GltfUvSets& sets = file->current_uv_sets;
+  use.texture = scene_texture(file, info.index, kind, sets.second >= 0 && gltf_uv_set(info) == sets.second ? 1 : 0);
   const tinygltf::Value* transform = gltf_extension(info.extensions, "KHR_texture_transform");
   if (!transform) return use;
   double offset_u = 0, offset_v = 0, scale_u = 1, scale_v = 1, rotation = gltf_number(*transform, "rotation", 0);

@@ -59,6 +59,7 @@ void tidy_mesh(MeshData* mesh) {
   std::size_t count = mesh->positions.size();
   CHECK(mesh->normals.empty() || mesh->normals.size() == count);
   CHECK(mesh->uvs.empty() || mesh->uvs.size() == count);
+  CHECK(mesh->second_uvs.empty() || mesh->second_uvs.size() == count);
   CHECK(mesh->colors.empty() || mesh->colors.size() == count);
   CHECK(mesh->skin_weights.empty() || mesh->skin_weights.size() == count);
   CHECK_EQ(mesh->morph_positions.size(), mesh->morph_count * count);
@@ -84,6 +85,7 @@ void tidy_mesh(MeshData* mesh) {
   gather(&mesh->positions, kept, count);
   gather(&mesh->normals, kept, count);
   gather(&mesh->uvs, kept, count);
+  gather(&mesh->second_uvs, kept, count);
   gather(&mesh->colors, kept, count);
   gather(&mesh->skin_weights, kept, count);
 }
@@ -107,7 +109,8 @@ static std::uint64_t optional_bytes(const std::vector<T>& all, const std::vector
 static std::uint64_t vertex_bytes(const SceneArrays& out, const MeshData& mesh) {
   const std::size_t count = mesh.positions.size(), end = out.positions.size() + count;
   return count * sizeof(Vec3) + optional_bytes(out.normals, mesh.normals, end) +
-         optional_bytes(out.uvs, mesh.uvs, end) + optional_bytes(out.colors, mesh.colors, end);
+         optional_bytes(out.uvs, mesh.uvs, end) + optional_bytes(out.second_uvs, mesh.second_uvs, end) +
+         optional_bytes(out.colors, mesh.colors, end);
 }
 
 static void require_coordinate(const Vec3& p, const MeshData& mesh) {
@@ -137,6 +140,7 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = transform_normal(normal_to_world, mesh.normals[i]);
   append_optional(&out.normals, normals, begin, count, Vec3{0, 0, 0});
   append_optional(&out.uvs, mesh.uvs, begin, count, Vec2{0, 0});
+  append_optional(&out.second_uvs, mesh.second_uvs, begin, count, Vec2{0, 0});
   append_optional(&out.colors, mesh.colors, begin, count, Rgba16{65535, 65535, 65535, 65535});
 
   bool mirrored = determinant(to_world) < 0;
@@ -244,6 +248,9 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
                   std::any_of(out.grains.begin(), out.grains.end(),
                               [](const Grain& grain) { return grain.texture.texture != kNone; });
   if (textured || !out.uvs.empty()) out.uvs.resize(count, Vec2{0, 0});
+  const bool reads_second =
+      std::any_of(out.textures.begin(), out.textures.end(), [](const Texture& texture) { return texture.uv_set > 0; });
+  reads_second ? out.second_uvs.resize(count, Vec2{0, 0}) : out.second_uvs.clear();
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.grains.empty()) out.grains.resize(out.materials.size());
   make_tangents(builder);
@@ -257,7 +264,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene = Scene();
   scene.info = out.info;
   scene.positions = view(out.positions), scene.normals = view(out.normals);
-  scene.uvs = view(out.uvs), scene.colors = view(out.colors);
+  scene.uvs = view(out.uvs), scene.second_uvs = view(out.second_uvs), scene.colors = view(out.colors);
   scene.triangles = view(out.triangles), scene.materials = view(out.materials),
   scene.material_maps = view(out.material_maps), scene.grains = view(out.grains);
   scene.tangents = view(out.tangents);

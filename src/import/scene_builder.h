@@ -17,6 +17,7 @@ struct MeshData {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  // unit, one per vertex, or empty: the geometric normal
   std::vector<Vec2> uvs;      // one per vertex, or empty
+  std::vector<Vec2> second_uvs;
   std::vector<Rgba16> colors;
   std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise from the front
   std::uint32_t material = 0;
@@ -30,7 +31,7 @@ struct MeshData {
 struct SceneArrays {
   SceneInfo info;
   std::vector<Vec3> positions, normals;
-  std::vector<Vec2> uvs;
+  std::vector<Vec2> uvs, second_uvs;
   std::vector<Rgba16> colors;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;

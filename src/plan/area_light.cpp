@@ -140,9 +140,11 @@ LightPoint point_on(const FrameData& frame, std::uint32_t triangle, float u, flo
   p.position = surface_point(frame, triangle, u, v);
   p.direction = normalize(cross(b - a, c - a));
   Vec3 emission = m.emission;
-  if (m.emission_texture.texture != kNone && scene.uvs.count)
-    emission *=
-        sample_texture(scene, m.emission_texture, hit_uv(scene, triangle, u, v), frame.settings.texture_filter).rgb;
+  if (m.emission_texture.texture != kNone && scene.uvs.count) {
+    const Vec2 uv = has(frame.mask, Effect::second_uv) ? texture_uv(scene, m.emission_texture, triangle, u, v)
+                                                       : hit_uv(scene, triangle, u, v);
+    emission *= sample_texture(scene, m.emission_texture, uv, frame.settings.texture_filter).rgb;
+  }
   constexpr float most = std::numeric_limits<float>::max();
   p.intensity = min(emission * static_cast<float>(area), Vec3{most, most, most});
   p.material = t.material();

@@ -10,6 +10,7 @@
 #include "indirect/indirect_list.h"
 #include "scene/metallic_roughness.h"
 #include "shade/point_groups.h"
+#include "shade/texture.h"
 
 namespace pocketray {
 namespace {
@@ -18,7 +19,8 @@ namespace {
 struct Census {
   std::uint32_t materials = 0, specular = 0, mirror = 0, transmitting = 0, absorbing = 0, masked = 0, blended = 0,
                 emissive = 0, unlit = 0, textured = 0, scattering = 0, one_sided = 0, reflecting = 0, diffuse = 0,
-                metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0;
+                metallic_roughness = 0, bumpy = 0, occluded = 0, with_levels = 0, grained = 0, second_uv = 0,
+                second_uv_occlusion = 0;  // of the latter, only that of occlusion
   std::uint32_t lights[3] = {0, 0, 0};
 };
 
@@ -33,6 +35,17 @@ bool reads_levels(const Scene& scene, std::uint32_t material) {
   const MaterialMaps& maps = scene.material_maps[material];
   return has_levels(maps.metallic_roughness) || has_levels(maps.specular) || has_levels(maps.specular_color) ||
          has_levels(maps.normal) || has_levels(maps.occlusion);
+}
+
+// Whether a texture other than that of occlusion reads the second texture coordinates.
+bool reads_second(const Scene& scene, std::uint32_t material) {
+  auto second = [&](const TextureUse& use) { return use.texture != kNone && reads_second_uvs(scene, use); };
+  const Material& m = scene.materials[material];
+  if (second(m.diffuse_texture) || second(m.emission_texture)) return true;
+  if (scene.grains.count && second(scene.grains[material].texture)) return true;
+  if (scene.material_maps.empty()) return false;
+  const MaterialMaps& maps = scene.material_maps[material];
+  return second(maps.metallic_roughness) || second(maps.specular) || second(maps.specular_color);
 }
 
 // If emission is forced off, unlit materials scatter like others.
@@ -54,6 +67,10 @@ Census take_census(const Scene& scene, const Settings& settings) {
     }
     c.grained += !is_zero(m.specular) && has_grain(scene, i);
     c.with_levels += reads_levels(scene, i);
+    if (reads_second(scene, i))
+      ++c.second_uv;
+    else if (scene.material_maps.count && scene.material_maps[i].occlusion.texture != kNone)
+      c.second_uv_occlusion += reads_second_uvs(scene, scene.material_maps[i].occlusion);
     bool transmits = !is_zero(m.transmission);
     ++c.materials;
     c.specular += !is_zero(m.specular);
@@ -101,7 +118,7 @@ struct PlanWriter {
 };
 
 bool is_asked_for(const IndirectInfo& info, const Settings& settings) {
-  return settings.indirect == indirect_choice(static_cast<Effect>(__builtin_ctz(info.effects)));
+  return settings.indirect == indirect_choice(static_cast<Effect>(__builtin_ctzll(info.effects)));
 }
 
 // The method that --indirect asks for, or else the last one that the scene has by default; null: none. Without what the
@@ -120,7 +137,7 @@ const IndirectInfo* choose_indirect(const Scene& scene, const Settings& settings
 // Methods stand in for the same light, so a plan has only one of them. --effects cannot force another.
 void decide_indirect(const IndirectInfo& info, const IndirectInfo* chosen, const Scene& scene, const Settings& settings,
                      PlanWriter* w) {
-  Effect effect = static_cast<Effect>(__builtin_ctz(info.effects));
+  Effect effect = static_cast<Effect>(__builtin_ctzll(info.effects));
   const bool has_any = info.use(scene) != IndirectUse::nothing;
   if (&info == chosen || !has_any || (settings.forced_off & info.effects))
     w->set(effect, has_any, "%s", has_any ? info.present : info.absent);
@@ -218,6 +235,9 @@ EffectPlan plan_effects(const Scene& scene, const Settings& settings) {
     w.set_by_materials(Effect::occlusion, c.occluded, "have an occlusion texture");
   else
     w.set(Effect::occlusion, false, "no ambient light");
+  const bool occludes = plan.decisions[static_cast<int>(Effect::occlusion)].on;
+  w.set_by_materials(Effect::second_uv, c.second_uv + (occludes ? c.second_uv_occlusion : 0),
+                     "use second texture coordinates");
   w.set(Effect::supersampling, settings.samples_per_pixel > 1, "%u sample%s per pixel", settings.samples_per_pixel,
         settings.samples_per_pixel == 1 ? "" : "s");
   if (settings.selective_contrast > 0 && indirect && has(indirect->effects, Effect::instant_radiosity))

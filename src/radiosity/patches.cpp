@@ -76,10 +76,11 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
   const double square = dot(n, n);
   const double u = dot(cross(way, f), n) / square, v = dot(cross(e, way), n) / square;
   Vec3d tint = {1, 1, 1};
-  if (m.diffuse_texture.texture != kNone) {
-    const Vec2 uv = hit_uv(scene, triangle, static_cast<float>(u), static_cast<float>(v));
-    tint *= to_double(sample_texture(scene, m.diffuse_texture, uv, TextureFilter::as_scene).rgb);
-  }
+  auto uv = [&](const TextureUse& use) {
+    return texture_uv(scene, use, triangle, static_cast<float>(u), static_cast<float>(v));
+  };
+  auto color_of = [&](const TextureUse& use) { return sample_texture(scene, use, uv(use), TextureFilter::as_scene); };
+  if (m.diffuse_texture.texture != kNone) tint *= to_double(color_of(m.diffuse_texture).rgb);
   if (scene.colors.count) {
     Vec3d color = {0, 0, 0};
     const double weight[3] = {1 - u - v, u, v};
@@ -93,15 +94,15 @@ Vec3d albedo_at(const Scene& scene, std::uint32_t triangle, const Vec3d& point) 
   const Vec3d tinted = to_double(m.specular_tinted) + to_double(m.mirror_tinted);
   if (scene.material_maps.count && has_lobe_map(scene.material_maps[t.material()])) {
     const MaterialMaps& maps = scene.material_maps[t.material()];
-    const Vec2 uv = hit_uv(scene, triangle, static_cast<float>(u), static_cast<float>(v));
     double metallic = double(maps.metallic);
     Vec3d dielectric = to_double(maps.model.dielectric);
     if (maps.metallic_roughness.texture != kNone)
-      metallic *= double(sample_numbers(scene, maps.metallic_roughness, uv, TextureFilter::as_scene).z) / 255;
-    if (maps.specular.texture != kNone)
-      dielectric = dielectric * double(sample_texture(scene, maps.specular, uv, TextureFilter::as_scene).alpha);
-    if (maps.specular_color.texture != kNone)
-      dielectric *= to_double(sample_texture(scene, maps.specular_color, uv, TextureFilter::as_scene).rgb);
+      metallic *=
+          double(
+              sample_numbers(scene, maps.metallic_roughness, uv(maps.metallic_roughness), TextureFilter::as_scene).z) /
+          255;
+    if (maps.specular.texture != kNone) dielectric = dielectric * double(color_of(maps.specular).alpha);
+    if (maps.specular_color.texture != kNone) dielectric *= to_double(color_of(maps.specular_color).rgb);
     return to_double(maps.model.base) * tint + dielectric * (1 - metallic);
   }
   return to_double(m.diffuse) * tint + glossy - tinted * (Vec3d{1, 1, 1} - tint);

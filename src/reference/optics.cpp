@@ -56,9 +56,7 @@ ReferenceContact gather_contact(const ReferenceWorld& world, const ReferenceRay&
 }
 
 double alpha_of(const FrameData& frame, const ReferenceHit& face) {
-  return static_cast<double>(material_alpha(*frame.scene, material_of(frame, face.triangle), face.triangle,
-                                            static_cast<float>(face.u), static_cast<float>(face.v),
-                                            frame.settings.texture_filter));
+  return alpha_at(frame, face.triangle, face.u, face.v);
 }
 
 const ReferenceHit* face_behind(const FrameData& frame, const ReferenceContact& contact) {

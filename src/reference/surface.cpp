@@ -14,21 +14,31 @@ namespace {
 // Relative to coordinates: nearer hits may be the surface itself, by rounding.
 constexpr double kOwnSurface = 0x1p-40;
 
+// Of a texture at the surface.
+Vec2 uv_of(const FrameData& frame, const TextureUse& use, const ReferenceSurface& s) {
+  const float u = static_cast<float>(s.u), v = static_cast<float>(s.v);
+  return has(frame.mask, Effect::second_uv) ? texture_uv(*frame.scene, use, s.triangle, u, v)
+                                            : hit_uv(*frame.scene, s.triangle, u, v);
+}
+Rgba color_at(const FrameData& frame, const TextureUse& use, const ReferenceSurface& s) {
+  return sample_texture(*frame.scene, use, uv_of(frame, use, s), frame.settings.texture_filter);
+}
+Vec3d numbers_at(const FrameData& frame, const TextureUse& use, const ReferenceSurface& s) {
+  return to_double(sample_numbers(*frame.scene, use, uv_of(frame, use, s), frame.settings.texture_filter));
+}
+
 // Lobes of a metallic-roughness texture, by the formulas of the glTF specification, secs. 3.9.2 and B.2.2, and the
 // mirror's share of src/import/README.md.
-void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d& tint,
+void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, const Vec3d& tint,
                               ReferenceSurface* s) {
-  const TextureFilter filter = frame.settings.texture_filter;
   Vec3d numbers = {255, 255, 255}, dielectric = to_double(maps.model.dielectric);
   double grazing = static_cast<double>(maps.model.grazing);
-  if (maps.metallic_roughness.texture != kNone)
-    numbers = to_double(sample_numbers(*frame.scene, maps.metallic_roughness, uv, filter));
+  if (maps.metallic_roughness.texture != kNone) numbers = numbers_at(frame, maps.metallic_roughness, *s);
   if (maps.specular.texture != kNone) {  // KHR_materials_specular
-    const double share = static_cast<double>(sample_texture(*frame.scene, maps.specular, uv, filter).alpha);
+    const double share = static_cast<double>(color_at(frame, maps.specular, *s).alpha);
     dielectric = dielectric * share, grazing *= share;
   }
-  if (maps.specular_color.texture != kNone)
-    dielectric *= to_double(sample_texture(*frame.scene, maps.specular_color, uv, filter).rgb);
+  if (maps.specular_color.texture != kNone) dielectric *= to_double(color_at(frame, maps.specular_color, *s).rgb);
   auto within = [](double x, float low, float high) {
     return std::fmin(std::fmax(x, static_cast<double>(low)), static_cast<double>(high));
   };
@@ -82,9 +92,9 @@ bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurfa
 }
 
 // The normal of a normal texture (sec. 3.9.3).
-Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, const Vec3d* corner,
-                    const Vec3d& direction, const ReferenceSurface& s) {
-  Vec3d numbers = to_double(sample_numbers(*frame.scene, maps.normal, uv, frame.settings.texture_filter));
+Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, const Vec3d* corner, const Vec3d& direction,
+                    const ReferenceSurface& s) {
+  Vec3d numbers = numbers_at(frame, maps.normal, s);
   for (int c = 0; c < 3; ++c) numbers[c] = std::fmax((numbers[c] - 128) / 127, -1);
   numbers.x *= static_cast<double>(maps.normal_scale), numbers.y *= static_cast<double>(maps.normal_scale);
   Vec3d tangent, bitangent;
@@ -97,12 +107,12 @@ Vec3d normal_of_map(const FrameData& frame, const MaterialMaps& maps, Vec2 uv, c
 }
 
 // KHR_materials_anisotropy.
-Vec3d grain_of(const FrameData& frame, const Grain& grain, Vec2 uv, const Vec3d* corner, const ReferenceSurface& s) {
+Vec3d grain_of(const FrameData& frame, const Grain& grain, const Vec3d* corner, const ReferenceSurface& s) {
   double x = static_cast<double>(grain.direction.x), y = static_cast<double>(grain.direction.y);
   Vec3d tangent, bitangent;
   if ((x == 0 && y == 0) || !map_frame(frame, corner, s, &tangent, &bitangent)) return {0, 0, 0};
   if (grain.texture.texture != kNone) {
-    const Vec3d numbers = to_double(sample_numbers(*frame.scene, grain.texture, uv, frame.settings.texture_filter));
+    const Vec3d numbers = numbers_at(frame, grain.texture, s);
     const double cosine = numbers.x / 127.5 - 1, sine = numbers.y / 127.5 - 1,
                  size = std::sqrt(cosine * cosine + sine * sine);
     const double weight = size > 0 ? numbers.z / 255 / size : 0, turned = (x * cosine - y * sine) * weight;
@@ -133,12 +143,9 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   s.geometric = s.front ? outward : -outward;
   normal = frame.settings.normals == NormalMode::flat ? Vec3d{0, 0, 0} : normalize(normal);
   s.normal = is_zero(normal) ? s.geometric : dot(normal, s.geometric) < 0 ? -normal : normal;
-  Vec2 uv = {0, 0};
-  if (scene.uvs.count) uv = hit_uv(scene, hit.triangle, static_cast<float>(hit.u), static_cast<float>(hit.v));
   const Material& m = *s.material;
   auto texel = [&](const TextureUse& use) {
-    return use.texture == kNone ? Vec3d{1, 1, 1}
-                                : to_double(sample_texture(scene, use, uv, frame.settings.texture_filter).rgb);
+    return use.texture == kNone ? Vec3d{1, 1, 1} : to_double(color_at(frame, use, s).rgb);
   };
   if (scene.colors.count) {
     tint = {0, 0, 0};
@@ -157,17 +164,17 @@ ReferenceSurface reference_surface(const FrameData& frame, const ReferenceHit& h
   if (scene.material_maps.count) {
     const MaterialMaps& maps = scene.material_maps[t.material()];
     if (has(frame.mask, Effect::normal_map) && maps.normal.texture != kNone)
-      s.normal = normal_of_map(frame, maps, uv, corner, direction, s);
+      s.normal = normal_of_map(frame, maps, corner, direction, s);
     if (has(frame.mask, Effect::occlusion) && maps.occlusion.texture != kNone) {
-      const double red = sample_numbers(scene, maps.occlusion, uv, frame.settings.texture_filter).x;
+      const double red = numbers_at(frame, maps.occlusion, s).x;
       s.open = 1 - static_cast<double>(maps.occlusion_strength) * (1 - red / 255);
     }
     if (has(frame.mask, Effect::metallic_roughness) && has_lobe_map(maps))
-      apply_metallic_roughness(frame, maps, uv, tint, &s);
+      apply_metallic_roughness(frame, maps, tint, &s);
   }
   s.grain = {0, 0, 0};
   if (has(frame.mask, Effect::anisotropy) && scene.grains.count)
-    s.grain = grain_of(frame, scene.grains[t.material()], uv, corner, s);
+    s.grain = grain_of(frame, scene.grains[t.material()], corner, s);
   s.emission = {0, 0, 0};
   if (!is_zero(m.emission) && (s.front || m.double_sided))
     s.emission = to_double(m.emission) * texel(m.emission_texture);

@@ -13,9 +13,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_hole(const FrameData& frame, std::uint32_t triangle, double u, double v) {
   const Material& m = material_of(frame, triangle);
-  return m.alpha_mode == AlphaMode::mask &&
-         material_alpha(*frame.scene, m, triangle, static_cast<float>(u), static_cast<float>(v),
-                        frame.settings.texture_filter) < m.alpha_cutoff;
+  return m.alpha_mode == AlphaMode::mask && alpha_at(frame, triangle, u, v) < static_cast<double>(m.alpha_cutoff);
 }
 
 // A ray prepared for box tests in float. Boxes are enlarged by its rounding error: near faces move towards the ray's
@@ -174,6 +172,12 @@ Obstacle find_obstacle(const ReferenceWorld& world, const ReferenceRay& ray, con
     }
   });
   return worst;
+}
+
+double alpha_at(const FrameData& frame, std::uint32_t triangle, double u, double v) {
+  const AlphaFunction alpha = find_alpha_function(frame.mask);
+  return static_cast<double>(alpha(*frame.scene, material_of(frame, triangle), triangle, static_cast<float>(u),
+                                   static_cast<float>(v), frame.settings.texture_filter, kNoFootprints));
 }
 
 }  // namespace pocketray

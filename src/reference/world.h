@@ -64,6 +64,8 @@ inline const Material& material_of(const FrameData& frame, std::uint32_t triangl
 inline Vec3d corner_of(const FrameData& frame, std::uint32_t triangle, std::uint32_t i) {
   return to_double(frame.positions[frame.scene->triangles[triangle].vertex(i)]);
 }
+// Alpha of the material at a hit, of full-size texels.
+double alpha_at(const FrameData& frame, std::uint32_t triangle, double u, double v);
 inline bool casts_shadow(const FrameData& frame, std::uint32_t triangle, const ShadowRules& rules) {
   return triangle != rules.but_triangle && material_index(frame, triangle) != rules.but_material;
 }

@@ -89,8 +89,9 @@ void for_each_array(SceneType& scene, Visit visit) {
   visit("environment_texels", scene.environment_texels);
   visit("grains", scene.grains);
   visit("tangents", scene.tangents);
+  visit("second_uvs", scene.second_uvs);
 }
-constexpr std::uint32_t kArrayCount = 36;
+constexpr std::uint32_t kArrayCount = 37;
 constexpr std::uint32_t kSectionCount = 1 + kArrayCount;  // kind 0 is SceneInfo
 
 constexpr std::uint64_t aligned(std::uint64_t offset) {
@@ -101,7 +102,10 @@ constexpr std::uint64_t first_offset(std::uint32_t section_count) {
 }
 // Older files lack the last arrays.
 constexpr std::uint32_t section_count_of(std::uint32_t version) {
-  return version < 8 ? kSectionCount - 4 : version < 9 ? kSectionCount - 2 : kSectionCount;
+  return version < 8    ? kSectionCount - 5
+         : version < 9  ? kSectionCount - 3
+         : version < 10 ? kSectionCount - 1
+                        : kSectionCount;
 }
 
 // zlib counts in uInt, which may be narrower than size_t.

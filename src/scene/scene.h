@@ -59,7 +59,8 @@ struct Texture {
   std::uint8_t nearest;      // 1: nearest texel, 0: bilinear; between levels always bilinear
   std::uint8_t level_count;  // 1: the texels alone; more: smaller ones follow them, see texture_levels.h
   TexelFormat format = TexelFormat::exact;
-  std::uint8_t reserved[3] = {0, 0, 0};
+  std::uint8_t uv_set = 0;  // 0: read by Scene::uvs, 1: by second_uvs
+  std::uint8_t reserved[2] = {0, 0};
 };
 
 // A use of a texture by a material: uv' = m · (u, v, 1) (KHR_texture_transform).
@@ -112,8 +113,8 @@ struct MaterialMaps {
   float metallic_low = 0, metallic_high = 0, roughness_low = 0, roughness_high = 0;
   // Textures of colours: a dielectric's reflectance × alpha; at normal incidence × colour as well.
   TextureUse specular, specular_color;
-  // The normal in the frame of the tangent: R along u, G against v, B along the vertex normal, each −1 at 1 (and 0), 0
-  // at 128, 1 at 255. R and G × normal_scale.
+  // The normal in the frame of the tangent, which is of the first texture coordinates: R along u, G against v, B along
+  // the vertex normal, each −1 at 1 (and 0), 0 at 128, 1 at 255. R and G × normal_scale.
   TextureUse normal;
   float normal_scale = 1;
   // Ambient light × lerp(1, R, occlusion_strength).
@@ -264,6 +265,7 @@ struct Scene {
   Array<const Grain> grains;                      // one per material, or empty
   // One per vertex, or empty: the tangent of the frame of maps; none: the triangle's own, see shade/normal_map.h.
   Array<const PackedTangent> tangents;
+  Array<const Vec2> second_uvs;  // one per vertex, or empty: coordinates of the textures of that set
 };
 
 inline bool is_animated(const Scene& scene) {

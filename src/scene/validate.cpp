@@ -32,6 +32,7 @@ Status validate_counts(const Scene& scene) {
   RETURN_IF_ERROR(check_count("nodes", scene.nodes.count, kNodeCountMax));
   RETURN_IF_ERROR(check_per_vertex("normals", scene.normals.count, scene));
   RETURN_IF_ERROR(check_per_vertex("uvs", scene.uvs.count, scene));
+  RETURN_IF_ERROR(check_per_vertex("second_uvs", scene.second_uvs.count, scene));
   RETURN_IF_ERROR(check_per_vertex("tangents", scene.tangents.count, scene));
   return check_per_vertex("colors", scene.colors.count, scene);
 }
@@ -107,8 +108,9 @@ Status validate_texture(const Scene& scene, std::uint32_t index) {
   if (t.width < 1 || t.height < 1 || t.width > kTextureSideMax || t.height > kTextureSideMax)
     return failure("textures[%u] is %u by %u texels, its sides must lie in 1 to %u", index, t.width, t.height,
                    kTextureSideMax);
-  if (static_cast<int>(t.format) >= kTexelFormatCount || t.reserved[0] || t.reserved[1] || t.reserved[2])
+  if (static_cast<int>(t.format) >= kTexelFormatCount || t.reserved[0] || t.reserved[1])
     return failure("textures[%u] is of an unknown format", index);
+  if (t.uv_set > 1) return failure("textures[%u] reads texture coordinates %u, there are two sets", index, t.uv_set);
   const std::uint32_t level_max = level_count_max(t.width, t.height);
   if (t.level_count < 1 || t.level_count > level_max)
     return failure("textures[%u] of %u by %u texels has %u levels, it must have 1 to %u", index, t.width, t.height,
@@ -171,6 +173,7 @@ Status validate_geometry(const Scene& scene) {
   RETURN_IF_ERROR(check_coordinates("positions", scene.positions));
   RETURN_IF_ERROR(check_normals("normals", scene.normals));
   RETURN_IF_ERROR(check_coordinates("uvs", scene.uvs));
+  RETURN_IF_ERROR(check_coordinates("second_uvs", scene.second_uvs));
   std::uint32_t vertex_count = scene.positions.count, material_count = scene.materials.count;
   for (std::uint32_t i = 0; i < scene.triangles.count; ++i) {
     const Triangle& t = scene.triangles[i];

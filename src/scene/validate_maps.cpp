@@ -9,6 +9,7 @@ constexpr float kGrainSquareMax = 1.00001f;  // a unit vector, rounded
 
 Status check_texture_use(const char* array, const char* field, std::uint32_t index, const TextureUse& use,
                          const Scene& scene) {
+  CHECK(array != nullptr && field != nullptr);
   for (const auto& row : use.m)
     for (float x : row)
       if (!is_coordinate(x)) return failure("%s[%u].%s has a transform that is not finite", array, index, field);
@@ -16,6 +17,8 @@ Status check_texture_use(const char* array, const char* field, std::uint32_t ind
   if (use.texture >= scene.textures.count)
     return failure("%s[%u].%s is texture %u of %u", array, index, field, use.texture, scene.textures.count);
   if (scene.uvs.empty()) return failure("%s[%u].%s needs uvs, the scene has none", array, index, field);
+  if (scene.textures[use.texture].uv_set > 0 && scene.second_uvs.empty())
+    return failure("%s[%u].%s needs second_uvs, the scene has none", array, index, field);
   return success();
 }
 
@@ -42,6 +45,8 @@ Status validate_maps(const Scene& scene, std::uint32_t index) {
   RETURN_IF_ERROR(check_fields("material_maps", index, fields));
   RETURN_IF_ERROR(check_texture_use("material_maps", "metallic_roughness", index, maps.metallic_roughness, scene));
   RETURN_IF_ERROR(check_texture_use("material_maps", "normal", index, maps.normal, scene));
+  if (maps.normal.texture != kNone && scene.textures[maps.normal.texture].uv_set > 0)
+    return failure("material_maps[%u].normal reads second_uvs, its frame is that of uvs", index);
   RETURN_IF_ERROR(check_texture_use("material_maps", "occlusion", index, maps.occlusion, scene));
   RETURN_IF_ERROR(check_texture_use("material_maps", "specular", index, maps.specular, scene));
   RETURN_IF_ERROR(check_texture_use("material_maps", "specular_color", index, maps.specular_color, scene));

@@ -9,7 +9,7 @@ namespace {
 
 // Whether the point lies in a hole of an alpha-masked surface.
 bool is_hole(const FrameData& frame, const Material& m, std::uint32_t triangle, float u, float v) {
-  return hit_alpha<Effect::alpha_mask>(*frame.scene, m, triangle, u, v, frame.settings.texture_filter) < m.alpha_cutoff;
+  return hit_alpha<Effect::alpha_mask>(frame, m, triangle, u, v) < m.alpha_cutoff;
 }
 
 bool lets_light_through(const Material& m) { return !is_zero(m.transmission) || m.alpha_mode == AlphaMode::blend; }

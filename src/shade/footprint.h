@@ -27,10 +27,10 @@ inline PixelCone pixel_cone(const CameraRays& camera, std::uint32_t sample_count
 // the scene. `perpendicular` is the cross product of the triangle's edges, `normal` the same of length 1. The largest
 // float where the triangle is seen edge-on. Always finite: nothing here is an invalid operation, whatever the scene.
 inline float footprint(const PixelCone& cone, float t, const Vec3& direction, const Vec3& perpendicular,
-                       const Vec3& normal, const Scene& scene, const Triangle& triangle) {
+                       const Vec3& normal, Array<const Vec2> uvs, const Triangle& triangle) {
   effect_entered<Effect::mip_map>();
-  if (scene.uvs.empty()) return 0;
-  const Vec2 a = scene.uvs[triangle.vertex(0)], b = scene.uvs[triangle.vertex(1)], c = scene.uvs[triangle.vertex(2)];
+  if (uvs.empty()) return 0;
+  const Vec2 a = uvs[triangle.vertex(0)], b = uvs[triangle.vertex(1)], c = uvs[triangle.vertex(2)];
   const float area = std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
   const float width = cone.width + t * cone.spread,
               seen = std::fabs(dot(normal, direction) * dot(normal, perpendicular));
@@ -45,17 +45,16 @@ inline float footprint(const PixelCone& cone, float t, const Vec3& direction, co
 // stretched, that one may be longer there; then one place is read. Arguments as above. Zero where the ray is
 // perpendicular to the surface or meets it edge-on. Always finite, without invalid operations.
 inline Vec2 footprint_axis(const FrameData& frame, float t, const Vec3& direction, const Vec3& perpendicular,
-                           const Vec3& normal, const Triangle& triangle) {
-  const Scene& scene = *frame.scene;
+                           const Vec3& normal, Array<const Vec2> uvs, const Triangle& triangle) {
   constexpr float kMost = 1e18f;                                                   // products of two are finite
   const float cosine = dot(normal, direction), size = dot(normal, perpendicular);  // twice the triangle's area
-  if (scene.uvs.empty() || !(std::fabs(cosine) > 0 && size > 0)) return {0, 0};
+  if (uvs.empty() || !(std::fabs(cosine) > 0 && size > 0)) return {0, 0};
   const float stretch = (frame.cone.width + t * frame.cone.spread) / std::fabs(cosine);
   const Vec3 along = normalize(direction - normal * cosine), a = frame.positions[triangle.vertex(0)];
   const Vec3 e = frame.positions[triangle.vertex(1)] - a, f = frame.positions[triangle.vertex(2)] - a;
   const float du = dot(cross(along, f), normal) / size, dv = dot(cross(e, along), normal) / size;
   if (!(stretch < kMost && std::fabs(du) < kMost && std::fabs(dv) < kMost)) return {0, 0};
-  const Vec2 p = scene.uvs[triangle.vertex(0)], q = scene.uvs[triangle.vertex(1)], r = scene.uvs[triangle.vertex(2)];
+  const Vec2 p = uvs[triangle.vertex(0)], q = uvs[triangle.vertex(1)], r = uvs[triangle.vertex(2)];
   const Vec2 axis = {((q.x - p.x) * du + (r.x - p.x) * dv) * stretch, ((q.y - p.y) * du + (r.y - p.y) * dv) * stretch};
   return std::fabs(axis.x) < kMost && std::fabs(axis.y) < kMost ? axis : Vec2{0, 0};
 }

@@ -96,6 +96,11 @@ struct Footprint {
   Vec2 axis;  // set for TextureFilter::anisotropic
 };
 constexpr Footprint kNoFootprint = {0, {0, 0}};
+// The same of the first texture coordinates and of the second.
+struct Footprints : Footprint {
+  Footprint second;  // set with Effect::second_uv where the scene has them
+};
+constexpr Footprints kNoFootprints = {kNoFootprint, kNoFootprint};
 
 // Bodies that contain the ray, innermost last, as material indices.
 struct MediumStack {
@@ -114,6 +119,7 @@ struct PixelRows {
 };
 
 struct FrameData;
+struct Rgba;
 struct Surface;
 struct TileShadows;
 struct TileStrip;
@@ -125,6 +131,11 @@ using SurfaceFunction = void (*)(const FrameData& frame, const Ray& ray, const H
 using GlowFunction = void (*)(const FrameData& frame, Surface* surface);
 // Radiance from the surroundings that leaves a surface back along the ray, for the material's lobes there.
 using SurroundingsFunction = Vec3 (*)(const FrameData& frame, const Ray& ray, const Material& m, const Surface& s);
+// What a texture of the surface's material has there, colours or numbers, and the material's alpha at a hit; texture.h.
+using ColorFunction = Rgba (*)(const FrameData& frame, const TextureUse& use, const Surface& s);
+using NumbersFunction = Vec3 (*)(const FrameData& frame, const TextureUse& use, const Surface& s);
+using AlphaFunction = float (*)(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
+                                TextureFilter filter, const Footprints& footprints);
 // Radiance along a ray, given its first hit and the surface there if already known (otherwise null).
 using RadianceFunction = Vec3 (*)(Tracer* tracer, const Ray& ray, const Hit& hit, const Surface* surface);
 using ShadowsFunction = void (*)(Tracer* tracer, const RayPacket& rays, const Hit* hits, TileShadows* shadows);
@@ -167,6 +178,9 @@ struct FrameData {
   // Null: none but ambient light. At first hits: without light that trace_strip adds there.
   SurroundingsFunction surroundings = nullptr, first_surroundings = nullptr;
   GlowFunction glow = nullptr, first_glow = nullptr;  // see material_maps.h
+  ColorFunction color = nullptr;
+  NumbersFunction numbers = nullptr;
+  AlphaFunction alpha = nullptr;
   RadianceFunction radiance = nullptr;
   ShadowsFunction find_shadows = nullptr;       // null if nothing casts a shadow
   StripFunction trace_strip = nullptr;          // traces pixels in blocks; null: each by itself

@@ -25,11 +25,16 @@ struct LookUp {
   Vec3 numbers;
 };
 
+// `uv` is that of the first texture coordinates.
+template <EffectMask mask>
+Vec3 numbers_of(const FrameData& frame, const TextureUse& use, const Surface& s, Vec2 uv) {
+  if constexpr (has(mask, Effect::second_uv)) return frame.numbers(frame, use, s);
+  return numbers_at<has(mask, Effect::mip_map)>(*frame.scene, use, uv, frame.settings.texture_filter, s.footprint);
+}
+
 template <EffectMask mask>
 const Vec3& look_up(const FrameData& frame, const TextureUse& use, const Surface& s, Vec2 uv, LookUp* last) {
-  if (!last->use || std::memcmp(last->use, &use, sizeof use) != 0)
-    *last = {&use,
-             numbers_at<has(mask, Effect::mip_map)>(*frame.scene, use, uv, frame.settings.texture_filter, s.footprint)};
+  if (!last->use || std::memcmp(last->use, &use, sizeof use) != 0) *last = {&use, numbers_of<mask>(frame, use, s, uv)};
   return last->numbers;
 }
 
@@ -46,18 +51,11 @@ void apply_metallic_roughness(const FrameData& frame, const MaterialMaps& maps, 
 }
 
 void apply_specular(const FrameData& frame, const MaterialMaps& maps, const Surface& s, MetallicRoughness* model) {
-  const Scene& scene = *frame.scene;
-  const Vec2 uv = hit_uv(scene, s.hit.triangle, s.hit.u, s.hit.v);
-  auto color = [&](const TextureUse& use) {
-    const TextureFilter filter = frame.settings.texture_filter;
-    return has(frame.mask, Effect::mip_map) ? color_at<true>(scene, use, uv, filter, s.footprint)
-                                            : color_at<false>(scene, use, uv, filter, kNoFootprint);
-  };
   if (maps.specular.texture != kNone) {
-    const float share = color(maps.specular).alpha;
+    const float share = frame.color(frame, maps.specular, s).alpha;
     model->dielectric = model->dielectric * share, model->grazing *= share;
   }
-  if (maps.specular_color.texture != kNone) model->dielectric *= color(maps.specular_color).rgb;
+  if (maps.specular_color.texture != kNone) model->dielectric *= frame.color(frame, maps.specular_color, s).rgb;
 }
 
 // What the map leaves of ambient light.
@@ -68,10 +66,12 @@ float openness(const FrameData& frame, const MaterialMaps& maps, const Surface& 
   return 1 + maps.occlusion_strength * (open - 1);
 }
 
-// Whether the plan has the effect. Instances with anisotropy hold the code of all maps.
+// Whether the plan has the effect. Instances with anisotropy or two sets of texture coordinates hold the code of all
+// maps.
+constexpr EffectMask kHoldAll = bit(Effect::anisotropy) | bit(Effect::second_uv);
 template <EffectMask mask>
 bool takes_part(const FrameData& frame, Effect effect) {
-  return !has(mask, Effect::anisotropy) || has(frame.mask, effect);
+  return !(mask & kHoldAll & kEffectsBuilt) || has(frame.mask, effect);
 }
 
 template <EffectMask mask, bool first>
@@ -84,9 +84,7 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
     const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
     if constexpr (has(mask, Effect::normal_map)) {
       if (maps->normal.texture != kNone && takes_part<mask>(frame, Effect::normal_map)) {
-        const Vec3 texel = numbers_at<has(mask, Effect::mip_map)>(scene, maps->normal, uv,
-                                                                  frame.settings.texture_filter, s->footprint);
-        s->normal = mapped_normal(frame, *maps, texel, ray, *s);
+        s->normal = mapped_normal(frame, *maps, numbers_of<mask>(frame, maps->normal, *s, uv), ray, *s);
       }
     }
     if constexpr (has(mask, Effect::metallic_roughness)) {
@@ -100,10 +98,8 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   }
   if constexpr (has(mask, Effect::anisotropy)) {
     s->grain = {0, 0, 0};
-    if (scene.grains.count) {
-      const Vec2 uv = scene.uvs.count ? hit_uv(scene, hit.triangle, hit.u, hit.v) : Vec2{0, 0};
-      s->grain = surface_grain(frame, scene.grains[s->material - scene.materials.data], uv, *s);
-    }
+    if (scene.grains.count && (!has(mask, Effect::second_uv) || has(frame.mask, Effect::anisotropy)))
+      s->grain = surface_grain(frame, scene.grains[s->material - scene.materials.data], *s);
   }
   (first ? frame.first_glow : frame.glow)(frame, s);
   if constexpr (has(mask, Effect::occlusion)) {
@@ -117,16 +113,24 @@ void mapped_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Surf
   }
 }
 
+constexpr EffectMask kOneSetEffects = kMapEffects & ~bit(Effect::second_uv);
 template <bool first>
 struct MapsPart {
   using Function = SurfaceFunction;
-  static constexpr EffectsOf<kMapEffects | bit(Effect::mip_map)> kEffects = {};
+  static constexpr EffectsOf<kOneSetEffects | bit(Effect::mip_map)> kEffects = {};
   template <EffectMask mask>
   static constexpr Function instance() {
-    constexpr EffectMask code = has(mask, Effect::anisotropy) ? mask | kMapEffects : mask;
+    constexpr EffectMask code = has(mask, Effect::anisotropy) ? mask | kOneSetEffects : mask;
     return mapped_surface<code, first>;
   }
 };
+
+template <bool first>
+SurfaceFunction find_mapped_surface(EffectMask mask) {
+  if constexpr (has(kAllEffects, Effect::second_uv))
+    if (has(mask, Effect::second_uv)) return mapped_surface<kMapEffects, first>;
+  return Instantiations<MapsPart<first>>::find(mask);
+}
 
 }  // namespace
 
@@ -148,8 +152,8 @@ void add_material_maps(FrameData* frame) {
   if (has(glow, Effect::occlusion)) glow &= ~bit(Effect::ambient);  // mapped_surface() adds it
   frame->plain_surface = find_surface_function(frame->mask & ~bit(Effect::emission) & ~kIndirectEffects);
   frame->glow = find_glow_function(glow), frame->first_glow = find_glow_function(glow & ~late);
-  frame->surface = Instantiations<MapsPart<false>>::find(frame->mask);
-  frame->first_surface = Instantiations<MapsPart<true>>::find(frame->mask);
+  frame->surface = find_mapped_surface<false>(frame->mask);
+  frame->first_surface = find_mapped_surface<true>(frame->mask);
 }
 
 }  // namespace pocketray

@@ -58,19 +58,13 @@ Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3&
   return is_zero(mapped) ? s.normal : mapped;
 }
 
-Vec3 surface_grain(const FrameData& frame, const Grain& grain, Vec2 uv, const Surface& s) {
+Vec3 surface_grain(const FrameData& frame, const Grain& grain, const Surface& s) {
   effect_entered<Effect::anisotropy>();
   Vec2 d = grain.direction;
   Vec3 tangent, bitangent;
   if ((d.x == 0 && d.y == 0) || !tangent_frame(frame, s, s.front ? s.normal : -s.normal, &tangent, &bitangent))
     return {0, 0, 0};
-  if (grain.texture.texture != kNone) {
-    const TextureFilter filter = frame.settings.texture_filter;
-    const Vec3 numbers = has(frame.mask, Effect::mip_map)
-                             ? sample_numbers(*frame.scene, grain.texture, uv, filter, s.footprint)
-                             : sample_numbers(*frame.scene, grain.texture, uv, filter);
-    d = turned_grain(d, numbers);
-  }
+  if (grain.texture.texture != kNone) d = turned_grain(d, frame.numbers(frame, grain.texture, s));
   return tangent * d.x + bitangent * d.y;
 }
 

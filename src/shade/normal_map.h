@@ -22,6 +22,6 @@ Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3&
                    const Surface& s);
 
 // LobeFrame::grain of the surface, whose normal is final (Effect::anisotropy).
-Vec3 surface_grain(const FrameData& frame, const Grain& grain, Vec2 uv, const Surface& s);
+Vec3 surface_grain(const FrameData& frame, const Grain& grain, const Surface& s);
 
 }  // namespace pocketray

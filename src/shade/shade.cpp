@@ -198,10 +198,9 @@ bool blend_layers(Tracer* tracer, const Ray& ray, const Contact& contact, Vec3* 
     any = true;
     Surface s;
     frame.surface(frame, ray, on_path(face.hit, *path), &s);
-    Footprint footprint = kNoFootprint;
-    if constexpr (has(mask, Effect::mip_map)) footprint = s.footprint;
-    float alpha = hit_alpha<Effect::alpha_blend>(scene, *s.material, face.hit.triangle, face.hit.u, face.hit.v,
-                                                 frame.settings.texture_filter, footprint);
+    const Footprints& footprints = has(mask, Effect::mip_map) ? s.footprint : kNoFootprints;
+    float alpha =
+        hit_alpha<Effect::alpha_blend>(frame, *s.material, face.hit.triangle, face.hit.u, face.hit.v, footprints);
     Path<mask> covered = *path;
     covered.weight = path->weight * alpha;
     if (alpha > 0) *sum += *carried * alpha * shade<mask>(tracer, ray, s, &contact, covered);

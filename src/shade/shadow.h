@@ -114,8 +114,7 @@ Vec3 clear_transmittance(Tracer* tracer, Ray ray, const ShadowContext& context, 
         const Face& face = contact.face[i];
         const Material& m = frame.scene->materials[face.material];
         if (m.alpha_mode != AlphaMode::blend) continue;
-        float alpha = hit_alpha<Effect::alpha_blend>(*frame.scene, m, face.hit.triangle, face.hit.u, face.hit.v,
-                                                     frame.settings.texture_filter);
+        float alpha = hit_alpha<Effect::alpha_blend>(frame, m, face.hit.triangle, face.hit.u, face.hit.v);
         result = result * (1 - alpha);
       }
     }

@@ -35,6 +35,15 @@ void keep_off_edges(const Vec3& a, const Vec3& b, const Vec3& c, float least_wei
   *point += step < size ? inward * (step / size) : inward;
 }
 
+template <EffectMask mask>
+inline Vec3 texture_color(const FrameData& frame, const TextureUse& use, const Surface& s) {
+  if constexpr (has(mask, Effect::second_uv)) return frame.color(frame, use, s).rgb;
+  const Scene& scene = *frame.scene;
+  return color_at<has(mask, Effect::mip_map)>(scene, use, hit_uv(scene, s.hit.triangle, s.hit.u, s.hit.v),
+                                              frame.settings.texture_filter, s.footprint)
+      .rgb;
+}
+
 // Sets the light that leaves the surface without any lights.
 template <EffectMask mask>
 inline void add_glow(const FrameData& frame, Surface* s) {
@@ -58,11 +67,7 @@ inline void add_glow(const FrameData& frame, Surface* s) {
       effect_entered<Effect::emission>();
       Vec3 emission = m.emission;
       if constexpr (has(mask, Effect::texture)) {
-        if (m.emission_texture.texture != kNone)
-          emission *= color_at<has(mask, Effect::mip_map)>(scene, m.emission_texture,
-                                                           hit_uv(scene, s->hit.triangle, s->hit.u, s->hit.v),
-                                                           frame.settings.texture_filter, s->footprint)
-                          .rgb;
+        if (m.emission_texture.texture != kNone) emission *= texture_color<mask>(frame, m.emission_texture, *s);
       }
       s->glow += emission;
     }
@@ -70,10 +75,10 @@ inline void add_glow(const FrameData& frame, Surface* s) {
 }
 
 inline void find_footprint(const FrameData& frame, float t, const Vec3& direction, const Vec3& perpendicular,
-                           const Vec3& outward, const Triangle& triangle, Footprint* result) {
-  result->area = footprint(frame.cone, t, direction, perpendicular, outward, *frame.scene, triangle);
+                           const Vec3& outward, Array<const Vec2> uvs, const Triangle& triangle, Footprint* result) {
+  result->area = footprint(frame.cone, t, direction, perpendicular, outward, uvs, triangle);
   if (frame.settings.texture_filter == TextureFilter::anisotropic)
-    result->axis = footprint_axis(frame, t, direction, perpendicular, outward, triangle);
+    result->axis = footprint_axis(frame, t, direction, perpendicular, outward, uvs, triangle);
 }
 
 template <EffectMask mask>
@@ -101,16 +106,18 @@ void evaluate_surface(const FrameData& frame, const Ray& ray, const Hit& hit, Su
     effect_entered<Effect::smooth_normal>();
     if (frame.normals.count) s->normal = smooth_normal(frame, t, w, u, v, s->geometric);
   }
-  if constexpr (has(mask, Effect::mip_map))
-    find_footprint(frame, hit.t, ray.direction, perpendicular, outward, t, &s->footprint);
+  if constexpr (has(mask, Effect::mip_map)) {
+    find_footprint(frame, hit.t, ray.direction, perpendicular, outward, scene.uvs, t, &s->footprint);
+    if constexpr (has(mask, Effect::second_uv))
+      find_footprint(frame, hit.t, ray.direction, perpendicular, outward, scene.second_uvs, t, &s->footprint.second);
+  }
   s->diffuse = m.diffuse;
   s->is_tinted = false;
   if constexpr (has(mask, Effect::texture)) {
-    if (m.diffuse_texture.texture != kNone) {
+    const bool takes_part = !has(mask, Effect::second_uv) || has(frame.mask, Effect::texture);
+    if (m.diffuse_texture.texture != kNone && takes_part) {
       effect_entered<Effect::texture>();
-      s->tint = color_at<has(mask, Effect::mip_map)>(scene, m.diffuse_texture, hit_uv(scene, hit.triangle, u, v),
-                                                     frame.settings.texture_filter, s->footprint)
-                    .rgb;
+      s->tint = texture_color<mask>(frame, m.diffuse_texture, *s);
       s->diffuse *= s->tint;
       s->is_tinted = true;
     }
@@ -149,9 +156,39 @@ struct GlowPart {
   }
 };
 
+// The same where textures use both sets of texture coordinates: fewer instances, which look textures up by
+// FrameData::color.
+constexpr EffectMask kSecond = bit(Effect::second_uv) | bit(Effect::texture);
+struct SecondSurfacePart {
+  using Function = SurfaceFunction;
+  static constexpr EffectsOf<bit(Effect::smooth_normal) | bit(Effect::vertex_color) | bit(Effect::mip_map)> kEffects =
+      {};
+  template <EffectMask mask>
+  static constexpr Function instance() {
+    return evaluate_surface<mask | kSecond>;
+  }
+};
+struct SecondGlowPart {
+  using Function = GlowFunction;
+  static constexpr EffectsOf<IndirectList::kEffects> kEffects = {};
+  template <EffectMask mask>
+  static constexpr Function instance() {
+    return add_glow<mask | kSecond | bit(Effect::emission)>;
+  }
+};
+
+template <class Part, class SecondPart>
+typename Part::Function find_part(EffectMask mask, EffectMask needed) {
+  if constexpr (has(kAllEffects, Effect::second_uv))
+    if ((mask & needed) == needed) return Instantiations<SecondPart>::find(mask);
+  return Instantiations<Part>::find(mask);
+}
+
 }  // namespace
 
-GlowFunction find_glow_function(EffectMask mask) { return Instantiations<GlowPart>::find(mask); }
+GlowFunction find_glow_function(EffectMask mask) {
+  return find_part<GlowPart, SecondGlowPart>(mask, kSecond | bit(Effect::emission));
+}
 
 Vec3 curved_origin(const FrameData& frame, const Surface& s) {
   Surface moved = s;
@@ -170,6 +207,8 @@ Vec3 curved_origin(const FrameData& frame, const Surface& s) {
   return safe_origin(moved, 1);
 }
 
-SurfaceFunction find_surface_function(EffectMask mask) { return Instantiations<SurfacePart>::find(mask); }
+SurfaceFunction find_surface_function(EffectMask mask) {
+  return find_part<SurfacePart, SecondSurfacePart>(mask, bit(Effect::second_uv));
+}
 
 }  // namespace pocketray

@@ -28,7 +28,7 @@ struct Surface : LobeFrame {
   const Material* material;
   float roughness;
   SurfacePlace hit;
-  Footprint footprint;  // set with Effect::mip_map
+  Footprints footprint;  // set with Effect::mip_map
 };
 
 // Whether the ray met the back of a one-sided surface. Glass bodies have both sides. Only visible surfaces are culled:

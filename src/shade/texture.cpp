@@ -6,6 +6,7 @@
 #include "effect/settings.h"
 #include "scene/texel_blocks.h"
 #include "shade/footprint.h"
+#include "shade/surface.h"
 
 namespace pocketray {
 namespace {
@@ -102,6 +103,17 @@ struct NumberTexel {
     return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
   }
 };
+
+// Of the set that a texture reads, if some texture may read the second one.
+template <bool both_sets>
+Vec2 uv_at(const Scene& scene, const TextureUse& use, const Surface& s) {
+  if constexpr (both_sets) return texture_uv(scene, use, s.hit.triangle, s.hit.u, s.hit.v);
+  return hit_uv(scene, s.hit.triangle, s.hit.u, s.hit.v);
+}
+template <bool both_sets>
+const Footprint& footprint_at(const Scene& scene, const TextureUse& use, const Footprints& footprints) {
+  return both_sets && reads_second_uvs(scene, use) ? footprints.second : footprints;
+}
 
 Vec3 blend(const Vec3& a, const Vec3& b, float f) { return a + (b - a) * f; }
 Rgba blend(const Rgba& a, const Rgba& b, float f) {
@@ -230,11 +242,16 @@ Vec3 sample_numbers(const Scene& scene, const TextureUse& use, Vec2 uv, TextureF
   return sample<NumberTexel>(scene, use, uv, filter, footprint);
 }
 
+namespace {
+
+template <bool both_sets>
 float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                     TextureFilter filter, const Footprint& footprint) {
+                     TextureFilter filter, const Footprints& footprints) {
   float alpha = material.opacity;
   if (material.diffuse_texture.texture != kNone && scene.uvs.count) {
-    const Vec2 uv = hit_uv(scene, triangle, u, v);
+    const TextureUse& use = material.diffuse_texture;
+    const Vec2 uv = both_sets ? texture_uv(scene, use, triangle, u, v) : hit_uv(scene, triangle, u, v);
+    const Footprint& footprint = footprint_at<both_sets>(scene, use, footprints);
     alpha *= (footprint.area > 0 ? sample_texture(scene, material.diffuse_texture, uv, filter, footprint)
                                  : sample_texture(scene, material.diffuse_texture, uv, filter))
                  .alpha;
@@ -245,6 +262,50 @@ float material_alpha(const Scene& scene, const Material& material, std::uint32_t
     alpha *= ((1 - u - v) * a + u * b + v * c) * (1.0f / 65535.0f);
   }
   return alpha;
+}
+
+template <bool has_levels, bool both_sets>
+Rgba surface_color(const FrameData& frame, const TextureUse& use, const Surface& s) {
+  const Scene& scene = *frame.scene;
+  const Vec2 uv = uv_at<both_sets>(scene, use, s);
+  const TextureFilter filter = frame.settings.texture_filter;
+  if constexpr (has_levels)
+    return sample_texture(scene, use, uv, filter, footprint_at<both_sets>(scene, use, s.footprint));
+  return sample_texture(scene, use, uv, filter);
+}
+
+template <bool has_levels, bool both_sets>
+Vec3 surface_numbers(const FrameData& frame, const TextureUse& use, const Surface& s) {
+  const Scene& scene = *frame.scene;
+  const Vec2 uv = uv_at<both_sets>(scene, use, s);
+  const TextureFilter filter = frame.settings.texture_filter;
+  if constexpr (has_levels)
+    return sample_numbers(scene, use, uv, filter, footprint_at<both_sets>(scene, use, s.footprint));
+  return sample_numbers(scene, use, uv, filter);
+}
+
+template <bool has_levels, bool both_sets>
+void set_texture_functions(FrameData* frame) {
+  frame->color = surface_color<has_levels, both_sets>, frame->numbers = surface_numbers<has_levels, both_sets>;
+}
+
+}  // namespace
+
+AlphaFunction find_alpha_function(EffectMask mask) {
+  if (has(mask, Effect::second_uv)) return material_alpha<has(kAllEffects, Effect::second_uv)>;
+  return material_alpha<false>;
+}
+
+void find_texture_functions(FrameData* frame) {
+  constexpr bool levels = has(kAllEffects, Effect::mip_map), both = has(kAllEffects, Effect::second_uv);
+  CHECK(frame != nullptr);
+  frame->alpha = find_alpha_function(frame->mask);
+  if (has(frame->mask, Effect::second_uv))
+    has(frame->mask, Effect::mip_map) ? set_texture_functions<levels, both>(frame)
+                                      : set_texture_functions<false, both>(frame);
+  else
+    has(frame->mask, Effect::mip_map) ? set_texture_functions<levels, false>(frame)
+                                      : set_texture_functions<false, false>(frame);
 }
 
 }  // namespace pocketray

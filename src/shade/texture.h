@@ -36,25 +36,40 @@ Vec3 numbers_at(const Scene& scene, const TextureUse& use, Vec2 uv, TextureFilte
 }
 
 // uv of a hit, interpolated from its triangle.
-inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v) {
+inline Vec2 hit_uv(const Scene& scene, Array<const Vec2> uvs, std::uint32_t triangle, float u, float v) {
   const Triangle& t = scene.triangles[triangle];
-  Vec2 a = scene.uvs[t.vertex(0)], b = scene.uvs[t.vertex(1)], c = scene.uvs[t.vertex(2)];
+  Vec2 a = uvs[t.vertex(0)], b = uvs[t.vertex(1)], c = uvs[t.vertex(2)];
   float w = 1 - u - v;
   return {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
 }
+inline Vec2 hit_uv(const Scene& scene, std::uint32_t triangle, float u, float v) {
+  return hit_uv(scene, scene.uvs, triangle, u, v);
+}
 
-// Alpha of a material at a hit: opacity × texture alpha × vertex alpha.
-float material_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                     TextureFilter filter, const Footprint& footprint = kNoFootprint);
+// The same of the set that a texture reads (Effect::second_uv).
+inline bool reads_second_uvs(const Scene& scene, const TextureUse& use) {
+  return scene.textures[use.texture].uv_set > 0;
+}
+inline Vec2 texture_uv(const Scene& scene, const TextureUse& use, std::uint32_t triangle, float u, float v) {
+  if (!reads_second_uvs(scene, use)) return hit_uv(scene, triangle, u, v);
+  effect_entered<Effect::second_uv>();
+  return hit_uv(scene, scene.second_uvs, triangle, u, v);
+}
 
-// The same, for the effect in question: alpha_mask or alpha_blend. Without a footprint, as for holes and shadows, of
+// Alpha of a material at a hit: opacity × texture alpha × vertex alpha. For a plan's mask.
+AlphaFunction find_alpha_function(EffectMask mask);
+
+// The same, for the effect in question: alpha_mask or alpha_blend. Without footprints, as for holes and shadows, of
 // level 0: means would fill or widen holes with the distance, and a surface and its shadow would differ.
 template <Effect effect>
-float hit_alpha(const Scene& scene, const Material& material, std::uint32_t triangle, float u, float v,
-                TextureFilter filter, const Footprint& footprint = kNoFootprint) {
+float hit_alpha(const FrameData& frame, const Material& material, std::uint32_t triangle, float u, float v,
+                const Footprints& footprints = kNoFootprints) {
   static_assert(effect == Effect::alpha_mask || effect == Effect::alpha_blend, "no other effect reads alpha");
   effect_entered<effect>();
-  return material_alpha(scene, material, triangle, u, v, filter, footprint);
+  return frame.alpha(*frame.scene, material, triangle, u, v, frame.settings.texture_filter, footprints);
 }
+
+// Sets the frame's color, numbers and alpha for its mask.
+void find_texture_functions(FrameData* frame);
 
 }  // namespace pocketray

@@ -78,6 +78,11 @@ void hash(Io& io, ContentHash* h) {
   number(io, &h->low), number(io, &h->high);
 }
 template <class Io>
+void effects(Io& io, EffectMask* mask) {
+  number(io, mask);
+  io.require((*mask & ~kAllEffects) == 0);
+}
+template <class Io>
 void point(Io& io, Vec3* v) {
   for (float* x : {&v->x, &v->y, &v->z}) real(io, x, Quantity::coordinate);
 }
@@ -150,7 +155,7 @@ template <class Io>
 void fields(Io& io, Settings* settings) {
   count(io, &settings->width, Quantity::width, 2), count(io, &settings->height, Quantity::height, 2);
   for (const SettingRow& row : kSettingList) setting(io, row, settings);
-  number(io, &settings->forced_on), number(io, &settings->forced_off);  // every bit is an effect
+  effects(io, &settings->forced_on), effects(io, &settings->forced_off);
 }
 
 // Which rows, and in what order they come.
@@ -249,7 +254,7 @@ void fields(Io& io, ViewEntry* m) {
   hash(io, &m->scene);
   fields(io, &m->camera);
   real(io, &m->exposure, Quantity::exposure), real(io, &m->frames_per_second, Quantity::frame_rate);
-  number(io, &m->effects), number(io, &m->triangle_count);
+  effects(io, &m->effects), number(io, &m->triangle_count);
   point(io, &m->bounds.low), point(io, &m->bounds.high);
   io.require(!is_empty(m->bounds));
 }
@@ -311,7 +316,7 @@ constexpr PayloadSize kPayloadSizes[] = {
     {8, 0},                                          // ping
     {10, kPingBytesMax},                             // pong
     {68 + kSettingsBytes, 0},                        // view_query
-    {104, 0},                                        // view_entry
+    {108, 0},                                        // view_entry
     {41, kRunBytes* kRunCountMax},                   // frame_change
     {2, kChunkBytesMax},                             // coarse_picture
 };

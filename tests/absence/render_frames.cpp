@@ -1,6 +1,7 @@
 // absence_SCENE FRAMES : renders a built-in scene FRAMES times in a build with only the scene's effects, or
 // (absence_all SCENE FRAMES) with all. Prints the plan's effects and the bytes of every part of memory. absence_test.sh
 // counts its instructions with valgrind.
+#include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
 
@@ -17,7 +18,7 @@ int main(int argument_count, char** arguments) {
   settings.width = 64, settings.height = 48;
   auto test = make_renderer(built->scene, settings);
   Renderer* renderer = &test->renderer;
-  std::printf("effects 0x%x of 0x%x\n", renderer->effects.mask, kEffectsBuilt);
+  std::printf("effects 0x%" PRIx64 " of 0x%" PRIx64 "\n", renderer->effects.mask, kEffectsBuilt);
   for (int i = 0; i < renderer->memory.part_count; ++i)
     std::printf("%s %zu bytes\n", renderer->memory.parts[i].name, renderer->memory.parts[i].bytes);
   for (int frame = std::atoi(arguments[2]); frame > 0; --frame)

@@ -71,6 +71,8 @@ static int effect_is_on(const pocketray_instance* instance, const char* name) {
   EXPECT_OK(pocketray_get_plan(instance, &plan));
   for (i = 0; i < plan.effect_count; ++i)
     if (strcmp(plan.effects[i].name, name) == 0) return plan.effects[i].on;
+  for (i = 0; i < plan.further_effect_count; ++i)
+    if (strcmp(plan.further_effects[i].name, name) == 0) return plan.further_effects[i].on;
   return -1;
 }
 

@@ -26,6 +26,15 @@ std::string animated_glb() {
       "\"sampler\":0,\"target\":{\"node\":0,\"path\":\"scale\"}}]}]");
 }
 
+// Textures that use either set of texture coordinates.
+std::string two_sets_gltf() {
+  return triangle_gltf(
+      "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"occlusionTexture\":{\"index\":0,\"texCoord\":1}"
+      "}",
+      ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,"
+      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNoaPj/HwAGggL/bOBDIwAAAABJRU5ErkJggg==\"}]");
+}
+
 std::string ply(const char* format, const char* count_type, bool binary) {
   std::string file =
       std::string("ply\nformat ") + format + " 1.0\nelement vertex 4\nproperty float x\nproperty float y\n" +
@@ -82,6 +91,7 @@ std::vector<Model> models() {
   std::string corner = "0 0 0 0 0 0 1 0 0 0\n";
   return {
       {"triangle.gltf", "gltf", triangle_gltf("{}")},
+      {"two_sets.gltf", "gltf", two_sets_gltf()},
       {"animated.glb", "glb", animated_glb()},
       {"square.obj", "obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -1\nl 1 2\n"},
       {"forms.obj", "obj",

@@ -204,9 +204,10 @@ TEST_CASE("gltf_metallic_roughness_texture_becomes_a_map") {
   CHECK(s.materials[0].diffuse.x == doctest::Approx(0.5 * (1 - metallic)));
   CHECK(s.materials[0].roughness == doctest::Approx(roughness * roughness));
   REQUIRE(s.material_maps.count == 1);
-  REQUIRE(s.textures.count == 1);
+  REQUIRE(s.textures.count == 2);
+  CHECK(s.textures[0].texel_begin == s.textures[1].texel_begin);
   const MaterialMaps& maps = s.material_maps[0];
-  CHECK(maps.metallic_roughness.texture == 0);
+  CHECK((maps.metallic_roughness.texture == 0 && s.textures[0].uv_set == 1));
   CHECK(maps.model.base == Vec3{0.5f, 0.25f, 1});
   check_vec(maps.model.dielectric, {0.04f, 0.04f, 0.04f});
   CHECK(maps.model.grazing == 1);
@@ -214,10 +215,10 @@ TEST_CASE("gltf_metallic_roughness_texture_becomes_a_map") {
   CHECK((maps.metallic_low == maps.metallic_high && maps.roughness_low == maps.roughness_high));
   CHECK(maps.metallic_low == doctest::Approx(metallic));
   CHECK(maps.roughness_low == doctest::Approx(roughness));
-  CHECK(s.uvs[1].x == 0.75f);  // TEXCOORD_1
-  CHECK((maps.normal.texture == 0 && maps.normal_scale == -2));
+  CHECK((s.uvs[1].x == 1 && s.second_uvs[1].x == 0.75f));
+  CHECK((maps.normal.texture == 1 && maps.normal_scale == -2 && s.textures[1].uv_set == 0));
   CHECK((maps.occlusion.texture == 0 && maps.occlusion_strength == 0.5f));  // the same texture, in the scene once
-  CHECK(imported.warning == "normal textures use the texture coordinates of the metallic-roughness");
+  CHECK(imported.warning.empty());
   imported = load_text(
       triangle_gltf(textured + ",\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.5}}}",
                     images(kRoughMetal)));

@@ -72,6 +72,13 @@ TEST_CASE("plan_effects_follow_the_scene") {
       {bit(F::anisotropy), bit(E::anisotropy) | bit(E::specular) | bit(E::ambient_gloss)},
       {bit(F::occlusion), 0},  // nothing to take away
       {bit(F::occlusion) | bit(F::ambient), bit(E::occlusion) | bit(E::ambient)},
+      {bit(F::second_uv), 0},  // no texture
+      {bit(F::texture) | bit(F::second_uv), bit(E::texture) | bit(E::second_uv)},
+      {bit(F::alpha_mask) | bit(F::second_uv), bit(E::texture) | bit(E::alpha_mask) | bit(E::second_uv)},
+      {bit(F::normal_map) | bit(F::second_uv), bit(E::normal_map)},
+      {bit(F::occlusion) | bit(F::second_uv), 0},
+      {bit(F::occlusion) | bit(F::second_uv) | bit(F::ambient),
+       bit(E::occlusion) | bit(E::ambient) | bit(E::second_uv)},
       // Stored, or by request.
       {kAllFeatures, kAllEffects & ~bit(E::radiosity) & ~bit(E::instant_radiosity) & ~bit(E::selective) &
                          ~bit(E::environment) & ~bit(E::environment_shadow) & ~bit(E::undersampling) &

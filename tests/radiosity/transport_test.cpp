@@ -212,3 +212,29 @@ TEST_CASE("radiosity_does_not_depend_on_threads_and_is_stored") {
                   test->renderer.frame, {}, [&](double) { return ++calls < 3; }, &solutions[0])
                   .ok);
 }
+
+// Goal: surfaces reflect what their textures show, by either set of texture coordinates. Method: textures of the second
+// set, and the same coordinates as the first: equal solutions; those of the other coordinates differ.
+TEST_CASE("radiosity_reads_textures_by_their_set") {
+  RadiositySolution solutions[3];
+  for (int i = 0; i < 3; ++i) {
+    auto s = generate_scene(
+        bit(Feature::texture) | bit(Feature::metallic_roughness) | bit(Feature::point_light) | bit(Feature::emission),
+        3);
+    if (i == 0)
+      for (Texture& texture : s->textures) texture.uv_set = 1;
+    if (i == 1) s->uvs = s->second_uvs;
+    s->with_second_uvs = i == 0;
+    s->bind();
+    REQUIRE(validate_scene(s->scene).ok);
+    REQUIRE(solve(s->scene, 60, &solutions[i]).ok);
+  }
+  REQUIRE(!solutions[0].nodes.empty());
+  REQUIRE(solutions[0].nodes.size() == solutions[1].nodes.size());
+  bool differs = solutions[0].nodes.size() != solutions[2].nodes.size();
+  for (std::size_t i = 0; i < solutions[0].nodes.size(); ++i) {
+    CHECK(solutions[0].nodes[i].value == solutions[1].nodes[i].value);
+    differs = differs || !(solutions[0].nodes[i].value == solutions[2].nodes[i].value);
+  }
+  CHECK(differs);
+}

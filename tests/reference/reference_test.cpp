@@ -162,6 +162,12 @@ TEST_CASE("reference_model_is_the_renderers_limit") {
   for (int i = 0; i < kFeatureCount; ++i)
     if (!(without & 1u << i)) sets.push_back(1u << i | bit(Feature::point_light));
   sets.push_back(bit(Feature::refraction) | bit(Feature::absorption) | bit(Feature::point_light));
+  sets.push_back(bit(Feature::texture) | bit(Feature::second_uv) | bit(Feature::point_light));
+  sets.push_back(bit(Feature::alpha_mask) | bit(Feature::alpha_blend) | bit(Feature::texture) |
+                 bit(Feature::second_uv) | bit(Feature::directional_light));
+  sets.push_back(bit(Feature::metallic_roughness) | bit(Feature::normal_map) | bit(Feature::occlusion) |
+                 bit(Feature::anisotropy) | bit(Feature::texture) | bit(Feature::second_uv) | bit(Feature::ambient) |
+                 bit(Feature::point_light));
   const std::size_t plain_count = sets.size();
   sets.push_back(bit(Feature::texture) | bit(Feature::vertex_color) | bit(Feature::point_light));
   sets.push_back(sets.back() | bit(Feature::mirror) | bit(Feature::smooth_normal));

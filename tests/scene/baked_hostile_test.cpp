@@ -83,7 +83,8 @@ struct FloatCount {
 FloatCount count_floats(const Scene& s) {
   FloatCount n;
   n.add(s.info.background), n.add(s.info.ambient), n.add(s.info.exposure), n.add(s.info.frames_per_second);
-  n.add(s.info.auto_exposure), n.add(s.positions), n.add(s.normals), n.add(s.uvs), n.add(s.materials), n.add(s.lights);
+  n.add(s.info.auto_exposure), n.add(s.positions), n.add(s.normals), n.add(s.uvs), n.add(s.second_uvs),
+      n.add(s.materials), n.add(s.lights);
   n.add(s.cameras), n.add(s.nodes), n.add(s.animations), n.add(s.key_times), n.add(s.key_values), n.add(s.weights);
   n.add(s.joints), n.add(s.moving_meshes), n.add(s.rest_positions), n.add(s.rest_normals), n.add(s.skin_weights);
   n.add(s.morph_positions), n.add(s.morph_normals), n.add(s.environment_info);
@@ -239,16 +240,16 @@ TEST_CASE("baked_open_says_what_is_wrong") {
   CHECK(mentions(baked_open(file.data(), file.size() - 64, &scene).message, "it should be"));
   CHECK(mentions(baked_open(file.data() + 1, file.size() - 1, &scene).message, "aligned to 64"));
   put_u32(file, kVersionAt, 1);
-  CHECK(open_error(file) == "made by version 1, but this program reads versions 7 to 9: bake it again");
+  CHECK(open_error(file) == "made by version 1, but this program reads versions 7 to 10: bake it again");
   put_u32(file, kVersionAt, kBakedVersion);
   file.data()[file.size() - 1] ^= 1;
   CHECK(mentions(open_error(file), "checksum"));
   fix_checksum(file);
   CHECK(open_error(file) == "");
-  put_u32(file, kSectionCountAt, 38);
+  put_u32(file, kSectionCountAt, 39);
   fix_checksum(file);
-  CHECK(mentions(open_error(file), "38 sections"));
-  put_u32(file, kSectionCountAt, 37);
+  CHECK(mentions(open_error(file), "39 sections"));
+  put_u32(file, kSectionCountAt, 38);
   put_u32(file, section_at(0) + 16, 2);
   fix_checksum(file);
   CHECK(mentions(open_error(file), "2 info sections"));

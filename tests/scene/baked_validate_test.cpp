@@ -217,6 +217,39 @@ TEST_CASE("validate_scene_refuses_bad_grains") {
   accepts([](FullScene* f) { f->grains[0].direction = {0.70710678f, -0.70710678f}; });
 }
 
+// Goal: a texture of the second coordinates finds them, finite, one at each vertex; a normal map has the first ones,
+// whose frame is its own. Method: each wrong in turn.
+TEST_CASE("validate_scene_refuses_bad_second_uvs") {
+  refuses("13 second_uvs for 14 vertices", [](FullScene* f) { f->second_uvs.pop_back(); });
+  refuses("15 second_uvs for 14 vertices", [](FullScene* f) { f->second_uvs.push_back({0, 0}); });
+  for (float bad : {kNan, kInf, -kInf, 2e18f}) {
+    refuses("second_uvs[3]", [=](FullScene* f) { f->second_uvs[3].x = bad; });
+    refuses("second_uvs[13]", [=](FullScene* f) { f->second_uvs[13].y = bad; });
+  }
+  refuses("textures[0] reads texture coordinates 2", [](FullScene* f) { f->textures[0].uv_set = 2; });
+  refuses("textures[1] reads texture coordinates 255", [](FullScene* f) { f->textures[1].uv_set = 255; });
+  refuses("materials[1].emission_texture needs second_uvs", [](FullScene* f) { f->second_uvs.clear(); });
+  refuses("needs uvs", [](FullScene* f) { f->uvs.clear(), f->textures[0].uv_set = 1; });
+  refuses("material_maps[2].normal reads second_uvs", [](FullScene* f) { f->textures[0].uv_set = 1; });
+  auto only = [](TextureUse MaterialMaps::*use) {
+    return [=](FullScene* f) {
+      f->textures.push_back(f->textures[1]);
+      f->textures[1].uv_set = 0, f->material_maps[2].*use = TextureUse(), (f->material_maps[2].*use).texture = 2;
+      f->second_uvs.clear();
+    };
+  };
+  refuses("material_maps[2].metallic_roughness needs second_uvs", only(&MaterialMaps::metallic_roughness));
+  refuses("material_maps[2].occlusion needs second_uvs", only(&MaterialMaps::occlusion));
+  refuses("material_maps[2].specular needs second_uvs", only(&MaterialMaps::specular));
+  refuses("material_maps[2].specular_color needs second_uvs", only(&MaterialMaps::specular_color));
+  refuses("grains[2].texture needs second_uvs", [](FullScene* f) {
+    f->textures.push_back(f->textures[1]);
+    f->textures[1].uv_set = 0, f->grains[2].texture.texture = 2, f->second_uvs.clear();
+  });
+  accepts([](FullScene* f) { f->textures[1].uv_set = 0; });  // there are coordinates that nothing reads
+  accepts([](FullScene* f) { f->textures[1].uv_set = 0, f->second_uvs.clear(); });
+}
+
 // Goal: no texel outside the array is ever fetched.
 TEST_CASE("validate_scene_refuses_bad_textures") {
   refuses("textures[0]", [](FullScene* f) { f->textures[0].width = 0; });
@@ -234,7 +267,7 @@ TEST_CASE("validate_scene_refuses_bad_textures") {
   refuses("textures[1] extends beyond", [](FullScene* f) { f->texels.pop_back(); });  // its last level
   accepts([](FullScene* f) { f->textures[1].level_count = 2, f->texels.pop_back(); });
   refuses("textures[0] is of an unknown format", [](FullScene* f) { f->textures[0].format = unknown<TexelFormat>(7); });
-  refuses("textures[1] is of an unknown format", [](FullScene* f) { f->textures[1].reserved[2] = 1; });
+  refuses("textures[1] is of an unknown format", [](FullScene* f) { f->textures[1].reserved[1] = 1; });
   for (int format = 1; format < kTexelFormatCount; ++format) {
     const auto blocks = static_cast<TexelFormat>(format);
     const std::uint32_t words = level_words(blocks, 1, 4, 3);

@@ -90,7 +90,7 @@ void FullScene::bind() {
   scene.radiosity_grids = view(radiosity_grids), scene.radiosity_nodes = view(radiosity_nodes);
   scene.radiosity_corners = view(radiosity_corners), scene.radiosity_values = view(radiosity_values);
   scene.environment_info = view(environment_info), scene.environment_texels = view(environment_texels);
-  scene.grains = view(grains), scene.tangents = view(tangents);
+  scene.grains = view(grains), scene.tangents = view(tangents), scene.second_uvs = view(second_uvs);
 }
 
 void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32_t triangle_count, FullScene* full) {
@@ -122,6 +122,8 @@ void make_full_scene(std::uint64_t seed, std::uint32_t vertex_count, std::uint32
   full->grains.resize(full->materials.size());
   full->grains[2].direction = {0.6f, -0.8f}, full->grains[2].texture.texture = 1;
   full->tangents.assign(vertex_count, {127, 0, -3, 0});
+  for (const Vec2& uv : full->uvs) full->second_uvs.push_back({1 - uv.y, uv.x});
+  full->textures[1].uv_set = 1;
   for (int i = 0; i < 37; ++i) full->accel.push_back(static_cast<std::uint8_t>(next_u32(&rng)));
   full->bind();
 }

@@ -8,7 +8,7 @@
 struct FullScene {
   pocketray::Scene scene;
   std::vector<pocketray::Vec3> positions, normals, rest_positions, rest_normals, morph_positions, morph_normals;
-  std::vector<pocketray::Vec2> uvs;
+  std::vector<pocketray::Vec2> uvs, second_uvs;
   std::vector<pocketray::Rgba16> colors;
   std::vector<pocketray::Triangle> triangles;
   std::vector<pocketray::Material> materials;

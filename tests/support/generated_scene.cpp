@@ -160,6 +160,13 @@ void add_mip_maps(GeneratedScene* s) {
     repeat(&maps.metallic_roughness), repeat(&maps.occlusion), repeat(&maps.specular);
 }
 
+// Two textures of three read the second coordinates, but those of normals cannot.
+void add_second_uvs(GeneratedScene* s) {
+  for (std::size_t i = 0; i < s->textures.size(); ++i) s->textures[i].uv_set = i % 3 != 1;
+  for (const MaterialMaps& maps : s->material_maps)
+    if (maps.normal.texture != kNone) s->textures[maps.normal.texture].uv_set = 0;
+}
+
 }  // namespace
 
 std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint64_t seed) {
@@ -175,12 +182,14 @@ std::unique_ptr<GeneratedScene> generate_scene(std::uint32_t features, std::uint
   if (!s->material_maps.empty()) s->material_maps.resize(s->materials.size());
   if (!s->grains.empty()) s->grains.resize(s->materials.size());
   if (has(features, Feature::mip_map)) add_mip_maps(s.get());
+  if (has(features, Feature::second_uv)) add_second_uvs(s.get());
   add_lights(s.get(), features, &rng);
   if (has(features, Feature::animation)) add_motion(s.get(), first_vertex, vertex_count);
   aim(s.get(), {0.3f, 1.6f, 4.6f}, {0, 1, 0}, 50);
   s->scene.info.background = {0.1f, 0.15f, 0.2f};
   s->with_normals = has(features, Feature::smooth_normal);
   s->with_uvs = !s->textures.empty() || has(features, Feature::anisotropy);
+  s->with_second_uvs = has(features, Feature::second_uv) && !s->textures.empty();
   s->with_colors = has(features, Feature::vertex_color);
   s->bind();
   return s;
@@ -191,7 +200,8 @@ Settings settings_for(std::uint32_t features, std::uint32_t width, std::uint32_t
   settings.width = width;
   settings.height = height;
   settings.samples_per_pixel = has(features, Feature::supersampling) ? 2 : 1;
-  settings.points_per_area_light = features % 3 == 0 ? 9 : 2;  // in groups, or tested one by one
+  const std::uint32_t lit = features & ~bit(Feature::second_uv);
+  settings.points_per_area_light = lit % 3 == 0 ? 9 : 2;  // in groups, or tested one by one
   return settings;
 }
 

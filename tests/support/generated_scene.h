@@ -36,8 +36,9 @@ enum class Feature : int {
   occlusion,  // shows under ambient light only
   mip_map,    // of whatever textures there are
   anisotropy,
+  second_uv,  // of whatever textures there are
 };
-constexpr int kFeatureCount = 23;
+constexpr int kFeatureCount = 24;
 constexpr std::uint32_t bit(Feature feature) { return 1u << static_cast<int>(feature); }
 constexpr std::uint32_t kAllFeatures = (1u << kFeatureCount) - 1;
 constexpr bool has(std::uint32_t features, Feature feature) { return (features & bit(feature)) != 0; }
@@ -46,7 +47,7 @@ constexpr bool has(std::uint32_t features, Feature feature) { return (features &
 struct GeneratedScene {
   Scene scene;
   std::vector<Vec3> positions, normals, rest_positions, rest_normals;
-  std::vector<Vec2> uvs;
+  std::vector<Vec2> uvs, second_uvs;
   std::vector<Rgba16> colors;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
@@ -62,7 +63,7 @@ struct GeneratedScene {
   std::vector<Channel> channels;
   std::vector<float> key_times, key_values;
   std::vector<MovingMesh> moving_meshes;
-  bool with_normals = false, with_uvs = false, with_colors = false;
+  bool with_normals = false, with_uvs = false, with_second_uvs = false, with_colors = false;
 
   GeneratedScene() = default;
   GeneratedScene(const GeneratedScene&) = delete;  // `scene` points into the vectors

@@ -24,6 +24,7 @@ Array<const T> view(const std::vector<T>& v, bool wanted) {
 
 void GeneratedScene::bind() {
   scene.positions = view(positions), scene.normals = view(normals, with_normals), scene.uvs = view(uvs, with_uvs);
+  scene.second_uvs = view(second_uvs, with_second_uvs);
   scene.colors = view(colors, with_colors), scene.triangles = view(triangles), scene.materials = view(materials),
   scene.material_maps = view(material_maps), scene.grains = view(grains);
   if (!tangents.empty()) tangents.resize(positions.size());
@@ -44,6 +45,7 @@ std::uint32_t add_vertex(GeneratedScene* s, const Vec3& position, const Vec3& no
   s->positions.push_back(position);
   s->normals.push_back(normal);
   s->uvs.push_back(uv);
+  s->second_uvs.push_back({0.9f - 0.7f * uv.y, 0.3f + 1.3f * uv.x});
   auto channel = [&](float x) { return static_cast<std::uint16_t>(32768 + 32767 * std::sin(3 * x)); };
   s->colors.push_back({channel(position.x), channel(position.y), channel(position.z), 65535});
   return static_cast<std::uint32_t>(s->positions.size() - 1);

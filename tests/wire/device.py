@@ -13,7 +13,7 @@ EFFECTS = ["shadow", "specular", "mirror", "refraction", "absorption", "alpha-ma
            "supersampling", "animation", "back-face-culling", "radiosity", "instant-radiosity",
            "ambient-gloss", "metallic-roughness", "normal-map", "occlusion", "mip-map", "selective", "environment",
            "undersampling", "source-selection", "environment-shadow",
-           "anisotropy"]
+           "anisotropy", "second-uv"]
 
 failures = []
 
@@ -264,7 +264,7 @@ def message(kind, fields=b""):
     return head + struct.pack("<I", zlib.crc32(head + fields)) + fields
 
 
-def hello(version=22, more=b""):
+def hello(version=23, more=b""):
     return message(HELLO, b"PRAY" + struct.pack("<HHIQH", version, 8192, 1 << 21, 1 << 30, 256) + more)
 
 
@@ -285,7 +285,7 @@ def request(scene, kind=FRAME_REQUEST, **changes):
     r = dict(DEFAULTS, **changes)
     end = r["height"] if r["end"] is None else r["end"]
     rows = struct.pack("<BHH", r["coarse"], r["first"], end) + bytes(x for run in r["order"] for x in run)
-    settings = struct.pack("<HHBBHBBfBBBBHfBfHII", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
+    settings = struct.pack("<HHBBHBBfBBBBHfBfHQQ", r["width"], r["height"], r["samples"], r["depth"], r["points"], r["area_shadows"], r["area_irradiance"], r["cut_off"],
                            r["filter"], r["normals"], r["indirect"],
                            r["reconstruction"], r["virtual_lights"], r["selective"], r["resolution"], r["light_tolerance"],
                            r["environment_shadows"], r["on"], r["off"])
@@ -311,7 +311,7 @@ class Device:
         if greets:
             self.send(hello())
             kind, fields = self.receive()
-            check(kind == HELLO and fields[:6] == b"PRAY\26\0", "the server says hello first, of version 22")
+            check(kind == HELLO and fields[:6] == b"PRAY\27\0", "the server says hello first, of version 23")
             self.side, self.message_bytes, self.scene_bytes, self.price = struct.unpack("<HIQH", fields[6:])
             check(self.price >= 256, "the hello's price")
 

@@ -239,14 +239,16 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::frame_request, 8 + 95, {kIndirectChoiceCount}},        // indirect
       {MessageType::frame_request, 8 + 96, {3}},                           // reconstruction
       {MessageType::frame_request, 8 + 99, nan},                           // selective
-      {MessageType::frame_request, 8 + more + 101, {0, 0, 0x80, 0xBF}},    // exposure −1
-      {MessageType::frame_request, 8 + more + 105, {2}},                   // dither
-      {MessageType::frame_request, 8 + more + 106, {2}},                   // format
-      {MessageType::frame_request, 8 + more + 111, {5, 0, 5, 0}},          // no rows
-      {MessageType::frame_request, 8 + more + 113, {0xFF, 0xFF}},          // rows beyond the picture
-      {MessageType::frame_request, 8 + more + 107, {0, 0}},                // chunk rows
-      {MessageType::frame_request, 8 + more + 109, {3}},                   // coding
-      {MessageType::frame_request, 8 + more + 110, {2}},                   // coarse first
+      {MessageType::frame_request, 8 + more + 109, {0, 0, 0x80, 0xBF}},    // exposure −1
+      {MessageType::frame_request, 8 + more + 100, {1}},                   // an effect that is none, on
+      {MessageType::frame_request, 8 + more + 108, {1}},                   // and off
+      {MessageType::frame_request, 8 + more + 113, {2}},                   // dither
+      {MessageType::frame_request, 8 + more + 114, {2}},                   // format
+      {MessageType::frame_request, 8 + more + 119, {5, 0, 5, 0}},          // no rows
+      {MessageType::frame_request, 8 + more + 121, {0xFF, 0xFF}},          // rows beyond the picture
+      {MessageType::frame_request, 8 + more + 115, {0, 0}},                // chunk rows
+      {MessageType::frame_request, 8 + more + 117, {3}},                   // coding
+      {MessageType::frame_request, 8 + more + 118, {2}},                   // coarse first
       {MessageType::frame_change, 8 + 4, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F}},  // seconds
       {MessageType::frame_change, 8 + 12, nan},                            // eye.x
       {MessageType::frame_change, 8 + 36, {2}},                            // coarse first
@@ -266,11 +268,12 @@ TEST_CASE("message_values_out_of_range_are_refused") {
       {MessageType::view_query, 8 + 16, {2}},              // camera stated
       {MessageType::view_query, 8 + 19, nan},              // eye.x
       {MessageType::view_query, 8 + 67, {0, 0}},           // width
-      {MessageType::view_query, 8 + more + 89, {2}},       // exposure measured
+      {MessageType::view_query, 8 + more + 97, {2}},       // exposure measured
       {MessageType::view_entry, 8 + 16, infinite},         // eye.x
       {MessageType::view_entry, 8 + 64, {0, 0, 0, 0}},     // exposure
       {MessageType::view_entry, 8 + 68, nan},              // frames a second
-      {MessageType::view_entry, 8 + 80, {0, 0, 0, 0x7F}},  // bounds turned over
+      {MessageType::view_entry, 8 + 79, {1}},              // an effect that is none
+      {MessageType::view_entry, 8 + 84, {0, 0, 0, 0x7F}},  // bounds turned over
   };
   const std::vector<std::uint8_t> tail = {1, 2, 3};
   for (const Edit& edit : edits) {

@@ -44,7 +44,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   f->settings.cut_off_levels = static_cast<float>(next_u32(rng) % 64);
   f->settings.texture_filter = static_cast<TextureFilter>(next_u32(rng) % 5);
   f->settings.normals = static_cast<NormalMode>(next_u32(rng) % 2);
-  f->settings.forced_on = next_u32(rng) & kAllEffects, f->settings.forced_off = next_u32(rng) & kAllEffects;
+  f->settings.forced_on = wide() & kAllEffects, f->settings.forced_off = wide() & kAllEffects;
   f->exposure = 1 + next_float(rng), f->dither = next_u32(rng) % 2 != 0;
   f->format = static_cast<WireFormat>(next_u32(rng) % 2);
   f->row_begin = static_cast<std::uint16_t>(next_u32(rng) % f->settings.height);
@@ -77,7 +77,7 @@ inline Message sample_message(MessageType type, Rng* rng, const std::vector<std:
   q->camera = f->camera, q->settings = f->settings, q->measure_exposure = next_u32(rng) % 2 != 0;
   ViewEntry* v = &m.view_entry;
   v->scene = hash, v->camera = f->camera, v->exposure = 1 + next_float(rng), v->frames_per_second = 1 + next_float(rng);
-  v->effects = next_u32(rng) & kAllEffects, v->triangle_count = next_u32(rng);
+  v->effects = wide() & kAllEffects, v->triangle_count = next_u32(rng);
   v->bounds = {{-next_float(rng), -1, 0}, {next_float(rng), real() + 100, 1}};
   m.coarse_picture.frame = next_u32(rng), m.coarse_picture.pixels = bytes;
   m.hello.price = price(), m.row_chunk.price = price(), m.pong.price = price();
