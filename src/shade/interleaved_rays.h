@@ -1,7 +1,5 @@
 // The shadow rays of interleaved sources.
 #pragma once
-#include <algorithm>
-
 #include "base/check.h"
 #include "shade/filters.h"
 #include "shade/interleaved.h"
@@ -17,10 +15,12 @@ struct InterleavedRay {
   Ray ray;
 };
 
-// Source: count; kFaint: of a pixel's sources, those that give less than this share of their mean get no ray, and as
-// much of their light arrives as of the others'; arrives(index, surface, origin, &light, &ray): false if the surface is
-// turned away from it. Rays of
-// a tile run to a point each, in no order that would make a shaft of them: each is traced by itself.
+// Source:
+//   count
+//   kFaint: of a pixel's sources, those that give less than this share of their mean get no ray, and as much of their
+//       light arrives as of the others'
+//   arrives(index, surface, origin, &light, &ray): false if the surface is turned away from it
+// Rays run to a point each, so that no shaft would hold many: each is traced by itself.
 template <class Source>
 void gather_interleaved(const FrameData& frame, const InterleavedPoints& points, const Source& source,
                         bool casts_shadows, TraceStats* stats, std::uint64_t* rays, InterleavedLight* light) {
