@@ -16,6 +16,7 @@ expect keygen_never_overwrites 1 'pocketray.key: there is a file of that name' k
 check keygen_leaves_what_is_there cmp -s pocketray.key before.key
 expect keygen_to_a_file 0 '--key other.key' keygen -o other.key
 check keys_differ test "$(cat other.key)" != "$(cat pocketray.key)"
+expect keygen_to_standard_output 1 'a key needs a file' keygen -o -
 expect keygen_without_a_folder 1 'no/such/folder/k: No such file' keygen -o no/such/folder/k
 expect keygen_help 0 '64 hexadecimal digits' keygen --help
 

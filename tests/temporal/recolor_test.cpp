@@ -368,29 +368,24 @@ TEST_CASE("recoloring_a_lamp_dims_it") {
 // Goal: what reaches too far to follow makes a whole frame, with its reason. Method: one case each; in the last, a pane
 // moves and gets other holes at once.
 TEST_CASE("recoloring_that_reaches_far_makes_whole_frames") {
-  {
-    Material floor = matte({0.2f, 0.2f, 0.2f});
-    floor.mirror = {0.5f, 0.5f, 0.5f};
-    auto s = box_on_floor(floor);
-    add_light(s.get());
-    const Pair pair = make_pair(std::move(s), settings_of());
+  auto is_whole = [](std::unique_ptr<GeneratedScene> scene, std::uint32_t material, Vec3 Material::*color,
+                     const Vec3& changed, const char* reason) {
+    add_light(scene.get());
+    const Pair pair = make_pair(std::move(scene), settings_of());
     start(pair);
-    Material m = pair.scene->materials[1];
-    m.diffuse = {0.95f, 0.95f, 0.95f};
-    CHECK(recolored_to(pair, 1, m) == pixel_count(pair));
-    CHECK(whole_because(pair) == "the brightest light on a surface changed");
-  }
-  {
-    auto s = pane_over_floor(Pane::absorbing);
-    add_box(s.get(), {-6, -6, -6}, {6, 6, 6}, 2);
-    add_light(s.get());
-    const Pair pair = make_pair(std::move(s), settings_of());
-    start(pair);
-    Material m = pair.scene->materials[2];
-    m.absorption = {0.01f, 0.02f, 0.01f};
-    CHECK(recolored_to(pair, 2, m) == pixel_count(pair));
-    CHECK(whole_because(pair) == "the body around the camera was recoloured");
-  }
+    Material m = pair.scene->materials[material];
+    m.*color = changed;
+    CHECK(recolored_to(pair, material, m) == pixel_count(pair));
+    CHECK(whole_because(pair) == reason);
+  };
+  Material floor = matte({0.2f, 0.2f, 0.2f});
+  floor.mirror = {0.5f, 0.5f, 0.5f};
+  is_whole(box_on_floor(floor), 1, &Material::diffuse, {0.95f, 0.95f, 0.95f},
+           "the brightest light on a surface changed");
+  auto body = pane_over_floor(Pane::absorbing);
+  add_box(body.get(), {-6, -6, -6}, {6, 6, 6}, 2);
+  is_whole(std::move(body), 2, &Material::absorption, {0.01f, 0.02f, 0.01f},
+           "the body around the camera was recoloured");
   auto s = pane_over_floor(Pane::holes);
   let_move(s.get(), 4);
   add_light(s.get());
