@@ -278,8 +278,9 @@ void place_virtual_lights(FrameData* frame) {
   const float scale = walk_count ? static_cast<float>(1.0 / walk_count) : 0;
   // A patch of a light's share of the surfaces gives at most π times its radiance, where it lies. A quarter of that is
   // measured: ꟻLIP against full transport falls on cornell, cube and seesaw, the mean by .014 at most.
-  const double usual_count = walk_count * per_walk;
-  lights->geometry_max = lights->area > 0 ? static_cast<float>(0.25 * kPi * usual_count / lights->area) : 0;
+  // The usual number, which is steady, unless the lights have come to shine on much more than at first.
+  const double usual = walk_count * per_walk, count = lights->count > 2 * usual ? lights->count : usual;
+  lights->geometry_max = lights->area > 0 ? static_cast<float>(0.25 * kPi * count / lights->area) : 0;
   float sum = 0;
   for (std::uint32_t i = 0; i < lights->count; ++i) {
     VirtualLight& light = lights->light[i];

@@ -285,6 +285,22 @@ TEST_CASE("instant_radiosity_sends_as_many_walks_whatever_came_before") {
   CHECK(std::equal(a.light, a.light + a.count, b.light, same_light));
 }
 
+// Goal: light that shines past the scene at first is not lost when it turns to it. Method: a spot light.
+TEST_CASE("instant_radiosity_finds_light_that_missed_the_scene_at_first") {
+  Room room(false);
+  Light* light = &room.lights[0];
+  light->kind = LightKind::spot, light->cos_inner = 0.9f, light->cos_outer = 0.5f;
+  light->position = {50, 0, 0}, light->direction = {1, 0, 0};
+  std::unique_ptr<TestRenderer> t = rendered(room.scene, instant(64));
+  REQUIRE(lights_of(*t).count == 0);
+  light->position = {0, 0, 0};
+  t->renderer.lit_mask = ~t->renderer.effects.mask;
+  REQUIRE(render_frame(&t->renderer, 0).ok);
+  std::unique_ptr<TestRenderer> fresh = rendered(room.scene, instant(128));
+  REQUIRE(lights_of(*t).count >= 64);
+  CHECK(lights_of(*t).geometry_max > 0.5f * lights_of(*fresh).geometry_max);
+}
+
 // Goal: the same where the moving object is what ends the scene. Method: boxes rise by a hundredth over the room.
 TEST_CASE("instant_radiosity_keeps_lights_as_the_bounds_change") {
   std::unique_ptr<TestRenderer> first = rendered(RoomWithTurningBoxes(true, 0, 1.7f).scene, instant(64)),
