@@ -134,11 +134,10 @@ Status plan_memory_with(const Scene& scene, const Settings& settings, const Effe
 Status plan_memory(const Scene& scene, const Settings& settings, const EffectPlan& effects, const AccelInfo& accel,
                    const SceneStorage& storage, const PlannedLights& lights, const OutputNeed& output, MemoryPlan* plan,
                    const char** without_coherence) {
-  const bool moves = has(effects.mask, Effect::animation) && is_animated(scene);
-  bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && moves);
-  const char* mixes = has(effects.mask, Effect::instant_radiosity) ? "instant radiosity mixes neighbouring pixels' rays"
-                      : has(effects.mask, Effect::environment_shadow) && settings.coherence_by_tables
-                          ? "the tables do not know shadows from the environment"
+  const bool changes = (has(effects.mask, Effect::animation) && is_animated(scene)) || storage.recolorable > 0;
+  bool wanted = settings.coherence == CoherenceMode::on || (settings.coherence == CoherenceMode::automatic && changes);
+  const char* mixes = is_interleaved(effects.mask) && settings.coherence_by_tables
+                          ? "the tables do not know which pixels mix their light"
                       : has(effects.mask, Effect::selective)     ? "selective rendering interpolates pixels"
                       : has(effects.mask, Effect::undersampling) ? "undersampling reconstructs pixels"
                                                                  : nullptr;

@@ -15,19 +15,32 @@ struct DistantSource {
 
   bool arrives(std::uint32_t index, const Surface& s, const Vec3& origin, Vec3* light, Ray* ray) const {
     const EnvironmentLight& from = lights.light[index];
-    if (!pocketray::arrives(from, s)) return false;
-    *light = from.irradiance * dot(s.normal, from.direction);
+    const float cosine = dot(s.normal, from.direction);
+    if (!(cosine > 0 && dot(s.geometric, from.direction) > 0)) return false;
+    *light = from.irradiance * cosine;
     *ray = {origin, from.direction, __builtin_inff()};
     return true;
   }
 };
 
+DistantSource source_of(const FrameData& frame) {
+  CHECK(frame.environment_lights != nullptr);
+  return {*frame.environment_lights, frame.environment_lights->count};
+}
+
+std::uint32_t count(const FrameData& frame) { return frame.environment_lights->count; }
+
+Vec3 place(const FrameData& frame, std::uint32_t index) { return frame.environment_lights->light[index].direction; }
+
+std::uint32_t list_rays(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
+                        SourceRay* rays) {
+  return list_source_rays(source_of(frame), surface, place_in_pattern, rays);
+}
+
 void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
             InterleavedLight* light) {
   effect_entered<Effect::environment_shadow>();
-  CHECK(frame.environment_lights != nullptr);
-  const EnvironmentLights& lights = *frame.environment_lights;
-  gather_interleaved(frame, points, DistantSource{lights, lights.count}, true, stats, rays, light);
+  gather_interleaved(frame, points, source_of(frame), true, stats, rays, light);
 }
 
 Vec3 irradiance(const FrameData& frame, const Vec3&, const Vec3& normal, const InterleavedLight& sum, bool) {
@@ -40,6 +53,7 @@ Vec3 irradiance(const FrameData& frame, const Vec3&, const Vec3& normal, const I
 
 }  // namespace
 
-const InterleavedSource kEnvironmentSource = {Effect::environment_shadow, gather, irradiance};
+const InterleavedSource kEnvironmentSource = {
+    Effect::environment_shadow, true, count, place, list_rays, gather, irradiance};
 
 }  // namespace pocketray

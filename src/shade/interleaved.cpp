@@ -25,8 +25,6 @@ bool shows_same(const InterleavedPixel& a, const InterleavedPixel& b) {
   return height * height <= kSamePlane * kSamePlane * dot(way, way);
 }
 
-const InterleavedSource* const kSources[kInterleavedSourceCount] = {&kVirtualLightSource, &kEnvironmentSource};
-
 // An aligned tile and the pixels about it that its pixels take light from, by rows.
 constexpr std::uint32_t kRegionSide = kTakenBefore + kTileSide + kTakenAfter;
 constexpr std::uint32_t kRegionPixels = kRegionSide * kRegionSide;
@@ -130,9 +128,9 @@ void gather(Tracer* tracer, const SharedTile& tile, const PixelList& pixels, std
   }
   if (found == 0) return;
   for (int source = 0; source < kInterleavedSourceCount; ++source) {
-    if (!has(frame.mask, kSources[source]->effect)) continue;
-    kSources[source]->gather(frame, {found, surface, place}, &tracer->stats,
-                             &tracer->rays[static_cast<int>(RayKind::shadow)], light);
+    if (!has(frame.mask, kInterleavedSources[source]->effect)) continue;
+    kInterleavedSources[source]->gather(frame, {found, surface, place}, &tracer->stats,
+                                        &tracer->rays[static_cast<int>(RayKind::shadow)], light);
     for (std::uint32_t i = 0; i < found; ++i) region->pixel[in_region[i]].light[source] = light[i];
   }
 }
@@ -166,7 +164,7 @@ constexpr InterleavedLight kNoLight = {{0, 0, 0}, {0, 0, 0}, 0};
 // Adds what the wanted pixels take from those about them to the light that their surfaces emit.
 void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* region, FirstHits* first) {
   for (int source = 0; source < kInterleavedSourceCount; ++source) {
-    if (!has(frame.mask, kSources[source]->effect)) continue;
+    if (!has(frame.mask, kInterleavedSources[source]->effect)) continue;
     std::fill_n(region->column, kRegionPixels, kNoLight);
     for (std::uint32_t i = 0; i < wanted.count; ++i) {
       Surface& s = first->shadows.surface[i];
@@ -189,7 +187,7 @@ void add_shared_light(const FrameData& frame, const PixelList& wanted, Region* r
           if (is_hit(pixel)) add(pixel.light[source], &sum);
         }
       }
-      s.glow += s.diffuse * kSources[source]->irradiance(frame, s.point, s.normal, sum, are_few);
+      s.glow += s.diffuse * kInterleavedSources[source]->irradiance(frame, s.point, s.normal, sum, are_few);
     }
   }
 }

@@ -5,6 +5,8 @@
 // alone: whichever pixels are asked for, those about them are traced, too, and the picture does not depend on how it is
 // divided.
 #pragma once
+#include <algorithm>
+
 #include "shade/strip.h"
 #include "shade/surface.h"
 
@@ -45,9 +47,22 @@ constexpr std::uint32_t kept_pixel_count(const Settings& settings) { return kKep
 // Gives a tracer that many pixels, for a frame.
 void keep_interleaved_pixels(Array<InterleavedPixel> pixels, Tracer* tracer);
 
+constexpr std::uint32_t kInterleavedSourceMax = std::max(kVirtualLightRoom, kEnvironmentLightMax);
+constexpr std::uint32_t kSourcesOfPixelMax = (kInterleavedSourceMax + kPatternPixels - 1) / kPatternPixels;
+struct SourceRay {
+  std::uint32_t source;
+  Ray ray;
+};
+
 // A kind of sources.
 struct InterleavedSource {
   Effect effect;
+  bool is_distant;
+  std::uint32_t (*count)(const FrameData& frame);
+  Vec3 (*place)(const FrameData& frame, std::uint32_t index);  // a point, or the direction towards a distant one
+  // Lists the shadow rays of a first hit, at most kSourcesOfPixelMax, and returns their number.
+  std::uint32_t (*list_rays)(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
+                             SourceRay* rays);
   void (*gather)(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
                  InterleavedLight* light);
   // Irradiance / π at a point of unit normal, from the sum over the pixels that show its surface; if these are few,
@@ -56,11 +71,8 @@ struct InterleavedSource {
                      bool are_few);
 };
 extern const InterleavedSource kVirtualLightSource, kEnvironmentSource;
-
-// Whether a distant light reaches the side of the surface that is seen.
-inline bool arrives(const EnvironmentLight& light, const Surface& s) {
-  return dot(s.normal, light.direction) > 0 && dot(s.geometric, light.direction) > 0;
-}
+constexpr const InterleavedSource* kInterleavedSources[kInterleavedSourceCount] = {&kVirtualLightSource,
+                                                                                   &kEnvironmentSource};
 
 // Traces the strip's pixels.
 void trace_interleaved(Tracer* tracer, const TileStrip& strip, const PixelRows& image);

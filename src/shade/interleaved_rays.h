@@ -6,13 +6,21 @@
 
 namespace pocketray {
 
-constexpr std::uint32_t kSourcesOfPixelMax = (kVirtualLightRoom + kPatternPixels - 1) / kPatternPixels;
-static_assert(kEnvironmentLightMax <= kVirtualLightRoom, "virtual lights are the most sources");
 // A source that reaches a pixel if nothing is in the way.
 struct InterleavedRay {
   Vec3 light;
   float most;  // its brightest channel
   Ray ray;
+  std::uint32_t source;
+};
+
+// Those of a pixel.
+struct InterleavedRays {
+  std::uint32_t count = 0;
+  float least = 0;        // fainter ones are not traced
+  Vec3 open = {0, 0, 0};  // the sum of their light
+  InterleavedRay sent[kSourcesOfPixelMax];
+  InterleavedRays() {}  // leaves them as they are
 };
 
 // Source:
@@ -20,40 +28,45 @@ struct InterleavedRay {
 //   kFaint: of a pixel's sources, those that give less than this share of their mean get no ray, and as much of their
 //       light arrives as of the others'
 //   arrives(index, surface, origin, &light, &ray): false if the surface is turned away from it
+template <class Source>
+void find_sources(const Source& source, const Surface& surface, std::uint32_t place, InterleavedRays* rays) {
+  CHECK_LE(source.count, kInterleavedSourceMax);
+  rays->count = 0, rays->least = 0, rays->open = {0, 0, 0};
+  if (is_zero(surface.diffuse)) return;
+  const Vec3 origin = safe_origin(surface, 1);
+  float all = 0;
+  for (std::uint32_t index = place; index < source.count; index += kPatternPixels) {
+    InterleavedRay* r = &rays->sent[rays->count];
+    if (!source.arrives(index, surface, origin, &r->light, &r->ray)) continue;
+    r->most = max_component(r->light), r->source = index;
+    all += r->most, rays->open += r->light;
+    ++rays->count;
+  }
+  if (rays->count > 0) rays->least = Source::kFaint * all / static_cast<float>(rays->count);
+}
+
 // Rays run to a point each, so that no shaft would hold many: each is traced by itself.
 template <class Source>
 void gather_interleaved(const FrameData& frame, const InterleavedPoints& points, const Source& source,
                         bool casts_shadows, TraceStats* stats, std::uint64_t* rays, InterleavedLight* light) {
   CHECK_LE(points.count, kPacketMax);
-  CHECK_LE(source.count, kSourcesOfPixelMax * kPatternPixels);
   ShadowContext context = {&frame, kNone};
   const HitFilter opaque = {frame.accept_opaque, &context, frame.filters_read_point};
   const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
-  InterleavedRay sent[kSourcesOfPixelMax];
+  InterleavedRays found;
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    const Surface& surface = *points.surface[i];
+    find_sources(source, *points.surface[i], points.place[i], &found);
     InterleavedLight* sum = &light[i];
     *sum = InterleavedLight();
-    if (is_zero(surface.diffuse)) continue;
-    const Vec3 origin = safe_origin(surface, 1);
-    std::uint32_t count = 0;
-    float all = 0;
-    for (std::uint32_t index = points.place[i]; index < source.count; index += kPatternPixels) {
-      InterleavedRay* r = &sent[count];
-      if (!source.arrives(index, surface, origin, &r->light, &r->ray)) continue;
-      r->most = max_component(r->light);
-      all += r->most, sum->open += r->light;
-      ++count;
-    }
+    sum->open = found.open;
     if (!casts_shadows) {
       sum->lit = sum->open;
       continue;
     }
-    const float least = count > 0 ? Source::kFaint * all / static_cast<float>(count) : 0;
     Vec3 faint = {0, 0, 0};
     float traced = 0, arrived = 0;
-    for (const InterleavedRay* r = sent; r < sent + count; ++r) {
-      if (r->most < least) {
+    for (const InterleavedRay* r = found.sent; r < found.sent + found.count; ++r) {
+      if (r->most < found.least) {
         faint += r->light;
         continue;
       }
@@ -67,6 +80,16 @@ void gather_interleaved(const FrameData& frame, const InterleavedPoints& points,
     else if (arrived > 0)
       sum->lit += faint * (arrived / traced);
   }
+}
+
+template <class Source>
+std::uint32_t list_source_rays(const Source& source, const Surface& surface, std::uint32_t place, SourceRay* rays) {
+  InterleavedRays found;
+  find_sources(source, surface, place, &found);
+  std::uint32_t count = 0;
+  for (const InterleavedRay* r = found.sent; r < found.sent + found.count; ++r)
+    if (!(r->most < found.least)) rays[count++] = {r->source, r->ray};
+  return count;
 }
 
 }  // namespace pocketray

@@ -24,12 +24,26 @@ struct VirtualSource {
   }
 };
 
+VirtualSource source_of(const FrameData& frame) {
+  const VirtualLights& lights = *virtual_lights_of(frame.indirect);
+  return {lights, lights.count};
+}
+
+std::uint32_t count(const FrameData& frame) { return virtual_lights_of(frame.indirect)->count; }
+
+Vec3 place(const FrameData& frame, std::uint32_t index) {
+  return virtual_lights_of(frame.indirect)->light[index].position;
+}
+
+std::uint32_t list_rays(const FrameData& frame, const Surface& surface, std::uint32_t place_in_pattern,
+                        SourceRay* rays) {
+  return has(frame.mask, Effect::shadow) ? list_source_rays(source_of(frame), surface, place_in_pattern, rays) : 0;
+}
+
 void gather(const FrameData& frame, const InterleavedPoints& points, TraceStats* stats, std::uint64_t* rays,
             InterleavedLight* light) {
   effect_entered<Effect::instant_radiosity>();
-  const VirtualLights& lights = *virtual_lights_of(frame.indirect);
-  gather_interleaved(frame, points, VirtualSource{lights, lights.count}, has(frame.mask, Effect::shadow), stats, rays,
-                     light);
+  gather_interleaved(frame, points, source_of(frame), has(frame.mask, Effect::shadow), stats, rays, light);
 }
 
 Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, const InterleavedLight& sum,
@@ -46,6 +60,7 @@ Vec3 irradiance(const FrameData& frame, const Vec3& point, const Vec3& normal, c
 
 }  // namespace
 
-const InterleavedSource kVirtualLightSource = {Effect::instant_radiosity, gather, irradiance};
+const InterleavedSource kVirtualLightSource = {
+    Effect::instant_radiosity, false, count, place, list_rays, gather, irradiance};
 
 }  // namespace pocketray

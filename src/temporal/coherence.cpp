@@ -24,6 +24,13 @@ bool differ(const T* last, const Array<const T>& now) {
   return now.count > 0 && std::memcmp(static_cast<const void*>(last), now.data, now.bytes()) != 0;
 }
 
+bool same_virtual_lights(const VirtualLights& a, const VirtualLights& b) {
+  return a.count == b.count && a.geometry_max == b.geometry_max &&
+         std::equal(a.light, a.light + a.count, b.light, [](const VirtualLight& x, const VirtualLight& y) {
+           return x.position == y.position && x.normal == y.normal && x.intensity == y.intensity;
+         });
+}
+
 std::uint32_t tiles_along(std::uint32_t pixels) { return (pixels + kChangeTileSide - 1) / kChangeTileSide; }
 
 std::uint32_t known_lights(const CoherencePlan& plan) {
@@ -40,7 +47,8 @@ std::size_t coherence_need(const Scene& scene, EffectMask mask, const CoherenceP
   std::size_t bytes = moving_geometry_need(scene, mask);
   bytes = size_sum(bytes, arena_need(pixels * plan.samples * sizeof(Hit)));
   bytes = size_sum(bytes, arena_need<TileHits>(tiles) + arena_need<std::uint64_t>(tiles));
-  if (has(mask, Effect::environment_shadow)) bytes = size_sum(bytes, arena_need<std::uint64_t>(tiles));
+  if (is_interleaved(mask)) bytes = size_sum(bytes, arena_need<std::uint64_t>(tiles));
+  if (has(mask, Effect::instant_radiosity)) bytes = size_sum(bytes, arena_need<VirtualLights>(1));
   bytes = size_sum(bytes, arena_need<KnownShadows>(tiles * plan.samples * known_lights(plan)));
   bytes = size_sum(bytes, arena_need<LightPoint>(plan.light_points) + arena_need<ChangeCounts>(plan.threads));
   bytes = size_sum(bytes, arena_need<LightPolygon>(plan.area_lights));
@@ -66,7 +74,8 @@ void make_coherence(const FrameData& frame, const CoherencePlan& plan, Arena* ke
   c->first_hits = arena_array_zeroed<Hit>(keep, static_cast<std::size_t>(pixel_count(plan)) * plan.samples);
   c->tiles = arena_array<TileHits>(keep, tiles);
   c->changed = arena_array_zeroed<std::uint64_t>(keep, tiles);
-  if (has(frame.mask, Effect::environment_shadow)) c->given = arena_array_zeroed<std::uint64_t>(keep, tiles);
+  if (is_interleaved(frame.mask)) c->given = arena_array_zeroed<std::uint64_t>(keep, tiles);
+  if (has(frame.mask, Effect::instant_radiosity)) c->virtual_lights = arena_array<VirtualLights>(keep, 1);
   c->shadows = arena_array_zeroed<KnownShadows>(keep, tiles * plan.samples * known_lights(plan));
   c->lights = arena_array<LightPoint>(keep, plan.light_points);
   c->light_polygons = arena_array<LightPolygon>(keep, plan.area_lights);
@@ -84,7 +93,8 @@ bool fits(const Coherence& c, const FrameData& frame) {
   bool has_tables = c.tables.words.count > 0;
   return frame.settings.samples_per_pixel <= c.plan.samples && frame.lights.count <= c.plan.light_points &&
          frame.light_polygons.count <= c.plan.area_lights && (has_tables || !keeps_tables(frame.mask, c.plan)) &&
-         (c.given.count > 0 || !has(frame.mask, Effect::environment_shadow));
+         (c.given.count > 0 || !is_interleaved(frame.mask)) &&
+         (c.virtual_lights.count > 0 || !has(frame.mask, Effect::instant_radiosity));
 }
 
 void recolor(Coherence* c, std::uint32_t material, const Material& was, const Material& is, const Scene& scene) {
@@ -98,6 +108,9 @@ bool follow_frame(Coherence* c, const FrameData& frame, const char** why) {
   c->followed = signature_of(frame);
   *why = difference(c->signature, c->followed);
   if (!*why && frame.lights.count != c->light_count) *why = "lights were added or removed";
+  if (!*why && has(frame.mask, Effect::instant_radiosity) &&
+      !same_virtual_lights(c->virtual_lights[0], *virtual_lights_of(frame.indirect)))
+    *why = "a virtual light changed";
   if (!*why && c->tables.words.count && !is_empty(frame.accel.bounds) &&
       !contains(c->tables.bounds, frame.accel.bounds))
     *why = "the scene outgrew the tables' grid";
@@ -198,7 +211,7 @@ void find_changes(Coherence* c, std::uint32_t tile_row, std::uint32_t thread, Tr
 }
 
 void spread_changes(Coherence* c) {
-  if (c->given.empty() || !has(c->search.frame->mask, Effect::environment_shadow)) return;
+  if (c->given.empty() || !is_interleaved(c->search.frame->mask)) return;
   for (std::uint32_t tile = 0; tile < c->given.count; ++tile) {
     const std::uint32_t left = tile % c->tile_columns * kChangeTileSide, top = tile / c->tile_columns * kChangeTileSide;
     for (std::uint64_t rest = c->given[tile]; rest; rest &= rest - 1) {
@@ -265,6 +278,7 @@ void keep(Coherence* c, const FrameData& frame) {
   std::copy(frame.lights.begin(), frame.lights.end(), c->lights.begin());
   CHECK_LE(frame.light_polygons.count, c->light_polygons.count);
   std::copy(frame.light_polygons.begin(), frame.light_polygons.end(), c->light_polygons.begin());
+  if (has(frame.mask, Effect::instant_radiosity)) c->virtual_lights[0] = *virtual_lights_of(frame.indirect);
   c->signature = c->followed;
   c->following = false;
   ++c->kept_count;

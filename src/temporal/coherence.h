@@ -14,8 +14,9 @@
 namespace pocketray {
 
 // Effects by which pixels depend on each other in ways that are not followed.
-constexpr EffectMask kNotFollowed =
-    bit(Effect::instant_radiosity) | bit(Effect::selective) | bit(Effect::undersampling);
+constexpr EffectMask kNotFollowed = bit(Effect::selective) | bit(Effect::undersampling);
+// The same in the paper's way, whose tables do not tell which pixels a ray's light is given to.
+constexpr EffectMask kNotInTables = kNotFollowed | kInterleavedEffects;
 
 // What it is made for.
 struct CoherencePlan {
@@ -38,6 +39,7 @@ struct Coherence {
   Array<std::uint64_t> given;    // those that may give other light to the pixels about them; empty: none ever do
   Array<LightPoint> lights;      // of the last frame
   Array<LightPolygon> light_polygons;
+  Array<VirtualLights> virtual_lights;  // one, if there are any
   Array<MarkingObserver> observers;
   Array<ChangeCounts> counts;  // for each thread
   Array<Span> spans;           // some rows of tiles as spans

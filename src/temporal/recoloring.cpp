@@ -129,8 +129,8 @@ void for_each_hit(const TileOfPixels& tile, Visit visit) {
 Surface surface_at(const FrameData& frame, std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit) {
   const Vec2 offset = sample_offset(sample, frame.settings.samples_per_pixel);
   Surface s;
-  frame.surface(frame, camera_ray(frame.camera, static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y),
-                hit, &s);
+  frame.first_surface(
+      frame, camera_ray(frame.camera, static_cast<float>(x) + offset.x, static_cast<float>(y) + offset.y), hit, &s);
   return s;
 }
 
@@ -179,21 +179,27 @@ void find_shaded(TileOfPixels* tile, const TileHits& hits) {
   }
 }
 
-// Pixels whose rays towards the environment are stopped otherwise: they give other light to those about them.
-void find_opened(TileOfPixels* tile, const TileHits& hits) {
+// Pixels whose rays to interleaved sources are stopped otherwise: they give other light to those about them.
+void find_opened(TileOfPixels* tile, const TileHits& hits, const InterleavedSource& source) {
   const FrameData& frame = tile->frame;
-  if (!has(frame.mask, Effect::environment_shadow)) return;
-  const EnvironmentLights& lights = *frame.environment_lights;
+  if (!has(frame.mask, source.effect)) return;
   tile->found &= tile->given;  // the others' rays are looked at
-  for (std::uint32_t k = 0; k < lights.count; ++k) {
-    const EnvironmentLight& light = lights.light[k];
-    if (!is_stopped_otherwise(tile->r, frame, distant_beam(light, hits.points, hits.room))) continue;
+  SourceRay ray[kSourcesOfPixelMax];
+  const std::uint32_t count = source.count(frame);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Vec3 place = source.place(frame, k);
+    auto is_stopped_from = [&](const Box& points) {
+      return is_stopped_otherwise(tile->r, frame, source_beam(source, place, points, hits.room));
+    };
+    if (!is_stopped_from(hits.points)) continue;
     for_each_hit(*tile, [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, const Hit& hit, std::uint64_t bit) {
-      if (hit.triangle == kNoTriangle || morton_place(x % kPatternSide, y % kPatternSide) != k % kPatternPixels) return;
+      const std::uint32_t in_pattern = morton_place(x % kPatternSide, y % kPatternSide);
+      if (hit.triangle == kNoTriangle || in_pattern != k % kPatternPixels) return;
       const Vec3 point = point_of(frame, hit);
-      if (!is_stopped_otherwise(tile->r, frame, distant_beam(light, {point, point}, hits.room))) return;
-      const Surface s = surface_at(frame, x, y, sample, hit);
-      if (!is_zero(s.diffuse) && arrives(light, s)) tile->found |= bit, tile->given |= bit;
+      if (!is_stopped_from({point, point})) return;
+      const SourceRay* end = ray + source.list_rays(frame, surface_at(frame, x, y, sample, hit), in_pattern, ray);
+      if (std::any_of(static_cast<const SourceRay*>(ray), end, [&](const SourceRay& r) { return r.source == k; }))
+        tile->found |= bit, tile->given |= bit;
     });
   }
 }
@@ -286,7 +292,10 @@ std::uint64_t find_recolored(const Recoloring& r, const ChangeSearch& search, st
     if (!is_empty(hits.points)) {
       find_shaded(&t, hits);
       found |= t.found;
-      find_opened(&t, hits);
+      for (const InterleavedSource* source : kInterleavedSources) {
+        find_opened(&t, hits, *source);
+        found |= t.found;
+      }
     }
     found |= t.found;
   }

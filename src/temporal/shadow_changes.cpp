@@ -3,30 +3,12 @@
 
 #include "accel/accel_list.h"
 #include "base/check.h"
-#include "shade/filters.h"
-#include "shade/interleaved.h"
-#include "temporal/tile_search.h"
+#include "temporal/shadow_rays.h"
 
 namespace pocketray {
 namespace {
 
 constexpr float kInfinity = __builtin_inff();
-
-// A shadow ray's filter, for triangles of the moving geometry.
-struct MovingFilter {
-  const MovingGeometry* moving;
-  HitFilter inner;
-};
-bool accept_moving(const void* context, std::uint32_t triangle, float u, float v) {
-  const auto& f = *static_cast<const MovingFilter*>(context);
-  return f.inner.accept(f.inner.context, f.moving->ids[triangle], u, v);
-}
-// The same for all other triangles of the scene.
-bool accept_static(const void* context, std::uint32_t triangle, float u, float v) {
-  const auto& f = *static_cast<const MovingFilter*>(context);
-  if (moving_index(*f.moving, triangle) != kNoTriangle) return false;
-  return !f.inner.accept || f.inner.accept(f.inner.context, triangle, u, v);
-}
 
 }  // namespace
 
@@ -36,11 +18,6 @@ Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points
     return beam_along(from, {-light.direction, -light.direction}, kInfinity);
   // A ray that starts beside its point ends as far beside the light.
   return {from.low, from.high, light.position - points.low, light.position - points.high, 1};
-}
-
-Beam distant_beam(const EnvironmentLight& light, const Box& points, float room) {
-  const Vec3 around = {room, room, room};
-  return beam_along({points.low - around, points.high + around}, {light.direction, light.direction}, kInfinity);
 }
 
 namespace {
@@ -62,28 +39,6 @@ std::uint64_t find_suspects(const TileSearch& t, const LightRun& run, const Ligh
     if (group && meets_change(*t.search.moving, shadow_beam(run, light, points, room))) suspects |= group;
   }
   return suspects;
-}
-
-struct ShadowRays {
-  SegmentPacket rays;
-  std::uint64_t pixel[kPacketMax];  // of each, as a bit of the tile
-};
-
-// Which of the rays `which` something blocks; bit i is ray i.
-std::uint64_t blocked_among(const AccelTraversal& traversal, const Accel& accel, const ShadowRays& s,
-                            std::uint64_t which, const HitFilter* filter, TraceStats* stats) {
-  if (which == 0) return 0;
-  SegmentPacket some;
-  std::uint8_t place[kPacketMax];
-  some.count = 0;
-  for (std::uint64_t rest = which; rest; rest &= rest - 1) {
-    place[some.count] = static_cast<std::uint8_t>(__builtin_ctzll(rest));
-    set_ray(&some, some.count, ray_of(s.rays, place[some.count]));
-    ++some.count;
-  }
-  std::uint64_t found = traversal.occluded_packet(accel, some, filter, stats), blocked = 0;
-  for (std::uint32_t i = 0; i < some.count; ++i) blocked |= (found >> i & 1) << place[i];
-  return blocked;
 }
 
 // The shadow rays of the receivers to the light; those that cast none are idle.
@@ -133,9 +88,8 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   ShadowContext shadow = {&frame, frame.lights[light].material};
   bool filtered = frame.filter_every_shadow || shadow.emitter != kNone;
   bool clear = frame.accept_clear != nullptr;  // a transparent surface tints: anything in the way counts
-  MovingFilter context = {&m, {filtered ? frame.accept_opaque : nullptr, &shadow}};
-  HitFilter opaque = {accept_moving, &context}, other = {accept_static, &context};
-  const HitFilter* filter = filtered && !clear ? &opaque : nullptr;
+  const ShadowFilters filters(m, {filtered ? frame.accept_opaque : nullptr, &shadow});
+  const HitFilter* filter = filtered && !clear ? &filters.moving : nullptr;
 
   std::uint64_t fresh = 0, was = 0;
   for (std::uint32_t i = 0; i < s.rays.count; ++i) {
@@ -146,7 +100,7 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
   }
   auto idle_of = [&](std::uint64_t which) {
     t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(which));
-    return blocked_among(*frame.first_rays, frame.accel, s, which, &other, t->stats);
+    return blocked_among(*frame.first_rays, frame.accel, s, which, &filters.other, t->stats);
   };
   const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s.rays.count);
   std::uint64_t idle = is_kept ? idle_of(fresh) : 0;
@@ -162,72 +116,6 @@ void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t ligh
     known->blocked = (is >> i & 1) ? known->blocked | s.pixel[i] : known->blocked & ~s.pixel[i];
     if (changed >> i & 1) t->changed |= s.pixel[i];
   }
-}
-
-namespace {
-
-// Calls visit(index, light) for each distant light of the environment towards which the tile has a ray that can meet a
-// change. Stops when it returns false.
-template <class Visit>
-void for_each_distant_suspect(const ChangeSearch& search, const TileHits& hits, Visit visit) {
-  const FrameData& frame = *search.frame;
-  if (!has(frame.mask, Effect::environment_shadow) || is_empty(hits.points) || !search.moving->changed) return;
-  const EnvironmentLights& lights = *frame.environment_lights;
-  for (std::uint32_t i = 0; i < lights.count; ++i)
-    if (meets_change(*search.moving, distant_beam(lights.light[i], hits.points, hits.room)) &&
-        !visit(i, lights.light[i]))
-      return;
-}
-
-// Pixels of which a ray towards the environment is blocked where it was not, or no longer.
-void find_changed_openness(TileSearch* t, ShadowRays* s) {
-  if (s->rays.count == 0) return;
-  const FrameData& frame = t->frame;
-  const MovingGeometry& m = *t->search.moving;
-  ShadowContext shadow = {&frame, kNone};
-  MovingFilter context = {&m, {frame.filter_every_shadow ? frame.accept_opaque : nullptr, &shadow}};
-  HitFilter opaque = {accept_moving, &context}, other = {accept_static, &context};
-  const HitFilter* filter = frame.filter_every_shadow ? &opaque : nullptr;
-  const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s->rays.count);
-  const std::uint64_t changed = blocked_among(kBvhAccel, m.last, *s, all, filter, t->stats) ^
-                                blocked_among(kBvhAccel, m.now, *s, all, filter, t->stats);
-  const std::uint64_t hidden = blocked_among(*frame.first_rays, frame.accel, *s, changed, &other, t->stats);
-  t->counts->moving_rays += 2 * s->rays.count;
-  t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(changed));
-  for (std::uint32_t i = 0; i < s->rays.count; ++i)
-    if ((changed & ~hidden) >> i & 1) t->given |= s->pixel[i];
-  s->rays.count = 0;
-}
-
-}  // namespace
-
-bool is_open_to_change(const ChangeSearch& search, const TileHits& hits) {
-  bool any = false;
-  for_each_distant_suspect(search, hits, [&](std::uint32_t, const EnvironmentLight&) { return !(any = true); });
-  return any;
-}
-
-void find_other_light(TileSearch* t, const TileHits& hits) {
-  if (!has(t->frame.mask, Effect::environment_shadow)) return;
-  t->given |= t->changed;  // no receivers: their rays are not looked at
-  ShadowRays s;
-  s.rays.count = 0;
-  for_each_distant_suspect(t->search, hits, [&](std::uint32_t index, const EnvironmentLight& light) {
-    for (std::uint32_t k = 0; k < t->receiver_count; ++k) {
-      const std::uint32_t i = t->receiver[k];
-      if (morton_place(t->pixels.x[i] % kPatternSide, t->pixels.y[i] % kPatternSide) != index % kPatternPixels)
-        continue;
-      if (t->given & bit_of(t->pixels, i)) continue;
-      const Surface& surface = surface_of(t, k);
-      if (is_zero(surface.diffuse) || !arrives(light, surface)) continue;
-      s.pixel[s.rays.count] = bit_of(t->pixels, i);
-      set_ray(&s.rays, s.rays.count++, {safe_origin(surface, 1), light.direction, kInfinity});
-      if (s.rays.count == kPacketMax) find_changed_openness(t, &s);
-    }
-    return true;
-  });
-  find_changed_openness(t, &s);
-  t->changed |= t->given;
 }
 
 }  // namespace pocketray

@@ -91,7 +91,9 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, co
   if (!any)
     for_each_suspect(search, hits, suspects.lights,
                      [&](const LightRun&, std::uint32_t, bool) { return !(any = true); });
-  if (!any && !(suspects.open && is_open_to_change(search, hits))) return marked;
+  SourceSets sources;
+  if (!is_empty(suspects.sources)) sources = suspect_sources(search, hits, &suspects.sources);
+  if (!any && is_empty(sources)) return marked;
   const TilePixels pixels = pixels_of(frame.settings, column, row, known_pixels);
   if (pixels.count == 0) return 0;
   TileSearch t(search, pixels, marked, *given, counts, stats);
@@ -100,7 +102,7 @@ std::uint64_t find_changes_of(const ChangeSearch& search, std::uint32_t tile, co
     t.offset = sample_offset(sample, frame.settings.samples_per_pixel);
     if (seen) find_changed_hits(&t, hits.t_max);
     find_receivers(&t);
-    find_other_light(&t, hits);
+    find_other_light(&t, sources);
     KnownShadows* known = known_shadows(search, sample, tile);
     for_each_suspect(search, hits, suspects.lights, [&](const LightRun& run, std::uint32_t light, bool has_changed) {
       const bool is_kept = light < search.known_lights;
@@ -120,8 +122,8 @@ const Surface& surface_of(TileSearch* t, std::uint32_t k) {
   if (t->has_surface >> k & 1) return t->surface[k];
   t->has_surface |= std::uint64_t(1) << k;
   const std::uint32_t i = t->receiver[k];
-  t->frame.surface(t->frame, sample_ray(t->frame, t->pixels, i, t->offset),
-                   t->hits[index_of(t->frame.settings, t->pixels, i)], &t->surface[k]);
+  t->frame.first_surface(t->frame, sample_ray(t->frame, t->pixels, i, t->offset),
+                         t->hits[index_of(t->frame.settings, t->pixels, i)], &t->surface[k]);
   return t->surface[k];
 }
 
@@ -145,7 +147,7 @@ Suspects suspects_of(const ChangeSearch& search, std::uint32_t begin, std::uint3
                       row = begin / search.tile_columns * kChangeTileSide;
   Suspects suspects = {};
   suspects.seen = sees_change(search, {column, row, (end - begin) * kChangeTileSide, kChangeTileSide}, all.t_max);
-  suspects.open = is_open_to_change(search, all);
+  suspects.sources = suspect_sources(search, all, nullptr);
   for_each_suspect(search, all, ~std::uint64_t(0), [&](const LightRun&, std::uint32_t light, bool) {
     if (light < kSuspectLights) suspects.lights |= std::uint64_t(1) << light;
     return light < kSuspectLights;  // they come in ascending order

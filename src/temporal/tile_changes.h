@@ -1,6 +1,7 @@
 // The pixels of a tile whose value can differ from the last frame: rays that may be affected are found by beams around
 // the tile's rays, then tested one by one against the moving geometry alone, where it was and where it is.
 #pragma once
+#include "shade/interleaved.h"
 #include "shade/tile_shadows.h"
 #include "temporal/moving_geometry.h"
 #include "temporal/ray_tables.h"
@@ -55,11 +56,33 @@ struct ChangeCounts {
   std::uint64_t static_rays = 0;  // shadow rays against everything else
 };
 
-// What some tiles next to each other may have rays to that meet a change: the camera, the environment, and of the first
-// lights, bit i for light i.
+// Some of the interleaved sources, and the places of the pattern whose pixels have rays to one of them.
+struct SourceSet {
+  std::uint64_t bits[(kInterleavedSourceMax + 63) / 64] = {};
+  std::uint32_t places = 0;
+
+  void add(std::uint32_t index) {
+    bits[index / 64] |= std::uint64_t(1) << (index % 64);
+    places |= 1u << (index % kPatternPixels);
+  }
+  bool has(std::uint32_t index) const { return bits[index / 64] >> (index % 64) & 1; }
+};
+// Of each kind.
+struct SourceSets {
+  SourceSet of[kInterleavedSourceCount];
+};
+inline bool is_empty(const SourceSets& sets) {
+  for (const SourceSet& set : sets.of)
+    if (set.places) return false;
+  return true;
+}
+
+// What some tiles next to each other may have rays to that meet a change: the camera, interleaved sources, and of the
+// first lights, bit i for light i.
 struct Suspects {
-  bool seen, open;
+  bool seen;
   std::uint64_t lights;
+  SourceSets sources;
 };
 constexpr std::uint32_t kSuspectLights = 64;  // further ones are always suspect
 constexpr std::uint32_t kSuspectTiles = 8;    // looked at together

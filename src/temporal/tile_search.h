@@ -66,9 +66,9 @@ struct TileSearch {
 
 // All camera rays of some pixels, up to a distance.
 Beam camera_beam(const CameraRays& camera, const PixelRect& pixels, float t_max);
-// All shadow rays to a light, and towards one of the environment, from some points and at most `room` beside them.
+// All shadow rays to a light, and to an interleaved source, from some points and at most `room` beside them.
 Beam shadow_beam(const LightRun& run, const LightPoint& light, const Box& points, float room);
-Beam distant_beam(const EnvironmentLight& light, const Box& points, float room);
+Beam source_beam(const InterleavedSource& source, const Vec3& place, const Box& points, float room);
 
 // Whether a camera ray of some pixels, these among others, may meet a change; `t_max` is of the farthest hit.
 bool sees_change(const ChangeSearch& search, const PixelRect& pixels, float t_max);
@@ -87,9 +87,9 @@ void find_lit_by(TileSearch* t, const LightRun& run, std::uint32_t light);
 void find_changed_shadows(TileSearch* t, const LightRun& run, std::uint32_t light, float room, bool is_kept,
                           KnownShadows* known);
 
-// Whether a ray from the tile towards the environment may meet a change.
-bool is_open_to_change(const ChangeSearch& search, const TileHits& hits);
+// Those of the interleaved sources to which a ray from the tile may meet a change; `among`: null for all of them.
+SourceSets suspect_sources(const ChangeSearch& search, const TileHits& hits, const SourceSets* among);
 // Adds the pixels that may give other light to `given`: without a first hit of the last frame, or by their rays.
-void find_other_light(TileSearch* t, const TileHits& hits);
+void find_other_light(TileSearch* t, const SourceSets& suspects);
 
 }  // namespace pocketray

@@ -46,7 +46,7 @@ RaySet make_secondary(RayKindOfBench kind, const BenchScene& scene, const RaySet
     Start start;
     if (hits[i].triangle != kNoTriangle && start_at(scene, primary.rays[i], hits[i], &start))
       set.rays.push_back(make_ray(start));
-    if (i % kTileSize == kTileSize - 1) set.tile_begin.push_back(set.rays.size());
+    if (i % kRayTileSize == kRayTileSize - 1) set.tile_begin.push_back(set.rays.size());
   }
   return set;
 }
@@ -54,17 +54,17 @@ RaySet make_secondary(RayKindOfBench kind, const BenchScene& scene, const RaySet
 }  // namespace
 
 Status make_primary_rays(const BenchScene& scene, std::uint32_t width, std::uint32_t height, RaySet* set) {
-  if (width == 0 || height == 0 || width % kTileSide || height % kTileSide)
-    return failure("--size %ux%u: width and height must be multiples of %u", width, height, kTileSide);
+  if (width == 0 || height == 0 || width % kRayTileSide || height % kRayTileSide)
+    return failure("--size %ux%u: width and height must be multiples of %u", width, height, kRayTileSide);
   CameraRays camera;
   RETURN_IF_ERROR(make_camera_rays(scene.camera, width, height, &camera));
   if (camera.orthographic)
     return failure("%s has an orthographic camera: primary rays must share the eye", scene.name.c_str());
   *set = {RayKindOfBench::primary, width, height, {}, {}};
   set->rays.reserve(static_cast<std::size_t>(width) * height);
-  for (std::uint32_t y0 = 0; y0 < height; y0 += kTileSide)
-    for (std::uint32_t x0 = 0; x0 < width; x0 += kTileSide)
-      for (std::uint32_t slot = 0; slot < kTileSize; ++slot) {
+  for (std::uint32_t y0 = 0; y0 < height; y0 += kRayTileSide)
+    for (std::uint32_t x0 = 0; x0 < width; x0 += kRayTileSide)
+      for (std::uint32_t slot = 0; slot < kRayTileSize; ++slot) {
         std::uint32_t x = x0 + even_bits(slot), y = y0 + even_bits(slot >> 1);
         set->rays.push_back(camera_ray(camera, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
       }

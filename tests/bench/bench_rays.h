@@ -12,11 +12,11 @@ namespace pocketray {
 enum class RayKindOfBench : int { primary, shadow, bounce };
 constexpr const char* kBenchRayNames[] = {"primary", "shadow", "bounce"};
 
-constexpr std::uint32_t kTileSide = 8, kTileSize = kTileSide * kTileSide;
+constexpr std::uint32_t kRayTileSide = 8, kRayTileSize = kRayTileSide * kRayTileSide;
 
 struct RaySet {
   RayKindOfBench kind;
-  std::uint32_t width, height;          // of the picture; multiples of kTileSide
+  std::uint32_t width, height;          // of the picture; multiples of kRayTileSide
   std::vector<Ray> rays;                // primary: one per pixel, in tiles; else in the order of the hits
   std::vector<std::size_t> tile_begin;  // shadow and bounce: the first ray of each tile, and past the last
   std::string size() const { return std::to_string(width) + "x" + std::to_string(height); }

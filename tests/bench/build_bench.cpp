@@ -57,7 +57,7 @@ double refit_ms(const BenchScene& scene, const AccelInfo* info, int rounds) {
 double two_threads(const OurSide& ours, const RaySet& primary, int rounds) {
   constexpr int kRoundsMore = 4;  // the rounds are short
   OurTask task = make_our_task(ours, primary);
-  std::size_t row_size = primary.width / kTileSide, row_count = primary.height / kTileSide;
+  std::size_t row_size = primary.width / kRayTileSide, row_count = primary.height / kRayTileSide;
   auto trace_rows = [&](std::size_t first, std::size_t step) {
     auto trace = [&] {
       for (std::size_t row = first; row < row_count; row += step) trace_tiles_ours(&task, row * row_size, row_size);

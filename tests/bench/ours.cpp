@@ -22,14 +22,14 @@ void trace_occlusion(OurTask* task) {
     task->blocked[i] = side.info->occluded_packet(side.accel, task->segments[i], nullptr, nullptr);
 }
 
-static_assert(kTileSize == kPacketMax, "a packet is a tile");
+static_assert(kRayTileSize == kPacketMax, "a packet is a tile");
 
 std::vector<RayPacket> lay_out_packets(const RaySet& set) {
-  std::vector<RayPacket> packets(set.rays.size() / kTileSize);
+  std::vector<RayPacket> packets(set.rays.size() / kRayTileSize);
   for (std::size_t i = 0; i < set.rays.size(); ++i) {
-    RayPacket& packet = packets[i / kTileSize];
-    packet.origin = set.rays[i].origin, packet.t_max = set.rays[i].t_max, packet.count = kTileSize;
-    for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i % kTileSize] = set.rays[i].direction[axis];
+    RayPacket& packet = packets[i / kRayTileSize];
+    packet.origin = set.rays[i].origin, packet.t_max = set.rays[i].t_max, packet.count = kRayTileSize;
+    for (int axis = 0; axis < 3; ++axis) packet.direction[axis][i % kRayTileSize] = set.rays[i].direction[axis];
   }
   return packets;
 }
@@ -93,7 +93,7 @@ OurTask make_our_task(const OurSide& side, const RaySet& set) {
 void trace_tiles_ours(OurTask* task, std::size_t first, std::size_t count) {
   const OurSide& side = *task->side;
   for (std::size_t i = first; i < first + count; ++i)
-    side.info->closest_packet(side.accel, task->packets[i], nullptr, &task->hits[i * kTileSize], nullptr);
+    side.info->closest_packet(side.accel, task->packets[i], nullptr, &task->hits[i * kRayTileSize], nullptr);
 }
 
 void trace_ours(OurTask* task) {

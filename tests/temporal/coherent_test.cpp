@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "effect/setting_list.h"
 #include "scene/builtin_helpers.h"
 #include "support/feature_sets.h"
 #include "support/hard_case.h"
@@ -52,7 +53,7 @@ TEST_CASE("hard_58_edited_frames_equal_whole_ones") {
   constexpr int kFrames = 20;
   const std::uint64_t first = seed_of_scripts();
   const int count = script_count();
-  std::uint64_t frames = 0, wrong = 0, partial = 0, rows = 0, kept = 0, pixels = 0;
+  std::uint64_t frames = 0, wrong = 0, partial = 0, relit = 0, rows = 0, kept = 0, pixels = 0;
   for (int i = 0; i < count; ++i) {
     const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
     Rng rng = make_rng(seed, 5);
@@ -66,7 +67,7 @@ TEST_CASE("hard_58_edited_frames_equal_whole_ones") {
       CHECK(same);
       wrong += !same;
     }
-    partial += script.partial_frames;
+    partial += script.partial_frames, relit += script.partly_relit_frames;
     rows += script.shared.rows;
     kept += script.shared.pixels - script.shared.pixels_traced, pixels += script.shared.pixels;
     show_gate_progress(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(count));
@@ -74,6 +75,7 @@ TEST_CASE("hard_58_edited_frames_equal_whole_ones") {
   CHECK(frames > 0);
   if (kEffortDivisor == 1) {      // of few scripts, all may render whole frames
     CHECK(partial > frames / 8);  // the comparison is not one of whole frames with themselves,
+    CHECK(relit > frames / 100);
     CHECK(rows > frames);
     CHECK(kept > pixels / 8);  // nor of rows with themselves
   }
@@ -101,6 +103,30 @@ TEST_CASE("seesaw_frames_equal_whole_ones") {
     }
   }
   CHECK(traced * 2 <= pixels);
+}
+
+// Goal: light between surfaces is followed while what moves meets none of the walks that place virtual lights. Method:
+// the first frames of the paper's sequence, where it meets none, and the 29th, where it does.
+TEST_CASE("virtual_lights_that_rest_are_followed") {
+  Settings settings;
+  settings.width = effort_side(160), settings.height = effort_side(120);
+  settings.threads = 2;
+  settings.indirect = indirect_choice(Effect::instant_radiosity);
+  Pair pair = make_pair("seesaw", settings);
+  const Renderer& coherent = pair.coherent->renderer;
+  std::uint64_t traced = 0, pixels = 0;
+  for (int frame = 20; frame < 29; ++frame) {
+    CAPTURE(frame);
+    REQUIRE(same_frames(pair, frame / 30.0));
+    if (frame == 20) continue;
+    REQUIRE(coherent.coherence_state.whole_because == nullptr);
+    traced += coherent.coherence_state.pixels_traced, pixels += settings.width * settings.height;
+  }
+  CHECK(traced > 0);
+  CHECK(traced * 4 <= pixels);
+  REQUIRE(same_frames(pair, 29 / 30.0));
+  CHECK(std::string(coherent.coherence_state.whole_because) == "a virtual light changed");
+  REQUIRE(same_frames(pair, 28 / 30.0));  // back to where they were before the last frame
 }
 
 // Goal: a frame in which nothing changed costs no ray. Method: the same time twice.

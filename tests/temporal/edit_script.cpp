@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "accel/accel_list.h"
+#include "effect/setting_list.h"
 #include "engine/recolor.h"
 
 namespace pocketray {
@@ -211,6 +212,10 @@ EditScript begin_script(std::uint32_t features, std::uint64_t seed) {
   s.rest = s.generated->rest_positions;
   Settings plain = settings_for(features, 24 + next_u32(&s.rng) % 30, 20 + next_u32(&s.rng) % 20);
   plain.environment_shadows = next_u32(&s.rng) % 40;
+  if (next_u32(&s.rng) % 3 == 0) {
+    plain.indirect = indirect_choice(Effect::instant_radiosity);
+    plain.virtual_lights = 1 + next_u32(&s.rng) % (next_u32(&s.rng) % 2 ? 4 : 40);  // few of them rest more often
+  }
   const AccelInfo* const accels[] = {nullptr, nullptr,
                                      kAccelList[next_u32(&s.rng) % (sizeof kAccelList / sizeof kAccelList[0])]};
   const AccelInfo* accel = accels[next_u32(&s.rng) % 3];
@@ -240,6 +245,8 @@ bool follow_script(EditScript* s) {
   if (!render_frame(whole, s->seconds).ok || !render_coherent(coherent, s->seconds).ok) return false;
   if (!coherent->coherence_state.whole_because) {
     ++s->partial_frames;
+    if (coherent->effects.mask & bit(Effect::instant_radiosity) && !is_unchanged(coherent->coherence))
+      ++s->partly_relit_frames;
     s->pixels_traced += coherent->coherence_state.pixels_traced;
   }
   return std::memcmp(whole->image.data, coherent->image.data, whole->image.bytes()) == 0;

@@ -22,6 +22,7 @@ struct EditScript {
   bool shares = false;  // mostly traces a part of the rows
   SharedScript shared;
   std::uint64_t partial_frames = 0, pixels_traced = 0;  // of the frames that were not traced whole
+  std::uint64_t partly_relit_frames = 0;  // of these, those with virtual lights in which something changed
 };
 
 // A material that may take the place of another, which is `m` now; mostly no brighter.

@@ -38,13 +38,12 @@ Status plan_way(Way way, const ReportOptions& o, std::uint32_t table, Renderer* 
   if (o.compare && (renderer->effects.mask & (bit(Effect::selective) | bit(Effect::undersampling))) != 0)
     return failure(
         "--compare traces single pixels, but with --selective or --resolution they depend on others: leave these out");
-  if (o.compare && (renderer->effects.mask & (bit(Effect::instant_radiosity) | bit(Effect::environment_shadow))) != 0)
+  if (o.compare && (renderer->effects.mask & kInterleavedEffects) != 0)
     return failure(
         "--compare traces single pixels, but with virtual lights or shadows from the environment they depend on "
         "others: add --indirect none, or --environment-shadows 0");
   if (way == Way::frame_by_frame || renderer->coherence_state.planned) return success();
-  const EffectMask not_followed = kNotFollowed | (way == Way::by_tables ? bit(Effect::environment_shadow) : 0);
-  if ((renderer->effects.mask & not_followed) != 0)
+  if ((renderer->effects.mask & (way == Way::by_tables ? kNotInTables : kNotFollowed)) != 0)
     return failure("coherence does not follow these frames: %s", renderer->coherence_state.unplanned_because);
   const CoherencePlan plan = coherence_plan(*settings, renderer->light_point_count_max, renderer->light_polygons.count);
   std::size_t bytes = renderer->memory.total_bytes + coherence_need(renderer->scene, renderer->effects.mask, plan) +
@@ -91,9 +90,9 @@ Status measure(const ReportOptions& o, CoherenceReport* report) {
     RETURN_IF_ERROR(open_way(way, o, o.table, &coherent));
     if (way == Way::coherent) {
       print_notes(coherent);
-      if (!no_paper && has(coherent.renderer.effects.mask, Effect::environment_shadow)) {
+      if (!no_paper && (coherent.renderer.effects.mask & kNotInTables) != 0) {
         no_paper = true;
-        print_note("the paper's way is left out, which does not know shadows from the environment");
+        print_note("the paper's way is left out: its tables do not know which pixels mix their light");
       }
       if (!range.given) range = whole_animation(whole.renderer.scene);
       describe(o, coherent.renderer, report);

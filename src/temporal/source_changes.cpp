@@ -1,0 +1,78 @@
+// Interleaved sources, virtual lights and distant ones, that reach first hits as they did not, or no longer.
+#include "temporal/shadow_rays.h"
+
+namespace pocketray {
+
+Beam source_beam(const InterleavedSource& source, const Vec3& place, const Box& points, float room) {
+  const Vec3 around = {room, room, room};
+  const Box from = {points.low - around, points.high + around};
+  if (source.is_distant) return beam_along(from, {place, place}, __builtin_inff());
+  return {from.low, from.high, place - from.low, place - from.high, 1};
+}
+
+SourceSets suspect_sources(const ChangeSearch& search, const TileHits& hits, const SourceSets* among) {
+  const FrameData& frame = *search.frame;
+  SourceSets suspects;
+  if (!is_interleaved(frame.mask) || is_empty(hits.points) || !search.moving->changed) return suspects;
+  for (int kind = 0; kind < kInterleavedSourceCount; ++kind) {
+    const InterleavedSource& source = *kInterleavedSources[kind];
+    if (!has(frame.mask, source.effect) || (among && !among->of[kind].places)) continue;
+    const std::uint32_t count = source.count(frame);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (among && !among->of[kind].has(i)) continue;
+      if (meets_change(*search.moving, source_beam(source, source.place(frame, i), hits.points, hits.room)))
+        suspects.of[kind].add(i);
+    }
+  }
+  return suspects;
+}
+
+namespace {
+
+// Adds the pixels of which a ray is blocked where it was not, or no longer, to `given`; forgets the rays.
+void find_blocked_otherwise(TileSearch* t, ShadowRays* s) {
+  if (s->rays.count == 0) return;
+  const FrameData& frame = t->frame;
+  const MovingGeometry& m = *t->search.moving;
+  ShadowContext shadow = {&frame, kNone};
+  const ShadowFilters filters(m, {frame.filter_every_shadow ? frame.accept_opaque : nullptr, &shadow});
+  const HitFilter* filter = frame.filter_every_shadow ? &filters.moving : nullptr;
+  const std::uint64_t all = ~std::uint64_t(0) >> (kPacketMax - s->rays.count);
+  const std::uint64_t changed = blocked_among(kBvhAccel, m.last, *s, all, filter, t->stats) ^
+                                blocked_among(kBvhAccel, m.now, *s, all, filter, t->stats);
+  const std::uint64_t hidden = blocked_among(*frame.first_rays, frame.accel, *s, changed, &filters.other, t->stats);
+  t->counts->moving_rays += 2 * s->rays.count;
+  t->counts->static_rays += static_cast<std::uint64_t>(__builtin_popcountll(changed));
+  for (std::uint32_t i = 0; i < s->rays.count; ++i)
+    if ((changed & ~hidden) >> i & 1) t->given |= s->pixel[i];
+  s->rays.count = 0;
+}
+
+}  // namespace
+
+void find_other_light(TileSearch* t, const SourceSets& suspects) {
+  if (!is_interleaved(t->frame.mask)) return;
+  t->given |= t->changed;  // no receivers: their rays are not looked at
+  ShadowRays s;
+  s.rays.count = 0;
+  SourceRay ray[kSourcesOfPixelMax];
+  for (int kind = 0; kind < kInterleavedSourceCount; ++kind) {
+    const SourceSet& set = suspects.of[kind];
+    for (std::uint32_t k = 0; set.places && k < t->receiver_count; ++k) {
+      const std::uint32_t i = t->receiver[k];
+      const std::uint32_t place = morton_place(t->pixels.x[i] % kPatternSide, t->pixels.y[i] % kPatternSide);
+      if (!(set.places >> place & 1) || t->given & bit_of(t->pixels, i)) continue;
+      const std::uint32_t count = kInterleavedSources[kind]->list_rays(t->frame, surface_of(t, k), place, ray);
+      for (std::uint32_t r = 0; r < count; ++r) {
+        if (!set.has(ray[r].source)) continue;
+        s.pixel[s.rays.count] = bit_of(t->pixels, i);
+        set_ray(&s.rays, s.rays.count++, ray[r].ray);
+        if (s.rays.count == kPacketMax) find_blocked_otherwise(t, &s);
+      }
+    }
+  }
+  find_blocked_otherwise(t, &s);
+  t->changed |= t->given;
+}
+
+}  // namespace pocketray
