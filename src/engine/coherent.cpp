@@ -65,7 +65,7 @@ bool begin_following(Renderer* renderer) {
   } else if (!fits(*c, renderer->frame)) {
     state->whole_because = "more samples, lights or effects than memory was planned for";
   } else if (renderer->settings.coherence == CoherenceMode::automatic && rests(&state->trial)) {
-    state->whole_because = "tracing only what changed did not pay";
+    state->whole_because = state->trial.is_warming ? "the first frame" : "tracing only what changed did not pay";
   } else {
     follow_frame(c, renderer->frame, &state->whole_because);
     if (state->whole_because && state->trial.tries_again) state->whole_because = "coherence is tried again";

@@ -130,7 +130,7 @@ typedef struct pocketray_part {
 } pocketray_part;
 
 /* Whether pocketray_render() traces only what may have changed since the last frame it rendered; the pictures stay the
- * same. AUTO: where the scene moves, memory allows it and it pays. */
+ * same. AUTO: where the scene moves or is recolorable, memory allows it and it pays; the first frame is whole. */
 enum { POCKETRAY_COHERENCE_OFF = 0, POCKETRAY_COHERENCE_AUTO = 1, POCKETRAY_COHERENCE_ON = 2 };
 
 /* Fixed from pocketray_open() on. */

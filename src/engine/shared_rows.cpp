@@ -46,6 +46,7 @@ void begin_shared_rows(Renderer* renderer, std::uint32_t row_begin, std::uint32_
   state->search = ChangeCounts();
   state->pixels_traced = 0;
   SharedRows* rows = &renderer->shared_rows;
+  state->trial.is_cold = false;  // no times are compared
   rows->records = begin_following(renderer);
   if (!rows->records) {
     state->trial.was_recorded = false;

@@ -154,6 +154,9 @@ static void memory_decides(void) {
   EXPECT(coherent.memory_bytes > plain.memory_bytes + API_WIDTH * API_HEIGHT * 16);
   EXPECT_OK(pocketray_open(&source, &options, api_memory[0], coherent.memory_bytes, &instance));
   api_render(instance, 1, &picture);
+  EXPECT(strcmp(frame_of(instance).whole_because, "the first frame") == 0);
+  api_render(instance, 1, &picture);
+  EXPECT(frame_of(instance).pixels_traced == API_WIDTH * API_HEIGHT);
   api_render(instance, 1, &picture);
   EXPECT(frame_of(instance).pixels_traced == 0);
   pocketray_close(instance);

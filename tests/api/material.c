@@ -329,6 +329,28 @@ static void coherence_follows_materials(void) {
   pocketray_close(each[1]);
 }
 
+/* Coherence is chosen by itself where materials may change, though nothing moves. */
+static void coherence_is_chosen_for_materials(void) {
+  static api_picture picture;
+  pocketray_options options = recolorable();
+  pocketray_frame frame = POCKETRAY_FRAME_INIT;
+  pocketray_instance* instance;
+  pocketray_material m;
+  int k;
+  options.coherence = POCKETRAY_COHERENCE_AUTO;
+  instance = api_open("cube", &options, 0);
+  for (k = 0; k < 3; ++k) api_render(instance, 0, &picture);
+  EXPECT_OK(pocketray_get_frame(instance, &frame));
+  EXPECT(frame.pixels_traced == 0);
+  m = material_of(instance, 1);
+  m.diffuse[0] = 0.9f - m.diffuse[0];
+  EXPECT_OK(pocketray_set_material(instance, 1, &m));
+  api_render(instance, 0, &picture);
+  EXPECT_OK(pocketray_get_frame(instance, &frame));
+  EXPECT(frame.pixels_traced > 0 && frame.pixels_traced < API_WIDTH * API_HEIGHT / 2);
+  pocketray_close(instance);
+}
+
 /* A program built with the header of 0.2.1 has shorter options. */
 static void structures_of_0_2_1_are_accepted(void) {
   static api_picture picture;
@@ -354,6 +376,7 @@ const api_case api_material_cases[] = {
     {"memory_is_reserved_when_asked_for", memory_is_reserved_when_asked_for},
     {"a_change_ends_a_frame_in_progress", a_change_ends_a_frame_in_progress},
     {"coherence_follows_materials", coherence_follows_materials},
+    {"coherence_is_chosen_for_materials", coherence_is_chosen_for_materials},
     {"structures_of_0_2_1_are_accepted", structures_of_0_2_1_are_accepted},
     {NULL, NULL},
 };
