@@ -60,6 +60,7 @@ void tidy_mesh(MeshData* mesh) {
   CHECK(mesh->normals.empty() || mesh->normals.size() == count);
   CHECK(mesh->uvs.empty() || mesh->uvs.size() == count);
   CHECK(mesh->second_uvs.empty() || mesh->second_uvs.size() == count);
+  CHECK(mesh->tangents.empty() || mesh->tangents.size() == count);
   CHECK(mesh->colors.empty() || mesh->colors.size() == count);
   CHECK(mesh->skin_weights.empty() || mesh->skin_weights.size() == count);
   CHECK_EQ(mesh->morph_positions.size(), mesh->morph_count * count);
@@ -86,6 +87,7 @@ void tidy_mesh(MeshData* mesh) {
   gather(&mesh->normals, kept, count);
   gather(&mesh->uvs, kept, count);
   gather(&mesh->second_uvs, kept, count);
+  gather(&mesh->tangents, kept, count);
   gather(&mesh->colors, kept, count);
   gather(&mesh->skin_weights, kept, count);
 }
@@ -108,9 +110,11 @@ static std::uint64_t optional_bytes(const std::vector<T>& all, const std::vector
 
 static std::uint64_t vertex_bytes(const SceneArrays& out, const MeshData& mesh) {
   const std::size_t count = mesh.positions.size(), end = out.positions.size() + count;
+  const bool has_tangents = !mesh.tangents.empty() || !out.tangents.empty();
   return count * sizeof(Vec3) + optional_bytes(out.normals, mesh.normals, end) +
          optional_bytes(out.uvs, mesh.uvs, end) + optional_bytes(out.second_uvs, mesh.second_uvs, end) +
-         optional_bytes(out.colors, mesh.colors, end);
+         optional_bytes(out.colors, mesh.colors, end) +
+         (has_tangents ? (end - out.tangents.size()) * sizeof(PackedTangent) : 0);
 }
 
 static void require_coordinate(const Vec3& p, const MeshData& mesh) {
@@ -142,6 +146,7 @@ void append_mesh(SceneBuilder* builder, const MeshData& mesh, const Transform& t
   append_optional(&out.uvs, mesh.uvs, begin, count, Vec2{0, 0});
   append_optional(&out.second_uvs, mesh.second_uvs, begin, count, Vec2{0, 0});
   append_optional(&out.colors, mesh.colors, begin, count, Rgba16{65535, 65535, 65535, 65535});
+  append_optional(&out.tangents, pack_tangents(mesh.tangents, to_world), begin, count, PackedTangent());
 
   bool mirrored = determinant(to_world) < 0;
   std::uint32_t base = static_cast<std::uint32_t>(begin);

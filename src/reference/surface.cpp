@@ -64,13 +64,28 @@ double glossy_share(const ReferenceSurface& s) {
   return glossy > 0 ? glossy / (glossy + diffuse) : 0;
 }
 
-// The frame of maps, from ∂P/∂u and ∂P/∂v, which solve e = u ∂P/∂u + v ∂P/∂v for both edges; shade/normal_map.h has the
-// rules. False if there is none.
+// The frame of maps, from ∂P/∂u and ∂P/∂v, which solve e = u ∂P/∂u + v ∂P/∂v for both edges, or as the vertices have
+// it; shade/normal_map.h has the rules. False if there is none.
 bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurface& s, Vec3d* tangent,
                Vec3d* bitangent) {
   const Scene& scene = *frame.scene;
-  if (scene.uvs.empty()) return false;
   const Triangle& t = scene.triangles[s.triangle];
+  const Vec3d n = s.normal * (s.front ? 1.0 : -1.0);
+  Vec3d at_vertex[3], along = {0, 0, 0};
+  int handedness = 0;
+  bool at_vertices = scene.tangents.count > 0;
+  for (std::uint32_t i = 0; i < 3 && at_vertices; ++i) {
+    at_vertex[i] = to_double(unpacked(scene.tangents[t.vertex(i)]));
+    handedness += scene.tangents[t.vertex(i)].handedness;
+    at_vertices = !is_zero(at_vertex[i]);
+  }
+  if (at_vertices) along = at_vertex[0] * (1 - s.u - s.v) + at_vertex[1] * s.u + at_vertex[2] * s.v;
+  if (at_vertices && handedness != 0) {
+    *tangent = normalize(along - n * dot(n, along)), *bitangent = cross(n, *tangent);
+    if (handedness < 0) *bitangent = -*bitangent;
+    return !is_zero(*tangent);
+  }
+  if (scene.uvs.empty()) return false;
   Vec2 at[3];
   for (std::uint32_t i = 0; i < 3; ++i) at[i] = scene.uvs[t.vertex(i)];
   const double u1 = static_cast<double>(at[1].x - at[0].x), v1 = static_cast<double>(at[1].y - at[0].y);
@@ -79,12 +94,7 @@ bool map_frame(const FrameData& frame, const Vec3d* corner, const ReferenceSurfa
   if (determinant == 0) return false;
   const Vec3d e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
   const Vec3d by_u = (e1 * v2 - e2 * v1) * (1 / determinant), by_v = (e2 * u1 - e1 * u2) * (1 / determinant);
-  const Vec3d n = s.normal * (s.front ? 1.0 : -1.0);
-  Vec3d along = by_u, at_vertex[3];
-  for (std::uint32_t i = 0; i < 3 && scene.tangents.count; ++i)
-    at_vertex[i] = to_double(unpacked(scene.tangents[t.vertex(i)]));
-  if (scene.tangents.count && !is_zero(at_vertex[0]) && !is_zero(at_vertex[1]) && !is_zero(at_vertex[2]))
-    along = at_vertex[0] * (1 - s.u - s.v) + at_vertex[1] * s.u + at_vertex[2] * s.v;
+  if (!at_vertices) along = by_u;
   const Vec3d own = normalize(by_u - n * dot(n, by_u)), other = cross(n, own);
   *tangent = normalize(along - n * dot(n, along)), *bitangent = cross(n, *tangent);
   if (dot(other, by_v) > 0) *bitangent = -*bitangent;

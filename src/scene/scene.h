@@ -130,9 +130,10 @@ struct Grain {
   TextureUse texture;
 };
 
-// A unit vector in 127ths; zero: none.
+// A unit vector in 127ths; zero: none. Handedness: above 0, the bitangent is normal × tangent, below 0 the opposite; 0:
+// as the first texture coordinates have it, against ∂P/∂v.
 struct PackedTangent {
-  std::int8_t x = 0, y = 0, z = 0, reserved = 0;
+  std::int8_t x = 0, y = 0, z = 0, handedness = 0;
 };
 inline Vec3 unpacked(const PackedTangent& t) {
   return {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)};  // × 127

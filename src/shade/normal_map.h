@@ -5,10 +5,10 @@
 namespace pocketray {
 
 // The frame of maps at the surface, for a unit normal n of its front: the tangent is interpolated from the vertices,
-// else the triangle's own ∂P/∂u, and made perpendicular to n; the bitangent is perpendicular to both, against ∂P/∂v.
-// Vertices that move have no tangents, and triangles at the seam of a mirrored texture may have none: there, the frame
-// turns about n from triangle to triangle. False where texture coordinates span no area or nothing is left of a
-// direction.
+// else the triangle's own ∂P/∂u, and made perpendicular to n; the bitangent is perpendicular to both, on the side of
+// the vertices' handedness (the majority, should they differ), else against ∂P/∂v. Vertices that move have no tangents,
+// and triangles at the seam of a mirrored texture may have none: there, the frame turns about n from triangle to
+// triangle. False where nothing is left of a direction or, without handedness, where texture coordinates span no area.
 bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3* tangent, Vec3* bitangent);
 
 // The surface's normal as its map has it, unit, for the map's numbers there, in the frame above of the shading normal.

@@ -63,7 +63,8 @@ void add_brushed_box(GeneratedScene* s, std::uint32_t features, Rng* rng) {
   s->tangents.resize(s->positions.size());
   add_box(s, {2, 0, -2}, {2.7f, 1.5f, -1.2f}, material);
   for (std::size_t i = s->tangents.size(); i + 4 < s->positions.size(); ++i)  // not of the last side
-    s->tangents.push_back({static_cast<std::int8_t>(90 - 11 * (i % 4)), 60, -66, 0});
+    s->tangents.push_back(
+        {static_cast<std::int8_t>(90 - 11 * (i % 4)), 60, -66, static_cast<std::int8_t>(i / 4 % 3 - 1)});
   s->grains.resize(s->materials.size());
   s->grains[material].direction = {0.6f, -0.5f};
   if (has(features, Feature::texture)) s->grains[material].texture.texture = add_noise_texture(s, rng, false);
