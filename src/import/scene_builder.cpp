@@ -238,7 +238,7 @@ static NamedBoxes named_parts(const SceneBuilder& builder) {
   return named;
 }
 
-static bool is_textured(const Material& material) {
+static bool has_texture(const Material& material) {
   return material.diffuse_texture.texture != kNone || material.emission_texture.texture != kNone;
 }
 
@@ -248,7 +248,8 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   if (out.materials.empty()) out.materials.emplace_back();
   std::size_t count = out.positions.size();
   if (!out.normals.empty()) out.normals.resize(count, Vec3{0, 0, 0});
-  bool textured = std::any_of(out.materials.begin(), out.materials.end(), is_textured) ||
+  bool textured = std::any_of(out.materials.begin(), out.materials.end(), has_texture) ||
+                  std::any_of(out.clear_coats.begin(), out.clear_coats.end(), is_textured) ||
                   std::any_of(out.material_maps.begin(), out.material_maps.end(), has_map) ||
                   std::any_of(out.grains.begin(), out.grains.end(),
                               [](const Grain& grain) { return grain.texture.texture != kNone; });
@@ -258,6 +259,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   reads_second ? out.second_uvs.resize(count, Vec2{0, 0}) : out.second_uvs.clear();
   if (!out.material_maps.empty()) out.material_maps.resize(out.materials.size());
   if (!out.grains.empty()) out.grains.resize(out.materials.size());
+  if (!out.clear_coats.empty()) out.clear_coats.resize(out.materials.size());
   make_tangents(builder);
   if (!out.colors.empty()) out.colors.resize(count, Rgba16{65535, 65535, 65535, 65535});
   if (!out.normals.empty() && !out.rest_positions.empty())
@@ -272,6 +274,7 @@ void finish_scene(SceneBuilder* builder, const std::string& name, ImportedScene*
   scene.uvs = view(out.uvs), scene.second_uvs = view(out.second_uvs), scene.colors = view(out.colors);
   scene.triangles = view(out.triangles), scene.materials = view(out.materials),
   scene.material_maps = view(out.material_maps), scene.grains = view(out.grains);
+  scene.clear_coats = view(out.clear_coats);
   scene.tangents = view(out.tangents);
   scene.textures = view(out.textures), scene.texels = view(out.texels);
   scene.lights = view(out.lights), scene.cameras = view(out.cameras);

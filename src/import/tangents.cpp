@@ -87,6 +87,7 @@ bool are_given(const SceneArrays& out, const Triangle& t) {
 
 bool needs_tangents(const SceneArrays& out, std::uint32_t material) {
   if (material < out.grains.size() && has_strength(out.grains[material])) return true;
+  if (material < out.clear_coats.size() && out.clear_coats[material].normal.texture != kNone) return true;
   return material < out.material_maps.size() && out.material_maps[material].normal.texture != kNone;
 }
 

@@ -1,4 +1,4 @@
-// Tangents for normal maps and grains.
+// Tangents for normal maps, those of clear coats included, and grains.
 #pragma once
 #include "import/scene_builder.h"
 

@@ -54,10 +54,9 @@ bool tangent_frame(const FrameData& frame, const Surface& s, const Vec3& n, Vec3
   return !is_zero(*tangent);
 }
 
-Vec3 mapped_normal(const FrameData& frame, const MaterialMaps& maps, const Vec3& texel, const Ray& ray,
-                   const Surface& s) {
+Vec3 mapped_normal(const FrameData& frame, float scale, const Vec3& texel, const Ray& ray, const Surface& s) {
   effect_entered<Effect::normal_map>();
-  const float x = component(texel.x) * maps.normal_scale, y = component(texel.y) * maps.normal_scale;
+  const float x = component(texel.x) * scale, y = component(texel.y) * scale;
   if (x == 0 && y == 0) return s.normal;
   const Vec3 n = s.front ? s.normal : -s.normal;
   Vec3 tangent, bitangent;
